@@ -1,0 +1,54 @@
+#include "retarget/base/log.hpp"
+
+#include <cstdio>
+#include <mutex>
+#include <set>
+
+namespace understudy::log {
+namespace {
+
+void to_stderr(Level level, const std::string& message) {
+  std::fprintf(stderr, "%s%s\n", level == Level::Warning ? "warning: " : "", message.c_str());
+}
+
+struct State {
+  std::mutex mutex;
+  Sink sink = to_stderr;
+  std::set<std::string> told;
+};
+
+State& state() {
+  static State instance;
+  return instance;
+}
+
+void emit(Level level, const std::string& message) {
+  std::lock_guard lock(state().mutex);
+  state().sink(level, message);
+}
+
+}  // namespace
+
+Sink set_sink(Sink sink) {
+  std::lock_guard lock(state().mutex);
+  std::swap(sink, state().sink);
+  return sink;
+}
+
+void info(const std::string& message) {
+  emit(Level::Info, message);
+}
+
+void warn(const std::string& message) {
+  emit(Level::Warning, message);
+}
+
+void warn_once(const std::string& message) {
+  {
+    std::lock_guard lock(state().mutex);
+    if (!state().told.insert(message).second) return;
+  }
+  warn(message);
+}
+
+}  // namespace understudy::log

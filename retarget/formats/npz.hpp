@@ -1,0 +1,36 @@
+// NumPy arrays: .npy and .npz files.
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "retarget/math/types.hpp"
+
+namespace understudy {
+
+/// One array, converted to float (numbers of any NumPy type) or kept as text (type U).
+struct NpyArray {
+  std::vector<int64_t> shape;
+  std::vector<float> values;  ///< C order
+  std::string text;           ///< for a scalar string
+  int64_t size() const;
+  /// As a matrix of `cols` columns. Throws Error (naming `what`) when it does not divide.
+  RowMatrix matrix(int64_t cols, const std::string& what) const;
+};
+
+using Npz = std::map<std::string, NpyArray>;
+
+/// Reads one .npy from bytes in memory; `source` names it in complaints. Sizes are checked before anything is allocated.
+NpyArray parse_npy(const std::string& bytes, const std::string& source);
+NpyArray read_npy(const std::string& path);
+/// Reads every array of a .npz (zip, stored or deflated). Arrays of other kinds (objects) are left out.
+Npz read_npz(const std::string& path);
+/// The array `name` of `npz`, or an Error naming the file and the array.
+const NpyArray& require(const Npz& npz, const std::string& name, const std::string& source);
+/// Writes float32 arrays, beside the path first, then renamed.
+void write_npz(const std::string& path, const Npz& npz);
+
+}  // namespace understudy

@@ -1,0 +1,107 @@
+#include "retarget/geometry/mesh.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy {
+
+Points vertex_normals(const Points& vertices, const Faces& faces) {
+  Points normals = Points::Zero(vertices.rows(), 3);
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    const Vec3 a = vertices.row(faces(f, 0)), b = vertices.row(faces(f, 1)), c = vertices.row(faces(f, 2));
+    const Vec3 n = (b - a).cross(c - a);  // twice the area long: the weighting comes for free
+    for (int k = 0; k < 3; ++k) normals.row(faces(f, k)) += n.transpose();
+  }
+  for (Eigen::Index v = 0; v < normals.rows(); ++v) {
+    const float length = normals.row(v).norm();
+    if (length > 1e-20f) normals.row(v) /= length;
+  }
+  return normals;
+}
+
+SurfaceSampler::SurfaceSampler(const Points& vertices, const Faces& faces) : cumulative_area_(faces.rows()) {
+  double total = 0;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    const Vec3 a = vertices.row(faces(f, 0)), b = vertices.row(faces(f, 1)), c = vertices.row(faces(f, 2));
+    const float area = 0.5f * (b - a).cross(c - a).norm();
+    if (std::isfinite(area)) total += area;
+    cumulative_area_[f] = total;
+  }
+  US_CHECK(total > 0, "the mesh has no surface to sample");
+}
+
+SurfaceSampler::Sample SurfaceSampler::sample(Rng& rng) const {
+  const double at = rng.uniform() * cumulative_area_.back();
+  const auto it = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(), at);
+  const int face = static_cast<int>(std::min<size_t>(it - cumulative_area_.begin(), cumulative_area_.size() - 1));
+  const float u = std::sqrt(rng.uniform()), w = rng.uniform();
+  return {face, Vec3(1 - u, u * (1 - w), u * w)};
+}
+
+namespace {
+
+Points some_points(const Points& points, int count, Rng& rng) {
+  if (points.rows() <= count) return points;
+  std::vector<int> order(points.rows());
+  std::iota(order.begin(), order.end(), 0);
+  Points chosen(count, 3);
+  for (int i = 0; i < count; ++i) {
+    std::swap(order[i], order[i + rng.below(static_cast<int>(order.size()) - i)]);
+    chosen.row(i) = points.row(order[i]);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Points sample_points(const Mesh& mesh, int count, Rng& rng) {
+  if (mesh.is_cloud()) return some_points(mesh.vertices, count, rng);
+  const SurfaceSampler sampler(mesh.vertices, mesh.faces);
+  Points points(count, 3);
+  for (int i = 0; i < count; ++i) {
+    const auto s = sampler.sample(rng);
+    points.row(i).setZero();
+    for (int k = 0; k < 3; ++k) points.row(i) += s.barycentric[k] * mesh.vertices.row(mesh.faces(s.face, k));
+  }
+  return points;
+}
+
+std::vector<int> farthest_points(const Points& points, int count, int first) {
+  US_CHECK(count <= points.rows(), "farthest point sampling wants ", count, " of ", points.rows(), " points");
+  // Coordinates apart: the compiler then turns the inner loop into vector instructions.
+  const Eigen::ArrayXf x = points.col(0), y = points.col(1), z = points.col(2);
+  Eigen::ArrayXf distance = Eigen::ArrayXf::Constant(points.rows(), std::numeric_limits<float>::max());
+  std::vector<int> chosen(count);
+  Eigen::Index current = first;
+  for (int i = 0; i < count; ++i) {
+    chosen[i] = static_cast<int>(current);
+    distance = distance.min((x - x[current]).square() + (y - y[current]).square() + (z - z[current]).square());
+    distance.maxCoeff(&current);
+  }
+  return chosen;
+}
+
+Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,
+                                                                                      const Points& queries, int k) {
+  US_CHECK(k <= points.rows(), k, " neighbours wanted of ", points.rows(), " points");
+  const Eigen::ArrayXf x = points.col(0), y = points.col(1), z = points.col(2);
+  Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(queries.rows(), k);
+  std::vector<int> order(points.rows());
+  for (Eigen::Index q = 0; q < queries.rows(); ++q) {
+    const Eigen::ArrayXf d =
+        (x - queries(q, 0)).square() + (y - queries(q, 1)).square() + (z - queries(q, 2)).square();
+    std::iota(order.begin(), order.end(), 0);
+    const auto nearer = [&d](int a, int b) { return d[a] < d[b] || (d[a] == d[b] && a < b); };
+    std::nth_element(order.begin(), order.begin() + (k - 1), order.end(), nearer);
+    std::sort(order.begin(), order.begin() + k, nearer);
+    std::copy(order.begin(), order.begin() + k, result.row(q).data());
+  }
+  return result;
+}
+
+}  // namespace understudy

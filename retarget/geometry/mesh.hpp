@@ -1,0 +1,48 @@
+// A triangle mesh, or a point cloud when it has no faces.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "retarget/base/rng.hpp"
+#include "retarget/math/types.hpp"
+
+namespace understudy {
+
+struct Mesh {
+  Points vertices;                 ///< [V, 3] metres
+  Faces faces{0, 3};               ///< [F, 3]; empty for a point cloud
+  Points colors{0, 3};             ///< [V, 3] in 0..1; empty when the file has none
+  bool is_cloud() const { return faces.rows() == 0; }
+};
+
+/// Area-weighted vertex normals, [V, 3], unit length (zero where no face touches).
+Points vertex_normals(const Points& vertices, const Faces& faces);
+
+/// Picks points on a surface uniformly by area. Build once per mesh, then sample as often as wanted.
+class SurfaceSampler {
+ public:
+  /// One sample: a triangle and barycentric weights of its three corners.
+  struct Sample {
+    int face;
+    Vec3 barycentric;
+  };
+  /// Throws Error when the mesh has no face or no area.
+  SurfaceSampler(const Points& vertices, const Faces& faces);
+  Sample sample(Rng& rng) const;
+
+ private:
+  std::vector<double> cumulative_area_;  // [F]
+};
+
+/// `count` points on the surface, uniform by area; from a cloud, `count` of its points (all, when it has fewer).
+Points sample_points(const Mesh& mesh, int count, Rng& rng);
+
+/// Indices of `count` points that lie far apart (farthest point sampling from `first`); count <= points.rows().
+std::vector<int> farthest_points(const Points& points, int count, int first = 0);
+
+/// For each query the indices of its k nearest points, nearest first, [Q, k]; k <= points.rows(). Exact.
+Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,
+                                                                                      const Points& queries, int k);
+
+}  // namespace understudy

@@ -1,0 +1,62 @@
+// The stages of the way of a frame, as the pipeline sees them: abstract, so that no user of the pipeline needs LibTorch.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+/// What one scan says about the body in it.
+struct Extraction {
+  Joints joints = Joints::Zero();                              ///< world, metres
+  Eigen::Array<float, kJointCount, 1> confidence =
+      Eigen::Array<float, kJointCount, 1>::Ones();             ///< 0..1 a joint
+  std::optional<Rotations> global;                             ///< world rotations seen on the surface, where known
+};
+
+/// Joints from a scan of any number of points, any order, any heading (paper 1, section 3.1). One thread at a time.
+class SkeletonExtractor {
+ public:
+  virtual ~SkeletonExtractor() = default;
+  /// Throws Error when the cloud has fewer than 32 finite points or the network gives NaN.
+  virtual Extraction extract(const Mesh& scan) = 0;
+  virtual std::string name() const = 0;
+};
+
+/// Source joints in, the target's local rotations out, frame by frame, with state (paper 1, section 3.1).
+class MotionTransfer {
+ public:
+  virtual ~MotionTransfer() = default;
+  /// Forgets the past; rest_b are the target's T-pose joints.
+  virtual void reset(const Joints& rest_b) = 0;
+  /// Local rotations of the target for one source frame, dt seconds after the one before. The root's position is
+  /// RootPath's business.
+  virtual Rotations push(const Extraction& source, float dt) = 0;
+  virtual std::string name() const = 0;
+};
+
+/// Skin weights once per target, vertices per frame (paper 1, section 3.2).
+class Deformer {
+ public:
+  virtual ~Deformer() = default;
+  /// Prepares for a target: rest vertices [V, 3] in T-pose, its T-pose joints.
+  virtual void bind(const Points& rest, const Joints& rest_joints) = 0;
+  /// [V, 22], rows sum to 1. Valid after bind().
+  virtual const RowMatrix& weights() const = 0;
+  /// Posed vertices [V, 3] (eq. 3): offsets, then linear blend skinning.
+  virtual Points deform(const Pose& pose) = 0;
+  virtual std::string name() const = 0;
+};
+
+/// The three networks that the pipeline runs on.
+struct Networks {
+  std::unique_ptr<SkeletonExtractor> extractor;
+  std::unique_ptr<MotionTransfer> transfer;
+  std::unique_ptr<Deformer> deformer;
+};
+
+}  // namespace understudy

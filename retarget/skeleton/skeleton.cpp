@@ -1,0 +1,55 @@
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+const std::array<const char*, kJointCount> kJointNames = {
+    "pelvis",     "left_hip",      "right_hip",      "spine1",     "left_knee",   "right_knee", "spine2",    "left_ankle",
+    "right_ankle", "spine3",       "left_foot",      "right_foot", "neck",        "left_collar", "right_collar", "head",
+    "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist"};
+
+Rotations identity_rotations() {
+  Rotations rotations;
+  rotations.fill(Mat3::Identity());
+  return rotations;
+}
+
+PosedSkeleton forward_kinematics(const Joints& rest, const Pose& pose) {
+  PosedSkeleton posed;
+  for (int j = 0; j < kJointCount; ++j) {
+    const int p = kParents[j];
+    if (p < 0) {
+      posed.global[j] = pose.local[j];
+      posed.joints.row(j) = pose.root.transpose();
+      continue;
+    }
+    posed.global[j] = posed.global[p] * pose.local[j];
+    const Vec3 bone = (rest.row(j) - rest.row(p)).transpose();
+    posed.joints.row(j) = posed.joints.row(p) + (posed.global[p] * bone).transpose();
+  }
+  return posed;
+}
+
+Rotations local_rotations(const Rotations& global) {
+  Rotations local;
+  for (int j = 0; j < kJointCount; ++j) {
+    const int p = kParents[j];
+    local[j] = p < 0 ? global[j] : Mat3(global[p].transpose() * global[j]);
+  }
+  return local;
+}
+
+float leg_length(const Joints& joints) {
+  const auto bone = [&joints](int a, int b) { return (joints.row(a) - joints.row(b)).norm(); };
+  return 0.5f * (bone(LeftHip, LeftKnee) + bone(LeftKnee, LeftAnkle) + bone(RightHip, RightKnee) +
+                 bone(RightKnee, RightAnkle));
+}
+
+Pose mirrored(const Pose& pose) {
+  const Eigen::DiagonalMatrix<float, 3> flip(-1.0f, 1.0f, 1.0f);
+  Pose result;
+  for (int j = 0; j < kJointCount; ++j) result.local[j] = flip * pose.local[kMirror[j]] * flip;
+  result.root = flip * pose.root;
+  return result;
+}
+
+}  // namespace understudy
