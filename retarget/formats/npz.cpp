@@ -1,0 +1,272 @@
+#include "retarget/formats/npz.hpp"
+
+#include <zip.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy {
+namespace {
+
+struct Header {
+  char kind = 'f';       // f, i, u, b, U
+  int bytes = 4;         // per element
+  bool big_endian = false;
+  bool fortran = false;
+  std::vector<int64_t> shape;
+  size_t data_offset = 0;
+};
+
+std::string quoted_value(const std::string& dict, const std::string& key) {
+  const size_t at = dict.find("'" + key + "'");
+  const size_t open = at == std::string::npos ? at : dict.find('\'', at + key.size() + 2);
+  const size_t close = open == std::string::npos ? open : dict.find('\'', open + 1);
+  return close == std::string::npos ? "" : dict.substr(open + 1, close - open - 1);
+}
+
+std::vector<int64_t> shape_of(const std::string& dict, const std::string& source) {
+  const size_t at = dict.find("'shape'");
+  const size_t open = at == std::string::npos ? at : dict.find('(', at);
+  const size_t close = open == std::string::npos ? open : dict.find(')', open);
+  US_CHECK(close != std::string::npos, source, ": the array header has no shape");
+  std::vector<int64_t> shape;
+  std::istringstream in(dict.substr(open + 1, close - open - 1));
+  for (std::string part; std::getline(in, part, ',');) {
+    if (part.find_first_of("0123456789") == std::string::npos) continue;
+    long long extent = -1;
+    US_CHECK(std::sscanf(part.c_str(), " %lld", &extent) == 1 && extent >= 0, source, ": bad extent in the array's shape");
+    shape.push_back(extent);
+  }
+  return shape;
+}
+
+Header parse_header(const std::string& bytes, const std::string& source) {
+  US_CHECK(bytes.size() >= 10 && bytes.compare(0, 6, "\x93NUMPY") == 0, source, ": not a NumPy array");
+  const int version = static_cast<unsigned char>(bytes[6]);
+  const auto byte = [&bytes](size_t i) { return static_cast<uint64_t>(static_cast<unsigned char>(bytes[i])); };
+  uint64_t length = byte(8) | byte(9) << 8;
+  size_t start = 10;
+  if (version >= 2) {
+    US_CHECK(bytes.size() >= 12, source, ": the array header is cut off");
+    length |= byte(10) << 16 | byte(11) << 24;
+    start = 12;
+  }
+  US_CHECK(start + length <= bytes.size(), source, ": the array header is cut off");
+  const std::string dict = bytes.substr(start, length);
+  const std::string descr = quoted_value(dict, "descr");
+  US_CHECK(descr.size() >= 3, source, ": the array has no simple number type");
+  Header header;
+  header.big_endian = descr[0] == '>';
+  header.kind = descr[1];
+  header.bytes = std::atoi(descr.c_str() + 2) * (header.kind == 'U' ? 4 : 1);
+  header.fortran = dict.find("'fortran_order': True") != std::string::npos;
+  header.shape = shape_of(dict, source);
+  header.data_offset = start + length;
+  return header;
+}
+
+float half_to_float(uint16_t half) {
+  const int exponent = half >> 10 & 31, mantissa = half & 1023;
+  const float sign = half & 0x8000 ? -1.0f : 1.0f;
+  if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
+  if (exponent == 31) return mantissa ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
+  return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
+}
+
+template <class T>
+float read_as(const char* data) {
+  T value;
+  std::memcpy(&value, data, sizeof(T));
+  return static_cast<float>(value);
+}
+
+using Converter = float (*)(const char*);
+
+Converter converter(char kind, int bytes) {
+  if (kind == 'f' && bytes == 2) return [](const char* d) { uint16_t h; std::memcpy(&h, d, 2); return half_to_float(h); };
+  if (kind == 'f' && bytes == 4) return read_as<float>;
+  if (kind == 'f' && bytes == 8) return read_as<double>;
+  if (kind == 'i' && bytes == 1) return read_as<int8_t>;
+  if (kind == 'i' && bytes == 2) return read_as<int16_t>;
+  if (kind == 'i' && bytes == 4) return read_as<int32_t>;
+  if (kind == 'i' && bytes == 8) return read_as<int64_t>;
+  if ((kind == 'u' || kind == 'b') && bytes == 1) return read_as<uint8_t>;
+  if (kind == 'u' && bytes == 2) return read_as<uint16_t>;
+  if (kind == 'u' && bytes == 4) return read_as<uint32_t>;
+  if (kind == 'u' && bytes == 8) return read_as<uint64_t>;
+  return nullptr;
+}
+
+std::string text_from_ucs4(const char* data, int bytes) {
+  std::string text;
+  for (int i = 0; i + 4 <= bytes; i += 4) {
+    uint32_t code;
+    std::memcpy(&code, data + i, 4);
+    if (code == 0) break;
+    text += code < 128 ? static_cast<char>(code) : '?';
+  }
+  return text;
+}
+
+/// Fortran order to C order.
+std::vector<float> reordered(const std::vector<float>& values, const std::vector<int64_t>& shape) {
+  std::vector<float> result(values.size());
+  std::vector<int64_t> index(shape.size(), 0);
+  for (size_t from = 0; from < values.size(); ++from) {
+    int64_t to = 0;
+    for (size_t d = 0; d < shape.size(); ++d) to = to * shape[d] + index[d];
+    result[to] = values[from];
+    for (size_t d = 0; d < shape.size() && ++index[d] == shape[d]; ++d) index[d] = 0;
+  }
+  return result;
+}
+
+std::string read_whole(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  US_CHECK(in, path, ": cannot be opened");
+  std::ostringstream out;
+  out << in.rdbuf();
+  US_CHECK(!in.bad(), path, ": cannot be read");
+  return out.str();
+}
+
+struct ZipCloser {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+using Zip = std::unique_ptr<zip_t, ZipCloser>;
+
+constexpr uint64_t kLargestArray = uint64_t{8} << 30;  // bytes of one array: above it the header lies
+
+std::string read_entry(zip_t* archive, zip_int64_t index, const std::string& source) {
+  zip_stat_t stat;
+  US_CHECK(zip_stat_index(archive, index, 0, &stat) == 0, source, ": the archive is damaged");
+  // Deflate cannot expand more than 1032 times: a claim beyond that is a lie, found before memory is taken.
+  US_CHECK(stat.size <= kLargestArray && stat.size <= stat.comp_size * 1040 + 1024, source, ": the archive's sizes are impossible");
+  std::string bytes(stat.size, '\0');
+  zip_file_t* file = zip_fopen_index(archive, index, 0);
+  US_CHECK(file, source, ": the archive is damaged");
+  const zip_int64_t got = zip_fread(file, bytes.data(), bytes.size());
+  zip_fclose(file);
+  US_CHECK(got >= 0 && static_cast<uint64_t>(got) == stat.size, source, ": the archive is damaged or cut off");
+  return bytes;
+}
+
+std::string npy_bytes(const NpyArray& array) {
+  std::string dict = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
+  for (int64_t extent : array.shape) dict += std::to_string(extent) + ",";
+  dict += "), }";
+  dict.append(63 - (10 + dict.size()) % 64, ' ').append("\n");
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  bytes += static_cast<char>(dict.size() & 255);
+  bytes += static_cast<char>(dict.size() >> 8);
+  bytes += dict;
+  return bytes.append(reinterpret_cast<const char*>(array.values.data()), array.values.size() * sizeof(float));
+}
+
+}  // namespace
+
+int64_t NpyArray::size() const {
+  return static_cast<int64_t>(values.size());
+}
+
+RowMatrix NpyArray::matrix(int64_t cols, const std::string& what) const {
+  US_CHECK(cols > 0 && size() % cols == 0, what, ": ", size(), " numbers do not make rows of ", cols);
+  return Eigen::Map<const RowMatrix>(values.data(), size() / cols, cols);
+}
+
+NpyArray parse_npy(const std::string& bytes, const std::string& source) {
+  const Header header = parse_header(bytes, source);
+  NpyArray array;
+  array.shape = header.shape;
+  const uint64_t available = bytes.size() - header.data_offset;
+  if (header.kind == 'U') {
+    array.text = text_from_ucs4(bytes.data() + header.data_offset, static_cast<int>(std::min<uint64_t>(available, header.bytes)));
+    return array;
+  }
+  const Converter convert = converter(header.kind, header.bytes);
+  US_CHECK(convert, source, ": arrays of this number type cannot be read");
+  uint64_t count = 1;
+  for (int64_t extent : header.shape) {
+    const uint64_t e = static_cast<uint64_t>(extent);
+    US_CHECK(e == 0 || count <= kLargestArray / e, source, ": the array's shape is impossibly large");
+    count *= e;
+  }
+  US_CHECK(count <= available / header.bytes, source, ": ends before its ", count, " numbers");
+  array.values.resize(count);
+  const char* data = bytes.data() + header.data_offset;
+  for (uint64_t i = 0; i < count; ++i, data += header.bytes) {
+    if (!header.big_endian) {
+      array.values[i] = convert(data);
+      continue;
+    }
+    char swapped[8];
+    std::reverse_copy(data, data + header.bytes, swapped);
+    array.values[i] = convert(swapped);
+  }
+  if (header.fortran && header.shape.size() > 1) array.values = reordered(array.values, header.shape);
+  return array;
+}
+
+NpyArray read_npy(const std::string& path) {
+  return parse_npy(read_whole(path), path);
+}
+
+Npz read_npz(const std::string& path) {
+  int code = 0;
+  const Zip archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
+  if (!archive) {
+    std::ifstream probe(path);
+    US_CHECK(probe, path, ": cannot be opened");
+    throw Error(path + ": not an .npz archive");
+  }
+  Npz npz;
+  const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
+  for (zip_int64_t i = 0; i < entries; ++i) {
+    std::string name = zip_get_name(archive.get(), i, 0);
+    if (name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0) continue;
+    name.resize(name.size() - 4);
+    const std::string source = path + ": " + name;
+    const std::string bytes = read_entry(archive.get(), i, source);
+    const Header header = parse_header(bytes, source);
+    if (header.kind == 'U' || converter(header.kind, header.bytes)) npz[name] = parse_npy(bytes, source);
+  }
+  return npz;
+}
+
+const NpyArray& require(const Npz& npz, const std::string& name, const std::string& source) {
+  const auto it = npz.find(name);
+  US_CHECK(it != npz.end(), source, ": has no array '", name, "'");
+  return it->second;
+}
+
+void write_npz(const std::string& path, const Npz& npz) {
+  const std::string part = path + ".part";
+  int code = 0;
+  Zip archive(zip_open(part.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code));
+  US_CHECK(archive, path, ": cannot be written");
+  std::vector<std::string> kept;  // libzip reads the buffers when it closes
+  kept.reserve(npz.size());
+  for (const auto& [name, array] : npz) {
+    kept.push_back(npy_bytes(array));
+    zip_source_t* source = zip_source_buffer(archive.get(), kept.back().data(), kept.back().size(), 0);
+    const zip_int64_t index = zip_file_add(archive.get(), (name + ".npy").c_str(), source, ZIP_FL_OVERWRITE);
+    US_CHECK(index >= 0, path, ": cannot be written");
+    zip_file_set_mtime(archive.get(), index, 315532800, 0);  // a fixed date: the same arrays give the same bytes
+  }
+  if (zip_close(archive.get()) != 0) {
+    const std::string why = zip_strerror(archive.get());
+    std::remove(part.c_str());
+    throw Error(path + ": cannot be written (" + why + ")");
+  }
+  archive.release();
+  US_CHECK(std::rename(part.c_str(), path.c_str()) == 0, path, ": cannot be written");
+}
+
+}  // namespace understudy
