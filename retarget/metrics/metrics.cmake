@@ -1,0 +1,3 @@
+find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
+us_module(metrics SOURCES metrics/joint_metrics.cpp metrics/surface_metrics.cpp metrics/inside.cpp
+  PUBLIC understudy_core)

@@ -1,0 +1,39 @@
+// Errors of a surface against the true one, frame by frame, and what a surface says without truth.
+#pragma once
+
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy {
+
+// p predicted, q true, both [V, 3] metres in the same vertex order, V >= 1; otherwise Error. Sums are kept in
+// double.
+
+/// Mean over vertices of |p - q|, metres.
+double mean_vertex_error(const Points& p, const Points& q);
+/// The same after the best similarity of p onto q. V >= 3.
+double aligned_vertex_error(const Points& p, const Points& q);
+/// Edges join each true vertex to its `neighbours` nearest true ones in this frame (fewer vertices: all
+/// others). Mean over edges of |length in p - length in q|, metres. 0 for a single vertex.
+double edge_length_error(const Points& p, const Points& q, int neighbours = 6);
+
+/// How far the lowest vertex lies below the floor (y = 0), metres; 0 when none does.
+double floor_penetration(const Points& vertices);
+
+/// Judges which vertices of a posed surface have entered another part of the same body.
+class SelfPenetration {
+ public:
+  /// `samples` vertices are judged, chosen far apart in the T-pose; those inside already in the T-pose
+  /// (layers of clothes, eyes, tongues) never count. Throws Error without faces.
+  SelfPenetration(const Points& rest, const Faces& faces, int samples = 200);
+  /// Share of the judged vertices that lie inside the posed surface, 0..1.
+  double share(const Points& vertices) const;
+
+ private:
+  std::vector<bool> buried(const Points& vertices) const;
+  Faces faces_;
+  std::vector<int> judged_;  // vertex numbers
+};
+
+}  // namespace understudy
