@@ -1,0 +1,101 @@
+// The skeleton extraction network. Every patch of the scan says on which part of the body it lies and votes
+// for every joint; the votes are weighed, and a decoder over the joints corrects them and reads off their
+// rotations.
+#pragma once
+
+#include <torch/torch.h>
+
+namespace understudy::nn {
+
+struct ExtractorShape {
+  int64_t width = 192;
+  int64_t heads = 6;
+  int64_t layers = 4;
+  int64_t hidden = 384;  ///< of the feed-forward parts
+  int64_t decoder_layers = 2;
+};
+
+/// What the network says of B scans; everything in the normalised frame of ScanPatches.
+struct ExtractorOutput {
+  torch::Tensor parts;       ///< [B, M, 23] logits: 22 parts, and "not the body"
+  torch::Tensor votes;       ///< [B, M, 22, 3] where each patch believes each joint
+  torch::Tensor voted;       ///< [B, 22, 3] softmax-weighted votes
+  torch::Tensor joints;      ///< [B, 22, 3] after the decoder
+  torch::Tensor rotations;   ///< [B, 22, 6] world rotations relative to the T-pose
+  torch::Tensor log_spread;  ///< [B, 22] log of the expected error (normalised units)
+};
+
+/// Multi-head attention with a learned preference for near tokens: score -= softplus(a_head) * distance^2.
+class DistanceAttentionImpl : public torch::nn::Module {
+ public:
+  DistanceAttentionImpl(int64_t width, int64_t heads);
+  /// q, k, v [B, Q or K, width]; squared_distance [B, Q, K] -> [B, Q, width]
+  torch::Tensor forward(const torch::Tensor& q, const torch::Tensor& k, const torch::Tensor& v,
+                        const torch::Tensor& squared_distance);
+
+ private:
+  int64_t heads_;
+  torch::nn::Linear to_q{nullptr}, to_k{nullptr}, to_v{nullptr}, to_out{nullptr};
+  torch::Tensor nearness;
+};
+TORCH_MODULE(DistanceAttention);
+
+class FeedForwardImpl : public torch::nn::Module {
+ public:
+  FeedForwardImpl(int64_t width, int64_t hidden);
+  torch::Tensor forward(const torch::Tensor& x);
+
+ private:
+  torch::nn::Linear up{nullptr}, down{nullptr};
+};
+TORCH_MODULE(FeedForward);
+
+class EncoderLayerImpl : public torch::nn::Module {
+ public:
+  explicit EncoderLayerImpl(const ExtractorShape& shape);
+  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& position,
+                        const torch::Tensor& squared_distance);
+
+ private:
+  torch::nn::LayerNorm norm1{nullptr}, norm2{nullptr};
+  DistanceAttention attention{nullptr};
+  FeedForward feed{nullptr};
+};
+TORCH_MODULE(EncoderLayer);
+
+class JointDecoderLayerImpl : public torch::nn::Module {
+ public:
+  explicit JointDecoderLayerImpl(const ExtractorShape& shape);
+  /// x, x_position [B, 22, width]; tokens with their position added [B, M, width]
+  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& x_position, const torch::Tensor& tokens,
+                        const torch::Tensor& among, const torch::Tensor& across);
+
+ private:
+  torch::nn::LayerNorm norm1{nullptr}, norm2{nullptr}, norm3{nullptr};
+  DistanceAttention self_attention{nullptr}, cross_attention{nullptr};
+  FeedForward feed{nullptr};
+};
+TORCH_MODULE(JointDecoderLayer);
+
+class SkeletonExtractorNetImpl : public torch::nn::Module {
+ public:
+  explicit SkeletonExtractorNetImpl(const ExtractorShape& shape = {});
+  /// centres [B, M, 3], offsets [B, M, K, 3], normalised (ScanPatches). Order-free in M and K.
+  ExtractorOutput forward(const torch::Tensor& centres, const torch::Tensor& offsets);
+  const ExtractorShape& shape() const { return shape_; }
+
+ private:
+  torch::Tensor embed_patches(const torch::Tensor& offsets);
+  void decode(const torch::Tensor& tokens, const torch::Tensor& centres, const torch::Tensor& choice,
+              ExtractorOutput& out);
+
+  ExtractorShape shape_;
+  torch::nn::Sequential patch_mlp{nullptr}, position_mlp{nullptr}, vote_head{nullptr}, joint_head{nullptr};
+  torch::nn::Linear patch_out{nullptr};
+  torch::nn::ModuleList encoder{nullptr}, decoder{nullptr};
+  torch::nn::LayerNorm token_norm{nullptr}, joint_norm{nullptr};
+  torch::Tensor joint_embedding;
+};
+TORCH_MODULE(SkeletonExtractorNet);
+
+}  // namespace understudy::nn

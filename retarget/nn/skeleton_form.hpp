@@ -1,0 +1,24 @@
+// The forms of the extraction network behind one interface: "dense" (shipped) and "paper" (the ablation).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "retarget/nn/modules/skeleton_extractor.hpp"
+
+namespace understudy::nn {
+
+constexpr int kSkeletonVersion = 1;
+
+class SkeletonForm : public torch::nn::Module {
+ public:
+  virtual ExtractorOutput forward(const torch::Tensor& centres, const torch::Tensor& offsets) = 0;
+};
+
+/// "dense" or "paper"; anything else is an Error.
+std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name);
+void save_skeleton_form(const std::string& path, const std::string& name, const SkeletonForm& form,
+                        int64_t samples);
+void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form);
+
+}  // namespace understudy::nn

@@ -1,0 +1,29 @@
+// Trained weights on disk: named tensors and what they are.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <map>
+#include <string>
+
+namespace understudy::nn {
+
+/// What a weights file says of itself.
+struct WeightsHeader {
+  std::string kind;                       ///< "skeleton", "motion", "deformation"
+  int version = 0;                        ///< of the network's form; another version is refused
+  std::map<std::string, double> numbers;  ///< sizes and training figures
+};
+
+/// Writes the module's parameters and buffers as float16 (half = true) or float32, beside the path, then
+/// renamed.
+void save_weights(const std::string& path, const WeightsHeader& header, const torch::nn::Module& module,
+                  bool half = true);
+/// Only the header. Throws Error when the file is missing, damaged, or no weights file.
+WeightsHeader read_weights_header(const std::string& path);
+/// Fills the module. Throws Error naming the file when kind or version differ, or a tensor is missing or of
+/// another shape.
+WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,
+                           torch::nn::Module& module);
+
+}  // namespace understudy::nn

@@ -1,0 +1,172 @@
+#include "retarget/training/scan_maker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/math/rotation.hpp"
+
+namespace understudy::training {
+namespace {
+
+constexpr int kPoolSize = 40;
+constexpr int kScansPerPerson = 24;
+constexpr int kNoBody = kJointCount;
+// Sampled before holes take their share; the rest fills up with what is left.
+constexpr int kRawPoints = 1800;
+
+Vec3 random_direction(Rng& rng) {
+  Vec3 d;
+  do d = Vec3(rng.normal(), rng.normal(), rng.normal());
+  while (d.norm() < 1e-3f);
+  return d.normalized();
+}
+
+bool is_upper(int joint) {
+  return joint == Spine1 || joint == Spine2 || joint == Spine3 || joint >= Neck;
+}
+
+void keep_rows(MadeScan& scan, const std::vector<int>& kept) {
+  Points points(kept.size(), 3);
+  std::vector<int> parts(kept.size());
+  for (size_t i = 0; i < kept.size(); ++i) {
+    points.row(i) = scan.points.row(kept[i]);
+    parts[i] = scan.parts[kept[i]];
+  }
+  scan.points = std::move(points);
+  scan.parts = std::move(parts);
+}
+
+/// Exactly kScanPoints of the points, at random, repeating some where there are too few.
+void thin(MadeScan& scan, Rng& rng) {
+  std::vector<int> order(scan.points.rows());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  for (size_t i = 0; i + 1 < order.size(); ++i)
+    std::swap(order[i], order[i + rng.below(static_cast<int>(order.size() - i))]);
+  const size_t count = order.size();
+  order.resize(nn::kScanPoints);
+  for (size_t i = count; i < order.size(); ++i) order[i] = order[i % count];
+  keep_rows(scan, order);
+}
+
+}  // namespace
+
+ScanMaker::ScanMaker(const TrainingData& data, const ScanMakerOptions& options, uint64_t seed)
+    : data_(data), options_(options), rng_(seed) {
+  for (int i = 0; i < kPoolSize; ++i) {
+    people_.push_back(make_person());
+    people_.back().left = 1 + rng_.below(kScansPerPerson);  // so that they are not all replaced at once
+  }
+}
+
+ScanMaker::Person ScanMaker::make_person() {
+  ShapedBody body;
+  if (!data_.dressed.empty() && rng_.chance(options_.dressed))
+    body = data_.dressed[rng_.below(static_cast<int>(data_.dressed.size()))];
+  else
+    body = data_.body.shaped(random_shape(data_, rng_));
+  SurfaceSampler sampler(body.vertices, body.faces);
+  return {std::move(body), std::move(sampler), kScansPerPerson};
+}
+
+Pose ScanMaker::make_pose() {
+  Pose pose;
+  if (rng_.chance(options_.t_pose)) {
+    const float spread = rng_.chance(0.5f) ? 0.0f : 0.08f;
+    for (Mat3& R : pose.local) R = rotation_from_axis_angle(spread * rng_.uniform() * random_direction(rng_));
+    return pose;
+  }
+  const auto clip_pose = [this] {
+    const Pose& p = random_pose(data_, rng_);
+    return options_.mirror && rng_.chance(0.5f) ? mirrored(p) : p;
+  };
+  pose = clip_pose();
+  if (rng_.chance(options_.mixed)) {
+    const Pose other = clip_pose();
+    for (int j = 0; j < kJointCount; ++j)
+      if (is_upper(j)) pose.local[j] = other.local[j];
+  }
+  if (rng_.chance(options_.jittered)) {
+    const float spread = rng_.uniform(0.0f, 0.3f);
+    for (int j = 1; j < kJointCount; ++j)
+      pose.local[j] =
+          pose.local[j] * rotation_from_axis_angle(spread * std::abs(rng_.normal()) * random_direction(rng_));
+  }
+  const float tilt = rng_.chance(options_.tilted) ? 1.2f * rng_.normal() : 0.05f * rng_.normal();
+  pose.local[0] = rotation_from_axis_angle(tilt * random_direction(rng_)) * pose.local[0];
+  return pose;
+}
+
+MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose) {
+  const ShapedBody& body = person.body;
+  MadeScan scan;
+  scan.truth = forward_kinematics(body.joints, pose);
+  const Eigen::VectorXf features = pose_features(pose.local);
+  Points rest(kRawPoints, 3);
+  RowMatrix weights = RowMatrix::Zero(kRawPoints, kJointCount);
+  for (int i = 0; i < kRawPoints; ++i) {
+    const auto s = person.sampler.sample(rng_);
+    rest.row(i).setZero();
+    for (int k = 0; k < 3; ++k) {
+      const int v = body.faces(s.face, k);
+      const float b = s.barycentric[k];
+      rest.row(i) += b * body.vertices.row(v);
+      weights.row(i) += b * body.weights.row(v);
+      if (body.pose_dirs) rest.row(i) += b * (body.pose_dirs->middleRows(3 * v, 3) * features).transpose();
+    }
+  }
+  scan.points = linear_blend_skinning(rest, weights, body.joints, scan.truth);
+  scan.parts.resize(kRawPoints);
+  for (int i = 0; i < kRawPoints; ++i) weights.row(i).maxCoeff(&scan.parts[i]);
+  return scan;
+}
+
+void ScanMaker::add_clutter(MadeScan& scan, Eigen::Index count) {
+  const float size = scan.points.rows() / static_cast<float>(kRawPoints);
+  const int outliers = rng_.below(static_cast<int>(2 + size * kRawPoints / 150));
+  const int floor = rng_.chance(0.7f) ? rng_.below(static_cast<int>(2 + size * kRawPoints / 25)) : 0;
+  const float margin = rng_.uniform(0.05f, 0.3f);
+  const Vec3 low = scan.points.colwise().minCoeff().transpose().array() - margin;
+  const Vec3 high = scan.points.colwise().maxCoeff().transpose().array() + margin;
+  const float ground = low.y() + margin;
+  scan.points.conservativeResize(count + outliers + floor, 3);
+  for (Eigen::Index i = count; i < scan.points.rows(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) scan.points(i, axis) = rng_.uniform(low[axis], high[axis]);
+    if (i >= count + outliers) scan.points(i, 1) = ground + 0.003f * rng_.normal();
+    scan.parts.push_back(kNoBody);
+  }
+}
+
+void ScanMaker::degrade(MadeScan& scan) {
+  const Vec3 view = random_direction(rng_), mean = scan.points.colwise().mean();
+  const float least = rng_.uniform(0.15f, 0.8f);  // density at the back, of that at the front
+  std::vector<std::pair<Vec3, float>> holes(rng_.below(6));
+  for (auto& [at, radius] : holes) {
+    at = scan.points.row(rng_.below(static_cast<int>(scan.points.rows())));
+    radius = rng_.uniform(0.03f, 0.12f);
+  }
+  std::vector<int> kept;
+  for (int i = 0; i < scan.points.rows(); ++i) {
+    const Vec3 x = scan.points.row(i);
+    const float seen = least + (1 - least) / (1 + std::exp(-6 * (x - mean).dot(view)));
+    const bool in_hole = std::any_of(holes.begin(), holes.end(),
+                                     [&x](const auto& h) { return (x - h.first).norm() < h.second; });
+    if (!in_hole && rng_.chance(seen)) kept.push_back(i);
+  }
+  if (kept.size() >= 256) keep_rows(scan, kept);
+  const float noise = rng_.uniform(0.0f, 0.008f);
+  for (Eigen::Index i = 0; i < scan.points.size(); ++i) scan.points.data()[i] += noise * rng_.normal();
+  add_clutter(scan, scan.points.rows());
+}
+
+MadeScan ScanMaker::next() {
+  Person& person = people_[rng_.below(kPoolSize)];
+  if (--person.left < 0) person = make_person();
+  Pose pose = make_pose();
+  pose.local[0] = rotation_about_y(rng_.uniform(-kPi, kPi)) * pose.local[0];
+  MadeScan scan = sample_posed(person, pose);
+  if (rng_.chance(options_.captured)) degrade(scan);
+  thin(scan, rng_);
+  return scan;
+}
+
+}  // namespace understudy::training

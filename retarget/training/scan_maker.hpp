@@ -1,0 +1,52 @@
+// Makes training scans: a random person in a random posture, seen by a simulated capture rig, with what is
+// true of it.
+#pragma once
+
+#include "retarget/nn/scan_patches.hpp"
+#include "retarget/training/training_data.hpp"
+
+namespace understudy::training {
+
+struct ScanMakerOptions {
+  float captured = 0.6f;  ///< share of scans with noise, holes, uneven density, outliers, floor
+  float dressed = 0.35f;  ///< share of dressed people
+  float mixed = 0.25f;    ///< share with upper and lower body from different postures
+  float jittered = 0.5f;  ///< share with every joint turned a little
+  float t_pose = 0.06f;   ///< share in (nearly) the T-pose: targets
+  float tilted = 0.06f;   ///< share of bodies far from upright
+  bool mirror = true;     ///< mirror half of the postures
+};
+
+/// One scan and its truth, world metres.
+struct MadeScan {
+  Points points;           ///< [kScanPoints, 3]
+  std::vector<int> parts;  ///< [kScanPoints] joint with the largest skin weight, 22: not the body
+  PosedSkeleton truth;
+};
+
+/// Keeps a pool of shaped bodies that is renewed slowly: shaping costs more than posing the sampled points.
+/// One thread each; the same seed gives the same scans.
+class ScanMaker {
+ public:
+  ScanMaker(const TrainingData& data, const ScanMakerOptions& options, uint64_t seed);
+  MadeScan next();
+
+ private:
+  struct Person {
+    ShapedBody body;
+    SurfaceSampler sampler;
+    int left;  ///< scans until it is replaced
+  };
+  Person make_person();
+  Pose make_pose();
+  MadeScan sample_posed(const Person& person, const Pose& pose);
+  void degrade(MadeScan& scan);
+  void add_clutter(MadeScan& scan, Eigen::Index kept);
+
+  const TrainingData& data_;
+  ScanMakerOptions options_;
+  Rng rng_;
+  std::vector<Person> people_;
+};
+
+}  // namespace understudy::training

@@ -1,0 +1,30 @@
+// Training scans as tensors.
+#pragma once
+
+#include <vector>
+
+#include "retarget/training/scan_maker.hpp"
+#include "retarget/training/skeleton_loss.hpp"
+
+namespace understudy::training {
+
+struct SkeletonBatch {
+  torch::Tensor centres;  ///< [B, M, 3]
+  torch::Tensor offsets;  ///< [B, M, K, 3]
+  torch::Tensor scale;    ///< [B] metres per normalised unit
+  SkeletonTruth truth;
+};
+
+/// Scans cut into patches and put beside each other.
+SkeletonBatch make_batch(const std::vector<MadeScan>& scans);
+/// `count` new scans as a batch.
+SkeletonBatch make_batch(ScanMaker& maker, int count);
+SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device);
+
+/// Figures of the extractor on a batch, in metres and degrees.
+struct SkeletonScore {
+  double joint_mm = 0, swap_rate = 0, rotation_deg = 0;
+};
+SkeletonScore score(const nn::ExtractorOutput& out, const SkeletonBatch& batch);
+
+}  // namespace understudy::training

@@ -1,0 +1,13 @@
+// Trains the skeleton extractor.
+#pragma once
+
+#include "retarget/nn/networks.hpp"
+
+namespace understudy::training {
+
+/// Trains until the time or the samples of the options are used up; resumes from `out + ".checkpoint"` when
+/// it is there. Writes weights (running average) to `out`, the learning curve to `curve`. Returns 0; throws
+/// Error.
+int train_skeleton(const nn::TrainOptions& options);
+
+}  // namespace understudy::training

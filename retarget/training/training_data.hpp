@@ -1,0 +1,42 @@
+// What networks learn from: bodies, dressed people and clips of a data folder (DATA/splits.json names the
+// splits).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "retarget/base/rng.hpp"
+#include "retarget/body/body.hpp"
+
+namespace understudy::training {
+
+enum class Split { Train, Dev };
+
+struct Clip {
+  Motion motion;
+  std::vector<int> good;  ///< frames without a flag
+};
+
+struct TrainingData {
+  Body body;
+  float template_leg = 1;              ///< leg length the clips' root paths are made for, metres
+  std::vector<Eigen::VectorXf> betas;  ///< shape parameters of the split's people
+  std::vector<ShapedBody> dressed;     ///< people with clothes and hair; no pose_dirs
+  std::vector<Clip> clips;
+  int64_t good_frames = 0;
+};
+
+/// Reads the split. Clips whose file is unreadable are an Error, clips without a good frame are left out.
+TrainingData load_training_data(const std::string& folder, Split split);
+
+/// A rigged, dressed T-pose mesh (.npz: vertices, faces, joints, weight_joint [V, 4], weight [V, 4]).
+ShapedBody read_dressed_body(const std::string& path);
+
+/// A shape between two people of the data, or one of them.
+Eigen::VectorXf random_shape(const TrainingData& data, Rng& rng);
+
+/// A posture of the clips: any frame, half the time weighed by clip and half by frame, so that short rare
+/// clips count.
+const Pose& random_pose(const TrainingData& data, Rng& rng);
+
+}  // namespace understudy::training
