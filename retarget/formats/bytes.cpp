@@ -1,0 +1,219 @@
+#include "retarget/formats/bytes.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace understudy {
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
+}
+
+struct Descriptor {
+  int fd;
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+};
+
+}  // namespace
+
+std::string read_file(const std::string& path) {
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  US_CHECK(file.fd >= 0, path, ": cannot be opened (", std::strerror(errno), ")");
+  struct stat about {};
+  US_CHECK(::fstat(file.fd, &about) == 0, path, ": cannot be read (", std::strerror(errno), ")");
+  US_CHECK(!S_ISDIR(about.st_mode), path, ": is a folder, not a file");
+  US_CHECK(S_ISREG(about.st_mode), path, ": is not an ordinary file");
+
+  std::string bytes(static_cast<size_t>(about.st_size), '\0');
+  size_t have = 0;
+  while (have < bytes.size()) {
+    const ssize_t got = ::read(file.fd, bytes.data() + have, bytes.size() - have);
+    if (got < 0 && errno == EINTR) continue;
+    US_CHECK(got >= 0, path, ": cannot be read (", std::strerror(errno), ")");
+    if (got == 0) break;  // it shrank meanwhile
+    have += static_cast<size_t>(got);
+  }
+  bytes.resize(have);
+  return bytes;
+}
+
+size_t size_of(NumberType type) {
+  switch (type) {
+    case NumberType::I8:
+    case NumberType::U8:
+      return 1;
+    case NumberType::I16:
+    case NumberType::U16:
+      return 2;
+    case NumberType::I32:
+    case NumberType::U32:
+    case NumberType::F32:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
+double load_number(NumberType type, const char* at, bool swap) {
+  switch (type) {
+    case NumberType::I8:
+      return load<int8_t>(at, false);
+    case NumberType::U8:
+      return load<uint8_t>(at, false);
+    case NumberType::I16:
+      return load<int16_t>(at, swap);
+    case NumberType::U16:
+      return load<uint16_t>(at, swap);
+    case NumberType::I32:
+      return load<int32_t>(at, swap);
+    case NumberType::U32:
+      return load<uint32_t>(at, swap);
+    case NumberType::I64:
+      return static_cast<double>(load<int64_t>(at, swap));
+    case NumberType::U64:
+      return static_cast<double>(load<uint64_t>(at, swap));
+    case NumberType::F32:
+      return load<float>(at, swap);
+    case NumberType::F64:
+      return load<double>(at, swap);
+  }
+  return 0;
+}
+
+float narrow(double value) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  if (value > kLargest) return std::numeric_limits<float>::infinity();
+  if (value < -kLargest) return -std::numeric_limits<float>::infinity();
+  return static_cast<float>(value);
+}
+
+int64_t whole(double value) {
+  return value >= -9e15 && value <= 9e15 ? static_cast<int64_t>(value) : -1;  // false for NaN
+}
+
+bool parse_number(std::string_view text, double& value) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (stop != end || error == std::errc::invalid_argument) return false;
+  if (error == std::errc::result_out_of_range) {
+    const bool tiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
+    const double size = tiny ? 0.0 : std::numeric_limits<double>::infinity();
+    value = text.front() == '-' ? -size : size;
+  }
+  return true;
+}
+
+bool parse_integer(std::string_view text, int64_t& value) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return stop == end && error == std::errc();
+}
+
+std::string_view TextCursor::word() {
+  while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  const size_t begin = at_;
+  while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
+  return text_.substr(begin, at_ - begin);
+}
+
+std::string_view TextCursor::line() {
+  if (at_end()) return {};
+  const char* const begin = text_.data() + at_;
+  const void* const found = std::memchr(begin, '\n', text_.size() - at_);
+  const size_t length =
+      found ? static_cast<size_t>(static_cast<const char*>(found) - begin) : text_.size() - at_;
+  std::string_view line = text_.substr(at_, length);
+  at_ += length + (found ? 1 : 0);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+double TextCursor::number(const char* what) {
+  const std::string_view text = word();
+  US_CHECK(!text.empty(), source_, ": ends before ", what);
+  double value = 0;
+  US_CHECK(parse_number(text, value), source_, ": '", excerpt(text), "' stands where ", what, " should be");
+  return value;
+}
+
+int64_t TextCursor::integer(const char* what) {
+  const std::string_view text = word();
+  US_CHECK(!text.empty(), source_, ": ends before ", what);
+  int64_t value = 0;
+  US_CHECK(parse_integer(text, value), source_, ": '", excerpt(text), "' stands where ", what, " should be");
+  return value;
+}
+
+void TextCursor::skip_comments() {
+  while (at_ < text_.size()) {
+    if (is_blank(text_[at_])) {
+      ++at_;
+    } else if (text_[at_] == '#') {
+      line();
+    } else {
+      return;
+    }
+  }
+}
+
+void split_words(std::string_view line, std::string_view separators, std::vector<std::string_view>& words) {
+  words.clear();
+  const auto parts = [&](char c) { return is_blank(c) || separators.find(c) != separators.npos; };
+  size_t at = 0;
+  while (true) {
+    while (at < line.size() && parts(line[at])) ++at;
+    if (at >= line.size()) return;
+    const size_t begin = at;
+    while (at < line.size() && !parts(line[at])) ++at;
+    words.push_back(line.substr(begin, at - begin));
+  }
+}
+
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
+std::string excerpt(std::string_view text) {
+  std::string out(text.substr(0, 40));
+  for (char& c : out)
+    if (c < ' ' || c > '~') c = '?';
+  return text.size() > 40 ? out + "..." : out;
+}
+
+void FaceList::add(int64_t a, int64_t b, int64_t c) {
+  for (const int64_t corner : {a, b, c})
+    corners_.push_back(corner >= 0 && corner <= std::numeric_limits<int>::max() ? static_cast<int>(corner)
+                                                                                : -1);
+}
+
+void FaceList::add(const int64_t* corners, size_t count) {
+  for (size_t i = 2; i < count; ++i) add(corners[0], corners[i - 1], corners[i]);
+}
+
+Faces FaceList::finish(int64_t vertex_count, const std::string& source) const {
+  for (const int corner : corners_)
+    US_CHECK(corner >= 0 && corner < vertex_count, source, ": a face names ",
+             corner < 0 ? "a vertex number out of range" : "vertex " + std::to_string(corner),
+             ", the file has ", vertex_count, " vertices");
+  return Eigen::Map<const Faces>(corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
+}
+
+Points rows_of_three(const std::vector<float>& values) {
+  return Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
+}
+
+}  // namespace understudy

@@ -1,0 +1,98 @@
+// Reading bytes and text that nobody vouches for: files, numbers of any type and byte order, text cursors.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "retarget/base/error.hpp"
+#include "retarget/math/types.hpp"
+
+namespace understudy {
+
+/// The whole file. Throws Error with the system's reason (no such file, no permission, a folder, ...).
+std::string read_file(const std::string& path);
+
+enum class NumberType { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
+/// Bytes of one number.
+size_t size_of(NumberType type);
+inline bool is_float(NumberType type) {
+  return type == NumberType::F32 || type == NumberType::F64;
+}
+
+/// One value from unaligned memory; `swap` when its byte order is not this machine's.
+template <class T>
+T load(const char* at, bool swap) {
+  T value;
+  if (!swap) {
+    std::memcpy(&value, at, sizeof(T));
+    return value;
+  }
+  char turned[sizeof(T)];
+  for (size_t i = 0; i < sizeof(T); ++i) turned[i] = at[sizeof(T) - 1 - i];
+  std::memcpy(&value, turned, sizeof(T));
+  return value;
+}
+double load_number(NumberType type, const char* at, bool swap);
+
+/// To float without undefined behaviour: what is too large for a float becomes infinite.
+float narrow(double value);
+/// A count or an index from a file, as a whole number; NaN, fractions' tails and the huge become -1.
+int64_t whole(double value);
+
+/// One number that fills the text exactly: what strtod takes in the C locale, less hexadecimals. False when
+/// it is not.
+bool parse_number(std::string_view text, double& value);
+/// A whole number that fills the text exactly.
+bool parse_integer(std::string_view text, int64_t& value);
+
+/// Walks over text by words and lines. The text must outlive it.
+class TextCursor {
+ public:
+  TextCursor(std::string_view text, std::string source) : text_(text), source_(std::move(source)) {}
+
+  bool at_end() const { return at_ >= text_.size(); }
+  size_t position() const { return at_; }
+  size_t left() const { return text_.size() - at_; }
+  /// The next word, over line ends; empty at the end.
+  std::string_view word();
+  /// The rest of this line without its end; steps behind it.
+  std::string_view line();
+  /// The next word as a number. Throws Error naming `what` when there is none.
+  double number(const char* what);
+  int64_t integer(const char* what);
+  /// Steps over blanks, line ends and lines that start with '#'.
+  void skip_comments();
+
+ private:
+  std::string_view text_;
+  std::string source_;
+  size_t at_ = 0;
+};
+
+/// The words of one line; blanks, and the extra separators given, part them.
+void split_words(std::string_view line, std::string_view separators, std::vector<std::string_view>& words);
+std::string lower_case(std::string_view text);
+/// The beginning of a text for use in a message: at most 40 printable characters.
+std::string excerpt(std::string_view text);
+
+/// Collects polygons as triangles and checks their indices at the end, when the number of vertices is known.
+class FaceList {
+ public:
+  /// A polygon as a fan; fewer than three corners are no face.
+  void add(const int64_t* corners, size_t count);
+  void add(int64_t a, int64_t b, int64_t c);
+  void reserve(size_t triangles) { corners_.reserve(3 * triangles); }
+  /// [F, 3]. Throws Error naming `source` when a face names a vertex that is not there.
+  Faces finish(int64_t vertex_count, const std::string& source) const;
+
+ private:
+  std::vector<int> corners_;  // -1: fits no int
+};
+
+/// Rows of three from a flat list.
+Points rows_of_three(const std::vector<float>& values);
+
+}  // namespace understudy

@@ -1,0 +1,34 @@
+// Reads a mesh or point cloud from a file of any known format, by what is in it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy {
+
+enum class MeshFormat { Ply, Obj, Off, Stl, Xyz, Pcd, Gltf };
+
+/// The format's name for messages: "PLY".
+const char* format_name(MeshFormat format);
+/// The format that a path's suffix stands for; none when it stands for no mesh.
+std::optional<MeshFormat> format_of_suffix(const std::string& path);
+/// The format that the bytes give away; none when nothing does (XYZ never does).
+std::optional<MeshFormat> format_of_content(std::string_view bytes);
+
+/// A mesh or point cloud in the file's own units and axes. What the bytes are decides, the suffix helps where
+/// they do not tell; where the two disagree, the bytes are believed and a warning is given. NaN and infinite
+/// coordinates are kept. Throws Error: one sentence that names the file.
+Mesh read_mesh(const std::string& path);
+/// The same from bytes in memory; `path` gives the suffix and names the file in complaints.
+Mesh parse_mesh(std::string_view bytes, const std::string& path);
+
+/// The points without NaN and infinities, in their order.
+Points finite_points(const Points& points);
+/// How many points are finite.
+Eigen::Index finite_count(const Points& points);
+
+}  // namespace understudy

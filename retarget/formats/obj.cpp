@@ -1,0 +1,95 @@
+#include "retarget/formats/obj.hpp"
+
+#include <vector>
+
+#include "retarget/formats/bytes.hpp"
+
+namespace understudy {
+namespace {
+
+class ObjParser {
+ public:
+  explicit ObjParser(const std::string& source) : source_(source) {}
+
+  void line(std::string_view text, int64_t number) {
+    number_ = number;
+    const size_t hash = text.find('#');
+    split_words(text.substr(0, hash), "", words_);
+    if (words_.empty()) return;
+    if (words_[0] == "v") vertex();
+    if (words_[0] == "f" || words_[0] == "fo") face();
+  }
+
+  Mesh finish() const {
+    Mesh mesh;
+    mesh.vertices = rows_of_three(positions_);
+    if (colours_.size() == positions_.size()) mesh.colors = rows_of_three(colours_);
+    mesh.faces = faces_.finish(mesh.vertices.rows(), source_);
+    return mesh;
+  }
+
+ private:
+  float value(size_t word) const {
+    double value = 0;
+    US_CHECK(parse_number(words_[word], value), source_, ": line ", number_, ": '", excerpt(words_[word]),
+             "' is no number");
+    return narrow(value);
+  }
+
+  // v x y z [w], or with a colour behind: v x y z [w] r g b
+  void vertex() {
+    US_CHECK(words_.size() >= 4, source_, ": line ", number_, ": a vertex has fewer than three coordinates");
+    for (size_t i = 1; i <= 3; ++i) positions_.push_back(value(i));
+    if (words_.size() < 7) return;
+    for (size_t i = words_.size() - 3; i < words_.size(); ++i) colours_.push_back(value(i));
+  }
+
+  // Each corner is vertex[/texture][/normal]; numbers start at 1, negative ones count back from the last
+  // vertex.
+  void face() {
+    const auto vertices = static_cast<int64_t>(positions_.size() / 3);
+    corners_.clear();
+    for (size_t i = 1; i < words_.size(); ++i) {
+      int64_t index = 0;
+      US_CHECK(parse_integer(words_[i].substr(0, words_[i].find('/')), index), source_, ": line ", number_,
+               ": '", excerpt(words_[i]), "' is no corner of a face");
+      US_CHECK(index != 0 && index >= -vertices, source_, ": line ", number_, ": a face names vertex ", index,
+               ", which is not there");
+      corners_.push_back(index > 0 ? index - 1 : vertices + index);
+    }
+    faces_.add(corners_.data(), corners_.size());
+  }
+
+  const std::string& source_;
+  int64_t number_ = 0;
+  std::vector<std::string_view> words_;
+  std::vector<float> positions_, colours_;
+  std::vector<int64_t> corners_;
+  FaceList faces_;
+};
+
+}  // namespace
+
+Mesh parse_obj(std::string_view bytes, const std::string& source) {
+  ObjParser parser(source);
+  TextCursor text(bytes, source);
+  std::string joined;  // lines that end in a backslash go on in the next
+  for (int64_t number = 1; !text.at_end(); ++number) {
+    std::string_view line = text.line();
+    if (!line.empty() && line.back() == '\\') {
+      joined.append(line.substr(0, line.size() - 1)).push_back(' ');
+      continue;
+    }
+    if (joined.empty()) {
+      parser.line(line, number);
+    } else {
+      joined.append(line);
+      parser.line(joined, number);
+      joined.clear();
+    }
+  }
+  if (!joined.empty()) parser.line(joined, 0);
+  return parser.finish();
+}
+
+}  // namespace understudy

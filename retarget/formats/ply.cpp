@@ -1,0 +1,319 @@
+#include "retarget/formats/ply.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "retarget/formats/bytes.hpp"
+
+namespace understudy {
+namespace {
+
+struct Property {
+  std::string name;
+  NumberType type = NumberType::F32;
+  std::optional<NumberType> count;  // of a list
+};
+
+struct Element {
+  std::string name;
+  int64_t rows = 0;
+  std::vector<Property> properties;
+};
+
+struct Header {
+  bool ascii = false, swap = false;
+  std::vector<Element> elements;
+  size_t size = 0;
+};
+
+NumberType number_type(std::string_view name, const std::string& source) {
+  static const std::array<std::pair<const char*, NumberType>, 18> kNames = {{{"char", NumberType::I8},
+                                                                             {"int8", NumberType::I8},
+                                                                             {"uchar", NumberType::U8},
+                                                                             {"uint8", NumberType::U8},
+                                                                             {"short", NumberType::I16},
+                                                                             {"int16", NumberType::I16},
+                                                                             {"ushort", NumberType::U16},
+                                                                             {"uint16", NumberType::U16},
+                                                                             {"int", NumberType::I32},
+                                                                             {"int32", NumberType::I32},
+                                                                             {"uint", NumberType::U32},
+                                                                             {"uint32", NumberType::U32},
+                                                                             {"int64", NumberType::I64},
+                                                                             {"uint64", NumberType::U64},
+                                                                             {"float", NumberType::F32},
+                                                                             {"float32", NumberType::F32},
+                                                                             {"double", NumberType::F64},
+                                                                             {"float64", NumberType::F64}}};
+  for (const auto& [known, type] : kNames)
+    if (name == known) return type;
+  throw Error(source + ": the header names an unknown type '" + excerpt(name) + "'");
+}
+
+void read_format(const std::vector<std::string_view>& words, Header& header, const std::string& source) {
+  US_CHECK(words.size() >= 2, source, ": the header's format line is cut off");
+  header.ascii = words[1] == "ascii";
+  header.swap = words[1] == "binary_big_endian";
+  US_CHECK(header.ascii || header.swap || words[1] == "binary_little_endian", source,
+           ": unknown PLY format '", excerpt(words[1]), "'");
+}
+
+Property read_property(const std::vector<std::string_view>& words, const std::string& source) {
+  const bool list = words.size() >= 2 && words[1] == "list";
+  US_CHECK(words.size() >= (list ? 5u : 3u), source, ": a property line of the header is cut off");
+  if (!list) return {lower_case(words[2]), number_type(words[1], source), {}};
+  return {lower_case(words[4]), number_type(words[3], source), number_type(words[2], source)};
+}
+
+Header read_header(std::string_view bytes, const std::string& source) {
+  Header header;
+  bool has_format = false;
+  TextCursor text(bytes, source);
+  std::vector<std::string_view> words;
+  text.line();  // "ply"
+  while (true) {
+    US_CHECK(!text.at_end(), source, ": ends inside the header");
+    split_words(text.line(), "", words);
+    if (words.empty()) continue;
+    if (words[0] == "end_header") break;
+    if (words[0] == "format") {
+      read_format(words, header, source);
+      has_format = true;
+    } else if (words[0] == "element") {
+      int64_t rows = -1;
+      US_CHECK(words.size() >= 3 && parse_integer(words[2], rows) && rows >= 0, source,
+               ": an element line of the header has no count");
+      header.elements.push_back({lower_case(words[1]), rows, {}});
+    } else if (words[0] == "property") {
+      US_CHECK(!header.elements.empty(), source, ": a property stands before the first element");
+      header.elements.back().properties.push_back(read_property(words, source));
+    }
+  }
+  US_CHECK(has_format, source, ": the header does not say its format");
+  header.size = text.position();
+  return header;
+}
+
+// The values of a body one after the other, whatever its encoding.
+class Values {
+ public:
+  Values(std::string_view body, const Header& header, const std::string& source)
+      : body_(body), ascii_(header.ascii), swap_(header.swap), source_(source), text_(body, source) {}
+
+  double next(NumberType type) {
+    if (ascii_) return text_.number("the last value that the header promises");
+    const size_t size = size_of(type);
+    US_CHECK(size <= body_.size() - at_, source_, ": ends before the last value that the header promises");
+    const double value = load_number(type, body_.data() + at_, swap_);
+    at_ += size;
+    return value;
+  }
+  size_t list_size(const Property& list) {
+    const int64_t count = whole(next(*list.count));
+    const size_t least = ascii_ ? 2 : size_of(list.type);
+    US_CHECK(count >= 0 && static_cast<uint64_t>(count) <= (left() + 1) / least, source_,
+             ": a list is longer than the file");
+    return static_cast<size_t>(count);
+  }
+  // Throws when so many rows cannot be in what is left: counts are checked before anything is allocated for
+  // them.
+  void check_rows(const Element& element) const {
+    uint64_t least = 0;
+    for (const auto& p : element.properties) least += ascii_ ? 2 : size_of(p.count ? *p.count : p.type);
+    const uint64_t room = (left() + (ascii_ ? 1 : 0)) / std::max<uint64_t>(least, 1);
+    US_CHECK(least == 0 || static_cast<uint64_t>(element.rows) <= room, source_, ": the header says ",
+             element.rows, " rows of '", excerpt(element.name), "', the file has room for at most ", room);
+  }
+  // A block of fixed-size rows of a binary body.
+  const char* block(uint64_t size) {
+    US_CHECK(size <= body_.size() - at_, source_, ": ends before the last value that the header promises");
+    const char* const begin = body_.data() + at_;
+    at_ += size;
+    return begin;
+  }
+  bool ascii() const { return ascii_; }
+  bool swap() const { return swap_; }
+
+ private:
+  size_t left() const { return ascii_ ? text_.left() : body_.size() - at_; }
+
+  std::string_view body_;
+  bool ascii_, swap_;
+  const std::string& source_;
+  TextCursor text_;
+  size_t at_ = 0;
+};
+
+int colour_channel(const std::string& name) {
+  if (name == "red" || name == "r" || name == "diffuse_red") return 0;
+  if (name == "green" || name == "g" || name == "diffuse_green") return 1;
+  if (name == "blue" || name == "b" || name == "diffuse_blue") return 2;
+  return -1;
+}
+
+// Where each property of the vertex element goes: 0..2 position, 3..5 colour, -1 nowhere.
+struct VertexLayout {
+  std::vector<int> slot;
+  std::array<int, 6> property = {-1, -1, -1, -1, -1, -1};
+  bool has_colours = false;
+};
+
+VertexLayout vertex_layout(const Element& element, const std::string& source) {
+  VertexLayout layout;
+  for (size_t i = 0; i < element.properties.size(); ++i) {
+    const Property& p = element.properties[i];
+    int slot = p.name == "x" ? 0 : p.name == "y" ? 1 : p.name == "z" ? 2 : -1;
+    if (slot < 0 && colour_channel(p.name) >= 0) slot = 3 + colour_channel(p.name);
+    if (p.count || (slot >= 0 && layout.property[slot] >= 0))
+      slot = -1;  // a list, or the second of this name
+    if (slot >= 0) layout.property[slot] = static_cast<int>(i);
+    layout.slot.push_back(slot);
+  }
+  const auto& at = layout.property;
+  US_CHECK(at[0] >= 0 && at[1] >= 0 && at[2] >= 0, source, ": its vertices have no x, y and z");
+  layout.has_colours = at[3] >= 0 && at[4] >= 0 && at[5] >= 0;
+  return layout;
+}
+
+float colour_scale(NumberType type) {
+  if (is_float(type)) return 1;
+  return size_of(type) == 1 ? 1 / 255.0f : 1 / 65535.0f;
+}
+
+bool has_list(const Element& element) {
+  for (const auto& p : element.properties)
+    if (p.count) return true;
+  return false;
+}
+
+// One column of fixed-size rows, with the type decided outside of the loop.
+void copy_column(const char* at, size_t stride, NumberType type, bool swap, Points& out, int column) {
+  const Eigen::Index rows = out.rows();
+  if (type == NumberType::F32 && !swap) {
+    for (Eigen::Index i = 0; i < rows; ++i, at += stride) std::memcpy(&out(i, column), at, sizeof(float));
+  } else {
+    for (Eigen::Index i = 0; i < rows; ++i, at += stride)
+      out(i, column) = narrow(load_number(type, at, swap));
+  }
+}
+
+void read_vertex_block(const Element& element, const VertexLayout& layout, Values& values, Mesh& mesh) {
+  size_t stride = 0;
+  std::vector<size_t> offset;
+  for (const auto& p : element.properties) {
+    offset.push_back(stride);
+    stride += size_of(p.type);
+  }
+  const char* const begin = values.block(static_cast<uint64_t>(element.rows) * stride);
+  for (int slot = 0; slot < (layout.has_colours ? 6 : 3); ++slot) {
+    const int p = layout.property[slot];
+    copy_column(begin + offset[p], stride, element.properties[p].type, values.swap(),
+                slot < 3 ? mesh.vertices : mesh.colors, slot % 3);
+  }
+}
+
+void read_vertex_rows(const Element& element, const VertexLayout& layout, Values& values, Mesh& mesh) {
+  for (Eigen::Index row = 0; row < element.rows; ++row) {
+    for (size_t i = 0; i < element.properties.size(); ++i) {
+      const Property& p = element.properties[i];
+      if (p.count) {
+        for (size_t n = values.list_size(p); n > 0; --n) values.next(p.type);
+        continue;
+      }
+      const float value = narrow(values.next(p.type));
+      const int slot = layout.slot[i];
+      if (slot >= 0 && slot < 3) mesh.vertices(row, slot) = value;
+      if (slot >= 3 && layout.has_colours) mesh.colors(row, slot - 3) = value;
+    }
+  }
+}
+
+void read_vertices(const Element& element, Values& values, Mesh& mesh, const std::string& source) {
+  const VertexLayout layout = vertex_layout(element, source);
+  US_CHECK(mesh.vertices.rows() == 0, source, ": has two lists of vertices");
+  US_CHECK(element.rows < (int64_t{1} << 31), source, ": has more than 2 billion vertices");
+  mesh.vertices.resize(element.rows, 3);
+  if (layout.has_colours) mesh.colors.resize(element.rows, 3);
+  if (values.ascii() || has_list(element))
+    read_vertex_rows(element, layout, values, mesh);
+  else
+    read_vertex_block(element, layout, values, mesh);
+  if (!layout.has_colours) return;
+  for (int c = 0; c < 3; ++c)
+    mesh.colors.col(c) *= colour_scale(element.properties[layout.property[3 + c]].type);
+}
+
+// -1 in a strip starts a new one; every second triangle is turned.
+void add_strip(const std::vector<int64_t>& strip, FaceList& faces) {
+  size_t begin = 0;
+  for (size_t i = 0; i < strip.size(); ++i) {
+    if (strip[i] == -1) {
+      begin = i + 1;
+    } else if (i >= begin + 2) {
+      const bool odd = (i - begin) % 2 == 1;
+      faces.add(strip[i - 2 + (odd ? 1 : 0)], strip[i - 2 + (odd ? 0 : 1)], strip[i]);
+    }
+  }
+}
+
+void read_faces(const Element& element, bool strips, Values& values, FaceList& faces) {
+  if (!strips) faces.reserve(static_cast<size_t>(element.rows));
+  std::vector<int64_t> corners;
+  for (int64_t row = 0; row < element.rows; ++row) {
+    for (const Property& p : element.properties) {
+      const bool wanted = p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
+      const size_t count = p.count ? values.list_size(p) : 1;
+      corners.clear();
+      for (size_t i = 0; i < count; ++i) {
+        const double value = values.next(p.type);
+        if (wanted) corners.push_back(whole(value));
+      }
+      if (wanted && strips) add_strip(corners, faces);
+      if (wanted && !strips) faces.add(corners.data(), corners.size());
+    }
+  }
+}
+
+void skip_rows(const Element& element, Values& values) {
+  if (element.properties.empty()) return;
+  for (int64_t row = 0; row < element.rows; ++row)
+    for (const Property& p : element.properties)
+      for (size_t n = p.count ? values.list_size(p) : 1; n > 0; --n) values.next(p.type);
+}
+
+bool is_wanted(const Element& element) {
+  return element.name == "vertex" || element.name == "face" || element.name == "tristrips";
+}
+
+}  // namespace
+
+Mesh parse_ply(std::string_view bytes, const std::string& source) {
+  const Header header = read_header(bytes, source);
+  Values values(bytes.substr(header.size), header, source);
+  size_t wanted = 0;
+  for (const auto& element : header.elements) wanted += is_wanted(element);
+
+  Mesh mesh;
+  FaceList faces;
+  bool has_vertices = false;
+  for (const auto& element : header.elements) {
+    if (wanted == 0) break;  // what follows is of no interest, whole or not
+    values.check_rows(element);
+    if (element.name == "vertex") {
+      read_vertices(element, values, mesh, source);
+      has_vertices = true;
+    } else if (is_wanted(element)) {
+      if (!element.properties.empty()) read_faces(element, element.name == "tristrips", values, faces);
+    } else {
+      skip_rows(element, values);
+    }
+    wanted -= is_wanted(element);
+  }
+  US_CHECK(has_vertices, source, ": the header names no vertices");
+  mesh.faces = faces.finish(mesh.vertices.rows(), source);
+  return mesh;
+}
+
+}  // namespace understudy

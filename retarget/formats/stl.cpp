@@ -1,0 +1,121 @@
+#include "retarget/formats/stl.hpp"
+
+#include <array>
+#include <unordered_map>
+#include <vector>
+
+#include "retarget/formats/bytes.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr size_t kHeaderBytes = 84, kFaceBytes = 50;
+
+// Corners at exactly the same position become one vertex.
+class VertexMerger {
+ public:
+  int64_t add(const std::array<float, 3>& position) {
+    Key key{};
+    for (size_t c = 0; c < 3; ++c) {
+      const float value = position[c] == 0.0f ? 0.0f : position[c];  // -0 is 0
+      std::memcpy(&key[c], &value, sizeof(float));
+    }
+    const auto [found, is_new] = index_.try_emplace(key, static_cast<int64_t>(index_.size()));
+    if (is_new) values_.insert(values_.end(), position.begin(), position.end());
+    return found->second;
+  }
+  void reserve(size_t corners) { index_.reserve(corners / 6 + 16); }
+  Points vertices() const { return rows_of_three(values_); }
+
+ private:
+  using Key = std::array<uint32_t, 3>;
+  struct Hash {
+    size_t operator()(const Key& key) const {
+      uint64_t h = key[0];
+      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull + key[1];
+      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull + key[2];
+      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull;
+      return static_cast<size_t>(h ^ (h >> 32));
+    }
+  };
+  std::unordered_map<Key, int64_t, Hash> index_;
+  std::vector<float> values_;
+};
+
+Mesh finish(const VertexMerger& merger, const FaceList& faces, const std::string& source) {
+  Mesh mesh;
+  mesh.vertices = merger.vertices();
+  mesh.faces = faces.finish(mesh.vertices.rows(), source);
+  return mesh;
+}
+
+Mesh parse_binary(std::string_view bytes, const std::string& source) {
+  const uint64_t count = load<uint32_t>(bytes.data() + kHeaderBytes - 4, false);
+  const uint64_t room = (bytes.size() - kHeaderBytes) / kFaceBytes;
+  US_CHECK(count <= room, source, ": the header says ", count, " triangles, the file has ", room);
+  VertexMerger merger;
+  merger.reserve(3 * count);
+  FaceList faces;
+  faces.reserve(count);
+  for (uint64_t i = 0; i < count; ++i) {
+    const char* at = bytes.data() + kHeaderBytes + i * kFaceBytes + 12;  // behind the normal
+    std::array<int64_t, 3> corners{};
+    for (auto& corner : corners) {
+      corner = merger.add({load<float>(at, false), load<float>(at + 4, false), load<float>(at + 8, false)});
+      at += 12;
+    }
+    faces.add(corners[0], corners[1], corners[2]);
+  }
+  return finish(merger, faces, source);
+}
+
+Mesh parse_ascii(std::string_view bytes, const std::string& source) {
+  TextCursor text(bytes, source);
+  VertexMerger merger;
+  FaceList faces;
+  std::vector<int64_t> corners;
+  bool in_facet = false, ended = false;
+  while (true) {
+    const std::string_view raw = text.word();
+    if (raw.empty()) break;
+    if (raw == "solid" || raw == "SOLID" || raw == "endsolid" || raw == "ENDSOLID") {
+      ended = raw[0] == 'e' || raw[0] == 'E';
+      text.line();  // its name, whatever the words in it
+      continue;
+    }
+    const std::string word = lower_case(raw);
+    if (word == "facet") {
+      in_facet = true;
+      corners.clear();
+    } else if (word == "vertex") {
+      std::array<float, 3> position{};
+      for (auto& value : position) value = narrow(text.number("a coordinate of a vertex"));
+      corners.push_back(merger.add(position));
+    } else if (word == "endfacet") {
+      faces.add(corners.data(), corners.size());
+      in_facet = false;
+    }
+  }
+  US_CHECK(!in_facet, source, ": ends inside a facet");
+  US_CHECK(ended, source, ": ends before 'endsolid'");
+  return finish(merger, faces, source);
+}
+
+bool is_ascii(std::string_view bytes) {
+  if (lower_case(bytes.substr(0, 5)) != "solid") return false;
+  if (bytes.size() < kHeaderBytes) return true;
+  // Some binary files begin with "solid" too: their size gives them away, or a zero in what should be text.
+  const uint64_t count = load<uint32_t>(bytes.data() + kHeaderBytes - 4, false);
+  if (bytes.size() == kHeaderBytes + count * kFaceBytes) return false;
+  return bytes.substr(0, 512).find('\0') == bytes.npos;
+}
+
+}  // namespace
+
+Mesh parse_stl(std::string_view bytes, const std::string& source) {
+  if (is_ascii(bytes)) return parse_ascii(bytes, source);
+  US_CHECK(bytes.size() >= kHeaderBytes, source, ": is too short for an STL file");
+  return parse_binary(bytes, source);
+}
+
+}  // namespace understudy
