@@ -1,5 +1,9 @@
 us_module(nn_core SOURCES nn/scan_patches.cpp PUBLIC understudy_core)
 us_module(nn TORCH SOURCES
-  nn/weights_file.cpp nn/skeleton_form.cpp nn/modules/skeleton_extractor.cpp
+  nn/weights_file.cpp nn/skeleton_form.cpp nn/modules/skeleton_extractor.cpp nn/modules/point_transformer.cpp
+  nn/network_extractor.cpp
   nn/network_deformer.cpp nn/modules/deformation.cpp
   PUBLIC understudy_nn_core PRIVATE nlohmann_json::nlohmann_json)
+
+# The way to the networks without LibTorch (nn/networks.hpp); the plug-in itself is built by nn/plugin.cmake.
+us_module(networks SOURCES nn/networks.cpp PUBLIC understudy_core PRIVATE ${CMAKE_DL_LIBS} Threads::Threads)

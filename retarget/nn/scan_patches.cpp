@@ -41,7 +41,8 @@ ScanPatches cut_patches(const Points& points) {
            points.rows());
   ScanPatches patches;
   for (int axis = 0; axis < 3; ++axis) patches.centre[axis] = median(points.col(axis).array());
-  Points x = points.rowwise() - patches.centre.transpose();
+  Points& x = patches.points;
+  x = points.rowwise() - patches.centre.transpose();
   patches.scale = x.rowwise().norm().mean();
   US_CHECK(patches.scale > 1e-6f, "all points of the scan coincide");
   x /= patches.scale;

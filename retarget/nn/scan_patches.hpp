@@ -15,7 +15,8 @@ constexpr int kPatchPoints = 24;   ///< nearest points of each centre
 struct ScanPatches {
   Vec3 centre = Vec3::Zero();     ///< median of the points, metres
   float scale = 1;                ///< mean distance from it, metres: normalised = (x - centre) / scale
-  std::vector<int> centre_index;  ///< [kPatches] which of the input points the centres are
+  Points points;                  ///< [kScanPoints, 3] normalised
+  std::vector<int> centre_index;   ///< [kPatches] which of the input points the centres are
   Points centres;                 ///< [kPatches, 3] normalised
   Points offsets;                 ///< [kPatches * kPatchPoints, 3] neighbours minus their centre, normalised
 };

@@ -12,7 +12,7 @@ constexpr int kSkeletonVersion = 1;
 
 class SkeletonForm : public torch::nn::Module {
  public:
-  virtual ExtractorOutput forward(const torch::Tensor& centres, const torch::Tensor& offsets) = 0;
+  virtual ExtractorOutput forward(const ExtractorInput& input) = 0;
 };
 
 /// "dense" or "paper"; anything else is an Error.

@@ -14,6 +14,10 @@ const std::vector<std::vector<std::pair<int, int>>> kLimbs = {
     {{LeftShoulder, RightShoulder}, {LeftElbow, RightElbow}, {LeftWrist, RightWrist}},
     {{LeftHip, RightHip}, {LeftKnee, RightKnee}, {LeftAnkle, RightAnkle}, {LeftFoot, RightFoot}}};
 
+void copy_to(const Points& points, torch::Tensor tensor) {
+  std::memcpy(tensor.data_ptr<float>(), points.data(), sizeof(float) * points.size());
+}
+
 double swaps(const Joints& found, const Joints& truth) {
   int count = 0;
   for (const auto& limb : kLimbs) {
@@ -32,8 +36,9 @@ double swaps(const Joints& found, const Joints& truth) {
 SkeletonBatch make_batch(const std::vector<MadeScan>& scans) {
   const auto B = static_cast<int64_t>(scans.size());
   SkeletonBatch batch;
-  batch.centres = torch::empty({B, M, 3});
-  batch.offsets = torch::empty({B, M, K, 3});
+  batch.input.points = torch::empty({B, nn::kScanPoints, 3});
+  batch.input.centres = torch::empty({B, M, 3});
+  batch.input.offsets = torch::empty({B, M, K, 3});
   batch.scale = torch::empty({B});
   batch.truth.joints = torch::empty({B, J, 3});
   batch.truth.rotations = torch::empty({B, J, 6});
@@ -41,10 +46,9 @@ SkeletonBatch make_batch(const std::vector<MadeScan>& scans) {
   for (int64_t b = 0; b < B; ++b) {
     const MadeScan& scan = scans[b];
     const nn::ScanPatches patches = nn::cut_patches(scan.points);
-    std::memcpy(batch.centres[b].data_ptr<float>(), patches.centres.data(),
-                sizeof(float) * patches.centres.size());
-    std::memcpy(batch.offsets[b].data_ptr<float>(), patches.offsets.data(),
-                sizeof(float) * patches.offsets.size());
+    copy_to(patches.points, batch.input.points[b]);
+    copy_to(patches.centres, batch.input.centres[b]);
+    copy_to(patches.offsets, batch.input.offsets[b]);
     batch.scale.data_ptr<float>()[b] = patches.scale;
     const Joints joints = (scan.truth.joints.rowwise() - patches.centre.transpose()) / patches.scale;
     std::memcpy(batch.truth.joints[b].data_ptr<float>(), joints.data(), sizeof(float) * joints.size());
@@ -65,16 +69,15 @@ SkeletonBatch make_batch(ScanMaker& maker, int count) {
 }
 
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device) {
-  return {batch.centres.to(device),
-          batch.offsets.to(device),
-          batch.scale.to(device),
+  const nn::ExtractorInput& in = batch.input;
+  return {{in.points.to(device), in.centres.to(device), in.offsets.to(device)}, batch.scale.to(device),
           {batch.truth.joints.to(device), batch.truth.rotations.to(device), batch.truth.parts.to(device)}};
 }
 
 SkeletonScore score(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {
   const auto joints = out.joints.cpu().contiguous(), truth = batch.truth.joints.cpu().contiguous();
-  const auto rotations = out.rotations.cpu().contiguous(),
-             true_rotations = batch.truth.rotations.cpu().contiguous();
+  const bool turns = out.rotations.defined();
+  const auto rotations = (turns ? out.rotations : batch.truth.rotations).cpu().contiguous(), true_rotations = batch.truth.rotations.cpu().contiguous();
   const auto scale = batch.scale.cpu();
   const int64_t B = joints.size(0);
   SkeletonScore s;

@@ -9,9 +9,8 @@
 namespace understudy::training {
 
 struct SkeletonBatch {
-  torch::Tensor centres;  ///< [B, M, 3]
-  torch::Tensor offsets;  ///< [B, M, K, 3]
-  torch::Tensor scale;    ///< [B] metres per normalised unit
+  nn::ExtractorInput input;
+  torch::Tensor scale;       ///< [B] metres per normalised unit
   SkeletonTruth truth;
 };
 

@@ -22,7 +22,12 @@ torch::Tensor spread_loss(const torch::Tensor& joints, const torch::Tensor& trut
 
 SkeletonLoss skeleton_loss(const nn::ExtractorOutput& out, const torch::Tensor& centres,
                            const SkeletonTruth& truth) {
-  SkeletonLoss loss;
+    SkeletonLoss loss;
+  if (!out.votes.defined()) {  // paper 1: L_skeleton = MSE
+    loss.total = loss.joint = (out.joints - truth.joints).square().mean();
+    loss.vote = loss.part = loss.rotation = loss.spread = torch::zeros({});
+    return loss;
+  }
   loss.joint = mean_distance(out.joints, truth.joints) + mean_distance(out.voted, truth.joints);
   loss.vote = vote_loss(out.votes, centres, truth.joints, /*reach=*/0.8);
   loss.part = torch::nn::functional::cross_entropy(out.parts.flatten(0, 1), truth.parts.flatten());

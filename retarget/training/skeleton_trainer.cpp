@@ -176,8 +176,8 @@ void SkeletonTrainer::train_step() {
       const SkeletonBatch batch = to_device(make_batch(*replica.maker, share), device_);
       for (auto& p : replica.net->parameters())
         if (p.grad().defined()) p.mutable_grad().zero_();
-      const auto out = replica.net->forward(batch.centres, batch.offsets);
-      replica.loss = skeleton_loss(out, batch.centres, batch.truth);
+      const auto out = replica.net->forward(batch.input);
+      replica.loss = skeleton_loss(out, batch.input.centres, batch.truth);
       replica.loss.total.backward();
     } catch (...) {
       replica.failure = std::current_exception();
@@ -241,7 +241,7 @@ std::vector<SkeletonScore> SkeletonTrainer::evaluate() {
     SkeletonScore mean;
     for (int i = 0; i < kDevScans / 32; ++i) {
       const SkeletonBatch batch = to_device(make_batch(maker, 32), device_);
-      const SkeletonScore s = score(average_->forward(batch.centres, batch.offsets), batch);
+      const SkeletonScore s = score(average_->forward(batch.input), batch);
       const double w = 32.0 / kDevScans;
       mean.joint_mm += w * s.joint_mm, mean.swap_rate += w * s.swap_rate,
           mean.rotation_deg += w * s.rotation_deg;

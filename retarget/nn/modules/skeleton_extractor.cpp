@@ -109,8 +109,8 @@ torch::Tensor SkeletonExtractorNetImpl::embed_patches(const torch::Tensor& offse
   return patch_out(pooled);                                       // [B, M, C]
 }
 
-ExtractorOutput SkeletonExtractorNetImpl::forward(const torch::Tensor& centres,
-                                                  const torch::Tensor& offsets) {
+ExtractorOutput SkeletonExtractorNetImpl::forward(const ExtractorInput& input) {
+  const auto &centres = input.centres, &offsets = input.offsets;
   const auto B = centres.size(0), M = centres.size(1);
   const auto position = position_mlp->forward(centres);     // [B, M, C]
   const auto squared = squared_distance(centres, centres);  // [B, M, M]

@@ -15,7 +15,13 @@ struct ExtractorShape {
   int64_t decoder_layers = 2;
 };
 
-/// What the network says of B scans; everything in the normalised frame of ScanPatches.
+/// B scans as the network sees them, normalised (ScanPatches): all points [B, N, 3], patch centres [B, M, 3], and the
+/// points of each patch minus its centre [B, M, K, 3].
+struct ExtractorInput {
+  torch::Tensor points, centres, offsets;
+};
+
+/// What the network says of B scans; undefined where a form does not say it. Everything in the normalised frame of ScanPatches.
 struct ExtractorOutput {
   torch::Tensor parts;       ///< [B, M, 23] logits: 22 parts, and "not the body"
   torch::Tensor votes;       ///< [B, M, 22, 3] where each patch believes each joint
@@ -80,8 +86,8 @@ TORCH_MODULE(JointDecoderLayer);
 class SkeletonExtractorNetImpl : public torch::nn::Module {
  public:
   explicit SkeletonExtractorNetImpl(const ExtractorShape& shape = {});
-  /// centres [B, M, 3], offsets [B, M, K, 3], normalised (ScanPatches). Order-free in M and K.
-  ExtractorOutput forward(const torch::Tensor& centres, const torch::Tensor& offsets);
+  /// Order-free in M and K; uses centres and offsets.
+  ExtractorOutput forward(const ExtractorInput& input);
   const ExtractorShape& shape() const { return shape_; }
 
  private:

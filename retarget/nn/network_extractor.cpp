@@ -1,0 +1,73 @@
+#include "retarget/nn/network_extractor.hpp"
+
+#include <torch/torch.h>
+
+#include <cmath>
+#include <vector>
+
+#include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/nn/scan_patches.hpp"
+#include "retarget/nn/skeleton_form.hpp"
+
+namespace understudy::nn {
+namespace {
+
+// Which of a scan's points are looked at: always the same ones, so that the same scan gives the same joints.
+constexpr uint64_t kThinningSeed = 20240318;
+constexpr float kHalfConfidence = 0.06f;  // metres: an expected error of this much is a confidence of one half
+
+class NetworkExtractor : public SkeletonExtractor {
+ public:
+  NetworkExtractor(const std::string& path, const std::string& form) : form_(form), net_(make_skeleton_form(form)) {
+    load_skeleton_form(path, form, *net_);
+    net_->eval();
+  }
+
+  Extraction extract(const Mesh& scan) override {
+    const torch::NoGradGuard no_grad;
+    const ScanPatches patches = cut_patches(thin_scan(scan, kThinningSeed));
+    // from_blob does not copy; the network only reads.
+    const auto view = [](const Points& points, std::vector<int64_t> shape) {
+      return torch::from_blob(const_cast<float*>(points.data()), shape);
+    };
+    const auto out = net_->forward({view(patches.points, {1, kScanPoints, 3}), view(patches.centres, {1, kPatches, 3}),
+                                    view(patches.offsets, {1, kPatches, kPatchPoints, 3})});
+    return to_world(out, patches);
+  }
+
+  std::string name() const override { return form_; }
+
+ private:
+  static Extraction to_world(const ExtractorOutput& out, const ScanPatches& patches);
+
+  std::string form_;
+  std::shared_ptr<SkeletonForm> net_;
+};
+
+Extraction NetworkExtractor::to_world(const ExtractorOutput& out, const ScanPatches& patches) {
+  Extraction extraction;
+  const auto joints = out.joints.contiguous();
+  const Joints normalised = Eigen::Map<const Joints>(joints.data_ptr<float>());
+  extraction.joints = (normalised * patches.scale).rowwise() + patches.centre.transpose();
+  US_CHECK(extraction.joints.allFinite(), "the extraction network gave joints that are not numbers");
+  if (!out.rotations.defined()) return extraction;
+  const auto spread = torch::exp(out.log_spread).contiguous();
+  for (int j = 0; j < kJointCount; ++j) {
+    const float expected = spread.data_ptr<float>()[j] * patches.scale / kHalfConfidence;
+    extraction.confidence[j] = 1 / (1 + expected * expected);
+  }
+  const auto rotations = out.rotations.contiguous();
+  extraction.global.emplace();
+  for (int j = 0; j < kJointCount; ++j)
+    (*extraction.global)[j] = rotation_from_6d(Eigen::Map<const Vec6>(rotations.data_ptr<float>() + 6 * j));
+  return extraction;
+}
+
+}  // namespace
+
+std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form) {
+  return std::make_unique<NetworkExtractor>(path, form);
+}
+
+}  // namespace understudy::nn

@@ -1,0 +1,75 @@
+#include <dlfcn.h>
+#include <torch/torch.h>
+
+#include <cstdlib>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/nn/network_deformer.hpp"
+#include "retarget/nn/network_extractor.hpp"
+#include "retarget/nn/paper_transfer.hpp"
+#include "retarget/nn/plugin_api.hpp"
+#include "retarget/pipeline/copy_transfer.hpp"
+#include "retarget/training/deformation_trainer.hpp"
+#include "retarget/training/motion_trainer.hpp"
+#include "retarget/training/skeleton_trainer.hpp"
+
+namespace understudy::nn {
+namespace {
+
+std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, const std::string& folder) {
+  if (options.engine == "copy") return std::make_unique<CopyTransfer>();
+  US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy or paper");
+  return load_paper_transfer(folder + "/motion.weights");
+}
+
+std::unique_ptr<Deformer> load_deformer(const NetworkOptions& options, const std::string& folder) {
+  return load_network_deformer(folder + "/deformation.weights", options.offsets);
+}
+
+/// A name of the BLAS library that LibTorch uses, or null: only OpenBLAS has these.
+template <class Function>
+Function blas_symbol(const char* name) {
+  void* blas = dlopen("libblas.so.3", RTLD_NOLOAD | RTLD_LAZY);
+  if (!blas) return nullptr;
+  const auto function = reinterpret_cast<Function>(dlsym(blas, name));
+  dlclose(blas);  // only our count of it: LibTorch keeps it
+  return function;
+}
+
+RuntimeReport report() {
+  RuntimeReport found;
+  found.torch_version = TORCH_VERSION;
+  using Text = char* (*)();
+  const auto config = blas_symbol<Text>("openblas_get_config");
+  const auto core = blas_symbol<Text>("openblas_get_corename");
+  found.slow_blas = config == nullptr;
+  found.blas = config ? config() : "the reference BLAS";
+  found.blas_core = core ? core() : "";
+  found.threads = at::get_num_threads();
+  return found;
+}
+
+Networks load(const NetworkOptions& options, const std::string& folder) {
+  if (report().slow_blas)
+    log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
+  return {load_network_extractor(folder + (options.extractor == "paper" ? "/skeleton_paper.weights" : "/skeleton.weights"),
+                                 options.extractor),
+          load_transfer(options, folder), load_deformer(options, folder)};
+}
+
+int train(const TrainOptions& options) {
+  if (options.network == "skeleton") return training::train_skeleton(options);
+  if (options.network == "motion") return training::train_motion(options);
+  if (options.network == "deformation") return training::train_deformation(options);
+  throw Error("there is no network '" + options.network + "' to train: skeleton, motion or deformation");
+}
+
+}  // namespace
+}  // namespace understudy::nn
+
+const understudy::nn::PluginApi* understudy_networks_plugin() {
+  using namespace understudy::nn;
+  static const PluginApi api{kPluginVersion, load, load_deformer, report, train};
+  return &api;
+}
