@@ -1,0 +1,121 @@
+#include "app/cli/case_folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "retarget/base/error.hpp"
+#include "retarget/formats/npz.hpp"
+
+namespace understudy::app {
+namespace fs = std::filesystem;
+namespace {
+
+/// The shape must be [T, tail...]; T must agree with the frames already known. Gives the values, or none when
+/// absent.
+const std::vector<float>* frames_of(const Npz& npz, const std::string& name, const std::vector<int64_t>& tail,
+                                    const std::string& path, int64_t& frames) {
+  const auto found = npz.find(name);
+  if (found == npz.end()) return nullptr;
+  const auto& shape = found->second.shape;
+  US_CHECK(shape.size() == tail.size() + 1 && std::equal(tail.begin(), tail.end(), shape.begin() + 1), path,
+           ": ", name, " has the wrong shape");
+  US_CHECK(shape[0] > 0 && (frames == 0 || frames == shape[0]), path, ": ", name, " has ", shape[0],
+           " frames, not ", frames);
+  frames = shape[0];
+  return &found->second.values;
+}
+
+Joints joints_at(const float* values) {
+  return Eigen::Map<const Joints>(values);
+}
+
+std::vector<Joints> joint_frames(const std::vector<float>* values) {
+  std::vector<Joints> result;
+  for (size_t i = 0; values && i < values->size(); i += kJointCount * 3)
+    result.push_back(joints_at(&(*values)[i]));
+  return result;
+}
+
+std::vector<Rotations> rotation_frames(const std::vector<float>* values) {
+  using Row = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
+  std::vector<Rotations> result(values ? values->size() / (kJointCount * 9) : 0);
+  for (size_t t = 0; t < result.size(); ++t)
+    for (int j = 0; j < kJointCount; ++j)
+      result[t][j] = Eigen::Map<const Row>(&(*values)[(t * kJointCount + static_cast<size_t>(j)) * 9]);
+  return result;
+}
+
+}  // namespace
+
+Points Truth::frame_vertices(int64_t t) const {
+  return Eigen::Map<const Points>(vertices.data() + t * vertex_count * 3, vertex_count, 3);
+}
+
+std::vector<std::string> case_folders(const std::string& cases) {
+  US_CHECK(fs::is_directory(cases), cases, ": not a folder of cases");
+  if (fs::exists(fs::path(cases) / "case.json")) return {cases};
+  std::vector<std::string> folders;
+  for (const auto& entry : fs::directory_iterator(cases))
+    if (fs::exists(entry.path() / "case.json")) folders.push_back(entry.path().string());
+  US_CHECK(!folders.empty(), cases, ": no folder in it has a case.json");
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+Case read_case(const std::string& folder) {
+  const fs::path root(folder);
+  const std::string path = (root / "case.json").string();
+  std::ifstream file(path);
+  US_CHECK(file, path, ": cannot be read");
+  const auto json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  US_CHECK(json.is_object(), path, ": not a JSON object");
+  const auto text = [&](const char* key) -> std::string {
+    if (!json.contains(key)) return {};
+    US_CHECK(json[key].is_string(), path, ": \"", key, "\" is not a text");
+    return (root / json[key].get<std::string>()).string();
+  };
+  Case result;
+  result.name = fs::absolute(root).lexically_normal().filename().string();
+  if (result.name.empty())
+    result.name = fs::absolute(root).lexically_normal().parent_path().filename().string();
+  result.source = text("source");
+  US_CHECK(!result.source.empty(), path, ": says no \"source\"");
+  result.target = text("target");
+  result.truth = text("truth");
+  if (json.contains("fps")) {
+    US_CHECK(json["fps"].is_number() && json["fps"].get<double>() > 0, path,
+             ": \"fps\" is not a positive number");
+    result.fps = json["fps"].get<double>();
+  }
+  if (json.contains("tags") && json["tags"].is_array())
+    for (const auto& tag : json["tags"])
+      if (tag.is_string()) result.tags.push_back(tag.get<std::string>());
+  return result;
+}
+
+Truth read_truth(const std::string& path) {
+  const Npz npz = read_npz(path);
+  Truth truth;
+  const auto vertices = npz.find("vertices");
+  if (vertices != npz.end()) {
+    US_CHECK(vertices->second.shape.size() == 3 && vertices->second.shape[1] > 0, path,
+             ": vertices has the wrong shape");
+    truth.vertex_count = vertices->second.shape[1];
+    truth.vertices = *frames_of(npz, "vertices", {truth.vertex_count, 3}, path, truth.frames);
+  }
+  truth.joints = joint_frames(frames_of(npz, "joints", {kJointCount, 3}, path, truth.frames));
+  truth.source_joints = joint_frames(frames_of(npz, "source_joints", {kJointCount, 3}, path, truth.frames));
+  truth.rotations = rotation_frames(frames_of(npz, "rotations", {kJointCount, 3, 3}, path, truth.frames));
+  const auto rest = npz.find("target_joints");
+  if (rest != npz.end()) {
+    US_CHECK(rest->second.shape == (std::vector<int64_t>{kJointCount, 3}), path,
+             ": target_joints has the wrong shape");
+    truth.target_joints = joints_at(rest->second.values.data());
+  }
+  US_CHECK(truth.frames > 0, path, ": holds no truth that is known here");
+  return truth;
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,42 @@
+// A test case on disk: a source, a target, perhaps the truth.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy::app {
+
+struct Case {
+  std::string name;
+  double fps = 30;
+  std::string source;  ///< path
+  std::string target;  ///< path; empty: only the extraction is judged
+  std::string truth;   ///< path; empty: none
+  std::vector<std::string> tags;
+};
+
+/// What a case knows about the right answer; parts may be missing (empty).
+struct Truth {
+  int64_t frames = 0;
+  int64_t vertex_count = 0;
+  std::vector<float> vertices;  ///< [T, V, 3]
+  std::vector<Joints> joints, source_joints;
+  std::vector<Rotations> rotations;  ///< local
+  std::optional<Joints> target_joints;
+  /// The vertices of one frame, [V, 3].
+  Points frame_vertices(int64_t t) const;
+};
+
+/// The folders in `cases` that hold a case.json, by name; `cases` itself when it is one. Throws Error when
+/// there is none.
+std::vector<std::string> case_folders(const std::string& cases);
+/// Throws Error naming the file.
+Case read_case(const std::string& folder);
+/// Throws Error naming the file and the array whose shape does not fit.
+Truth read_truth(const std::string& path);
+
+}  // namespace understudy::app

@@ -1,0 +1,14 @@
+// Ctrl-C: remembered by the signal handler, asked for between frames, so that nothing is left half written.
+#pragma once
+
+#include <string>
+
+namespace understudy::app {
+
+/// From now on Ctrl-C and a termination request are only remembered. The second one ends the process at once.
+void catch_interrupts();
+bool interrupted();
+/// Throws Error, "interrupted after frame 12; nothing was written", once Ctrl-C was pressed.
+void check_interrupt(const std::string& where);
+
+}  // namespace understudy::app

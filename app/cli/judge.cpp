@@ -1,0 +1,115 @@
+#include "app/cli/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/metrics/inside.hpp"
+
+namespace understudy::app {
+namespace {
+
+constexpr int64_t kSlowEvery = 10;  // frames between looks of the slow figures
+
+void put(Metrics& metrics, const char* key, double value) {
+  if (std::isfinite(value)) metrics.emplace_back(key, value);
+}
+
+}  // namespace
+
+Judge::Judge(double fps, const Truth* truth, const Mesh* target) : fps_(fps), truth_(truth) {
+  if (target && !target->is_cloud()) penetration_.emplace(target->vertices, target->faces);
+}
+
+void Judge::push(const JudgedFrame& frame) {
+  US_CHECK(!truth_ || frames_ < truth_->frames, "the source has more frames than the truth's ",
+           truth_->frames);
+  if (frame.joints) joints_.push_back(*frame.joints);
+  if (frame.rotations) rotations_.push_back(*frame.rotations);
+  if (frame.source_joints) source_joints_.push_back(*frame.source_joints);
+  if (frame.vertices) push_surface(frame);
+  if (frame.scan && frame.source_joints && frames_ % kSlowEvery == 0)
+    inside_.add(inside_share(*frame.scan, *frame.source_joints));
+  ++frames_;
+}
+
+void Judge::push_surface(const JudgedFrame& frame) {
+  const Points& p = *frame.vertices;
+  if (truth_ && !truth_->vertices.empty()) {
+    const Points q = truth_->frame_vertices(frames_);
+    mpvd_.add(mean_vertex_error(p, q));
+    pa_mpvd_.add(aligned_vertex_error(p, q));
+    medl_.add(edge_length_error(p, q));
+  }
+  floor_.add(floor_penetration(p));
+  if (penetration_ && frames_ % kSlowEvery == 0) self_penetration_.add(penetration_->share(p));
+}
+
+Metrics Judge::metrics() const {
+  US_CHECK(frames_ > 0, "there are no frames to judge");
+  US_CHECK(!truth_ || frames_ == truth_->frames, "the source has ", frames_, " frames, the truth ",
+           truth_ ? truth_->frames : 0);
+  Metrics result;
+  if (truth_) add_truth(result);
+  if (truth_) add_extraction(result);
+  if (!source_joints_.empty()) put(result, "bone_drift", bone_drift(source_joints_));
+  if (!joints_.empty()) put(result, "foot_skate", foot_skate(joints_, fps_));
+  if (floor_.count > 0) put(result, "floor_mm", 1000 * floor_.sum / floor_.count);
+  if (!joints_.empty()) put(result, "jerk", jerk(joints_, fps_));
+  if (self_penetration_.count > 0)
+    put(result, "self_penetration", self_penetration_.sum / self_penetration_.count);
+  if (inside_.count > 0) put(result, "inside", inside_.sum / inside_.count);
+  return result;
+}
+
+void Judge::add_truth(Metrics& result) const {
+  if (!joints_.empty() && !truth_->joints.empty()) {
+    const JointSequence aligned = aligned_joints(joints_, truth_->joints);
+    put(result, "mpjpe_m", mean_joint_error(joints_, truth_->joints));
+    put(result, "pa_mpjpe_m", mean_joint_error(aligned, truth_->joints));
+    put(result, "acc", acceleration_error(joints_, truth_->joints, fps_));
+    put(result, "pa_acc", acceleration_error(aligned, truth_->joints, fps_));
+  }
+  if (mpvd_.count > 0) {
+    put(result, "mpvd_m", mpvd_.sum / mpvd_.count);
+    put(result, "pa_mpvd_m", pa_mpvd_.sum / pa_mpvd_.count);
+    put(result, "medl_mm", 1000 * medl_.sum / medl_.count);
+  }
+  if (!rotations_.empty() && !truth_->rotations.empty()) {
+    const RotationError error = rotation_error(rotations_, truth_->rotations);
+    put(result, "rot_deg", error.all_deg);
+    put(result, "head_deg", error.head_deg);
+    put(result, "wrist_deg", error.wrist_deg);
+    put(result, "foot_deg", error.foot_deg);
+  }
+}
+
+void Judge::add_extraction(Metrics& result) const {
+  if (source_joints_.empty() || truth_->source_joints.empty()) return;
+  put(result, "extraction_mpjpe_mm", 1000 * mean_joint_error(source_joints_, truth_->source_joints));
+  put(result, "extraction_swap_rate", swap_rate(source_joints_, truth_->source_joints));
+  put(result, "extraction_flip_rate", flip_rate(source_joints_, truth_->source_joints));
+}
+
+Metrics mean_metrics(const std::vector<Metrics>& all) {
+  Metrics mean;
+  std::vector<int> counts;
+  for (const Metrics& one : all)
+    for (const auto& figure : one) {
+      const std::string& key = figure.first;
+      const double value = figure.second;
+      const auto known =
+          std::find_if(mean.begin(), mean.end(), [&](const auto& m) { return m.first == key; });
+      if (known == mean.end()) {
+        mean.emplace_back(key, value);
+        counts.push_back(1);
+      } else {
+        known->second += value;
+        ++counts[static_cast<size_t>(known - mean.begin())];
+      }
+    }
+  for (size_t i = 0; i < mean.size(); ++i) mean[i].second /= counts[i];
+  return mean;
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,59 @@
+// Turns what the method did with one sequence into the figures of report.json.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/case_folder.hpp"
+#include "retarget/metrics/joint_metrics.hpp"
+#include "retarget/metrics/surface_metrics.hpp"
+
+namespace understudy::app {
+
+/// Key and value, in the order of the report. Figures that cannot be told for a sequence are left out.
+using Metrics = std::vector<std::pair<std::string, double>>;
+
+/// One finished frame, as the judge sees it. What is not there is null.
+struct JudgedFrame {
+  const Points* vertices = nullptr;       ///< of the target
+  const Joints* joints = nullptr;         ///< of the target
+  const Rotations* rotations = nullptr;   ///< local
+  const Joints* source_joints = nullptr;  ///< extracted
+  const Mesh* scan = nullptr;
+};
+
+/// Collects a sequence. Surface figures are summed as the frames come; the slow ones (self_penetration,
+/// inside) look at every tenth frame.
+class Judge {
+ public:
+  /// truth may be null; target (its T-pose) too.
+  Judge(double fps, const Truth* truth, const Mesh* target);
+  void push(const JudgedFrame& frame);
+  /// Throws Error when there are fewer or more frames than the truth has.
+  Metrics metrics() const;
+
+ private:
+  struct Mean {
+    double sum = 0;
+    int count = 0;
+    void add(double value) { sum += value, ++count; }
+  };
+  void push_surface(const JudgedFrame& frame);
+  void add_truth(Metrics& result) const;
+  void add_extraction(Metrics& result) const;
+
+  double fps_;
+  const Truth* truth_;
+  std::optional<SelfPenetration> penetration_;
+  int64_t frames_ = 0;
+  JointSequence joints_, source_joints_;
+  std::vector<Rotations> rotations_;
+  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_;
+};
+
+/// The mean of each figure over the sequences that have it, in the order of first appearance.
+Metrics mean_metrics(const std::vector<Metrics>& all);
+
+}  // namespace understudy::app

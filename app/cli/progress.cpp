@@ -1,0 +1,41 @@
+#include "app/cli/progress.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace understudy::app {
+
+Progress::Progress(std::string what, int64_t total)
+    : what_(std::move(what)), total_(total), terminal_(isatty(2) == 1), began_(Clock::now()), last_(began_) {}
+
+Progress::~Progress() {
+  finish();
+}
+
+void Progress::step(int64_t done) {
+  done_ = done;
+  const double pause = std::chrono::duration<double>(Clock::now() - last_).count();
+  if (pause >= (terminal_ ? 0.1 : 5.0)) show();
+}
+
+void Progress::show() {
+  last_ = Clock::now();
+  const double seconds = std::chrono::duration<double>(last_ - began_).count();
+  const double rate = seconds > 0 ? static_cast<double>(done_) / seconds : 0;
+  std::fprintf(stderr, "%s%s: frame %lld", terminal_ ? "\r" : "", what_.c_str(),
+               static_cast<long long>(done_));
+  if (total_ > 0) std::fprintf(stderr, " of %lld", static_cast<long long>(total_));
+  std::fprintf(stderr, ", %.1f frames/s%s", rate, terminal_ ? "  " : "\n");
+  std::fflush(stderr);
+  open_ = terminal_;
+  shown_ = done_;
+}
+
+void Progress::finish() {
+  if (done_ > shown_ && open_) show();
+  if (open_) std::fputc('\n', stderr);
+  open_ = false;
+}
+
+}  // namespace understudy::app

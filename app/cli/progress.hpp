@@ -1,0 +1,30 @@
+// Tells how far a job is: one line that is written over on a terminal, a line every few seconds elsewhere.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace understudy::app {
+
+class Progress {
+ public:
+  /// total 0: unknown. Writes to stderr.
+  Progress(std::string what, int64_t total);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// `done` items are finished.
+  void step(int64_t done);
+  /// Ends the line.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show();
+  std::string what_;
+  int64_t total_, done_ = 0, shown_ = 0;
+  bool terminal_, open_ = false;
+  Clock::time_point began_, last_;
+};
+
+}  // namespace understudy::app

@@ -1,0 +1,37 @@
+#include <CLI/CLI.hpp>
+
+#include "app/cli/commands.hpp"
+#include "app/cli/interrupt.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/nn/networks.hpp"
+
+namespace understudy::app {
+
+Action declare_train(CLI::App& command) {
+  const auto options = std::make_shared<nn::TrainOptions>();
+  command.add_option("network", options->network, "skeleton, motion or deformation")
+      ->required()
+      ->check(CLI::IsMember({"skeleton", "motion", "deformation"}));
+  command.add_option("--data", options->data, "folder with body/, motion/ and splits.json")->required();
+  command.add_option("--out", options->out, "the weights file; its checkpoint lies beside it and is resumed")
+      ->required();
+  command.add_option("--curve", options->curve, "learning curve as CSV (default: OUT.csv)");
+  command.add_option("--minutes", options->minutes, "stop after this long")->check(CLI::NonNegativeNumber);
+  command.add_option("--samples", options->samples, "stop after this many samples in all")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--threads", options->threads, "0: one a core")->check(CLI::Range(0, 1024));
+  command.add_option("--batch", options->batch, "samples a step; 0: the network's own")
+      ->check(CLI::Range(0, 65536));
+  command.add_option("--seed", options->seed, "of the data and the first weights");
+  command.add_option("--form", options->form, "of the skeleton network: dense, or the paper's")
+      ->check(CLI::IsMember({"dense", "paper"}));
+  command.add_option("--device", options->device, "cpu, or cuda where LibTorch has it")
+      ->check(CLI::IsMember({"cpu", "cuda"}));
+  command.add_option("--init", options->init, "weights to start from");
+  return [options] {
+    options->cancelled = interrupted;
+    return nn::train(*options);
+  };
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,58 @@
+# Shared by run, test and .ci/run: installs missing packages, configures when needed, builds. Source it from the root.
+
+# install_packages KIND...: installs the packages of those kinds that are missing; says so; nothing when all are there.
+install_packages() {
+  local kinds="$*" wanted=() missing=() installed kind name
+  while read -r kind name; do
+    case " $kinds " in *" $kind "*) wanted+=("$name") ;; esac
+  done < <(grep -v '^#' cmake/packages.txt)
+  installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${wanted[@]}" 2>/dev/null || true)
+  for name in "${wanted[@]}"; do
+    grep -qx "$name installed" <<<"$installed" || missing+=("$name")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  if [ "${NO_INSTALL:-0}" = 1 ]; then
+    echo "These Debian packages are missing and --no-install forbids installing them: ${missing[*]}" >&2
+    exit 1
+  fi
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "Install these packages as root first: ${missing[*]}" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  mkdir -p build
+  echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq || echo "apt-get update failed; trying with the lists that are here" >&2
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}" >build/install.log 2>&1 || {
+    tail -5 build/install.log >&2
+    echo "apt-get could not install the packages; build/install.log has the whole story." >&2
+    exit 1
+  }
+}
+
+# build [TARGET...]: configures the release preset when it never was, then builds. Quiet when nothing is to do.
+build() {
+  local launcher=()
+  command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  if [ ! -f build/build.ninja ]; then
+    echo "Configuring (build/)"
+    mkdir -p build
+    cmake --preset release "${launcher[@]}" >build/configure.log 2>&1 || {
+      cat build/configure.log >&2
+      rm -f build/build.ninja
+      exit 1
+    }
+  fi
+  echo "Building"
+  cmake --build build -- "$@" || { echo "The build failed." >&2; exit 1; }
+}
+
+# take_options ARGUMENT...: understands --no-install in first place; leaves the others in ARGUMENTS.
+take_options() {
+  NO_INSTALL=0
+  if [ "${1:-}" = "--no-install" ]; then
+    NO_INSTALL=1
+    shift
+  fi
+  ARGUMENTS=("$@")
+}
