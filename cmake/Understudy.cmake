@@ -5,6 +5,11 @@ target_compile_options(warnings INTERFACE -Wall -Wextra -Wshadow $<$<BOOL:${STRI
 
 function(us_torch target)
   target_link_libraries(${target} PRIVATE torch_headers)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "EXECUTABLE")  # -fPIE would not fit the precompiled header, which is -fPIC
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    target_compile_options(${target} PRIVATE -fPIC)
+  endif()
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT target STREQUAL "torch_pch")
     target_precompile_headers(${target} REUSE_FROM torch_pch)
   endif()

@@ -1,0 +1,64 @@
+#include "retarget/nn/weights_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy::nn {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string path_for(const std::string& name) {
+  return (fs::temp_directory_path() / ("understudy_" + name + std::to_string(getpid()))).string();
+}
+
+std::string whole(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+TEST(WeightsFile, ComesBackAsItWasWritten) {
+  torch::nn::Linear written(5, 3), read(5, 3);
+  const std::string path = path_for("weights");
+  save_weights(path, {"test", 2, {{"samples", 7}}}, *written, /*half=*/false);
+  EXPECT_EQ(load_weights(path, "test", 2, *read).numbers.at("samples"), 7);
+  EXPECT_TRUE(torch::equal(written->weight, read->weight));
+  fs::remove(path);
+}
+
+TEST(WeightsFile, RefusesAnotherKindVersionOrShape) {
+  torch::nn::Linear small(5, 3), large(6, 3);
+  const std::string path = path_for("refused");
+  save_weights(path, {"test", 2, {}}, *small);
+  EXPECT_THROW(load_weights(path, "other", 2, *small), Error);
+  EXPECT_THROW(load_weights(path, "test", 3, *small), Error);
+  EXPECT_THROW(load_weights(path, "test", 2, *large), Error);
+  fs::remove(path);
+}
+
+TEST(WeightsFile, CutAnywhereIsAnErrorThatNamesTheFile) {
+  torch::nn::Linear net(5, 3);
+  const std::string path = path_for("cut");
+  save_weights(path, {"test", 2, {}}, *net);
+  const std::string bytes = whole(path);
+  for (size_t length = 0; length < bytes.size(); length += 5) {
+    std::ofstream(path, std::ios::binary) << bytes.substr(0, length);
+    try {
+      load_weights(path, "test", 2, *net);
+      ADD_FAILURE() << "loaded " << length << " of " << bytes.size() << " bytes";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    }
+  }
+  fs::remove(path);
+}
+
+}  // namespace
+}  // namespace understudy::nn

@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "retarget/base/error.hpp"
+#include "retarget/nn/skeleton_form.hpp"
+#include "retarget/training/skeleton_batch.hpp"
+#include "retarget/training/skeleton_trainer.hpp"
+#include "tests/support/training_folder.hpp"
+
+namespace understudy::training {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SkeletonTraining : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("understudy_training_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    test::write_training_folder(folder_.string());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+/// The numeric derivative of f at x along every entry, compared with autograd's.
+template <class Function>
+void expect_gradient(Function f, torch::Tensor x) {
+  x = x.to(torch::kFloat64).requires_grad_();
+  f(x).backward();
+  const auto analytic = x.grad().clone().flatten();
+  const torch::NoGradGuard no_grad;
+  auto flat = x.view({-1});
+  for (int64_t i = 0; i < flat.numel(); ++i) {
+    const double at = flat[i].item<double>(), step = 1e-5;
+    flat[i] = at + step;
+    const double above = f(x).template item<double>();
+    flat[i] = at - step;
+    const double below = f(x).template item<double>();
+    flat[i] = at;
+    EXPECT_NEAR(analytic[i].item<double>(), (above - below) / (2 * step), 1e-5);
+  }
+}
+
+TEST(SkeletonLoss, MeanDistanceHasTheRightGradient) {
+  torch::manual_seed(1);
+  const auto b = torch::randn({2, 22, 3}, torch::kFloat64);
+  expect_gradient([&](const torch::Tensor& a) { return mean_distance(a, b); }, torch::randn({2, 22, 3}));
+}
+
+TEST(SkeletonLoss, VotesHaveTheRightGradient) {
+  torch::manual_seed(2);
+  const auto centres = torch::randn({1, 4, 3}, torch::kFloat64),
+             joints = torch::randn({1, 22, 3}, torch::kFloat64);
+  expect_gradient(
+      [&](const torch::Tensor& votes) { return vote_loss(votes, centres, joints, 1.5).to(torch::kFloat64); },
+      torch::randn({1, 4, 22, 3}));
+}
+
+TEST(SkeletonLoss, FarVotesCountForNothing) {
+  const auto centres = torch::full({1, 1, 3}, 9.0), joints = torch::zeros({1, 22, 3});
+  EXPECT_EQ(vote_loss(torch::randn({1, 1, 22, 3}), centres, joints, 0.8).item<float>(), 0.0f);
+}
+
+TEST(SkeletonLoss, SpreadHasTheRightGradientAndGivesTheJointsNone) {
+  torch::manual_seed(3);
+  const auto truth = torch::randn({1, 22, 3}, torch::kFloat64);
+  auto joints = torch::randn({1, 22, 3}, torch::kFloat64).requires_grad_();
+  expect_gradient([&](const torch::Tensor& s) { return spread_loss(joints, truth, s); },
+                  torch::randn({1, 22}));
+  EXPECT_FALSE(joints.grad().defined());
+}
+
+TEST_F(SkeletonTraining, ScansAreTheSameForTheSameSeedAndOthersForAnother) {
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  ScanMaker a(data, {}, 5), b(data, {}, 5), c(data, {}, 6);
+  const MadeScan one = a.next();
+  EXPECT_EQ(one.points, b.next().points);
+  EXPECT_NE(one.points, c.next().points);
+}
+
+TEST_F(SkeletonTraining, ScanPointsLieNearTheJointOfTheirPart) {
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  ScanMakerOptions clean;
+  clean.captured = 0;
+  ScanMaker maker(data, clean, 5);
+  const MadeScan scan = maker.next();
+  ASSERT_EQ(scan.points.rows(), nn::kScanPoints);
+  for (int i = 0; i < nn::kScanPoints; ++i)
+    EXPECT_LT((scan.points.row(i) - scan.truth.joints.row(scan.parts[i])).norm(), 0.2f);
+}
+
+TEST_F(SkeletonTraining, FlaggedFramesAreLeftOut) {
+  EXPECT_EQ(load_training_data(folder_.string(), Split::Train).good_frames, 59);
+}
+
+TEST_F(SkeletonTraining, OverfitsOneBatch) {
+  torch::manual_seed(4);
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  ScanMaker maker(data, {}, 7);
+  const SkeletonBatch batch = make_batch(maker, 2);
+  const auto net = nn::make_skeleton_form("dense");
+  torch::optim::Adam optimizer(net->parameters(), 1e-3);
+  double first = 0, last = 0;
+  for (int step = 0; step < 60; ++step) {
+    optimizer.zero_grad();
+    const auto loss = skeleton_loss(net->forward(batch.input), batch.input.centres, batch.truth);
+    loss.total.backward();
+    optimizer.step();
+    (step == 0 ? first : last) = loss.joint.item<double>();
+  }
+  EXPECT_LT(last, 0.2 * first);
+}
+
+nn::TrainOptions few_samples(const fs::path& folder, int64_t samples) {
+  nn::TrainOptions options;
+  options.network = "skeleton";
+  options.data = folder.string();
+  options.out = (folder / "out.weights").string();
+  options.samples = samples;
+  options.threads = 1;
+  options.batch = 4;
+  return options;
+}
+
+TEST_F(SkeletonTraining, ResumesFromItsCheckpoint) {
+  train_skeleton(few_samples(folder_, 8));
+  EXPECT_TRUE(fs::exists(folder_ / "out.weights"));
+  train_skeleton(few_samples(folder_, 12));
+  std::ifstream curve(folder_ / "out.weights.csv");
+  std::string header, first, second;
+  std::getline(curve, header), std::getline(curve, first), std::getline(curve, second);
+  EXPECT_NE(first.find(",2,8,"), std::string::npos) << first;
+  EXPECT_NE(second.find(",3,12,"), std::string::npos) << second;
+}
+
+TEST_F(SkeletonTraining, WithoutDataIsOneSentence) {
+  EXPECT_THROW(train_skeleton(few_samples(folder_ / "nowhere", 8)), Error);
+}
+
+}  // namespace
+}  // namespace understudy::training

@@ -1,0 +1,11 @@
+// A tiny data folder in the layout that training reads, made on the spot.
+#pragma once
+
+#include <string>
+
+namespace understudy::test {
+
+/// Writes a body of a few boxes, eight shapes, one dressed person and two clips under `folder`.
+void write_training_folder(const std::string& folder);
+
+}  // namespace understudy::test
