@@ -1,10 +1,11 @@
 find_package(CLI11 REQUIRED)
 
-# What the subcommands share, apart from the program so that tests can link it without LibTorch.
+# What the subcommands share, apart from the program so that tests can link it.
 us_module(app SOURCES
   app/cli/case_folder.cpp app/cli/interrupt.cpp app/cli/judge.cpp app/cli/latency.cpp app/cli/machine.cpp
-  app/cli/progress.cpp
-  PUBLIC understudy_core understudy_metrics PRIVATE understudy_npz nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
+  app/cli/preview.cpp app/cli/progress.cpp app/cli/report.cpp app/cli/source.cpp
+  PUBLIC understudy_core understudy_metrics understudy_formats understudy_render nlohmann_json::nlohmann_json
+  PRIVATE understudy_npz understudy_body ZLIB::ZLIB ${CMAKE_DL_LIBS})
 
 add_executable(understudy app/main.cpp app/cli/commands.cpp)
 target_include_directories(understudy PRIVATE ${PROJECT_SOURCE_DIR})

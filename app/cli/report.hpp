@@ -1,0 +1,25 @@
+// JSON reports: of one retargeted sequence, and of an evaluation.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/cli/judge.hpp"
+#include "app/cli/latency.hpp"
+
+namespace understudy::app {
+
+using Json = nlohmann::ordered_json;
+
+/// What made the figures: {"program", "weights"}; weights are the files in the folder with their CRC-32.
+Json report_header(const std::string& weights_folder);
+Json to_json(const Metrics& metrics);
+/// Milliseconds a stage at this quantile.
+Json to_json(const Latency& latency, double quantile);
+/// Writes beside the path, then renames. Throws Error naming the path.
+void write_json(const std::string& path, const Json& json);
+
+/// Throws Error at once when a file could not be made at the path, before hours of work are done for it.
+void check_writable(const std::string& path);
+
+}  // namespace understudy::app

@@ -1,0 +1,166 @@
+#include "app/cli/source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/cli/interrupt.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/body/body.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/npz.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy::app {
+namespace {
+
+std::string in_words(double fps) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g frames/s", fps);
+  return text;
+}
+
+/// Scans on disk, brought into the program's units and axes as the first usable frame says.
+class ScanFiles final : public Source {
+ public:
+  explicit ScanFiles(const SourceOptions& options)
+      : Source(options.fps > 0 ? options.fps : 30),
+        scans_(options.path, scan_options(options)),
+        import_(options.import) {
+    for (const FrameGap& gap : scans_.gaps())
+      log::warn(options.path + ": frames " + std::to_string(gap.first) + " to " + std::to_string(gap.last) +
+                " are missing");
+    log::info(options.path + ": " + in_words(fps()) + (options.fps > 0 ? "" : " assumed (--fps changes it)"));
+  }
+
+  std::optional<ScanFrame> next() override {
+    std::optional<ScanFrame> frame = scans_.next();
+    if (!frame || !frame->usable) return frame;
+    if (!decision_) {
+      decision_ = decide_import(frame->mesh, import_);
+      log::info(frame->path + ": " + decision_->sentence);
+    }
+    decision_->apply(frame->mesh);
+    return frame;
+  }
+
+  std::optional<int64_t> count() const override { return scans_.count(); }
+
+ private:
+  static ScanSourceOptions scan_options(const SourceOptions& options) {
+    ScanSourceOptions result;
+    result.follow = options.follow;
+    result.cancelled = interrupted;
+    return result;
+  }
+
+  ScanSource scans_;
+  ImportOptions import_;
+  std::optional<ImportDecision> decision_;
+};
+
+/// The shape parameters in a motion's file, as many as the body takes; none when all are zero.
+Eigen::VectorXf betas_in(const std::string& motion, Eigen::Index most) {
+  const Npz npz = read_npz(motion);
+  const auto found = npz.find("betas");
+  if (found == npz.end()) return {};
+  const Eigen::Index count =
+      std::min<Eigen::Index>(most, static_cast<Eigen::Index>(found->second.values.size()));
+  const Eigen::VectorXf betas = Eigen::Map<const Eigen::VectorXf>(found->second.values.data(), count);
+  return betas.isZero() ? Eigen::VectorXf() : betas;
+}
+
+Eigen::VectorXf as_vector(const std::vector<float>& values) {
+  return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// An SMPL-format body that performs an AMASS-format motion.
+class PerformingBody final : public Source {
+ public:
+  PerformingBody(const SourceOptions& options, Motion motion)
+      : Source(options.fps > 0 ? options.fps : motion.fps), motion_(std::move(motion)) {
+    const Body body = read_smpl_body(options.path);
+    US_CHECK(!motion_.poses.empty(), options.motion, ": has no frames");
+    const bool turned = turn_upright(motion_, options.import.up);
+    const Eigen::VectorXf own = betas_in(options.motion, body.shape_dirs.cols());
+    person_ = body.shaped(options.betas.empty() ? own : as_vector(options.betas));
+    place(body, options.betas.empty());
+    const Mesh first = posed(0);
+    ImportOptions import = options.import;
+    import.units = "m";
+    import.up = "y";
+    decision_ = decide_import(first, import);
+    log::info(options.motion + ": " + in_words(fps()) + ", " + (turned ? "z up, turned to y up" : "y up"));
+  }
+
+  std::optional<ScanFrame> next() override {
+    if (at_ >= motion_.poses.size()) return std::nullopt;
+    ScanFrame frame;
+    frame.mesh = posed(at_);
+    decision_.apply(frame.mesh);
+    frame.number = static_cast<int64_t>(at_++);
+    return frame;
+  }
+
+  std::optional<int64_t> count() const override { return static_cast<int64_t>(motion_.poses.size()); }
+
+ private:
+  /// A motion without shape of its own was recorded for the mean person: another's path is as much longer as
+  /// the legs. The file's translation moves the whole body, the pelvis from where it is in the T-pose.
+  void place(const Body& body, bool own_shape) {
+    const Joints mean = body.shaped(Eigen::VectorXf()).joints;
+    const float scale = own_shape ? 1.0f : leg_length(person_.joints) / leg_length(mean);
+    for (Pose& pose : motion_.poses) pose.root = (pose.root + mean.row(Pelvis).transpose()) * scale;
+  }
+
+  Mesh posed(size_t t) const {
+    Mesh mesh;
+    mesh.vertices = posed_vertices(person_, motion_.poses[t]);
+    mesh.faces = person_.faces;
+    return mesh;
+  }
+
+  Motion motion_;
+  ShapedBody person_;
+  ImportDecision decision_;
+  size_t at_ = 0;
+};
+
+bool is_npz(const std::string& path) {
+  return path.size() > 4 && path.compare(path.size() - 4, 4, ".npz") == 0;
+}
+
+}  // namespace
+
+bool turn_upright(Motion& motion, const std::string& up) {
+  US_CHECK(up.empty() || up == "auto" || up == "y" || up == "z", "a motion's up is y or z, not ", up);
+  const Vec3 body_up = motion.poses.empty() ? Vec3::UnitY() : Vec3(motion.poses[0].local[Pelvis].col(1));
+  const bool z_up = up == "z" || (up != "y" && std::abs(body_up.z()) > std::abs(body_up.y()));
+  if (!z_up) return false;
+  const Mat3 turn = rotation_from_axis_angle(Vec3(-kPi / 2, 0, 0));  // z to y, y to -z
+  for (Pose& pose : motion.poses) {
+    pose.local[Pelvis] = turn * pose.local[Pelvis];
+    pose.root = turn * pose.root;
+  }
+  return true;
+}
+
+std::unique_ptr<Source> open_source(const SourceOptions& options) {
+  if (options.motion.empty()) return std::make_unique<ScanFiles>(options);
+  return std::make_unique<PerformingBody>(options, read_amass_motion(options.motion));
+}
+
+Mesh read_target(const std::string& path, const std::vector<float>& betas) {
+  if (is_npz(path)) {
+    const Npz npz = read_npz(path);
+    if (npz.count("v_template")) {
+      const ShapedBody person = read_smpl_body(path).shaped(as_vector(betas));
+      return {person.vertices, person.faces};
+    }
+  }
+  US_CHECK(betas.empty(), path, ": only an SMPL-format body takes --betas");
+  return read_mesh(path);
+}
+
+}  // namespace understudy::app

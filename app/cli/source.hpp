@@ -1,0 +1,52 @@
+// Where the frames come from: scans on disk, or an SMPL-format body that performs an AMASS-format motion.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "retarget/formats/import.hpp"
+#include "retarget/formats/scan_source.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy::app {
+
+struct SourceOptions {
+  std::string path;          ///< scans, or an SMPL-format body where `motion` is given
+  std::string motion;        ///< AMASS-format .npz; empty: `path` are scans
+  std::vector<float> betas;  ///< of the performing body; empty: those in the motion's file
+  double fps = 0;            ///< 0: the motion's own, or 30
+  ImportOptions import;
+  bool follow = false;  ///< the folder is still being written
+};
+
+/// Hands out frames in metres, y up, floor at 0, one at a time and never a later one early.
+class Source {
+ public:
+  virtual ~Source() = default;
+  /// None at the end. usable = false: the frame is there but says nothing.
+  virtual std::optional<ScanFrame> next() = 0;
+  /// None while it is not known.
+  virtual std::optional<int64_t> count() const = 0;
+  /// Frames per second.
+  double fps() const { return fps_; }
+
+ protected:
+  explicit Source(double fps) : fps_(fps) {}
+
+ private:
+  double fps_;
+};
+
+/// Says through the log what it decided about units, axes and rate. Throws Error naming the path.
+std::unique_ptr<Source> open_source(const SourceOptions& options);
+
+/// Turns a motion whose up is z (AMASS's own) to y up; decided from where the body's up points in the first
+/// frame. up: "auto", "y" or "z". True when it was turned.
+bool turn_upright(Motion& motion, const std::string& up);
+
+/// The T-pose of an SMPL-format body with these shape parameters, as a mesh; any other file as it is.
+Mesh read_target(const std::string& path, const std::vector<float>& betas);
+
+}  // namespace understudy::app

@@ -1,0 +1,156 @@
+#include "app/cli/source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "retarget/base/error.hpp"
+#include "retarget/formats/npz.hpp"
+#include "retarget/math/rotation.hpp"
+#include "tests/app/program.hpp"
+
+namespace understudy::app {
+namespace {
+
+Motion standing(const Mat3& turn) {
+  Motion motion;
+  motion.poses.resize(2);
+  for (Pose& pose : motion.poses) {
+    pose.local[Pelvis] = turn;
+    pose.root = turn * Vec3(0, 0.9f, 0.2f);
+  }
+  return motion;
+}
+
+TEST(TurnUpright, LeavesAStandingBodyAlone) {
+  Motion motion = standing(rotation_about_y(1));
+  EXPECT_FALSE(turn_upright(motion, "auto"));
+}
+
+TEST(TurnUpright, TurnsZUpToYUp) {
+  Motion motion = standing(rotation_from_axis_angle({kPi / 2, 0, 0}));  // y to z
+  EXPECT_TRUE(turn_upright(motion, "auto"));
+  EXPECT_LT((motion.poses[1].root - Vec3(0, 0.9f, 0.2f)).norm(), 1e-5);
+  EXPECT_LT(geodesic_angle(motion.poses[1].local[Pelvis], Mat3::Identity()), 1e-3);
+}
+
+TEST(TurnUpright, ObeysTheUser) {
+  Motion motion = standing(Mat3::Identity());
+  EXPECT_TRUE(turn_upright(motion, "z"));
+  Motion lying = standing(rotation_from_axis_angle({kPi / 2, 0, 0}));
+  EXPECT_FALSE(turn_upright(lying, "y"));
+  EXPECT_THROW(turn_upright(lying, "x"), Error);
+}
+
+class SourceFiles : public testing::Test {
+ protected:
+  /// A round column of 200 points, 1.7 units high, written as XYZ.
+  void write_frame(int number, float scale) {
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%05d.xyz", number);
+    std::ofstream file(scratch.path(name));
+    for (int i = 0; i < 200; ++i)
+      file << 0.2f * scale * std::cos(2.4f * i) << ' ' << scale * 0.0085f * i << ' '
+           << 0.2f * scale * std::sin(2.4f * i) << '\n';
+  }
+  SourceOptions here() const {
+    SourceOptions options;
+    options.path = scratch.path("");
+    return options;
+  }
+  tests::ScratchFolder scratch;
+};
+
+TEST_F(SourceFiles, ComeInMetresAsTheFirstFrameSays) {
+  write_frame(0, 1000);
+  write_frame(1, 2000);  // still millimetres: the second frame does not decide
+  const auto source = open_source(here());
+  EXPECT_EQ(source->count(), 2);
+  EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 1.7f, 0.02);
+  EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 3.4f, 0.04);
+  EXPECT_FALSE(source->next());
+}
+
+TEST_F(SourceFiles, ObeyForcedUnitsAndRate) {
+  write_frame(0, 1);
+  SourceOptions options = here();
+  options.import.units = "cm";
+  options.fps = 50;
+  const auto source = open_source(options);
+  EXPECT_EQ(source->fps(), 50);
+  EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 0.017f, 0.001);
+}
+
+TEST_F(SourceFiles, PassABadFrameOn) {
+  write_frame(0, 1);
+  std::ofstream(scratch.path("frame_00001.xyz")) << "nan nan nan\n";
+  write_frame(2, 1);
+  const auto source = open_source(here());
+  EXPECT_TRUE(source->next()->usable);
+  EXPECT_FALSE(source->next()->usable);
+  EXPECT_TRUE(source->next()->usable);
+}
+
+NpyArray filled(std::vector<int64_t> shape, float value) {
+  int64_t count = 1;
+  for (const int64_t extent : shape) count *= extent;
+  return {shape, std::vector<float>(static_cast<size_t>(count), value), {}};
+}
+
+/// A body of 44 vertices: two beside each joint, which is their mean; joints one above the other, 10 cm
+/// apart.
+Npz tiny_body() {
+  const int vertices = 2 * kJointCount;
+  Npz body{{"v_template", filled({vertices, 3}, 0)},
+           {"shapedirs", filled({vertices, 3, 2}, 0)},
+           {"posedirs", filled({vertices, 3, 189}, 0)},
+           {"J_regressor", filled({kJointCount, vertices}, 0)},
+           {"weights", filled({vertices, kJointCount}, 0)},
+           {"kintree_table", filled({2, kJointCount}, 0)},
+           {"f", filled({vertices - 2, 3}, 0)}};
+  for (int v = 0; v < vertices; ++v) {
+    const int joint = v / 2;
+    body["v_template"].values[v * 3] = v % 2 ? 0.05f : -0.05f;
+    body["v_template"].values[v * 3 + 1] = 0.08f * joint;
+    body["J_regressor"].values[joint * vertices + v] = 0.5f;
+    body["weights"].values[v * kJointCount + joint] = 1;
+    body["shapedirs"].values[(v * 3 + 1) * 2] = 0.04f * joint;  // the first parameter makes it taller
+  }
+  for (int f = 0; f < vertices - 2; ++f)
+    for (int corner = 0; corner < 3; ++corner)
+      body["f"].values[f * 3 + corner] = static_cast<float>(f + corner);
+  for (int j = 1; j < kJointCount; ++j) body["kintree_table"].values[j] = static_cast<float>(kParents[j]);
+  body["kintree_table"].values[0] = -1;
+  return body;
+}
+
+TEST_F(SourceFiles, ABodyPerformsAMotion) {
+  write_npz(scratch.path("body.npz"), tiny_body());
+  Npz motion{
+      {"poses", filled({3, 66}, 0)}, {"trans", filled({3, 3}, 0)}, {"mocap_framerate", filled({}, 60)}};
+  motion["trans"].values = {0, 1, 0, 0.5f, 1, 0, 1, 1, 0};
+  write_npz(scratch.path("motion.npz"), motion);
+  SourceOptions options;
+  options.path = scratch.path("body.npz");
+  options.motion = scratch.path("motion.npz");
+  const auto source = open_source(options);
+  EXPECT_EQ(source->fps(), 60);
+  EXPECT_EQ(source->count(), 3);
+  const Points first = source->next()->mesh.vertices, second = source->next()->mesh.vertices;
+  EXPECT_NEAR((second.col(0) - first.col(0)).mean(), 0.5f, 1e-5);
+  EXPECT_NEAR(first.col(1).minCoeff(), 0, 0.1);  // on the floor
+}
+
+TEST_F(SourceFiles, ATargetTakesShapeParameters) {
+  write_npz(scratch.path("body.npz"), tiny_body());
+  const Mesh plain = read_target(scratch.path("body.npz"), {}),
+             tall = read_target(scratch.path("body.npz"), {1});
+  EXPECT_NEAR(plain.vertices.col(1).maxCoeff(), 0.08f * 21, 1e-5);
+  EXPECT_NEAR(tall.vertices.col(1).maxCoeff(), 0.12f * 21, 1e-5);
+  write_frame(0, 1);
+  EXPECT_THROW(read_target(scratch.path("frame_00000.xyz"), {1}), Error);
+}
+
+}  // namespace
+}  // namespace understudy::app
