@@ -23,7 +23,8 @@ json read_splits(const fs::path& path) {
 }
 
 std::vector<Eigen::VectorXf> read_betas(const fs::path& path, int first, int last) {
-  const NpyArray& array = require(read_npz(path.string()), "betas", path.string());
+  const Npz npz = read_npz(path.string());
+  const NpyArray& array = require(npz, "betas", path.string());
   US_CHECK(array.shape.size() == 2 && first >= 0 && last <= array.shape[0] && first < last, path.string(),
            ": betas must be people x parameters, rows ", first, " to ", last);
   const RowMatrix rows = array.matrix(array.shape[1], path.string());
