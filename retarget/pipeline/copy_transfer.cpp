@@ -1,0 +1,187 @@
+#include "retarget/pipeline/copy_transfer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/pipeline/human_rest.hpp"
+
+namespace understudy {
+
+namespace {
+
+// The joint at the other end of a joint's one bone; -1 where there is none, or more than one.
+constexpr std::array<int, kJointCount> kBoneEnd = {
+    -1,        LeftKnee,   RightKnee, Spine2, LeftAnkle,    RightAnkle,    Spine3, LeftFoot,  RightFoot,
+    -1,        -1,         -1,        Head,   LeftShoulder, RightShoulder, -1,     LeftElbow, RightElbow,
+    LeftWrist, RightWrist, -1,        -1};
+
+float smooth_step(float low, float high, float x) {
+  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+Mat3 blend(const Mat3& A, const Mat3& B, float t) {
+  if (t <= 0) return A;
+  if (t >= 1) return B;
+  return Eigen::Quaternionf(A).slerp(t, Eigen::Quaternionf(B)).toRotationMatrix();
+}
+
+/// The angle about `axis` that takes rotation A to B, both sending the same rest bone along the axis.
+float twist_angle(const Mat3& A, const Mat3& B, const Vec3& axis) {
+  const Eigen::Quaternionf q(Mat3(B * A.transpose()));
+  return std::remainder(2 * std::atan2(q.vec().dot(axis), q.w()), 2 * kPi);
+}
+
+}  // namespace
+
+/// One arm or leg: the joint above the hinge, the hinge, its end.
+struct CopyTransfer::Limb {
+  int upper, hinge, end;
+  Vec3 axis;         // of flexion, in the T-pose
+  float wrong_side;  // how little a bend against the flexion is believed: 1 not at all
+};
+
+struct CopyTransfer::Frame {
+  const Extraction& source;
+  float dt;
+  Rotations global;
+  Vec3 bone(int from, int to) const { return (source.joints.row(to) - source.joints.row(from)).transpose(); }
+};
+
+CopyOptions::CopyOptions() {
+  // Leaves cannot be told from positions at all; elsewhere the surface tells the twist. The trunk is a little
+  // of both.
+  seen.setConstant(1.0f);
+  point.setConstant(1.0f);
+  for (const int j : {Pelvis, Spine1, Spine2, Spine3}) seen[j] = 0.5f;
+}
+
+CopyTransfer::CopyTransfer(const CopyOptions& options)
+    : options_(options), rest_(human_rest()), last_(identity_rotations()) {}
+
+void CopyTransfer::reset(const Joints& rest_b) {
+  US_CHECK(rest_b.allFinite() && leg_length(rest_b) > 1e-4f,
+           "the target's T-pose joints are not those of a body");
+  const Joints scaled = rest_b / leg_length(rest_b);
+  rest_ = (1 - options_.rest_blend) * human_rest() + options_.rest_blend * scaled;
+  last_ = identity_rotations();
+  started_ = false;
+}
+
+void CopyTransfer::point_bone(Frame& frame, int j, float amount) const {
+  const int end = kBoneEnd[j];
+  if (end < 0 || amount <= 0) return;
+  const Vec3 seen = frame.bone(j, end);
+  if (seen.norm() < 1e-6f) return;  // two joints in one place say nothing
+  const Vec3 now = frame.global[j] * (rest_.row(end) - rest_.row(j)).transpose();
+  frame.global[j] = blend(Mat3::Identity(), rotation_between(now, seen), amount) * frame.global[j];
+}
+
+void CopyTransfer::settle(Frame& frame, int j, const Mat3& solved) const {
+  const bool seen = frame.source.global.has_value();
+  const float trust = options_.trust_confidence ? std::clamp(frame.source.confidence[j], 0.0f, 1.0f) : 1.0f;
+  frame.global[j] = seen ? blend(solved, (*frame.source.global)[j], options_.seen[j] * trust) : solved;
+  point_bone(frame, j, seen ? options_.point[j] : 1.0f);
+}
+
+void CopyTransfer::solve_trunk(Frame& frame) const {
+  const auto fit = [&](int root, std::initializer_list<std::pair<int, float>> hints) {
+    Points rest(hints.size(), 3), seen(hints.size(), 3);
+    Eigen::VectorXf weights(hints.size());
+    int i = 0;
+    for (const auto& [end, weight] : hints) {
+      // Directions, not offsets: the source's proportions are not those of the assumed T-pose.
+      const Vec3 r = (rest_.row(end) - rest_.row(root)).transpose(), s = frame.bone(root, end);
+      rest.row(i) = r.transpose();
+      seen.row(i) = s.normalized().transpose() * r.norm();
+      weights[i++] = weight;
+    }
+    return kabsch(rest, seen, weights);
+  };
+  settle(frame, Pelvis,
+         fit(Pelvis, {{LeftHip, 1},
+                      {RightHip, 1},
+                      {Spine1, 1},
+                      {Spine2, options_.spine_hint},
+                      {Spine3, options_.spine_hint}}));
+  settle(frame, Spine3,
+         fit(Spine3, {{Neck, 1},
+                      {LeftCollar, 1},
+                      {RightCollar, 1},
+                      {LeftShoulder, options_.shoulder_hint},
+                      {RightShoulder, options_.shoulder_hint}}));
+  // The twist between pelvis and chest is spread over the spine.
+  settle(frame, Spine1, blend(frame.global[Pelvis], frame.global[Spine3], 1 / 3.0f));
+  settle(frame, Spine2, blend(frame.global[Pelvis], frame.global[Spine3], 2 / 3.0f));
+  settle(frame, Neck, frame.global[Spine3]);
+  settle(frame, Head, frame.global[Neck]);
+  settle(frame, LeftCollar, frame.global[Spine3]);
+  settle(frame, RightCollar, frame.global[Spine3]);
+}
+
+Mat3 CopyTransfer::hinge_rotation(const Frame& frame, const Limb& limb) const {
+  const Mat3& parent = frame.global[kParents[limb.upper]];
+  const Vec3 rest1 = (rest_.row(limb.hinge) - rest_.row(limb.upper)).transpose().normalized();
+  const Vec3 d1 = frame.bone(limb.upper, limb.hinge).normalized();
+  const Vec3 d2 = frame.bone(limb.hinge, limb.end).normalized();
+  const Vec3 straight = parent * rest1;
+
+  // Least twist from the T-pose, and from the last frame. The first is undefined for a bone turned about.
+  const Mat3 least = rotation_between(straight, d1) * parent;
+  const Mat3 before = parent * last_[limb.upper];
+  const Mat3 carried = rotation_between(before * rest1, d1) * before;
+  const float turned = 1 - smooth_step(-0.95f, -0.7f, straight.dot(d1));
+  const float keep = started_ ? std::exp(-frame.dt / options_.relax_s * (1 - turned)) : 0.0f;
+  float twist = keep * twist_angle(least, carried, d1);
+
+  // The bend plane: flexion turns d1 to d2 about the hinge axis.
+  const Vec3 bend = d1.cross(d2);
+  const float bend_deg = std::atan2(bend.norm(), d1.dot(d2)) * 180 / kPi;
+  const Vec3 axis = (limb.axis - limb.axis.dot(rest1) * rest1).normalized();
+  const Vec3 now = least * axis;
+  if (bend.norm() > 1e-6f) {
+    const float measured = std::atan2(now.cross(bend).dot(d1), now.dot(bend));
+    // A joint that seems to bend the wrong way is a straight one and noise.
+    const float flexes = 0.5f + 0.5f * std::cos(measured - twist);
+    const float trust = smooth_step(options_.bend_low_deg, options_.bend_high_deg, bend_deg) *
+                        (1 - limb.wrong_side * (1 - flexes));
+    twist += trust * std::remainder(measured - twist, 2 * kPi);
+  }
+  return Eigen::AngleAxisf(twist, d1).toRotationMatrix() * least;
+}
+
+void CopyTransfer::solve_limb(Frame& frame, const Limb& limb) {
+  const bool known =
+      frame.bone(limb.upper, limb.hinge).norm() > 1e-6f && frame.bone(limb.hinge, limb.end).norm() > 1e-6f;
+  const Mat3 parent = frame.global[kParents[limb.upper]];
+  settle(frame, limb.upper, known ? hinge_rotation(frame, limb) : Mat3(parent * last_[limb.upper]));
+  settle(frame, limb.hinge, frame.global[limb.upper]);
+  settle(frame, limb.end, frame.global[limb.hinge]);
+}
+
+Rotations CopyTransfer::push(const Extraction& source, float dt) {
+  US_CHECK(source.joints.allFinite(), "a source joint is not a number");
+  // Elbows flex the forearm forward and a little up: arms held out sideways hinge about an axis between down
+  // and forward.
+  static const std::array<Limb, 4> limbs = {
+      {{LeftHip, LeftKnee, LeftAnkle, Vec3(1, 0, 0), 1.0f},
+       {RightHip, RightKnee, RightAnkle, Vec3(1, 0, 0), 1.0f},
+       {LeftShoulder, LeftElbow, LeftWrist, Vec3(0, -0.87f, 0.49f), 0.5f},
+       {RightShoulder, RightElbow, RightWrist, Vec3(0, 0.87f, -0.49f), 0.5f}}};
+  Frame frame{source, dt, identity_rotations()};
+  solve_trunk(frame);
+  for (const Limb& limb : limbs) solve_limb(frame, limb);
+  settle(frame, LeftFoot, frame.global[LeftAnkle]);
+  settle(frame, RightFoot, frame.global[RightAnkle]);
+  last_ = local_rotations(frame.global);
+  started_ = true;
+  for (const Mat3& R : last_)
+    US_CHECK(R.allFinite(), "the motion transfer gave a rotation that is not a number");
+  return last_;
+}
+
+}  // namespace understudy

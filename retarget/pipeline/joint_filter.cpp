@@ -1,0 +1,159 @@
+#include "retarget/pipeline/joint_filter.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "retarget/pipeline/human_rest.hpp"
+
+namespace understudy {
+
+namespace {
+
+using Group = std::vector<int>;  // joints of the left side; kMirror has the other
+
+const std::array<Group, 4>& swap_groups() {
+  static const std::array<Group, 4> groups = {
+      {{LeftHip, LeftKnee, LeftAnkle, LeftFoot, LeftCollar, LeftShoulder, LeftElbow, LeftWrist},
+       {LeftHip, LeftKnee, LeftAnkle, LeftFoot},
+       {LeftKnee, LeftAnkle, LeftFoot},
+       {LeftElbow, LeftWrist}}};
+  return groups;
+}
+
+}  // namespace
+
+JointFilter::JointFilter(const JointFilterOptions& options) : options_(options) {
+  reset();
+}
+
+void JointFilter::reset() {
+  tracks_.fill(Track{});
+  lengths_.fill(RunningMedian(static_cast<size_t>(std::max(1, options_.length_window))));
+  frames_ = swaps_in_a_row_ = 0;
+  repaired_ = false;
+}
+
+void JointFilter::repair_swaps(Extraction& frame) {
+  repaired_ = false;
+  if (frames_ == 0) return;
+  const Joints predicted = frames_ > 1 ? Joints(last_ + 0.5f * (last_ - before_last_)) : last_;
+  for (const Group& group : swap_groups()) {
+    float kept = 0, exchanged = 0, confidence = 0;
+    for (const int j : group) {
+      const int m = kMirror[j];
+      const auto cost = [&](int a, int b) { return (frame.joints.row(a) - predicted.row(b)).squaredNorm(); };
+      kept += cost(j, j) + cost(m, m);
+      exchanged += cost(m, j) + cost(j, m);
+      confidence += 0.5f * (frame.confidence[j] + frame.confidence[m]);
+    }
+    const float n = static_cast<float>(group.size());
+    // Far nearer exchanged, and far off as it is: more than 8 cm a joint.
+    const bool nearer = exchanged < 0.4f * kept && kept > 2 * n * 0.08f * 0.08f;
+    if (!nearer || confidence > options_.swap_confidence * n || swaps_in_a_row_ >= options_.swap_patience)
+      continue;
+    for (const int j : group) {
+      frame.joints.row(j).swap(frame.joints.row(kMirror[j]));
+      std::swap(frame.confidence[j], frame.confidence[kMirror[j]]);
+    }
+    repaired_ = true;
+  }
+  swaps_in_a_row_ = repaired_ ? swaps_in_a_row_ + 1 : 0;
+  if (repaired_) frame.global.reset();
+}
+
+void JointFilter::predict(float dt) {
+  for (int j = 0; j < kJointCount; ++j) {
+    Track& t = tracks_[j];
+    const float a = j == Pelvis ? options_.root_acceleration : options_.acceleration;
+    const float q = a * a;
+    t.position += dt * t.velocity;
+    // Covariance of a constant velocity disturbed by a random acceleration held over dt.
+    t.pp += 2 * dt * t.pv + dt * dt * t.vv + 0.25f * dt * dt * dt * dt * q;
+    t.pv += dt * t.vv + 0.5f * dt * dt * dt * q;
+    t.vv += dt * dt * q;
+  }
+}
+
+void JointFilter::correct(Track& t, const Vec3& measured, float noise) const {
+  const Vec3 surprise = measured - t.position;
+  // A surprise beyond four deviations is a real jump that the model does not know: follow it, do not lag.
+  const float expected = 3 * (t.pp + noise * noise);
+  const float excess = surprise.squaredNorm() / (16 * expected);
+  if (excess > 1) {
+    t.pp *= excess;
+    t.vv *= excess;
+    t.pv *= excess;
+  }
+  const float s = t.pp + noise * noise;
+  const float kp = t.pp / s, kv = t.pv / s;
+  t.position += kp * surprise;
+  t.velocity += kv * surprise;
+  t.vv -= kv * t.pv;
+  t.pv *= 1 - kp;
+  t.pp *= 1 - kp;
+}
+
+void JointFilter::smooth(Extraction& frame, float dt) {
+  const auto measured = [&](int j) -> Vec3 {
+    const Vec3 joint = frame.joints.row(j).transpose(), pelvis = frame.joints.row(Pelvis).transpose();
+    return j == Pelvis ? joint : Vec3(joint - pelvis);
+  };
+  if (frames_ == 0) {
+    for (int j = 0; j < kJointCount; ++j) {
+      Track t;
+      t.position = measured(j);
+      t.pp = options_.noise_m * options_.noise_m;
+      t.vv = 1.0f;  // (m/s)^2
+      tracks_[j] = t;
+    }
+    return;
+  }
+  predict(dt);
+  for (int j = kJointCount - 1; j >= 0; --j) {  // the pelvis last: the others are measured from it
+    const float c = std::clamp(frame.confidence[j], 0.0f, 1.0f);
+    correct(tracks_[j], measured(j), options_.weak_noise_m + c * (options_.noise_m - options_.weak_noise_m));
+  }
+  for (int j = 0; j < kJointCount; ++j) {
+    const Vec3 base = j == Pelvis ? Vec3(Vec3::Zero()) : tracks_[Pelvis].position;
+    frame.joints.row(j) = (base + tracks_[j].position).transpose();
+  }
+}
+
+Eigen::Array<float, kJointCount, 1> JointFilter::lengths() const {
+  Eigen::Array<float, kJointCount, 1> lengths;
+  for (int j = 0; j < kJointCount; ++j)
+    lengths[j] = 0.5f * (lengths_[j].value() + lengths_[kMirror[j]].value());
+  return lengths;
+}
+
+void JointFilter::fix_lengths(Extraction& frame) {
+  const auto wanted = lengths();
+  const Eigen::Array<float, kJointCount, 1> give =
+      1.05f - frame.confidence.max(0.0f).min(1.0f);  // sure joints move less
+  for (int round = 0; round < 6; ++round) {
+    for (int j = 1; j < kJointCount; ++j) {
+      const int p = kParents[j];
+      const Vec3 bone = (frame.joints.row(j) - frame.joints.row(p)).transpose();
+      const float length = bone.norm();
+      if (length < 1e-6f) continue;
+      const Vec3 change = bone * ((wanted[j] - length) / length);
+      frame.joints.row(j) += (give[j] / (give[j] + give[p]) * change).transpose();
+      frame.joints.row(p) -= (give[p] / (give[j] + give[p]) * change).transpose();
+    }
+  }
+}
+
+Extraction JointFilter::push(const Extraction& raw, float dt) {
+  Extraction frame = raw;
+  if (options_.repair_swaps) repair_swaps(frame);
+  const auto seen = bone_lengths(frame.joints);
+  for (int j = 1; j < kJointCount; ++j) lengths_[j].push(seen[j]);
+  before_last_ = last_;
+  last_ = frame.joints;
+  if (options_.smooth) smooth(frame, dt);
+  if (options_.fix_lengths) fix_lengths(frame);
+  ++frames_;
+  return frame;
+}
+
+}  // namespace understudy

@@ -1,0 +1,3 @@
+us_module(pipeline SOURCES
+  pipeline/human_rest.cpp pipeline/copy_transfer.cpp pipeline/joint_filter.cpp pipeline/root_path.cpp
+  PUBLIC understudy_core)

@@ -1,0 +1,132 @@
+#include "retarget/pipeline/root_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy {
+
+namespace {
+
+constexpr std::array<int, 4> kFeet = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
+
+}  // namespace
+
+SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints) {
+  SupportPoints support;
+  std::vector<Vec3> offsets;
+  const auto add = [&](int joint, const Vec3& point) {
+    support.joint.push_back(joint);
+    offsets.push_back(point - rest_joints.row(joint).transpose());
+  };
+  for (const int j : {Pelvis, Head, LeftKnee, RightKnee, LeftWrist, RightWrist})
+    add(j, rest_joints.row(j).transpose());
+  for (const int j : kFeet) add(j, rest_joints.row(j).transpose());
+  for (const int side : {0, 1}) {
+    const int ankle = side == 0 ? LeftAnkle : RightAnkle, toe = side == 0 ? LeftFoot : RightFoot;
+    const float mid = 0.5f * (rest_joints(LeftAnkle, 0) + rest_joints(RightAnkle, 0));
+    // The sole in cells along the foot: of each the lowest vertex, behind the ball with the ankle, before it
+    // with the toes.
+    constexpr int kCells = 6;
+    const float heel = rest_joints(ankle, 2) - 0.09f * leg_length(rest_joints),
+                length = 0.35f * leg_length(rest_joints);
+    std::array<int, kCells> lowest;
+    lowest.fill(-1);
+    for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+      const bool mine = (rest(v, 0) > mid) == (side == 0) && rest(v, 1) < rest_joints(ankle, 1);
+      const int cell = static_cast<int>(std::floor((rest(v, 2) - heel) / length * kCells));
+      if (!mine || cell < 0 || cell >= kCells) continue;
+      if (lowest[cell] < 0 || rest(v, 1) < rest(lowest[cell], 1)) lowest[cell] = static_cast<int>(v);
+    }
+    for (const int v : lowest)
+      if (v >= 0) add(rest(v, 2) > rest_joints(toe, 2) ? toe : ankle, rest.row(v).transpose());
+  }
+  support.offset.resize(static_cast<Eigen::Index>(offsets.size()), 3);
+  for (size_t i = 0; i < offsets.size(); ++i)
+    support.offset.row(static_cast<Eigen::Index>(i)) = offsets[i].transpose();
+  return support;
+}
+
+float SupportPoints::lowest(const PosedSkeleton& posed) const {
+  float low = 0;
+  for (size_t i = 0; i < joint.size(); ++i) {
+    const Vec3 offset_world = posed.global[joint[i]] * offset.row(static_cast<Eigen::Index>(i)).transpose();
+    low = std::min(low, posed.joints(joint[i], 1) - posed.joints(Pelvis, 1) + offset_world.y());
+  }
+  return low;
+}
+
+void RootPath::reset(const Points& rest_b, const Joints& joints_b) {
+  rest_b_ = joints_b;
+  leg_b_ = leg_length(joints_b);
+  US_CHECK(std::isfinite(leg_b_) && leg_b_ > 1e-4f, "the target's legs have no length");
+  support_ = SupportPoints::from(rest_b, joints_b);
+  leg_a_.clear();
+  offsets_.clear();
+  sole_.clear();
+  started_ = false;
+  offset_ = 0;
+  scale_ = 1;
+}
+
+float RootPath::scale() const {
+  return scale_;
+}
+
+float RootPath::clearance(const Joints& source, const Points& scan) const {
+  // The lowest scan points near the foot joints; a few are let go as outliers. Without any: the joints less a
+  // sole.
+  const float leg = std::max(leg_a_.value(), 1e-3f), near = 0.25f * leg;
+  std::vector<float> heights;
+  for (Eigen::Index i = 0; i < scan.rows(); ++i) {
+    const auto p = scan.row(i);
+    for (const int j : kFeet)
+      if ((p - source.row(j)).squaredNorm() < near * near) {
+        heights.push_back(p.y());
+        break;
+      }
+  }
+  float joint_height = source(LeftAnkle, 1);
+  for (const int j : kFeet) joint_height = std::min(joint_height, source(j, 1));
+  if (heights.size() < 20) return joint_height - 0.03f * leg;
+  const size_t skip = heights.size() / 100;
+  std::nth_element(heights.begin(), heights.begin() + static_cast<long>(skip), heights.end());
+  return heights[skip];
+}
+
+Vec3 RootPath::push(const Joints& source, const Points& scan, const Rotations& local_b, float dt) {
+  leg_a_.push(leg_length(source));
+  const float wanted_scale = leg_b_ / std::max(leg_a_.value(), 1e-4f);
+  const Vec3 pelvis = source.row(Pelvis).transpose();
+  const float follow = started_ ? 1 - std::exp(-dt / std::max(options_.settle_s, 1e-3f)) : 1.0f;
+  scale_ += follow * (wanted_scale - scale_);
+
+  if (!started_) {
+    root_ = pelvis;
+  } else if (options_.mode != RootMode::InPlace) {
+    const float s = options_.mode == RootMode::Scaled ? scale_ : 1.0f;
+    root_.x() += s * (pelvis.x() - last_source_.x());
+    root_.z() += s * (pelvis.z() - last_source_.z());
+  }
+  last_source_ = pelvis;
+
+  // y = s * y_source + offset; the offset makes the target's soles as high over the floor as s times the
+  // source's.
+  const float lowest = support_.lowest(forward_kinematics(rest_b_, Pose{local_b, Vec3::Zero()}));
+  const float clear = clearance(source, scan);
+  const float exact = scale_ * clear - lowest;
+  offsets_.push(exact - scale_ * pelvis.y());
+  offset_ += follow * (offsets_.value() - offset_);
+  root_.y() = scale_ * pelvis.y() + offset_;
+
+  // In contact the rest of the error is taken out in part: all of it would shake the body with every foot's
+  // error.
+  const float height = std::max(0.0f, clear) / std::max(options_.contact_height_m, 1e-4f);
+  const float contact = options_.contact * std::clamp(1.5f - height, 0.0f, 1.0f);
+  root_.y() += contact * (exact - root_.y());
+  started_ = true;
+  return root_;
+}
+
+}  // namespace understudy

@@ -1,0 +1,59 @@
+// Where the target's pelvis goes: the source's path scaled by leg length, soles on the floor as the source's
+// are.
+#pragma once
+
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/pipeline/running_median.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+enum class RootMode { Scaled, Original, InPlace };
+
+struct RootPathOptions {
+  RootMode mode = RootMode::Scaled;  ///< the path over the floor; heights are scaled in every mode
+  float contact =
+      0.5f;  ///< 0..1: how much of a sole's way into the floor, or above it in contact, is taken out
+  float contact_height_m = 0.04f;  ///< a source's foot this low is in contact
+  float settle_s = 1.0f;           ///< time in which the height's offset follows its estimate
+};
+
+/// Lowest points of a body in T-pose, each moved rigidly with one joint: what may touch the floor.
+struct SupportPoints {
+  std::vector<int> joint;
+  Points offset;  ///< [N, 3] from the joint, T-pose axes, metres
+  /// Points of `rest` under the feet, and one under each knee, wrist and the pelvis for the falls. Joints
+  /// must be the T-pose's. With no vertices the joints themselves.
+  static SupportPoints from(const Points& rest, const Joints& rest_joints);
+  /// Height of the lowest point above the pelvis (negative).
+  float lowest(const PosedSkeleton& posed) const;
+};
+
+/// Online: only the frames so far. s = leg_B / leg_A, leg_A the median over the frames so far; the path is
+/// summed from scaled steps, so that a better s never makes it jump.
+class RootPath {
+ public:
+  explicit RootPath(const RootPathOptions& options = {}) : options_(options) {}
+  void reset(const Points& rest_b, const Joints& joints_b);
+  /// The target's pelvis in the world, metres. source: the source's joints; scan: its points (for the
+  /// clearance of its feet over y = 0); pose_b: the target's local rotations, its root ignored; dt seconds
+  /// since the last frame.
+  Vec3 push(const Joints& source, const Points& scan, const Rotations& local_b, float dt);
+  float scale() const;
+
+ private:
+  float clearance(const Joints& source, const Points& scan) const;
+
+  RootPathOptions options_;
+  Joints rest_b_ = Joints::Zero();
+  SupportPoints support_;
+  float leg_b_ = 1;
+  RunningMedian leg_a_, offsets_, sole_;
+  Vec3 last_source_ = Vec3::Zero(), root_ = Vec3::Zero();
+  float offset_ = 0, scale_ = 1;
+  bool started_ = false;
+};
+
+}  // namespace understudy
