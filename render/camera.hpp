@@ -1,0 +1,49 @@
+// An orbit camera: what it is, its matrices, and how to make it see all of something.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "retarget/math/types.hpp"
+
+namespace understudy::render {
+
+using Mat4 = Eigen::Matrix4f;
+
+struct Camera {
+  Vec3 target = Vec3(0, 0.9f, 0);  ///< metres; what it turns about and looks at
+  float yaw = 0;        ///< radians about +y; 0 looks along -z, at the front of a T-pose; +90 deg from +x
+  float pitch = 0.15f;  ///< radians above the horizon
+  float distance = 4;   ///< metres from the target
+  float fov = 0.5f;     ///< vertical, radians
+  bool orthographic = false;  ///< shows as much as the perspective does at the target's distance
+};
+
+/// The camera's axes in the world as columns: right, up, back (towards the viewer).
+Mat3 axes(const Camera& camera);
+Vec3 eye(const Camera& camera);
+/// World to camera.
+Mat4 view_matrix(const Camera& camera);
+/// Camera to clip space (OpenGL's, z in -1..1); aspect is width / height.
+Mat4 projection_matrix(const Camera& camera, float aspect);
+/// The ray through a place in the picture, x and y in -1..1 (y up).
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;  ///< unit length
+};
+Ray ray_through(const Camera& camera, float aspect, const Eigen::Vector2f& place);
+
+/// Turned about its target; the pitch stops short of the poles.
+Camera orbited(Camera camera, float yaw, float pitch);
+/// Moved with its target by a share of the picture's height, so that the scene follows the pointer.
+Camera panned(Camera camera, const Eigen::Vector2f& share_of_height);
+/// Distance times `factor`, kept between 5 cm and 500 m.
+Camera zoomed(Camera camera, float factor);
+
+/// The camera, its direction and lens kept, moved to see all the points as large as can be. `margin` is the
+/// share of the picture left free on each side. No points: the camera unchanged.
+Camera fitted(Camera camera, const Points& points, float aspect, float margin = 0.05f);
+/// The least distance from which all points are seen with the target where it is. Perspective and
+/// orthographic.
+float fitting_distance(const Camera& camera, const Points& points, float aspect, float margin = 0.05f);
+
+}  // namespace understudy::render

@@ -1,0 +1,47 @@
+#include "render/colors.hpp"
+
+#include <algorithm>
+
+namespace understudy::render {
+namespace {
+
+Vec3 hex(int rgb) {
+  return Vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.f;
+}
+
+}  // namespace
+
+const Vec3 kLeftColor = hex(0x0072B2), kRightColor = hex(0xE68A00), kMiddleColor = hex(0x50565F);
+
+const std::array<Vec3, 22> kCategories = {
+    hex(0xF2F3F4), hex(0x222222), hex(0xF3C300), hex(0x875692), hex(0xF38400), hex(0xA1CAF1),
+    hex(0xBE0032), hex(0xC2B280), hex(0x848482), hex(0x008856), hex(0xE68FAC), hex(0x0067A5),
+    hex(0xF99379), hex(0x604E97), hex(0xF6A600), hex(0xB3446C), hex(0xDCD300), hex(0x882D17),
+    hex(0x8DB600), hex(0x654522), hex(0xE25822), hex(0x2B3D26)};
+
+// Matt Zucker's sixth-degree fit to matplotlib's table; within 0.01 of it.
+Vec3 viridis(float t) {
+  static const Vec3 c[7] = {{0.2777273f, 0.0054073f, 0.3340998f},   {0.1050930f, 1.4046135f, 1.3845902f},
+                            {-0.3308618f, 0.2148476f, 0.0950952f},  {-4.6342305f, -5.7991010f, -19.3324410f},
+                            {6.2282699f, 14.1799334f, 56.6905526f}, {4.7763850f, -13.7451454f, -65.3530326f},
+                            {-5.4354559f, 4.6458526f, 26.3124352f}};
+  t = std::clamp(t, 0.f, 1.f);
+  Vec3 color = c[6];
+  for (int k = 5; k >= 0; --k) color = color * t + c[k];
+  return color.cwiseMax(0.f).cwiseMin(1.f);
+}
+
+Points viridis_colors(const Eigen::VectorXf& values, float low, float high) {
+  Points colors(values.size(), 3);
+  const float range = high > low ? high - low : 1.f;
+  for (Eigen::Index i = 0; i < values.size(); ++i) colors.row(i) = viridis((values[i] - low) / range);
+  return colors;
+}
+
+Points weight_colors(const RowMatrix& weights) {
+  RowMatrix categories(weights.cols(), 3);
+  for (Eigen::Index j = 0; j < weights.cols(); ++j) categories.row(j) = kCategories[j % kCategories.size()];
+  return Points(weights * categories).cwiseMax(0.f).cwiseMin(1.f);
+}
+
+}  // namespace understudy::render

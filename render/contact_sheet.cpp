@@ -1,0 +1,279 @@
+#include "render/contact_sheet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "render/colors.hpp"
+#include "render/context/context.hpp"
+#include "render/text.hpp"
+#include "retarget/base/error.hpp"
+
+namespace understudy::render {
+namespace {
+
+constexpr int kGap = 6, kMargin = 26, kGutter = 34, kTitle = 58, kHeader = 40, kBandGap = 26;  // pixels
+const Vec3 kPaper(0.992f, 0.993f, 0.994f), kInk(0.13f, 0.15f, 0.18f), kFaintInk(0.46f, 0.49f, 0.53f);
+
+struct View {
+  const char* name;
+  float yaw;  // from the person's heading; to the person's right, so that motion goes left to right
+};
+constexpr View kViews[] = {{"three-quarter", -0.58f}, {"side", -kPi / 2}};
+
+/// One picture of a sheet before it is drawn.
+struct Cell {
+  Scene scene;
+  Points outline;  ///< what must be seen
+};
+
+/// Finite points of the person: a stray far from all joints, or a piece of floor, must not make everyone
+/// small.
+Points outline(const Points& vertices, const std::optional<Joints>& joints) {
+  constexpr float kReach = 0.35f;  // metres from a joint's box to fingertips, toes and hair
+  Eigen::RowVector3f low = Eigen::RowVector3f::Constant(-1e6f), high = Eigen::RowVector3f::Constant(1e6f);
+  if (joints && joints->allFinite()) {
+    low = joints->colwise().minCoeff().array() - kReach;
+    high = joints->colwise().maxCoeff().array() + kReach;
+  }
+  if (vertices.rows() == 0 && joints && joints->allFinite()) return *joints;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < vertices.rows(); ++i)
+    if ((vertices.row(i).array() >= low.array()).all() && (vertices.row(i).array() <= high.array()).all())
+      kept.push_back(i);
+  Points points(static_cast<Eigen::Index>(kept.size()), 3);
+  for (size_t i = 0; i < kept.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = vertices.row(kept[i]);
+  return points;
+}
+
+Cell make_cell(const Mesh& mesh, const std::optional<Joints>& joints, const Vec3& color, float floor) {
+  Cell cell;
+  cell.scene.ground.height = floor;
+  cell.scene.ground.radius = 2.2f;
+  if (mesh.vertices.rows() > 0) add(cell.scene, mesh);
+  for (auto& view : cell.scene.meshes) view.color = color;
+  for (auto& view : cell.scene.clouds) view.color = color;
+  if (joints) cell.scene.skeletons.push_back(skeleton_view(*joints));
+  cell.outline = outline(mesh.vertices, joints);
+  return cell;
+}
+
+/// A row of the sheet before it is known how many bands there are: one view of one subject, a cell a moment.
+struct Row {
+  std::string caption;
+  float yaw;
+  std::vector<Cell>* cells;
+  float height = 0.5f;  ///< metres, of this subject's highest point above its floor
+  PixelSize size;       ///< of its cells
+};
+
+struct Layout {
+  int columns, bands, band_height, header;
+  float scale;  // of letters: 1 at the default width
+};
+
+/// Sets each row's height; returns half the width of the widest person, metres.
+float measure(std::vector<Row>& rows) {
+  float half_width = 0.2f;
+  for (Row& row : rows)
+    for (const Cell& cell : *row.cells) {
+      if (cell.outline.rows() == 0) continue;
+      Camera camera;
+      camera.yaw = row.yaw;
+      const Eigen::VectorXf x = cell.outline * axes(camera).col(0);
+      half_width = std::max(half_width, (x.maxCoeff() - x.minCoeff()) / 2);
+      row.height = std::max(row.height, cell.outline.col(1).maxCoeff() - cell.scene.ground.height);
+    }
+  return half_width;
+}
+
+/// Looks at the cell's person from the row's side, centred across and in depth, about half way up the
+/// highest.
+Camera camera_for(const Row& row, const Cell& cell) {
+  Camera camera;
+  camera.yaw = row.yaw;
+  camera.pitch = 0;
+  Vec3 center = Vec3::Zero();
+  if (cell.outline.rows() > 0) {
+    const Mat3 R = axes(camera);
+    const Points seen = cell.outline * R;
+    center = R * ((seen.colwise().minCoeff() + seen.colwise().maxCoeff()) / 2).transpose();
+  }
+  camera.target = Vec3(center.x(), cell.scene.ground.height + 0.48f * row.height, center.z());
+  camera.pitch = 0.13f;
+  // One horizontal lens for all rows: with one distance, one scale.
+  camera.fov = 2 * std::atan(0.14f / row.size.aspect());
+  return camera;
+}
+
+/// The distance from which every person of the sheet is wholly seen, so that all have one scale.
+float common_distance(const std::vector<Row>& rows) {
+  float distance = 0.5f;
+  for (const Row& row : rows)
+    for (const Cell& cell : *row.cells)
+      distance = std::max(distance,
+                          fitting_distance(camera_for(row, cell), cell.outline, row.size.aspect(), 0.035f));
+  return distance;
+}
+
+Layout lay_out(const SheetOptions& options, size_t moments, std::vector<Row>& rows) {
+  Layout layout{};
+  layout.columns = std::max(1, std::min(options.columns, static_cast<int>(moments)));
+  layout.bands = (static_cast<int>(moments) + layout.columns - 1) / layout.columns;
+  const int width = (options.width - 2 * kMargin - kGutter - (layout.columns - 1) * kGap) / layout.columns;
+  US_CHECK(width >= 24, "a contact sheet of ", options.width, " pixels is too narrow for ", layout.columns,
+           " columns");
+  layout.scale = std::clamp(static_cast<float>(width) / 285.f, 0.75f, 1.2f);
+  layout.header = static_cast<int>(kHeader * layout.scale);
+  layout.band_height = layout.header;
+
+  const float half_width = measure(rows);
+  float highest = 0;
+  for (const Row& row : rows) highest = std::max(highest, row.height);
+  const float aspect = std::clamp(2 * half_width / highest, 0.55f, 1.25f);
+  for (Row& row : rows) {
+    row.size = {width,
+                static_cast<int>(static_cast<float>(width) / aspect * std::max(0.4f, row.height / highest))};
+    layout.band_height += row.size.height + kGap;
+  }
+  return layout;
+}
+
+Image turned_left(const Image& image) {
+  Image turned(image.height, image.width);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) std::copy_n(image.at(x, y), 3, turned.at(y, image.width - 1 - x));
+  return turned;
+}
+
+/// A row's caption, reading upwards along its left side.
+void draw_caption(Image& sheet, const Font& font, const std::string& caption, const Eigen::Vector2i& at,
+                  int height) {
+  constexpr float kSize = 17;
+  Image strip(height, kGutter, kPaper);
+  const float width = font.width(caption, kSize);
+  font.draw(strip, caption, {std::max(0.f, (static_cast<float>(height) - width) / 2), 20}, kSize, kFaintInk);
+  paste(sheet, turned_left(strip), at.x(), at.y());
+}
+
+void draw_moment_header(Image& sheet, const Font& font, const SheetMoment& moment, const Eigen::Vector2f& at,
+                        float scale) {
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.2f s", moment.seconds);
+  const std::string frame = "Frame " + std::to_string(moment.frame);
+  font.draw(sheet, frame, at, 18 * scale, kInk);
+  font.draw(sheet, seconds, {at.x() + font.width(frame, 18 * scale) + 10 * scale, at.y()}, 18 * scale,
+            kFaintInk);
+}
+
+void draw_disc(Image& image, const Eigen::Vector2f& center, float radius, const Vec3& color) {
+  for (int y = static_cast<int>(center.y() - radius) - 1; y <= static_cast<int>(center.y() + radius) + 1; ++y)
+    for (int x = static_cast<int>(center.x() - radius) - 1; x <= static_cast<int>(center.x() + radius) + 1;
+         ++x) {
+      if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
+      const float distance = (Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - center).norm();
+      const float cover = std::clamp(radius - distance + 0.5f, 0.f, 1.f);
+      uint8_t* pixel = image.at(x, y);
+      for (int c = 0; c < 3; ++c)
+        pixel[c] =
+            static_cast<uint8_t>((1 - cover) * static_cast<float>(pixel[c]) + cover * 255 * color[c] + 0.5f);
+    }
+}
+
+/// Title on the left; on the right which colour is which side.
+void draw_title(Image& sheet, const Font& font, const std::string& title) {
+  const float base = kMargin + 20;
+  font.draw(sheet, title, {static_cast<float>(kMargin + kGutter), base}, 25, kInk);
+  if (!font.found()) return;
+  float x = static_cast<float>(sheet.width - kMargin);
+  for (const auto& [word, color] : {std::pair{"right", kRightColor}, std::pair{"left", kLeftColor}}) {
+    x -= font.width(word, 17);
+    font.draw(sheet, word, {x, base}, 17, kFaintInk);
+    draw_disc(sheet, {x - 13, base - 6}, 6, color);
+    x -= 42;
+  }
+}
+
+std::vector<Cell> source_cells(const std::vector<SheetMoment>& moments, const SheetOptions& options) {
+  std::vector<Cell> cells;
+  const auto shown = [](const SheetMoment& m) { return m.source.vertices.rows() > 0 || m.source_joints; };
+  if (std::none_of(moments.begin(), moments.end(), shown)) return cells;
+  for (const SheetMoment& m : moments)
+    cells.push_back(make_cell(m.source, m.source_joints, options.source_color, options.source_floor));
+  return cells;
+}
+
+std::vector<Cell> target_cells(const std::vector<SheetMoment>& moments, const SheetOptions& options) {
+  std::vector<Cell> cells;
+  if (std::none_of(moments.begin(), moments.end(), [](const SheetMoment& m) { return m.target.has_value(); }))
+    return cells;
+  for (const SheetMoment& m : moments)
+    cells.push_back(make_cell(m.target.value_or(Mesh{}),
+                              options.target_skeleton ? m.target_joints : std::nullopt, options.target_color,
+                              options.target_floor));
+  return cells;
+}
+
+std::vector<Row> rows_of(std::vector<Cell>& sources, std::vector<Cell>& targets,
+                         const SheetOptions& options) {
+  std::vector<Row> rows;
+  for (const View& view : kViews) {
+    const float yaw = options.heading + view.yaw;
+    if (!sources.empty())
+      rows.push_back({options.source_caption + " \xC2\xB7 " + view.name, yaw, &sources, 0.5f, {}});
+    if (!targets.empty())
+      rows.push_back({options.target_caption + " \xC2\xB7 " + view.name, yaw, &targets, 0.5f, {}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
+                    const SheetOptions& options) {
+  US_CHECK(!moments.empty(), "a contact sheet needs at least one moment");
+  std::vector<Cell> sources = source_cells(moments, options), targets = target_cells(moments, options);
+  std::vector<Row> rows = rows_of(sources, targets, options);
+  US_CHECK(!rows.empty(), "a contact sheet needs a scan, joints or a target to show");
+  const Layout layout = lay_out(options, moments.size(), rows);
+  const float distance = common_distance(rows);
+  const Font font = Font::system();
+
+  const int band = layout.band_height + kBandGap;
+  Image sheet(options.width, kTitle + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
+  draw_title(sheet, font, options.title);
+  for (size_t i = 0; i < moments.size(); ++i) {
+    const int column = static_cast<int>(i) % layout.columns;
+    const int x = kMargin + kGutter + column * (rows[0].size.width + kGap);
+    int y = kTitle + static_cast<int>(i) / layout.columns * band + layout.header;
+    draw_moment_header(sheet, font, moments[i], {x + 2, y - layout.header * 0.32f}, layout.scale);
+    for (const Row& row : rows) {
+      const Cell& cell = (*row.cells)[i];
+      Camera camera = camera_for(row, cell);
+      camera.distance = distance;
+      paste(sheet, renderer.render_image(cell.scene, camera, row.size), x, y);
+      if (column == 0) draw_caption(sheet, font, row.caption, {kMargin - 4, y}, row.size.height);
+      y += row.size.height + kGap;
+    }
+  }
+  return sheet;
+}
+
+Image contact_sheet(const std::vector<SheetMoment>& moments, const SheetOptions& options) {
+  const auto context = make_offscreen_context();
+  Renderer renderer;
+  return contact_sheet(renderer, moments, options);
+}
+
+float lowest_floor(const std::vector<Mesh>& scans) {
+  std::vector<float> heights;
+  for (const Mesh& scan : scans)
+    for (Eigen::Index i = 0; i < scan.vertices.rows(); ++i)
+      if (std::isfinite(scan.vertices(i, 1))) heights.push_back(scan.vertices(i, 1));
+  if (heights.empty()) return 0;
+  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 500);
+  std::nth_element(heights.begin(), low, heights.end());
+  return *low;
+}
+
+}  // namespace understudy::render

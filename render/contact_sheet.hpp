@@ -1,0 +1,43 @@
+// A contact sheet: moments of a motion side by side, the scan with its extracted skeleton, and the target.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/renderer.hpp"
+
+namespace understudy::render {
+
+/// One column of a sheet. Metres, y up; source and target may stand in different places.
+struct SheetMoment {
+  int frame = 0;
+  double seconds = 0;
+  Mesh source;                          ///< the scan, a mesh or a cloud; empty: not shown
+  std::optional<Joints> source_joints;  ///< extracted from it
+  std::optional<Mesh> target;  ///< the target performing it, a mesh or a cloud; in none: no target rows
+  std::optional<Joints> target_joints;
+};
+
+struct SheetOptions {
+  std::string title;
+  int width = 1800;   ///< pixels; the height follows from the people shown
+  int columns = 6;    ///< moments in a row; more of them go on below
+  float heading = 0;  ///< radians about +y that the person faces, 0 is +z; the sheet looks from there
+  float source_floor = 0, target_floor = 0;  ///< heights of the floors, metres
+  bool target_skeleton = false;              ///< show it in the target too
+  std::string source_caption = "Scan, extracted skeleton", target_caption = "Target";
+  Vec3 source_color = Vec3(0.66f, 0.71f, 0.76f), target_color = Vec3(0.80f, 0.75f, 0.69f);
+};
+
+/// Rows: three-quarter front and side view, each of the source and, where any moment has one, the target. One
+/// scale for the whole sheet; each person is centred, the floor is where it is. Throws Error without moments.
+Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
+                    const SheetOptions& options = {});
+/// The same with an offscreen context of its own; no context is current on this thread afterwards.
+Image contact_sheet(const std::vector<SheetMoment>& moments, const SheetOptions& options = {});
+
+/// The floor under some scans: the height that one in 500 of all their points lies below.
+float lowest_floor(const std::vector<Mesh>& scans);
+
+}  // namespace understudy::render

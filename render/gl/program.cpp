@@ -1,0 +1,92 @@
+#include "render/gl/program.hpp"
+
+#include <vector>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy::render::gl {
+namespace {
+
+constexpr const char* kVersion = "#version 330 core\n";
+
+Object<ShaderTraits> compiled(const std::string& name, GLenum stage, const std::string& source) {
+  Object<ShaderTraits> shader(api().CreateShader(stage));
+  const char* parts[] = {kVersion, source.c_str()};
+  api().ShaderSource(shader.name(), 2, parts, nullptr);
+  api().CompileShader(shader.name());
+  GLint ok = 0;
+  api().GetShaderiv(shader.name(), GL_COMPILE_STATUS, &ok);
+  if (ok == GL_TRUE) return shader;
+  std::vector<char> words(4096, '\0');
+  api().GetShaderInfoLog(shader.name(), static_cast<GLsizei>(words.size()) - 1, nullptr, words.data());
+  throw Error(detail::join("the ", name, " shader does not compile: ", words.data()));
+}
+
+}  // namespace
+
+Program::Program(std::string name, const std::string& vertex_source, const std::string& fragment_source)
+    : name_(std::move(name)) {
+  const auto vertex = compiled(name_, GL_VERTEX_SHADER, vertex_source);
+  const auto fragment = compiled(name_, GL_FRAGMENT_SHADER, fragment_source);
+  api().AttachShader(id(), vertex.name());
+  api().AttachShader(id(), fragment.name());
+  api().LinkProgram(id());
+  GLint ok = 0;
+  api().GetProgramiv(id(), GL_LINK_STATUS, &ok);
+  if (ok != GL_TRUE) {
+    std::vector<char> words(4096, '\0');
+    api().GetProgramInfoLog(id(), static_cast<GLsizei>(words.size()) - 1, nullptr, words.data());
+    throw Error(detail::join("the ", name_, " shader does not link: ", words.data()));
+  }
+  const unsigned block = api().GetUniformBlockIndex(id(), "Frame");
+  if (block != GL_INVALID_INDEX) api().UniformBlockBinding(id(), block, 0);
+}
+
+int Program::location(const char* uniform) const {
+  const int location = api().GetUniformLocation(id(), uniform);
+  US_CHECK(location >= 0, "the ", name_, " shader has no uniform ", uniform);
+  return location;
+}
+
+template <>
+void Uniform<float>::set(const float& value) const {
+  api().Uniform1f(location_, value);
+}
+template <>
+void Uniform<int>::set(const int& value) const {
+  api().Uniform1i(location_, value);
+}
+template <>
+void Uniform<Eigen::Vector2f>::set(const Eigen::Vector2f& value) const {
+  api().Uniform2f(location_, value.x(), value.y());
+}
+template <>
+void Uniform<Eigen::Vector3f>::set(const Eigen::Vector3f& value) const {
+  api().Uniform3f(location_, value.x(), value.y(), value.z());
+}
+template <>
+void Uniform<Eigen::Vector4f>::set(const Eigen::Vector4f& value) const {
+  api().Uniform4f(location_, value.x(), value.y(), value.z(), value.w());
+}
+template <>
+void Uniform<Eigen::Matrix4f>::set(const Eigen::Matrix4f& value) const {
+  api().UniformMatrix4fv(location_, 1, GL_FALSE, value.data());
+}
+
+void upload(const Buffer& buffer, GLenum target, const void* data, size_t bytes) {
+  api().BindBuffer(target, buffer.name());
+  api().BufferData(target, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+}
+
+void use_vec3_attribute(unsigned index, const Buffer& buffer) {
+  api().BindBuffer(GL_ARRAY_BUFFER, buffer.name());
+  api().EnableVertexAttribArray(index);
+  api().VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+}
+
+void use_constant_attribute(unsigned index, const Eigen::Vector3f& value) {
+  api().DisableVertexAttribArray(index);
+  api().VertexAttrib3f(index, value.x(), value.y(), value.z());
+}
+
+}  // namespace understudy::render::gl

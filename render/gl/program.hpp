@@ -1,0 +1,47 @@
+// Shader programs and their uniforms.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "render/gl/object.hpp"
+
+namespace understudy::render::gl {
+
+/// A linked program. Throws Error with the compiler's words when a stage does not compile or link.
+class Program {
+ public:
+  /// `name` is for messages. Both sources begin after the version line; attributes are bound by their layout
+  /// qualifiers, the uniform block `Frame`, where a source has one, to binding 0.
+  Program(std::string name, const std::string& vertex_source, const std::string& fragment_source);
+  unsigned id() const { return program_.name(); }
+  const std::string& name() const { return name_; }
+  /// Location of a uniform; throws Error when the program has no such active uniform.
+  int location(const char* uniform) const;
+
+ private:
+  std::string name_;
+  Object<ProgramTraits> program_;
+};
+
+/// One uniform of one program, declared as a member beside it so that a wrong name fails at start-up. Setting
+/// it needs the program in use.
+template <class T>
+class Uniform {
+ public:
+  Uniform(const Program& program, const char* name) : location_(program.location(name)) {}
+  void set(const T& value) const;
+
+ private:
+  int location_;
+};
+
+/// Replaces a buffer's contents with `bytes` bytes.
+void upload(const Buffer& buffer, GLenum target, const void* data, size_t bytes);
+
+/// Points attribute `index` of the bound vertex array at rows of three floats in `buffer`.
+void use_vec3_attribute(unsigned index, const Buffer& buffer);
+/// Gives attribute `index` of the bound vertex array one value for every vertex.
+void use_constant_attribute(unsigned index, const Eigen::Vector3f& value);
+
+}  // namespace understudy::render::gl

@@ -1,0 +1,136 @@
+// State scopes: each changes one piece of GL state and puts back what was there when it ends.
+#pragma once
+
+#include <array>
+
+#include "render/gl/functions.hpp"
+
+namespace understudy::render::gl {
+
+/// Base of all scopes: neither copied nor moved.
+struct Scope {
+  Scope() = default;
+  Scope(const Scope&) = delete;
+  Scope& operator=(const Scope&) = delete;
+};
+
+/// glEnable or glDisable of one capability.
+class CapabilityScope : Scope {
+ public:
+  CapabilityScope(GLenum capability, bool on)
+      : capability_(capability), before_(api().IsEnabled(capability) == GL_TRUE) {
+    set(on);
+  }
+  ~CapabilityScope() { set(before_); }
+
+ private:
+  void set(bool on) { on ? api().Enable(capability_) : api().Disable(capability_); }
+  GLenum capability_;
+  bool before_;
+};
+
+class ProgramScope : Scope {
+ public:
+  explicit ProgramScope(unsigned program) {
+    api().GetIntegerv(GL_CURRENT_PROGRAM, &before_);
+    api().UseProgram(program);
+  }
+  ~ProgramScope() { api().UseProgram(static_cast<unsigned>(before_)); }
+
+ private:
+  GLint before_ = 0;
+};
+
+class VertexArrayScope : Scope {
+ public:
+  explicit VertexArrayScope(unsigned vertex_array) {
+    api().GetIntegerv(GL_VERTEX_ARRAY_BINDING, &before_);
+    api().BindVertexArray(vertex_array);
+  }
+  ~VertexArrayScope() { api().BindVertexArray(static_cast<unsigned>(before_)); }
+
+ private:
+  GLint before_ = 0;
+};
+
+/// Draws into a framebuffer of a size in pixels; restores both bindings and the viewport.
+class TargetScope : Scope {
+ public:
+  TargetScope(unsigned framebuffer, int width, int height) {
+    api().GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_);
+    api().GetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_);
+    api().GetIntegerv(GL_VIEWPORT, viewport_.data());
+    api().BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    api().Viewport(0, 0, width, height);
+  }
+  ~TargetScope() {
+    api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<unsigned>(draw_));
+    api().BindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<unsigned>(read_));
+    api().Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+  }
+
+ private:
+  GLint draw_ = 0, read_ = 0;
+  std::array<GLint, 4> viewport_{};
+};
+
+/// Blending of the whole colour, alpha included.
+class BlendScope : Scope {
+ public:
+  BlendScope(GLenum source, GLenum destination, GLenum equation = GL_FUNC_ADD) : enabled_(GL_BLEND, true) {
+    api().GetIntegerv(GL_BLEND_SRC_RGB, &source_);
+    api().GetIntegerv(GL_BLEND_DST_RGB, &destination_);
+    api().GetIntegerv(GL_BLEND_EQUATION_RGB, &equation_);
+    api().BlendFunc(source, destination);
+    api().BlendEquation(equation);
+  }
+  ~BlendScope() {
+    api().BlendFunc(static_cast<GLenum>(source_), static_cast<GLenum>(destination_));
+    api().BlendEquation(static_cast<GLenum>(equation_));
+  }
+
+ private:
+  CapabilityScope enabled_;
+  GLint source_ = 0, destination_ = 0, equation_ = 0;
+};
+
+/// Whether depth is written.
+class DepthMaskScope : Scope {
+ public:
+  explicit DepthMaskScope(bool on) {
+    api().GetBooleanv(GL_DEPTH_WRITEMASK, &before_);
+    api().DepthMask(on ? GL_TRUE : GL_FALSE);
+  }
+  ~DepthMaskScope() { api().DepthMask(before_); }
+
+ private:
+  GLboolean before_ = GL_TRUE;
+};
+
+/// Whether colour is written.
+class ColorMaskScope : Scope {
+ public:
+  explicit ColorMaskScope(bool on) {
+    api().GetBooleanv(GL_COLOR_WRITEMASK, before_.data());
+    const GLboolean value = on ? GL_TRUE : GL_FALSE;
+    api().ColorMask(value, value, value, value);
+  }
+  ~ColorMaskScope() { api().ColorMask(before_[0], before_[1], before_[2], before_[3]); }
+
+ private:
+  std::array<GLboolean, 4> before_{};
+};
+
+class DepthFuncScope : Scope {
+ public:
+  explicit DepthFuncScope(GLenum function) {
+    api().GetIntegerv(GL_DEPTH_FUNC, &before_);
+    api().DepthFunc(function);
+  }
+  ~DepthFuncScope() { api().DepthFunc(static_cast<GLenum>(before_)); }
+
+ private:
+  GLint before_ = 0;
+};
+
+}  // namespace understudy::render::gl

@@ -1,0 +1,35 @@
+// What every pass of one picture shares: the camera and the light, in one uniform block.
+#pragma once
+
+#include <string>
+
+#include "render/camera.hpp"
+#include "render/gl/object.hpp"
+#include "render/scene.hpp"
+
+namespace understudy::render {
+
+struct PixelSize {
+  int width = 0, height = 0;
+  float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
+};
+
+/// GLSL of the block `Frame`, for both stages.
+extern const char* const kFrameGlsl;
+/// GLSL of vec3 shade(vec3 srgb_color, vec3 world_normal, vec3 world_position): lit, sRGB again. Wants
+/// kFrameGlsl.
+extern const char* const kShadeGlsl;
+/// Vertex stage of a triangle that covers the picture; gives vec2 v_place, 0..1 with y up.
+extern const char* const kCoverGlsl;
+
+/// The block's buffer.
+class FrameBlock {
+ public:
+  /// Fills it and binds it to binding 0, where every Program looks.
+  void set(const Camera& camera, const LightView& light, PixelSize size);
+
+ private:
+  gl::Buffer buffer_;
+};
+
+}  // namespace understudy::render

@@ -1,0 +1,28 @@
+// Lit smooth surfaces.
+#pragma once
+
+#include "render/gl/program.hpp"
+#include "render/scene.hpp"
+
+namespace understudy::render {
+
+class MeshPass {
+ public:
+  MeshPass();
+  /// Throws Error when faces name vertices that are not there, or normals or colours are of another number.
+  void draw(const MeshView& view);
+
+ private:
+  void upload(const MeshView& view);
+
+  gl::Program program_;
+  gl::Uniform<float> opacity_{program_, "u_opacity"};
+  gl::Uniform<int> two_sided_{program_, "u_two_sided"};
+  gl::VertexArray array_;
+  gl::Buffer positions_, normals_, colors_, indices_;
+};
+
+/// Throws Error unless an optional array is empty or has one row for each vertex.
+void check_rows(const char* what, const Points& optional, Eigen::Index vertices);
+
+}  // namespace understudy::render

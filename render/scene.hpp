@@ -1,0 +1,93 @@
+// What is drawn: plain arrays and settings. Metres, y up; colours sRGB in 0..1.
+#pragma once
+
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy::render {
+
+/// A lit smooth surface.
+struct MeshView {
+  Points vertices{0, 3};  ///< [V, 3]
+  Faces faces{0, 3};      ///< [F, 3]
+  Points normals{0, 3};   ///< [V, 3]; empty: from the faces
+  Points colors{0, 3};    ///< [V, 3]; empty: `color` everywhere
+  Vec3 color = Vec3(0.77f, 0.74f, 0.71f);
+  float opacity = 1;      ///< below 1 only the front layer is seen, and what is behind it
+  bool two_sided = true;  ///< light the inside like the outside (scans have holes)
+};
+
+/// Points as lit round discs.
+struct PointsView {
+  Points positions{0, 3};  ///< [N, 3]
+  Points normals{0, 3};    ///< [N, 3], either side; empty: each point looks like a small ball
+  Points colors{0, 3};     ///< [N, 3]; empty: `color` everywhere
+  Vec3 color = Vec3(0.60f, 0.66f, 0.72f);
+  float radius = 0.008f;  ///< metres
+};
+
+enum class Side : int { Middle, Left, Right };
+
+/// A skeleton as solids: a tapered bone from each joint to its parent, balls at the joints.
+struct SkeletonView {
+  Points joints{0, 3};       ///< [J, 3]
+  std::vector<int> parents;  ///< [J], -1 for a root
+  std::vector<Side> sides;   ///< [J]; empty: all middle
+  float thickness = 1;       ///< of bones and balls, 1 fits an adult
+  bool x_ray = true;         ///< seen through everything else
+};
+
+/// The floor: a grid that fades out, and soft shadows of all that stands above it.
+struct GroundView {
+  bool visible = true;
+  float height = 0;      ///< metres
+  float spacing = 0.5f;  ///< metres between lines
+  float radius = 3.5f;   ///< metres from what stands there until it has faded
+  float shadow = 0.55f;  ///< 0 none .. 1 black
+  Vec3 line = Vec3(0.52f, 0.55f, 0.60f);
+};
+
+/// Light that moves with the camera, and the sky's and the floor's that does not.
+struct LightView {
+  Vec3 key_direction = Vec3(-0.55f, 0.65f, 0.75f);  ///< towards it; camera's right, world's up, camera's back
+  Vec3 fill_direction = Vec3(0.9f, 0.15f, 0.45f);
+  Vec3 key = Vec3(0.80f, 0.77f, 0.72f);  ///< linear
+  Vec3 fill = Vec3(0.16f, 0.18f, 0.21f);
+  Vec3 sky = Vec3(0.36f, 0.38f, 0.42f);
+  Vec3 floor = Vec3(0.17f, 0.16f, 0.15f);
+  float shine = 0.10f;
+};
+
+struct BackgroundView {
+  Vec3 top = Vec3(0.885f, 0.905f, 0.925f);
+  Vec3 bottom = Vec3(0.970f, 0.973f, 0.976f);
+};
+
+struct Scene {
+  std::vector<MeshView> meshes;
+  std::vector<PointsView> clouds;
+  std::vector<SkeletonView> skeletons;
+  GroundView ground;
+  LightView light;
+  BackgroundView background;
+  float occlusion = 0.6f;  ///< strength of ambient occlusion on meshes, 0 off
+};
+
+/// The 22 joints with sides.
+SkeletonView skeleton_view(const Joints& joints);
+/// A mesh as a mesh, a cloud as discs that just cover its surface; its colours are kept.
+void add(Scene& scene, const Mesh& mesh);
+
+/// Everything's positions, the finite ones, below one another: for fitting a camera.
+Points all_points(const Scene& scene);
+
+/// About how far apart neighbouring points of a cloud are, metres; 0 for fewer than eight.
+float point_spacing(const Points& points);
+
+/// A normal for each point from its neighbours (side unknown), [N, 3]; zero where there are too few.
+/// Neighbours are the points within `radius` metres; 0 picks a few times the spacing.
+Points estimated_normals(const Points& points, float radius = 0);
+
+}  // namespace understudy::render
