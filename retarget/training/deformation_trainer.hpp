@@ -1,0 +1,13 @@
+// Trains W_net and O_net (paper 1, section 3.2).
+#pragma once
+
+#include "retarget/nn/networks.hpp"
+
+namespace understudy::training {
+
+/// Trains until the time or the samples (points) of the options are used up; resumes from `out +
+/// ".checkpoint"` when it is there. Writes weights (running average) to `out`, the learning curve to `curve`.
+/// Returns 0; throws Error.
+int train_deformation(const nn::TrainOptions& options);
+
+}  // namespace understudy::training

@@ -1,0 +1,4 @@
+us_test(nn_deformation_test TORCH SOURCES
+  tests/retarget/nn/deformation_module_test.cpp tests/retarget/nn/deformation_deformer_test.cpp
+  tests/retarget/nn/deformation_training_test.cpp tests/retarget/nn/deformation_support.cpp
+  LIBS understudy_training understudy_nn understudy_npz LABELS torch TIMEOUT 300)
