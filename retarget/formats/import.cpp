@@ -1,0 +1,269 @@
+#include "retarget/formats/import.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+struct Unit {
+  const char* name;
+  const char* plural;
+  float metres;
+  float low, high;  // heights of bodies in this unit, as a guess takes them
+};
+
+// The ranges lie side by side, so each height has one unit: 52 to 84 might be a toddler in centimetres, but
+// an adult in inches is the likelier file.
+constexpr std::array<Unit, 5> kUnits = {{{"m", "metres", 1.0f, 0.5f, 2.6f},
+                                         {"dm", "decimetres", 0.1f, 5.0f, 26.0f},
+                                         {"in", "inches", 0.0254f, 26.0f, 84.0f},
+                                         {"cm", "centimetres", 0.01f, 84.0f, 260.0f},
+                                         {"mm", "millimetres", 0.001f, 500.0f, 2600.0f}}};
+
+struct Range {
+  float low = 0, high = 0;
+  float size() const { return high - low; }
+};
+
+// The ends of sorted values with stray ones left aside: an end is where the values become dense.
+Range dense_range(const std::vector<float>& sorted) {
+  const size_t n = sorted.size();
+  const auto want = std::max<size_t>(3, n / 250);
+  if (n < 4 * want) return {sorted.front(), sorted.back()};
+  const float middle_half = sorted[n * 3 / 4] - sorted[n / 4];
+  const float reach = std::max(0.05f * middle_half, 1e-9f);
+  size_t low = 0, high = n - 1;
+  while (low < n / 4 && sorted[low + want] - sorted[low] > reach) ++low;
+  while (high > n * 3 / 4 && sorted[high] - sorted[high - want] > reach) --high;
+  return {sorted[low], sorted[high]};
+}
+
+std::vector<float> sorted_column(const Points& points, int axis) {
+  std::vector<float> values(static_cast<size_t>(points.rows()));
+  for (Eigen::Index i = 0; i < points.rows(); ++i) values[static_cast<size_t>(i)] = points(i, axis);
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+// What one axis of the scan looks like.
+struct AxisView {
+  Range range;
+  float middle_half = 0;  // between the quartiles of the mass
+};
+
+// Points with equal mass each: of a mesh the corners' thirds of triangles count by area, or dense hands would
+// pull.
+Points even_points(const Mesh& mesh) {
+  if (mesh.is_cloud()) return finite_points(mesh.vertices);
+  Mesh clean = mesh;
+  for (Eigen::Index i = 0; i < clean.vertices.rows(); ++i)
+    if (!clean.vertices.row(i).allFinite()) clean.vertices.row(i).setZero();
+  std::vector<Eigen::Index> good;
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+    if (mesh.vertices.row(mesh.faces(f, 0)).allFinite() && mesh.vertices.row(mesh.faces(f, 1)).allFinite() &&
+        mesh.vertices.row(mesh.faces(f, 2)).allFinite())
+      good.push_back(f);
+  Faces faces(static_cast<Eigen::Index>(good.size()), 3);
+  for (size_t i = 0; i < good.size(); ++i) faces.row(static_cast<Eigen::Index>(i)) = mesh.faces.row(good[i]);
+  clean.faces = faces;
+  if (faces.rows() == 0) return finite_points(mesh.vertices);
+  try {
+    Rng rng(1);
+    return sample_points(clean, 8000, rng);
+  } catch (const Error&) {  // no area
+    return finite_points(mesh.vertices);
+  }
+}
+
+// A floor is a thin slab at one end of an axis that holds many points and reaches further than the rest of
+// the scan.
+struct FloorSlab {
+  bool seen = false;
+  bool at_high_end = false;
+  float height = 0;  // along the axis
+};
+
+float spread(const Points& points, const std::vector<Eigen::Index>& rows, int axis) {
+  std::vector<float> values;
+  for (const auto row : rows) values.push_back(points(row, axis));
+  if (values.size() < 8) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() * 19 / 20] - values[values.size() / 20];
+}
+
+FloorSlab find_floor(const Points& points, int axis, const AxisView& view) {
+  const float extent = view.range.size(), thickness = 0.03f * extent;
+  for (const bool high : {false, true}) {
+    const float end = high ? view.range.high : view.range.low;
+    std::vector<Eigen::Index> slab, rest;
+    std::vector<float> heights;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const float depth = high ? end - points(i, axis) : points(i, axis) - end;
+      if (depth < thickness) {
+        slab.push_back(i);
+        heights.push_back(points(i, axis));
+      } else {
+        rest.push_back(i);
+      }
+    }
+    if (slab.size() < static_cast<size_t>(points.rows()) / 20 || rest.size() < slab.size() / 4) continue;
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const float wide = std::min(spread(points, slab, a), spread(points, slab, b));
+    const bool wider = spread(points, slab, a) > 0.9f * spread(points, rest, a) &&
+                       spread(points, slab, b) > 0.9f * spread(points, rest, b);
+    if (!wider || wide < 0.25f * extent) continue;
+    std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
+                     heights.end());
+    return {true, high, heights[heights.size() / 2]};
+  }
+  return {};
+}
+
+struct UpGuess {
+  int axis = 1;
+  bool negative = false;
+  FloorSlab floor;
+};
+
+// A person in T-pose is as wide as tall, so the extent alone does not tell: but the mass of a body is spread
+// along its height, and gathered in the middle of its width. x is up in hardly any file.
+UpGuess guess_up(const Points& points, const std::array<AxisView, 3>& views) {
+  UpGuess best;
+  float best_score = -1;
+  for (const int axis : {1, 2, 0}) {
+    const FloorSlab floor = find_floor(points, axis, views[axis]);
+    if (floor.seen) return {axis, floor.at_high_end, floor};
+    float score = 2.0f * views[axis].middle_half + views[axis].range.size();
+    if (axis == 0) score *= 0.8f;
+    if (std::abs(views[axis].range.low) < 0.03f * views[axis].range.size()) score *= 1.15f;  // stands on 0
+    if (score > best_score) {
+      best_score = score;
+      best = {axis, false, {}};
+    }
+  }
+  return best;
+}
+
+UpGuess forced_up(const std::string& up, const Points& points, const std::array<AxisView, 3>& views) {
+  const bool negative = !up.empty() && up[0] == '-';
+  const std::string letter = negative ? up.substr(1) : up;
+  US_CHECK(letter == "x" || letter == "y" || letter == "z", "the up axis '", up,
+           "' is none of x, y, z, -x, -y, -z");
+  UpGuess guess{letter[0] - 'x', negative, {}};
+  const FloorSlab floor = find_floor(points, guess.axis, views[static_cast<size_t>(guess.axis)]);
+  if (floor.seen && floor.at_high_end == negative) guess.floor = floor;
+  return guess;
+}
+
+// The rotation that takes the up axis to +y; x stays where it can.
+Mat3 to_y_up(const UpGuess& up) {
+  Mat3 R;
+  const float s = up.negative ? -1.0f : 1.0f;
+  switch (up.axis) {
+    case 0:
+      R << 0, -s, 0, s, 0, 0, 0, 0, 1;
+      break;
+    case 2:
+      R << 1, 0, 0, 0, 0, s, 0, -s, 0;
+      break;
+    default:
+      R << 1, 0, 0, 0, s, 0, 0, 0, s;
+      break;
+  }
+  return R;
+}
+
+std::string short_number(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", static_cast<double>(value));
+  return text;
+}
+
+std::string metres(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", static_cast<double>(value));
+  return text;
+}
+
+const Unit* find_unit(const std::string& name) {
+  for (const auto& unit : kUnits)
+    if (name == unit.name) return &unit;
+  return nullptr;
+}
+
+// Writes unit and scale into the decision; returns the words about it.
+std::string decide_units(float height, const std::string& forced, ImportDecision& decision) {
+  const bool guess = forced.empty() || forced == "auto";
+  const Unit* unit = guess ? nullptr : find_unit(forced);
+  US_CHECK(guess || unit, "the unit '", forced, "' is none of m, dm, cm, mm, in");
+  std::string why = ", as told";
+  if (guess) {
+    for (const auto& candidate : kUnits)
+      if (height >= candidate.low && height < candidate.high) unit = &candidate;
+    why = " (from the height " + short_number(height) + ")";
+    if (!unit) {
+      unit = kUnits.data();
+      why = " (a height of " + short_number(height) + " is no person's in any unit)";
+      log::warn("the scan's height of " + short_number(height) +
+                " is no person's in any unit, taken as metres");
+    }
+  }
+  decision.units = unit->name;
+  decision.scale = unit->metres;
+  return std::string("units: ") + unit->plural + why;
+}
+
+}  // namespace
+
+void ImportDecision::apply(Mesh& mesh) const {
+  mesh.vertices = apply(mesh.vertices);
+}
+
+Points ImportDecision::apply(const Points& points) const {
+  const Mat3 M = (axes * scale).transpose();
+  Points out = points * M;  // rows: p^T (sR)^T
+  out.col(1).array() -= floor;
+  return out;
+}
+
+ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
+  const Points points = even_points(first);
+  US_CHECK(points.rows() > 0, "the first frame has no finite point to decide units and axes from");
+  std::array<AxisView, 3> views;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto sorted = sorted_column(points, axis);
+    views[static_cast<size_t>(axis)] = {dense_range(sorted),
+                                        sorted[sorted.size() * 3 / 4] - sorted[sorted.size() / 4]};
+  }
+  const bool guess = forced.up.empty() || forced.up == "auto";
+  const UpGuess up = guess ? guess_up(points, views) : forced_up(forced.up, points, views);
+  const Range range = views[static_cast<size_t>(up.axis)].range;
+  float low = up.negative ? -range.high : range.low;
+  const float high = up.negative ? -range.low : range.high;
+  if (up.floor.seen) low = up.negative ? -up.floor.height : up.floor.height;
+
+  ImportDecision decision;
+  decision.up = std::string(up.negative ? "-" : "") + static_cast<char>('x' + up.axis);
+  decision.sentence = decide_units(high - low, forced.units, decision);
+  decision.height = (high - low) * decision.scale;
+  decision.axes = rotation_about_y(forced.yaw_deg * kPi / 180.0f) * to_y_up(up);
+  const float measured = low * decision.scale;
+  // Within 2 cm the file's own zero is the better floor: the lowest points are a noisy measure of it.
+  decision.floor = forced.floor ? *forced.floor : std::abs(measured) <= 0.02f ? 0.0f : measured;
+  decision.sentence += ", up: " + decision.up + (guess ? "" : ", as told") +
+                       (up.floor.seen ? " (from the floor)" : "") + ", floor at " +
+                       short_number(decision.floor) + " m";
+  if (forced.yaw_deg != 0) decision.sentence += ", turned by " + short_number(forced.yaw_deg) + " degrees";
+  return decision;
+}
+
+}  // namespace understudy

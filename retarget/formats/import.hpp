@@ -1,0 +1,39 @@
+// From a file's units and axes to the program's: metres, y up, the floor at 0.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy {
+
+/// What the user forces; what is left empty is guessed.
+struct ImportOptions {
+  std::string units;  ///< "m", "cm", "mm", "dm", "in"; empty or "auto": from the height of the body
+  std::string up;     ///< "x", "y", "z", "-x", "-y", "-z"; empty or "auto": from where the body extends
+  float yaw_deg = 0;  ///< turns the scan about y at the end, from +z towards +x
+  std::optional<float> floor;  ///< height of the floor in the file, in metres; none: the lowest points
+};
+
+/// How to bring every frame of a sequence into the program's world; decided from its first frame alone.
+struct ImportDecision {
+  float scale = 1;               ///< file units to metres
+  Mat3 axes = Mat3::Identity();  ///< file axes to y up, with the yaw in it
+  float floor = 0;               ///< height of the floor after scale and axes, metres
+  float height = 0;              ///< of the body in the first frame, metres
+  std::string units, up;         ///< as in ImportOptions
+  std::string sentence;          ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
+
+  /// A frame in metres, y up, floor at 0.
+  void apply(Mesh& mesh) const;
+  Points apply(const Points& points) const;
+};
+
+/// Decides from the first usable frame: outliers are left aside, a flat floor in the scan shows where down
+/// is. A body that is neither near 0.5 to 2.6 m in any unit is taken as metres with a warning. Axes can only
+/// be guessed positive unless a floor is seen. Throws Error when the options are not among those named, or
+/// there is no finite point.
+ImportDecision decide_import(const Mesh& first, const ImportOptions& forced);
+
+}  // namespace understudy

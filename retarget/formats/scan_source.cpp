@@ -1,0 +1,262 @@
+#include "retarget/formats/scan_source.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <system_error>
+
+#include "retarget/base/log.hpp"
+#include "retarget/formats/bytes.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/scan_frames.hpp"
+
+namespace understudy {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// The length of the run of digits at `at`, and the run without leading zeros.
+std::string_view digits_at(const std::string& text, size_t at, size_t& length) {
+  size_t end = at;
+  while (end < text.size() && is_digit(text[end])) ++end;
+  length = end - at;
+  size_t begin = at;
+  while (begin + 1 < end && text[begin] == '0') ++begin;
+  return std::string_view(text).substr(begin, end - begin);
+}
+
+// Numbers of the frames: from their names when these rise all along, else their positions.
+std::vector<int64_t> frame_numbers(const std::vector<std::string>& files) {
+  std::vector<int64_t> numbers;
+  for (const auto& file : files) {
+    const auto number = frame_number(file);
+    if (!number || (!numbers.empty() && *number <= numbers.back())) {
+      numbers.resize(files.size());
+      for (size_t i = 0; i < files.size(); ++i) numbers[i] = static_cast<int64_t>(i);
+      return numbers;
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+// Where the step between numbers is larger than the most frequent step.
+std::vector<FrameGap> find_gaps(const std::vector<int64_t>& numbers) {
+  std::map<int64_t, size_t> steps;
+  for (size_t i = 1; i < numbers.size(); ++i) ++steps[numbers[i] - numbers[i - 1]];
+  int64_t usual = 1;
+  size_t most = 0;
+  for (const auto& [step, count] : steps)
+    if (count > most) {
+      usual = step;
+      most = count;
+    }
+  std::vector<FrameGap> gaps;
+  for (size_t i = 1; i < numbers.size(); ++i)
+    if (numbers[i] - numbers[i - 1] > usual) gaps.push_back({numbers[i - 1] + usual, numbers[i] - usual});
+  return gaps;
+}
+
+void report_gaps(const std::string& source, const std::vector<FrameGap>& gaps) {
+  if (gaps.empty()) return;
+  std::string text;
+  for (size_t i = 0; i < std::min<size_t>(gaps.size(), 5); ++i) {
+    text += (i ? ", " : "") + std::to_string(gaps[i].first);
+    if (gaps[i].last > gaps[i].first) text += "-" + std::to_string(gaps[i].last);
+  }
+  log::warn(source + ": frames are missing: " + text + (gaps.size() > 5 ? " and more" : ""));
+}
+
+class FileFrames : public ScanSource::Frames {
+ public:
+  FileFrames(std::vector<std::string> files, const std::string& source) : files_(std::move(files)) {
+    numbers_ = frame_numbers(files_);
+    gaps = find_gaps(numbers_);
+    report_gaps(source, gaps);
+  }
+
+  std::optional<ScanFrame> next() override {
+    if (at_ == files_.size()) return {};
+    ScanFrame frame = load_frame(files_[at_], numbers_[at_]);
+    US_CHECK(frame.usable || files_.size() > 1, frame.problem);
+    ++at_;
+    return frame;
+  }
+  std::optional<int64_t> count() const override { return static_cast<int64_t>(files_.size()); }
+
+ private:
+  std::vector<std::string> files_;
+  std::vector<int64_t> numbers_;
+  size_t at_ = 0;
+};
+
+std::vector<std::string> under(const std::string& folder, const std::vector<std::string>& names) {
+  std::vector<std::string> paths;
+  for (const auto& name : names) paths.push_back((fs::path(folder) / name).string());
+  return paths;
+}
+
+// The paths in a list file; none when it is no list (a .txt may be a cloud).
+std::vector<std::string> listed_files(const std::string& path) {
+  const std::string bytes = read_file(path);
+  const bool surely = lower_case(fs::path(path).extension().string()) == ".lst";
+  std::vector<std::string> files;
+  TextCursor text(bytes, path);
+  std::vector<std::string_view> words;
+  double number = 0;
+  while (!text.at_end()) {
+    std::string_view line = text.line();
+    while (!line.empty() && (line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
+    if (line.empty() || line[0] == '#') continue;
+    split_words(line, ",;", words);
+    if (!surely && files.empty() && (words.empty() || parse_number(words[0], number))) return {};
+    const auto file = fs::path(path).parent_path() / fs::path(std::string(line));
+    if (!surely && files.empty() && !format_of_suffix(file.string())) return {};
+    files.push_back(file.string());
+  }
+  US_CHECK(!surely || !files.empty(), path, ": the list names no file");
+  return files;
+}
+
+std::unique_ptr<ScanSource::Frames> open_file(const std::string& path) {
+  const std::string suffix = lower_case(fs::path(path).extension().string());
+  if (suffix == ".npy" || suffix == ".npz") return array_frames(path);
+  if (suffix == ".txt" || suffix == ".lst") {
+    auto files = listed_files(path);
+    if (!files.empty()) return std::make_unique<FileFrames>(std::move(files), path);
+  }
+  return std::make_unique<FileFrames>(std::vector<std::string>{path}, path);
+}
+
+}  // namespace
+
+bool natural_less(const std::string& a, const std::string& b) {
+  size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      size_t length_a = 0, length_b = 0;
+      const auto x = digits_at(a, i, length_a), y = digits_at(b, j, length_b);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+      i += length_a;
+      j += length_b;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return j < b.size();
+  return a < b;  // equal but for leading zeros
+}
+
+std::optional<int64_t> frame_number(const std::string& path) {
+  const std::string stem = fs::path(path).stem().string();
+  size_t end = stem.size();
+  while (end > 0 && !is_digit(stem[end - 1])) --end;
+  size_t begin = end;
+  while (begin > 0 && is_digit(stem[begin - 1])) --begin;
+  int64_t number = 0;
+  if (begin == end || !parse_integer(std::string_view(stem).substr(begin, end - begin), number)) return {};
+  return number;
+}
+
+ScanFrame load_frame(const std::string& path, int64_t number) {
+  ScanFrame frame;
+  frame.number = number;
+  frame.path = path;
+  try {
+    frame.mesh = read_mesh(path);
+    US_CHECK(finite_count(frame.mesh.vertices) > 0, path, ": has no ",
+             frame.mesh.vertices.rows() > 0 ? "finite " : "", "points");
+  } catch (const Error& error) {
+    frame.usable = false;
+    frame.problem = error.what();
+  } catch (const std::bad_alloc&) {
+    frame.usable = false;
+    frame.problem = path + ": is too large for this machine's memory";
+  }
+  return frame;
+}
+
+std::vector<std::string> folder_files(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> names;
+  fs::directory_iterator entry(folder, error);
+  US_CHECK(!error, folder, ": cannot be opened (", error.message(), ")");
+  while (entry != fs::directory_iterator()) {
+    const std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (!entry->is_directory(ignored)) names.push_back(name);
+    entry.increment(error);
+    US_CHECK(!error, folder, ": cannot be read (", error.message(), ")");
+  }
+  return names;
+}
+
+std::vector<std::string> frame_files(const std::string& folder, const std::vector<std::string>& names) {
+  std::map<MeshFormat, std::vector<std::string>> kinds, text;
+  for (const auto& name : names) {
+    const auto format = format_of_suffix(name);
+    if (!format || name[0] == '.') continue;
+    const std::string suffix = lower_case(fs::path(name).extension().string());
+    (suffix == ".txt" || suffix == ".csv" ? text : kinds)[*format].push_back(name);
+  }
+  if (kinds.empty()) kinds = std::move(text);
+  if (kinds.empty()) return {};
+  const auto fewer = [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); };
+  auto best = std::max_element(kinds.begin(), kinds.end(), fewer);
+  for (const auto& [format, files] : kinds) {
+    if (format == best->first) continue;
+    US_CHECK(files.size() < best->second.size(), folder, ": holds ", files.size(), " frames each of ",
+             format_name(best->first), " and ", format_name(format),
+             ", so which to take must be said by a list");
+    log::warn_once(folder + ": " + std::to_string(files.size()) + " " + format_name(format) +
+                   " files are left out, most frames are " + format_name(best->first));
+  }
+  std::sort(best->second.begin(), best->second.end(), natural_less);
+  return best->second;
+}
+
+ScanSource::ScanSource(const std::string& path, const ScanSourceOptions& options) {
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  US_CHECK(!path.empty() && status.type() != fs::file_type::not_found, path.empty() ? "''" : path,
+           ": there is no such file or folder");
+  US_CHECK(!error, path, ": cannot be opened (", error.message(), ")");
+  if (fs::is_directory(status)) {
+    if (options.follow) {
+      frames_ = follow_folder(path, options);
+      return;
+    }
+    const auto names = frame_files(path, folder_files(path));
+    US_CHECK(!names.empty(), path, ": holds no frames (PLY, OBJ, OFF, STL, XYZ, PCD, glTF files)");
+    frames_ = std::make_unique<FileFrames>(under(path, names), path);
+    return;
+  }
+  US_CHECK(!options.follow, path, ": is a file, only a folder can be followed");
+  frames_ = open_file(path);
+}
+
+ScanSource::ScanSource(const std::vector<std::string>& files) {
+  US_CHECK(!files.empty(), "the list of scans is empty");
+  frames_ = std::make_unique<FileFrames>(files, "the list of scans");
+}
+
+ScanSource::~ScanSource() = default;
+ScanSource::ScanSource(ScanSource&&) noexcept = default;
+ScanSource& ScanSource::operator=(ScanSource&&) noexcept = default;
+std::optional<ScanFrame> ScanSource::next() {
+  return frames_->next();
+}
+std::optional<int64_t> ScanSource::count() const {
+  return frames_->count();
+}
+const std::vector<FrameGap>& ScanSource::gaps() const {
+  return frames_->gaps;
+}
+
+}  // namespace understudy

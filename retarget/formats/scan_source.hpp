@@ -1,0 +1,74 @@
+// A scan sequence, frame by frame: a folder, a list, one array file, or a single mesh.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy {
+
+/// One frame as it came, in the file's own units and axes.
+struct ScanFrame {
+  Mesh mesh;
+  int64_t number = 0;  ///< from the file's name; the position in the sequence where names have none
+  std::string path;
+  bool usable = true;   ///< false: it could not be read or has no finite point, `mesh` may be empty
+  std::string problem;  ///< why it is not usable, one sentence
+};
+
+struct ScanSourceOptions {
+  bool follow = false;              ///< the folder is still being written: wait for frames
+  double timeout_s = 10;            ///< follow: give up when no new frame came for so long
+  double poll_s = 0.03;             ///< follow: time between two looks
+  std::function<bool()> cancelled;  ///< follow: asked at every look; true ends the sequence
+};
+
+/// Numbers that are missing between two frames, both ends included.
+struct FrameGap {
+  int64_t first = 0, last = 0;
+};
+
+/// Hands out the frames of a sequence in order, one in memory at a time; frame i never depends on a later
+/// one.
+///
+/// A folder: the files of its most frequent mesh format, by the numbers in their names (frame_2 before
+/// frame_10); other files are left out, other mesh formats with a warning. A list: a .txt or .lst with a path
+/// a line, relative to it, or the paths themselves, in the order given. An array: .npy or .npz of shape T x N
+/// x 3 (or N x 3), in a .npz `points`, then `vertices`, then the first of that shape, `faces` beside it when
+/// there. Any other file: one frame. Move-only; one thread at a time.
+class ScanSource {
+ public:
+  /// Throws Error, one sentence, when there is no such path, no permission, no frame in it, or two formats
+  /// are equally frequent.
+  explicit ScanSource(const std::string& path, const ScanSourceOptions& options = {});
+  explicit ScanSource(const std::vector<std::string>& files);
+  ~ScanSource();
+  ScanSource(ScanSource&&) noexcept;
+  ScanSource& operator=(ScanSource&&) noexcept;
+
+  /// The next frame; none at the end. A frame that cannot be read comes back with usable = false; only a
+  /// sequence that is broken as a whole (an array that ends early, a followed folder that never gets a frame)
+  /// throws Error. The file of a sequence of one frame throws when it cannot be read.
+  std::optional<ScanFrame> next();
+
+  /// How many frames there are; none while a folder is followed.
+  std::optional<int64_t> count() const;
+  /// Missing numbers found so far: all of them from the start, but for a followed folder.
+  const std::vector<FrameGap>& gaps() const;
+
+  /// What the frames come from; see scan_source.cpp.
+  class Frames;
+
+ private:
+  std::unique_ptr<Frames> frames_;
+};
+
+/// Whether a comes before b when runs of digits count as numbers.
+bool natural_less(const std::string& a, const std::string& b);
+
+}  // namespace understudy

@@ -1,0 +1,172 @@
+#include "retarget/formats/import.hpp"
+
+#include <limits>
+
+#include "retarget/math/rotation.hpp"
+#include "tests/retarget/formats/support.hpp"
+
+namespace understudy {
+namespace {
+
+using namespace test;
+
+void add_box(std::vector<Vec3>& points, const Vec3& low, const Vec3& high, int count, Rng& rng) {
+  for (int i = 0; i < count; ++i) {
+    Vec3 p(rng.uniform(low.x(), high.x()), rng.uniform(low.y(), high.y()), rng.uniform(low.z(), high.z()));
+    const int axis = rng.below(3);
+    p[axis] = rng.chance(0.5f) ? low[axis] : high[axis];
+    points.push_back(p);
+  }
+}
+
+Points to_points(const std::vector<Vec3>& list) {
+  Points out(static_cast<Eigen::Index>(list.size()), 3);
+  for (size_t i = 0; i < list.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = list[i].transpose();
+  return out;
+}
+
+// A person of boxes, 1.7 m, y up, soles at 0; in T-pose a little wider than tall.
+std::vector<Vec3> person(bool t_pose) {
+  Rng rng(3);
+  std::vector<Vec3> p;
+  for (const float x : {-0.1f, 0.1f}) {
+    add_box(p, {x - 0.07f, 0, -0.08f}, {x + 0.07f, 0.8f, 0.08f}, 900, rng);
+    add_box(p, {x - 0.05f, 0, -0.08f}, {x + 0.05f, 0.07f, 0.17f}, 120, rng);
+  }
+  add_box(p, {-0.2f, 0.8f, -0.12f}, {0.2f, 1.42f, 0.12f}, 1500, rng);
+  add_box(p, {-0.09f, 1.45f, -0.1f}, {0.09f, 1.7f, 0.1f}, 350, rng);
+  for (const float side : {-1.0f, 1.0f}) {
+    const Vec3 low = t_pose ? Vec3(std::min(side * 0.2f, side * 0.88f), 1.3f, -0.04f)
+                            : Vec3(side * 0.25f - 0.04f, 0.72f, -0.04f);
+    const Vec3 size = t_pose ? Vec3(0.68f, 0.09f, 0.08f) : Vec3(0.08f, 0.68f, 0.08f);
+    add_box(p, low, low + size, 500, rng);
+  }
+  return p;
+}
+
+// From the program's axes to a file's with that axis up: what an import has to undo.
+Mat3 file_axes(const std::string& up) {
+  Mat3 R;
+  if (up == "z") R << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  if (up == "x") R << 0, 1, 0, -1, 0, 0, 0, 0, 1;
+  if (up == "y") R.setIdentity();
+  if (up == "-y") R << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  if (up == "-z") R << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  if (up == "-x") R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  return R;
+}
+
+Mesh as_file(const std::vector<Vec3>& points, const std::string& up, float scale,
+             const Vec3& shift = Vec3::Zero()) {
+  Mesh mesh;
+  mesh.vertices = to_points(points) * (file_axes(up) * scale).transpose();
+  mesh.vertices.rowwise() += (shift * scale).transpose();
+  return mesh;
+}
+
+TEST(Import, FindsUnitsAndUpAxisAndUndoesThem) {
+  const std::vector<std::pair<const char*, float>> kUnits = {
+      {"m", 1}, {"dm", 10}, {"cm", 100}, {"mm", 1000}, {"in", 39.37f}};
+  for (const bool t_pose : {false, true})
+    for (const std::string up : {"y", "z"})
+      for (const auto& [units, scale] : kUnits) {
+        const auto body = person(t_pose);
+        const Mesh file = as_file(body, up, scale);
+        const ImportDecision decision = decide_import(file, {});
+        SCOPED_TRACE(decision.sentence);
+        EXPECT_EQ(decision.units, units);
+        EXPECT_EQ(decision.up, up);
+        EXPECT_LT((decision.apply(file.vertices) - to_points(body)).cwiseAbs().maxCoeff(), 1e-3f);
+      }
+}
+
+TEST(Import, FindsAStandingPersonInAFileWithXUp) {
+  const ImportDecision decision = decide_import(as_file(person(false), "x", 1), {});
+  EXPECT_EQ(decision.up, "x");
+}
+
+TEST(Import, ForcedAxesTurnEveryWayUpright) {
+  const auto body = person(true);
+  for (const std::string up : {"x", "y", "z", "-x", "-y", "-z"}) {
+    ImportOptions forced;
+    forced.up = up;
+    const Mesh file = as_file(body, up, 1);
+    const Points back = decide_import(file, forced).apply(file.vertices);
+    EXPECT_LT((back - to_points(body)).cwiseAbs().maxCoeff(), 1e-4f) << up;
+  }
+}
+
+TEST(Import, PutsTheFloorAtZeroInSpiteOfOutliers) {
+  auto body = person(false);
+  for (int i = 0; i < 8; ++i) body.push_back({0.5f, -1.0f - 0.3f * static_cast<float>(i), 0.2f});
+  const Mesh file = as_file(body, "z", 1000, {0.3f, 0, 0.4f});
+  const ImportDecision decision = decide_import(file, {});
+  EXPECT_EQ(decision.units, "mm") << decision.sentence;
+  EXPECT_NEAR(decision.floor, 0.4f, 0.02f);
+  EXPECT_NEAR(decision.height, 1.7f, 0.03f);
+}
+
+TEST(Import, AFloorInTheScanShowsWhereDownIs) {
+  for (const std::string up : {"y", "z", "-y"}) {
+    auto body = person(true);
+    Rng rng(9);
+    for (int i = 0; i < 1500; ++i)
+      body.push_back({rng.uniform(-1, 1), rng.uniform(-0.005f, 0.005f), rng.uniform(-1, 1)});
+    const ImportDecision decision = decide_import(as_file(body, up, 1, file_axes(up) * Vec3(0, 0.5f, 0)), {});
+    EXPECT_EQ(decision.up, up);
+    EXPECT_NEAR(decision.floor, 0.5f, 0.01f) << decision.sentence;
+    EXPECT_TRUE(contains(decision.sentence, "from the floor"));
+  }
+}
+
+TEST(Import, SaysWhatItDecided) {
+  const Mesh file = as_file(person(false), "z", 1000, {0, 0, 0.03f});
+  const std::string sentence = decide_import(file, {}).sentence;
+  EXPECT_EQ(sentence.rfind("units: millimetres (from the height 1", 0), 0u) << sentence;
+  EXPECT_TRUE(contains(sentence, "), up: z, floor at 0.03 m")) << sentence;
+}
+
+TEST(Import, WhatIsForcedIsNotGuessed) {
+  ImportOptions forced;
+  forced.units = "cm";
+  forced.up = "z";
+  forced.floor = 0.25f;
+  forced.yaw_deg = 90;
+  const Mesh file = as_file(person(false), "z", 1);
+  const ImportDecision decision = decide_import(file, forced);
+  EXPECT_EQ(decision.scale, 0.01f);
+  EXPECT_EQ(decision.floor, 0.25f);
+  const Points forward = decision.apply(Points(Eigen::RowVector3f(0, -100, 0)));  // -y faces +z after z up
+  EXPECT_TRUE(forward.row(0).isApprox(Eigen::RowVector3f(1, -0.25f, 0), 1e-5f)) << forward;
+}
+
+TEST(Import, RefusesUnknownOptionsAndNothing) {
+  const Mesh file = as_file(person(false), "y", 1);
+  ImportOptions units, up;
+  units.units = "furlong";
+  up.up = "w";
+  EXPECT_EQ(error_of([&] { decide_import(file, units); }), "the unit 'furlong' is none of m, dm, cm, mm, in");
+  EXPECT_NE(error_of([&] { decide_import(file, up); }), "");
+  Mesh nothing;
+  nothing.vertices = Points::Constant(5, 3, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_NE(error_of([&] { decide_import(nothing, {}); }), "");
+}
+
+TEST(Import, SurvivesNanPointsAndTinyScans) {
+  auto body = person(false);
+  body.push_back(Vec3::Constant(std::numeric_limits<float>::quiet_NaN()));
+  body.push_back(Vec3::Constant(std::numeric_limits<float>::infinity()));
+  EXPECT_EQ(decide_import(as_file(body, "y", 1), {}).units, "m");
+  Warnings warnings;
+  Mesh one;
+  one.vertices = Points::Zero(1, 3);
+  EXPECT_EQ(decide_import(one, {}).scale, 1);
+  EXPECT_TRUE(warnings.contain("no person's"));
+}
+
+TEST(Import, KeepsTheFilesZeroWhenTheLowestPointsAreNearIt) {
+  EXPECT_EQ(decide_import(as_file(person(false), "y", 1, {0, 0.015f, 0}), {}).floor, 0);
+}
+
+}  // namespace
+}  // namespace understudy
