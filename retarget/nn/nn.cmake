@@ -3,6 +3,7 @@ us_module(nn TORCH SOURCES
   nn/weights_file.cpp nn/skeleton_form.cpp nn/modules/skeleton_extractor.cpp nn/modules/point_transformer.cpp
   nn/network_extractor.cpp
   nn/network_deformer.cpp nn/modules/deformation.cpp
+  nn/paper_transfer.cpp nn/modules/motion_gru.cpp nn/modules/forward_kinematics.cpp
   PUBLIC understudy_nn_core PRIVATE nlohmann_json::nlohmann_json)
 
 # The way to the networks without LibTorch (nn/networks.hpp); the plug-in itself is built by nn/plugin.cmake.

@@ -1,0 +1,87 @@
+#include "retarget/nn/paper_transfer.hpp"
+
+#include <torch/torch.h>
+
+#include <algorithm>
+
+#include "retarget/base/error.hpp"
+#include "retarget/nn/modules/motion_gru.hpp"
+#include "retarget/nn/weights_file.hpp"
+
+namespace understudy::nn {
+namespace {
+
+torch::Tensor to_tensor(const Joints& joints) {
+  return torch::from_blob(const_cast<float*>(joints.data()), {kJointCount, 3}, torch::kFloat32).clone();
+}
+
+Rotations to_rotations(const torch::Tensor& local) {
+  const auto flat = local.contiguous();
+  Rotations rotations;
+  for (int j = 0; j < kJointCount; ++j)
+    rotations[j] =
+        Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(flat.data_ptr<float>() + 9 * j);
+  return rotations;
+}
+
+class PaperTransfer : public MotionTransfer {
+ public:
+  explicit PaperTransfer(const std::string& path) : net_(options_of(path)) {
+    load_weights(path, "motion", kMotionGruVersion, *net_);
+    net_->eval();
+  }
+
+  void reset(const Joints& rest_b) override {
+    US_CHECK(rest_b.allFinite() && leg_length(rest_b) > 1e-3f,
+             "the target's T-pose joints are not those of a body");
+    rest_b_ = to_tensor(rest_b).unsqueeze(0);
+    state_ = {};
+    leg_sum_ = 0;
+    frames_ = 0;
+  }
+
+  Rotations push(const Extraction& source, float dt) override {
+    US_CHECK(rest_b_.defined(), "motion transfer: no target was set");
+    US_CHECK(source.joints.allFinite(), "the source's joints are not finite");
+    US_CHECK(leg_length(source.joints) > 1e-3f, "the source's legs have no length");
+    const torch::NoGradGuard no_grad;
+    leg_sum_ += leg_length(source.joints);
+    const auto leg = static_cast<float>(leg_sum_ / static_cast<double>(++frames_));
+    const MotionInput input{to_tensor(source.joints).view({1, 1, kJointCount, 3}), torch::full({1, 1}, leg),
+                            torch::full({1, 1}, std::clamp(dt, 1.0f / 240, 0.5f)), rest_b_};
+    MotionState next = state_;  // kept only when the answer is good: a bad frame leaves no trace
+    const auto local = net_->forward(input, next);  // [1, 1, 22, 3, 3]
+    US_CHECK(torch::isfinite(local).all().item<bool>(), "the motion network gave no finite rotation");
+    state_ = next;
+    return to_rotations(local);
+  }
+
+  std::string name() const override { return "paper"; }
+
+ private:
+  static MotionGruOptions options_of(const std::string& path) {
+    const auto numbers = read_weights_header(path).numbers;
+    MotionGruOptions options;
+    if (const auto it = numbers.find("hidden"); it != numbers.end())
+      options.hidden = static_cast<int64_t>(it->second);
+    if (const auto it = numbers.find("layers"); it != numbers.end())
+      options.layers = static_cast<int64_t>(it->second);
+    US_CHECK(options.hidden > 0 && options.hidden <= 4096 && options.layers > 0 && options.layers <= 16, path,
+             ": the motion network's size cannot be");
+    return options;
+  }
+
+  MotionGru net_;
+  torch::Tensor rest_b_;
+  MotionState state_;
+  double leg_sum_ = 0;
+  int64_t frames_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionTransfer> load_paper_transfer(const std::string& path) {
+  return std::make_unique<PaperTransfer>(path);
+}
+
+}  // namespace understudy::nn

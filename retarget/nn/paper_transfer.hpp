@@ -1,0 +1,15 @@
+// Motion transfer by the recurrent network of paper 1, section 3.1: the engine `paper`.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "retarget/pipeline/interfaces.hpp"
+
+namespace understudy::nn {
+
+/// The engine with the weights of a file. Throws Error when the file is missing, damaged or of another
+/// version; its push() throws Error when joints are not finite or the network's answer is not.
+std::unique_ptr<MotionTransfer> load_paper_transfer(const std::string& path);
+
+}  // namespace understudy::nn

@@ -1,0 +1,28 @@
+// How good motion transfer is on people and clips that training does not see.
+#pragma once
+
+#include "retarget/nn/modules/motion_gru.hpp"
+#include "retarget/training/training_data.hpp"
+
+namespace understudy::training {
+
+/// Figures of design.md, pelvis-relative, on other bodies than the source's; the truth is the source's
+/// rotations.
+struct MotionFigures {
+  double mpjpe_mm = 0, pa_mpjpe_mm = 0, rot_deg = 0;
+};
+
+/// Sources with and without extractor-like errors, each for a target body. It judges only; nothing learns
+/// from it.
+class MotionJudge {
+ public:
+  /// `noise`: mean length of the errors of the source's joints, metres.
+  MotionJudge(const TrainingData& dev, float noise, int frames = 90);
+  MotionFigures judge(nn::MotionGru& net) const;
+
+ private:
+  nn::MotionInput input_;
+  torch::Tensor rotations_, joints_;  // of the targets: [N, T, 22, 3, 3], [N, T, 22, 3]
+};
+
+}  // namespace understudy::training
