@@ -2,11 +2,17 @@ find_package(CLI11 REQUIRED)
 
 # What the subcommands share, apart from the program so that tests can link it.
 us_module(app SOURCES
-  app/cli/case_folder.cpp app/cli/interrupt.cpp app/cli/judge.cpp app/cli/latency.cpp app/cli/machine.cpp
-  app/cli/preview.cpp app/cli/progress.cpp app/cli/report.cpp app/cli/source.cpp
-  PUBLIC understudy_core understudy_metrics understudy_formats understudy_render nlohmann_json::nlohmann_json
+  app/cli/case_folder.cpp app/cli/interrupt.cpp app/cli/job.cpp app/cli/judge.cpp app/cli/latency.cpp
+  app/cli/machine.cpp app/cli/outputs.cpp app/cli/preview.cpp app/cli/progress.cpp app/cli/report.cpp
+  app/cli/samples.cpp app/cli/source.cpp
+  PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline understudy_networks
+  understudy_render nlohmann_json::nlohmann_json
   PRIVATE understudy_npz understudy_body ZLIB::ZLIB ${CMAKE_DL_LIBS})
 
-add_executable(understudy app/main.cpp app/cli/commands.cpp)
+add_executable(understudy app/main.cpp app/cli/commands.cpp app/cli/bench.cpp app/cli/demo.cpp app/cli/doctor.cpp
+  app/cli/eval.cpp app/cli/retarget.cpp app/cli/sample.cpp app/cli/train.cpp)
 target_include_directories(understudy PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app)
+target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app understudy_body)
+
+# The program and what it loads at run time.
+add_custom_target(understudy_all DEPENDS understudy networks_plugin)

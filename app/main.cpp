@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/interrupt.hpp"
 
 namespace {
 
 int run(int argc, char** argv) {
+  understudy::app::catch_interrupts();
   CLI::App app("Understudy lets any body perform any captured motion.", "understudy");
   app.require_subcommand(1);
   std::vector<std::pair<CLI::App*, understudy::app::Action>> actions;

@@ -2,8 +2,24 @@
 
 namespace understudy::app {
 
+Action declare_retarget(CLI::App& command);
+Action declare_eval(CLI::App& command);
+Action declare_train(CLI::App& command);
+Action declare_sample(CLI::App& command);
+Action declare_doctor(CLI::App& command);
+Action declare_bench(CLI::App& command);
+Action declare_demo(CLI::App& command);
+
 const std::vector<Command>& commands() {
-  static const std::vector<Command> table = {};
+  static const std::vector<Command> table = {
+      {"retarget", "lets a target perform what a source does", declare_retarget},
+      {"eval", "judges the method on a folder of cases", declare_eval},
+      {"train", "trains a network", declare_train},
+      {"sample", "writes the bundled samples as files", declare_sample},
+      {"doctor", "tells what this machine has: BLAS, threads, OpenGL, weights", declare_doctor},
+      {"bench", "measures time, memory and work of a frame", declare_bench},
+      {"demo", "the bundled scan onto the bundled targets", declare_demo},
+  };
   return table;
 }
 

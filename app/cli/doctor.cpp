@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 
+#include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/machine.hpp"
 #include "app/cli/version.hpp"
@@ -19,12 +19,11 @@ void line(const char* what, const std::string& found) {
 /// What `find` says, or why it could not.
 template <class Find>
 std::string found_or_why(Find find, bool& healthy) {
-  try {
-    return find();
-  } catch (const Error& error) {
-    healthy = false;
-    return std::string("MISSING: ") + error.what();
-  }
+  std::string found;
+  const std::string why = failure_of([&] { found = find(); });
+  if (why.empty()) return found;
+  healthy = false;
+  return "MISSING: " + why;
 }
 
 std::string weights_line(const nn::NetworkOptions& options) {

@@ -27,6 +27,7 @@ void Judge::push(const JudgedFrame& frame) {
   if (frame.joints) joints_.push_back(*frame.joints);
   if (frame.rotations) rotations_.push_back(*frame.rotations);
   if (frame.source_joints) source_joints_.push_back(*frame.source_joints);
+  if (frame.raw_joints) raw_joints_.push_back(*frame.raw_joints);
   if (frame.vertices) push_surface(frame);
   if (frame.scan && frame.source_joints && frames_ % kSlowEvery == 0)
     inside_.add(inside_share(*frame.scan, *frame.source_joints));
@@ -89,6 +90,8 @@ void Judge::add_extraction(Metrics& result) const {
   put(result, "extraction_mpjpe_mm", 1000 * mean_joint_error(source_joints_, truth_->source_joints));
   put(result, "extraction_swap_rate", swap_rate(source_joints_, truth_->source_joints));
   put(result, "extraction_flip_rate", flip_rate(source_joints_, truth_->source_joints));
+  if (raw_joints_.empty()) return;
+  put(result, "extraction_raw_mpjpe_mm", 1000 * mean_joint_error(raw_joints_, truth_->source_joints));
 }
 
 Metrics mean_metrics(const std::vector<Metrics>& all) {

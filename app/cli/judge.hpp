@@ -20,7 +20,8 @@ struct JudgedFrame {
   const Points* vertices = nullptr;       ///< of the target
   const Joints* joints = nullptr;         ///< of the target
   const Rotations* rotations = nullptr;   ///< local
-  const Joints* source_joints = nullptr;  ///< extracted
+  const Joints* source_joints = nullptr;  ///< extracted, repaired and smoothed
+  const Joints* raw_joints = nullptr;     ///< extracted, as the network says
   const Mesh* scan = nullptr;
 };
 
@@ -48,7 +49,7 @@ class Judge {
   const Truth* truth_;
   std::optional<SelfPenetration> penetration_;
   int64_t frames_ = 0;
-  JointSequence joints_, source_joints_;
+  JointSequence joints_, source_joints_, raw_joints_;
   std::vector<Rotations> rotations_;
   Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_;
 };

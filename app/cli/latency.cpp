@@ -34,7 +34,7 @@ double Histogram::quantile(double q) const {
   return kFirstMs * std::pow(kRatio, static_cast<double>(i) + 0.5);
 }
 
-void Latency::add(const StageTimes& t) {
+void Latency::add(const FrameTimes& t) {
   const std::array<double, 5> ms = {t.read, t.extract, t.transfer, t.deform, t.total};
   for (size_t i = 0; i < ms.size(); ++i) stages_[i].add(ms[i]);
 }

@@ -25,14 +25,14 @@ class Histogram {
 };
 
 /// Milliseconds one frame spent in each stage.
-struct StageTimes {
+struct FrameTimes {
   double read = 0, extract = 0, transfer = 0, deform = 0, total = 0;
 };
 
 class Latency {
  public:
   static constexpr std::array<const char*, 5> kStages = {"read", "extract", "transfer", "deform", "total"};
-  void add(const StageTimes& times);
+  void add(const FrameTimes& times);
   void add(const Latency& other);
   /// Milliseconds of stage kStages[stage].
   double quantile(int stage, double q) const { return stages_[stage].quantile(q); }

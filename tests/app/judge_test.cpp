@@ -45,7 +45,7 @@ Metrics judged(const Truth& truth, int frames, float by) {
     const Points vertices = truth.frame_vertices(t).rowwise() + shift;
     const Joints joints = truth.joints[t].rowwise() + shift,
                  source = truth.source_joints[t].rowwise() + shift;
-    judge.push({&vertices, &joints, &truth.rotations[t], &source, nullptr});
+    judge.push({&vertices, &joints, &truth.rotations[t], &source, nullptr, nullptr});
   }
   return judge.metrics();
 }
@@ -85,7 +85,7 @@ TEST(Judge, RefusesMissingAndSurplusFrames) {
 TEST(Judge, WorksWithoutTruth) {
   Judge judge(30, nullptr, nullptr);
   const Joints joints = some_joints(0);
-  judge.push({nullptr, &joints, nullptr, &joints, nullptr});
+  judge.push({nullptr, &joints, nullptr, &joints, nullptr, nullptr});
   const Metrics metrics = judge.metrics();
   EXPECT_EQ(value(metrics, "bone_drift"), 0);
   EXPECT_TRUE(std::isnan(value(metrics, "mpjpe_m")));

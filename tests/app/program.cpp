@@ -1,8 +1,10 @@
 #include "tests/app/program.hpp"
 
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -55,6 +57,8 @@ Program::Program(const std::vector<std::string>& arguments, ProgramOptions optio
                          static_cast<rlim_t>(options_.file_size_limit)};
       setrlimit(RLIMIT_FSIZE, &limit);
     }
+    if (options_.obey_permissions)  // fails for who is not root and has no such right anyway
+      for (const int right : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH}) prctl(PR_CAPBSET_DROP, right);
     execv(argv[0], argv.data());
     _exit(127);
   }

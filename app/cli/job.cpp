@@ -1,0 +1,182 @@
+#include "app/cli/job.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/cli/interrupt.hpp"
+#include "app/cli/judge.hpp"
+#include "app/cli/outputs.hpp"
+#include "app/cli/preview.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/report.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+
+namespace understudy::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point began) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+std::string file_name(const std::string& path) {
+  const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
+  return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
+}
+
+/// All that a job keeps between frames.
+struct Running {
+  std::unique_ptr<Source> source;
+  std::unique_ptr<Performer> performer;
+  std::unique_ptr<Output> output;  // null: no animation wanted
+  std::optional<PreviewMoments> moments;
+  std::optional<Judge> judge;
+  Latency latency;
+  int64_t frames = 0, flagged = 0;
+};
+
+render::SheetMoment moment_of(const PerformedFrame& frame, int64_t index, double fps, const Faces& faces) {
+  render::SheetMoment moment;
+  moment.frame = static_cast<int>(index);
+  moment.seconds = static_cast<double>(index) / fps;
+  moment.source = frame.scan.mesh;
+  moment.source_joints = frame.source_joints;
+  moment.target = Mesh{frame.result.vertices, faces};
+  moment.target_joints = frame.result.joints;
+  return moment;
+}
+
+void tell_flagged(const PerformedFrame& frame) {
+  const std::string& why = frame.scan.usable ? frame.result.reason : frame.scan.problem;
+  log::warn("frame " + std::to_string(frame.scan.number) + " repeats the last pose: " + why);
+}
+
+/// One line for each frame as it is finished, for programs that follow along.
+void tell_live(const PerformedFrame& frame) {
+  const Vec3& root = frame.result.pose.root;
+  std::printf("frame %lld root %.4f %.4f %.4f %s\n", static_cast<long long>(frame.scan.number), root.x(),
+              root.y(), root.z(), frame.result.flagged ? "flagged" : "good");
+  std::fflush(stdout);
+}
+
+void take_frame(Running& job, const PerformedFrame& frame, const Mesh& target, bool live) {
+  job.latency.add(frame.times);
+  if (frame.result.flagged) {
+    ++job.flagged;
+    tell_flagged(frame);
+  }
+  if (job.output) job.output->push(frame);
+  if (job.moments && job.moments->wanted(job.frames))
+    job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.faces));
+  if (job.judge)
+    job.judge->push({&frame.result.vertices, &frame.result.joints, &frame.result.pose.local,
+                     &frame.source_joints, nullptr, frame.scan.usable ? &frame.scan.mesh : nullptr});
+  if (live) tell_live(frame);
+  ++job.frames;
+}
+
+Json report_of(const JobOptions& options, const Running& job) {
+  Json report = report_header(nn::weights_folder(options.networks));
+  report["engine"] = options.networks.engine;
+  report["source"] = options.source.path;
+  report["target"] = options.target.path;
+  report["fps"] = job.source->fps();
+  report["frames"] = job.frames;
+  report["flagged"] = job.flagged;
+  report["metrics"] = to_json(job.judge->metrics());
+  report["ms"] = to_json(job.latency, 0.5);
+  report["ms_p95"] = to_json(job.latency, 0.95);
+  return report;
+}
+
+Running start(const JobOptions& options, const Mesh& target) {
+  Running job;
+  job.source = open_source(options.source);
+  Networks networks = nn::load_networks(options.networks);
+  job.performer = std::make_unique<Performer>(*job.source, target, std::move(networks), options.retarget);
+  if (!options.preview.empty()) job.moments.emplace(job.source->count());
+  if (!options.report.empty()) job.judge.emplace(job.source->fps(), nullptr, &target);
+  if (!options.out.empty())
+    job.output = open_output(options.out, target, job.performer->retargeter(), job.source->fps());
+  return job;
+}
+
+void finish(const JobOptions& options, Running& job) {
+  if (job.output) job.output->finish();
+  if (job.judge) write_json(options.report, report_of(options, job));
+  const std::string title =
+      file_name(options.source.path) + " performed by " + file_name(options.target.path);
+  if (job.moments) write_preview(options.preview, job.moments->take(), title);
+  std::fprintf(stderr, "%s", job.latency.table().c_str());
+  for (const std::string& path : {options.out, options.report, options.preview})
+    if (!path.empty()) log::info("wrote " + path);
+}
+
+}  // namespace
+
+Mesh import_target(const TargetOptions& options) {
+  Mesh target = read_target(options.path, options.betas);
+  ImportOptions import = options.import;
+  if (import.up.empty()) import.up = "y";
+  const ImportDecision decision = decide_import(target, import);
+  decision.apply(target);
+  log::info(options.path + ": " + decision.sentence);
+  return target;
+}
+
+Performer::Performer(Source& source, const Mesh& target, Networks networks, const RetargetOptions& options)
+    : source_(source), retargeter_(std::move(networks), options) {
+  retargeter_.set_target(target);
+}
+
+std::optional<PerformedFrame> Performer::next() {
+  return next(nullptr);
+}
+
+std::optional<PerformedFrame> Performer::next(const Joints& oracle) {
+  Extraction extraction;
+  extraction.joints = oracle;
+  return next(&extraction);
+}
+
+std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
+  const auto began = Clock::now();
+  auto scan = source_.next();
+  if (!scan) return std::nullopt;
+  PerformedFrame frame;
+  frame.times.read = ms_since(began);
+  const float dt = static_cast<float>(1 / source_.fps());
+  frame.result = oracle ? retargeter_.push(*oracle, scan->mesh, dt) : retargeter_.push(scan->mesh, dt);
+  frame.times.total = ms_since(began);
+  frame.times.extract = frame.result.ms.extract;
+  frame.times.transfer = frame.result.ms.transfer;
+  frame.times.deform = frame.result.ms.deform;
+  if (!frame.result.flagged) last_seen_ = frame.result.source.joints;
+  frame.source_joints = last_seen_;
+  frame.scan = std::move(*scan);
+  return frame;
+}
+
+void run_job(const JobOptions& options) {
+  for (const std::string& path : {options.out, options.report, options.preview}) check_writable(path);
+  const Mesh target = import_target(options.target);
+  Running job = start(options, target);
+  Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
+                    job.source->count().value_or(0));
+  while (const auto frame = job.performer->next()) {
+    take_frame(job, *frame, target, options.source.follow);
+    progress.step(job.frames);
+    check_interrupt("after frame " + std::to_string(frame->scan.number));
+  }
+  progress.finish();
+  check_interrupt("after " + std::to_string(job.frames) + " frames");
+  US_CHECK(job.frames > job.flagged, options.source.path, ": no frame in it could be used");
+  if (job.frames == 1) log::warn(options.source.path + ": holds only one frame: the result is a pose, not a motion");
+  finish(options, job);
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,19 @@
+#include <CLI/CLI.hpp>
+
+#include "app/cli/commands.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/body/builtin_samples.hpp"
+
+namespace understudy::app {
+
+Action declare_sample(CLI::App& command) {
+  const auto folder = std::make_shared<std::string>();
+  command.add_option("folder", *folder, "where the samples go; it is made")->required();
+  return [folder] {
+    write_samples(*folder);
+    log::info("wrote the samples to " + *folder);
+    return 0;
+  };
+}
+
+}  // namespace understudy::app
