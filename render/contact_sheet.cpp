@@ -19,7 +19,7 @@ struct View {
   const char* name;
   float yaw;  // from the person's heading; to the person's right, so that motion goes left to right
 };
-constexpr View kViews[] = {{"three-quarter", -0.58f}, {"side", -kPi / 2}};
+constexpr View kViews[] = {{"front", -0.58f}, {"side", -kPi / 2}};
 
 /// One picture of a sheet before it is drawn.
 struct Cell {
@@ -149,10 +149,11 @@ Image turned_left(const Image& image) {
 /// A row's caption, reading upwards along its left side.
 void draw_caption(Image& sheet, const Font& font, const std::string& caption, const Eigen::Vector2i& at,
                   int height) {
-  constexpr float kSize = 17;
+  const float room = 0.97f * static_cast<float>(height), full = font.width(caption, 17);
+  const float size = full > room ? 17 * room / full : 17;
+  const float width = font.width(caption, size);
   Image strip(height, kGutter, kPaper);
-  const float width = font.width(caption, kSize);
-  font.draw(strip, caption, {std::max(0.f, (static_cast<float>(height) - width) / 2), 20}, kSize, kFaintInk);
+  font.draw(strip, caption, {std::max(0.f, (static_cast<float>(height) - width) / 2), 20}, size, kFaintInk);
   paste(sheet, turned_left(strip), at.x(), at.y());
 }
 

@@ -70,7 +70,7 @@ void add(Scene& scene, const Mesh& mesh) {
     view.positions = mesh.vertices;
     const float spacing = point_spacing(mesh.vertices);
     view.normals = estimated_normals(mesh.vertices, 3 * spacing);
-    if (spacing > 0) view.radius = 0.75f * spacing;
+    if (spacing > 0) view.radius = spacing;
     view.colors = mesh.colors;
     scene.clouds.push_back(std::move(view));
   } else {
