@@ -18,16 +18,23 @@ constexpr float kLeastWeight = 2e-3f;   // smaller skin weights are noise: in tr
 constexpr float kLeastOffset = 2e-5f;   // metres: an offset that no pose makes larger is left out
 constexpr float kLargestBend = 2.829f;  // Frobenius norm of R - I at 180 degrees
 
-/// The part of O_net that answers to one joint at one vertex: offset += block * (R - I).
+/// The part of O_net that answers to one joint at one vertex: offset += block * (R - I). Four rows, the last
+/// one zero: columns of four are what the machine multiplies at once.
 struct OffsetBlock {
   int vertex, joint;
-  Eigen::Matrix<float, 3, 9, Eigen::RowMajor> block;
+  Eigen::Matrix<float, 4, 9> block;
 };
 
 struct Influence {
   int joint;
   float weight;
 };
+
+OffsetBlock offset_block(int vertex, int joint, const Eigen::Matrix<float, 3, 9>& block) {
+  OffsetBlock b{vertex, joint, Eigen::Matrix<float, 4, 9>::Zero()};
+  b.block.topRows<3>() = block;
+  return b;
+}
 
 /// Zeroes the noise and makes rows sum to 1 again.
 void tidy_weights(RowMatrix& weights) {
@@ -104,7 +111,8 @@ void NetworkDeformer::keep_offsets(const float* basis) {
     const Eigen::Map<const RowMatrix> own(basis + v * 3 * kPoseFeatureCount, 3, kPoseFeatureCount);
     for (int j = 1; j < kJointCount; ++j) {
       const auto block = own.middleCols<9>(9 * (j - 1));
-      if (block.norm() * kLargestBend > kLeastOffset) blocks_.push_back({static_cast<int>(v), j, block});
+      if (block.norm() * kLargestBend > kLeastOffset)
+        blocks_.push_back(offset_block(static_cast<int>(v), j, block));
     }
   }
 }
@@ -115,7 +123,11 @@ void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
     const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> m = pose.local[j] - Mat3::Identity();
     bend[j] = Eigen::Map<const Eigen::Matrix<float, 9, 1>>(m.data());
   }
-  for (const OffsetBlock& b : blocks_) rest.row(b.vertex) += (b.block * bend[b.joint]).transpose();
+  for (const OffsetBlock& b : blocks_) {
+    Eigen::Vector4f offset = Eigen::Vector4f::Zero();
+    for (int k = 0; k < 9; ++k) offset += b.block.col(k) * bend[b.joint][k];
+    rest.row(b.vertex) += offset.head<3>().transpose();
+  }
 }
 
 Points NetworkDeformer::deform(const Pose& pose) {
@@ -123,17 +135,21 @@ Points NetworkDeformer::deform(const Pose& pose) {
   Points rest = rest_;
   add_offsets(pose, rest);
   const PosedSkeleton posed = forward_kinematics(joints_, pose);
-  std::array<Eigen::Matrix<float, 3, 4>, kJointCount> transforms;
+  std::array<Eigen::Matrix4f, kJointCount> transforms;
   for (int j = 0; j < kJointCount; ++j) {
-    transforms[j].leftCols<3>() = posed.global[j];
-    transforms[j].col(3) = posed.joints.row(j).transpose() - posed.global[j] * joints_.row(j).transpose();
+    transforms[j].setIdentity();
+    transforms[j].topLeftCorner<3, 3>() = posed.global[j];
+    transforms[j].topRightCorner<3, 1>() =
+        posed.joints.row(j).transpose() - posed.global[j] * joints_.row(j).transpose();
   }
   Points vertices(rest.rows(), 3);
   for (Eigen::Index v = 0; v < rest.rows(); ++v) {
-    Eigen::Matrix<float, 3, 4> blended = Eigen::Matrix<float, 3, 4>::Zero();
+    Eigen::Matrix4f blended = Eigen::Matrix4f::Zero();
     for (int i = first_influence_[v]; i < first_influence_[v + 1]; ++i)
       blended += influences_[i].weight * transforms[influences_[i].joint];
-    vertices.row(v) = (blended.leftCols<3>() * rest.row(v).transpose() + blended.col(3)).transpose();
+    const Eigen::Vector4f at = blended.col(0) * rest(v, 0) + blended.col(1) * rest(v, 1) +
+                               blended.col(2) * rest(v, 2) + blended.col(3);
+    vertices.row(v) = at.head<3>().transpose();
   }
   return vertices;
 }

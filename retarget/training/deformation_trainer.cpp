@@ -21,7 +21,7 @@ constexpr double kLearningRate = 2e-3;
 constexpr int kWarmUpSteps = 200;
 constexpr double kAverageDecay = 0.998;
 constexpr double kSecondsPerCheckpoint = 120;
-constexpr double kSecondsPerReport = 240;
+constexpr double kSecondsPerReport = 600;
 
 class DeformationTrainer {
  public:
