@@ -10,15 +10,16 @@ namespace understudy {
 namespace {
 
 constexpr std::array<int, 4> kFeet = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
+constexpr float kContactEase = 0.1f;  // seconds in which a contact takes hold
 
 }  // namespace
 
 SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints) {
   SupportPoints support;
   std::vector<Vec3> offsets;
-  const auto add = [&](int joint, const Vec3& point) {
-    support.joint.push_back(joint);
-    offsets.push_back(point - rest_joints.row(joint).transpose());
+  const auto add = [&](int moved_with, const Vec3& point) {
+    support.joint.push_back(moved_with);
+    offsets.push_back(point - rest_joints.row(moved_with).transpose());
   };
   for (const int j : {Pelvis, Head, LeftKnee, RightKnee, LeftWrist, RightWrist})
     add(j, rest_joints.row(j).transpose());
@@ -64,9 +65,8 @@ void RootPath::reset(const Points& rest_b, const Joints& joints_b) {
   support_ = SupportPoints::from(rest_b, joints_b);
   leg_a_.clear();
   offsets_.clear();
-  sole_.clear();
   started_ = false;
-  offset_ = 0;
+  offset_ = correction_ = 0;
   scale_ = 1;
 }
 
@@ -124,7 +124,9 @@ Vec3 RootPath::push(const Joints& source, const Points& scan, const Rotations& l
   // error.
   const float height = std::max(0.0f, clear) / std::max(options_.contact_height_m, 1e-4f);
   const float contact = options_.contact * std::clamp(1.5f - height, 0.0f, 1.0f);
-  root_.y() += contact * (exact - root_.y());
+  const float ease = started_ ? 1 - std::exp(-dt / kContactEase) : 1.0f;
+  correction_ += ease * (contact * (exact - root_.y()) - correction_);
+  root_.y() += correction_;
   started_ = true;
   return root_;
 }

@@ -50,9 +50,9 @@ class RootPath {
   Joints rest_b_ = Joints::Zero();
   SupportPoints support_;
   float leg_b_ = 1;
-  RunningMedian leg_a_, offsets_, sole_;
+  RunningMedian leg_a_, offsets_;
   Vec3 last_source_ = Vec3::Zero(), root_ = Vec3::Zero();
-  float offset_ = 0, scale_ = 1;
+  float offset_ = 0, correction_ = 0, scale_ = 1;
   bool started_ = false;
 };
 

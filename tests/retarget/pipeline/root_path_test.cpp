@@ -1,0 +1,85 @@
+#include "retarget/pipeline/root_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/retarget/pipeline/fixtures.hpp"
+
+namespace understudy {
+namespace {
+
+using namespace fixtures;
+
+struct Walk {
+  Joints rest_b = 0.6f * human_rest();
+  PointBody a{human_rest()}, b{rest_b};
+  /// The target's pelvis after each of 60 frames of a source that steps sideways, standing.
+  std::vector<Vec3> path(RootMode mode, float height = 1.1153f) const {
+    RootPathOptions options;
+    options.mode = mode;
+    RootPath root(options);
+    root.reset(b.mesh.vertices, rest_b);
+    std::vector<Vec3> result;
+    for (int i = 0; i < 60; ++i) {
+      const Pose pose{identity_rotations(), Vec3(1 + 0.02f * static_cast<float>(i), height, 2)};
+      const Mesh scan = scan_of(a, human_rest(), pose);
+      result.push_back(root.push(forward_kinematics(human_rest(), pose).joints,
+                                 scan.vertices.topRows(scan.vertices.rows() - kJointCount),
+                                 identity_rotations(), 1 / 30.0f));
+    }
+    return result;
+  }
+};
+
+TEST(RootPath, StartsWhereTheSourceStarts) {
+  const Vec3 first = Walk().path(RootMode::Scaled).front();
+  EXPECT_FLOAT_EQ(first.x(), 1);
+  EXPECT_FLOAT_EQ(first.z(), 2);
+}
+
+TEST(RootPath, ScalesThePathByTheLegs) {
+  const auto path = Walk().path(RootMode::Scaled);
+  EXPECT_NEAR(path.back().x() - path.front().x(), 0.6f * 59 * 0.02f, 1e-3f);
+}
+
+TEST(RootPath, KeepsTheOriginalPathWhenAsked) {
+  const auto path = Walk().path(RootMode::Original);
+  EXPECT_NEAR(path.back().x() - path.front().x(), 59 * 0.02f, 1e-3f);
+}
+
+TEST(RootPath, StaysInPlaceWhenAsked) {
+  const auto path = Walk().path(RootMode::InPlace);
+  EXPECT_FLOAT_EQ(path.back().x(), path.front().x());
+}
+
+TEST(RootPath, PutsTheSolesOnTheFloorWhereTheSourcesAre) {
+  const Walk walk;  // the source's soles are 1.1153 below its pelvis, the target's at 0.6 of the ankles'
+                    // height and 0.1
+  const float sole_b = -walk.b.mesh.vertices.col(1).minCoeff();
+  for (const Vec3& root : walk.path(RootMode::Scaled)) EXPECT_NEAR(root.y(), sole_b, 0.006f);
+}
+
+TEST(RootPath, LiftsTheTargetAsTheSourceIsInTheAir) {
+  const Walk walk;
+  const float sole_b = -walk.b.mesh.vertices.col(1).minCoeff();
+  const float up = walk.path(RootMode::Scaled, 1.1153f + 0.3f).back().y();
+  EXPECT_NEAR(up, sole_b + 0.6f * 0.3f, 0.01f);
+}
+
+TEST(RootPath, DoesNotJumpWhenTheLegsTurnOutShorter) {
+  const Walk walk;
+  RootPath root;
+  root.reset(walk.b.mesh.vertices, walk.rest_b);
+  Vec3 last = Vec3::Zero();
+  for (int i = 0; i < 90; ++i) {
+    const float size = i < 3 ? 1.2f : 1.0f;  // the first frames see too long legs
+    Joints joints = size * human_rest();
+    joints.rowwise() += Eigen::RowVector3f(0.02f * static_cast<float>(i), 1.1f, 0);
+    const Vec3 now = root.push(joints, Points(0, 3), identity_rotations(), 1 / 30.0f);
+    if (i > 0) EXPECT_LT((now - last).norm(), 0.05f) << i;
+    last = now;
+  }
+  EXPECT_NEAR(root.scale(), 0.6f, 0.02f);
+}
+
+}  // namespace
+}  // namespace understudy
