@@ -355,8 +355,8 @@ SceneNodes walk_scene(const GltfFile& file) {
   return nodes;
 }
 
-// Turns that are nearly a quarter are meant as one: the rest pose of the root joint may lean a little, the
-// bind pose is upright.
+// The nearest turn by quarters: the rest pose of the root joint may lean and look aside, but a bind pose is
+// modelled along the axes.
 Mat3 snapped(const Mat3& R) {
   Mat3 out = Mat3::Zero();
   for (int c = 0; c < 3; ++c) {
@@ -366,7 +366,7 @@ Mat3 snapped(const Mat3& R) {
   }
   const bool is_rotation =
       std::abs(out.determinant() - 1.0f) < 1e-3f && (out * out.transpose()).isIdentity(1e-3f);
-  return is_rotation && (out.transpose() * R).trace() > 2.64f ? out : R;  // within 35 degrees
+  return is_rotation ? out : R;
 }
 
 // Where the bind pose of a skin stands in the world: as its root joint carries it there.

@@ -29,6 +29,8 @@ constexpr std::array<Unit, 5> kUnits = {{{"m", "metres", 1.0f, 0.5f, 2.6f},
                                          {"cm", "centimetres", 0.01f, 84.0f, 260.0f},
                                          {"mm", "millimetres", 0.001f, 500.0f, 2600.0f}}};
 
+constexpr float kUsualHeight = 1.7f;
+
 struct Range {
   float low = 0, high = 0;
   float size() const { return high - low; }
@@ -200,6 +202,18 @@ const Unit* find_unit(const std::string& name) {
   return nullptr;
 }
 
+// No person has this height in any unit. Somebody who lies, or a giant, is still in metres; the rest are
+// characters of arbitrary size, and become as tall as people are.
+std::string decide_odd_size(float height, ImportDecision& decision) {
+  const bool has_size = height > 1e-20f && height < 1e30f;
+  const bool metric = !has_size || (height >= 0.1f && height < 5.0f);
+  const std::string what = "a height of " + short_number(height) + " is no person's in any unit";
+  decision.units = metric ? "m" : "fit";
+  decision.scale = metric ? 1.0f : kUsualHeight / height;
+  log::warn(what + (metric ? ", it is taken as metres" : ", it is made 1.7 m"));
+  return std::string("units: ") + (metric ? "metres (" : "unknown, made 1.7 m tall (") + what + ")";
+}
+
 // Writes unit and scale into the decision; returns the words about it.
 std::string decide_units(float height, const std::string& forced, ImportDecision& decision) {
   const bool guess = forced.empty() || forced == "auto";
@@ -210,12 +224,7 @@ std::string decide_units(float height, const std::string& forced, ImportDecision
     for (const auto& candidate : kUnits)
       if (height >= candidate.low && height < candidate.high) unit = &candidate;
     why = " (from the height " + short_number(height) + ")";
-    if (!unit) {
-      unit = kUnits.data();
-      why = " (a height of " + short_number(height) + " is no person's in any unit)";
-      log::warn("the scan's height of " + short_number(height) +
-                " is no person's in any unit, taken as metres");
-    }
+    if (!unit) return decide_odd_size(height, decision);
   }
   decision.units = unit->name;
   decision.scale = unit->metres;
@@ -260,8 +269,8 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   // Within 2 cm the file's own zero is the better floor: the lowest points are a noisy measure of it.
   decision.floor = forced.floor ? *forced.floor : std::abs(measured) <= 0.02f ? 0.0f : measured;
   decision.sentence += ", up: " + decision.up + (guess ? "" : ", as told") +
-                       (up.floor.seen ? " (from the floor)" : "") + ", floor at " +
-                       short_number(decision.floor) + " m";
+                       (up.floor.seen ? " (from the floor)" : "") + ", floor at " + metres(decision.floor) +
+                       " m";
   if (forced.yaw_deg != 0) decision.sentence += ", turned by " + short_number(forced.yaw_deg) + " degrees";
   return decision;
 }

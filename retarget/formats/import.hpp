@@ -30,10 +30,10 @@ struct ImportDecision {
   Points apply(const Points& points) const;
 };
 
-/// Decides from the first usable frame: outliers are left aside, a flat floor in the scan shows where down
-/// is. A body that is neither near 0.5 to 2.6 m in any unit is taken as metres with a warning. Axes can only
-/// be guessed positive unless a floor is seen. Throws Error when the options are not among those named, or
-/// there is no finite point.
+/// Decides from the first usable frame. Outliers are left aside; a flat floor in the scan shows where down
+/// is. What is not 0.5 to 2.6 m tall in any unit is taken as metres (0.1 to 5), else made 1.7 m tall, with a
+/// warning. Axes can only be guessed positive unless a floor is seen. Throws Error when the options are not
+/// among those named, or there is no finite point.
 ImportDecision decide_import(const Mesh& first, const ImportOptions& forced);
 
 }  // namespace understudy

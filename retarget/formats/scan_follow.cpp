@@ -53,7 +53,7 @@ class FollowedFolder : public ScanSource::Frames {
  private:
   // One look at the folder: a frame that is complete, or none yet, or the end.
   std::optional<ScanFrame> look() {
-    if (waiting_.size() > 1)
+    if (waiting_.size() > 1 && !skips_a_number(waiting_.front()))
       return take(true);  // the writer is ahead: no need to list the folder for each frame
     const auto names = folder_files(folder_);
     const bool done = std::any_of(names.begin(), names.end(),

@@ -164,6 +164,18 @@ TEST(Import, SurvivesNanPointsAndTinyScans) {
   EXPECT_TRUE(warnings.contain("no person's"));
 }
 
+TEST(Import, MakesACharacterOfArbitrarySizeAsTallAsPeopleAre) {
+  Warnings warnings;
+  for (const float scale : {1e-4f, 275.0f, 1e6f}) {
+    const Mesh file = as_file(person(true), "y", scale);
+    const ImportDecision decision = decide_import(file, {});
+    EXPECT_EQ(decision.units, "fit");
+    EXPECT_NEAR(decision.apply(file.vertices).col(1).maxCoeff(), 1.7f, 0.05f);
+  }
+  EXPECT_EQ(decide_import(as_file(person(true), "y", 2), {}).units, "m");
+  EXPECT_TRUE(warnings.contain("is no person's in any unit"));
+}
+
 TEST(Import, KeepsTheFilesZeroWhenTheLowestPointsAreNearIt) {
   EXPECT_EQ(decide_import(as_file(person(false), "y", 1, {0, 0.015f, 0}), {}).floor, 0);
 }
