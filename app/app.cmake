@@ -7,12 +7,12 @@ us_module(app SOURCES
   app/cli/samples.cpp app/cli/source.cpp
   PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline understudy_networks
   understudy_render nlohmann_json::nlohmann_json
-  PRIVATE understudy_npz understudy_body ZLIB::ZLIB ${CMAKE_DL_LIBS})
+  PRIVATE understudy_npz understudy_body understudy_results ZLIB::ZLIB ${CMAKE_DL_LIBS})
 
 add_executable(understudy app/main.cpp app/cli/commands.cpp app/cli/bench.cpp app/cli/demo.cpp app/cli/doctor.cpp
   app/cli/eval.cpp app/cli/retarget.cpp app/cli/sample.cpp app/cli/train.cpp)
 target_include_directories(understudy PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app understudy_body)
+target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app understudy_builtin)
 
 # The program and what it loads at run time.
 add_custom_target(understudy_all DEPENDS understudy networks_plugin)

@@ -101,7 +101,7 @@ Running start(const JobOptions& options, const Mesh& target) {
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.report.empty()) job.judge.emplace(job.source->fps(), nullptr, &target);
   if (!options.out.empty())
-    job.output = open_output(options.out, target, job.performer->retargeter(), job.source->fps());
+    job.output = open_output(options.out, job.performer->retargeter(), job.source->fps());
   return job;
 }
 
@@ -162,6 +162,7 @@ std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
 }
 
 void run_job(const JobOptions& options) {
+  check_output_format(options.out);
   for (const std::string& path : {options.out, options.report, options.preview}) check_writable(path);
   const Mesh target = import_target(options.target);
   Running job = start(options, target);
@@ -175,7 +176,8 @@ void run_job(const JobOptions& options) {
   progress.finish();
   check_interrupt("after " + std::to_string(job.frames) + " frames");
   US_CHECK(job.frames > job.flagged, options.source.path, ": no frame in it could be used");
-  if (job.frames == 1) log::warn(options.source.path + ": holds only one frame: the result is a pose, not a motion");
+  if (job.frames == 1)
+    log::warn(options.source.path + ": holds only one frame: the result is a pose, not a motion");
   finish(options, job);
 }
 
