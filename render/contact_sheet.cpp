@@ -36,12 +36,13 @@ Points outline(const Points& vertices, const std::optional<Joints>& joints) {
     low = joints->colwise().minCoeff().array() - kReach;
     high = joints->colwise().maxCoeff().array() + kReach;
   }
-  if (vertices.rows() == 0 && joints && joints->allFinite()) return *joints;
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < vertices.rows(); ++i)
     if ((vertices.row(i).array() >= low.array()).all() && (vertices.row(i).array() <= high.array()).all())
       kept.push_back(i);
-  Points points(static_cast<Eigen::Index>(kept.size()), 3);
+  const bool with_joints = joints && joints->allFinite();
+  Points points(static_cast<Eigen::Index>(kept.size()) + (with_joints ? kJointCount : 0), 3);
+  if (with_joints) points.bottomRows(kJointCount) = *joints;
   for (size_t i = 0; i < kept.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = vertices.row(kept[i]);
   return points;
 }

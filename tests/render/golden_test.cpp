@@ -1,0 +1,247 @@
+// Each pass against a stored picture, and proof that each picture would notice: the same scene with the pass
+// turned off or around must differ from it. US_UPDATE_GOLDEN=1 writes the pictures anew.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "content.hpp"
+#include "pictures.hpp"
+#include "render/colors.hpp"
+
+namespace understudy::render {
+namespace {
+
+constexpr double kAlike = 0.01, kUnlike = 0.02;  // shares of pixels
+
+std::string golden_path(const std::string& name) {
+  return std::string(US_SOURCE_DIR "/tests/golden/") + name + ".png";
+}
+
+/// The pass draws what it drew when someone last looked.
+void expect_golden(const std::string& name, const Scene& scene) {
+  const Image now = picture(scene, view_of(scene));
+  const char* update = std::getenv("US_UPDATE_GOLDEN");
+  if (update != nullptr && std::string(update) == "1") write_png(golden_path(name), now);
+  const double difference_now = difference(now, read_png(golden_path(name)));
+  if (difference_now > kAlike) {
+    write_png(name + "_now.png", now);
+    ADD_FAILURE() << name << ": " << 100 * difference_now << " % of the pixels differ; see "
+                  << std::filesystem::absolute(name + "_now.png");
+  }
+}
+
+/// This scene, seen as `original` is, is not what the stored picture shows.
+void expect_noticed(const std::string& name, const Scene& original, const Scene& broken) {
+  EXPECT_GT(difference(picture(broken, view_of(original)), read_png(golden_path(name))), kUnlike) << name;
+}
+
+Scene pear() {
+  Scene scene;
+  add(scene, make_pear());
+  return scene;
+}
+
+TEST(GoldenMesh, IsAsItWas) {
+  expect_golden("mesh", pear());
+}
+
+TEST(GoldenMesh, NoticesInvertedNormals) {
+  Scene broken = pear();
+  MeshView& mesh = broken.meshes[0];
+  mesh.normals = -vertex_normals(mesh.vertices, mesh.faces);
+  expect_noticed("mesh", pear(), broken);
+}
+
+TEST(GoldenMesh, NoticesTheMissingPass) {
+  Scene broken = pear();
+  broken.meshes.clear();
+  expect_noticed("mesh", pear(), broken);
+}
+
+TEST(GoldenMesh, NoticesMissingBackground) {
+  Scene broken = pear();
+  broken.background = {Vec3::Zero(), Vec3::Zero()};
+  expect_noticed("mesh", pear(), broken);
+}
+
+/// The far half of a pear: its inside is seen.
+Scene shell() {
+  Scene scene = pear();
+  MeshView& mesh = scene.meshes[0];
+  Eigen::Index kept = 0;
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+    if (mesh.vertices(mesh.faces(f, 0), 2) < 0) mesh.faces.row(kept++) = Faces(mesh.faces.row(f));
+  mesh.faces.conservativeResize(kept, 3);
+  return scene;
+}
+
+TEST(GoldenTwoSided, IsAsItWas) {
+  expect_golden("two_sided", shell());
+}
+
+TEST(GoldenTwoSided, NoticesOneSidedLight) {
+  Scene broken = shell();
+  broken.meshes[0].two_sided = false;
+  expect_noticed("two_sided", shell(), broken);
+}
+
+Scene weighted() {
+  Scene scene = pear();
+  MeshView& mesh = scene.meshes[0];
+  RowMatrix weights = RowMatrix::Zero(mesh.vertices.rows(), 22);
+  for (Eigen::Index v = 0; v < weights.rows(); ++v) {
+    const float at = std::clamp(mesh.vertices(v, 1) / 1.2f, 0.f, 1.f) * 20.99f;
+    const int j = static_cast<int>(at);
+    weights(v, j) = 1 - (at - static_cast<float>(j));
+    weights(v, j + 1) = at - static_cast<float>(j);
+  }
+  mesh.colors = weight_colors(weights);
+  return scene;
+}
+
+TEST(GoldenWeights, AreAsTheyWere) {
+  expect_golden("weights", weighted());
+}
+
+TEST(GoldenWeights, NoticeMissingColours) {
+  expect_noticed("weights", weighted(), pear());
+}
+
+Scene viridis_cloud() {
+  Scene scene;
+  Mesh cloud;
+  Rng rng(2);
+  cloud.vertices = sample_points(make_pear(), 2500, rng);
+  cloud.colors = viridis_colors(cloud.vertices.col(1), 0, 1.2f);
+  add(scene, cloud);
+  return scene;
+}
+
+TEST(GoldenPoints, AreAsTheyWere) {
+  expect_golden("points", viridis_cloud());
+}
+
+TEST(GoldenPoints, NoticeTheMissingPass) {
+  Scene broken = viridis_cloud();
+  broken.clouds.clear();
+  expect_noticed("points", viridis_cloud(), broken);
+}
+
+TEST(GoldenPoints, NoticeMissingNormals) {
+  Scene broken = viridis_cloud();
+  broken.clouds[0].normals.resize(0, 3);
+  expect_noticed("points", viridis_cloud(), broken);
+}
+
+TEST(GoldenPoints, NoticeAnotherRadius) {
+  Scene broken = viridis_cloud();
+  broken.clouds[0].radius *= 0.5f;
+  expect_noticed("points", viridis_cloud(), broken);
+}
+
+Scene skeleton() {
+  Scene scene;
+  scene.skeletons.push_back(skeleton_view(make_joints()));
+  scene.skeletons[0].x_ray = false;
+  scene.skeletons[0].thickness = 1.6f;
+  return scene;
+}
+
+TEST(GoldenSkeleton, IsAsItWas) {
+  expect_golden("skeleton", skeleton());
+}
+
+TEST(GoldenSkeleton, NoticesExchangedSides) {
+  Scene broken = skeleton();
+  for (Side& side : broken.skeletons[0].sides)
+    side = side == Side::Left ? Side::Right : side == Side::Right ? Side::Left : Side::Middle;
+  expect_noticed("skeleton", skeleton(), broken);
+}
+
+TEST(GoldenSkeleton, NoticesTheMissingPass) {
+  Scene broken = skeleton();
+  broken.skeletons.clear();
+  expect_noticed("skeleton", skeleton(), broken);
+}
+
+Scene x_ray() {
+  Scene scene;
+  add(scene, make_pear(40, 56, 1.75f));
+  scene.skeletons.push_back(skeleton_view(make_joints()));
+  return scene;
+}
+
+TEST(GoldenXRay, IsAsItWas) {
+  expect_golden("x_ray", x_ray());
+}
+
+TEST(GoldenXRay, NoticesASkeletonThatIsHidden) {
+  Scene broken = x_ray();
+  broken.skeletons[0].x_ray = false;
+  expect_noticed("x_ray", x_ray(), broken);
+}
+
+Scene ghost() {
+  Scene scene = x_ray();
+  scene.meshes[0].opacity = 0.35f;
+  scene.skeletons[0].x_ray = false;
+  return scene;
+}
+
+TEST(GoldenGhost, IsAsItWas) {
+  expect_golden("ghost", ghost());
+}
+
+TEST(GoldenGhost, NoticesAnOpaqueBody) {
+  Scene broken = ghost();
+  broken.meshes[0].opacity = 1;
+  expect_noticed("ghost", ghost(), broken);
+}
+
+Scene floating() {  // high enough that grid and shadow are seen
+  Scene scene = pear();
+  scene.ground.spacing = 0.2f;
+  scene.ground.shadow = 1;
+  return scene;
+}
+
+TEST(GoldenGround, IsAsItWas) {
+  expect_golden("ground", floating());
+}
+
+TEST(GoldenGround, NoticesTheMissingGrid) {
+  Scene broken = floating();
+  broken.ground.visible = false;
+  expect_noticed("ground", floating(), broken);
+}
+
+TEST(GoldenGround, NoticesTheMissingShadow) {
+  Scene broken = floating();
+  broken.ground.shadow = 0;
+  expect_noticed("ground", floating(), broken);
+}
+
+Scene creased() {  // three pears run into one another
+  Scene scene;
+  for (const float x : {-0.3f, 0.f, 0.3f}) {
+    Mesh mesh = make_pear();
+    mesh.vertices.col(0).array() += x;
+    add(scene, mesh);
+  }
+  scene.occlusion = 1;
+  return scene;
+}
+
+TEST(GoldenOcclusion, IsAsItWas) {
+  expect_golden("occlusion", creased());
+}
+
+TEST(GoldenOcclusion, NoticesTheMissingPass) {
+  Scene broken = creased();
+  broken.occlusion = 0;
+  expect_noticed("occlusion", creased(), broken);
+}
+
+}  // namespace
+}  // namespace understudy::render
