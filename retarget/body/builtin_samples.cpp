@@ -1,0 +1,184 @@
+#include "retarget/body/builtin_samples.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "retarget/base/error.hpp"
+#include "retarget/body/builtin_motion.hpp"
+#include "retarget/body/builtin_person.hpp"
+#include "retarget/body/capture.hpp"
+
+namespace understudy {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Name and FNV-1a checksum of each file written.
+struct Written {
+  fs::path folder;
+  std::vector<std::pair<std::string, uint64_t>> files;
+  uint64_t bytes = 0;
+};
+
+constexpr uint64_t kFnvStart = 0xcbf29ce484222325ull;
+
+uint64_t fnv1a(const std::string& bytes, uint64_t hash = kFnvStart) {
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return hash;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  US_CHECK(fs::is_directory(folder, failed), folder.string(), ": the folder cannot be made");
+}
+
+void write_file(const fs::path& path, const std::string& bytes) {
+  const std::string part = path.string() + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code failed;
+  if (file) fs::rename(part, path, failed);
+  if (!file || failed) {
+    fs::remove(part, failed);
+    throw Error(path.string() + ": cannot be written");
+  }
+}
+
+template <class T>
+void append(std::string& bytes, const T* values, size_t count) {
+  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+std::string ply_bytes(const Points& points) {
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(points.rows()) +
+                      "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  append(bytes, points.data(), static_cast<size_t>(points.size()));
+  return bytes;
+}
+
+/// A mesh as binary glTF 2.0: positions and indices, nothing else.
+std::string glb_bytes(const Points& vertices, const Faces& faces, const std::string& name) {
+  const auto numbers = [](const Eigen::RowVector3f& v) {
+    char text[96];
+    std::snprintf(text, sizeof text, "[%.9g,%.9g,%.9g]", v.x(), v.y(), v.z());
+    return std::string(text);
+  };
+  const size_t position_bytes = static_cast<size_t>(vertices.size()) * 4,
+               index_bytes = static_cast<size_t>(faces.size()) * 4;
+  std::string json =
+      R"({"asset":{"version":"2.0","generator":"Understudy"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":")" +
+      name +
+      R"("}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"buffers":[{"byteLength":)" +
+      std::to_string(position_bytes + index_bytes) + R"(}],"bufferViews":[{"buffer":0,"byteLength":)" +
+      std::to_string(position_bytes) + R"(,"target":34962},{"buffer":0,"byteOffset":)" +
+      std::to_string(position_bytes) + R"(,"byteLength":)" + std::to_string(index_bytes) +
+      R"(,"target":34963}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" +
+      std::to_string(vertices.rows()) + R"(,"min":)" + numbers(vertices.colwise().minCoeff()) + R"(,"max":)" +
+      numbers(vertices.colwise().maxCoeff()) +
+      R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" + std::to_string(faces.size()) +
+      "}]}";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto word = [](std::string& out, size_t value) {
+    const uint32_t v = static_cast<uint32_t>(value);
+    append(out, &v, 1);
+  };
+  std::string bytes = "glTF";
+  word(bytes, 2), word(bytes, 12 + 8 + json.size() + 8 + position_bytes + index_bytes);
+  word(bytes, json.size());
+  bytes += "JSON" + json;
+  word(bytes, position_bytes + index_bytes);
+  bytes += std::string("BIN\0", 4);
+  append(bytes, vertices.data(), static_cast<size_t>(vertices.size()));
+  append(bytes, faces.data(), static_cast<size_t>(faces.size()));
+  return bytes;
+}
+
+struct ScanSample {
+  const char* name;
+  const char* motion;
+  PersonOptions person;
+  float from, seconds;
+  int points;
+};
+
+void write_scan(const ScanSample& sample, Written& written) {
+  constexpr float kFps = 30;
+  const ShapedBody body = builtin_person(sample.person);
+  const Motion motion = builtin_motion(sample.motion, body.joints, kFps);
+  CaptureOptions capture;
+  capture.points = sample.points;
+  make_folder(written.folder / sample.name);
+  const int first = static_cast<int>(sample.from * kFps), count = static_cast<int>(sample.seconds * kFps);
+  uint64_t hash = kFnvStart;
+  for (int i = 0; i < count; ++i) {
+    const Pose& pose = motion.poses.at(static_cast<size_t>(first + i));
+    const Points vertices = linear_blend_skinning(body.vertices, body.weights, body.joints,
+                                                  forward_kinematics(body.joints, pose));
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%05d.ply", i);
+    const std::string bytes = ply_bytes(simulated_capture(vertices, body.faces, i, capture).vertices);
+    write_file(written.folder / sample.name / name, bytes);
+    hash = fnv1a(bytes, hash);
+    written.bytes += bytes.size();
+  }
+  written.files.emplace_back(std::string(sample.name) + "/ (" + std::to_string(count) + " frames in order)",
+                             hash);
+}
+
+void write_target(const std::string& name, const PersonOptions& person, Written& written) {
+  const ShapedBody body = builtin_person(person);
+  Points standing = body.vertices;
+  standing.col(1).array() -= standing.col(1).minCoeff();
+  const std::string bytes = glb_bytes(standing, body.faces, name);
+  write_file(written.folder / (name + ".glb"), bytes);
+  written.files.emplace_back(name + ".glb", fnv1a(bytes));
+  written.bytes += bytes.size();
+}
+
+PersonOptions person(float stature, float girth, float sex, float age) {
+  PersonOptions p;
+  p.stature = stature, p.girth = girth, p.sex = sex, p.age = age;
+  return p;
+}
+
+std::string readme(const Written& written) {
+  std::string text =
+      "# Samples\n\nMade by the program itself (`understudy sample FOLDER`) from its built-in person, "
+      "built-in motions and simulated\n"
+      "capture; no outside data. Licence: MIT, as the program.\n\n"
+      "- `scan/`: a woman, 1.68 m, dances for 2.9 s; what seven depth cameras see at 30 frames/s: point "
+      "counts and order change from\n"
+      "  frame to frame, 4 mm noise, holes, a few outliers, some floor. Binary PLY, metres, y up.\n"
+      "- `walk/`: a man, 1.80 m, walks for 1.5 s, captured the same way.\n"
+      "- `target_adult.glb`: a broad heavy man, 1.76 m, in T-pose. `target_child.glb`: a girl of six, 1.15 "
+      "m.\n\n"
+      "| file | FNV-1a, 64 bit |\n|---|---|\n";
+  for (const auto& [name, hash] : written.files) {
+    char line[160];
+    std::snprintf(line, sizeof line, "| %s | %016llx |\n", name.c_str(),
+                  static_cast<unsigned long long>(hash));
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_samples(const std::string& folder) {
+  Written written{folder, {}};
+  make_folder(written.folder);
+  write_scan({"scan", "dance", person(1.68f, 1.0f, 1, 28), 1.2f, 2.9f, 4800}, written);
+  write_scan({"walk", "walk", person(1.80f, .95f, 0, 35), 1.0f, 1.5f, 4500}, written);
+  write_target("target_adult", person(1.76f, 1.40f, 0, 45), written);
+  write_target("target_child", person(1.15f, 1.0f, 1, 6), written);
+  write_file(written.folder / "README.md", readme(written));
+}
+
+}  // namespace understudy

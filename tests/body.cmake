@@ -1,0 +1,4 @@
+us_test(builtin_test SOURCES
+  tests/retarget/body/builtin_person_test.cpp tests/retarget/body/builtin_motion_test.cpp
+  tests/retarget/body/capture_test.cpp tests/retarget/body/builtin_samples_test.cpp
+  LIBS understudy_builtin understudy_metrics understudy_formats LABELS fast TIMEOUT 300)
