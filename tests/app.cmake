@@ -22,4 +22,5 @@ add_dependencies(example_test retarget_minimal)
 
 add_test(NAME layers COMMAND ${PROJECT_SOURCE_DIR}/tests/check_layers.sh)
 add_test(NAME layers_are_enforced COMMAND ${PROJECT_SOURCE_DIR}/tests/check_layers_test.sh)
-set_tests_properties(layers layers_are_enforced PROPERTIES LABELS fast)
+add_test(NAME build_script COMMAND ${PROJECT_SOURCE_DIR}/tests/build_script_test.sh)
+set_tests_properties(layers layers_are_enforced build_script PROPERTIES LABELS fast)
