@@ -9,6 +9,7 @@
 #include "app/cli/progress.hpp"
 #include "app/cli/samples.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 
 namespace understudy::app {
 namespace {
@@ -31,8 +32,10 @@ class Repeated final : public Source {
     if (left_-- <= 0) return std::nullopt;
     auto frame = inner_->next();
     if (frame) return frame;
+    const auto sink = log::set_sink([](log::Level, const std::string&) {});  // it has all been told once
     inner_ = open_source(options_);
     frame = inner_->next();
+    log::set_sink(sink);
     US_CHECK(frame, options_.path, ": has no frames");
     return frame;
   }

@@ -15,6 +15,8 @@
 namespace understudy::app {
 namespace {
 
+constexpr Eigen::Index kFewestPoints = 32;  // that units, axes and floor are read from
+
 std::string in_words(double fps) {
   char text[32];
   std::snprintf(text, sizeof text, "%g frames/s", fps);
@@ -37,6 +39,12 @@ class ScanFiles final : public Source {
   std::optional<ScanFrame> next() override {
     std::optional<ScanFrame> frame = scans_.next();
     if (!frame || !frame->usable) return frame;
+    const Eigen::Index points = finite_count(frame->mesh.vertices);
+    if (!decision_ && points < kFewestPoints) {
+      frame->usable = false;
+      frame->problem = frame->path + ": " + std::to_string(points) + " points do not show a body";
+      return frame;
+    }
     if (!decision_) {
       decision_ = decide_import(frame->mesh, import_);
       log::info(frame->path + ": " + decision_->sentence);

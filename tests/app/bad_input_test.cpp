@@ -111,7 +111,6 @@ TEST_F(BadInput, ATargetWhoseHeaderLies) {
 }
 
 TEST_F(BadInput, ATruncatedTarget) {
-  const std::string whole = read_bytes(target());
   write_text(scratch.path("half.obj"), "v 1 2\nf 1 2 3\n");
   expect_clean_failure(run_program({"retarget", "--source", scans(), "--target", scratch.path("half.obj"),
                                     "--out", out("a.glb")}),

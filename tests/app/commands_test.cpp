@@ -2,6 +2,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "retarget/body/builtin_person.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/support/training_folder.hpp"
@@ -107,7 +108,8 @@ class Eval : public ShippedProgram {
     }
     write_text(folder + "/case.json", json.dump());
     NpyArray joints{{kFrames, 22, 3}, std::vector<float>(kFrames * 66), {}};
-    for (size_t i = 0; i < joints.values.size(); ++i) joints.values[i] = 0.01f * static_cast<float>(i % 66);
+    const Joints standing = builtin_joints();
+    for (size_t i = 0; i < joints.values.size(); ++i) joints.values[i] = standing.data()[i % 66];
     NpyArray rotations{{kFrames, 22, 3, 3}, std::vector<float>(kFrames * 198), {}};
     for (size_t i = 0; i < rotations.values.size(); ++i) rotations.values[i] = i % 9 % 4 == 0;
     NpyArray rest{{22, 3}, {joints.values.begin(), joints.values.begin() + 66}, {}};

@@ -92,6 +92,14 @@ TEST_F(SourceFiles, PassABadFrameOn) {
   EXPECT_TRUE(source->next()->usable);
 }
 
+TEST_F(SourceFiles, AFrameOfThreePointsDecidesNothing) {
+  std::ofstream(scratch.path("frame_00000.xyz")) << "0 0 0\n0 5000 0\n1 1 1\n";
+  write_frame(1, 100);
+  const auto source = open_source(here());
+  EXPECT_FALSE(source->next()->usable);
+  EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 1.7f, 0.02);
+}
+
 NpyArray filled(std::vector<int64_t> shape, float value) {
   int64_t count = 1;
   for (const int64_t extent : shape) count *= extent;
