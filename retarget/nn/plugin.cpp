@@ -23,7 +23,7 @@ std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, con
   return load_paper_transfer(folder + "/motion.weights");
 }
 
-std::unique_ptr<Deformer> load_deformer(const NetworkOptions& options, const std::string& folder) {
+std::unique_ptr<Deformer> load_skin(const NetworkOptions& options, const std::string& folder) {
   return load_network_deformer(folder + "/deformation.weights", options.offsets);
 }
 
@@ -55,10 +55,10 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
     log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
   return {load_network_extractor(folder + (options.extractor == "paper" ? "/skeleton_paper.weights" : "/skeleton.weights"),
                                  options.extractor),
-          load_transfer(options, folder), load_deformer(options, folder)};
+          load_transfer(options, folder), load_skin(options, folder)};
 }
 
-int train(const TrainOptions& options) {
+int train_network(const TrainOptions& options) {
   if (options.network == "skeleton") return training::train_skeleton(options);
   if (options.network == "motion") return training::train_motion(options);
   if (options.network == "deformation") return training::train_deformation(options);
@@ -70,6 +70,6 @@ int train(const TrainOptions& options) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion, load, load_deformer, report, train};
+  static const PluginApi api{kPluginVersion, load, load_skin, report, train_network};
   return &api;
 }
