@@ -1,5 +1,7 @@
 #include "retarget/training/motion_judge.hpp"
 
+#include <algorithm>
+
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/modules/forward_kinematics.hpp"
@@ -10,11 +12,20 @@ namespace {
 
 constexpr int kCases = 24;
 
-/// The first `frames` frames in a row without a flag; -1 when there are none.
-int first_good_run(const Clip& clip, int frames) {
-  for (size_t i = 0; i + frames <= clip.good.size(); ++i)
-    if (clip.good[i + frames - 1] - clip.good[i] == frames - 1) return clip.good[i];
-  return -1;
+/// Frames in a row without a flag.
+struct Run {
+  int first = 0, count = 0;
+};
+
+Run longest_run(const Clip& clip) {
+  Run best;
+  for (size_t i = 0; i < clip.good.size();) {
+    size_t end = i + 1;
+    while (end < clip.good.size() && clip.good[end] == clip.good[end - 1] + 1) ++end;
+    if (static_cast<int>(end - i) > best.count) best = {clip.good[i], static_cast<int>(end - i)};
+    i = end;
+  }
+  return best;
 }
 
 torch::Tensor tensor_of(const std::vector<Joints>& joints) {
@@ -37,21 +48,27 @@ double aligned_error_mm(const torch::Tensor& made, const torch::Tensor& truth) {
 
 }  // namespace
 
-MotionJudge::MotionJudge(const TrainingData& dev, float noise, int frames) {
+MotionJudge::MotionJudge(const TrainingData& dev, float noise, int most_frames) {
+  int frames = 0;
+  for (const Clip& clip : dev.clips)
+    frames = std::max(frames, std::min(most_frames, longest_run(clip).count));
   Rng rng(7);
   std::vector<torch::Tensor> source, leg, rest, rotations;
   const auto body = [&] {
     return dev.body.shaped(dev.betas[rng.below(static_cast<int>(dev.betas.size()))]).joints;
   };
-  const size_t every = std::max<size_t>(1, dev.clips.size() / kCases);
-  for (size_t c = 0; c < dev.clips.size(); c += every) {
-    const int first = first_good_run(dev.clips[c], frames);
-    if (first < 0) continue;
+  std::vector<const Clip*> clips;
+  for (const Clip& clip : dev.clips)
+    if (frames > 1 && longest_run(clip).count >= frames) clips.push_back(&clip);
+  US_CHECK(!clips.empty(), "the dev split has no motion to judge by");
+  const size_t every = std::max<size_t>(1, clips.size() / kCases);
+  for (size_t c = 0; c < clips.size(); c += every) {
+    const int first = longest_run(*clips[c]).first;
     const Joints rest_a = body();
     std::vector<Joints> seen;
     std::vector<torch::Tensor> local;
     for (int t = 0; t < frames; ++t) {
-      Pose pose = dev.clips[c].motion.poses[first + t];
+      Pose pose = clips[c]->motion.poses[first + t];
       pose.root.setZero();
       seen.push_back(forward_kinematics(rest_a, pose).joints);
       for (const Mat3& R : pose.local)
@@ -67,11 +84,9 @@ MotionJudge::MotionJudge(const TrainingData& dev, float noise, int frames) {
     rotations.push_back(torch::stack(local).view({frames, kJointCount, 3, 3}));
     rest.push_back(tensor_of({body()})[0]);
   }
-  US_CHECK(!source.empty(), "no dev clip has ", frames, " good frames in a row");
   input_ = {torch::stack(source), torch::stack(leg),
             torch::full({static_cast<int64_t>(leg.size()), frames}, 1.0f / 30), torch::stack(rest)};
   rotations_ = torch::stack(rotations);
-  joints_ = nn::forward_kinematics(input_.rest, rotations_).joints;
 }
 
 MotionFigures MotionJudge::judge(nn::MotionGru& net) const {

@@ -16,13 +16,14 @@ struct MotionFigures {
 /// from it.
 class MotionJudge {
  public:
-  /// `noise`: mean length of the errors of the source's joints, metres.
-  MotionJudge(const TrainingData& dev, float noise, int frames = 90);
+  /// `noise`: mean length of the errors of the source's joints, metres. Clips give `most_frames` each, or all
+  /// as many as the longest of them has.
+  MotionJudge(const TrainingData& dev, float noise, int most_frames = 90);
   MotionFigures judge(nn::MotionGru& net) const;
 
  private:
   nn::MotionInput input_;
-  torch::Tensor rotations_, joints_;  // of the targets: [N, T, 22, 3, 3], [N, T, 22, 3]
+  torch::Tensor rotations_;  // of the targets, [N, T, 22, 3, 3]
 };
 
 }  // namespace understudy::training
