@@ -29,6 +29,7 @@ struct FootState {
   Vec3 ball;  ///< world, metres
   float yaw_deg, heel_deg;
   bool planted;
+  float toes_flat = 1;     ///< how far the toes undo the heel's angle
   float follows_shin = 0;  ///< 0: held level as planned, 1: hangs from the shin
 };
 
@@ -82,6 +83,7 @@ class Performer {
     state.yaw_deg = from.yaw_deg + along * (step.yaw_deg - from.yaw_deg);
     const float leaving = (0.7f + 0.5f * ramp(s, 0, 0.3f)) * (1 - ramp(s, 0.25f, 0.65f));
     state.heel_deg = step.heel_deg * leaving - 8 * ramp(s, 0.4f, 0.62f) * (1 - ramp(s, 0.62f, 0.86f));
+    state.toes_flat = 1 - 0.6f * ramp(s, 0.06f, 0.35f);
     state.follows_shin =
         (step.via.empty() ? 0.25f : 0.9f) * ramp(s, 0.08f, 0.25f) * (1 - ramp(s, 0.72f, 0.92f));
     return state;
@@ -214,7 +216,7 @@ class Performer {
     pose.local[LeftKnee + side] = R_hip.transpose() * R_knee;
     pose.local[LeftAnkle + side] = R_knee.transpose() * R_ankle;
     // On the floor the toes stay flat while the heel rises.
-    const float toes = -std::clamp(state.heel_deg, 0.0f, 45.0f) * (state.planted ? 1.0f : 0.5f);
+    const float toes = -std::clamp(state.heel_deg, 0.0f, 45.0f) * state.toes_flat;
     pose.local[LeftFoot + side] = about(0, toes);
   }
 

@@ -400,7 +400,7 @@ void PersonShape::add_leg() {
     const float child = 1 - who_.child * mix(-.02f, .06f, thigh) - .06f * who_.old * (1 - thigh);
     const float k = female * child * (1 + r.fat * who_.fat);
     const float foot = r.y < -.78f ? mix(1, who_.foot, ramp(r.y, -.78f, -.83f)) : 1;
-    sections.push_back({r.y, r.x + .5f * r.side * std::max(0.0f, k - 1) * thigh, r.z, r.side * k * foot,
+    sections.push_back({r.y, r.x + .9f * r.side * std::max(0.0f, k - 1) * thigh, r.z, r.side * k * foot,
                         r.front * k * foot, r.back * k * foot});
   }
   // Template heights below the ankle belong to the foot's scale: carry the end of the loft there.
@@ -511,11 +511,11 @@ void PersonShape::add_head() {
   const std::vector<Loft::Section> sections = {
       // y, x, z, side, front, back
       {.541f, 0, .050f, .026f * jaw, .050f, .025f},   {.556f, 0, .048f, .040f * jaw, .064f, .036f},
-      {.575f, 0, .040f, .051f * jaw, .073f, .052f},   {.600f, 0, .032f, .060f * jaw, .081f, .072f},
+      {.575f, 0, .040f, .054f * jaw, .073f, .052f},   {.600f, 0, .032f, .063f * jaw, .082f, .072f},
       {.625f, 0, .028f, .066f, .086f, .086f},         {.650f, 0, .026f, .070f * skull, .087f, .093f},
       {.680f, 0, .026f, .073f * skull, .090f, .096f}, {.705f, 0, .026f, .073f * skull, .089f, .095f},
       {.735f, 0, .026f, .073f * skull, .086f, .093f}, {.768f, 0, .026f, .072f * skull, .083f, .090f}};
-  loft(Part::Head, Region::Head, 1, sections, {.012f, .078f, 2.1f, .012f});
+  loft(Part::Head, Region::Head, 1, sections, {.012f, .078f, 2.2f, .012f});
   ellipsoid(Part::Head, Region::Head, {0, .556f, .094f}, Vec3(.021f + .003f * m, .014f, .015f),
             .014f);  // chin
   if (fat > 0)
@@ -529,11 +529,11 @@ void PersonShape::add_face() {
                            Join join = Join::Add) {
     ellipsoid(Part::Head, Region::Head, c, r, blend, turn, join);
   };
-  blob({.028f, .669f, .106f}, Vec3(.025f, .008f, .008f + .004f * m), .012f, {0, 22, 0});  // brow
-  blob({.043f, .627f, .082f}, {.020f, .017f, .018f}, .020f);                              // cheek bone
-  blob({.0315f, .6495f, .125f}, {.0185f, .0110f, .0150f}, .010f, {0, 20, 0}, Join::Cut);  // eye socket
-  blob({.031f, .6485f, .1005f}, Vec3::Constant(.0125f + .001f * child), .003f);           // eye
-  blob({.031f, .6570f, .1040f}, {.0145f, .0036f, .0095f}, .004f, {0, 15, 0});             // upper lid
+  blob({.028f, .6695f, .1045f}, Vec3(.025f, .008f, .008f + .004f * m), .012f, {0, 22, 0});  // brow
+  blob({.041f, .627f, .079f}, {.020f, .017f, .018f}, .020f);                                // cheek bone
+  blob({.0315f, .6495f, .1245f}, {.0180f, .0105f, .0135f}, .010f, {0, 20, 0}, Join::Cut);   // eye socket
+  blob({.031f, .6490f, .1025f}, Vec3::Constant(.0125f + .001f * child), .003f);             // eye
+  blob({.031f, .6570f, .1040f}, {.0145f, .0036f, .0095f}, .004f, {0, 15, 0});               // upper lid
 
   const float nose = 1 + .10f * m - .15f * child + .05f * who_.old;
   cone(Part::Head, Region::Head, {0, .658f, .104f}, {0, .617f, .104f + .018f * nose},
@@ -606,7 +606,7 @@ float PersonShape::detail(const Vec3& p) const {
   const float hand = mix(1, .38f, smooth_ramp(x, wrist - .10f, wrist + .03f));
   const float foot = mix(1, .58f, smooth_ramp(p.y(), ankle + .03f, ankle - .04f));
   const float face = smooth_ramp(p.z(), .03f, .09f);
-  const float head = mix(1, mix(.62f, .42f, face), smooth_ramp(p.y(), neck - .02f, neck + .05f));
+  const float head = mix(1, mix(.60f, .34f, face), smooth_ramp(p.y(), neck - .02f, neck + .05f));
   return std::min({hand, foot, head});
 }
 
@@ -646,7 +646,7 @@ ImplicitSolid PersonShape::solid() const {
   solid.high =
       Vec3(reach, joints_(Neck, 1) + .30f * who_.head / .60f, .34f + .25f * std::max(who_.fat, 0.0f));
   solid.cell = .0105f;
-  solid.edge_length = .0155f;
+  solid.edge_length = .0162f;
   return solid;
 }
 

