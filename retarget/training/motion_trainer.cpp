@@ -83,16 +83,11 @@ MotionStep MotionTrainer::learn(const MotionBatch& batch) {
   auto rotations = local_b.slice(0, crossed);     // B is A: these already came back
   auto joints = made.slice(0, crossed);
   if (crossed > 0) {
-    const auto bone = [&](int a, int b) {
-      return (batch.rest_b.select(1, a) - batch.rest_b.select(1, b)).norm(2, -1);
-    };
-    const auto leg_b = 0.5 * (bone(LeftHip, LeftKnee) + bone(LeftKnee, LeftAnkle) +
-                              bone(RightHip, RightKnee) + bone(RightKnee, RightAnkle));
+    const auto leg_b =
+        nn::leg_lengths(batch.rest_b.slice(0, 0, crossed)).unsqueeze(1).expand({crossed, made.size(1)});
     const auto rest_a = batch.rest_a.slice(0, 0, crossed);
     const auto local_a =
-        net->forward({made_b, leg_b.slice(0, 0, crossed).unsqueeze(1).expand({crossed, made.size(1)}),
-                      batch.dt.slice(0, 0, crossed), rest_a},
-                     back);  // and back to A
+        net->forward({made_b, leg_b, batch.dt.slice(0, 0, crossed), rest_a}, back);  // and back to A
     rotations = torch::cat({local_a, rotations});
     joints = torch::cat({nn::forward_kinematics(rest_a, local_a).joints, joints});
   }

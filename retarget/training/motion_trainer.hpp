@@ -3,6 +3,7 @@
 
 #include <torch/torch.h>
 
+#include <memory>
 #include <string>
 
 #include "retarget/nn/modules/motion_gru.hpp"

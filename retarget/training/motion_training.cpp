@@ -1,7 +1,7 @@
 // `understudy train motion`: the loop around MotionTrainer.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>

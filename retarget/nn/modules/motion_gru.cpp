@@ -31,7 +31,8 @@ torch::Tensor around_pelvis(const torch::Tensor& joints) {
   return joints - joints.slice(-2, 0, 1);
 }
 
-/// Thigh plus shin of bodies [B, 22, 3], mean of both sides, [B].
+}  // namespace
+
 torch::Tensor leg_lengths(const torch::Tensor& joints) {
   const auto bone = [&joints](int a, int b) {
     return (joints.select(1, a) - joints.select(1, b)).norm(2, -1);
@@ -39,8 +40,6 @@ torch::Tensor leg_lengths(const torch::Tensor& joints) {
   return 0.5 * (bone(LeftHip, LeftKnee) + bone(LeftKnee, LeftAnkle) + bone(RightHip, RightKnee) +
                 bone(RightKnee, RightAnkle));
 }
-
-}  // namespace
 
 torch::Tensor headings(const torch::Tensor& joints) {
   const auto at = [fixed = joints.detach()](int j) { return fixed.select(-2, j); };

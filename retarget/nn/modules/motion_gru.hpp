@@ -30,6 +30,9 @@ struct MotionState {
   torch::Tensor joints;            ///< [B, 1, 22, 3] the last frame
 };
 
+/// Thigh plus shin of bodies [B, 22, 3] in any pose, mean of both sides, [B] in their unit.
+torch::Tensor leg_lengths(const torch::Tensor& joints);
+
 /// Heading of each frame as a rotation about y, [B, T, 3, 3]: T-pose's heading is the identity. Taken from
 /// the line through hips and shoulders, so that one noisy joint turns it little. No gradient passes through.
 torch::Tensor headings(const torch::Tensor& joints);
