@@ -139,6 +139,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::draw(const Scene& scene, const Camera& camera, const Target& target) {
   Parts& p = *parts_;
+  for (const auto& mesh : scene.meshes) check(mesh);
   p.canvas.resize(target.size);
   {
     const gl::TargetScope canvas(p.canvas.framebuffer(), target.size.width, target.size.height);

@@ -25,6 +25,10 @@ Action declare_train(CLI::App& command) {
   command.add_option("--seed", options->seed, "of the data and the first weights");
   command.add_option("--form", options->form, "of the skeleton network: dense, or the paper's")
       ->check(CLI::IsMember({"dense", "paper"}));
+  command
+      .add_option("--poses", options->poses,
+                  "of the skeleton network: all, or rest (T-poses, for the joints of targets)")
+      ->check(CLI::IsMember({"all", "rest"}));
   command.add_option("--device", options->device, "cpu, or cuda where LibTorch has it")
       ->check(CLI::IsMember({"cpu", "cuda"}));
   command.add_option("--init", options->init, "weights to start from");

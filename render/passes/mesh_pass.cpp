@@ -34,16 +34,19 @@ void main() {
 }
 )";
 
-void check_faces(const MeshView& view) {
-  US_CHECK(view.faces.minCoeff() >= 0 && view.faces.maxCoeff() < view.vertices.rows(),
-           "a face of the mesh to draw names a vertex that is not among its ", view.vertices.rows());
-}
-
 }  // namespace
 
 void check_rows(const char* what, const Points& optional, Eigen::Index vertices) {
   US_CHECK(optional.rows() == 0 || optional.rows() == vertices, optional.rows(), " ", what, " for ", vertices,
            " points to draw");
+}
+
+void check(const MeshView& view) {
+  if (view.faces.rows() > 0)
+    US_CHECK(view.faces.minCoeff() >= 0 && view.faces.maxCoeff() < view.vertices.rows(),
+             "a face of the mesh to draw names a vertex that is not among its ", view.vertices.rows());
+  check_rows("normals", view.normals, view.vertices.rows());
+  check_rows("colours", view.colors, view.vertices.rows());
 }
 
 MeshPass::MeshPass() : program_("mesh", kVertex, kFragment) {}
@@ -65,9 +68,6 @@ void MeshPass::upload(const MeshView& view) {
 
 void MeshPass::draw(const MeshView& view) {
   if (view.faces.rows() == 0) return;
-  check_faces(view);
-  check_rows("normals", view.normals, view.vertices.rows());
-  check_rows("colours", view.colors, view.vertices.rows());
   const gl::ProgramScope program(program_.id());
   const gl::VertexArrayScope array(array_.name());
   upload(view);

@@ -9,7 +9,7 @@ namespace understudy::render {
 class MeshPass {
  public:
   MeshPass();
-  /// Throws Error when faces name vertices that are not there, or normals or colours are of another number.
+  /// The view has passed check().
   void draw(const MeshView& view);
 
  private:
@@ -21,6 +21,10 @@ class MeshPass {
   gl::VertexArray array_;
   gl::Buffer positions_, normals_, colors_, indices_;
 };
+
+/// Throws Error when faces name vertices that are not there, or normals or colours are of another number.
+/// Every pass that draws the mesh relies on it: a driver may crash on such faces.
+void check(const MeshView& view);
 
 /// Throws Error unless an optional array is empty or has one row for each vertex.
 void check_rows(const char* what, const Points& optional, Eigen::Index vertices);

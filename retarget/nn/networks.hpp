@@ -1,6 +1,6 @@
-// The way to the networks without LibTorch: its code lives in a plug-in (libunderstudy_networks.so) that is loaded on first
-// use. So the program starts without LibTorch, and OpenBLAS and OpenMP, which read their settings when they are
-// loaded, get the right ones first.
+// The way to the networks without LibTorch: its code lives in a plug-in (libunderstudy_networks.so) that is
+// loaded on first use. So the program starts without LibTorch, and OpenBLAS and OpenMP, which read their
+// settings when they are loaded, get the right ones first.
 #pragma once
 
 #include <functional>
@@ -37,17 +37,19 @@ RuntimeReport runtime_report();
 
 /// `understudy train ...`: everything after `train`. Returns the exit code; throws Error.
 struct TrainOptions {
-  std::string network;          ///< "skeleton", "motion" or "deformation"
-  std::string data, out;        ///< the data folder, the weights file
-  std::string curve;            ///< learning curve CSV; empty: out + ".csv"
-  double minutes = 0;           ///< stop after this long; 0: no limit
-  int64_t samples = 0;          ///< stop after this many in total; 0: no limit
-  int threads = 0;              ///< 0: one a core
-  int batch = 0;                ///< 0: the network's own
+  std::string network;    ///< "skeleton", "motion" or "deformation"
+  std::string data, out;  ///< the data folder, the weights file
+  std::string curve;      ///< learning curve CSV; empty: out + ".csv"
+  double minutes = 0;     ///< stop after this long; 0: no limit
+  int64_t samples = 0;    ///< stop after this many in total; 0: no limit
+  int threads = 0;        ///< 0: one a core
+  int batch = 0;          ///< 0: the network's own
   uint64_t seed = 1;
-  std::string form = "dense";   ///< skeleton only: "dense" or "paper"
-  std::string device = "cpu";   ///< "cpu" or "cuda"
-  std::string init;             ///< weights to start from
+  std::string form = "dense";  ///< skeleton only: "dense" or "paper"
+  std::string poses =
+      "all";  ///< skeleton only: "all", or "rest": people in T-pose, for the joints of targets
+  std::string device = "cpu";       ///< "cpu" or "cuda"
+  std::string init;                 ///< weights to start from
   std::function<bool()> cancelled;  ///< asked between steps; the checkpoint is written before it stops
 };
 int train(const TrainOptions& options);

@@ -53,9 +53,14 @@ RuntimeReport report() {
 Networks load(const NetworkOptions& options, const std::string& folder) {
   if (report().slow_blas)
     log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
-  return {load_network_extractor(folder + (options.extractor == "paper" ? "/skeleton_paper.weights" : "/skeleton.weights"),
-                                 options.extractor),
-          load_transfer(options, folder), load_skin(options, folder)};
+  Networks networks;
+  const bool paper = options.extractor == "paper";
+  networks.extractor = load_network_extractor(
+      folder + (paper ? "/skeleton_paper.weights" : "/skeleton.weights"), options.extractor);
+  if (!paper) networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
+  networks.transfer = load_transfer(options, folder);
+  networks.deformer = load_skin(options, folder);
+  return networks;
 }
 
 int train_network(const TrainOptions& options) {

@@ -53,11 +53,12 @@ struct CopyTransfer::Frame {
 };
 
 CopyOptions::CopyOptions() {
-  // Leaves cannot be told from positions at all; elsewhere the surface tells the twist. The trunk is a little
-  // of both.
-  seen.setConstant(1.0f);
+  // Measured with the trained extractor: its trunk and legs are as good as what positions say, its arms are
+  // not, and of leaves positions say nothing.
+  seen.setConstant(0.5f);
   point.setConstant(1.0f);
-  for (const int j : {Pelvis, Spine1, Spine2, Spine3}) seen[j] = 0.5f;
+  for (const int j : {LeftShoulder, RightShoulder, LeftElbow, RightElbow}) seen[j] = 0.25f;
+  for (const int j : {Head, LeftWrist, RightWrist, LeftFoot, RightFoot}) seen[j] = 1;
 }
 
 CopyTransfer::CopyTransfer(const CopyOptions& options)

@@ -1,4 +1,5 @@
-// The stages of the way of a frame, as the pipeline sees them: abstract, so that no user of the pipeline needs LibTorch.
+// The stages of the way of a frame, as the pipeline sees them: abstract, so that no user of the pipeline
+// needs LibTorch.
 #pragma once
 
 #include <memory>
@@ -12,13 +13,14 @@ namespace understudy {
 
 /// What one scan says about the body in it.
 struct Extraction {
-  Joints joints = Joints::Zero();                              ///< world, metres
+  Joints joints = Joints::Zero();  ///< world, metres
   Eigen::Array<float, kJointCount, 1> confidence =
-      Eigen::Array<float, kJointCount, 1>::Ones();             ///< 0..1 a joint
-  std::optional<Rotations> global;                             ///< world rotations seen on the surface, where known
+      Eigen::Array<float, kJointCount, 1>::Ones();  ///< 0..1 a joint
+  std::optional<Rotations> global;                  ///< world rotations seen on the surface, where known
 };
 
-/// Joints from a scan of any number of points, any order, any heading (paper 1, section 3.1). One thread at a time.
+/// Joints from a scan of any number of points, any order, any heading (paper 1, section 3.1). One thread at a
+/// time.
 class SkeletonExtractor {
  public:
   virtual ~SkeletonExtractor() = default;
@@ -33,8 +35,8 @@ class MotionTransfer {
   virtual ~MotionTransfer() = default;
   /// Forgets the past; rest_b are the target's T-pose joints.
   virtual void reset(const Joints& rest_b) = 0;
-  /// Local rotations of the target for one source frame, dt seconds after the one before. The root's position is
-  /// RootPath's business.
+  /// Local rotations of the target for one source frame, dt seconds after the one before. The root's position
+  /// is RootPath's business.
   virtual Rotations push(const Extraction& source, float dt) = 0;
   virtual std::string name() const = 0;
 };
@@ -55,6 +57,7 @@ class Deformer {
 /// The three networks that the pipeline runs on.
 struct Networks {
   std::unique_ptr<SkeletonExtractor> extractor;
+  std::unique_ptr<SkeletonExtractor> rest_extractor;  ///< trained on T-poses, for targets; may be null
   std::unique_ptr<MotionTransfer> transfer;
   std::unique_ptr<Deformer> deformer;
 };

@@ -45,7 +45,8 @@ Retargeter::Retargeter(Networks networks, const RetargetOptions& options)
 
 void Retargeter::set_target(const Mesh& mesh) {
   US_CHECK(networks_.extractor, "the pipeline has no skeleton extractor");
-  set_target(prepare_target(mesh, *networks_.extractor));
+  SkeletonExtractor& extractor = networks_.rest_extractor ? *networks_.rest_extractor : *networks_.extractor;
+  set_target(prepare_target(mesh, extractor));
 }
 
 void Retargeter::set_target(Target target) {

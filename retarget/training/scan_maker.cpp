@@ -50,6 +50,15 @@ void thin(MadeScan& scan, Rng& rng) {
 
 }  // namespace
 
+ScanMakerOptions ScanMakerOptions::rest() {
+  ScanMakerOptions options;
+  options.captured = 0.25f;
+  options.t_pose = 1;
+  options.yaw = 0.5f;
+  options.stretch = 0.15f;
+  return options;
+}
+
 ScanMaker::ScanMaker(const TrainingData& data, const ScanMakerOptions& options, uint64_t seed)
     : data_(data), options_(options), rng_(seed) {
   for (int i = 0; i < kPoolSize; ++i) {
@@ -120,6 +129,15 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose) {
   return scan;
 }
 
+/// Joints of a stretched body are the stretched joints; rotations are kept, as bodies stay near the T-pose.
+void ScanMaker::stretch(MadeScan& scan) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float factor = 1 + rng_.uniform(-options_.stretch, options_.stretch);
+    scan.points.col(axis) *= factor;
+    scan.truth.joints.col(axis) *= factor;
+  }
+}
+
 void ScanMaker::add_clutter(MadeScan& scan, Eigen::Index count) {
   const float size = scan.points.rows() / static_cast<float>(kRawPoints);
   const int outliers = rng_.below(static_cast<int>(2 + size * kRawPoints / 150));
@@ -162,8 +180,9 @@ MadeScan ScanMaker::next() {
   Person& person = people_[rng_.below(kPoolSize)];
   if (--person.left < 0) person = make_person();
   Pose pose = make_pose();
-  pose.local[0] = rotation_about_y(rng_.uniform(-kPi, kPi)) * pose.local[0];
+  pose.local[0] = rotation_about_y(rng_.uniform(-options_.yaw, options_.yaw)) * pose.local[0];
   MadeScan scan = sample_posed(person, pose);
+  if (options_.stretch > 0) stretch(scan);
   if (rng_.chance(options_.captured)) degrade(scan);
   thin(scan, rng_);
   return scan;

@@ -15,6 +15,11 @@ struct ScanMakerOptions {
   float t_pose = 0.06f;   ///< share in (nearly) the T-pose: targets
   float tilted = 0.06f;   ///< share of bodies far from upright
   bool mirror = true;     ///< mirror half of the postures
+  float yaw = kPi;        ///< headings, +- radians
+  float stretch = 0;  ///< people made wider, taller, deeper by up to this share: characters beyond the data
+
+  /// People near the T-pose, facing about +z: targets.
+  static ScanMakerOptions rest();
 };
 
 /// One scan and its truth, world metres.
@@ -40,6 +45,7 @@ class ScanMaker {
   Person make_person();
   Pose make_pose();
   MadeScan sample_posed(const Person& person, const Pose& pose);
+  void stretch(MadeScan& scan);
   void degrade(MadeScan& scan);
   void add_clutter(MadeScan& scan, Eigen::Index kept);
 

@@ -61,6 +61,7 @@ class SkeletonTrainer {
   nn::TrainOptions options_;
   torch::Device device_;
   TrainingData train_, dev_;
+  ScanMakerOptions scans_;
   std::shared_ptr<SkeletonForm> net_, average_;
   std::vector<torch::Tensor> parameters_;
   std::unique_ptr<torch::optim::AdamW> optimizer_;
@@ -91,6 +92,9 @@ SkeletonTrainer::SkeletonTrainer(const nn::TrainOptions& options)
   if (options_.threads == 0)
     options_.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   if (device_.is_cuda()) options_.threads = 1;
+  US_CHECK(options_.poses == "all" || options_.poses == "rest", "--poses is all or rest, not ",
+           options_.poses);
+  if (options_.poses == "rest") scans_ = ScanMakerOptions::rest();
   US_CHECK(options_.minutes > 0 || options_.samples > 0, "training wants --minutes or --samples");
   torch::manual_seed(options_.seed);
   net_ = nn::make_skeleton_form(options_.form);
@@ -115,7 +119,7 @@ void SkeletonTrainer::add_replicas() {
     for (size_t p = 0; p < own.size(); ++p) own[p].set_data(parameters_[p].data());
     // A resumed run makes new scans, not the first ones again.
     const uint64_t seed = options_.seed * 1000003 + static_cast<uint64_t>(progress_.samples) * 101 + i;
-    replica.maker = std::make_unique<ScanMaker>(train_, ScanMakerOptions{}, seed);
+    replica.maker = std::make_unique<ScanMaker>(train_, scans_, seed);
     replicas_.push_back(std::move(replica));
   }
 }
@@ -232,8 +236,9 @@ std::vector<SkeletonScore> SkeletonTrainer::evaluate() {
   const torch::NoGradGuard no_grad;
   std::vector<SkeletonScore> scores;
   for (const float captured : {0.0f, 1.0f}) {
-    ScanMakerOptions plain;
-    plain.mixed = plain.jittered = plain.tilted = plain.t_pose = 0;
+    ScanMakerOptions plain = scans_;
+    plain.mixed = plain.jittered = plain.tilted = plain.stretch = 0;
+    if (options_.poses == "all") plain.t_pose = 0;
     plain.mirror = false;
     plain.captured = captured;
     plain.dressed = captured;

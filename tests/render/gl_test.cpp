@@ -100,9 +100,13 @@ TEST(NullRenderer, DrawsEverythingAndLeavesNoNames) {
 TEST(NullRenderer, RefusesFacesThatNameNoVertex) {
   const auto context = make_offscreen_context({ContextKind::Null});
   Renderer renderer;
-  Scene scene = everything();
-  scene.meshes[0].faces(3, 1) = static_cast<int>(scene.meshes[0].vertices.rows());
-  EXPECT_THROW(renderer.render_image(scene, Camera(), {32, 32}), Error);
+  const Scene scene = everything();
+  for (const size_t which : {0, 1}) {  // the opaque and the see-through one
+    Scene broken = scene;
+    broken.meshes[which].faces(3, 1) = static_cast<int>(broken.meshes[which].vertices.rows());
+    EXPECT_THROW(renderer.render_image(broken, Camera(), {32, 32}), Error);
+    EXPECT_EQ(null_counts().draws, 0);
+  }
 }
 
 TEST(NullRenderer, RefusesArraysOfOtherLengths) {
