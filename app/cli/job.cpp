@@ -167,7 +167,7 @@ void run_job(const JobOptions& options) {
   const Mesh target = import_target(options.target);
   Running job = start(options, target);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
-                    job.source->count().value_or(0));
+                    job.source->count().value_or(0), options.progress_lines);
   while (const auto frame = job.performer->next()) {
     take_frame(job, *frame, target, options.source.follow);
     progress.step(job.frames);

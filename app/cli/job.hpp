@@ -23,9 +23,10 @@ struct JobOptions {
   TargetOptions target;
   nn::NetworkOptions networks;
   RetargetOptions retarget;
-  std::string out;      ///< .glb, .gltf or .npz; empty: none
-  std::string report;   ///< .json; empty: none
-  std::string preview;  ///< .png; empty: none
+  std::string out;              ///< .glb, .gltf or .npz; empty: none
+  std::string report;           ///< .json; empty: none
+  std::string preview;          ///< .png; empty: none
+  bool progress_lines = false;  ///< new lines of progress even on a terminal: another job writes there too
 };
 
 /// The target as the retargeter wants it: metres, y up. Says what it decided. Throws Error naming the file.

@@ -6,8 +6,12 @@
 
 namespace understudy::app {
 
-Progress::Progress(std::string what, int64_t total)
-    : what_(std::move(what)), total_(total), terminal_(isatty(2) == 1), began_(Clock::now()), last_(began_) {}
+Progress::Progress(std::string what, int64_t total, bool lines)
+    : what_(std::move(what)),
+      total_(total),
+      terminal_(!lines && isatty(2) == 1),
+      began_(Clock::now()),
+      last_(began_) {}
 
 Progress::~Progress() {
   finish();
@@ -16,7 +20,7 @@ Progress::~Progress() {
 void Progress::step(int64_t done) {
   done_ = done;
   const double pause = std::chrono::duration<double>(Clock::now() - last_).count();
-  if (pause >= (terminal_ ? 0.1 : 5.0)) show();
+  if (pause >= (terminal_ ? 0.1 : 2.0)) show();
 }
 
 void Progress::show() {

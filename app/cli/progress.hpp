@@ -8,8 +8,8 @@ namespace understudy::app {
 
 class Progress {
  public:
-  /// total 0: unknown. Writes to stderr.
-  Progress(std::string what, int64_t total);
+  /// total 0: unknown. Writes to stderr. lines: new lines even on a terminal.
+  Progress(std::string what, int64_t total, bool lines = false);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
