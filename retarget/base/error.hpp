@@ -23,7 +23,7 @@ std::string join(const Parts&... parts) {
 }  // namespace understudy
 
 /// Throws Error with the joined parts when the condition is false.
-#define US_CHECK(condition, ...)                                                   \
-  do {                                                                             \
+#define US_CHECK(condition, ...)                                                          \
+  do {                                                                                    \
     if (!(condition)) throw ::understudy::Error(::understudy::detail::join(__VA_ARGS__)); \
   } while (false)

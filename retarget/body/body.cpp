@@ -21,8 +21,8 @@ std::vector<int> folded_joints(const NpyArray& tree, const std::string& path) {
     const float parent = tree.values[j];
     if (j < kJointCount) {
       owner[j] = static_cast<int>(j);
-      US_CHECK(j == 0 || parent == static_cast<float>(kParents[j]), path, ": joint ", j, " hangs on joint ", parent,
-               ", in SMPL's order it hangs on ", kParents[j]);
+      US_CHECK(j == 0 || parent == static_cast<float>(kParents[j]), path, ": joint ", j, " hangs on joint ",
+               parent, ", in SMPL's order it hangs on ", kParents[j]);
       continue;
     }
     US_CHECK(parent >= 0 && parent < static_cast<float>(j), path, ": joint ", j, " comes before its parent");
@@ -31,7 +31,8 @@ std::vector<int> folded_joints(const NpyArray& tree, const std::string& path) {
   return owner;
 }
 
-RowMatrix folded_weights(const NpyArray& array, const std::vector<int>& owner, int64_t vertices, const std::string& path) {
+RowMatrix folded_weights(const NpyArray& array, const std::vector<int>& owner, int64_t vertices,
+                         const std::string& path) {
   const auto joints = static_cast<int64_t>(owner.size());
   US_CHECK(array.size() == vertices * joints, path, ": weights must be vertices x joints");
   const RowMatrix all = array.matrix(joints, path);
@@ -51,7 +52,8 @@ Faces faces_from(const NpyArray& array, int64_t vertices, const std::string& pat
 }  // namespace
 
 ShapedBody Body::shaped(const Eigen::VectorXf& betas) const {
-  US_CHECK(betas.size() <= shape_dirs.cols(), betas.size(), " shape parameters for a body that has ", shape_dirs.cols());
+  US_CHECK(betas.size() <= shape_dirs.cols(), betas.size(), " shape parameters for a body that has ",
+           shape_dirs.cols());
   ShapedBody body;
   body.vertices = template_vertices;
   Eigen::Map<Eigen::VectorXf> flat(body.vertices.data(), body.vertices.size());
@@ -92,12 +94,12 @@ Body read_smpl_body(const std::string& path) {
   body.faces = faces_from(require(npz, "f", path), vertices, path);
   body.weights = folded_weights(require(npz, "weights", path), owner, vertices, path);
   const NpyArray& shape = require(npz, "shapedirs", path);
-  US_CHECK(shape.shape.size() == 3 && shape.shape[0] == vertices && shape.shape[1] == 3 && shape.shape[2] > 0, path,
-           ": shapedirs must be vertices x 3 x parameters");
+  US_CHECK(shape.shape.size() == 3 && shape.shape[0] == vertices && shape.shape[1] == 3 && shape.shape[2] > 0,
+           path, ": shapedirs must be vertices x 3 x parameters");
   body.shape_dirs = shape.matrix(shape.shape[2], path);
   const NpyArray& regressor = require(npz, "J_regressor", path);
-  US_CHECK(regressor.shape.size() == 2 && regressor.shape[0] >= kJointCount && regressor.shape[1] == vertices, path,
-           ": J_regressor must be joints x vertices");
+  US_CHECK(regressor.shape.size() == 2 && regressor.shape[0] >= kJointCount && regressor.shape[1] == vertices,
+           path, ": J_regressor must be joints x vertices");
   body.joint_regressor = regressor.matrix(vertices, path).topRows(kJointCount);
   if (const auto it = npz.find("posedirs"); it != npz.end()) {
     const auto& s = it->second.shape;
@@ -111,12 +113,13 @@ Body read_smpl_body(const std::string& path) {
 Motion read_amass_motion(const std::string& path) {
   const Npz npz = read_npz(path);
   const NpyArray& poses = require(npz, "poses", path);
-  US_CHECK(poses.shape.size() == 2 && poses.shape[1] >= 3 * kJointCount, path, ": poses must be frames x at least ",
-           3 * kJointCount);
+  US_CHECK(poses.shape.size() == 2 && poses.shape[1] >= 3 * kJointCount, path,
+           ": poses must be frames x at least ", 3 * kJointCount);
   const int64_t frames = poses.shape[0];
   const RowMatrix angles = poses.matrix(poses.shape[1], path);
   const RowMatrix trans = require(npz, "trans", path).matrix(3, path + ": trans");
-  US_CHECK(frames > 0 && trans.rows() == frames, path, ": ", frames, " poses but ", trans.rows(), " root positions");
+  US_CHECK(frames > 0 && trans.rows() == frames, path, ": ", frames, " poses but ", trans.rows(),
+           " root positions");
 
   Motion motion;
   for (const char* key : {"mocap_framerate", "mocap_frame_rate"})

@@ -11,21 +11,21 @@ namespace understudy {
 
 /// One person in T-pose: what can be posed. Facing +z, y up.
 struct ShapedBody {
-  Points vertices;                                  ///< [V, 3] metres
-  Faces faces;                                      ///< [F, 3]
-  Joints joints;                                    ///< [22, 3] metres
-  RowMatrix weights;                                ///< [V, 22]
-  std::shared_ptr<const RowMatrix> pose_dirs;       ///< [3V, 189] offsets by (R - I) of joints 1..21; may be null
+  Points vertices;                             ///< [V, 3] metres
+  Faces faces;                                 ///< [F, 3]
+  Joints joints;                               ///< [22, 3] metres
+  RowMatrix weights;                           ///< [V, 22]
+  std::shared_ptr<const RowMatrix> pose_dirs;  ///< [3V, 189] offsets by (R - I) of joints 1..21; may be null
 };
 
 /// A parametric body (SMPL and relatives; SMPL paper, eq. 2-9).
 struct Body {
-  Points template_vertices;                         ///< [V, 3]
-  Faces faces;                                      ///< [F, 3]
-  RowMatrix shape_dirs;                             ///< [3V, B]
-  std::shared_ptr<const RowMatrix> pose_dirs;       ///< [3V, 189]; may be null
-  RowMatrix joint_regressor;                        ///< [22, V]
-  RowMatrix weights;                                ///< [V, 22]
+  Points template_vertices;                    ///< [V, 3]
+  Faces faces;                                 ///< [F, 3]
+  RowMatrix shape_dirs;                        ///< [3V, B]
+  std::shared_ptr<const RowMatrix> pose_dirs;  ///< [3V, 189]; may be null
+  RowMatrix joint_regressor;                   ///< [22, V]
+  RowMatrix weights;                           ///< [V, 22]
 
   /// The person with these shape parameters; fewer than B are padded with zeros, more are an Error.
   ShapedBody shaped(const Eigen::VectorXf& betas) const;

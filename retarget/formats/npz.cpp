@@ -16,8 +16,8 @@ namespace understudy {
 namespace {
 
 struct Header {
-  char kind = 'f';       // f, i, u, b, U
-  int bytes = 4;         // per element
+  char kind = 'f';  // f, i, u, b, U
+  int bytes = 4;    // per element
   bool big_endian = false;
   bool fortran = false;
   std::vector<int64_t> shape;
@@ -41,7 +41,8 @@ std::vector<int64_t> shape_of(const std::string& dict, const std::string& source
   for (std::string part; std::getline(in, part, ',');) {
     if (part.find_first_of("0123456789") == std::string::npos) continue;
     long long extent = -1;
-    US_CHECK(std::sscanf(part.c_str(), " %lld", &extent) == 1 && extent >= 0, source, ": bad extent in the array's shape");
+    US_CHECK(std::sscanf(part.c_str(), " %lld", &extent) == 1 && extent >= 0, source,
+             ": bad extent in the array's shape");
     shape.push_back(extent);
   }
   return shape;
@@ -50,7 +51,9 @@ std::vector<int64_t> shape_of(const std::string& dict, const std::string& source
 Header parse_header(const std::string& bytes, const std::string& source) {
   US_CHECK(bytes.size() >= 10 && bytes.compare(0, 6, "\x93NUMPY") == 0, source, ": not a NumPy array");
   const int version = static_cast<unsigned char>(bytes[6]);
-  const auto byte = [&bytes](size_t i) { return static_cast<uint64_t>(static_cast<unsigned char>(bytes[i])); };
+  const auto byte = [&bytes](size_t i) {
+    return static_cast<uint64_t>(static_cast<unsigned char>(bytes[i]));
+  };
   uint64_t length = byte(8) | byte(9) << 8;
   size_t start = 10;
   if (version >= 2) {
@@ -76,7 +79,8 @@ float half_to_float(uint16_t half) {
   const int exponent = half >> 10 & 31, mantissa = half & 1023;
   const float sign = half & 0x8000 ? -1.0f : 1.0f;
   if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
-  if (exponent == 31) return mantissa ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
+  if (exponent == 31)
+    return mantissa ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
   return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
 }
 
@@ -90,7 +94,12 @@ float read_as(const char* data) {
 using Converter = float (*)(const char*);
 
 Converter converter(char kind, int bytes) {
-  if (kind == 'f' && bytes == 2) return [](const char* d) { uint16_t h; std::memcpy(&h, d, 2); return half_to_float(h); };
+  if (kind == 'f' && bytes == 2)
+    return [](const char* d) {
+      uint16_t h;
+      std::memcpy(&h, d, 2);
+      return half_to_float(h);
+    };
   if (kind == 'f' && bytes == 4) return read_as<float>;
   if (kind == 'f' && bytes == 8) return read_as<double>;
   if (kind == 'i' && bytes == 1) return read_as<int8_t>;
@@ -148,13 +157,15 @@ std::string read_entry(zip_t* archive, zip_int64_t index, const std::string& sou
   zip_stat_t stat;
   US_CHECK(zip_stat_index(archive, index, 0, &stat) == 0, source, ": the archive is damaged");
   // Deflate cannot expand more than 1032 times: a claim beyond that is a lie, found before memory is taken.
-  US_CHECK(stat.size <= kLargestArray && stat.size <= stat.comp_size * 1040 + 1024, source, ": the archive's sizes are impossible");
+  US_CHECK(stat.size <= kLargestArray && stat.size <= stat.comp_size * 1040 + 1024, source,
+           ": the archive's sizes are impossible");
   std::string bytes(stat.size, '\0');
   zip_file_t* file = zip_fopen_index(archive, index, 0);
   US_CHECK(file, source, ": the archive is damaged");
   const zip_int64_t got = zip_fread(file, bytes.data(), bytes.size());
   zip_fclose(file);
-  US_CHECK(got >= 0 && static_cast<uint64_t>(got) == stat.size, source, ": the archive is damaged or cut off");
+  US_CHECK(got >= 0 && static_cast<uint64_t>(got) == stat.size, source,
+           ": the archive is damaged or cut off");
   return bytes;
 }
 
@@ -167,7 +178,8 @@ std::string npy_bytes(const NpyArray& array) {
   bytes += static_cast<char>(dict.size() & 255);
   bytes += static_cast<char>(dict.size() >> 8);
   bytes += dict;
-  return bytes.append(reinterpret_cast<const char*>(array.values.data()), array.values.size() * sizeof(float));
+  return bytes.append(reinterpret_cast<const char*>(array.values.data()),
+                      array.values.size() * sizeof(float));
 }
 
 }  // namespace
@@ -187,7 +199,8 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source) {
   array.shape = header.shape;
   const uint64_t available = bytes.size() - header.data_offset;
   if (header.kind == 'U') {
-    array.text = text_from_ucs4(bytes.data() + header.data_offset, static_cast<int>(std::min<uint64_t>(available, header.bytes)));
+    array.text = text_from_ucs4(bytes.data() + header.data_offset,
+                                static_cast<int>(std::min<uint64_t>(available, header.bytes)));
     return array;
   }
   const Converter convert = converter(header.kind, header.bytes);
@@ -258,7 +271,8 @@ void write_npz(const std::string& path, const Npz& npz) {
     zip_source_t* source = zip_source_buffer(archive.get(), kept.back().data(), kept.back().size(), 0);
     const zip_int64_t index = zip_file_add(archive.get(), (name + ".npy").c_str(), source, ZIP_FL_OVERWRITE);
     US_CHECK(index >= 0, path, ": cannot be written");
-    zip_file_set_mtime(archive.get(), index, 315532800, 0);  // a fixed date: the same arrays give the same bytes
+    zip_file_set_mtime(archive.get(), index, 315532800,
+                       0);  // a fixed date: the same arrays give the same bytes
   }
   if (zip_close(archive.get()) != 0) {
     const std::string why = zip_strerror(archive.get());

@@ -23,7 +23,8 @@ struct NpyArray {
 
 using Npz = std::map<std::string, NpyArray>;
 
-/// Reads one .npy from bytes in memory; `source` names it in complaints. Sizes are checked before anything is allocated.
+/// Reads one .npy from bytes in memory; `source` names it in complaints. Sizes are checked before anything is
+/// allocated.
 NpyArray parse_npy(const std::string& bytes, const std::string& source);
 NpyArray read_npy(const std::string& path);
 /// Reads every array of a .npz (zip, stored or deflated). Arrays of other kinds (objects) are left out.

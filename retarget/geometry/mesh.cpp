@@ -38,7 +38,8 @@ SurfaceSampler::SurfaceSampler(const Points& vertices, const Faces& faces) : cum
 SurfaceSampler::Sample SurfaceSampler::sample(Rng& rng) const {
   const double at = rng.uniform() * cumulative_area_.back();
   const auto it = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end(), at);
-  const int face = static_cast<int>(std::min<size_t>(it - cumulative_area_.begin(), cumulative_area_.size() - 1));
+  const int face =
+      static_cast<int>(std::min<size_t>(it - cumulative_area_.begin(), cumulative_area_.size() - 1));
   const float u = std::sqrt(rng.uniform()), w = rng.uniform();
   return {face, Vec3(1 - u, u * (1 - w), u * w)};
 }
@@ -80,14 +81,16 @@ std::vector<int> farthest_points(const Points& points, int count, int first) {
   Eigen::Index current = first;
   for (int i = 0; i < count; ++i) {
     chosen[i] = static_cast<int>(current);
-    distance = distance.min((x - x[current]).square() + (y - y[current]).square() + (z - z[current]).square());
+    distance =
+        distance.min((x - x[current]).square() + (y - y[current]).square() + (z - z[current]).square());
     distance.maxCoeff(&current);
   }
   return chosen;
 }
 
 Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,
-                                                                                      const Points& queries, int k) {
+                                                                                       const Points& queries,
+                                                                                       int k) {
   US_CHECK(k <= points.rows(), k, " neighbours wanted of ", points.rows(), " points");
   const Eigen::ArrayXf x = points.col(0), y = points.col(1), z = points.col(2);
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(queries.rows(), k);

@@ -10,9 +10,9 @@
 namespace understudy {
 
 struct Mesh {
-  Points vertices;                 ///< [V, 3] metres
-  Faces faces{0, 3};               ///< [F, 3]; empty for a point cloud
-  Points colors{0, 3};             ///< [V, 3] in 0..1; empty when the file has none
+  Points vertices;      ///< [V, 3] metres
+  Faces faces{0, 3};    ///< [F, 3]; empty for a point cloud
+  Points colors{0, 3};  ///< [V, 3] in 0..1; empty when the file has none
   bool is_cloud() const { return faces.rows() == 0; }
 };
 
@@ -35,14 +35,17 @@ class SurfaceSampler {
   std::vector<double> cumulative_area_;  // [F]
 };
 
-/// `count` points on the surface, uniform by area; from a cloud, `count` of its points (all, when it has fewer).
+/// `count` points on the surface, uniform by area; from a cloud, `count` of its points (all, when it has
+/// fewer).
 Points sample_points(const Mesh& mesh, int count, Rng& rng);
 
-/// Indices of `count` points that lie far apart (farthest point sampling from `first`); count <= points.rows().
+/// Indices of `count` points that lie far apart (farthest point sampling from `first`); count <=
+/// points.rows().
 std::vector<int> farthest_points(const Points& points, int count, int first = 0);
 
 /// For each query the indices of its k nearest points, nearest first, [Q, k]; k <= points.rows(). Exact.
 Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,
-                                                                                      const Points& queries, int k);
+                                                                                       const Points& queries,
+                                                                                       int k);
 
 }  // namespace understudy

@@ -70,8 +70,8 @@ Points Similarity::apply(const Points& points) const {
 }
 
 Similarity similarity_alignment(const Points& from, const Points& to) {
-  US_CHECK(from.rows() == to.rows() && from.rows() >= 3, "alignment wants two equal sets of at least 3 points, not ",
-           from.rows(), " and ", to.rows());
+  US_CHECK(from.rows() == to.rows() && from.rows() >= 3,
+           "alignment wants two equal sets of at least 3 points, not ", from.rows(), " and ", to.rows());
   const Eigen::Matrix4f T = Eigen::umeyama(from.transpose(), to.transpose(), true);
   Similarity result;
   const Mat3 sR = T.topLeftCorner<3, 3>();

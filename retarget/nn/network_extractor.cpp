@@ -15,11 +15,13 @@ namespace {
 
 // Which of a scan's points are looked at: always the same ones, so that the same scan gives the same joints.
 constexpr uint64_t kThinningSeed = 20240318;
-constexpr float kHalfConfidence = 0.06f;  // metres: an expected error of this much is a confidence of one half
+constexpr float kHalfConfidence =
+    0.06f;  // metres: an expected error of this much is a confidence of one half
 
 class NetworkExtractor : public SkeletonExtractor {
  public:
-  NetworkExtractor(const std::string& path, const std::string& form) : form_(form), net_(make_skeleton_form(form)) {
+  NetworkExtractor(const std::string& path, const std::string& form)
+      : form_(form), net_(make_skeleton_form(form)) {
     load_skeleton_form(path, form, *net_);
     net_->eval();
   }
@@ -31,8 +33,9 @@ class NetworkExtractor : public SkeletonExtractor {
     const auto view = [](const Points& points, std::vector<int64_t> shape) {
       return torch::from_blob(const_cast<float*>(points.data()), shape);
     };
-    const auto out = net_->forward({view(patches.points, {1, kScanPoints, 3}), view(patches.centres, {1, kPatches, 3}),
-                                    view(patches.offsets, {1, kPatches, kPatchPoints, 3})});
+    const auto out =
+        net_->forward({view(patches.points, {1, kScanPoints, 3}), view(patches.centres, {1, kPatches, 3}),
+                       view(patches.offsets, {1, kPatches, kPatchPoints, 3})});
     return to_world(out, patches);
   }
 

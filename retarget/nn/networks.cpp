@@ -23,8 +23,8 @@ fs::path program_folder() {
   return failed ? fs::current_path() : program.parent_path();
 }
 
-/// One core is left to whoever else wants it (a window drawn in software): measured, two inference threads gain little
-/// on an idle machine and lose much on a busy one.
+/// One core is left to whoever else wants it (a window drawn in software): measured, two inference threads
+/// gain little on an idle machine and lose much on a busy one.
 int inference_threads() {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   return std::clamp(cores / 2, 1, 4);
@@ -34,7 +34,8 @@ int inference_threads() {
 void prepare_environment() {
   // OpenBLAS 0.3.21 does not know processors newer than itself and falls back to kernels five times slower.
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512vl"))
     setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
   else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
     setenv("OPENBLAS_CORETYPE", "Haswell", 0);
@@ -58,10 +59,11 @@ const PluginApi& plugin() {
     const std::string path = plugin_path();
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) throw Error(path + ": cannot be loaded (" + dlerror() + ")");
-    const auto entry = reinterpret_cast<decltype(&understudy_networks_plugin)>(dlsym(library, "understudy_networks_plugin"));
+    const auto entry =
+        reinterpret_cast<decltype(&understudy_networks_plugin)>(dlsym(library, "understudy_networks_plugin"));
     US_CHECK(entry, path, ": not a networks plug-in");
-    US_CHECK(entry()->version == kPluginVersion, path, ": a networks plug-in of version ", entry()->version, ", not ",
-             kPluginVersion);
+    US_CHECK(entry()->version == kPluginVersion, path, ": a networks plug-in of version ", entry()->version,
+             ", not ", kPluginVersion);
     return *entry();
   }();
   return api;
@@ -69,7 +71,8 @@ const PluginApi& plugin() {
 
 std::string existing_weights(const NetworkOptions& options) {
   const std::string folder = weights_folder(options);
-  US_CHECK(!folder.empty(), "the trained weights are missing: no folder assets/weights beside the program or above it");
+  US_CHECK(!folder.empty(),
+           "the trained weights are missing: no folder assets/weights beside the program or above it");
   return folder;
 }
 

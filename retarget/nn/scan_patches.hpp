@@ -16,7 +16,7 @@ struct ScanPatches {
   Vec3 centre = Vec3::Zero();     ///< median of the points, metres
   float scale = 1;                ///< mean distance from it, metres: normalised = (x - centre) / scale
   Points points;                  ///< [kScanPoints, 3] normalised
-  std::vector<int> centre_index;   ///< [kPatches] which of the input points the centres are
+  std::vector<int> centre_index;  ///< [kPatches] which of the input points the centres are
   Points centres;                 ///< [kPatches, 3] normalised
   Points offsets;                 ///< [kPatches * kPatchPoints, 3] neighbours minus their centre, normalised
 };

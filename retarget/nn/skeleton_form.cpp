@@ -30,7 +30,6 @@ class PaperForm : public SkeletonForm {
   PointTransformer net_{nullptr};
 };
 
-
 }  // namespace
 
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name) {

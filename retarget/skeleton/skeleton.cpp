@@ -3,9 +3,10 @@
 namespace understudy {
 
 const std::array<const char*, kJointCount> kJointNames = {
-    "pelvis",     "left_hip",      "right_hip",      "spine1",     "left_knee",   "right_knee", "spine2",    "left_ankle",
-    "right_ankle", "spine3",       "left_foot",      "right_foot", "neck",        "left_collar", "right_collar", "head",
-    "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist"};
+    "pelvis",     "left_hip",    "right_hip",    "spine1",     "left_knee",     "right_knee",
+    "spine2",     "left_ankle",  "right_ankle",  "spine3",     "left_foot",     "right_foot",
+    "neck",       "left_collar", "right_collar", "head",       "left_shoulder", "right_shoulder",
+    "left_elbow", "right_elbow", "left_wrist",   "right_wrist"};
 
 Rotations identity_rotations() {
   Rotations rotations;

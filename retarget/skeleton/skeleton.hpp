@@ -14,15 +14,36 @@ constexpr int kJointCount = 22;
 
 /// SMPL's body joints. Left is the person's own left, +x in T-pose.
 enum Joint : int {
-  Pelvis, LeftHip, RightHip, Spine1, LeftKnee, RightKnee, Spine2, LeftAnkle, RightAnkle, Spine3, LeftFoot,
-  RightFoot, Neck, LeftCollar, RightCollar, Head, LeftShoulder, RightShoulder, LeftElbow, RightElbow, LeftWrist,
+  Pelvis,
+  LeftHip,
+  RightHip,
+  Spine1,
+  LeftKnee,
+  RightKnee,
+  Spine2,
+  LeftAnkle,
+  RightAnkle,
+  Spine3,
+  LeftFoot,
+  RightFoot,
+  Neck,
+  LeftCollar,
+  RightCollar,
+  Head,
+  LeftShoulder,
+  RightShoulder,
+  LeftElbow,
+  RightElbow,
+  LeftWrist,
   RightWrist
 };
 
 /// Parent of each joint, -1 for the pelvis; a parent comes before its children.
-constexpr std::array<int, kJointCount> kParents = {-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19};
+constexpr std::array<int, kJointCount> kParents = {-1, 0, 0, 0, 1,  2,  3,  4,  5,  6,  7,
+                                                   8,  9, 9, 9, 12, 13, 14, 16, 17, 18, 19};
 /// The joint on the other side; its own number for joints of the spine.
-constexpr std::array<int, kJointCount> kMirror = {0, 2, 1, 3, 5, 4, 6, 8, 7, 9, 11, 10, 12, 14, 13, 15, 17, 16, 19, 18, 21, 20};
+constexpr std::array<int, kJointCount> kMirror = {0,  2,  1,  3,  5,  4,  6,  8,  7,  9,  11,
+                                                  10, 12, 14, 13, 15, 17, 16, 19, 18, 21, 20};
 extern const std::array<const char*, kJointCount> kJointNames;
 
 /// Positions of the 22 joints, [22, 3] metres.
@@ -32,7 +53,8 @@ using Rotations = std::array<Mat3, kJointCount>;
 /// 22 identities.
 Rotations identity_rotations();
 
-/// One posture: rotations local (relative to the parent), relative to the T-pose, and the pelvis in the world.
+/// One posture: rotations local (relative to the parent), relative to the T-pose, and the pelvis in the
+/// world.
 struct Pose {
   Rotations local = identity_rotations();
   Vec3 root = Vec3::Zero();  ///< metres

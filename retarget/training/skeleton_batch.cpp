@@ -70,14 +70,16 @@ SkeletonBatch make_batch(ScanMaker& maker, int count) {
 
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device) {
   const nn::ExtractorInput& in = batch.input;
-  return {{in.points.to(device), in.centres.to(device), in.offsets.to(device)}, batch.scale.to(device),
+  return {{in.points.to(device), in.centres.to(device), in.offsets.to(device)},
+          batch.scale.to(device),
           {batch.truth.joints.to(device), batch.truth.rotations.to(device), batch.truth.parts.to(device)}};
 }
 
 SkeletonScore score(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {
   const auto joints = out.joints.cpu().contiguous(), truth = batch.truth.joints.cpu().contiguous();
   const bool turns = out.rotations.defined();
-  const auto rotations = (turns ? out.rotations : batch.truth.rotations).cpu().contiguous(), true_rotations = batch.truth.rotations.cpu().contiguous();
+  const auto rotations = (turns ? out.rotations : batch.truth.rotations).cpu().contiguous(),
+             true_rotations = batch.truth.rotations.cpu().contiguous();
   const auto scale = batch.scale.cpu();
   const int64_t B = joints.size(0);
   SkeletonScore s;

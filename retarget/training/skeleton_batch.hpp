@@ -10,7 +10,7 @@ namespace understudy::training {
 
 struct SkeletonBatch {
   nn::ExtractorInput input;
-  torch::Tensor scale;       ///< [B] metres per normalised unit
+  torch::Tensor scale;  ///< [B] metres per normalised unit
   SkeletonTruth truth;
 };
 

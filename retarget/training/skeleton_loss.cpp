@@ -22,7 +22,7 @@ torch::Tensor spread_loss(const torch::Tensor& joints, const torch::Tensor& trut
 
 SkeletonLoss skeleton_loss(const nn::ExtractorOutput& out, const torch::Tensor& centres,
                            const SkeletonTruth& truth) {
-    SkeletonLoss loss;
+  SkeletonLoss loss;
   if (!out.votes.defined()) {  // paper 1: L_skeleton = MSE
     loss.total = loss.joint = (out.joints - truth.joints).square().mean();
     loss.vote = loss.part = loss.rotation = loss.spread = torch::zeros({});

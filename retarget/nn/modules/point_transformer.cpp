@@ -59,10 +59,12 @@ VectorAttentionImpl::VectorAttentionImpl(int64_t width) {
 torch::Tensor VectorAttentionImpl::forward(const torch::Tensor& x, const torch::Tensor& positions,
                                            const torch::Tensor& neighbours) {
   const auto h = norm(x);
-  const auto delta = theta->forward(positions.unsqueeze(2) - gather_rows(positions, neighbours));     // [B, N, k, C]
-  const auto weight = gamma->forward(phi(h).unsqueeze(2) - gather_rows(psi(h), neighbours) + delta);  // [B, N, k, C]
-  const auto value = gather_rows(alpha(h), neighbours) + delta;                                       // [B, N, k, C]
-  return x + out((torch::softmax(weight, 2) * value).sum(2));                                         // [B, N, C]
+  const auto delta =
+      theta->forward(positions.unsqueeze(2) - gather_rows(positions, neighbours));  // [B, N, k, C]
+  const auto weight =
+      gamma->forward(phi(h).unsqueeze(2) - gather_rows(psi(h), neighbours) + delta);  // [B, N, k, C]
+  const auto value = gather_rows(alpha(h), neighbours) + delta;                       // [B, N, k, C]
+  return x + out((torch::softmax(weight, 2) * value).sum(2));                         // [B, N, C]
 }
 
 PointTransformerImpl::PointTransformerImpl(const PointTransformerShape& shape) : shape_(shape) {
@@ -74,8 +76,9 @@ PointTransformerImpl::PointTransformerImpl(const PointTransformerShape& shape) :
     widen->push_back(Linear((i == 0 ? kEmbedding : w[i - 1]) + 3, w[i]));
     attention->push_back(VectorAttention(w[i]));
   }
-  head = register_module("head", Sequential(Linear(2 * w.back(), shape.hidden), ReLU(), Linear(shape.hidden, shape.hidden),
-                                            ReLU(), Linear(shape.hidden, 3 * kJointCount)));
+  head = register_module(
+      "head", Sequential(Linear(2 * w.back(), shape.hidden), ReLU(), Linear(shape.hidden, shape.hidden),
+                         ReLU(), Linear(shape.hidden, 3 * kJointCount)));
 }
 
 torch::Tensor PointTransformerImpl::forward(const torch::Tensor& points) {
@@ -87,7 +90,8 @@ torch::Tensor PointTransformerImpl::forward(const torch::Tensor& points) {
     const auto centres = gather_rows(positions, kept);                          // [B, N/4, 3]
     const auto around = nearest(positions, centres, shape_.neighbours);         // [B, N/4, k]
     const auto offset = gather_rows(positions, around) - centres.unsqueeze(2);  // [B, N/4, k, 3]
-    const auto wide = torch::relu(widen[i]->as<Linear>()->forward(torch::cat({gather_rows(x, around), offset}, -1)));
+    const auto wide =
+        torch::relu(widen[i]->as<Linear>()->forward(torch::cat({gather_rows(x, around), offset}, -1)));
     x = std::get<0>(wide.max(2));
     positions = centres;
     const auto neighbours = nearest(positions, positions, std::min(shape_.neighbours, positions.size(1)));

@@ -1,5 +1,5 @@
-// The paper's form of skeleton extraction: Point Transformer features, pooled, and an MLP (paper 1, section 3.1; Zhao et
-// al., ICCV 2021). The ablation of the dense network.
+// The paper's form of skeleton extraction: Point Transformer features, pooled, and an MLP (paper 1,
+// section 3.1; Zhao et al., ICCV 2021). The ablation of the dense network.
 #pragma once
 
 #include <torch/torch.h>
@@ -9,7 +9,7 @@ namespace understudy::nn {
 struct PointTransformerShape {
   std::vector<int64_t> widths = {64, 128, 256};  ///< of the stages; each keeps a quarter of the points
   int64_t neighbours = 16;
-  int64_t hidden = 256;                          ///< of the joint MLP
+  int64_t hidden = 256;  ///< of the joint MLP
 };
 
 /// Vector self-attention among the k nearest points (Zhao et al., eq. 3):
@@ -18,7 +18,8 @@ class VectorAttentionImpl : public torch::nn::Module {
  public:
   explicit VectorAttentionImpl(int64_t width);
   /// x [B, N, C], positions [B, N, 3], neighbours [B, N, k] int64 -> [B, N, C]
-  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& positions, const torch::Tensor& neighbours);
+  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& positions,
+                        const torch::Tensor& neighbours);
 
  private:
   torch::nn::Linear phi{nullptr}, psi{nullptr}, alpha{nullptr}, out{nullptr};

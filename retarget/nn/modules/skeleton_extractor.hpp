@@ -15,13 +15,14 @@ struct ExtractorShape {
   int64_t decoder_layers = 2;
 };
 
-/// B scans as the network sees them, normalised (ScanPatches): all points [B, N, 3], patch centres [B, M, 3], and the
-/// points of each patch minus its centre [B, M, K, 3].
+/// B scans as the network sees them, normalised (ScanPatches): all points [B, N, 3], patch centres [B, M, 3],
+/// and the points of each patch minus its centre [B, M, K, 3].
 struct ExtractorInput {
   torch::Tensor points, centres, offsets;
 };
 
-/// What the network says of B scans; undefined where a form does not say it. Everything in the normalised frame of ScanPatches.
+/// What the network says of B scans; undefined where a form does not say it. Everything in the normalised
+/// frame of ScanPatches.
 struct ExtractorOutput {
   torch::Tensor parts;       ///< [B, M, 23] logits: 22 parts, and "not the body"
   torch::Tensor votes;       ///< [B, M, 22, 3] where each patch believes each joint
