@@ -33,18 +33,26 @@ struct Running {
   std::unique_ptr<Source> source;
   std::unique_ptr<Performer> performer;
   std::unique_ptr<Output> output;  // null: no animation wanted
-  std::optional<PreviewMoments> moments;
+  std::optional<PreviewMoments> moments, skeletons;
   std::optional<Judge> judge;
   Latency latency;
   int64_t frames = 0, flagged = 0;
 };
 
-render::SheetMoment moment_of(const PerformedFrame& frame, int64_t index, double fps, const Faces& faces) {
+/// Moments and columns of a sheet that shows the extraction alone.
+constexpr int kSkeletonMoments = 60, kSkeletonColumns = 12;
+
+render::SheetMoment source_moment(const PerformedFrame& frame, int64_t index, double fps) {
   render::SheetMoment moment;
   moment.frame = static_cast<int>(index);
   moment.seconds = static_cast<double>(index) / fps;
   moment.source = frame.scan.mesh;
   moment.source_joints = frame.source_joints;
+  return moment;
+}
+
+render::SheetMoment moment_of(const PerformedFrame& frame, int64_t index, double fps, const Faces& faces) {
+  render::SheetMoment moment = source_moment(frame, index, fps);
   moment.target = Mesh{frame.result.vertices, faces};
   moment.target_joints = frame.result.joints;
   return moment;
@@ -72,6 +80,8 @@ void take_frame(Running& job, const PerformedFrame& frame, const Mesh& target, b
   if (job.output) job.output->push(frame);
   if (job.moments && job.moments->wanted(job.frames))
     job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.faces));
+  if (job.skeletons && job.skeletons->wanted(job.frames))
+    job.skeletons->add(job.frames, source_moment(frame, job.frames, job.source->fps()));
   if (job.judge)
     job.judge->push({&frame.result.vertices, &frame.result.joints, &frame.result.pose.local,
                      &frame.source_joints, nullptr, frame.scan.usable ? &frame.scan.mesh : nullptr});
@@ -99,6 +109,7 @@ Running start(const JobOptions& options, const Mesh& target) {
   Networks networks = nn::load_networks(options.networks);
   job.performer = std::make_unique<Performer>(*job.source, target, std::move(networks), options.retarget);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
+  if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.judge.emplace(job.source->fps(), nullptr, &target);
   if (!options.out.empty())
     job.output = open_output(options.out, job.performer->retargeter(), job.source->fps());
@@ -111,8 +122,10 @@ void finish(const JobOptions& options, Running& job) {
   const std::string title =
       file_name(options.source.path) + " performed by " + file_name(options.target.path);
   if (job.moments) write_preview(options.preview, job.moments->take(), title);
+  if (job.skeletons)
+    write_preview(options.skeletons, job.skeletons->take(), file_name(options.source.path), kSkeletonColumns);
   std::fprintf(stderr, "%s", job.latency.table().c_str());
-  for (const std::string& path : {options.out, options.report, options.preview})
+  for (const std::string& path : {options.out, options.report, options.preview, options.skeletons})
     if (!path.empty()) log::info("wrote " + path);
 }
 
@@ -163,7 +176,8 @@ std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
 
 void run_job(const JobOptions& options) {
   check_output_format(options.out);
-  for (const std::string& path : {options.out, options.report, options.preview}) check_writable(path);
+  for (const std::string& path : {options.out, options.report, options.preview, options.skeletons})
+    check_writable(path);
   const Mesh target = import_target(options.target);
   Running job = start(options, target);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),

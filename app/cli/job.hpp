@@ -26,6 +26,7 @@ struct JobOptions {
   std::string out;              ///< .glb, .gltf or .npz; empty: none
   std::string report;           ///< .json; empty: none
   std::string preview;          ///< .png; empty: none
+  std::string skeletons;        ///< .png of up to 60 frames with the extracted skeleton in each; empty: none
   bool progress_lines = false;  ///< new lines of progress even on a terminal: another job writes there too
 };
 

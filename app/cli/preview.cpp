@@ -9,15 +9,15 @@
 namespace understudy::app {
 
 bool PreviewMoments::wanted(int64_t index) const {
-  if (!count_ || *count_ <= kShown) return index % stride_ == 0;
-  for (int64_t i = 0; i < kShown; ++i)
-    if (index == i * (*count_ - 1) / (kShown - 1)) return true;
+  if (!count_ || *count_ <= shown_) return index % stride_ == 0;
+  for (int64_t i = 0; i < shown_; ++i)
+    if (index == i * (*count_ - 1) / (shown_ - 1)) return true;
   return false;
 }
 
 void PreviewMoments::add(int64_t index, render::SheetMoment moment) {
   kept_.emplace_back(index, std::move(moment));
-  if (kept_.size() <= 2 * kShown) return;
+  if (kept_.size() <= 2 * static_cast<size_t>(shown_)) return;
   stride_ *= 2;
   const auto off_stride = [this](const auto& kept) { return kept.first % stride_ != 0; };
   kept_.erase(std::remove_if(kept_.begin(), kept_.end(), off_stride), kept_.end());
@@ -25,7 +25,7 @@ void PreviewMoments::add(int64_t index, render::SheetMoment moment) {
 
 std::vector<render::SheetMoment> PreviewMoments::take() {
   std::vector<render::SheetMoment> shown;
-  const size_t count = std::min<size_t>(kShown, kept_.size());
+  const size_t count = std::min<size_t>(static_cast<size_t>(shown_), kept_.size());
   for (size_t i = 0; i < count; ++i) {
     const size_t at = count == 1 ? 0 : i * (kept_.size() - 1) / (count - 1);
     shown.push_back(std::move(kept_[at].second));
@@ -45,10 +45,11 @@ float heading_of(const Joints& joints) {
 }  // namespace
 
 void write_preview(const std::string& path, std::vector<render::SheetMoment> moments,
-                   const std::string& title) {
+                   const std::string& title, int columns) {
   US_CHECK(!moments.empty(), path, ": there is no frame to show");
   render::SheetOptions options;
   options.title = title;
+  options.columns = columns;
   for (const auto& moment : moments)
     if (moment.source_joints) {
       options.heading = heading_of(*moment.source_joints);

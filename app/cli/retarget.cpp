@@ -62,8 +62,11 @@ Action declare_retarget(CLI::App& command) {
   command.add_option("--out", job->out, "the animated target: .glb, or .npz with all figures");
   command.add_option("--report", job->report, "report as JSON");
   command.add_option("--preview", job->preview, "contact sheet as PNG");
+  command.add_option("--skeletons", job->skeletons,
+                     "PNG of up to 60 frames with the extracted skeleton in each");
   return [job] {
-    if (job->out.empty() && job->report.empty() && job->preview.empty()) job->out = "out.glb";
+    if (job->out.empty() && job->report.empty() && job->preview.empty() && job->skeletons.empty())
+      job->out = "out.glb";
     run_job(*job);
     return 0;
   };
