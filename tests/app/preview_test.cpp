@@ -35,5 +35,12 @@ TEST(PreviewMoments, SpreadOverAnUnknownLength) {
   }
 }
 
+TEST(PreviewMoments, ShowAsManyAsAreWanted) {
+  PreviewMoments moments(60, 60);
+  for (int i = 0; i < 60; ++i)
+    if (moments.wanted(i)) moments.add(i, {});
+  EXPECT_EQ(moments.take().size(), 60u);
+}
+
 }  // namespace
 }  // namespace understudy::app

@@ -179,5 +179,23 @@ TEST(PrepareTarget, WarnsOfATargetThatIsNoPersonInTPose) {
   EXPECT_FALSE(prepare_target(PointBody(human_rest()).mesh, posed).warnings.empty());
 }
 
+TEST(Retargeter, FindsTheTargetsJointsWithTheExtractorForTPoses) {
+  class NeverAsked final : public SkeletonExtractor {
+   public:
+    Extraction extract(const Mesh&) override {
+      throw Error("the extractor of scans was asked about a target");
+    }
+    std::string name() const override { return "never"; }
+  };
+  Networks networks;
+  networks.extractor = std::make_unique<NeverAsked>();
+  networks.rest_extractor = std::make_unique<LopsidedExtractor>();
+  networks.transfer = std::make_unique<CopyTransfer>();
+  const PointBody body(human_rest());
+  networks.deformer = std::make_unique<RigidDeformer>(body.weights);
+  Retargeter retargeter(std::move(networks), {});
+  EXPECT_NO_THROW(retargeter.set_target(body.mesh));
+}
+
 }  // namespace
 }  // namespace understudy

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
 #include "retarget/nn/skeleton_form.hpp"
 #include "retarget/training/skeleton_batch.hpp"
 #include "retarget/training/skeleton_trainer.hpp"
@@ -91,6 +92,17 @@ TEST_F(SkeletonTraining, ScanPointsLieNearTheJointOfTheirPart) {
   ASSERT_EQ(scan.points.rows(), nn::kScanPoints);
   for (int i = 0; i < nn::kScanPoints; ++i)
     EXPECT_LT((scan.points.row(i) - scan.truth.joints.row(scan.parts[i])).norm(), 0.2f);
+}
+
+TEST_F(SkeletonTraining, ScansForTargetsAreNearTheTPoseAndFaceForwards) {
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  ScanMaker maker(data, ScanMakerOptions::rest(), 3);
+  for (int i = 0; i < 20; ++i) {
+    const MadeScan scan = maker.next();
+    const Rotations local = local_rotations(scan.truth.global);
+    for (int j = 1; j < kJointCount; ++j) EXPECT_LT(geodesic_angle(local[j], Mat3::Identity()), 0.1f);
+    EXPECT_LT(geodesic_angle(local[0], Mat3::Identity()), 0.8f);
+  }
 }
 
 TEST_F(SkeletonTraining, FlaggedFramesAreLeftOut) {
