@@ -107,6 +107,7 @@ Running start(const JobOptions& options, const Mesh& target) {
   Running job;
   job.source = open_source(options.source);
   Networks networks = nn::load_networks(options.networks);
+  log::info("inference threads: " + nn::runtime_report().threads_why);
   job.performer = std::make_unique<Performer>(*job.source, target, std::move(networks), options.retarget);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
