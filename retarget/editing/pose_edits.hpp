@@ -1,0 +1,94 @@
+// Edits of the result: rotated bones, smoothing, floor, pinned feet, heading, trim.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "retarget/pipeline/root_path.hpp"
+#include "retarget/skeleton/foot_contact.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+/// A bone turned by the hand at one frame; the frames around follow less and less (falloff_weight).
+struct RotateEdit {
+  int frame = 0;
+  int joint = 0;
+  Vec3 axis_angle = Vec3::Zero();  ///< radians, in the joint's own frame, applied after its rotation
+  int falloff = 5;                 ///< frames to each side that follow
+};
+
+/// Rotations and root over time through a Gaussian that looks both ways (no delay).
+struct SmoothEdit {
+  float strength = 0.5f;  ///< 0 nothing .. 1 a Gaussian of kSmoothestSeconds standard deviation
+};
+constexpr float kSmoothestSeconds = 0.2f;
+
+/// The whole motion moved up or down.
+struct FloorEdit {
+  float offset_m = 0;
+};
+
+/// Feet on the floor stay where they are: the legs follow by inverse kinematics.
+struct PinEdit {
+  bool left = true, right = true;
+  FootContactOptions contact;
+  float blend_s = 0.25f;      ///< a correction comes and goes within this time, or less between near contacts
+  bool keep_soles_up = true;  ///< soles that are under the floor are lifted onto it at any time
+};
+
+/// The motion turned about the vertical through its first pelvis.
+struct HeadingEdit {
+  float yaw_deg = 0;  ///< takes +z towards +x
+};
+
+/// What stays for playback and export. Frames are those of the motion before any edit.
+struct Trim {
+  int first = 0, last = 0;  ///< both inside
+};
+
+struct PoseEdits {
+  std::vector<RotateEdit> rotate;
+  std::optional<SmoothEdit> smooth;
+  std::optional<FloorEdit> floor;
+  std::optional<PinEdit> pin;
+  std::optional<HeadingEdit> heading;
+  std::optional<Trim> trim;
+  std::set<int> skip;  ///< frames left out, original numbers
+  bool empty() const;
+};
+
+/// The target in T-pose, as far as edits of its poses must know it.
+struct EditedBody {
+  Joints rest = Joints::Zero();
+  SupportPoints soles;  ///< what may touch the floor; without any the ankles and balls stand for the soles
+  static EditedBody from(const Points& rest_vertices, const Joints& rest_joints);
+};
+
+/// All edits in this order, whatever order they were made in: rotate (as listed), smooth, floor, pin,
+/// heading, then trim and skip. So a foot rotated by hand is still pinned, pins see the final floor, and
+/// frame numbers are always the original ones. Deterministic. Flags go with their frames. Throws Error for
+/// joints that are none, a strength outside 0..1 or a trim that leaves nothing.
+Motion apply(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
+/// The same without soles: the ankles' and the balls' T-pose heights over the lower of them are kept.
+Motion apply(const PoseEdits& edits, const Motion& motion, const Joints& rest);
+/// The same without trim and skip: as many frames as before, for a timeline that still shows them.
+Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
+/// Original numbers of the frames that trim and skip leave of `count`.
+std::vector<int> kept_frames(const PoseEdits& edits, int count);
+
+/// One step each.
+void rotate(const RotateEdit& edit, Motion& motion);
+void smooth(const SmoothEdit& edit, Motion& motion);
+void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body);
+void turn(const HeadingEdit& edit, Motion& motion);
+
+/// What an edit does to a motion, in figures; both of one length.
+struct EditCost {
+  double acceleration_before = 0, acceleration_after = 0;  ///< mean |second difference| of joints, m/s^2
+  double mean_displacement_m = 0, max_displacement_m = 0;  ///< of joints
+};
+EditCost edit_cost(const Motion& before, const Motion& after, const Joints& rest);
+
+}  // namespace understudy

@@ -1,0 +1,56 @@
+// Edits of a scan before joints are looked for in it: crop, floor removal, the person's cluster alone.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy {
+
+/// An axis-aligned box in the world, metres.
+struct Box {
+  Vec3 low = Vec3::Constant(-1), high = Vec3::Constant(1);
+  bool contains(const Vec3& point) const {
+    return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
+  }
+};
+
+/// The points x with normal . x = height; normal has unit length and points up.
+struct FloorPlane {
+  Vec3 normal = Vec3::UnitY();
+  float height_m = 0;
+  float above(const Vec3& point) const { return normal.dot(point) - height_m; }
+};
+
+/// The floor under a body, in a scan that shows some of it: a nearly level plane with hardly a point below,
+/// larger than soles are. Nothing when the scan has no such plane. Deterministic; finds tilts up to 15
+/// degrees.
+std::optional<FloorPlane> detect_floor(const Points& points);
+
+/// Takes the floor out and leaves the soles on it.
+struct FloorCut {
+  float height_m = 0;               ///< of a level floor; not used with a plane
+  std::optional<FloorPlane> plane;  ///< a floor found or drawn; wins over the height
+  float tolerance_m = 0.02f;        ///< what is higher above the floor is never cut
+  float sole_radius_m = 0.025f;  ///< floor-high points this near, seen from above, to a body's are its soles
+  float sole_band_m = 0.12f;     ///< up to this high a point is the body's that soles are under
+};
+
+struct ScanEdits {
+  std::optional<Box> crop;
+  std::optional<FloorCut> floor;
+  bool largest_cluster = false;  ///< a second person or a prop goes
+  float cluster_gap_m = 0.08f;   ///< parts further apart than this are not one
+  bool empty() const { return !crop && !floor && !largest_cluster; }
+};
+
+/// Indices of the vertices that stay, ascending: crop, then floor, then cluster. Vertices that are not finite
+/// go with any edit. Throws Error for a crop box with no inside or sizes that are not positive.
+std::vector<int> kept_vertices(const ScanEdits& edits, const Mesh& scan);
+
+/// The scan that is left, in its old order, colours too: vertices that stay, and of a mesh the faces whose
+/// three corners stay and the vertices that these use. May be empty.
+Mesh apply(const ScanEdits& edits, const Mesh& scan);
+
+}  // namespace understudy

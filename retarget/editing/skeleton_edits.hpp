@@ -1,0 +1,43 @@
+// Edits of the joints found in a scan, before they are transferred.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "retarget/pipeline/interfaces.hpp"
+
+namespace understudy {
+
+/// How much of an edit of frame 0 there is `distance` frames away: 1 at 0, then half a cosine down to 0 at
+/// falloff + 1 frames.
+float falloff_weight(int distance, int falloff);
+
+/// A joint taken by the hand at one frame; the frames around follow less and less.
+struct DragEdit {
+  int frame = 0;
+  int joint = 0;
+  Vec3 offset = Vec3::Zero();  ///< metres, world, added to where the joint was seen
+  int falloff = 5;             ///< frames to each side that follow
+  bool with_children = false;  ///< the joints further out move along, rigidly; otherwise they were seen right
+};
+
+/// Left and right were taken for each other from frame `first` to frame `last`.
+struct SwapEdit {
+  enum class Limbs { Arms, Legs, Both };
+  int first = 0, last = 0;  ///< both inside
+  Limbs limbs = Limbs::Both;
+};
+
+using SkeletonEdit = std::variant<DragEdit, SwapEdit>;
+
+/// The joints of frame `frame` after the edits, in their order. Depends on nothing but the edits and this
+/// frame, so that an online run with edits equals an edit of a finished one. What a hand set is believed: the
+/// confidence of moved joints rises to 1 by the edit's weight, of exchanged ones to at least 0.9. Seen
+/// rotations follow a drag (bones turn with their ends) and are dropped by a swap. Throws Error for a joint
+/// that is none.
+Extraction apply(const std::vector<SkeletonEdit>& edits, Extraction seen, int frame);
+
+/// Whether any edit changes that frame.
+bool touches(const std::vector<SkeletonEdit>& edits, int frame);
+
+}  // namespace understudy

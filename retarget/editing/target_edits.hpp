@@ -1,0 +1,79 @@
+// Edits of the target: T-pose joints moved, skin weights painted, smoothed, mirrored.
+#pragma once
+
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+/// A T-pose joint put somewhere else.
+struct JointMove {
+  int joint = 0;
+  Vec3 position = Vec3::Zero();  ///< metres, in the T-pose
+  bool mirror = true;            ///< the other side's joint follows; a joint of the spine stays in the middle
+};
+
+/// x of the plane that a body in T-pose is symmetric about: the mean over joints and their mirror images.
+float symmetry_centre(const Joints& rest);
+/// The joints after the moves, in their order; mirrored about symmetry_centre(rest). Throws Error for a joint
+/// that is none or a position that is not finite.
+Joints apply(const std::vector<JointMove>& moves, const Joints& rest);
+
+/// Rows of a [V, 22] weight matrix that replace those there: what documents keep.
+struct WeightRows {
+  std::vector<int> vertex;         ///< ascending, each once
+  RowMatrix rows{0, kJointCount};  ///< [vertex.size(), 22], not negative, sums 1
+  bool empty() const { return vertex.empty(); }
+};
+
+/// Puts the rows in. Throws Error when a vertex is outside or the columns differ.
+void apply(const WeightRows& edit, RowMatrix& weights);
+/// Both; where both have a vertex, the newer row.
+WeightRows merged(const WeightRows& older, const WeightRows& newer);
+/// The rows of `after` that differ from `before`.
+WeightRows changed_rows(const RowMatrix& before, const RowMatrix& after);
+
+/// Which vertices are joined, from the faces; vertices at one place (seams of textures) are joined too. Of a
+/// cloud: the six nearest. Make it once per target.
+struct Neighbours {
+  std::vector<int> start;  ///< [V + 1]: those of v are index[start[v]] .. index[start[v + 1]]
+  std::vector<int> index;
+  static Neighbours from(const Mesh& mesh);
+  int vertices() const { return static_cast<int>(start.size()) - 1; }
+};
+
+struct Brush {
+  enum class Mode { Add, Subtract, Smooth };
+  int joint = 0;  ///< the one painted; Smooth smooths all
+  float radius_m = 0.05f;
+  float strength = 0.5f;  ///< 0..1, of one dab at its centre
+  Mode mode = Mode::Add;
+};
+
+/// A mesh to paint on; keeps references.
+struct PaintSurface {
+  const Points& vertices;
+  const Neighbours& neighbours;
+};
+
+/// One dab at `hit`, a point on the surface: the changed rows. Strength falls off smoothly to 0 at the
+/// radius, and only the surface that hangs together with the hit within about the radius is painted: a dab
+/// on one thigh leaves the other. Add takes from the other joints in proportion; Subtract gives to them,
+/// where there are none to the joint's parent (the pelvis: spine1). Throws Error for sizes that disagree or a
+/// brush out of range.
+WeightRows stroke(const RowMatrix& weights, const PaintSurface& surface, const Vec3& hit, const Brush& brush);
+
+/// The whole of each row towards its neighbours' mean by `strength` 0..1, `rounds` times. `vertex`: which
+/// ones, all when empty.
+WeightRows smoothed(const RowMatrix& weights, const Neighbours& neighbours, const std::vector<int>& vertex,
+                    float strength, int rounds = 1);
+
+enum class BodySide { Left, Right };
+/// Rows of the other side made from `from`: each vertex takes the row of the vertex nearest to its mirror
+/// image about x = `centre`, joints exchanged; vertices on the plane take the mean of both. Cloud or mesh.
+WeightRows mirrored_weights(const RowMatrix& weights, const Points& vertices, BodySide from,
+                            float centre = 0);
+
+}  // namespace understudy
