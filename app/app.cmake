@@ -1,13 +1,17 @@
 find_package(CLI11 REQUIRED)
 
+# What command line and studio share.
+us_module(run SOURCES
+  app/run/case_folder.cpp app/run/interrupt.cpp app/run/judge.cpp app/run/latency.cpp app/run/performer.cpp
+  app/run/report.cpp app/run/samples.cpp app/run/source.cpp app/run/target_file.cpp
+  PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline nlohmann_json::nlohmann_json
+  PRIVATE understudy_npz understudy_body ZLIB::ZLIB)
+
 # What the subcommands share, apart from the program so that tests can link it.
 us_module(app SOURCES
-  app/cli/case_folder.cpp app/cli/interrupt.cpp app/cli/job.cpp app/cli/judge.cpp app/cli/latency.cpp
-  app/cli/machine.cpp app/cli/outputs.cpp app/cli/preview.cpp app/cli/progress.cpp app/cli/report.cpp
-  app/cli/samples.cpp app/cli/source.cpp
-  PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline understudy_networks
-  understudy_render nlohmann_json::nlohmann_json
-  PRIVATE understudy_npz understudy_body understudy_results ZLIB::ZLIB ${CMAKE_DL_LIBS})
+  app/cli/job.cpp app/cli/machine.cpp app/cli/outputs.cpp app/cli/preview.cpp app/cli/progress.cpp
+  PUBLIC understudy_run understudy_networks understudy_render
+  PRIVATE understudy_results ${CMAKE_DL_LIBS})
 
 add_executable(understudy app/main.cpp app/cli/commands.cpp app/cli/bench.cpp app/cli/demo.cpp app/cli/doctor.cpp
   app/cli/eval.cpp app/cli/retarget.cpp app/cli/sample.cpp app/cli/train.cpp)

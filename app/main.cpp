@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/cli/commands.hpp"
-#include "app/cli/interrupt.hpp"
+#include "app/run/interrupt.hpp"
 
 namespace {
 

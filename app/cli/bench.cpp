@@ -2,12 +2,12 @@
 #include <cstdio>
 
 #include "app/cli/commands.hpp"
-#include "app/cli/interrupt.hpp"
 #include "app/cli/job.hpp"
 #include "app/cli/machine.hpp"
 #include "app/cli/options.hpp"
 #include "app/cli/progress.hpp"
-#include "app/cli/samples.hpp"
+#include "app/run/interrupt.hpp"
+#include "app/run/samples.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 
@@ -39,6 +39,7 @@ class Repeated final : public Source {
     US_CHECK(frame, options_.path, ": has no frames");
     return frame;
   }
+  void seek(int64_t frame) override { inner_->seek(frame); }
   std::optional<int64_t> count() const override { return std::nullopt; }
 
  private:

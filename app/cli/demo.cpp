@@ -6,7 +6,7 @@
 
 #include "app/cli/commands.hpp"
 #include "app/cli/job.hpp"
-#include "app/cli/samples.hpp"
+#include "app/run/samples.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {

@@ -4,7 +4,7 @@
 #include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/machine.hpp"
-#include "app/cli/version.hpp"
+#include "app/run/version.hpp"
 #include "render/context/context.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/nn/networks.hpp"

@@ -3,13 +3,13 @@
 #include <cstdio>
 
 #include "app/cli/attempt.hpp"
-#include "app/cli/case_folder.hpp"
 #include "app/cli/commands.hpp"
-#include "app/cli/interrupt.hpp"
 #include "app/cli/job.hpp"
-#include "app/cli/judge.hpp"
 #include "app/cli/options.hpp"
-#include "app/cli/report.hpp"
+#include "app/run/case_folder.hpp"
+#include "app/run/interrupt.hpp"
+#include "app/run/judge.hpp"
+#include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 

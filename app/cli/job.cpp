@@ -1,27 +1,20 @@
 #include "app/cli/job.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
-#include "app/cli/interrupt.hpp"
-#include "app/cli/judge.hpp"
 #include "app/cli/outputs.hpp"
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
-#include "app/cli/report.hpp"
+#include "app/run/interrupt.hpp"
+#include "app/run/judge.hpp"
+#include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 
 namespace understudy::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point began) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-}
 
 std::string file_name(const std::string& path) {
   const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
@@ -131,49 +124,6 @@ void finish(const JobOptions& options, Running& job) {
 }
 
 }  // namespace
-
-Mesh import_target(const TargetOptions& options) {
-  Mesh target = read_target(options.path, options.betas);
-  ImportOptions import = options.import;
-  if (import.up.empty()) import.up = "y";
-  const ImportDecision decision = decide_import(target, import);
-  decision.apply(target);
-  log::info(options.path + ": " + decision.sentence);
-  return target;
-}
-
-Performer::Performer(Source& source, const Mesh& target, Networks networks, const RetargetOptions& options)
-    : source_(source), retargeter_(std::move(networks), options) {
-  retargeter_.set_target(target);
-}
-
-std::optional<PerformedFrame> Performer::next() {
-  return next(nullptr);
-}
-
-std::optional<PerformedFrame> Performer::next(const Joints& oracle) {
-  Extraction extraction;
-  extraction.joints = oracle;
-  return next(&extraction);
-}
-
-std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
-  const auto began = Clock::now();
-  auto scan = source_.next();
-  if (!scan) return std::nullopt;
-  PerformedFrame frame;
-  frame.times.read = ms_since(began);
-  const float dt = static_cast<float>(1 / source_.fps());
-  frame.result = oracle ? retargeter_.push(*oracle, scan->mesh, dt) : retargeter_.push(scan->mesh, dt);
-  frame.times.total = ms_since(began);
-  frame.times.extract = frame.result.ms.extract;
-  frame.times.transfer = frame.result.ms.transfer;
-  frame.times.deform = frame.result.ms.deform;
-  if (!frame.result.flagged) last_seen_ = frame.result.source.joints;
-  frame.source_joints = last_seen_;
-  frame.scan = std::move(*scan);
-  return frame;
-}
 
 void run_job(const JobOptions& options) {
   check_output_format(options.out);

@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/commands.hpp"
-#include "app/cli/interrupt.hpp"
+#include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/nn/networks.hpp"
 

@@ -18,6 +18,8 @@ class ByteStream {
   virtual ~ByteStream() = default;
   // Reads up to `size` bytes; fewer only at the end.
   virtual size_t read(char* to, size_t size) = 0;
+  // Goes on from the byte `offset` of the whole.
+  virtual void seek(uint64_t offset) = 0;
   uint64_t size = 0;  // of all, as the file says
 };
 
@@ -34,6 +36,10 @@ class FileStream : public ByteStream {
     file_.read(to, static_cast<std::streamsize>(count));
     return static_cast<size_t>(file_.gcount());
   }
+  void seek(uint64_t offset) override {
+    file_.clear();
+    file_.seekg(static_cast<std::streamoff>(offset));
+  }
 
  private:
   std::ifstream file_;
@@ -46,7 +52,7 @@ struct CloseZip {
 class ZipStream : public ByteStream {
  public:
   ZipStream(std::shared_ptr<zip_t> zip, zip_uint64_t index)
-      : zip_(std::move(zip)), file_(zip_fopen_index(zip_.get(), index, 0)) {
+      : zip_(std::move(zip)), index_(index), file_(zip_fopen_index(zip_.get(), index, 0)) {
     zip_stat_t about;
     zip_stat_init(&about);
     if (zip_stat_index(zip_.get(), index, 0, &about) != 0 || !(about.valid & ZIP_STAT_SIZE)) return;
@@ -60,15 +66,29 @@ class ZipStream : public ByteStream {
       if (got <= 0) break;
       have += static_cast<size_t>(got);
     }
+    at_ += have;
     return have;
+  }
+  // What is packed is read from its start.
+  void seek(uint64_t offset) override {
+    if (offset < at_) {
+      file_.reset(zip_fopen_index(zip_.get(), index_, 0));
+      at_ = 0;
+    }
+    std::string skipped(1 << 16, '\0');
+    while (at_ < offset && read(skipped.data(), std::min<uint64_t>(skipped.size(), offset - at_)) > 0) {
+    }
   }
 
  private:
   std::shared_ptr<zip_t> zip_;  // outlives what is open in it
+  zip_uint64_t index_;
+  uint64_t at_ = 0;
   std::unique_ptr<zip_file_t, CloseZip> file_;
 };
 
 struct NpyHeader {
+  uint64_t bytes = 0;  // of the header itself: the numbers follow
   std::vector<int64_t> shape;
   NumberType type = NumberType::F32;
   bool swap = false;
@@ -110,6 +130,7 @@ NpyHeader read_header(ByteStream& stream, const std::string& source) {
   US_CHECK(stream.read(text.data(), length) == length, source, ": ends inside its header");
 
   NpyHeader header;
+  header.bytes = (start[6] > 1 ? 12 : 10) + length;
   std::vector<std::string_view> words;
   split_words(dictionary_value(text, "'shape'", ')'), "(),", words);
   for (const auto& word : words) {
@@ -170,6 +191,11 @@ class ArrayFrames : public ScanSource::Frames {
     return frame;
   }
   std::optional<int64_t> count() const override { return frames_; }
+  void seek(int64_t frame) override {
+    US_CHECK(frame >= 0 && frame < frames_, path_, ": there is no frame ", frame, " among ", frames_);
+    at_ = frame;
+    stream_->seek(header_.bytes + bytes_.size() * static_cast<uint64_t>(frame));
+  }
   int64_t points() const { return points_; }
 
   Faces faces{0, 3};

@@ -13,6 +13,8 @@ class ScanSource::Frames {
   virtual ~Frames() = default;
   virtual std::optional<ScanFrame> next() = 0;
   virtual std::optional<int64_t> count() const = 0;
+  /// See ScanSource::seek(). Here: for what cannot.
+  virtual void seek(int64_t frame);
   std::vector<FrameGap> gaps;
 };
 

@@ -86,6 +86,10 @@ class FileFrames : public ScanSource::Frames {
     return frame;
   }
   std::optional<int64_t> count() const override { return static_cast<int64_t>(files_.size()); }
+  void seek(int64_t frame) override {
+    US_CHECK(frame >= 0 && frame < *count(), "there is no frame ", frame, " among ", files_.size());
+    at_ = static_cast<size_t>(frame);
+  }
 
  private:
   std::vector<std::string> files_;
@@ -251,6 +255,12 @@ ScanSource::ScanSource(ScanSource&&) noexcept = default;
 ScanSource& ScanSource::operator=(ScanSource&&) noexcept = default;
 std::optional<ScanFrame> ScanSource::next() {
   return frames_->next();
+}
+void ScanSource::seek(int64_t frame) {
+  frames_->seek(frame);
+}
+void ScanSource::Frames::seek(int64_t) {
+  throw Error("frames that are still being written cannot be gone back to");
 }
 std::optional<int64_t> ScanSource::count() const {
   return frames_->count();

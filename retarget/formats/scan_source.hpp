@@ -56,6 +56,10 @@ class ScanSource {
   /// throws Error. The file of a sequence of one frame throws when it cannot be read.
   std::optional<ScanFrame> next();
 
+  /// next() goes on with this frame, 0 the first. At once for files and .npy; a packed .npz is read up to
+  /// there. Throws Error when there is no such frame or the folder is followed.
+  void seek(int64_t frame);
+
   /// How many frames there are; none while a folder is followed.
   std::optional<int64_t> count() const;
   /// Missing numbers found so far: all of them from the start, but for a followed folder.

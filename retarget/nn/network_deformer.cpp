@@ -58,7 +58,9 @@ class NetworkDeformer : public Deformer {
   }
   void bind(const Points& rest, const Joints& rest_joints) override;
   const RowMatrix& weights() const override { return weights_; }
-  Points deform(const Pose& pose) override;
+  void set_weights(RowMatrix weights) override;
+  Points deform(const Pose& pose) const override;
+  Points offsets(const Pose& pose) const override;
   std::string name() const override { return offsets_ ? "network" : "network, no offsets"; }
 
  private:
@@ -130,7 +132,23 @@ void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
   }
 }
 
-Points NetworkDeformer::deform(const Pose& pose) {
+void NetworkDeformer::set_weights(RowMatrix weights) {
+  US_CHECK(rest_.rows() > 0, "set_weights() wants bind() first");
+  US_CHECK(weights.rows() == rest_.rows() && weights.cols() == kJointCount, "skin weights are ",
+           weights.rows(), " x ", weights.cols(), ", the target has ", rest_.rows(), " vertices");
+  US_CHECK(weights.allFinite() && weights.minCoeff() >= 0 && weights.rowwise().sum().minCoeff() > 1e-6f,
+           "skin weights must not be negative, and every vertex wants some");
+  weights_ = weights.array().colwise() / weights.rowwise().sum().array();
+  keep_weights();
+}
+
+Points NetworkDeformer::offsets(const Pose& pose) const {
+  Points offsets = Points::Zero(rest_.rows(), 3);
+  add_offsets(pose, offsets);
+  return offsets;
+}
+
+Points NetworkDeformer::deform(const Pose& pose) const {
   US_CHECK(rest_.rows() > 0, "deform() wants bind() first");
   Points rest = rest_;
   add_offsets(pose, rest);

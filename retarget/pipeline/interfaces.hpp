@@ -17,6 +17,7 @@ struct Extraction {
   Eigen::Array<float, kJointCount, 1> confidence =
       Eigen::Array<float, kJointCount, 1>::Ones();  ///< 0..1 a joint
   std::optional<Rotations> global;                  ///< world rotations seen on the surface, where known
+  std::optional<float> sole_height;  ///< metres over the floor of the lowest points near the feet, where seen
 };
 
 /// Joints from a scan of any number of points, any order, any heading (paper 1, section 3.1). One thread at a
@@ -41,7 +42,8 @@ class MotionTransfer {
   virtual std::string name() const = 0;
 };
 
-/// Skin weights once per target, vertices per frame (paper 1, section 3.2).
+/// Skin weights once per target, vertices per frame (paper 1, section 3.2). What is const may be called from
+/// several threads at once.
 class Deformer {
  public:
   virtual ~Deformer() = default;
@@ -49,8 +51,14 @@ class Deformer {
   virtual void bind(const Points& rest, const Joints& rest_joints) = 0;
   /// [V, 22], rows sum to 1. Valid after bind().
   virtual const RowMatrix& weights() const = 0;
+  /// Replaces the skin weights by others (a user's), [V, 22] >= 0; rows are made to sum to 1. After bind().
+  /// Throws Error when the shape is another or a row is empty.
+  virtual void set_weights(RowMatrix weights) = 0;
   /// Posed vertices [V, 3] (eq. 3): offsets, then linear blend skinning.
-  virtual Points deform(const Pose& pose) = 0;
+  virtual Points deform(const Pose& pose) const = 0;
+  /// Pose-corrective offsets of the T-pose vertices in this pose, [V, 3] metres, T-pose axes; zero without
+  /// such a network.
+  virtual Points offsets(const Pose& pose) const = 0;
   virtual std::string name() const = 0;
 };
 
@@ -59,7 +67,7 @@ struct Networks {
   std::unique_ptr<SkeletonExtractor> extractor;
   std::unique_ptr<SkeletonExtractor> rest_extractor;  ///< trained on T-poses, for targets; may be null
   std::unique_ptr<MotionTransfer> transfer;
-  std::unique_ptr<Deformer> deformer;
+  std::shared_ptr<Deformer> deformer;
 };
 
 }  // namespace understudy

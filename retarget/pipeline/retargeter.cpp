@@ -87,18 +87,19 @@ RetargetedFrame Retargeter::push(const Mesh& scan, float dt) {
     waited_ += dt;
     return repeat(std::move(frame), error.what());
   }
+  frame.source_raw.sole_height = sole_height(frame.source_raw.joints, scan.vertices);
   frame.ms.extract = watch.lap();
-  return transfer(std::move(frame), scan, dt);
+  return transfer(std::move(frame), dt);
 }
 
-RetargetedFrame Retargeter::push(const Extraction& extraction, const Mesh& scan, float dt) {
+RetargetedFrame Retargeter::push(const Extraction& extraction, float dt) {
   US_CHECK(has_target_, "there is no target yet");
   RetargetedFrame frame;
   frame.source_raw = extraction;
-  return transfer(std::move(frame), scan, dt);
+  return transfer(std::move(frame), dt);
 }
 
-RetargetedFrame Retargeter::transfer(RetargetedFrame frame, const Mesh& scan, float dt) {
+RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt) {
   Stopwatch watch;
   waited_ += dt;
   const Extraction& seen = frame.source_raw;
@@ -118,7 +119,7 @@ RetargetedFrame Retargeter::transfer(RetargetedFrame frame, const Mesh& scan, fl
   try {
     frame.source = filter_.push(seen, waited_);
     frame.pose.local = networks_.transfer->push(frame.source, waited_);
-    frame.pose.root = root_.push(frame.source.joints, scan.vertices, frame.pose.local, waited_);
+    frame.pose.root = root_.push(frame.source, frame.pose.local, waited_);
     frame.ms.transfer = watch.lap();
     if (!finite(frame.pose.local) || !frame.pose.root.allFinite())
       return refuse("the motion transfer gave numbers that are not finite");

@@ -73,8 +73,9 @@ class Retargeter {
   /// repeats the last pose (before any good one: the T-pose at the origin) and is flagged. Throws Error
   /// without a target.
   RetargetedFrame push(const Mesh& scan, float dt);
-  /// The same with the source's joints given (an oracle, or an extractor of one's own); `scan` may be empty.
-  RetargetedFrame push(const Extraction& extraction, const Mesh& scan, float dt);
+  /// The same with what was extracted given: kept from before, corrected, an oracle, or an extractor of one's
+  /// own.
+  RetargetedFrame push(const Extraction& extraction, float dt);
   /// The target in a pose given, no transfer: for poses kept, and for an oracle.
   RetargetedFrame pose_target(const Pose& pose);
 
@@ -84,7 +85,7 @@ class Retargeter {
   float leg_scale() const { return root_.scale(); }
 
  private:
-  RetargetedFrame transfer(RetargetedFrame frame, const Mesh& scan, float dt);
+  RetargetedFrame transfer(RetargetedFrame frame, float dt);
   RetargetedFrame repeat(RetargetedFrame frame, const std::string& reason);
   void finish(RetargetedFrame& frame);
 

@@ -14,6 +14,23 @@ constexpr float kContactEase = 0.1f;  // seconds in which a contact takes hold
 
 }  // namespace
 
+std::optional<float> sole_height(const Joints& source, const Points& scan) {
+  const float near = 0.25f * std::max(leg_length(source), 1e-3f);
+  std::vector<float> heights;
+  for (Eigen::Index i = 0; i < scan.rows(); ++i) {
+    const auto p = scan.row(i);
+    for (const int j : kFeet)
+      if ((p - source.row(j)).squaredNorm() < near * near) {
+        heights.push_back(p.y());
+        break;
+      }
+  }
+  if (heights.size() < 20) return std::nullopt;
+  const size_t skip = heights.size() / 100;
+  std::nth_element(heights.begin(), heights.begin() + static_cast<long>(skip), heights.end());
+  return heights[skip];
+}
+
 SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints) {
   SupportPoints support;
   std::vector<Vec3> offsets;
@@ -74,31 +91,17 @@ float RootPath::scale() const {
   return scale_;
 }
 
-float RootPath::clearance(const Joints& source, const Points& scan) const {
-  // The lowest scan points near the foot joints; a few are let go as outliers. Without any: the joints less a
-  // sole.
-  const float leg = std::max(leg_a_.value(), 1e-3f), near = 0.25f * leg;
-  std::vector<float> heights;
-  for (Eigen::Index i = 0; i < scan.rows(); ++i) {
-    const auto p = scan.row(i);
-    for (const int j : kFeet)
-      if ((p - source.row(j)).squaredNorm() < near * near) {
-        heights.push_back(p.y());
-        break;
-      }
-  }
-  float joint_height = source(LeftAnkle, 1);
-  for (const int j : kFeet) joint_height = std::min(joint_height, source(j, 1));
-  if (heights.size() < 20) return joint_height - 0.03f * leg;
-  const size_t skip = heights.size() / 100;
-  std::nth_element(heights.begin(), heights.begin() + static_cast<long>(skip), heights.end());
-  return heights[skip];
+float RootPath::clearance(const Extraction& source) const {
+  if (source.sole_height) return *source.sole_height;
+  float lowest_joint = source.joints(LeftAnkle, 1);
+  for (const int j : kFeet) lowest_joint = std::min(lowest_joint, source.joints(j, 1));
+  return lowest_joint - 0.03f * std::max(leg_a_.value(), 1e-3f);  // the joints less a sole
 }
 
-Vec3 RootPath::push(const Joints& source, const Points& scan, const Rotations& local_b, float dt) {
-  leg_a_.push(leg_length(source));
+Vec3 RootPath::push(const Extraction& source, const Rotations& local_b, float dt) {
+  leg_a_.push(leg_length(source.joints));
   const float wanted_scale = leg_b_ / std::max(leg_a_.value(), 1e-4f);
-  const Vec3 pelvis = source.row(Pelvis).transpose();
+  const Vec3 pelvis = source.joints.row(Pelvis).transpose();
   const float follow = started_ ? 1 - std::exp(-dt / std::max(options_.settle_s, 1e-3f)) : 1.0f;
   scale_ += follow * (wanted_scale - scale_);
 
@@ -114,7 +117,7 @@ Vec3 RootPath::push(const Joints& source, const Points& scan, const Rotations& l
   // y = s * y_source + offset; the offset makes the target's soles as high over the floor as s times the
   // source's.
   const float lowest = support_.lowest(forward_kinematics(rest_b_, Pose{local_b, Vec3::Zero()}));
-  const float clear = clearance(source, scan);
+  const float clear = clearance(source);
   const float exact = scale_ * clear - lowest;
   offsets_.push(exact - scale_ * pelvis.y());
   offset_ += follow * (offsets_.value() - offset_);

@@ -2,9 +2,11 @@
 // are.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/running_median.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -31,20 +33,23 @@ struct SupportPoints {
   float lowest(const PosedSkeleton& posed) const;
 };
 
+/// Height over y = 0 of the lowest scan points near the foot joints, metres; a few are let go as outliers.
+/// None where fewer than 20 points are near.
+std::optional<float> sole_height(const Joints& source, const Points& scan);
+
 /// Online: only the frames so far. s = leg_B / leg_A, leg_A the median over the frames so far; the path is
 /// summed from scaled steps, so that a better s never makes it jump.
 class RootPath {
  public:
   explicit RootPath(const RootPathOptions& options = {}) : options_(options) {}
   void reset(const Points& rest_b, const Joints& joints_b);
-  /// The target's pelvis in the world, metres. source: the source's joints; scan: its points (for the
-  /// clearance of its feet over y = 0); pose_b: the target's local rotations, its root ignored; dt seconds
-  /// since the last frame.
-  Vec3 push(const Joints& source, const Points& scan, const Rotations& local_b, float dt);
+  /// The target's pelvis in the world, metres. source: the source's joints and, where seen, the height of its
+  /// soles; local_b: the target's local rotations; dt seconds since the last frame.
+  Vec3 push(const Extraction& source, const Rotations& local_b, float dt);
   float scale() const;
 
  private:
-  float clearance(const Joints& source, const Points& scan) const;
+  float clearance(const Extraction& source) const;
 
   RootPathOptions options_;
   Joints rest_b_ = Joints::Zero();

@@ -1,4 +1,4 @@
-#include "app/cli/judge.hpp"
+#include "app/run/judge.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/cli/latency.hpp"
+#include "app/run/latency.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/cli/report.hpp"
+#include "app/run/report.hpp"
 
 #include <gtest/gtest.h>
 

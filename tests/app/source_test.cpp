@@ -1,4 +1,5 @@
-#include "app/cli/source.hpp"
+#include "app/run/source.hpp"
+#include "app/run/target_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -82,7 +82,9 @@ class RigidDeformer final : public Deformer {
   explicit RigidDeformer(RowMatrix weights) : weights_(std::move(weights)) {}
   void bind(const Points& rest, const Joints& rest_joints) override { rest_ = rest, joints_ = rest_joints; }
   const RowMatrix& weights() const override { return weights_; }
-  Points deform(const Pose& pose) override {
+  void set_weights(RowMatrix weights) override { weights_ = std::move(weights); }
+  Points offsets(const Pose&) const override { return Points::Zero(rest_.rows(), 3); }
+  Points deform(const Pose& pose) const override {
     return linear_blend_skinning(rest_, weights_, joints_, forward_kinematics(joints_, pose));
   }
   std::string name() const override { return "rigid"; }

@@ -22,9 +22,11 @@ struct Walk {
     for (int i = 0; i < 60; ++i) {
       const Pose pose{identity_rotations(), Vec3(1 + 0.02f * static_cast<float>(i), height, 2)};
       const Mesh scan = scan_of(a, human_rest(), pose);
-      result.push_back(root.push(forward_kinematics(human_rest(), pose).joints,
-                                 scan.vertices.topRows(scan.vertices.rows() - kJointCount),
-                                 identity_rotations(), 1 / 30.0f));
+      Extraction source;
+      source.joints = forward_kinematics(human_rest(), pose).joints;
+      source.sole_height =
+          sole_height(source.joints, scan.vertices.topRows(scan.vertices.rows() - kJointCount));
+      result.push_back(root.push(source, identity_rotations(), 1 / 30.0f));
     }
     return result;
   }
@@ -72,9 +74,10 @@ TEST(RootPath, DoesNotJumpWhenTheLegsTurnOutShorter) {
   Vec3 last = Vec3::Zero();
   for (int i = 0; i < 90; ++i) {
     const float size = i < 3 ? 1.2f : 1.0f;  // the first frames see too long legs
-    Joints joints = size * human_rest();
-    joints.rowwise() += Eigen::RowVector3f(0.02f * static_cast<float>(i), 1.1f, 0);
-    const Vec3 now = root.push(joints, Points(0, 3), identity_rotations(), 1 / 30.0f);
+    Extraction source;
+    source.joints = size * human_rest();
+    source.joints.rowwise() += Eigen::RowVector3f(0.02f * static_cast<float>(i), 1.1f, 0);
+    const Vec3 now = root.push(source, identity_rotations(), 1 / 30.0f);
     if (i > 0) EXPECT_LT((now - last).norm(), 0.05f) << i;
     last = now;
   }

@@ -1,4 +1,4 @@
-#include "app/cli/samples.hpp"
+#include "app/run/samples.hpp"
 
 #include <filesystem>
 

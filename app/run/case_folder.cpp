@@ -1,4 +1,4 @@
-#include "app/cli/case_folder.hpp"
+#include "app/run/case_folder.hpp"
 
 #include <algorithm>
 #include <filesystem>

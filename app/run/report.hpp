@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/cli/judge.hpp"
-#include "app/cli/latency.hpp"
+#include "app/run/judge.hpp"
+#include "app/run/latency.hpp"
 
 namespace understudy::app {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/case_folder.hpp"
+#include "app/run/case_folder.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/metrics/surface_metrics.hpp"
 

@@ -1,4 +1,4 @@
-#include "app/cli/report.hpp"
+#include "app/run/report.hpp"
 
 #include <zlib.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <vector>
 
-#include "app/cli/version.hpp"
+#include "app/run/version.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {

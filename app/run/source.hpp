@@ -19,6 +19,7 @@ struct SourceOptions {
   double fps = 0;            ///< 0: the motion's own, or 30
   ImportOptions import;
   bool follow = false;  ///< the folder is still being written
+  bool quiet = false;   ///< tell nothing: another source has told it all
 };
 
 /// Hands out frames in metres, y up, floor at 0, one at a time and never a later one early.
@@ -27,6 +28,9 @@ class Source {
   virtual ~Source() = default;
   /// None at the end. usable = false: the frame is there but says nothing.
   virtual std::optional<ScanFrame> next() = 0;
+  /// next() goes on with this frame, 0 the first; units, axes and floor stay those of the first usable frame.
+  /// Throws Error when there is no such frame.
+  virtual void seek(int64_t frame) = 0;
   /// None while it is not known.
   virtual std::optional<int64_t> count() const = 0;
   /// Frames per second.
@@ -45,8 +49,5 @@ std::unique_ptr<Source> open_source(const SourceOptions& options);
 /// Turns a motion whose up is z (AMASS's own) to y up; decided from where the body's up points in the first
 /// frame. up: "auto", "y" or "z". True when it was turned.
 bool turn_upright(Motion& motion, const std::string& up);
-
-/// The T-pose of an SMPL-format body with these shape parameters, as a mesh; any other file as it is.
-Mesh read_target(const std::string& path, const std::vector<float>& betas);
 
 }  // namespace understudy::app

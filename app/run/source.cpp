@@ -1,10 +1,10 @@
-#include "app/cli/source.hpp"
+#include "app/run/source.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "app/cli/interrupt.hpp"
+#include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/body/body.hpp"
@@ -29,7 +29,9 @@ class ScanFiles final : public Source {
   explicit ScanFiles(const SourceOptions& options)
       : Source(options.fps > 0 ? options.fps : 30),
         scans_(options.path, scan_options(options)),
-        import_(options.import) {
+        import_(options.import),
+        quiet_(options.quiet) {
+    if (options.quiet) return;
     for (const FrameGap& gap : scans_.gaps())
       log::warn(options.path + ": frames " + std::to_string(gap.first) + " to " + std::to_string(gap.last) +
                 " are missing");
@@ -47,12 +49,18 @@ class ScanFiles final : public Source {
     }
     if (!decision_) {
       decision_ = decide_import(frame->mesh, import_);
-      log::info(frame->path + ": " + decision_->sentence);
+      if (!quiet_) log::info(frame->path + ": " + decision_->sentence);
     }
     decision_->apply(frame->mesh);
     return frame;
   }
 
+  void seek(int64_t frame) override {
+    scans_.seek(0);
+    while (!decision_ && next()) {
+    }
+    scans_.seek(frame);
+  }
   std::optional<int64_t> count() const override { return scans_.count(); }
 
  private:
@@ -65,6 +73,7 @@ class ScanFiles final : public Source {
 
   ScanSource scans_;
   ImportOptions import_;
+  bool quiet_;
   std::optional<ImportDecision> decision_;
 };
 
@@ -99,7 +108,8 @@ class PerformingBody final : public Source {
     import.units = "m";
     import.up = "y";
     decision_ = decide_import(first, import);
-    log::info(options.motion + ": " + in_words(fps()) + ", " + (turned ? "z up, turned to y up" : "y up"));
+    if (!options.quiet)
+      log::info(options.motion + ": " + in_words(fps()) + ", " + (turned ? "z up, turned to y up" : "y up"));
   }
 
   std::optional<ScanFrame> next() override {
@@ -111,6 +121,10 @@ class PerformingBody final : public Source {
     return frame;
   }
 
+  void seek(int64_t frame) override {
+    US_CHECK(frame >= 0 && frame < *count(), "there is no frame ", frame, " in a motion of ", *count());
+    at_ = static_cast<size_t>(frame);
+  }
   std::optional<int64_t> count() const override { return static_cast<int64_t>(motion_.poses.size()); }
 
  private:
@@ -135,10 +149,6 @@ class PerformingBody final : public Source {
   size_t at_ = 0;
 };
 
-bool is_npz(const std::string& path) {
-  return path.size() > 4 && path.compare(path.size() - 4, 4, ".npz") == 0;
-}
-
 }  // namespace
 
 bool turn_upright(Motion& motion, const std::string& up) {
@@ -157,18 +167,6 @@ bool turn_upright(Motion& motion, const std::string& up) {
 std::unique_ptr<Source> open_source(const SourceOptions& options) {
   if (options.motion.empty()) return std::make_unique<ScanFiles>(options);
   return std::make_unique<PerformingBody>(options, read_amass_motion(options.motion));
-}
-
-Mesh read_target(const std::string& path, const std::vector<float>& betas) {
-  if (is_npz(path)) {
-    const Npz npz = read_npz(path);
-    if (npz.count("v_template")) {
-      const ShapedBody person = read_smpl_body(path).shaped(as_vector(betas));
-      return {person.vertices, person.faces};
-    }
-  }
-  US_CHECK(betas.empty(), path, ": only an SMPL-format body takes --betas");
-  return read_mesh(path);
 }
 
 }  // namespace understudy::app

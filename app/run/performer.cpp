@@ -1,0 +1,55 @@
+#include "app/run/performer.hpp"
+
+#include <chrono>
+
+namespace understudy::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point began) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+}  // namespace
+
+Performer::Performer(Source& source, const Mesh& target, Networks networks, const RetargetOptions& options)
+    : source_(source), retargeter_(std::move(networks), options) {
+  retargeter_.set_target(target);
+}
+
+std::optional<PerformedFrame> Performer::next() {
+  return next(nullptr);
+}
+
+std::optional<PerformedFrame> Performer::next(const Joints& oracle) {
+  Extraction extraction;
+  extraction.joints = oracle;
+  return next(&extraction);
+}
+
+std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
+  const auto began = Clock::now();
+  auto scan = source_.next();
+  if (!scan) return std::nullopt;
+  PerformedFrame frame;
+  frame.times.read = ms_since(began);
+  const float dt = static_cast<float>(1 / source_.fps());
+  if (oracle) {
+    Extraction known = *oracle;
+    known.sole_height = sole_height(known.joints, scan->mesh.vertices);
+    frame.result = retargeter_.push(known, dt);
+  } else {
+    frame.result = retargeter_.push(scan->mesh, dt);
+  }
+  frame.times.total = ms_since(began);
+  frame.times.extract = frame.result.ms.extract;
+  frame.times.transfer = frame.result.ms.transfer;
+  frame.times.deform = frame.result.ms.deform;
+  if (!frame.result.flagged) last_seen_ = frame.result.source.joints;
+  frame.source_joints = last_seen_;
+  frame.scan = std::move(*scan);
+  return frame;
+}
+
+}  // namespace understudy::app

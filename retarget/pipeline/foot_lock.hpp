@@ -1,0 +1,39 @@
+// Feet that stand do not slide, online.
+#pragma once
+
+#include "retarget/pipeline/root_path.hpp"
+#include "retarget/skeleton/foot_contact.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+struct FootLockOptions {
+  FootContactOptions contact;
+  float release_s = 0.12f;  ///< time constant in which a correction fades once the foot has left
+  float max_offset_m =
+      0.12f;  ///< a foot that would be held further from where it should be slips (leg 0.8 m)
+};
+
+/// Holds each standing foot of the target by inverse kinematics of its leg. Looks only back, memory is
+/// constant. The ball of the foot is held, and the heel while it alone stands: a foot may roll, not slide.
+class FootLock {
+ public:
+  explicit FootLock(const FootLockOptions& options = {}) : options_(options) {}
+  void reset();
+  /// The pose with its standing feet held. rest: the target's T-pose joints; source: the source's joints in
+  /// this frame, world, which decide what stands; dt seconds since the frame before.
+  Pose push(const Pose& pose, const Joints& rest, float dt, const Joints& source);
+  /// Which feet stand in the last frame: left, right.
+  std::array<bool, 2> standing() const { return standing_; }
+
+ private:
+  FootLockOptions options_;
+  std::array<ContactSwitch, 4> switches_;  // left ankle, right ankle, left ball, right ball
+  std::array<float, 4> levels_{};          // where each of them stands, of the source
+  std::array<Vec3, 2> offset_{Vec3::Zero(), Vec3::Zero()};
+  std::array<std::array<Vec3, 2>, 2> last_{};  // per side ankle (heel) and ball of the unlocked target
+  std::array<bool, 2> standing_{};
+  bool started_ = false;
+};
+
+}  // namespace understudy
