@@ -7,6 +7,9 @@ us_module(run SOURCES
   PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline nlohmann_json::nlohmann_json
   PRIVATE understudy_npz understudy_body ZLIB::ZLIB)
 
+include(app/session/session.cmake)
+include(app/studio/studio.cmake OPTIONAL)
+
 # What the subcommands share, apart from the program so that tests can link it.
 us_module(app SOURCES
   app/cli/job.cpp app/cli/machine.cpp app/cli/outputs.cpp app/cli/preview.cpp app/cli/progress.cpp

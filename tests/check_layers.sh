@@ -1,6 +1,7 @@
 #!/bin/bash
 # Fails when a layer includes a higher one: retarget core <- pipeline <- nn, training; core <- render;
-# core, pipeline <- app/session <- ui; app/cli and app/main.cpp know all. LibTorch only in nn and training.
+# core, pipeline <- app/run <- app/session <- ui <- app/studio; app/main.cpp knows all. LibTorch only in nn and
+# training.
 # check_layers.sh [ROOT]: the tree to check, by default the one that this script is in.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
@@ -32,9 +33,12 @@ refuse retarget/body retarget/formats retarget/metrics -- "retarget/pipeline/|$m
 refuse retarget/pipeline -- "$methods|$torch"
 refuse retarget/nn -- "retarget/training/"
 refuse render -- "app/|ui/|retarget/pipeline/|$methods|$torch|imgui"
-refuse app -- "ui/|$torch|retarget/(nn/modules|training)/"
+refuse app -- "$torch|retarget/(nn/modules|training)/"
+refuse app/run app/cli app/session -- "ui/|app/studio/"
+refuse app/run -- "app/(cli|session)/|render/|retarget/nn/"
 refuse app/session -- "app/cli/|render/|$methods|imgui|GL/"
-refuse ui -- "app/cli/|$methods|$torch"
+refuse app/studio -- "app/cli/|$methods"
+refuse ui -- "app/(cli|studio)/|$methods|$torch"
 # A header that makes its includers compile LibTorch belongs in nn/modules or training.
 headers=$(grep -rlE --include='*.hpp' "^ *#include *[<\"]($torch)" retarget | grep -vE '^retarget/(nn/modules/|nn/weights_file|training/)' || true)
 if [ -n "$headers" ]; then

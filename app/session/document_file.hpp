@@ -1,0 +1,55 @@
+// Documents on disk: .understudy, one JSON file with paths relative to it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/session/document.hpp"
+#include "app/session/playback.hpp"
+#include "app/session/view.hpp"
+
+namespace understudy::app {
+
+constexpr int kDocumentVersion = 1;
+
+/// What the file holds.
+struct SavedDocument {
+  Document document;
+  View view;
+  Playback playback;
+  std::string weights;  ///< the networks' checksums when it was saved
+};
+
+nlohmann::ordered_json to_json(const SavedDocument& saved, const std::string& folder);
+/// Throws Error naming `path` and the member that is not what it should be.
+SavedDocument from_json(const nlohmann::ordered_json& json, const std::string& folder,
+                        const std::string& path);
+
+/// Written beside and renamed: when the disk is full the old document survives. Throws Error naming the path.
+void write_document(const std::string& path, const SavedDocument& saved);
+/// Throws Error, one sentence: no such file, no document, damaged, from a newer version.
+SavedDocument read_document(const std::string& path);
+
+/// Files and folders that the document names and that are not there.
+std::vector<std::string> missing_files(const Document& document);
+/// The document with every path under `from` moved to the same place under `to` (or `from` itself to `to`).
+Document relocated(Document document, const std::string& from, const std::string& to);
+
+/// A copy of unsaved work, for after a crash.
+struct Autosave {
+  std::string file;           ///< of the copy
+  std::string document_path;  ///< where the document was saved; empty: never
+  std::string time;           ///< local, "2024-05-01 14:03"
+};
+/// Writes the copy of this process into `folder`, beside and renamed. Throws Error.
+void write_autosave(const std::string& folder, const SavedDocument& saved, const std::string& document_path);
+/// Removes the copy of this process.
+void remove_autosave(const std::string& folder);
+/// Copies left by processes that no longer run; damaged ones are set aside (.damaged) with a warning.
+std::vector<Autosave> found_autosaves(const std::string& folder);
+/// The document in a copy. Throws Error.
+SavedDocument read_autosave(const Autosave& autosave);
+void discard(const Autosave& autosave);
+
+}  // namespace understudy::app

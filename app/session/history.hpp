@@ -1,0 +1,39 @@
+// Undo and redo by snapshots: documents are small, and what is large in them is shared.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "app/session/document.hpp"
+
+namespace understudy::app {
+
+class History {
+ public:
+  explicit History(int depth = 200) : depth_(depth) {}
+  void clear();
+  /// Remembers `before`, the state that `label` ("Drag left wrist") has changed. A step with the same `merge`
+  /// within a second of the last one becomes one with it (the dragging of a slider); empty: never.
+  void add(const Document& before, const std::string& label, const std::string& merge = "");
+  bool can_undo() const { return !past_.empty(); }
+  bool can_redo() const { return !future_.empty(); }
+  /// What undo() would take back, redo() bring back; "" for nothing.
+  std::string undo_label() const, redo_label() const;
+  /// Goes back: gives the document before the last step; `now` is kept for redo(). Throws Error when there is
+  /// nothing.
+  Document undo(const Document& now);
+  Document redo(const Document& now);
+
+ private:
+  struct Step {
+    Document document;
+    std::string label;
+  };
+  int depth_;
+  std::vector<Step> past_, future_;
+  std::string merge_;
+  std::chrono::steady_clock::time_point merged_at_;
+};
+
+}  // namespace understudy::app

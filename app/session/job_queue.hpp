@@ -1,0 +1,47 @@
+// Work in the background: one thread a job, progress, an honest time left, cancel; results come back on the
+// UI thread.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/session/session.hpp"
+
+namespace understudy::app {
+
+/// What a job sees of the outside.
+class JobControl {
+ public:
+  virtual ~JobControl() = default;
+  /// 0..1.
+  virtual void progress(float done) = 0;
+  virtual bool cancelled() const = 0;
+  /// Throws Cancelled once the user cancelled.
+  void check() const;
+};
+struct Cancelled {};
+
+class JobQueue {
+ public:
+  using Work = std::function<void(JobControl&)>;
+  using Done = std::function<void()>;
+  JobQueue();
+  ~JobQueue();  ///< cancels and waits
+  /// `done` runs on the UI thread in drain() when the work ended without throwing.
+  int64_t start(const std::string& name, Work work, Done done = {});
+  void cancel(int64_t id);
+  bool running() const;
+  /// On the UI thread: runs what is done and gives what failed (Error's sentence; a cancelled job fails
+  /// silently).
+  std::vector<std::string> drain();
+  std::vector<JobView> views() const;
+
+ private:
+  struct Job;
+  std::vector<std::shared_ptr<Job>> jobs_;
+  int64_t next_id_ = 1;
+};
+
+}  // namespace understudy::app

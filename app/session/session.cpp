@@ -1,0 +1,59 @@
+#include "app/session/session.hpp"
+
+#include <cstdio>
+
+namespace understudy::app {
+namespace {
+
+constexpr float kLowConfidence = 0.5f, kWeakLimb = 0.3f, kLengthOff = 0.2f;
+
+/// Why a frame of the source is not to be trusted; empty when it is.
+std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {
+  if (frame.flagged) return frame.reason;
+  if (frame.confidence < kLowConfidence) return "low confidence";
+  for (int j = 1; j < kJointCount; ++j)
+    if (frame.raw.confidence[j] < kWeakLimb) return std::string(kJointNames[j]) + " is lost";
+  for (int j = 1; j < kJointCount; ++j) {
+    const float length = (frame.raw.joints.row(j) - frame.raw.joints.row(kParents[j])).norm();
+    if (usual[j] > 0.05f && std::abs(length - usual[j]) > kLengthOff * usual[j])
+      return std::string("the bone to ") + kJointNames[j] + " has another length";
+  }
+  return "";
+}
+
+/// Each bone's mean length over the good frames, metres.
+Eigen::Array<float, kJointCount, 1> usual_lengths(const std::vector<KeptSource>& frames) {
+  Eigen::Array<float, kJointCount, 1> sum = Eigen::Array<float, kJointCount, 1>::Zero();
+  int good = 0;
+  for (const KeptSource& frame : frames) {
+    if (frame.flagged) continue;
+    for (int j = 1; j < kJointCount; ++j)
+      sum[j] += (frame.joints.row(j) - frame.joints.row(kParents[j])).norm();
+    ++good;
+  }
+  return good > 0 ? Eigen::Array<float, kJointCount, 1>(sum / static_cast<float>(good)) : sum;
+}
+
+}  // namespace
+
+int frame_count(const Session& session) {
+  const size_t selected = static_cast<size_t>(session.selected_take);
+  if (selected < session.takes.size()) return static_cast<int>(session.takes[selected].shown.poses.size());
+  return static_cast<int>(session.source.frames.size());
+}
+
+int shown_frame(const Session& session) {
+  return shown_frame(session.playback, frame_count(session));
+}
+
+std::vector<BadFrame> bad_frames(const Session& session) {
+  std::vector<BadFrame> bad;
+  const auto usual = usual_lengths(session.source.frames);
+  for (size_t i = 0; i < session.source.frames.size(); ++i) {
+    const std::string why = badness(session.source.frames[i], usual);
+    if (!why.empty()) bad.push_back({static_cast<int>(i), why});
+  }
+  return bad;
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,140 @@
+// All that the studio knows at one moment: plain data that panels read. Only the UI thread touches it.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/case_folder.hpp"
+#include "app/run/judge.hpp"
+#include "app/run/latency.hpp"
+#include "app/session/document.hpp"
+#include "app/session/document_file.hpp"
+#include "app/session/history.hpp"
+#include "app/session/playback.hpp"
+#include "app/session/series.hpp"
+#include "app/session/settings.hpp"
+#include "app/session/view.hpp"
+
+namespace understudy::app {
+
+/// What is kept of a frame of the source: under 1.5 kB.
+struct KeptSource {
+  Extraction raw;                  ///< as extracted, before the user's edits
+  Joints joints = Joints::Zero();  ///< edited, repaired and smoothed; of the last good frame where flagged
+  float confidence = 0;            ///< mean over joints
+  bool flagged = false;
+  std::string reason;  ///< why; empty when good
+  int points = 0;      ///< in the scan
+};
+
+/// The source as far as it has been read.
+struct SourceState {
+  std::string name;              ///< for people
+  std::optional<int64_t> count;  ///< frames in all, where known
+  double fps = 30;
+  std::string decision;            ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
+  std::vector<KeptSource> frames;  ///< of the extractor of the first take
+  bool has_faces = false;
+  int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
+};
+
+/// A take as far as it has been performed.
+struct TakeState {
+  bool ready = false;                        ///< target, weights and joints below are there
+  std::string problem;                       ///< why it never will be, one sentence; empty: fine
+  std::shared_ptr<const Target> target;      ///< T-pose mesh and joints (edited)
+  std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
+  std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
+  std::vector<KeptFrame> performed;          ///< as the engine gave them
+  Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
+  std::vector<Joints> joints;  ///< of `shown`
+  std::vector<Series> series;  ///< as many values as frames shown
+  Metrics metrics;             ///< of the whole, once all frames are there
+  Latency latency;
+  EditCost cost;           ///< of the edits of the result
+  int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
+};
+
+/// A background job, for the progress bar.
+struct JobView {
+  int64_t id = 0;
+  std::string name;          ///< "Retargeting", "Exporting dance.glb"
+  float progress = -1;       ///< 0..1; below 0: not known
+  double seconds_left = -1;  ///< below 0: not known yet
+  bool cancellable = true;
+};
+
+/// Something to tell. Dialogs wait for the user; notices go by themselves.
+struct Notice {
+  enum class Kind { Info, Warning, Error };
+  Kind kind = Kind::Info;
+  std::string text;     ///< one sentence
+  std::string details;  ///< for "copy details": the command and the versions
+  double until = 0;     ///< seconds of Session::time at which a notice goes
+};
+
+struct LogLine {
+  bool warning = false;
+  std::string text;
+};
+
+/// A question that the studio waits to have answered before it goes on.
+struct Question {
+  enum class Kind { UnsavedChanges, Recover, MissingFiles };
+  Kind kind = Kind::UnsavedChanges;
+  std::string text;
+  std::string then;                  ///< the command to go on with ("app.quit", "document.open PATH")
+  std::vector<std::string> missing;  ///< MissingFiles: what is not there
+  std::vector<Autosave> autosaves;   ///< Recover
+};
+
+/// What the mouse does in the views.
+enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop };
+
+struct Session {
+  Document document;
+  std::string path;      ///< where it is saved; empty: never
+  bool changed = false;  ///< since it was last saved
+  History history;
+  View view;
+  Playback playback;
+  Settings settings;
+
+  SourceState source;
+  std::vector<TakeState> takes;        ///< beside document.takes
+  std::shared_ptr<const Truth> truth;  ///< null: none
+  bool working = false;                ///< frames are still being made
+  bool paused = false;                 ///< the user stopped the making of frames
+
+  std::vector<JobView> jobs;
+  std::deque<LogLine> log;  ///< the newest 2,000
+  std::vector<Notice> notices;
+  std::deque<Notice> errors;  ///< shown one after the other in a dialog
+  std::optional<Question> question;
+  double time = 0;  ///< seconds since the studio started
+  bool quit = false;
+
+  Tool tool = Tool::Look;
+  int selected_joint = -1;  ///< of the active pane
+  int selected_take = 0;    ///< the one that inspector, metrics and edits are about
+  Brush brush;
+  int falloff = 5;  ///< frames, of edits by hand
+  bool drag_children = false, mirror_joint = true;
+};
+
+/// Frames that can be shown: of the selected take, of the source where there is no take.
+int frame_count(const Session& session);
+/// The frame shown, -1 without one.
+int shown_frame(const Session& session);
+/// Frames to mark as bad, with why ("frame 12: low confidence").
+struct BadFrame {
+  int frame;
+  std::string why;
+};
+std::vector<BadFrame> bad_frames(const Session& session);
+
+}  // namespace understudy::app
