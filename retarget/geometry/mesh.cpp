@@ -12,14 +12,20 @@ namespace understudy {
 
 Points vertex_normals(const Points& vertices, const Faces& faces) {
   Points normals = Points::Zero(vertices.rows(), 3);
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    const Vec3 a = vertices.row(faces(f, 0)), b = vertices.row(faces(f, 1)), c = vertices.row(faces(f, 2));
-    const Vec3 n = (b - a).cross(c - a);  // twice the area long: the weighting comes for free
-    for (int k = 0; k < 3; ++k) normals.row(faces(f, k)) += n.transpose();
+  const float* at = vertices.data();  // plain loops: this runs for every frame of a film
+  float* out = normals.data();
+  for (const int *f = faces.data(), *end = f + faces.size(); f != end; f += 3) {
+    const float *a = at + 3 * f[0], *b = at + 3 * f[1], *c = at + 3 * f[2];
+    const float u[] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    // u x v is twice the area long: the weighting comes for free
+    const float n[] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    for (int k = 0; k < 3; ++k)
+      for (int axis = 0; axis < 3; ++axis) out[3 * f[k] + axis] += n[axis];
   }
-  for (Eigen::Index v = 0; v < normals.rows(); ++v) {
-    const float length = normals.row(v).norm();
-    if (length > 1e-20f) normals.row(v) /= length;
+  for (float *n = out, *end = out + normals.size(); n != end; n += 3) {
+    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (length > 1e-20f)
+      for (int axis = 0; axis < 3; ++axis) n[axis] /= length;
   }
   return normals;
 }

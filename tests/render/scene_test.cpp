@@ -13,31 +13,6 @@
 namespace understudy::render {
 namespace {
 
-Points ball(int count) {
-  Rng rng(5);
-  Points points(count, 3);
-  for (int i = 0; i < count; ++i) points.row(i) = Vec3(rng.normal(), rng.normal(), rng.normal()).normalized();
-  return points;
-}
-
-TEST(EstimatedNormals, OfABallPointOutOrIn) {
-  const Points points = ball(3000), normals = estimated_normals(points);
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    EXPECT_GT(std::abs(points.row(i).dot(normals.row(i))), 0.97f) << i;
-}
-
-TEST(EstimatedNormals, OfTooFewOrBadPointsAreZero) {
-  EXPECT_TRUE(estimated_normals(ball(3)).isZero());
-  Points bad = ball(50);
-  bad(7, 1) = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_TRUE(estimated_normals(bad).isZero());
-}
-
-TEST(PointSpacing, OfABallIsTheRootOfItsAreaAPoint) {
-  EXPECT_NEAR(point_spacing(ball(4000)), std::sqrt(4 * kPi / 4000), 0.012f);
-  EXPECT_EQ(point_spacing(ball(5)), 0);
-}
-
 TEST(AllPoints, LeavesOutWhatIsNotFinite) {
   Scene scene;
   add(scene, make_pear());
