@@ -50,6 +50,7 @@ void agree_to_everything(gl::Functions& f) {
   };
   f.DrawArrays = [](GLenum, GLint, GLsizei) { ++counts.draws; };
   f.DrawElements = [](GLenum, GLsizei, GLenum, const void*) { ++counts.draws; };
+  f.DrawElementsBaseVertex = [](GLenum, GLsizei, GLenum, const void*, GLint) { ++counts.draws; };
 }
 
 class NullContext final : public Context {

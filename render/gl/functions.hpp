@@ -12,16 +12,17 @@
 #define UNDERSTUDY_GL_FUNCTIONS(X) \
   X(ActiveTexture) X(AttachShader) X(BindAttribLocation) X(BindBuffer) X(BindBufferBase) X(BindFramebuffer) \
   X(BindRenderbuffer) X(BindTexture) X(BindVertexArray) X(BlendEquation) X(BlendFunc) X(BlendFuncSeparate) \
-  X(BlitFramebuffer) X(BufferData) X(CheckFramebufferStatus) X(Clear) X(ClearColor) X(ColorMask) \
-  X(CompileShader) X(CreateProgram) X(CreateShader) X(CullFace) X(DeleteBuffers) X(DeleteFramebuffers) \
-  X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader) X(DeleteTextures) X(DeleteVertexArrays) X(DepthFunc) \
-  X(DepthMask) X(DepthRange) X(Disable) X(DisableVertexAttribArray) X(DrawArrays) X(DrawElements) X(Enable) \
-  X(EnableVertexAttribArray) X(Finish) X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) \
-  X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures) X(GenVertexArrays) X(GetBooleanv) X(GetError) \
-  X(GetIntegerv) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) \
-  X(GetStringi) X(GetUniformBlockIndex) X(GetUniformLocation) X(IsEnabled) X(LinkProgram) X(PixelStorei) \
-  X(PolygonOffset) X(ReadBuffer) X(ReadPixels) X(RenderbufferStorageMultisample) X(ShaderSource) X(TexImage2D) \
-  X(TexParameteri) X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform3f) X(Uniform4f) X(UniformBlockBinding) \
+  X(BlitFramebuffer) X(BufferData) X(BufferSubData) X(CheckFramebufferStatus) X(Clear) X(ClearColor) \
+  X(ColorMask) X(CompileShader) X(CreateProgram) X(CreateShader) X(CullFace) X(DeleteBuffers) \
+  X(DeleteFramebuffers) X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader) X(DeleteTextures) \
+  X(DeleteVertexArrays) X(DepthFunc) X(DepthMask) X(DepthRange) X(Disable) X(DisableVertexAttribArray) \
+  X(DrawArrays) X(DrawElements) X(DrawElementsBaseVertex) X(Enable) X(EnableVertexAttribArray) X(Finish) \
+  X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) \
+  X(GenTextures) X(GenVertexArrays) X(GetBooleanv) X(GetError) X(GetIntegerv) X(GetProgramInfoLog) \
+  X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetStringi) X(GetUniformBlockIndex) \
+  X(GetUniformLocation) X(IsEnabled) X(LinkProgram) X(PixelStorei) X(PolygonOffset) X(ReadBuffer) \
+  X(ReadPixels) X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) \
+  X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform3f) X(Uniform4f) X(UniformBlockBinding) \
   X(UniformMatrix4fv) X(UseProgram) X(VertexAttrib3f) X(VertexAttribPointer) X(Viewport)
 // clang-format on
 

@@ -1,0 +1,234 @@
+#include "ui/gui/gui.hpp"
+
+#include <algorithm>
+#include <bitset>
+#include <utility>
+
+#include "ui/gui/fonts.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using render::InputEvent;
+using render::Key;
+using Kind = InputEvent::Kind;
+
+constexpr size_t kKeys = static_cast<size_t>(Key::Count);
+static_assert(kKeys <= 512, "ImGui keeps 512 keys");
+
+/// Keys that write a character: their order against Char events of one frame does not matter.
+bool writes(Key key) {
+  return (key >= Key::A && key <= Key::Digit9) || (key >= Key::Apostrophe && key <= Key::Grave) ||
+         key == Key::Space || key >= Key::LeftShift;
+}
+
+}  // namespace
+
+struct Gui::Changes {
+  bool moved = false, scrolled = false, typed = false, commanded = false;
+  std::bitset<static_cast<size_t>(render::MouseButton::Count)> buttons;
+  std::bitset<kKeys> keys;
+};
+
+Gui::Gui(Clipboard clipboard) : clipboard_(std::move(clipboard)) {
+  if (!clipboard_.get) clipboard_.get = [this] { return copied_; };
+  if (!clipboard_.set) clipboard_.set = [this](const std::string& text) { copied_ = text; };
+  IMGUI_CHECKVERSION();
+  ImGuiContext* before = ImGui::GetCurrentContext();
+  context_ = ImGui::CreateContext();
+  ImGui::SetCurrentContext(context_);
+  io().IniFilename = nullptr;
+  io().LogFilename = nullptr;
+  io().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset | ImGuiBackendFlags_HasMouseCursors;
+  io().ConfigWindowsMoveFromTitleBarOnly = true;
+  io().ClipboardUserData = this;
+  io().GetClipboardTextFn = [](void* self) {
+    Gui& gui = *static_cast<Gui*>(self);
+    gui.pasted_ = gui.clipboard_.get();
+    return gui.pasted_.c_str();
+  };
+  io().SetClipboardTextFn = [](void* self, const char* text) {
+    static_cast<Gui*>(self)->clipboard_.set(text);
+  };
+  set_up_keys();
+  if (before != nullptr) ImGui::SetCurrentContext(before);
+}
+
+Gui::~Gui() {
+  ImGui::DestroyContext(context_);
+}
+
+const ImGuiIO& Gui::io() const {
+  return const_cast<Gui*>(this)->io();
+}
+
+ImGuiIO& Gui::io() {
+  ImGuiContext* before = ImGui::GetCurrentContext();
+  ImGui::SetCurrentContext(context_);
+  ImGuiIO& io = ImGui::GetIO();
+  if (before != nullptr) ImGui::SetCurrentContext(before);
+  return io;
+}
+
+void Gui::set_up_keys() {
+  constexpr std::pair<ImGuiKey_, Key> kMap[] = {
+      {ImGuiKey_Tab, Key::Tab},
+      {ImGuiKey_LeftArrow, Key::Left},
+      {ImGuiKey_RightArrow, Key::Right},
+      {ImGuiKey_UpArrow, Key::Up},
+      {ImGuiKey_DownArrow, Key::Down},
+      {ImGuiKey_PageUp, Key::PageUp},
+      {ImGuiKey_PageDown, Key::PageDown},
+      {ImGuiKey_Home, Key::Home},
+      {ImGuiKey_End, Key::End},
+      {ImGuiKey_Insert, Key::Insert},
+      {ImGuiKey_Delete, Key::Delete},
+      {ImGuiKey_Backspace, Key::Backspace},
+      {ImGuiKey_Space, Key::Space},
+      {ImGuiKey_Enter, Key::Enter},
+      {ImGuiKey_Escape, Key::Escape},
+      {ImGuiKey_KeyPadEnter, Key::KeypadEnter},
+      {ImGuiKey_A, Key::A},
+      {ImGuiKey_C, Key::C},
+      {ImGuiKey_V, Key::V},
+      {ImGuiKey_X, Key::X},
+      {ImGuiKey_Y, Key::Y},
+      {ImGuiKey_Z, Key::Z},
+  };
+  for (const auto& [theirs, ours] : kMap) io().KeyMap[theirs] = static_cast<int>(ours);
+}
+
+void Gui::begin_frame(const FrameInput& input, const std::vector<InputEvent>& events) {
+  ImGui::SetCurrentContext(context_);
+  set_look(input);
+  queue_.insert(queue_.end(), events.begin(), events.end());
+  io().DisplaySize = {static_cast<float>(input.size.width), static_cast<float>(input.size.height)};
+  io().DeltaTime = std::max(input.dt, 1e-6f);
+  feed();
+  ImGui::NewFrame();
+}
+
+const ImDrawData& Gui::end_frame() {
+  ImGui::Render();
+  ui_.finish_frame();
+  return *ImGui::GetDrawData();
+}
+
+void Gui::set_look(const FrameInput& input) {
+  const float scale = std::clamp(input.scale, 1.f, 3.f);
+  const Theme& wanted = theme(input.theme);
+  const bool first = ui_.fonts_.body == nullptr;
+  if (first || scale != ui_.scale_) {
+    io().Fonts->Clear();
+    ui_.fonts_ = load_fonts(*io().Fonts, scale);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    io().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+  }
+  if (first || scale != ui_.scale_ || &wanted != ui_.theme_) ui::apply(wanted, scale, ImGui::GetStyle());
+  ui_.scale_ = scale;
+  ui_.theme_ = &wanted;
+}
+
+void Gui::feed() {
+  Changes changes;
+  while (!queue_.empty() && fits(queue_.front(), changes)) {
+    apply(queue_.front(), changes);
+    queue_.pop_front();
+  }
+}
+
+/// Whether a frame that has seen `changes` would still notice the event in its right place.
+bool Gui::fits(const InputEvent& event, const Changes& changes) const {
+  switch (event.kind) {
+    case Kind::MouseMove:
+      return changes.buttons.none() && !changes.scrolled;
+    case Kind::MouseButton:  // a drag must see its last place before it ends
+      return !changes.buttons[static_cast<size_t>(event.button)] && !changes.scrolled &&
+             (event.pressed || !changes.moved);
+    case Kind::Scroll:
+      return changes.buttons.none();
+    case Kind::Key:
+      return !changes.keys[static_cast<size_t>(event.key)] && changes.buttons.none() &&
+             (writes(event.key) ? !changes.commanded : !changes.typed && !changes.commanded);
+    case Kind::Char:
+      return !changes.commanded && changes.buttons.none();
+    default:
+      return true;
+  }
+}
+
+void Gui::apply(const InputEvent& event, Changes& changes) {
+  ImGuiIO& to = io();
+  if (event.kind == Kind::Key || event.kind == Kind::MouseButton) {
+    to.KeyShift = event.modifiers.shift, to.KeyCtrl = event.modifiers.control;
+    to.KeyAlt = event.modifiers.alt, to.KeySuper = event.modifiers.super;
+  }
+  switch (event.kind) {
+    case Kind::MouseMove:
+      to.MousePos = {event.x, event.y};
+      changes.moved = true;
+      break;
+    case Kind::MouseButton:
+      to.MousePos = {event.x, event.y};
+      to.MouseDown[static_cast<size_t>(event.button)] = event.pressed;
+      changes.buttons.set(static_cast<size_t>(event.button));
+      break;
+    case Kind::Scroll:
+      to.MousePos = {event.x, event.y};
+      to.MouseWheel += event.dy, to.MouseWheelH += event.dx;
+      changes.scrolled = true;
+      break;
+    case Kind::Key:
+      if (event.repeated) break;  // ImGui repeats held keys itself
+      to.KeysDown[static_cast<size_t>(event.key)] = event.pressed;
+      changes.keys.set(static_cast<size_t>(event.key));
+      changes.commanded |= !writes(event.key);
+      break;
+    case Kind::Char:
+      to.AddInputCharacter(static_cast<unsigned>(event.codepoint));
+      changes.typed = true;
+      break;
+    case Kind::Focus:
+      if (!event.pressed) release_all();
+      break;
+    default:  // drops, sizes and closing are the application's
+      break;
+  }
+}
+
+/// Without the focus no release is ever told: nothing may stay down.
+void Gui::release_all() {
+  ImGuiIO& to = io();
+  std::fill(std::begin(to.KeysDown), std::end(to.KeysDown), false);
+  std::fill(std::begin(to.MouseDown), std::end(to.MouseDown), false);
+  to.KeyShift = to.KeyCtrl = to.KeyAlt = to.KeySuper = false;
+}
+
+render::CursorShape Gui::cursor() const {
+  ImGui::SetCurrentContext(context_);
+  switch (ImGui::GetMouseCursor()) {
+    case ImGuiMouseCursor_TextInput:
+      return render::CursorShape::Text;
+    case ImGuiMouseCursor_Hand:
+      return render::CursorShape::Hand;
+    case ImGuiMouseCursor_ResizeEW:
+      return render::CursorShape::ResizeHorizontal;
+    case ImGuiMouseCursor_ResizeNS:
+      return render::CursorShape::ResizeVertical;
+    case ImGuiMouseCursor_ResizeAll:
+    case ImGuiMouseCursor_ResizeNESW:
+    case ImGuiMouseCursor_ResizeNWSE:
+      return render::CursorShape::ResizeAll;
+    case ImGuiMouseCursor_None:
+      return render::CursorShape::Hidden;
+    default:
+      return render::CursorShape::Arrow;
+  }
+}
+
+bool key_pressed(Key key, bool repeat) {
+  return ImGui::IsKeyPressed(static_cast<int>(key), repeat);
+}
+
+}  // namespace understudy::ui

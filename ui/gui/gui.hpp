@@ -1,0 +1,83 @@
+// One interface: ImGui's context, the fonts and the theme, fed by input events and giving triangles.
+#pragma once
+
+#include <imgui.h>
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/context/input_event.hpp"
+#include "render/context/window.hpp"
+#include "render/renderer.hpp"
+#include "ui/gui/ui.hpp"
+
+namespace understudy::ui {
+
+struct FrameInput {
+  render::PixelSize size;  ///< of the framebuffer
+  float scale = 1;         ///< of text and controls, 1 to 3 (clamped); a change makes new letters
+  float dt = 1.f / 60;     ///< seconds since the last frame
+  ThemeKind theme = ThemeKind::Dark;
+};
+
+/// Where copied text goes. By default it stays inside the Gui.
+struct Clipboard {
+  std::function<std::string()> get;
+  std::function<void(const std::string&)> set;
+};
+
+/// Draws nothing itself and needs no GL. Several may exist; begin_frame makes its own the current one until
+/// another's. One thread at a time.
+class Gui {
+ public:
+  explicit Gui(Clipboard clipboard = {});
+  ~Gui();
+  Gui(const Gui&) = delete;
+  Gui& operator=(const Gui&) = delete;
+
+  /// Starts a frame with what happened since the last. Events that would hide each other in one frame (a
+  /// press and its release) are spread over several: see pending().
+  void begin_frame(const FrameInput& input, const std::vector<render::InputEvent>& events = {});
+  /// Ends it. The triangles are valid until the next begin_frame.
+  const ImDrawData& end_frame();
+
+  /// Whether events wait for the next frame: draw it soon.
+  bool pending() const { return !queue_.empty(); }
+  Ui& ui() { return ui_; }
+  const Ui& ui() const { return ui_; }
+  const Mark* find(const std::string& name) const { return ui_.find(name); }
+  const std::vector<Mark>& marks() const { return ui_.marks(); }
+  const ImFontAtlas& atlas() const { return *io().Fonts; }
+
+  /// Whether the interface uses the mouse (it is over a panel), the keys, or is being typed into: then they
+  /// are not for the views behind it, nor for shortcuts.
+  bool wants_mouse() const { return io().WantCaptureMouse; }
+  bool wants_keys() const { return io().WantCaptureKeyboard; }
+  bool wants_text() const { return io().WantTextInput; }
+  /// The shape that the mouse pointer should have.
+  render::CursorShape cursor() const;
+
+ private:
+  struct Changes;  // what this frame's events have done so far
+  const ImGuiIO& io() const;
+  ImGuiIO& io();
+  void set_up_keys();
+  void set_look(const FrameInput& input);
+  void feed();
+  bool fits(const render::InputEvent& event, const Changes& changes) const;
+  void apply(const render::InputEvent& event, Changes& changes);
+  void release_all();
+
+  ImGuiContext* context_;
+  Clipboard clipboard_;
+  std::string copied_, pasted_;
+  std::deque<render::InputEvent> queue_;
+  Ui ui_;
+};
+
+/// Whether a key went down in this frame (or repeats, held). Says nothing about who wants it.
+bool key_pressed(render::Key key, bool repeat = true);
+
+}  // namespace understudy::ui

@@ -1,0 +1,59 @@
+#include "ui/gui/ui.hpp"
+
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace understudy::ui {
+
+Rect intersection(const Rect& a, const Rect& b) {
+  return {{std::max(a.min.x, b.min.x), std::max(a.min.y, b.min.y)},
+          {std::min(a.max.x, b.max.x), std::min(a.max.y, b.max.y)}};
+}
+
+void Ui::mark(const std::string& name) {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  const ImGuiLastItemData& item = context.LastItemData;
+  const ImRect& clip = context.CurrentWindow->ClipRect;
+  const Rect rect{item.Rect.Min, item.Rect.Max};
+  add({name, rect, intersection(rect, {clip.Min, clip.Max}),
+       (item.InFlags & ImGuiItemFlags_Disabled) == 0 && !context.CurrentWindow->Hidden});
+  if (name == reveal_) {
+    reveal_.clear();
+    ImGui::ScrollToItem();
+  }
+}
+
+void Ui::mark(const std::string& name, const Rect& rect) {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  const ImRect& clip = context.CurrentWindow->ClipRect;
+  add({name, rect, intersection(rect, {clip.Min, clip.Max}),
+       (context.CurrentItemFlags & ImGuiItemFlags_Disabled) == 0});
+  if (name == reveal_) {
+    reveal_.clear();
+    ImGui::ScrollToRect(context.CurrentWindow, ImRect(rect.min, rect.max));
+  }
+}
+
+const Mark* Ui::find(const std::string& name) const {
+  const auto found = finished_at_.find(name);
+  return found == finished_at_.end() ? nullptr : &finished_[found->second];
+}
+
+void Ui::add(Mark mark) {
+  const auto [at, is_new] = drawing_at_.try_emplace(mark.name, drawing_.size());
+  if (is_new)
+    drawing_.push_back(std::move(mark));
+  else
+    drawing_[at->second] = std::move(mark);
+}
+
+void Ui::finish_frame() {
+  std::swap(drawing_, finished_);
+  std::swap(drawing_at_, finished_at_);
+  drawing_.clear();
+  drawing_at_.clear();
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,124 @@
+// What panels and widgets are handed besides their data: theme, fonts, named places and memory.
+#pragma once
+
+#include <imgui.h>
+
+#include <any>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "ui/theme.hpp"
+
+namespace understudy::ui {
+
+/// Pixels from the top left; empty when it has no inside.
+struct Rect {
+  ImVec2 min, max;
+  float width() const { return max.x - min.x; }
+  float height() const { return max.y - min.y; }
+  bool empty() const { return !(max.x > min.x && max.y > min.y); }
+  bool contains(const ImVec2& p) const { return p.x >= min.x && p.x < max.x && p.y >= min.y && p.y < max.y; }
+  /// The place at shares of width and height; {0.5, 0.5} is the middle.
+  ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
+};
+
+Rect intersection(const Rect& a, const Rect& b);
+
+/// The faces of one size of the interface; all from one atlas.
+struct Fonts {
+  ImFont* body = nullptr;
+  ImFont* strong = nullptr;  ///< body size, semi-bold: headings
+  ImFont* title = nullptr;   ///< large, semi-bold
+  ImFont* small = nullptr;   ///< axes, hints, captions
+};
+
+/// Where a named item was drawn.
+struct Mark {
+  std::string name;
+  Rect rect;            ///< the whole item
+  Rect visible;         ///< the part inside its window; empty when scrolled away
+  bool enabled = true;  ///< false: greyed out, a click does nothing
+};
+
+/// One per Gui. Widgets read its theme and fonts, give their items names that scripts, tests and the manual
+/// use ("timeline.play"), and keep here what must outlive a frame.
+class Ui {
+ public:
+  const Theme& theme() const { return *theme_; }
+  const Fonts& fonts() const { return fonts_; }
+  float scale() const { return scale_; }
+  /// A length of the design (pixels at scale 1) in real pixels.
+  float px(float length) const { return length * scale_; }
+
+  /// Names the item just made; the name must be unique in the frame (the last one wins).
+  void mark(const std::string& name);
+  /// Names a part of the current window.
+  void mark(const std::string& name, const Rect& rect);
+  /// The marks of the last finished frame, in drawing order.
+  const std::vector<Mark>& marks() const { return finished_; }
+  /// Null when no such item was drawn in the last finished frame.
+  const Mark* find(const std::string& name) const;
+  /// Scrolls to an item when it is next drawn.
+  void reveal(const std::string& name) { reveal_ = name; }
+
+  /// What the widget `id` remembers between frames; T() at first.
+  template <class T>
+  T& state(ImGuiID id) {
+    std::any& kept = memory_[id];
+    if (std::any_cast<T>(&kept) == nullptr) kept = T();
+    return *std::any_cast<T>(&kept);
+  }
+
+ private:
+  friend class Gui;
+  void add(Mark mark);
+  void finish_frame();
+
+  const Theme* theme_ = &ui::theme(ThemeKind::Dark);
+  Fonts fonts_;
+  float scale_ = 1;
+  std::vector<Mark> drawing_, finished_;
+  std::unordered_map<std::string, size_t> drawing_at_, finished_at_;
+  std::unordered_map<ImGuiID, std::any> memory_;
+  std::string reveal_;
+};
+
+/// Uses a font until the end of the scope.
+class FontScope {
+ public:
+  explicit FontScope(ImFont* font) { ImGui::PushFont(font); }
+  ~FontScope() { ImGui::PopFont(); }
+  FontScope(const FontScope&) = delete;
+  FontScope& operator=(const FontScope&) = delete;
+};
+
+/// Changes one colour of the style until the end of the scope.
+class ColorScope {
+ public:
+  ColorScope(ImGuiCol which, const ImVec4& color) { ImGui::PushStyleColor(which, color); }
+  ~ColorScope() { ImGui::PopStyleColor(); }
+  ColorScope(const ColorScope&) = delete;
+  ColorScope& operator=(const ColorScope&) = delete;
+};
+
+/// Greys out and ignores what is drawn in the scope when `disabled`.
+class DisabledScope {
+ public:
+  explicit DisabledScope(bool disabled) { ImGui::BeginDisabled(disabled); }
+  ~DisabledScope() { ImGui::EndDisabled(); }
+  DisabledScope(const DisabledScope&) = delete;
+  DisabledScope& operator=(const DisabledScope&) = delete;
+};
+
+/// Ids inside the scope belong to `name`.
+class IdScope {
+ public:
+  explicit IdScope(const std::string& name) { ImGui::PushID(name.c_str()); }
+  explicit IdScope(int number) { ImGui::PushID(number); }
+  ~IdScope() { ImGui::PopID(); }
+  IdScope(const IdScope&) = delete;
+  IdScope& operator=(const IdScope&) = delete;
+};
+
+}  // namespace understudy::ui

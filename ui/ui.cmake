@@ -1,0 +1,7 @@
+# The interface. ImGui's own backends stay out: input and drawing go through the renderer's (see ui/gui).
+pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+pkg_check_modules(FREETYPE REQUIRED IMPORTED_TARGET freetype2)
+
+us_module(gui SOURCES
+  ui/theme.cpp ui/gui/ui.cpp ui/gui/fonts.cpp ui/gui/gui.cpp ui/gui/draw_pass.cpp
+  PUBLIC understudy_render PkgConfig::IMGUI PRIVATE PkgConfig::FREETYPE)
