@@ -12,9 +12,9 @@ std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCou
   if (frame.flagged) return frame.reason;
   if (frame.confidence < kLowConfidence) return "low confidence";
   for (int j = 1; j < kJointCount; ++j)
-    if (frame.raw.confidence[j] < kWeakLimb) return std::string(kJointNames[j]) + " is lost";
+    if (frame.confidence_of[j] < kWeakLimb) return std::string(kJointNames[j]) + " is lost";
   for (int j = 1; j < kJointCount; ++j) {
-    const float length = (frame.raw.joints.row(j) - frame.raw.joints.row(kParents[j])).norm();
+    const float length = (frame.raw.row(j) - frame.raw.row(kParents[j])).norm();
     if (usual[j] > 0.05f && std::abs(length - usual[j]) > kLengthOff * usual[j])
       return std::string("the bone to ") + kJointNames[j] + " has another length";
   }

@@ -21,9 +21,11 @@
 
 namespace understudy::app {
 
-/// What is kept of a frame of the source: under 1.5 kB.
+/// What is kept of a frame of the source: under 1 kB.
 struct KeptSource {
-  Extraction raw;                  ///< as extracted, before the user's edits
+  Joints raw = Joints::Zero();  ///< as extracted, before the user's edits
+  Eigen::Array<float, kJointCount, 1> confidence_of =
+      Eigen::Array<float, kJointCount, 1>::Zero();  ///< 0..1 a joint
   Joints joints = Joints::Zero();  ///< edited, repaired and smoothed; of the last good frame where flagged
   float confidence = 0;            ///< mean over joints
   bool flagged = false;

@@ -58,7 +58,7 @@ class NetworkDeformer : public Deformer {
   }
   void bind(const Points& rest, const Joints& rest_joints) override;
   const RowMatrix& weights() const override { return weights_; }
-  void set_weights(RowMatrix weights) override;
+  std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override;
   Points deform(const Pose& pose) const override;
   Points offsets(const Pose& pose) const override;
   std::string name() const override { return offsets_ ? "network" : "network, no offsets"; }
@@ -74,8 +74,8 @@ class NetworkDeformer : public Deformer {
   Points rest_;
   Joints joints_ = Joints::Zero();
   RowMatrix weights_;
-  std::vector<OffsetBlock> blocks_;   // by vertex
-  std::vector<int> first_influence_;  // [V + 1] into influences_
+  std::shared_ptr<const std::vector<OffsetBlock>> blocks_;  // by vertex; shared by copies with other weights
+  std::vector<int> first_influence_;                        // [V + 1] into influences_
   std::vector<Influence> influences_;
 };
 
@@ -94,7 +94,7 @@ void NetworkDeformer::bind(const Points& rest, const Joints& rest_joints) {
   weights_ = Eigen::Map<const RowMatrix>(weights.data_ptr<float>(), rest.rows(), kJointCount);
   tidy_weights(weights_);
   keep_weights();
-  blocks_.clear();
+  blocks_ = std::make_shared<std::vector<OffsetBlock>>();
   if (offsets_) keep_offsets(basis.data_ptr<float>());
 }
 
@@ -109,14 +109,16 @@ void NetworkDeformer::keep_weights() {
 }
 
 void NetworkDeformer::keep_offsets(const float* basis) {
+  auto blocks = std::make_shared<std::vector<OffsetBlock>>();
   for (Eigen::Index v = 0; v < rest_.rows(); ++v) {
     const Eigen::Map<const RowMatrix> own(basis + v * 3 * kPoseFeatureCount, 3, kPoseFeatureCount);
     for (int j = 1; j < kJointCount; ++j) {
       const auto block = own.middleCols<9>(9 * (j - 1));
       if (block.norm() * kLargestBend > kLeastOffset)
-        blocks_.push_back(offset_block(static_cast<int>(v), j, block));
+        blocks->push_back(offset_block(static_cast<int>(v), j, block));
     }
   }
+  blocks_ = std::move(blocks);
 }
 
 void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
@@ -125,21 +127,23 @@ void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
     const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> m = pose.local[j] - Mat3::Identity();
     bend[j] = Eigen::Map<const Eigen::Matrix<float, 9, 1>>(m.data());
   }
-  for (const OffsetBlock& b : blocks_) {
+  for (const OffsetBlock& b : *blocks_) {
     Eigen::Vector4f offset = Eigen::Vector4f::Zero();
     for (int k = 0; k < 9; ++k) offset += b.block.col(k) * bend[b.joint][k];
     rest.row(b.vertex) += offset.head<3>().transpose();
   }
 }
 
-void NetworkDeformer::set_weights(RowMatrix weights) {
-  US_CHECK(rest_.rows() > 0, "set_weights() wants bind() first");
+std::shared_ptr<Deformer> NetworkDeformer::with_weights(RowMatrix weights) const {
+  US_CHECK(rest_.rows() > 0, "with_weights() wants bind() first");
   US_CHECK(weights.rows() == rest_.rows() && weights.cols() == kJointCount, "skin weights are ",
            weights.rows(), " x ", weights.cols(), ", the target has ", rest_.rows(), " vertices");
   US_CHECK(weights.allFinite() && weights.minCoeff() >= 0 && weights.rowwise().sum().minCoeff() > 1e-6f,
            "skin weights must not be negative, and every vertex wants some");
-  weights_ = weights.array().colwise() / weights.rowwise().sum().array();
-  keep_weights();
+  auto other = std::make_shared<NetworkDeformer>(*this);
+  other->weights_ = weights.array().colwise() / weights.rowwise().sum().array();
+  other->keep_weights();
+  return other;
 }
 
 Points NetworkDeformer::offsets(const Pose& pose) const {

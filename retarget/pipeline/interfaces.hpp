@@ -51,9 +51,9 @@ class Deformer {
   virtual void bind(const Points& rest, const Joints& rest_joints) = 0;
   /// [V, 22], rows sum to 1. Valid after bind().
   virtual const RowMatrix& weights() const = 0;
-  /// Replaces the skin weights by others (a user's), [V, 22] >= 0; rows are made to sum to 1. After bind().
-  /// Throws Error when the shape is another or a row is empty.
-  virtual void set_weights(RowMatrix weights) = 0;
+  /// The same, bound to the same target, with other skin weights (a user's), [V, 22] >= 0; rows are made to
+  /// sum to 1. Throws Error before bind(), when the shape is another or a row is empty.
+  virtual std::shared_ptr<Deformer> with_weights(RowMatrix weights) const = 0;
   /// Posed vertices [V, 3] (eq. 3): offsets, then linear blend skinning.
   virtual Points deform(const Pose& pose) const = 0;
   /// Pose-corrective offsets of the T-pose vertices in this pose, [V, 3] metres, T-pose axes; zero without

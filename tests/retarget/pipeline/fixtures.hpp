@@ -82,7 +82,11 @@ class RigidDeformer final : public Deformer {
   explicit RigidDeformer(RowMatrix weights) : weights_(std::move(weights)) {}
   void bind(const Points& rest, const Joints& rest_joints) override { rest_ = rest, joints_ = rest_joints; }
   const RowMatrix& weights() const override { return weights_; }
-  void set_weights(RowMatrix weights) override { weights_ = std::move(weights); }
+  std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override {
+    auto other = std::make_shared<RigidDeformer>(*this);
+    other->weights_ = std::move(weights);
+    return other;
+  }
   Points offsets(const Pose&) const override { return Points::Zero(rest_.rows(), 3); }
   Points deform(const Pose& pose) const override {
     return linear_blend_skinning(rest_, weights_, joints_, forward_kinematics(joints_, pose));
