@@ -40,6 +40,7 @@ class Repeated final : public Source {
     return frame;
   }
   void seek(int64_t frame) override { inner_->seek(frame); }
+  std::string decision() const override { return inner_->decision(); }
   std::optional<int64_t> count() const override { return std::nullopt; }
 
  private:

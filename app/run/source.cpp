@@ -61,6 +61,7 @@ class ScanFiles final : public Source {
     }
     scans_.seek(frame);
   }
+  std::string decision() const override { return decision_ ? decision_->sentence : ""; }
   std::optional<int64_t> count() const override { return scans_.count(); }
 
  private:
@@ -125,6 +126,7 @@ class PerformingBody final : public Source {
     US_CHECK(frame >= 0 && frame < *count(), "there is no frame ", frame, " in a motion of ", *count());
     at_ = static_cast<size_t>(frame);
   }
+  std::string decision() const override { return decision_.sentence; }
   std::optional<int64_t> count() const override { return static_cast<int64_t>(motion_.poses.size()); }
 
  private:

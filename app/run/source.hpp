@@ -31,6 +31,8 @@ class Source {
   /// next() goes on with this frame, 0 the first; units, axes and floor stay those of the first usable frame.
   /// Throws Error when there is no such frame.
   virtual void seek(int64_t frame) = 0;
+  /// What was decided about units, axes and floor, one sentence; empty before the first usable frame.
+  virtual std::string decision() const = 0;
   /// None while it is not known.
   virtual std::optional<int64_t> count() const = 0;
   /// Frames per second.

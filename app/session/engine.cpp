@@ -1,0 +1,480 @@
+#include "app/session/engine.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <sstream>
+#include <thread>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+
+namespace understudy::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kReplayChunk = 200;  // frames made anew between two looks at the plan
+
+double ms_since(Clock::time_point began) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+void write_import(std::ostream& out, const ImportOptions& import) {
+  out << import.units << '|' << import.up << '|' << import.yaw_deg << '|' << import.floor.value_or(-1e9f)
+      << '|';
+}
+
+std::string skeleton_key(const std::vector<SkeletonEdit>& edits) {
+  std::ostringstream out;
+  for (const SkeletonEdit& edit : edits)
+    if (const auto* drag = std::get_if<DragEdit>(&edit))
+      out << 'd' << drag->frame << ' ' << drag->joint << ' ' << drag->offset.transpose() << ' '
+          << drag->falloff << ' ' << drag->with_children << ';';
+    else if (const auto* swap = std::get_if<SwapEdit>(&edit))
+      out << 's' << swap->first << ' ' << swap->last << ' ' << static_cast<int>(swap->limbs) << ';';
+  return out.str();
+}
+
+std::string joints_key(const std::vector<JointMove>& moves) {
+  std::ostringstream out;
+  for (const JointMove& move : moves)
+    out << move.joint << ' ' << move.position.transpose() << ' ' << move.mirror << ';';
+  return out.str();
+}
+
+JointFilterOptions filter_options(const Method& method) {
+  JointFilterOptions options;
+  options.repair_swaps = method.repair_swaps;
+  options.smooth = method.smooth_joints;
+  options.fix_lengths = method.fix_lengths;
+  return options;
+}
+
+RetargetOptions retarget_options(const Method& method) {
+  RetargetOptions options;
+  options.filter = filter_options(method);
+  options.root.mode = method.root;
+  options.vertices = false;  // made from the poses when they are looked at
+  return options;
+}
+
+/// What one scan gave, kept to be performed again.
+struct Extracted {
+  Extraction extraction;
+  bool usable = true;
+  std::string problem;
+  int points = 0;
+  double read_ms = 0, extract_ms = 0;
+};
+
+/// One extractor over the source so far.
+struct Stream {
+  std::unique_ptr<SkeletonExtractor> extractor;
+  std::vector<Extracted> frames;
+};
+
+/// A take at work.
+struct TakeWork {
+  Plan::TakePlan plan;
+  std::string target_is, method_is, joints_are;
+  Target found;  // the target before the user's moves of joints
+  std::unique_ptr<Retargeter> retargeter;
+  bool failed = false;
+  size_t done = 0;      // frames performed with the present settings
+  size_t told_new = 0;  // frames whose times have been told
+};
+
+}  // namespace
+
+Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
+  Plan plan;
+  plan.source = document.source;
+  plan.scan_edits = document.scan_edits;
+  plan.skeleton_edits = document.skeleton_edits;
+  for (size_t k = 0; k < document.takes.size(); ++k) {
+    const Take& take = document.takes[k];
+    plan.takes.push_back({take_ids[k], take.target, take.method, take.target_edits.joints});
+  }
+  if (!plan.takes.empty()) plan.extractor = plan.takes[0].method.extractor;
+  return plan;
+}
+
+std::string source_key(const SourceOptions& source, const ScanEdits& edits) {
+  std::ostringstream out;
+  out << source.path << '|' << source.motion << '|' << source.fps << '|';
+  write_import(out, source.import);
+  for (const float beta : source.betas) out << beta << ' ';
+  if (edits.crop) out << "|crop " << edits.crop->low.transpose() << ' ' << edits.crop->high.transpose();
+  if (edits.floor) {
+    out << "|floor " << edits.floor->height_m << ' ' << edits.floor->tolerance_m;
+    if (edits.floor->plane)
+      out << ' ' << edits.floor->plane->normal.transpose() << ' ' << edits.floor->plane->height_m;
+  }
+  if (edits.largest_cluster) out << "|cluster " << edits.cluster_gap_m;
+  return out.str();
+}
+
+std::string target_key(const TargetOptions& target) {
+  std::ostringstream out;
+  out << target.path << '|';
+  write_import(out, target.import);
+  for (const float beta : target.betas) out << beta << ' ';
+  return out.str();
+}
+
+std::string method_key(const Method& method) {
+  std::ostringstream out;
+  out << method.engine << ' ' << method.extractor << ' ' << method.offsets << method.repair_swaps
+      << method.smooth_joints << method.fix_lengths << static_cast<int>(method.root);
+  return out.str();
+}
+
+struct Engine::Impl {
+  explicit Impl(NetworksOf source_of_networks) : networks_of(std::move(source_of_networks)) {
+    thread = std::thread([this] { run(); });
+  }
+
+  // Shared with the UI thread, under the mutex.
+  mutable std::mutex mutex;
+  std::condition_variable wake;
+  std::optional<Plan> next_plan;
+  std::vector<EngineEvent> events;
+  bool paused = false, stop = false, busy = false;
+
+  // The thread's own.
+  NetworksOf networks_of;
+  Plan plan;
+  std::string source_is, skeleton_is;
+  std::unique_ptr<Source> source;
+  std::map<std::string, Stream> streams;
+  bool opened = false, ended = false;
+  JointFilter filter;
+  size_t told = 0;  // frames of the shown stream that have been told
+  bool has_faces = false;
+  std::vector<TakeWork> takes;
+  std::thread thread;
+
+  void run();
+  void tell(EngineEvent event);
+  bool step();
+  void adopt(Plan wanted);
+  void close_source();
+  void open();
+  void adopt_take(TakeWork& take, const Plan::TakePlan& wanted);
+  bool prepare(TakeWork& take);
+  Stream& stream_of(const std::string& extractor);
+  bool read_frame();
+  Extracted extracted(Stream& stream, const ScanFrame& frame) const;
+  bool tell_source();
+  bool perform(TakeWork& take);
+};
+
+void Engine::Impl::tell(EngineEvent event) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  events.push_back(std::move(event));
+}
+
+void Engine::Impl::run() {
+  while (true) {
+    std::optional<Plan> wanted;
+    {
+      std::unique_lock<std::mutex> lock(mutex);
+      if (stop) return;
+      wanted.swap(next_plan);
+      if (!wanted && paused) {
+        wake.wait(lock);
+        continue;
+      }
+    }
+    if (wanted) adopt(std::move(*wanted));
+    if (step()) continue;
+    std::unique_lock<std::mutex> lock(mutex);
+    if (next_plan || stop) continue;
+    busy = false;
+    wake.wait(lock, [this] { return stop || next_plan; });
+  }
+}
+
+/// Brings the thread's state in line with what is wanted; what still fits stays.
+void Engine::Impl::adopt(Plan wanted) {
+  const std::string source_wanted = source_key(wanted.source, wanted.scan_edits);
+  if (source_wanted != source_is) {
+    close_source();
+    source_is = source_wanted;
+  }
+  const std::string skeleton_wanted = skeleton_key(wanted.skeleton_edits);
+  const bool shown_anew = wanted.extractor != plan.extractor;
+  if (skeleton_wanted != skeleton_is || shown_anew) {
+    told = 0;
+    filter.reset();
+  }
+  std::vector<TakeWork> kept;
+  for (const Plan::TakePlan& want : wanted.takes) {
+    TakeWork take;
+    for (TakeWork& old : takes)
+      if (old.plan.id == want.id) take = std::move(old);
+    adopt_take(take, want);
+    if (skeleton_wanted != skeleton_is && take.retargeter) {
+      take.retargeter->restart();
+      take.done = 0;
+    }
+    kept.push_back(std::move(take));
+  }
+  takes = std::move(kept);
+  skeleton_is = skeleton_wanted;
+  plan = std::move(wanted);
+}
+
+void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
+  const std::string target_wanted = target_key(wanted.target), method_wanted = method_key(wanted.method),
+                    joints_wanted = joints_key(wanted.joints);
+  if (target_wanted != take.target_is) take.found = Target{};
+  if (target_wanted != take.target_is || method_wanted != take.method_is ||
+      joints_wanted != take.joints_are) {
+    take.retargeter.reset();
+    take.failed = false;
+    take.done = 0;
+  }
+  take.plan = wanted;
+  take.target_is = target_wanted;
+  take.method_is = method_wanted;
+  take.joints_are = joints_wanted;
+}
+
+void Engine::Impl::close_source() {
+  source.reset();
+  for (auto& [name, stream] : streams) stream.frames.clear();
+  opened = ended = has_faces = false;
+  told = 0;
+  filter.reset();
+  for (TakeWork& take : takes) {
+    if (take.retargeter) take.retargeter->restart();
+    take.done = take.told_new = 0;
+  }
+}
+
+/// Does a little of what is left, the most urgent first. False: nothing is left.
+bool Engine::Impl::step() {
+  if (!opened && !plan.source.path.empty()) {
+    open();
+    return true;
+  }
+  for (TakeWork& take : takes)
+    if (!take.retargeter && !take.failed) return prepare(take);
+  if (tell_source()) return true;
+  for (TakeWork& take : takes)
+    if (perform(take)) return true;
+  return read_frame();
+}
+
+void Engine::Impl::open() {
+  opened = true;
+  try {
+    source = open_source(plan.source);
+    namespace fs = std::filesystem;
+    const fs::path path =
+        fs::path(plan.source.motion.empty() ? plan.source.path : plan.source.motion).lexically_normal();
+    SourceOpened event;
+    event.name = (path.has_filename() ? path : path.parent_path()).filename().string();
+    event.count = source->count();
+    event.fps = source->fps();
+    tell(event);
+  } catch (const std::exception& error) {
+    source.reset();
+    ended = true;
+    tell(SourceFailed{error.what()});
+  }
+}
+
+bool Engine::Impl::prepare(TakeWork& take) {
+  try {
+    Networks networks = networks_of(take.plan.method);
+    if (take.found.mesh.vertices.rows() == 0) {
+      const Mesh mesh = import_target(take.plan.target);
+      SkeletonExtractor& extractor = networks.rest_extractor ? *networks.rest_extractor : *networks.extractor;
+      take.found = prepare_target(mesh, extractor);
+    }
+    Stream& stream = streams[take.plan.method.extractor];
+    if (!stream.extractor) stream.extractor = std::move(networks.extractor);
+    networks.extractor.reset();
+    networks.rest_extractor.reset();
+    const std::shared_ptr<const Deformer> deformer = networks.deformer;
+    Target target = take.found;
+    target.joints = understudy::apply(take.plan.joints, target.joints);
+    take.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(take.plan.method));
+    take.retargeter->set_target(target);
+    take.done = 0;
+    tell(TakeReady{take.plan.id, std::make_shared<const Target>(std::move(target)), deformer});
+  } catch (const std::exception& error) {
+    take.failed = true;
+    tell(TakeFailed{take.plan.id, error.what()});
+  }
+  return true;
+}
+
+Stream& Engine::Impl::stream_of(const std::string& extractor) {
+  Stream& stream = streams[extractor];
+  if (!stream.extractor) {
+    Method method;
+    method.extractor = extractor;
+    stream.extractor = networks_of(method).extractor;
+    US_CHECK(stream.extractor, "there is no skeleton extractor '", extractor, "'");
+  }
+  return stream;
+}
+
+Extracted Engine::Impl::extracted(Stream& stream, const ScanFrame& frame) const {
+  Extracted result;
+  const auto began = Clock::now();
+  result.points = static_cast<int>(frame.mesh.vertices.rows());
+  result.usable = frame.usable;
+  result.problem = frame.problem;
+  if (!frame.usable) return result;
+  try {
+    result.extraction = stream.extractor->extract(frame.mesh);
+    result.extraction.sole_height = sole_height(result.extraction.joints, frame.mesh.vertices);
+  } catch (const Error& error) {
+    result.usable = false;
+    result.problem = error.what();
+  }
+  result.extract_ms = ms_since(began);
+  return result;
+}
+
+/// The next scan through every extractor that a take or the view wants. A stream that came later catches up
+/// first.
+bool Engine::Impl::read_frame() {
+  if (!source || plan.source.path.empty()) return false;
+  try {
+    std::vector<Stream*> wanted{&stream_of(plan.extractor)};
+    for (const TakeWork& take : takes) {
+      Stream* const stream = &stream_of(take.plan.method.extractor);
+      if (std::find(wanted.begin(), wanted.end(), stream) == wanted.end()) wanted.push_back(stream);
+    }
+    size_t behind = wanted[0]->frames.size();
+    bool even = true;
+    for (const Stream* stream : wanted) {
+      even = even && stream->frames.size() == behind;
+      behind = std::min(behind, stream->frames.size());
+    }
+    if (even && ended) return false;
+    if (!even) source->seek(static_cast<int64_t>(behind)), ended = false;
+    const auto began = Clock::now();
+    auto frame = source->next();
+    if (!frame) {
+      ended = true;
+      return false;
+    }
+    has_faces = has_faces || !frame->mesh.is_cloud();
+    if (frame->usable) frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
+    const double read_ms = ms_since(began);
+    for (Stream* stream : wanted)
+      if (stream->frames.size() == behind) {
+        stream->frames.push_back(extracted(*stream, *frame));
+        stream->frames.back().read_ms = read_ms;
+      }
+    return true;
+  } catch (const std::exception& error) {
+    source.reset();
+    tell(SourceFailed{error.what()});
+    return true;
+  }
+}
+
+/// Tells what was extracted and has not been told: edited, repaired, smoothed.
+bool Engine::Impl::tell_source() {
+  const auto found = streams.find(plan.extractor);
+  if (found == streams.end() || told >= found->second.frames.size()) return false;
+  const std::vector<Extracted>& frames = found->second.frames;
+  SourceFrames event;
+  event.first = static_cast<int>(told);
+  event.decision = source ? source->decision() : "";
+  event.has_faces = has_faces;
+  const float dt = source ? static_cast<float>(1 / source->fps()) : 1 / 30.0f;
+  for (int n = 0; n < kReplayChunk && told < frames.size(); ++n, ++told) {
+    const Extracted& frame = frames[told];
+    KeptSource kept;
+    kept.raw = frame.extraction.joints;
+    kept.points = frame.points;
+    kept.flagged = !frame.usable;
+    kept.reason = frame.problem;
+    if (frame.usable) {
+      kept.confidence_of = frame.extraction.confidence;
+      kept.confidence = frame.extraction.confidence.mean();
+      kept.joints =
+          filter.push(understudy::apply(plan.skeleton_edits, frame.extraction, static_cast<int>(told)), dt)
+              .joints;
+    } else if (!event.frames.empty()) {
+      kept.joints = event.frames.back().joints;
+    }
+    event.frames.push_back(std::move(kept));
+  }
+  tell(std::move(event));
+  return true;
+}
+
+bool Engine::Impl::perform(TakeWork& take) {
+  const std::vector<Extracted>& frames = streams[take.plan.method.extractor].frames;
+  if (!take.retargeter || take.done >= frames.size()) return false;
+  TakeFrames event;
+  event.id = take.plan.id;
+  event.first = static_cast<int>(take.done);
+  const float dt = source ? static_cast<float>(1 / source->fps()) : 1 / 30.0f;
+  for (int n = 0; n < kReplayChunk && take.done < frames.size(); ++n, ++take.done) {
+    const Extracted& frame = frames[take.done];
+    const RetargetedFrame result =
+        frame.usable
+            ? take.retargeter->push(
+                  understudy::apply(plan.skeleton_edits, frame.extraction, static_cast<int>(take.done)), dt)
+            : take.retargeter->push(Mesh{}, dt);
+    event.frames.push_back(kept(result));
+    if (take.done < take.told_new) continue;
+    take.told_new = take.done + 1;
+    event.times.push_back({frame.read_ms, frame.extract_ms, result.ms.transfer, result.ms.deform,
+                           frame.read_ms + frame.extract_ms + result.ms.transfer + result.ms.deform});
+  }
+  tell(std::move(event));
+  return true;
+}
+
+Engine::Engine(NetworksOf networks) : impl_(std::make_unique<Impl>(std::move(networks))) {}
+
+Engine::~Engine() {
+  {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->stop = true;
+  }
+  impl_->wake.notify_all();
+  impl_->thread.join();
+}
+
+void Engine::set_plan(Plan plan) {
+  {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->next_plan = std::move(plan);
+    impl_->busy = true;
+  }
+  impl_->wake.notify_all();
+}
+
+void Engine::pause(bool paused) {
+  {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->paused = paused;
+  }
+  impl_->wake.notify_all();
+}
+
+std::vector<EngineEvent> Engine::drain() {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  return std::exchange(impl_->events, {});
+}
+
+bool Engine::working() const {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  return impl_->busy;
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,92 @@
+// Makes frames in the background: one thread reads the source, extracts skeletons once, and lets every take
+// perform them. A new plan redoes no more than has changed.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/run/latency.hpp"
+#include "app/session/session.hpp"
+
+namespace understudy::app {
+
+/// What is to be made; a copy of the parts of the document that matter to it.
+struct Plan {
+  struct TakePlan {
+    int64_t id = 0;  ///< stays with a take while others come and go
+    TargetOptions target;
+    Method method;
+    std::vector<JointMove> joints;
+  };
+  SourceOptions source;
+  std::string extractor = "dense";  ///< of the skeletons shown
+  ScanEdits scan_edits;
+  std::vector<SkeletonEdit> skeleton_edits;
+  std::vector<TakePlan> takes;
+};
+Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids);
+/// Equal texts: nothing to redo.
+std::string source_key(const SourceOptions& source, const ScanEdits& edits);
+std::string target_key(const TargetOptions& target);
+std::string method_key(const Method& method);
+
+// What the engine tells, in order.
+
+/// A source was opened: everything before is gone.
+struct SourceOpened {
+  std::string name;
+  std::optional<int64_t> count;
+  double fps = 30;
+};
+/// The source cannot be opened, or broke off.
+struct SourceFailed {
+  std::string sentence;
+};
+/// Frames first .. of the source, new or made anew.
+struct SourceFrames {
+  int first = 0;
+  bool has_faces = false;
+  std::string decision;  ///< about units, axes and floor
+  std::vector<KeptSource> frames;
+};
+struct TakeReady {
+  int64_t id = 0;
+  std::shared_ptr<const Target> target;
+  std::shared_ptr<const Deformer> deformer;  ///< bound, with the networks' weights
+};
+struct TakeFailed {
+  int64_t id = 0;
+  std::string sentence;
+};
+/// Frames first .. of a take, new or made anew.
+struct TakeFrames {
+  int64_t id = 0;
+  int first = 0;
+  std::vector<KeptFrame> frames;
+  std::vector<FrameTimes> times;  ///< of new ones; empty when made anew
+};
+using EngineEvent = std::variant<SourceOpened, SourceFailed, SourceFrames, TakeReady, TakeFailed, TakeFrames>;
+
+class Engine {
+ public:
+  using NetworksOf = std::function<Networks(const Method&)>;
+  explicit Engine(NetworksOf networks);
+  ~Engine();  ///< stops after the frame at hand
+
+  /// From now on this is made. Never waits.
+  void set_plan(Plan plan);
+  void pause(bool paused);
+  /// Everything that has happened since the last call.
+  std::vector<EngineEvent> drain();
+  /// Whether frames are still to be made (paused or not).
+  bool working() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace understudy::app
