@@ -36,6 +36,7 @@ struct PinEdit {
   FootContactOptions contact;
   float blend_s = 0.25f;      ///< a correction comes and goes within this time, or less between near contacts
   bool keep_soles_up = true;  ///< soles that are under the floor are lifted onto it at any time
+  float max_drop_m = 0.04f;   ///< how far the pelvis may sink where a leg is too short (leg 0.8 m)
 };
 
 /// The motion turned about the vertical through its first pelvis.
@@ -62,7 +63,7 @@ struct PoseEdits {
 /// The target in T-pose, as far as edits of its poses must know it.
 struct EditedBody {
   Joints rest = Joints::Zero();
-  SupportPoints soles;  ///< what may touch the floor; without any the ankles and balls stand for the soles
+  SupportPoints soles;  ///< what may touch the floor; may be empty
   static EditedBody from(const Points& rest_vertices, const Joints& rest_joints);
 };
 
@@ -71,7 +72,7 @@ struct EditedBody {
 /// frame numbers are always the original ones. Deterministic. Flags go with their frames. Throws Error for
 /// joints that are none, a strength outside 0..1 or a trim that leaves nothing.
 Motion apply(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
-/// The same without soles: the ankles' and the balls' T-pose heights over the lower of them are kept.
+/// The same without soles: a foot stands where its ball is lowest in the motion.
 Motion apply(const PoseEdits& edits, const Motion& motion, const Joints& rest);
 /// The same without trim and skip: as many frames as before, for a timeline that still shows them.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);

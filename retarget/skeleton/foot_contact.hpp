@@ -25,7 +25,7 @@ class ContactSwitch {
  private:
   FootContactOptions options_;
   float scale_;
-  Vec3 last_ = Vec3::Zero();
+  Vec3 last_ = Vec3::Zero(), velocity_ = Vec3::Zero();
   bool on_ = false, started_ = false;
 };
 

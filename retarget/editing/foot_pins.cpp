@@ -1,0 +1,243 @@
+// Pinned feet: contacts from the whole motion, corrections that roll with the foot, legs by inverse
+// kinematics.
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/editing/pose_edits.hpp"
+#include "retarget/skeleton/leg_ik.hpp"
+
+namespace understudy {
+namespace {
+
+/// Share of the leg that a standing foot is at most moved up or down by: what stands higher stands on a step.
+constexpr float kOnFloor = 0.08f;
+
+/// One foot over time.
+struct Foot {
+  Leg leg;
+  float level = 0;                     // height of the ball where the foot stands
+  std::vector<Vec3> ankle, ball;       // [T] world
+  std::vector<Vec3> heel;              // [T] world, of the sole
+  std::vector<float> clearance;        // [T] of the lowest of the sole over the floor
+  std::vector<char> on_ball, on_heel;  // [T] in contact
+  std::vector<Vec3> offset;            // [T] added to the ankle
+  bool stands(int t) const { return on_ball[static_cast<size_t>(t)] || on_heel[static_cast<size_t>(t)]; }
+};
+
+float smoothstep(float x) {
+  x = std::clamp(x, 0.0f, 1.0f);
+  return x * x * (3 - 2 * x);
+}
+
+/// A height that a share of the values is below.
+float quantile(std::vector<float> values, float share) {
+  const auto at = values.begin() + static_cast<long>(share * static_cast<float>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// The sole's points of one side and its rearmost, relative to ankle or ball as the support says.
+struct Sole {
+  std::vector<size_t> points;  // of body.soles
+  Vec3 heel;                   // from the ankle, T-pose axes
+  float below_ball = 0;        // from the ball's height in T-pose down to the floor; known with points only
+};
+
+Sole sole_of(const EditedBody& body, const Leg& leg) {
+  Sole sole;
+  const Vec3 ankle = body.rest.row(leg.ankle).transpose(), ball = body.rest.row(leg.ball).transpose();
+  sole.heel = Vec3(0, ball.y() - ankle.y(), -0.06f * leg_length(body.rest));
+  float lowest = 1e9f, rearmost = 1e9f;
+  for (size_t i = 0; i < body.soles.joint.size(); ++i) {
+    const int j = body.soles.joint[i];
+    const Vec3 offset = body.soles.offset.row(static_cast<Eigen::Index>(i)).transpose();
+    if ((j != leg.ankle && j != leg.ball) || offset.isZero()) continue;  // the joints themselves are no sole
+    sole.points.push_back(i);
+    lowest = std::min(lowest, body.rest(j, 1) + offset.y());
+    if (j == leg.ankle && offset.z() < rearmost) rearmost = offset.z(), sole.heel = offset;
+  }
+  if (!sole.points.empty()) sole.below_ball = ball.y() - lowest;
+  return sole;
+}
+
+Foot observed(const Motion& motion, const EditedBody& body, int side) {
+  Foot foot;
+  foot.leg = Leg::of(side);
+  const Sole sole = sole_of(body, foot.leg);
+  const size_t count = motion.poses.size();
+  std::vector<float> heights;
+  for (const Pose& pose : motion.poses) {
+    const PosedSkeleton posed = forward_kinematics(body.rest, pose);
+    const Mat3& R = posed.global[static_cast<size_t>(foot.leg.ankle)];
+    foot.ankle.push_back(posed.joints.row(foot.leg.ankle).transpose());
+    foot.ball.push_back(posed.joints.row(foot.leg.ball).transpose());
+    foot.heel.push_back(foot.ankle.back() + R * sole.heel);
+    heights.push_back(foot.ball.back().y());
+    float lowest = 1e9f;
+    for (const size_t i : sole.points) {
+      const int j = body.soles.joint[i];
+      const Vec3 offset = body.soles.offset.row(static_cast<Eigen::Index>(i)).transpose();
+      lowest = std::min(lowest, posed.joints(j, 1) + (posed.global[static_cast<size_t>(j)] * offset).y());
+    }
+    foot.clearance.push_back(lowest);
+  }
+  foot.level = quantile(heights, 0.05f);
+  if (sole.points.empty())
+    for (size_t t = 0; t < count; ++t)
+      foot.clearance[t] = std::min(foot.ball[t].y(), foot.heel[t].y()) - foot.level;
+  foot.offset.assign(count, Vec3::Zero());
+  foot.on_ball.assign(count, 0);
+  foot.on_heel.assign(count, 0);
+  return foot;
+}
+
+/// Spans shorter than `shortest` frames of `value` become the other value.
+void drop_short_spans(std::vector<char>& on, char value, int shortest) {
+  const size_t count = on.size();
+  for (size_t begin = 0; begin < count;) {
+    size_t end = begin;
+    while (end < count && on[end] == on[begin]) ++end;
+    const bool inside = value != 0 || (begin > 0 && end < count);  // a gap has contacts on both sides
+    if (on[begin] == value && inside && end - begin < static_cast<size_t>(shortest))
+      std::fill(on.begin() + static_cast<long>(begin), on.begin() + static_cast<long>(end), !value);
+    begin = end;
+  }
+}
+
+/// Contact of one point by the hysteresis in both directions of time: either sees the whole of it.
+std::vector<char> contacts(const std::vector<Vec3>& point, float level, const PinEdit& edit, float leg_m,
+                           float fps) {
+  const int count = static_cast<int>(point.size());
+  std::vector<char> on(point.size(), 0);
+  ContactSwitch forward(edit.contact, leg_m), backward(edit.contact, leg_m);
+  for (int t = 0; t < count; ++t) {
+    const auto f = static_cast<size_t>(t), b = static_cast<size_t>(count - 1 - t);
+    if (forward.push(point[f], level, 1 / fps)) on[f] = 1;
+    if (backward.push(point[b], level, 1 / fps)) on[b] = 1;
+  }
+  drop_short_spans(on, 0, static_cast<int>(std::lround(0.07f * fps)));
+  drop_short_spans(on, 1, static_cast<int>(std::lround(0.07f * fps)));
+  return on;
+}
+
+Vec3 over_floor(const Vec3& v) {
+  return Vec3(v.x(), 0, v.z());
+}
+
+/// Corrections of one stance, frames begin .. end - 1: what keeps its pivot in place, from frame to frame, so
+/// that the foot may roll from heel to ball; on the whole the foot stays where it was on average.
+void hold_stance(Foot& foot, int begin, int end, float step_m) {
+  Vec3 offset = Vec3::Zero(), mean = Vec3::Zero();
+  for (int t = begin; t < end; ++t) {
+    const auto now = static_cast<size_t>(t);
+    if (t > begin) {
+      const bool rolls_on_ball = foot.on_ball[now] && (foot.on_ball[now - 1] || !foot.on_heel[now]);
+      const auto& pivot = rolls_on_ball ? foot.ball : foot.heel;
+      offset += over_floor(pivot[now - 1] - pivot[now]);
+    }
+    foot.offset[now] = offset;
+    mean += offset / static_cast<float>(end - begin);
+  }
+  for (int t = begin; t < end; ++t) {
+    const auto now = static_cast<size_t>(t);
+    foot.offset[now] -= mean;
+    foot.offset[now].y() = std::clamp(-foot.clearance[now], -step_m, step_m);
+  }
+}
+
+/// Between stances the correction goes over from one to the next, or to none and back in a long gap.
+void blend_gap(Foot& foot, int begin, int end, float blend_frames) {
+  const int count = static_cast<int>(foot.offset.size());
+  const Vec3 before = begin > 0 ? foot.offset[static_cast<size_t>(begin - 1)] : Vec3(Vec3::Zero());
+  const Vec3 after = end < count ? foot.offset[static_cast<size_t>(end)] : Vec3(Vec3::Zero());
+  const float gap = static_cast<float>(end - begin + 1);
+  const bool both = begin > 0 && end < count && gap <= 2 * blend_frames;
+  const float reach = std::min(blend_frames, gap);
+  for (int t = begin; t < end; ++t) {
+    const float since = static_cast<float>(t - begin + 1), until = static_cast<float>(end - t);
+    auto& offset = foot.offset[static_cast<size_t>(t)];
+    if (both)
+      offset = before + smoothstep(since / gap) * (after - before);
+    else
+      offset = (1 - smoothstep(since / reach)) * before + (1 - smoothstep(until / reach)) * after;
+  }
+}
+
+void find_offsets(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
+  const int count = static_cast<int>(foot.offset.size());
+  const auto span_end = [&](int begin) {
+    int end = begin;
+    while (end < count && foot.stands(end) == foot.stands(begin)) ++end;
+    return end;
+  };
+  for (int begin = 0, end; begin < count; begin = end) {
+    end = span_end(begin);
+    if (foot.stands(begin)) hold_stance(foot, begin, end, kOnFloor * leg_m);
+  }
+  for (int begin = 0, end; begin < count; begin = end) {
+    end = span_end(begin);
+    if (!foot.stands(begin)) blend_gap(foot, begin, end, std::max(1.0f, edit.blend_s * fps));
+  }
+  if (edit.keep_soles_up)
+    for (size_t t = 0; t < foot.offset.size(); ++t)
+      foot.offset[t].y() = std::max(foot.offset[t].y(), -foot.clearance[t]);
+}
+
+/// How far the pelvis must sink in each frame for the held feet to be in reach; smooth in time, never less
+/// than needed but for the limit.
+std::vector<float> pelvis_drops(const Motion& motion, const Joints& rest, const std::vector<Foot>& feet,
+                                float limit) {
+  constexpr float kReach = 0.985f;  // share of the leg's length; beyond it the leg straightens softly
+  const int count = static_cast<int>(motion.poses.size());
+  std::vector<float> needed(motion.poses.size(), 0.0f), widest = needed, drops = needed;
+  for (int t = 0; t < count; ++t)
+    for (const Foot& foot : feet) {
+      const auto now = static_cast<size_t>(t);
+      if (!foot.stands(t)) continue;
+      const PosedSkeleton posed = forward_kinematics(rest, motion.poses[now]);
+      const Vec3 hip = posed.joints.row(foot.leg.hip).transpose();
+      const float reach = std::max(kReach * leg_length(rest), (foot.ankle[now] - hip).norm());
+      const Vec3 to = foot.ankle[now] + foot.offset[now] - hip;
+      const float flat = reach * reach - to.x() * to.x() - to.z() * to.z();
+      needed[now] = std::clamp(-to.y() - std::sqrt(std::max(flat, 0.0f)), needed[now], limit);
+    }
+  const int w = std::max(1, static_cast<int>(std::lround(0.1f * motion.fps)));
+  for (int t = 0; t < count; ++t)
+    for (int k = -w; k <= w; ++k)
+      widest[static_cast<size_t>(t)] = std::max(widest[static_cast<size_t>(t)],
+                                                needed[static_cast<size_t>(std::clamp(t + k, 0, count - 1))]);
+  for (int t = 0; t < count; ++t)
+    for (int k = -w; k <= w; ++k)
+      drops[static_cast<size_t>(t)] +=
+          widest[static_cast<size_t>(std::clamp(t + k, 0, count - 1))] / static_cast<float>(2 * w + 1);
+  return drops;
+}
+
+void pin(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
+  std::vector<float> heights;
+  for (const Vec3& heel : foot.heel) heights.push_back(heel.y());
+  foot.on_ball = contacts(foot.ball, foot.level, edit, leg_m, fps);
+  foot.on_heel = contacts(foot.heel, quantile(heights, 0.05f), edit, leg_m, fps);
+  find_offsets(foot, edit, leg_m, fps);
+}
+
+}  // namespace
+
+void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body) {
+  if (motion.poses.empty()) return;
+  const float leg_m = leg_length(body.rest);
+  std::vector<Foot> feet;
+  for (const int side : {0, 1}) {
+    Foot foot = observed(motion, body, side);
+    if (side == 0 ? edit.left : edit.right) pin(foot, edit, leg_m, motion.fps);
+    feet.push_back(std::move(foot));  // a foot not pinned stays where it is when the pelvis sinks
+  }
+  const auto drops = pelvis_drops(motion, body.rest, feet, edit.max_drop_m * leg_m / 0.8f);
+  for (size_t t = 0; t < motion.poses.size(); ++t) {
+    motion.poses[t].root.y() -= drops[t];
+    for (const Foot& foot : feet)
+      place_ankle(body.rest, foot.leg.hip - LeftHip, foot.ankle[t] + foot.offset[t], motion.poses[t]);
+  }
+}
+
+}  // namespace understudy

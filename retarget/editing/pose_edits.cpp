@@ -1,0 +1,183 @@
+#include "retarget/editing/pose_edits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "retarget/base/error.hpp"
+#include "retarget/editing/skeleton_edits.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+using Quat = Eigen::Quaternionf;
+
+int frames(const Motion& motion) {
+  return static_cast<int>(motion.poses.size());
+}
+
+/// Half a Gaussian: weights at 0, 1, 2 ... frames away, up to three standard deviations.
+std::vector<float> half_gaussian(float sigma_frames) {
+  std::vector<float> half;
+  for (int k = 0; k <= static_cast<int>(std::ceil(3 * sigma_frames)); ++k)
+    half.push_back(std::exp(-0.5f * std::pow(static_cast<float>(k) / sigma_frames, 2.0f)));
+  return half;
+}
+
+/// Mean over the window at each frame; the window shrinks on both sides alike towards the ends, so that what
+/// moves evenly keeps moving so. T: with + and *.
+template <class T>
+std::vector<T> filtered(const std::vector<T>& in, const std::vector<float>& half, const T& zero) {
+  const int count = static_cast<int>(in.size()), reach = static_cast<int>(half.size()) - 1;
+  std::vector<T> out(in.size(), zero);
+  for (int t = 0; t < count; ++t) {
+    const int r = std::min({reach, t, count - 1 - t});
+    T sum = half[0] * in[static_cast<size_t>(t)];
+    float total = half[0];
+    for (int k = 1; k <= r; ++k) {
+      sum += half[static_cast<size_t>(k)] * (in[static_cast<size_t>(t - k)] + in[static_cast<size_t>(t + k)]);
+      total += 2 * half[static_cast<size_t>(k)];
+    }
+    out[static_cast<size_t>(t)] = sum / total;
+  }
+  return out;
+}
+
+void smooth_joint(int joint, const std::vector<float>& half, Motion& motion) {
+  std::vector<Eigen::Vector4f> q;
+  q.reserve(motion.poses.size());
+  for (const Pose& pose : motion.poses) {
+    const Eigen::Vector4f now = Quat(pose.local[static_cast<size_t>(joint)]).coeffs();
+    const bool far = !q.empty() && q.back().dot(now) < 0;  // q and -q are one rotation: keep to the nearer
+    q.push_back(far ? Eigen::Vector4f(-now) : now);
+  }
+  const auto mean = filtered<Eigen::Vector4f>(q, half, Eigen::Vector4f::Zero());
+  for (size_t t = 0; t < q.size(); ++t)
+    if (mean[t].norm() > 1e-3f)  // opposite rotations have no mean
+      motion.poses[t].local[static_cast<size_t>(joint)] = Quat(mean[t].normalized()).toRotationMatrix();
+}
+
+double mean_acceleration(const std::vector<Joints>& x, float fps) {
+  if (x.size() < 3) return 0;
+  double sum = 0;
+  for (size_t t = 1; t + 1 < x.size(); ++t)
+    sum += (x[t + 1] - 2 * x[t] + x[t - 1]).cast<double>().rowwise().norm().sum();
+  return sum * fps * fps / (static_cast<double>(x.size() - 2) * kJointCount);
+}
+
+std::vector<Joints> joints_over_time(const Motion& motion, const Joints& rest) {
+  std::vector<Joints> result;
+  for (const Pose& pose : motion.poses) result.push_back(forward_kinematics(rest, pose).joints);
+  return result;
+}
+
+void check(const Motion& motion) {
+  US_CHECK(motion.fps > 0 && std::isfinite(motion.fps), "a motion cannot have ", motion.fps,
+           " frames a second");
+  US_CHECK(motion.flags.empty() || motion.flags.size() == motion.poses.size(), "a motion has ",
+           motion.flags.size(), " flags for ", motion.poses.size(), " frames");
+}
+
+}  // namespace
+
+bool PoseEdits::empty() const {
+  return rotate.empty() && !smooth && !floor && !pin && !heading && !trim && skip.empty();
+}
+
+EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_joints) {
+  return {rest_joints, SupportPoints::from(rest_vertices, rest_joints)};
+}
+
+void rotate(const RotateEdit& edit, Motion& motion) {
+  US_CHECK(edit.joint >= 0 && edit.joint < kJointCount, "a rotated bone has number ", edit.joint,
+           ", there are ", kJointCount);
+  US_CHECK(edit.axis_angle.allFinite(), "a bone is rotated by an angle that is not finite");
+  for (int t = 0; t < frames(motion); ++t) {
+    const long long distance = std::llabs(static_cast<long long>(t) - edit.frame);
+    if (distance > std::max(edit.falloff, 0)) continue;
+    auto& R = motion.poses[static_cast<size_t>(t)].local[static_cast<size_t>(edit.joint)];
+    const float amount = falloff_weight(static_cast<int>(distance), edit.falloff);
+    R = R * rotation_from_axis_angle(amount * edit.axis_angle);
+  }
+}
+
+void smooth(const SmoothEdit& edit, Motion& motion) {
+  US_CHECK(edit.strength >= 0 && edit.strength <= 1, "smoothing must be in 0..1, not ", edit.strength);
+  const float sigma = edit.strength * kSmoothestSeconds * motion.fps;
+  if (sigma < 0.05f) return;
+  const std::vector<float> half = half_gaussian(sigma);
+  for (int j = 0; j < kJointCount; ++j) smooth_joint(j, half, motion);
+  std::vector<Vec3> roots;
+  for (const Pose& pose : motion.poses) roots.push_back(pose.root);
+  const auto mean = filtered<Vec3>(roots, half, Vec3::Zero());
+  for (size_t t = 0; t < roots.size(); ++t) motion.poses[t].root = mean[t];
+}
+
+void turn(const HeadingEdit& edit, Motion& motion) {
+  if (motion.poses.empty() || edit.yaw_deg == 0) return;
+  US_CHECK(std::isfinite(edit.yaw_deg), "the heading is not finite");
+  const Mat3 R = rotation_about_y(edit.yaw_deg * kPi / 180);
+  const Vec3 centre = motion.poses.front().root;
+  for (Pose& pose : motion.poses) {
+    pose.root = centre + R * (pose.root - centre);
+    pose.local[Pelvis] = R * pose.local[Pelvis];
+  }
+}
+
+Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
+  check(motion);
+  Motion result = motion;
+  for (const RotateEdit& edit : edits.rotate) rotate(edit, result);
+  if (edits.smooth) smooth(*edits.smooth, result);
+  if (edits.floor)
+    for (Pose& pose : result.poses) pose.root.y() += edits.floor->offset_m;
+  if (edits.pin) pin_feet(*edits.pin, result, body);
+  if (edits.heading) turn(*edits.heading, result);
+  return result;
+}
+
+std::vector<int> kept_frames(const PoseEdits& edits, int count) {
+  int first = 0, last = count - 1;
+  if (edits.trim) {
+    first = std::max(first, edits.trim->first);
+    last = std::min(last, edits.trim->last);
+    US_CHECK(count == 0 || first <= last, "the trim ", edits.trim->first, " to ", edits.trim->last,
+             " leaves nothing of ", count, " frames");
+  }
+  std::vector<int> kept;
+  for (int t = first; t <= last; ++t)
+    if (edits.skip.count(t) == 0) kept.push_back(t);
+  return kept;
+}
+
+Motion apply(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
+  Motion all = apply_poses(edits, motion, body), result;
+  result.fps = all.fps;
+  for (const int t : kept_frames(edits, frames(all))) {
+    result.poses.push_back(all.poses[static_cast<size_t>(t)]);
+    if (!all.flags.empty()) result.flags.push_back(all.flags[static_cast<size_t>(t)]);
+  }
+  return result;
+}
+
+Motion apply(const PoseEdits& edits, const Motion& motion, const Joints& rest) {
+  return apply(edits, motion, EditedBody{rest, {}});
+}
+
+EditCost edit_cost(const Motion& before, const Motion& after, const Joints& rest) {
+  US_CHECK(before.poses.size() == after.poses.size(), "motions of ", before.poses.size(), " and ",
+           after.poses.size(), " frames cannot be compared");
+  const auto x = joints_over_time(before, rest), y = joints_over_time(after, rest);
+  EditCost cost;
+  cost.acceleration_before = mean_acceleration(x, before.fps);
+  cost.acceleration_after = mean_acceleration(y, after.fps);
+  for (size_t t = 0; t < x.size(); ++t) {
+    const Eigen::VectorXf moved = (y[t] - x[t]).rowwise().norm();
+    cost.mean_displacement_m += static_cast<double>(moved.mean()) / static_cast<double>(x.size());
+    cost.max_displacement_m = std::max(cost.max_displacement_m, static_cast<double>(moved.maxCoeff()));
+  }
+  return cost;
+}
+
+}  // namespace understudy

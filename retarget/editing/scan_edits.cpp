@@ -1,0 +1,282 @@
+#include "retarget/editing/scan_edits.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "retarget/base/error.hpp"
+#include "retarget/editing/point_grid.hpp"
+
+namespace understudy {
+namespace {
+
+using Kept = std::vector<char>;  // [V], 1 = the vertex stays
+
+Vec3 point(const Points& points, int i) {
+  return points.row(i).transpose();
+}
+
+void check(const ScanEdits& edits) {
+  if (edits.crop)
+    US_CHECK((edits.crop->low.array() < edits.crop->high.array()).all(), "the crop box has no inside");
+  if (edits.floor) {
+    const FloorCut& floor = *edits.floor;
+    US_CHECK(floor.tolerance_m >= 0 && floor.sole_radius_m > 0 && floor.sole_band_m > 0,
+             "the floor's tolerance and the soles' sizes must be positive");
+    US_CHECK(!floor.plane || std::abs(floor.plane->normal.norm() - 1) < 1e-3f,
+             "the floor's normal does not have unit length");
+  }
+  if (edits.largest_cluster)
+    US_CHECK(edits.cluster_gap_m > 0, "the gap between clusters must be positive, not ", edits.cluster_gap_m);
+}
+
+std::vector<int> indices(const Kept& kept) {
+  std::vector<int> result;
+  for (size_t i = 0; i < kept.size(); ++i)
+    if (kept[i]) result.push_back(static_cast<int>(i));
+  return result;
+}
+
+Points rows(const Points& points, const std::vector<int>& which) {
+  Points result(static_cast<Eigen::Index>(which.size()), 3);
+  for (size_t i = 0; i < which.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = points.row(which[i]);
+  return result;
+}
+
+/// Points seen from above the floor: two directions in it, the third coordinate 0.
+class FromAbove {
+ public:
+  explicit FromAbove(const Vec3& up) : u_(up.unitOrthogonal()), v_(up.cross(u_)) {}
+  Points flat(const Points& points) const {
+    Points result = Points::Zero(points.rows(), 3);
+    result.col(0) = points * u_;
+    result.col(1) = points * v_;
+    return result;
+  }
+
+ private:
+  Vec3 u_, v_;
+};
+
+/// Takes out what is floor-high, save where a body's points are just above: those are soles.
+void cut_floor(const FloorCut& cut, const Points& all, Kept& kept) {
+  FloorPlane plane;
+  plane.height_m = cut.height_m;
+  if (cut.plane) plane = *cut.plane;
+  std::vector<int> low, above;
+  for (const int i : indices(kept)) {
+    const float h = plane.above(point(all, i));
+    if (h <= cut.tolerance_m) low.push_back(i);
+    if (h > cut.tolerance_m && h <= cut.tolerance_m + cut.sole_band_m) above.push_back(i);
+  }
+  const FromAbove view(plane.normal);
+  const Points lows = view.flat(rows(all, low)), aboves = view.flat(rows(all, above));
+  const PointGrid grid(aboves, cut.sole_radius_m);
+  // One stray point above the floor is noise; a foot has several.
+  constexpr int kEnough = 3;
+  for (size_t i = 0; i < low.size(); ++i) {
+    const Vec3 at = point(lows, static_cast<int>(i));
+    int near = 0;
+    grid.around(at, cut.sole_radius_m, [&](int k) {
+      near += (point(aboves, k) - at).squaredNorm() <= cut.sole_radius_m * cut.sole_radius_m;
+    });
+    if (near < kEnough) kept[static_cast<size_t>(low[i])] = 0;
+  }
+}
+
+class UnionFind {
+ public:
+  explicit UnionFind(int count) : parent_(static_cast<size_t>(count)) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int root(int i) {
+    while (parent_[static_cast<size_t>(i)] != i) {
+      int& p = parent_[static_cast<size_t>(i)];
+      p = parent_[static_cast<size_t>(p)];
+      i = p;
+    }
+    return i;
+  }
+  void join(int a, int b) {
+    a = root(a), b = root(b);
+    parent_[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+bool within(const Points& points, const PointGrid& grid, int a, int b, float gap) {
+  for (const int* i = grid.begin(a); i != grid.end(a); ++i)
+    for (const int* k = grid.begin(b); k != grid.end(b); ++k)
+      if ((points.row(*i) - points.row(*k)).squaredNorm() <= gap * gap) return true;
+  return false;
+}
+
+/// The half of the offsets between cells of side gap / sqrt(3) whose points may be within the gap, nearest
+/// first.
+std::vector<PointGrid::Cell> near_offsets() {
+  std::vector<PointGrid::Cell> offsets;
+  for (int x = -2; x <= 2; ++x)
+    for (int y = -2; y <= 2; ++y)
+      for (int z = -2; z <= 2; ++z) {
+        const PointGrid::Cell c(x, y, z);
+        const bool half = x > 0 || (x == 0 && (y > 0 || (y == 0 && z > 0)));
+        const auto between = (c.array().abs() - 1).max(0).square().sum();
+        if (half && between <= 3) offsets.push_back(c);
+      }
+  std::stable_sort(offsets.begin(), offsets.end(),
+                   [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+  return offsets;
+}
+
+/// Joins all points closer than the gap, exactly: a cell's points always are (its diagonal is the gap), and
+/// two cells are looked at point by point only until one pair is near enough.
+void join_near(const Points& points, float gap, UnionFind& sets) {
+  const PointGrid grid(points, gap / std::sqrt(3.0f) * 0.9999f);
+  for (int c = 0; c < grid.cells(); ++c)
+    for (const int* i = grid.begin(c); i != grid.end(c); ++i) sets.join(*grid.begin(c), *i);
+  for (const auto& offset : near_offsets())
+    for (int c = 0; c < grid.cells(); ++c) {
+      const int other = grid.find(grid.cell(c) + offset);
+      if (other < 0 || sets.root(*grid.begin(c)) == sets.root(*grid.begin(other))) continue;
+      if (within(points, grid, c, other, gap)) sets.join(*grid.begin(c), *grid.begin(other));
+    }
+}
+
+void keep_largest(const Mesh& scan, float gap, Kept& kept) {
+  const std::vector<int> which = indices(kept);
+  if (which.empty()) return;
+  const Points points = rows(scan.vertices, which);
+  UnionFind sets(static_cast<int>(which.size()));
+  join_near(points, gap, sets);
+
+  std::vector<int> position(kept.size(), -1);
+  for (size_t i = 0; i < which.size(); ++i) position[static_cast<size_t>(which[i])] = static_cast<int>(i);
+  for (Eigen::Index f = 0; f < scan.faces.rows(); ++f) {
+    const int a = position[static_cast<size_t>(scan.faces(f, 0))];
+    for (int k = 1; k < 3; ++k) {
+      const int b = position[static_cast<size_t>(scan.faces(f, k))];
+      if (a >= 0 && b >= 0) sets.join(a, b);
+    }
+  }
+
+  std::vector<int> size(which.size(), 0);
+  for (size_t i = 0; i < which.size(); ++i) ++size[static_cast<size_t>(sets.root(static_cast<int>(i)))];
+  const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+  for (size_t i = 0; i < which.size(); ++i)
+    if (sets.root(static_cast<int>(i)) != largest) kept[static_cast<size_t>(which[i])] = 0;
+}
+
+Kept kept_flags(const ScanEdits& edits, const Mesh& scan) {
+  check(edits);
+  Kept kept(static_cast<size_t>(scan.vertices.rows()), 1);
+  if (edits.empty()) return kept;
+  for (int i = 0; i < static_cast<int>(kept.size()); ++i) {
+    const Vec3 p = point(scan.vertices, i);
+    kept[static_cast<size_t>(i)] = p.allFinite() && (!edits.crop || edits.crop->contains(p));
+  }
+  if (edits.floor) cut_floor(*edits.floor, scan.vertices, kept);
+  if (edits.largest_cluster) keep_largest(scan, edits.cluster_gap_m, kept);
+  return kept;
+}
+
+/// Area over which points within `tolerance` of the plane lie, square metres, in cells of 5 cm.
+float covered_area(const Points& points, const FloorPlane& plane, float tolerance) {
+  constexpr float kCell = 0.05f;
+  std::vector<int> on;
+  for (int i = 0; i < points.rows(); ++i)
+    if (std::abs(plane.above(point(points, i))) < tolerance) on.push_back(i);
+  const Points flat = FromAbove(plane.normal).flat(rows(points, on));
+  return static_cast<float>(PointGrid(flat, kCell).cells()) * kCell * kCell;
+}
+
+/// Least squares plane through the points within `tolerance` of a plane; the normal keeps pointing up.
+FloorPlane refined(const Points& points, const FloorPlane& plane, float tolerance) {
+  std::vector<int> on;
+  for (int i = 0; i < points.rows(); ++i)
+    if (std::abs(plane.above(point(points, i))) < tolerance) on.push_back(i);
+  const Points p = rows(points, on);
+  const Vec3 mean = p.colwise().mean().transpose();
+  const Points centred = p.rowwise() - mean.transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(Mat3(centred.transpose() * centred));
+  FloorPlane result;
+  result.normal = solver.eigenvectors().col(0);  // of the smallest spread
+  if (result.normal.y() < 0) result.normal = -result.normal;
+  result.height_m = result.normal.dot(mean);
+  return result;
+}
+
+}  // namespace
+
+std::optional<FloorPlane> detect_floor(const Points& all) {
+  constexpr float kNear = 0.015f, kLevel = 0.966f;  // metres; cosine of 15 degrees
+  constexpr float kArea = 0.15f;                    // square metres; two soles have 0.05
+  constexpr int kTries = 300, kLooked = 4000;
+  std::vector<int> finite;
+  for (int i = 0; i < all.rows(); ++i)
+    if (point(all, i).allFinite()) finite.push_back(i);
+  if (finite.size() < 32) return std::nullopt;
+  Rng rng(1);
+  std::vector<int> looked;
+  for (int i = 0; i < kLooked; ++i)
+    looked.push_back(finite[static_cast<size_t>(rng.below(static_cast<int>(finite.size())))]);
+  const Points points = rows(all, looked);
+
+  FloorPlane best;
+  int best_score = 0;
+  for (int t = 0; t < kTries; ++t) {
+    const Vec3 a = point(points, rng.below(kLooked)), b = point(points, rng.below(kLooked)),
+               c = point(points, rng.below(kLooked));
+    Vec3 n = (b - a).cross(c - a);
+    if (n.norm() < 1e-4f) continue;
+    n = n.normalized() * (n.y() < 0 ? -1.0f : 1.0f);
+    if (n.y() < kLevel) continue;
+    const Eigen::ArrayXf h = (points * n).array() - n.dot(a);
+    const int on = static_cast<int>((h.abs() < kNear).count()),
+              below = static_cast<int>((h < -2 * kNear).count());
+    if (on - 5 * below > best_score) best_score = on - 5 * below, best = {n, n.dot(a)};
+  }
+  if (best_score < kLooked / 100) return std::nullopt;
+  const FloorPlane plane = refined(points, best, kNear);
+  if (plane.normal.y() < kLevel || covered_area(points, plane, kNear) < kArea) return std::nullopt;
+  return plane;
+}
+
+std::vector<int> kept_vertices(const ScanEdits& edits, const Mesh& scan) {
+  return indices(kept_flags(edits, scan));
+}
+
+Mesh apply(const ScanEdits& edits, const Mesh& scan) {
+  if (edits.empty()) return scan;
+  Kept kept = kept_flags(edits, scan);
+  const auto stays = [&](Eigen::Index f) {
+    return kept[static_cast<size_t>(scan.faces(f, 0))] && kept[static_cast<size_t>(scan.faces(f, 1))] &&
+           kept[static_cast<size_t>(scan.faces(f, 2))];
+  };
+  std::vector<Eigen::Index> faces;
+  for (Eigen::Index f = 0; f < scan.faces.rows(); ++f)
+    if (stays(f)) faces.push_back(f);
+  if (!scan.is_cloud()) {
+    Kept used(kept.size(), 0);
+    for (const Eigen::Index f : faces)
+      for (int k = 0; k < 3; ++k) used[static_cast<size_t>(scan.faces(f, k))] = 1;
+    kept = used;
+  }
+
+  const std::vector<int> which = indices(kept);
+  std::vector<int> renumbered(kept.size(), -1);
+  for (size_t i = 0; i < which.size(); ++i) renumbered[static_cast<size_t>(which[i])] = static_cast<int>(i);
+  Mesh result;
+  result.vertices = rows(scan.vertices, which);
+  if (scan.colors.rows() == scan.vertices.rows()) result.colors = rows(scan.colors, which);
+  result.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  for (size_t f = 0; f < faces.size(); ++f)
+    for (int k = 0; k < 3; ++k)
+      result.faces(static_cast<Eigen::Index>(f), k) =
+          renumbered[static_cast<size_t>(scan.faces(faces[f], k))];
+  return result;
+}
+
+}  // namespace understudy

@@ -1,0 +1,113 @@
+#include "retarget/editing/skeleton_edits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr float kBelieved = 0.9f;  // above the joint filter's threshold for repairing sides
+
+bool in_subtree(int joint, int top) {
+  while (joint > top) joint = kParents[static_cast<size_t>(joint)];
+  return joint == top;
+}
+
+/// The one child of a joint, -1 when it has none or several.
+int only_child(int joint) {
+  int child = -1;
+  for (int j = 1; j < kJointCount; ++j)
+    if (kParents[static_cast<size_t>(j)] == joint) {
+      if (child >= 0) return -1;
+      child = j;
+    }
+  return child;
+}
+
+float weight(const DragEdit& edit, int frame) {
+  // In 64 bits: frames come from files.
+  const long long distance = std::llabs(static_cast<long long>(frame) - edit.frame);
+  return distance > std::max(edit.falloff, 0) ? 0.0f
+                                              : falloff_weight(static_cast<int>(distance), edit.falloff);
+}
+float weight(const SwapEdit& edit, int frame) {
+  return frame >= edit.first && frame <= edit.last ? 1.0f : 0.0f;
+}
+
+/// The rotation seen at a joint turned as the bone to its child was.
+void follow_bone(const Joints& before, int joint, Extraction& seen) {
+  const int child = only_child(joint);
+  if (child < 0) return;
+  const Vec3 from = (before.row(child) - before.row(joint)).transpose();
+  const Vec3 to = (seen.joints.row(child) - seen.joints.row(joint)).transpose();
+  if (from.norm() < 1e-4f || to.norm() < 1e-4f) return;
+  auto& R = (*seen.global)[static_cast<size_t>(joint)];
+  R = rotation_between(from, to) * R;
+}
+
+void edit_frame(const DragEdit& edit, float amount, Extraction& seen) {
+  const Joints before = seen.joints;
+  for (int j = edit.joint; j < kJointCount; ++j)
+    if (j == edit.joint || (edit.with_children && in_subtree(j, edit.joint))) {
+      seen.joints.row(j) += amount * edit.offset.transpose();
+      seen.confidence[j] = std::max(seen.confidence[j], amount);
+    }
+  if (!seen.global) return;
+  const int parent = kParents[static_cast<size_t>(edit.joint)];
+  if (parent >= 0) follow_bone(before, parent, seen);
+  if (!edit.with_children) follow_bone(before, edit.joint, seen);
+}
+
+void edit_frame(const SwapEdit& edit, float, Extraction& seen) {
+  using Limbs = SwapEdit::Limbs;
+  const auto exchange = [&seen](std::initializer_list<int> left) {
+    for (const int j : left) {
+      const int other = kMirror[static_cast<size_t>(j)];
+      seen.joints.row(j).swap(seen.joints.row(other));
+      std::swap(seen.confidence[j], seen.confidence[other]);
+      for (const int k : {j, other}) seen.confidence[k] = std::max(seen.confidence[k], kBelieved);
+    }
+  };
+  if (edit.limbs != Limbs::Legs) exchange({LeftCollar, LeftShoulder, LeftElbow, LeftWrist});
+  if (edit.limbs != Limbs::Arms) exchange({LeftHip, LeftKnee, LeftAnkle, LeftFoot});
+  seen.global.reset();  // the trunk's frame was seen the wrong way round too
+}
+
+void check(const DragEdit& edit) {
+  US_CHECK(edit.joint >= 0 && edit.joint < kJointCount, "a dragged joint has number ", edit.joint,
+           ", there are ", kJointCount);
+  US_CHECK(edit.offset.allFinite(), "a dragged joint has an offset that is not finite");
+}
+void check(const SwapEdit&) {}
+
+}  // namespace
+
+float falloff_weight(int distance, int falloff) {
+  const float reach = static_cast<float>(std::max(falloff, 0)) + 1;
+  const float x = std::abs(static_cast<float>(distance)) / reach;
+  return x >= 1 ? 0.0f : 0.5f + 0.5f * std::cos(kPi * x);
+}
+
+Extraction apply(const std::vector<SkeletonEdit>& edits, Extraction seen, int frame) {
+  for (const SkeletonEdit& any : edits)
+    std::visit(
+        [&](const auto& edit) {
+          check(edit);
+          const float amount = weight(edit, frame);
+          if (amount > 0) edit_frame(edit, amount, seen);
+        },
+        any);
+  return seen;
+}
+
+bool touches(const std::vector<SkeletonEdit>& edits, int frame) {
+  return std::any_of(edits.begin(), edits.end(), [frame](const SkeletonEdit& any) {
+    return std::visit([frame](const auto& edit) { return weight(edit, frame) > 0; }, any);
+  });
+}
+
+}  // namespace understudy

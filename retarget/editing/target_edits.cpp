@@ -1,0 +1,348 @@
+#include "retarget/editing/target_edits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "retarget/base/error.hpp"
+#include "retarget/editing/point_grid.hpp"
+
+namespace understudy {
+namespace {
+
+using Row = Eigen::Matrix<float, 1, kJointCount>;
+
+void check_weights(const RowMatrix& weights, Eigen::Index vertices) {
+  US_CHECK(weights.cols() == kJointCount && weights.rows() == vertices, "skin weights of ", weights.rows(),
+           " x ", weights.cols(), " do not fit ", vertices, " vertices and ", kJointCount, " joints");
+}
+
+/// Not negative, sum 1; a row with nothing in it stays as it was.
+Row normalised(const Row& row, const Row& otherwise) {
+  const Row positive = row.cwiseMax(0.0f);
+  const float sum = positive.sum();
+  if (!(sum > 1e-8f) || !std::isfinite(sum)) return otherwise;
+  return positive / sum;
+}
+
+Row mirrored(const Row& row) {
+  Row result;
+  for (int j = 0; j < kJointCount; ++j) result[kMirror[static_cast<size_t>(j)]] = row[j];
+  return result;
+}
+
+/// Collects rows in ascending order of vertices.
+class RowCollector {
+ public:
+  void add(int vertex, const Row& row) {
+    vertex_.push_back(vertex);
+    rows_.push_back(row);
+  }
+  WeightRows finish() const {
+    WeightRows result;
+    result.vertex = vertex_;
+    result.rows.resize(static_cast<Eigen::Index>(rows_.size()), kJointCount);
+    for (size_t i = 0; i < rows_.size(); ++i) result.rows.row(static_cast<Eigen::Index>(i)) = rows_[i];
+    return result;
+  }
+
+ private:
+  std::vector<int> vertex_;
+  std::vector<Row> rows_;
+};
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+Pairs edges(const Faces& faces, int vertices) {
+  Pairs pairs;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const int a = faces(f, k), b = faces(f, (k + 1) % 3);
+      US_CHECK(a >= 0 && a < vertices, "face ", f, " has vertex ", a, " of ", vertices);
+      if (a != b) pairs.emplace_back(a, b), pairs.emplace_back(b, a);
+    }
+  return pairs;
+}
+
+/// Joins vertices at one place: exporters split them where textures have seams.
+void add_seams(const Points& vertices, Pairs& pairs) {
+  std::vector<int> order(static_cast<size_t>(vertices.rows()));
+  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  const auto key = [&](int v) {
+    return std::array<float, 3>{vertices(v, 0), vertices(v, 1), vertices(v, 2)};
+  };
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const auto ka = key(a), kb = key(b);
+    return ka < kb || (ka == kb && a < b);
+  });
+  for (size_t i = 1; i < order.size(); ++i)
+    if (key(order[i - 1]) == key(order[i])) {
+      pairs.emplace_back(order[i - 1], order[i]);
+      pairs.emplace_back(order[i], order[i - 1]);
+    }
+}
+
+/// The six nearest of each point of a cloud, both ways.
+Pairs nearest_pairs(const Points& points) {
+  constexpr int kNearest = 6;
+  Pairs pairs;
+  if (points.rows() <= kNearest) return pairs;
+  const Vec3 size = (points.colwise().maxCoeff() - points.colwise().minCoeff()).transpose();
+  const float area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  const float cell =
+      std::max(2 * std::sqrt(area / static_cast<float>(points.rows())), 1e-5f * size.norm() + 1e-9f);
+  const PointGrid grid(points, cell);
+  std::vector<std::pair<float, int>> found;
+  for (int v = 0; v < points.rows(); ++v) {
+    for (float reach = cell;; reach *= 2) {
+      found.clear();
+      grid.around(points.row(v).transpose(), reach, [&](int k) {
+        const float d = (points.row(k) - points.row(v)).squaredNorm();
+        if (k != v && d <= reach * reach) found.emplace_back(d, k);
+      });
+      if (found.size() >= kNearest || reach > 4 * size.norm()) break;
+    }
+    const size_t count = std::min<size_t>(kNearest, found.size());
+    std::partial_sort(found.begin(), found.begin() + static_cast<long>(count), found.end());
+    for (size_t i = 0; i < count; ++i)
+      pairs.emplace_back(v, found[i].second), pairs.emplace_back(found[i].second, v);
+  }
+  return pairs;
+}
+
+/// Path lengths over the surface from the vertex nearest to `hit`, only inside the ball of the brush and up
+/// to `reach`: pairs (vertex, length), ascending by vertex.
+std::vector<std::pair<int, float>> hanging_together(const PaintSurface& surface, const Vec3& hit,
+                                                    float radius, float reach) {
+  const Points& p = surface.vertices;
+  Eigen::Index seed = 0;
+  (p.rowwise() - hit.transpose()).rowwise().squaredNorm().minCoeff(&seed);
+  const auto from_hit = [&](int v) { return (p.row(v).transpose() - hit).norm(); };
+
+  std::vector<float> length(static_cast<size_t>(p.rows()), std::numeric_limits<float>::infinity());
+  using Entry = std::pair<float, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  std::vector<std::pair<int, float>> found;
+  const float start = from_hit(static_cast<int>(seed));
+  if (!(start < radius)) return found;
+  length[static_cast<size_t>(seed)] = start;
+  open.push({start, static_cast<int>(seed)});
+  while (!open.empty()) {
+    const auto [d, v] = open.top();
+    open.pop();
+    if (d > length[static_cast<size_t>(v)]) continue;
+    found.emplace_back(v, d);
+    for (int k = surface.neighbours.start[static_cast<size_t>(v)];
+         k < surface.neighbours.start[static_cast<size_t>(v) + 1]; ++k) {
+      const int n = surface.neighbours.index[static_cast<size_t>(k)];
+      const float next = d + (p.row(n) - p.row(v)).norm();
+      if (next >= reach || next >= length[static_cast<size_t>(n)] || from_hit(n) >= radius) continue;
+      length[static_cast<size_t>(n)] = next;
+      open.push({next, n});
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+Row neighbours_mean(const RowMatrix& weights, const Neighbours& neighbours, int v) {
+  const int begin = neighbours.start[static_cast<size_t>(v)],
+            end = neighbours.start[static_cast<size_t>(v) + 1];
+  if (begin == end) return weights.row(v);
+  Row sum = Row::Zero();
+  for (int k = begin; k < end; ++k) sum += weights.row(neighbours.index[static_cast<size_t>(k)]);
+  return sum / static_cast<float>(end - begin);
+}
+
+/// A row whose joint `j` has weight `wanted`, the rest shared as before.
+Row with_weight(const Row& row, int j, float wanted) {
+  const float others = row.sum() - row[j];
+  Row result = row;
+  if (others > 1e-6f)
+    result *= (1 - wanted) / others;
+  else
+    result[j == Pelvis ? static_cast<int>(Spine1) : kParents[static_cast<size_t>(j)]] = 1 - wanted;
+  result[j] = wanted;
+  return normalised(result, row);
+}
+
+Row painted(const RowMatrix& weights, const Neighbours& neighbours, int v, const Brush& brush, float amount) {
+  const Row row = weights.row(v);
+  const float now = row[brush.joint];
+  switch (brush.mode) {
+    case Brush::Mode::Add:
+      return with_weight(row, brush.joint, now + amount * (1 - now));
+    case Brush::Mode::Subtract:
+      return now > 0 ? with_weight(row, brush.joint, now * (1 - amount)) : row;
+    case Brush::Mode::Smooth:
+      break;
+  }
+  return normalised(row + amount * (neighbours_mean(weights, neighbours, v) - row), row);
+}
+
+void check(const Brush& brush, const Vec3& hit) {
+  US_CHECK(brush.joint >= 0 && brush.joint < kJointCount, "the brush paints joint ", brush.joint, " of ",
+           kJointCount);
+  US_CHECK(brush.radius_m > 0 && std::isfinite(brush.radius_m), "the brush's radius must be positive, not ",
+           brush.radius_m);
+  US_CHECK(brush.strength >= 0 && brush.strength <= 1, "the brush's strength must be in 0..1, not ",
+           brush.strength);
+  US_CHECK(hit.allFinite(), "the brush hits a place that is not finite");
+}
+
+}  // namespace
+
+float symmetry_centre(const Joints& rest) {
+  float sum = 0;
+  for (int j = 0; j < kJointCount; ++j) sum += rest(j, 0);
+  return sum / kJointCount;  // of a pair: twice the middle between both
+}
+
+Joints apply(const std::vector<JointMove>& moves, const Joints& rest) {
+  const float centre = symmetry_centre(rest);
+  Joints joints = rest;
+  for (const JointMove& move : moves) {
+    US_CHECK(move.joint >= 0 && move.joint < kJointCount, "joint ", move.joint, " of ", kJointCount,
+             " cannot be moved");
+    US_CHECK(move.position.allFinite(), kJointNames[static_cast<size_t>(move.joint)],
+             " is moved to a place that is not finite");
+    joints.row(move.joint) = move.position.transpose();
+    if (!move.mirror) continue;
+    const int other = kMirror[static_cast<size_t>(move.joint)];
+    const float x = other == move.joint ? centre : 2 * centre - move.position.x();
+    joints.row(other) << x, move.position.y(), move.position.z();
+  }
+  return joints;
+}
+
+void apply(const WeightRows& edit, RowMatrix& weights) {
+  if (edit.empty()) return;
+  US_CHECK(
+      edit.rows.cols() == weights.cols() && edit.rows.rows() == static_cast<Eigen::Index>(edit.vertex.size()),
+      "painted weights of ", edit.rows.rows(), " x ", edit.rows.cols(), " do not fit ", edit.vertex.size(),
+      " vertices and ", weights.cols(), " joints");
+  for (const int v : edit.vertex)
+    US_CHECK(v >= 0 && v < weights.rows(), "weights were painted at vertex ", v, " of a target with ",
+             weights.rows());
+  for (size_t i = 0; i < edit.vertex.size(); ++i)
+    weights.row(edit.vertex[i]) = edit.rows.row(static_cast<Eigen::Index>(i));
+}
+
+WeightRows merged(const WeightRows& older, const WeightRows& newer) {
+  RowCollector rows;
+  size_t i = 0, k = 0;
+  while (i < older.vertex.size() || k < newer.vertex.size()) {
+    const bool from_newer =
+        i == older.vertex.size() || (k < newer.vertex.size() && newer.vertex[k] <= older.vertex[i]);
+    if (from_newer) {
+      if (i < older.vertex.size() && older.vertex[i] == newer.vertex[k]) ++i;
+      rows.add(newer.vertex[k], newer.rows.row(static_cast<Eigen::Index>(k)));
+      ++k;
+    } else {
+      rows.add(older.vertex[i], older.rows.row(static_cast<Eigen::Index>(i)));
+      ++i;
+    }
+  }
+  return rows.finish();
+}
+
+WeightRows changed_rows(const RowMatrix& before, const RowMatrix& after) {
+  check_weights(after, before.rows());
+  check_weights(before, after.rows());
+  RowCollector rows;
+  for (Eigen::Index v = 0; v < after.rows(); ++v)
+    if (before.row(v) != after.row(v)) rows.add(static_cast<int>(v), after.row(v));
+  return rows.finish();
+}
+
+Neighbours Neighbours::from(const Mesh& mesh) {
+  const int count = static_cast<int>(mesh.vertices.rows());
+  Pairs pairs = mesh.is_cloud() ? nearest_pairs(mesh.vertices) : edges(mesh.faces, count);
+  if (!mesh.is_cloud()) add_seams(mesh.vertices, pairs);
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  Neighbours result;
+  result.start.assign(static_cast<size_t>(count) + 1, 0);
+  result.index.reserve(pairs.size());
+  for (const auto& [a, b] : pairs) {
+    ++result.start[static_cast<size_t>(a) + 1];
+    result.index.push_back(b);
+  }
+  for (size_t v = 1; v < result.start.size(); ++v) result.start[v] += result.start[v - 1];
+  return result;
+}
+
+WeightRows stroke(const RowMatrix& weights, const PaintSurface& surface, const Vec3& hit,
+                  const Brush& brush) {
+  check_weights(weights, surface.vertices.rows());
+  US_CHECK(surface.neighbours.vertices() == weights.rows(), "neighbours of ", surface.neighbours.vertices(),
+           " vertices do not fit ", weights.rows());
+  check(brush, hit);
+  constexpr float kDetour = 1.6f;  // paths along edges are longer than straight ones
+  RowCollector rows;
+  if (weights.rows() == 0) return rows.finish();
+  for (const auto& [v, path] : hanging_together(surface, hit, brush.radius_m, kDetour * brush.radius_m)) {
+    const float straight = (surface.vertices.row(v).transpose() - hit).norm();
+    const float x = std::min(std::max(straight, path / kDetour) / brush.radius_m, 1.0f);
+    const float amount = brush.strength * (1 - x * x) * (1 - x * x);
+    const Row row = painted(weights, surface.neighbours, v, brush, amount);
+    if (row != weights.row(v)) rows.add(v, row);
+  }
+  return rows.finish();
+}
+
+WeightRows smoothed(const RowMatrix& weights, const Neighbours& neighbours, const std::vector<int>& vertex,
+                    float strength, int rounds) {
+  check_weights(weights, neighbours.vertices());
+  US_CHECK(strength >= 0 && strength <= 1, "smoothing must be in 0..1, not ", strength);
+  std::vector<int> which = vertex;
+  if (which.empty())
+    for (int v = 0; v < weights.rows(); ++v) which.push_back(v);
+  for (const int v : which) US_CHECK(v >= 0 && v < weights.rows(), "vertex ", v, " of ", weights.rows());
+  RowMatrix now = weights, next = weights;
+  for (int round = 0; round < rounds; ++round) {
+    for (const int v : which) {
+      const Row row = now.row(v);
+      next.row(v) = normalised(row + strength * (neighbours_mean(now, neighbours, v) - row), row);
+    }
+    now = next;
+  }
+  return changed_rows(weights, now);
+}
+
+WeightRows mirrored_weights(const RowMatrix& weights, const Points& vertices, BodySide from, float centre) {
+  check_weights(weights, vertices.rows());
+  RowCollector rows;
+  if (vertices.rows() == 0) return rows.finish();
+  const Vec3 size = (vertices.colwise().maxCoeff() - vertices.colwise().minCoeff()).transpose();
+  const float middle = 1e-4f * size.norm(), cell = std::max(0.02f * size.norm(), 1e-6f);
+  const float sign = from == BodySide::Left ? 1.0f : -1.0f;  // left is +x
+  std::vector<int> sources;
+  for (int v = 0; v < vertices.rows(); ++v)
+    if (sign * (vertices(v, 0) - centre) > -middle) sources.push_back(v);
+  if (sources.empty()) return rows.finish();
+  Points places(static_cast<Eigen::Index>(sources.size()), 3);
+  for (size_t i = 0; i < sources.size(); ++i)
+    places.row(static_cast<Eigen::Index>(i)) = vertices.row(sources[i]);
+  const PointGrid grid(places, cell);
+
+  for (int v = 0; v < vertices.rows(); ++v) {
+    const float side = sign * (vertices(v, 0) - centre);
+    if (side > middle) continue;
+    Row row;
+    if (side >= -middle) {
+      row = 0.5f * (weights.row(v) + mirrored(weights.row(v)));
+    } else {
+      const Vec3 image(2 * centre - vertices(v, 0), vertices(v, 1), vertices(v, 2));
+      int nearest = -1;
+      for (float reach = 0.25f * cell; nearest < 0; reach *= 2) nearest = grid.nearest(image, reach);
+      row = mirrored(weights.row(sources[static_cast<size_t>(nearest)]));
+    }
+    row = normalised(row, weights.row(v));
+    if (row != weights.row(v)) rows.add(v, row);
+  }
+  return rows.finish();
+}
+
+}  // namespace understudy

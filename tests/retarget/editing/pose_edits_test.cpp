@@ -1,0 +1,248 @@
+#include "retarget/editing/pose_edits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "retarget/base/error.hpp"
+#include "retarget/body/builtin_motion.hpp"
+#include "retarget/body/builtin_person.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/metrics/joint_metrics.hpp"
+
+namespace understudy {
+namespace {
+
+struct Walker {
+  ShapedBody shape = builtin_person();
+  EditedBody body = EditedBody::from(shape.vertices, shape.joints);
+  Motion walk = builtin_motion("walk", shape.joints);
+};
+
+const Walker& walker() {
+  static const Walker w;
+  return w;
+}
+
+JointSequence joints(const Motion& motion) {
+  JointSequence result;
+  for (const Pose& pose : motion.poses) result.push_back(forward_kinematics(walker().body.rest, pose).joints);
+  return result;
+}
+
+double skate(const Motion& motion) {
+  return foot_skate(joints(motion), motion.fps);
+}
+
+/// The walk with a root that drifts: every foot slides.
+Motion sliding_walk(const Vec3& drift = Vec3(0.25f, 0, -0.2f)) {
+  Motion motion = walker().walk;
+  for (size_t t = 0; t < motion.poses.size(); ++t)
+    motion.poses[t].root += drift * (static_cast<float>(t) / motion.fps);
+  return motion;
+}
+
+/// The fastest turn of any joint between neighbouring frames, radians a second.
+float fastest_turn(const Motion& motion, std::initializer_list<int> which) {
+  float fastest = 0;
+  for (size_t t = 1; t < motion.poses.size(); ++t)
+    for (const int j : which)
+      fastest = std::max(fastest, geodesic_angle(motion.poses[t - 1].local[static_cast<size_t>(j)],
+                                                 motion.poses[t].local[static_cast<size_t>(j)]) *
+                                      motion.fps);
+  return fastest;
+}
+
+float largest_difference(const Motion& a, const Motion& b) {
+  float largest = 0;
+  for (size_t t = 0; t < a.poses.size(); ++t) {
+    largest = std::max(largest, (a.poses[t].root - b.poses[t].root).norm());
+    for (size_t j = 0; j < kJointCount; ++j)
+      largest = std::max(largest, geodesic_angle(a.poses[t].local[j], b.poses[t].local[j]));
+  }
+  return largest;
+}
+
+Motion pinned(const Motion& motion) {
+  PoseEdits edits;
+  edits.pin = PinEdit{};
+  return apply(edits, motion, walker().body);
+}
+
+TEST(RotateEdit, TurnsTheBoneAtItsFrameAndLessAround) {
+  Motion motion = walker().walk;
+  rotate({30, LeftElbow, Vec3(0, 0.5f, 0), 3}, motion);
+  const auto turned = [&](int t) {
+    return geodesic_angle(walker().walk.poses[static_cast<size_t>(t)].local[LeftElbow],
+                          motion.poses[static_cast<size_t>(t)].local[LeftElbow]);
+  };
+  EXPECT_NEAR(turned(30), 0.5f, 1e-4f);
+  EXPECT_NEAR(turned(32), 0.25f, 1e-3f);
+  EXPECT_NEAR(turned(28), turned(32), 1e-3f);
+  EXPECT_LT(turned(34), 1e-6f);
+  EXPECT_THROW(rotate({0, 22, Vec3::Zero(), 0}, motion), Error);
+}
+
+TEST(SmoothEdit, TakesNoiseOutWithoutDelay) {
+  Motion noisy = walker().walk;
+  Rng rng(1);
+  for (Pose& pose : noisy.poses) {
+    pose.root += 0.01f * Vec3(rng.normal(), rng.normal(), rng.normal());
+    for (Mat3& R : pose.local)
+      R = R * rotation_from_axis_angle(0.05f * Vec3(rng.normal(), rng.normal(), rng.normal()));
+  }
+  Motion smoothed = noisy;
+  smooth({0.3f}, smoothed);
+  const EditCost cost = edit_cost(noisy, smoothed, walker().body.rest);
+  EXPECT_LT(cost.acceleration_after, 0.2 * cost.acceleration_before);
+  EXPECT_GT(cost.mean_displacement_m, 0.005);
+  EXPECT_LT(mean_joint_error(joints(smoothed), joints(walker().walk)),
+            0.6 * mean_joint_error(joints(noisy), joints(walker().walk)));
+}
+
+TEST(SmoothEdit, LeavesEvenMotionAndHalfTurnsOfTheSign) {
+  Motion even;
+  for (int t = 0; t < 60; ++t) {
+    Pose pose;
+    pose.root = Vec3(0.02f * static_cast<float>(t), 1, 0);
+    pose.local[Pelvis] =
+        rotation_about_y(0.2f * static_cast<float>(t));  // twice about: quaternions change sign
+    even.poses.push_back(pose);
+  }
+  Motion smoothed = even;
+  smooth({1.0f}, smoothed);
+  EXPECT_LT(largest_difference(even, smoothed), 2e-3f);
+  smooth({0.0f}, smoothed);
+  EXPECT_THROW(smooth({1.5f}, smoothed), Error);
+}
+
+TEST(HeadingEdit, TurnsAboutTheFirstPelvis) {
+  Motion turned = walker().walk;
+  turn({90}, turned);
+  const Vec3 way = walker().walk.poses.back().root - walker().walk.poses.front().root;
+  const Vec3 after = turned.poses.back().root - turned.poses.front().root;
+  EXPECT_EQ(turned.poses.front().root, walker().walk.poses.front().root);
+  EXPECT_NEAR(after.x(), way.z(), 1e-4f);
+  EXPECT_NEAR(after.y(), way.y(), 1e-4f);
+  const auto bone = [](const Motion& m) {
+    const Joints j = forward_kinematics(walker().body.rest, m.poses[10]).joints;
+    return Vec3((j.row(Head) - j.row(LeftWrist)).transpose());
+  };
+  EXPECT_LT((rotation_about_y(kPi / 2) * bone(walker().walk) - bone(turned)).norm(), 1e-4f);
+}
+
+TEST(PoseEdits, TrimAndSkipByOriginalNumbers) {
+  Motion motion = walker().walk;
+  for (size_t t = 0; t < motion.poses.size(); ++t) motion.flags.push_back(t == 11);
+  PoseEdits edits;
+  edits.trim = Trim{10, 14};
+  edits.skip = {0, 12, 14, 100000};
+  EXPECT_EQ(kept_frames(edits, 150), (std::vector<int>{10, 11, 13}));
+  const Motion left = apply(edits, motion, walker().body);
+  ASSERT_EQ(left.poses.size(), 3u);
+  EXPECT_EQ(left.flags, (std::vector<uint8_t>{0, 1, 0}));
+  EXPECT_EQ(left.poses[2].root, motion.poses[13].root);
+  EXPECT_EQ(apply_poses(edits, motion, walker().body).poses.size(), motion.poses.size());
+  edits.trim = Trim{14, 10};
+  EXPECT_THROW(kept_frames(edits, 150), Error);
+}
+
+TEST(PoseEdits, NoneLeaveTheMotion) {
+  const Motion same = apply(PoseEdits{}, walker().walk, walker().body);
+  EXPECT_EQ(same.poses.size(), walker().walk.poses.size());
+  EXPECT_EQ(largest_difference(same, walker().walk), 0);
+  EXPECT_TRUE(PoseEdits{}.empty());
+}
+
+TEST(PoseEdits, FloorMovesTheBodyUp) {
+  PoseEdits edits;
+  edits.floor = FloorEdit{0.07f};
+  const Motion up = apply(edits, walker().walk, walker().body.rest);
+  EXPECT_NEAR(up.poses[9].root.y() - walker().walk.poses[9].root.y(), 0.07f, 1e-6f);
+}
+
+TEST(PinEdit, StopsSlidingFeetAndTheKneesDoNotSnap) {
+  const Motion sliding = sliding_walk(), held = pinned(sliding);
+  RecordProperty("skate_truth", std::to_string(skate(walker().walk)));
+  RecordProperty("skate_before", std::to_string(skate(sliding)));
+  RecordProperty("skate_after", std::to_string(skate(held)));
+  RecordProperty("turn_before",
+                 std::to_string(fastest_turn(sliding, {LeftHip, RightHip, LeftKnee, RightKnee})));
+  RecordProperty("turn_after", std::to_string(fastest_turn(held, {LeftHip, RightHip, LeftKnee, RightKnee})));
+  EXPECT_GT(skate(sliding), 5 * skate(held));
+  EXPECT_LT(fastest_turn(held, {LeftHip, RightHip, LeftKnee, RightKnee}),
+            1.3f * fastest_turn(sliding, {LeftHip, RightHip, LeftKnee, RightKnee}));
+}
+
+TEST(PinEdit, WorksWithoutSoles) {
+  PoseEdits edits;
+  edits.pin = PinEdit{};
+  const Motion sliding = sliding_walk();
+  EXPECT_GT(skate(sliding), 5 * skate(apply(edits, sliding, walker().body.rest)));
+}
+
+TEST(PinEdit, HardlyChangesFeetThatStand) {
+  const EditCost cost = edit_cost(walker().walk, pinned(walker().walk), walker().body.rest);
+  EXPECT_LT(cost.mean_displacement_m, 0.004);
+  EXPECT_LT(cost.max_displacement_m, 0.03);
+}
+
+TEST(PinEdit, PutsSolesOnTheFloor) {
+  Motion sunk = walker().walk;
+  for (Pose& pose : sunk.poses) pose.root.y() -= 0.03f;
+  const auto deepest = [](const Motion& motion) {
+    float low = 0;
+    for (const Pose& pose : motion.poses) {
+      const auto posed = forward_kinematics(walker().body.rest, pose);
+      low = std::min(low, posed.joints(Pelvis, 1) + walker().body.soles.lowest(posed));
+    }
+    return low;
+  };
+  EXPECT_LT(deepest(sunk), -0.02f);
+  EXPECT_GT(deepest(pinned(sunk)), -0.004f);
+}
+
+TEST(PinEdit, OfOneFootLeavesTheOther) {
+  PoseEdits edits;
+  edits.pin = PinEdit{};
+  edits.pin->right = false;
+  const Motion sliding = sliding_walk(), held = apply(edits, sliding, walker().body);
+  const auto before = joints(sliding), after = joints(held);
+  float left = 0, right = 0;
+  for (size_t t = 0; t < before.size(); ++t) {
+    left = std::max(left, (before[t].row(LeftFoot) - after[t].row(LeftFoot)).norm());
+    right = std::max(right, (before[t].row(RightFoot) - after[t].row(RightFoot)).norm());
+  }
+  EXPECT_GT(left, 0.03f);
+  EXPECT_LT(right, 0.005f);
+}
+
+TEST(PinEdit, WorksAtHighRates) {
+  Motion motion = builtin_motion("walk", walker().body.rest, 120);
+  for (size_t t = 0; t < motion.poses.size(); ++t)
+    motion.poses[t].root.x() += 0.3f * static_cast<float>(t) / 120;
+  EXPECT_GT(skate(motion), 5 * skate(pinned(motion)));
+}
+
+TEST(PoseEdits, AreTheSameEveryTimeAndQuick) {
+  const Motion short_one = sliding_walk(Vec3(0.1f, 0, 0));
+  Motion motion;
+  while (motion.poses.size() < 10000)
+    motion.poses.insert(motion.poses.end(), short_one.poses.begin(), short_one.poses.end());
+  motion.poses.resize(10000);
+  PoseEdits edits;
+  edits.rotate = {{50, Head, Vec3(0.2f, 0, 0), 10}};
+  edits.smooth = SmoothEdit{0.5f};
+  edits.floor = FloorEdit{0.01f};
+  edits.pin = PinEdit{};
+  edits.heading = HeadingEdit{30};
+  const auto start = std::chrono::steady_clock::now();
+  const Motion once = apply(edits, motion, walker().body);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  RecordProperty("seconds", std::to_string(seconds));
+  EXPECT_LT(seconds, 3);  // 1 wanted of an optimised build on a machine at rest
+  EXPECT_EQ(largest_difference(once, apply(edits, motion, walker().body)), 0);
+}
+
+}  // namespace
+}  // namespace understudy
