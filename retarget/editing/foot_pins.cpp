@@ -138,10 +138,13 @@ void hold_stance(Foot& foot, int begin, int end, float step_m) {
     foot.offset[now] = offset;
     mean += offset / static_cast<float>(end - begin);
   }
+  // Up or down as a whole: heel and toes keep their way of coming and leaving.
+  const float clearance = quantile({foot.clearance.begin() + begin, foot.clearance.begin() + end}, 0.5f);
+  const float lift = std::clamp(-clearance, -step_m, step_m);
   for (int t = begin; t < end; ++t) {
     const auto now = static_cast<size_t>(t);
     foot.offset[now] -= mean;
-    foot.offset[now].y() = std::clamp(-foot.clearance[now], -step_m, step_m);
+    foot.offset[now].y() = lift;
   }
 }
 

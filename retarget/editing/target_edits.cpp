@@ -279,7 +279,7 @@ WeightRows stroke(const RowMatrix& weights, const PaintSurface& surface, const V
   US_CHECK(surface.neighbours.vertices() == weights.rows(), "neighbours of ", surface.neighbours.vertices(),
            " vertices do not fit ", weights.rows());
   check(brush, hit);
-  constexpr float kDetour = 1.6f;  // paths along edges are longer than straight ones
+  constexpr float kDetour = 1.3f;  // paths along edges are longer than straight ones
   RowCollector rows;
   if (weights.rows() == 0) return rows.finish();
   for (const auto& [v, path] : hanging_together(surface, hit, brush.radius_m, kDetour * brush.radius_m)) {
