@@ -105,7 +105,7 @@ void apply(const Theme& theme, float scale, ImGuiStyle& style) {
 
 ImU32 color(const ImVec4& color, float opacity) {
   ImVec4 c = color;
-  c.w *= opacity;
+  c.w *= opacity * ImGui::GetStyle().Alpha;
   return ImGui::ColorConvertFloat4ToU32(c);
 }
 

@@ -29,7 +29,7 @@ const Theme& theme(ThemeKind kind);
 /// Measures and colours for ImGui. `scale` is 1 to 3.
 void apply(const Theme& theme, float scale, ImGuiStyle& style);
 
-/// A colour for draw lists, its opacity multiplied.
+/// A colour for draw lists, its opacity multiplied; fainter where things are greyed out.
 ImU32 color(const ImVec4& color, float opacity = 1);
 /// Between two colours; 0 is `a`.
 ImVec4 mix(const ImVec4& a, const ImVec4& b, float t);

@@ -1,0 +1,125 @@
+#include "ui/panels/panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+namespace understudy::ui {
+namespace {
+
+template <class... Values>
+std::string printed(const char* format, Values... values) {
+  char text[96];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+bool starts(const std::string& text, const char* with) {
+  return text.rfind(with, 0) == 0;
+}
+
+}  // namespace
+
+std::string argument(double value) {
+  std::string text = printed("%.6g", value);
+  std::replace(text.begin(), text.end(), ',', '.');
+  return text;
+}
+
+std::string on_off(bool on) {
+  return on ? "on" : "off";
+}
+
+std::string joint_label(int joint) {
+  if (joint < 0 || joint >= kJointCount) return "all joints";
+  std::string label = kJointNames[static_cast<size_t>(joint)];
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+std::string joint_name(int joint) {
+  return joint < 0 || joint >= kJointCount ? "all" : kJointNames[static_cast<size_t>(joint)];
+}
+
+std::string clock(double seconds) {
+  const int64_t tenths = std::llround(std::max(seconds, 0.0) * 10);
+  return printed("%d:%02d.%d", static_cast<int>(tenths / 600), static_cast<int>(tenths / 10 % 60),
+                 static_cast<int>(tenths % 10));
+}
+
+std::string time_left(double seconds) {
+  if (!(seconds >= 0)) return "";
+  if (seconds < 90) return printed("about %d s left", static_cast<int>(std::ceil(std::max(seconds, 1.0))));
+  if (seconds < 5400) return printed("about %d min left", static_cast<int>(std::lround(seconds / 60)));
+  return printed("about %.1f h left", seconds / 3600);
+}
+
+std::string file_name(const std::string& path) {
+  const size_t last = path.find_last_not_of('/');
+  if (last == std::string::npos) return path;
+  const size_t slash = path.find_last_of('/', last);
+  const size_t first = slash == std::string::npos ? 0 : slash + 1;
+  return path.substr(first, last - first + 1);
+}
+
+std::string grouped(int64_t count) {
+  std::string digits = std::to_string(count);
+  for (int64_t at = static_cast<int64_t>(digits.size()) - 3; at > (count < 0 ? 1 : 0); at -= 3)
+    digits.insert(static_cast<size_t>(at), ",");
+  return digits;
+}
+
+std::string figure(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  const int digits = size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : size >= 0.01 ? 3 : 4;
+  return printed("%.*f", digits, value) + (unit.empty() ? "" : " " + unit);
+}
+
+const app::Take* selected_take(const app::Session& session) {
+  const size_t k = static_cast<size_t>(session.selected_take);
+  return k < session.document.takes.size() ? &session.document.takes[k] : nullptr;
+}
+
+const app::TakeState* selected_state(const app::Session& session) {
+  const size_t k = static_cast<size_t>(session.selected_take);
+  return k < session.takes.size() ? &session.takes[k] : nullptr;
+}
+
+bool has_document(const app::Session& session) {
+  return !session.document.source.path.empty() || !session.document.takes.empty();
+}
+
+int known_frames(const app::Session& session) {
+  const int made = std::max(app::frame_count(session), static_cast<int>(session.source.frames.size()));
+  const int64_t told = session.source.count.value_or(0);
+  return std::max(made, static_cast<int>(std::min<int64_t>(told, 100'000'000)));
+}
+
+double frames_per_second(const app::Session& session) {
+  return session.source.fps > 0 ? session.source.fps : 30;
+}
+
+bool possible(const app::Session& session, const std::string& command) {
+  const bool source = !session.document.source.path.empty();
+  const bool take = selected_take(session) != nullptr;
+  const bool frames = app::frame_count(session) > 0;
+  if (command == "edit.undo") return session.history.can_undo();
+  if (command == "edit.redo") return session.history.can_redo();
+  if (command == "work.pause") return session.working && !session.paused;
+  if (command == "work.resume") return session.paused;
+  if (command == "work.restart") return source && take;
+  if (command == "source.open" || command == "source.motion" || command == "target.add") return true;
+  if (command == "tool" || command == "select.joint") return has_document(session);
+  if (command == "document.save" || command == "document.save_as") return has_document(session);
+  for (const char* of_source : {"source.", "edit.crop", "edit.floor_removal", "edit.cluster"})
+    if (starts(command, of_source)) return source;
+  for (const char* of_frames : {"playback.", "edit.drag", "edit.swap", "edit.skeleton_clear", "video."})
+    if (starts(command, of_frames)) return frames;
+  for (const char* of_take : {"target.", "take.", "method.", "compare.", "edit.", "export."})
+    if (starts(command, of_take)) return take;
+  return starts(command, "view.") || starts(command, "picture.") ? has_document(session) : true;
+}
+
+}  // namespace understudy::ui

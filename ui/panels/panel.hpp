@@ -1,0 +1,56 @@
+// What every panel is handed besides the session, and the words it writes.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/session/commands.hpp"
+#include "app/session/session.hpp"
+#include "ui/gui/ui.hpp"
+
+namespace understudy::ui {
+
+/// A panel reads the session, draws, and asks: what it pushes runs after the frame.
+struct PanelContext {
+  Ui& ui;
+  app::CommandQueue& queue;
+  const app::Commands& commands;  ///< labels and shortcuts
+  void ask(const std::string& name, app::Arguments arguments = {}) {
+    queue.emplace_back(name, std::move(arguments));
+  }
+};
+
+/// A value as an argument of a command: "0.25", "1e-05", never "0,25".
+std::string argument(double value);
+std::string on_off(bool on);
+
+/// "left wrist" for 20; "all joints" below 0.
+std::string joint_label(int joint);
+/// As commands name it: "left_wrist"; "all" below 0.
+std::string joint_name(int joint);
+
+/// "1:02.5" from seconds.
+std::string clock(double seconds);
+/// "about 40 s left", "about 3 min left"; empty where it is not known.
+std::string time_left(double seconds);
+/// The last part of a path, also of one that ends in a slash.
+std::string file_name(const std::string& path);
+/// "12,345".
+std::string grouped(int64_t count);
+/// A figure of a report or a series, with few digits and its unit: "12.4 mm".
+std::string figure(double value, const std::string& unit = "");
+
+/// The take that panels are about; null when there is none.
+const app::Take* selected_take(const app::Session& session);
+const app::TakeState* selected_state(const app::Session& session);
+/// Whether anything is open.
+bool has_document(const app::Session& session);
+/// The frames that the timeline is as long as: those known to come, or those made.
+int known_frames(const app::Session& session);
+double frames_per_second(const app::Session& session);
+
+/// Whether a command makes sense now; menus and buttons are grey where it does not.
+bool possible(const app::Session& session, const std::string& command);
+
+}  // namespace understudy::ui

@@ -1,0 +1,47 @@
+// Rows of panels: what is shown comes from the session, what the user wants instead comes back.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ui/widgets/controls.hpp"
+
+namespace understudy::ui {
+
+// All return what the user chose, nothing while it stays as it is.
+
+struct RowText {
+  std::string name;         ///< id and mark
+  std::string label;        ///< grey, on the left
+  std::string explanation;  ///< when the pointer rests on the label
+};
+
+std::optional<bool> toggle_row(Ui& ui, const RowText& text, bool on);
+/// A few choices beside each other, or a list where there are many.
+std::optional<int> choice_row(Ui& ui, const RowText& text, const std::vector<std::string>& choices,
+                              int chosen);
+/// Changes with every movement of the mouse: for what follows at once.
+std::optional<float> number_row(Ui& ui, const RowText& text, float value, const NumberOptions& options);
+/// Changes on Enter or when the field is left: for what takes work.
+std::optional<std::string> text_row(Ui& ui, const RowText& text, const std::string& value,
+                                    const std::string& hint = {});
+/// As text_row; what is no number is forgotten.
+std::optional<double> typed_number_row(Ui& ui, const RowText& text, double value, int decimals = 2);
+
+/// The field alone, over the width that is left.
+std::optional<std::string> committed_text(Ui& ui, const std::string& name, const std::string& value,
+                                          const std::string& hint = {});
+/// A number at the beginning of the text, units may follow; none where there is none.
+std::optional<double> parse_number(const std::string& text);
+
+/// A button over a share of the width that is left, for several beside each other: `share` of 1 / count.
+struct ButtonRow {
+  explicit ButtonRow(int count);
+  bool add(Ui& ui, const std::string& name, const std::string& label, ButtonOptions options = {});
+
+ private:
+  int left_;
+};
+
+}  // namespace understudy::ui

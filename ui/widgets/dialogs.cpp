@@ -1,0 +1,148 @@
+#include "ui/widgets/dialogs.hpp"
+
+#include <algorithm>
+
+#include "ui/gui/gui.hpp"
+#include "ui/widgets/controls.hpp"
+
+namespace understudy::ui {
+namespace {
+
+Icon icon_of(NoticeKind kind) {
+  return kind == NoticeKind::Good ? Icon::Check : kind == NoticeKind::Warning ? Icon::Warning : Icon::Info;
+}
+
+ImVec4 color_of(const Theme& t, NoticeKind kind) {
+  return kind == NoticeKind::Good ? t.good : kind == NoticeKind::Warning ? t.warning : t.series[0];
+}
+
+bool enter_pressed() {
+  return key_pressed(render::Key::Enter, false) || key_pressed(render::Key::KeypadEnter, false);
+}
+
+/// A row of buttons, right-aligned, the main one last.
+struct Choice {
+  Answer answer;
+  std::string name, label;
+  ButtonLook look;
+};
+
+Answer draw_choices(Ui& ui, const std::vector<Choice>& choices) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  float all = -gap;
+  const auto width = [&ui](const Choice& choice) {
+    return std::max(ui.px(88), ImGui::CalcTextSize(choice.label.c_str()).x + ui.px(28));
+  };
+  for (const Choice& choice : choices) all += width(choice) + gap;
+  ImGui::Dummy({0, ui.px(4)});
+  ImGui::SetCursorPosX(
+      std::max(ImGui::GetCursorPosX(), ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - all));
+  Answer answer = Answer::None;
+  for (size_t i = 0; i < choices.size(); ++i) {
+    if (i > 0) ImGui::SameLine();
+    ButtonOptions options;
+    options.look = choices[i].look, options.width = width(choices[i]);
+    if (button(ui, choices[i].name, choices[i].label, options)) answer = choices[i].answer;
+  }
+  return answer;
+}
+
+}  // namespace
+
+void Notices::add(const std::string& sentence, NoticeKind kind, float seconds) {
+  notices_.push_back({sentence, kind, seconds});
+  if (notices_.size() > 5) notices_.erase(notices_.begin());
+}
+
+void Notices::draw(Ui& ui) {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  float bottom = display.y - ui.px(18);
+  for (size_t k = notices_.size(); k-- > 0;) {
+    Notice& notice = notices_[k];
+    const std::string name = "notice." + std::to_string(notices_.size() - 1 - k);
+    ImGui::SetNextWindowPos({display.x / 2, bottom}, ImGuiCond_Always, {0.5f, 1});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {std::min(ui.px(560), display.x - ui.px(16)), FLT_MAX});
+    const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
+    ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::clamp(notice.seconds_left / 0.3f, 0.05f, 1.f));
+    ImGui::Begin(("##" + name).c_str(), nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoSavedSettings);
+    icon_label(ui, icon_of(notice.kind), color_of(ui.theme(), notice.kind));
+    ImGui::SameLine();
+    ImGui::PushTextWrapPos(std::min(ui.px(540), display.x - ui.px(40)));
+    ImGui::TextUnformatted(notice.sentence.c_str());
+    ImGui::PopTextWrapPos();
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    ui.mark(name, {at, {at.x + size.x, at.y + size.y}});
+    const bool hovered = ImGui::IsWindowHovered();
+    if (!hovered) notice.seconds_left -= ImGui::GetIO().DeltaTime;
+    if (hovered && ImGui::IsMouseClicked(0)) notice.seconds_left = 0;
+    bottom -= size.y + ui.px(8);
+    ImGui::End();
+    ImGui::PopStyleVar();
+  }
+  notices_.erase(
+      std::remove_if(notices_.begin(), notices_.end(), [](const Notice& n) { return n.seconds_left <= 0; }),
+      notices_.end());
+}
+
+bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width) {
+  if (!ImGui::IsPopupOpen(name.c_str())) ImGui::OpenPopup(name.c_str());
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(ui.px(width), display.x - ui.px(16)), 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(18), ui.px(16)});
+  const bool open = ImGui::BeginPopupModal(name.c_str(), nullptr,
+                                           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+                                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar();
+  if (!open) return false;
+  const FontScope strong(ui.fonts().strong);
+  ImGui::TextUnformatted(title.c_str());
+  return true;
+}
+
+void end_dialog() {
+  ImGui::EndPopup();
+}
+
+Answer ask(Ui& ui, const std::string& name, const Question& question) {
+  if (!begin_dialog(ui, name, question.title, 420)) return Answer::None;
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(question.sentence.c_str());
+  ImGui::PopTextWrapPos();
+  std::vector<Choice> choices;
+  if (!question.cancel.empty())
+    choices.push_back({Answer::Cancel, name + ".cancel", question.cancel, ButtonLook::Plain});
+  if (!question.no.empty()) choices.push_back({Answer::No, name + ".no", question.no, ButtonLook::Plain});
+  choices.push_back(
+      {Answer::Yes, name + ".yes", question.yes, question.dangerous ? ButtonLook::Danger : ButtonLook::Main});
+  Answer answer = draw_choices(ui, choices);
+  if (answer == Answer::None && !ImGui::IsWindowAppearing()) {
+    if (!question.dangerous && enter_pressed()) answer = Answer::Yes;
+    if (key_pressed(render::Key::Escape, false)) answer = Answer::Cancel;
+  }
+  if (answer != Answer::None) ImGui::CloseCurrentPopup();
+  end_dialog();
+  return answer;
+}
+
+bool show_error(Ui& ui, const std::string& name, const std::string& sentence, const std::string& details) {
+  if (!begin_dialog(ui, name, "That did not work", 480)) return false;
+  icon_label(ui, Icon::Warning, ui.theme().danger);
+  ImGui::SameLine();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(sentence.c_str());
+  ImGui::PopTextWrapPos();
+  const Answer answer = draw_choices(ui, {{Answer::No, name + ".copy", "Copy details", ButtonLook::Plain},
+                                          {Answer::Yes, name + ".close", "Close", ButtonLook::Main}});
+  if (answer == Answer::No) ImGui::SetClipboardText((sentence + "\n" + details).c_str());
+  const bool closed = answer == Answer::Yes || (!ImGui::IsWindowAppearing() &&
+                                                (enter_pressed() || key_pressed(render::Key::Escape, false)));
+  if (closed) ImGui::CloseCurrentPopup();
+  end_dialog();
+  return closed;
+}
+
+}  // namespace understudy::ui

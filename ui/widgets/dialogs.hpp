@@ -1,0 +1,55 @@
+// Notices that pass, questions that wait, and errors.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ui/gui/ui.hpp"
+
+namespace understudy::ui {
+
+enum class NoticeKind { Info, Good, Warning };
+
+/// Sentences that appear at the bottom for some seconds: "Saved walk.understudy". Plain data; the application
+/// keeps one and draws it last.
+class Notices {
+ public:
+  void add(const std::string& sentence, NoticeKind kind = NoticeKind::Info, float seconds = 4);
+  /// Call once a frame, outside any window. A notice stays while the pointer is on it; a click removes it.
+  /// The newest is marked notice.0.
+  void draw(Ui& ui);
+  bool empty() const { return notices_.empty(); }
+
+ private:
+  struct Notice {
+    std::string sentence;
+    NoticeKind kind;
+    float seconds_left;
+  };
+  std::vector<Notice> notices_;
+};
+
+enum class Answer { None, Yes, No, Cancel };
+
+struct Question {
+  std::string title;
+  std::string sentence;
+  std::string yes = "OK";
+  std::string no;                 ///< a second way on ("Don't save"); none when empty
+  std::string cancel = "Cancel";  ///< none when empty
+  bool dangerous = false;         ///< yes destroys something: it is red, and Enter does not choose it
+};
+/// Call every frame from when the question is to be asked until it answers; outside any window. Enter is yes,
+/// Escape is cancel. Buttons are marked NAME.yes, NAME.no, NAME.cancel.
+Answer ask(Ui& ui, const std::string& name, const Question& question);
+
+/// An error as one sentence, with "Copy details". Call every frame until it returns true: closed. Marked
+/// NAME.close and NAME.copy.
+bool show_error(Ui& ui, const std::string& name, const std::string& sentence, const std::string& details);
+
+/// Begins a dialog in the middle of the display, which greys out everything else. When true, end it with
+/// end_dialog(). `width` at scale 1; cut to the display.
+bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width);
+void end_dialog();
+
+}  // namespace understudy::ui

@@ -1,0 +1,148 @@
+#include "ui/widgets/lists.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "ui/gui/gui.hpp"
+#include "ui/widgets/controls.hpp"
+
+namespace understudy::ui {
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+struct ListState {
+  std::string search;
+  int cursor = 0;  ///< among the items that match
+};
+
+std::vector<int> matching(const std::vector<ListItem>& items, const std::string& search) {
+  std::vector<int> found;
+  for (int i = 0; i < static_cast<int>(items.size()); ++i)
+    if (matches(items[static_cast<size_t>(i)].text + " " + items[static_cast<size_t>(i)].note, search))
+      found.push_back(i);
+  return found;
+}
+
+/// One line of the list; true when clicked.
+bool draw_item(Ui& ui, const std::string& name, const ListItem& item, bool selected, bool under_cursor) {
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float note = item.note.empty() ? 0 : ImGui::CalcTextSize(item.note.c_str()).x + ui.px(12);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float height = ImGui::GetTextLineHeight() + ui.px(8);
+  const bool clicked = ImGui::Selectable(("##" + name).c_str(), selected, 0, {0, height});
+  ui.mark(name);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (under_cursor)
+    list.AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), color(ui.theme().accent), ui.px(3));
+  list.AddText({at.x + ui.px(4), at.y + ui.px(4)}, color(ui.theme().text),
+               cut_to(item.text, width - note - ui.px(8)).c_str());
+  if (note > 0)
+    list.AddText({at.x + width - note + ui.px(8), at.y + ui.px(4)}, color(ui.theme().text_dim),
+                 item.note.c_str());
+  return clicked;
+}
+
+}  // namespace
+
+bool matches(const std::string& text, const std::string& search) {
+  const std::string all = lower(text);
+  std::istringstream words(lower(search));
+  for (std::string word; words >> word;)
+    if (all.find(word) == std::string::npos) return false;
+  return true;
+}
+
+int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>& items, int selected,
+                    float height) {
+  auto& state = ui.state<ListState>(ImGui::GetID(name.c_str()));
+  if (text_field(ui, name + ".search", state.search, "Search")) state.cursor = 0;
+  const bool typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
+  const std::vector<int> shown = matching(items, state.search);
+  const int last = static_cast<int>(shown.size()) - 1;
+  if (typing && key_pressed(render::Key::Down)) state.cursor = std::min(state.cursor + 1, last);
+  if (typing && key_pressed(render::Key::Up)) state.cursor = state.cursor - 1;
+  state.cursor = std::clamp(state.cursor, 0, std::max(0, last));
+  int chosen = typing && last >= 0 && key_pressed(render::Key::Enter, false)
+                   ? shown[static_cast<size_t>(state.cursor)]
+                   : -1;
+  if (ImGui::BeginChild((name + ".items").c_str(), {0, height})) {
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(shown.size()),
+                  ImGui::GetTextLineHeight() + ui.px(8) + ImGui::GetStyle().ItemSpacing.y);
+    while (clipper.Step())
+      for (int k = clipper.DisplayStart; k < clipper.DisplayEnd; ++k) {
+        const int i = shown[static_cast<size_t>(k)];
+        if (draw_item(ui, name + "." + std::to_string(i), items[static_cast<size_t>(i)], i == selected,
+                      typing && k == state.cursor))
+          chosen = i;
+      }
+    if (shown.empty()) hint(ui, "Nothing matches.");
+  }
+  ImGui::EndChild();
+  return chosen;
+}
+
+Table::Table(Ui& ui, const std::string& name, std::vector<Column> columns, float height)
+    : ui_(ui), name_(name), columns_(std::move(columns)) {
+  ImGuiTableFlags flags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable |
+                          ImGuiTableFlags_PadOuterX | ImGuiTableFlags_NoSavedSettings;
+  if (height > 0) flags |= ImGuiTableFlags_ScrollY;
+  open_ = ImGui::BeginTable(name.c_str(), static_cast<int>(columns_.size()), flags, {0, height});
+  if (!open_) return;
+  if (height > 0) ImGui::TableSetupScrollFreeze(0, 1);
+  for (const Column& column : columns_)
+    ImGui::TableSetupColumn(
+        column.title.c_str(),
+        column.width > 0 ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch,
+        column.width > 0 ? ui.px(column.width) : 1);
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  const FontScope small(ui.fonts().small);
+  const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
+  for (size_t i = 0; i < columns_.size(); ++i) {
+    ImGui::TableSetColumnIndex(static_cast<int>(i));
+    const std::string& title = columns_[i].title;
+    const float left = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(title.c_str()).x;
+    if (columns_[i].number && left > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
+    text_cut(ui, title);
+  }
+}
+
+Table::~Table() {
+  if (open_) ImGui::EndTable();
+}
+
+bool Table::row(bool selected, bool selectable) {
+  ImGui::TableNextRow();
+  ++row_, column_ = 0;
+  if (!selectable) return false;
+  ImGui::TableSetColumnIndex(0);
+  const bool clicked =
+      ImGui::Selectable(("##row" + std::to_string(row_)).c_str(), selected,
+                        ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap);
+  ui_.mark(name_ + "." + std::to_string(row_));
+  ImGui::SameLine(0, 0);
+  return clicked;
+}
+
+void Table::cell(const std::string& text) {
+  if (column_ != ImGui::TableGetColumnIndex()) ImGui::TableSetColumnIndex(column_);
+  const auto at = static_cast<size_t>(std::min(column_++, static_cast<int>(columns_.size()) - 1));
+  const float left = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+  if (columns_[at].number && left > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
+  text_cut(ui_, text);
+}
+
+void Table::cell(double value, const char* format) {
+  char words[64];
+  std::snprintf(words, sizeof words, format, value);
+  cell(std::isfinite(value) ? words : "\u2013");
+}
+
+}  // namespace understudy::ui

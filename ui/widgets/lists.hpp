@@ -1,0 +1,51 @@
+// Lists to search and tables to read.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ui/gui/ui.hpp"
+
+namespace understudy::ui {
+
+struct ListItem {
+  std::string text;
+  std::string note;  ///< grey, on the right
+};
+/// A list with a line to search in above it. Returns the item clicked or chosen by arrows and Enter, -1 when
+/// none was. `height` pixels, 0: what is left. The line is marked NAME.search, item i NAME.i.
+int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>& items, int selected,
+                    float height = 0);
+/// Whether every word of `search` occurs in the text, in any case.
+bool matches(const std::string& text, const std::string& search);
+
+struct Column {
+  std::string title;
+  float width = 0;      ///< at scale 1; 0: shares what is left
+  bool number = false;  ///< its cells stand to the right
+};
+/// A table with a header that stays. Draw rows only when it says it is open.
+class Table {
+ public:
+  /// `height` pixels; 0: as its rows want.
+  Table(Ui& ui, const std::string& name, std::vector<Column> columns, float height = 0);
+  ~Table();
+  Table(const Table&) = delete;
+  Table& operator=(const Table&) = delete;
+  bool open() const { return open_; }
+
+  /// Begins a row, to be clicked when `selectable`; true when it was. Marked NAME.ROW.
+  bool row(bool selected = false, bool selectable = true);
+  /// The next cell of the row. Text is cut to fit; numbers stand to the right.
+  void cell(const std::string& text);
+  void cell(double value, const char* format = "%.1f");
+
+ private:
+  Ui& ui_;
+  std::string name_;
+  std::vector<Column> columns_;
+  int row_ = -1, column_ = 0;
+  bool open_;
+};
+
+}  // namespace understudy::ui
