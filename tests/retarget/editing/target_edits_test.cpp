@@ -34,11 +34,13 @@ void expect_weights(const RowMatrix& w) {
   EXPECT_LT((w.rowwise().sum().array() - 1).abs().maxCoeff(), 1e-5f);
 }
 
-/// A place on the inside of the left thigh, above the knee.
+/// A place on the inside of the left thigh, 10 cm below where the legs part.
 Vec3 inner_thigh() {
-  const Joints& j = person().body.joints;
-  const Vec3 middle = 0.75f * j.row(LeftHip).transpose() + 0.25f * j.row(LeftKnee).transpose();
-  return person().at(person().vertex(Vec3(0.01f, middle.y(), middle.z())));
+  const Points& p = person().mesh.vertices;
+  float crotch = 9;
+  for (Eigen::Index v = 0; v < p.rows(); ++v)
+    if (std::abs(p(v, 0)) < 1e-4f) crotch = std::min(crotch, p(v, 1));
+  return person().at(person().vertex(Vec3(0.01f, crotch - 0.1f, person().body.joints(LeftKnee, 2))));
 }
 
 TEST(JointMove, TakesTheMirrorJointAlong) {
@@ -111,10 +113,10 @@ TEST(Stroke, OnOneThighLeavesTheOther) {
   const Vec3 hit = inner_thigh();
   int near_other = 0;
   for (int v = 0; v < person().mesh.vertices.rows(); ++v)
-    near_other += person().mesh.vertices(v, 0) < -0.005f && (person().at(v) - hit).norm() < 0.12f;
+    near_other += person().mesh.vertices(v, 0) < -0.005f && (person().at(v) - hit).norm() < 0.09f;
   ASSERT_GT(near_other, 10) << "the other thigh must be in the brush's ball for this test to say anything";
   const WeightRows rows =
-      stroke(person().body.weights, person().surface, hit, {LeftKnee, 0.12f, 1, Brush::Mode::Add});
+      stroke(person().body.weights, person().surface, hit, {LeftKnee, 0.09f, 1, Brush::Mode::Add});
   ASSERT_GT(rows.vertex.size(), 20u);
   for (const int v : rows.vertex) EXPECT_GT(person().mesh.vertices(v, 0), -1e-6f);
 }
