@@ -24,13 +24,14 @@ Judge::Judge(double fps, const Truth* truth, const Mesh* target) : fps_(fps), tr
 void Judge::push(const JudgedFrame& frame) {
   US_CHECK(!truth_ || frames_ < truth_->frames, "the source has more frames than the truth's ",
            truth_->frames);
+  last_ = SurfaceFigures{};
   if (frame.joints) joints_.push_back(*frame.joints);
   if (frame.rotations) rotations_.push_back(*frame.rotations);
   if (frame.source_joints) source_joints_.push_back(*frame.source_joints);
   if (frame.raw_joints) raw_joints_.push_back(*frame.raw_joints);
   if (frame.vertices) push_surface(frame);
   if (frame.scan && frame.source_joints && frames_ % kSlowEvery == 0)
-    inside_.add(inside_share(*frame.scan, *frame.source_joints));
+    inside_.add(last_.inside = inside_share(*frame.scan, *frame.source_joints));
   ++frames_;
 }
 
@@ -38,12 +39,15 @@ void Judge::push_surface(const JudgedFrame& frame) {
   const Points& p = *frame.vertices;
   if (truth_ && !truth_->vertices.empty()) {
     const Points q = truth_->frame_vertices(frames_);
-    mpvd_.add(mean_vertex_error(p, q));
-    pa_mpvd_.add(aligned_vertex_error(p, q));
-    medl_.add(edge_length_error(p, q));
+    mpvd_.add(last_.mpvd_m = mean_vertex_error(p, q));
+    pa_mpvd_.add(last_.pa_mpvd_m = aligned_vertex_error(p, q));
+    medl_.add(last_.medl_mm = edge_length_error(p, q));
+    last_.medl_mm *= 1000;
   }
-  floor_.add(floor_penetration(p));
-  if (penetration_ && frames_ % kSlowEvery == 0) self_penetration_.add(penetration_->share(p));
+  floor_.add(last_.floor_mm = floor_penetration(p));
+  last_.floor_mm *= 1000;
+  if (penetration_ && frames_ % kSlowEvery == 0)
+    self_penetration_.add(last_.self_penetration = penetration_->share(p));
 }
 
 Metrics Judge::metrics() const {

@@ -1,6 +1,7 @@
 // Turns what the method did with one sequence into the figures of report.json.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,12 @@ struct JudgedFrame {
   const Mesh* scan = nullptr;
 };
 
+/// Figures of one frame's surface; NaN where not told.
+struct SurfaceFigures {
+  double mpvd_m = std::nan(""), pa_mpvd_m = std::nan(""), medl_mm = std::nan(""), floor_mm = std::nan("");
+  double self_penetration = std::nan(""), inside = std::nan("");
+};
+
 /// Collects a sequence. Surface figures are summed as the frames come; the slow ones (self_penetration,
 /// inside) look at every tenth frame.
 class Judge {
@@ -34,6 +41,8 @@ class Judge {
   void push(const JudgedFrame& frame);
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
+  /// Of the frame pushed last.
+  const SurfaceFigures& last() const { return last_; }
 
  private:
   struct Mean {
@@ -51,6 +60,7 @@ class Judge {
   int64_t frames_ = 0;
   JointSequence joints_, source_joints_, raw_joints_;
   std::vector<Rotations> rotations_;
+  SurfaceFigures last_;
   Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_;
 };
 

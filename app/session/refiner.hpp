@@ -1,0 +1,46 @@
+// Applies the user's edits of a result and measures it, in the background: the newest request of a take wins.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/session/session.hpp"
+
+namespace understudy::app {
+
+struct RefineRequest {
+  int64_t take_id = 0;
+  Motion performed;
+  PoseEdits edits;
+  std::shared_ptr<const Target> target;
+  std::vector<KeptSource> source;
+  std::shared_ptr<const Truth> truth;  ///< may be null
+};
+
+struct Refined {
+  int64_t take_id = 0;
+  Motion shown;
+  std::vector<Joints> joints;
+  std::vector<Series> series;
+  EditCost cost;
+  std::string problem;  ///< why the edits cannot be applied; the motion is then unedited
+};
+
+/// The same on this thread.
+Refined refine(const RefineRequest& request);
+
+class Refiner {
+ public:
+  Refiner();
+  ~Refiner();
+  /// Never waits; replaces a request of the same take that has not begun.
+  void request(RefineRequest request);
+  std::vector<Refined> drain();
+  bool busy() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace understudy::app
