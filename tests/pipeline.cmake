@@ -7,3 +7,5 @@ us_test(pipeline_test LABELS fast SOURCES
   LIBS understudy_pipeline)
 us_test(writers_test LABELS fast SOURCES tests/retarget/pipeline/writers_test.cpp
   LIBS understudy_results understudy_pipeline understudy_npz ${TINYGLTF_LIBRARY})
+us_test(foot_lock_test LABELS fast SOURCES tests/retarget/pipeline/foot_lock_test.cpp
+  LIBS understudy_pipeline understudy_builtin understudy_metrics)

@@ -15,7 +15,7 @@ constexpr float kOnFloor = 0.08f;
 /// One foot over time.
 struct Foot {
   Leg leg;
-  float level = 0;                     // height of the ball where the foot stands
+  float level = 0, heel_level = 0;  // heights of ball and heel where the foot stands
   std::vector<Vec3> ankle, ball;       // [T] world
   std::vector<Vec3> heel;              // [T] world, of the sole
   std::vector<float> clearance;        // [T] of the lowest of the sole over the floor
@@ -65,7 +65,7 @@ Foot observed(const Motion& motion, const EditedBody& body, int side) {
   foot.leg = Leg::of(side);
   const Sole sole = sole_of(body, foot.leg);
   const size_t count = motion.poses.size();
-  std::vector<float> heights;
+  std::vector<float> heights, heel_heights;
   for (const Pose& pose : motion.poses) {
     const PosedSkeleton posed = forward_kinematics(body.rest, pose);
     const Mat3& R = posed.global[static_cast<size_t>(foot.leg.ankle)];
@@ -73,6 +73,7 @@ Foot observed(const Motion& motion, const EditedBody& body, int side) {
     foot.ball.push_back(posed.joints.row(foot.leg.ball).transpose());
     foot.heel.push_back(foot.ankle.back() + R * sole.heel);
     heights.push_back(foot.ball.back().y());
+    heel_heights.push_back(foot.heel.back().y());
     float lowest = 1e9f;
     for (const size_t i : sole.points) {
       const int j = body.soles.joint[i];
@@ -82,9 +83,10 @@ Foot observed(const Motion& motion, const EditedBody& body, int side) {
     foot.clearance.push_back(lowest);
   }
   foot.level = quantile(heights, 0.05f);
+  foot.heel_level = quantile(heel_heights, 0.05f);
   if (sole.points.empty())
     for (size_t t = 0; t < count; ++t)
-      foot.clearance[t] = std::min(foot.ball[t].y(), foot.heel[t].y()) - foot.level;
+      foot.clearance[t] = std::min(foot.ball[t].y() - foot.level, foot.heel[t].y() - foot.heel_level);
   foot.offset.assign(count, Vec3::Zero());
   foot.on_ball.assign(count, 0);
   foot.on_heel.assign(count, 0);
@@ -217,10 +219,8 @@ std::vector<float> pelvis_drops(const Motion& motion, const Joints& rest, const 
 }
 
 void pin(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
-  std::vector<float> heights;
-  for (const Vec3& heel : foot.heel) heights.push_back(heel.y());
   foot.on_ball = contacts(foot.ball, foot.level, edit, leg_m, fps);
-  foot.on_heel = contacts(foot.heel, quantile(heights, 0.05f), edit, leg_m, fps);
+  foot.on_heel = contacts(foot.heel, foot.heel_level, edit, leg_m, fps);
   find_offsets(foot, edit, leg_m, fps);
 }
 

@@ -10,6 +10,7 @@ namespace understudy {
 struct FootLockOptions {
   FootContactOptions contact;
   float release_s = 0.12f;  ///< time constant in which a correction fades once the foot has left
+  float creep_s = 3.0f;     ///< the same while it stands: what was wrong at the landing is made good slowly
   float max_offset_m =
       0.12f;  ///< a foot that would be held further from where it should be slips (leg 0.8 m)
 };
@@ -27,12 +28,14 @@ class FootLock {
   std::array<bool, 2> standing() const { return standing_; }
 
  private:
+  void start(const Joints& source);
+  std::array<bool, 4> contacts(const Joints& source, float dt);
+
   FootLockOptions options_;
-  std::array<ContactSwitch, 4> switches_;  // left ankle, right ankle, left ball, right ball
-  std::array<float, 4> levels_{};          // where each of them stands, of the source
-  std::array<Vec3, 2> offset_{Vec3::Zero(), Vec3::Zero()};
-  std::array<std::array<Vec3, 2>, 2> last_{};  // per side ankle (heel) and ball of the unlocked target
-  std::array<bool, 2> standing_{};
+  std::array<ContactSwitch, 4> switches_;  // of the source's left ankle, right ankle, left ball, right ball
+  std::array<float, 4> levels_{};          // heights at which each of them stands
+  std::array<Vec3, 2> offset_, last_heel_, last_ball_;  // a side: correction; pivots of the pose as it came
+  std::array<bool, 2> standing_{}, stood_on_ball_{};
   bool started_ = false;
 };
 
