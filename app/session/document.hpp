@@ -51,5 +51,15 @@ struct Document {
 
 /// Whether both would give the same result and are saved as the same text.
 bool same(const Document& a, const Document& b);
+/// The same of its parts: what has to be done again after a change.
+bool same(const SourceOptions& a, const SourceOptions& b);  ///< `quiet` is no matter
+bool same(const ScanEdits& a, const ScanEdits& b);
+bool same(const SkeletonEdit& a, const SkeletonEdit& b);
+bool same(const std::vector<SkeletonEdit>& a, const std::vector<SkeletonEdit>& b);
+bool same(const Take& a, const Take& b);
+bool same(const TargetOptions& a, const TargetOptions& b);
+bool same(const Method& a, const Method& b);
+bool same(const TargetEdits& a, const TargetEdits& b);
+bool same(const PoseEdits& a, const PoseEdits& b);
 
 }  // namespace understudy::app

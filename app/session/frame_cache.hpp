@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -19,20 +20,24 @@ struct ScanPicture {
   std::string problem;
 };
 
-/// A target in one frame.
+/// A target in one frame. Without vertices where it cannot be posed; the log says why.
 struct PosedPicture {
   Points vertices;  ///< [V, 3]
   Points normals;   ///< [V, 3]; empty for a cloud
   Points offsets;   ///< [V, 3] of the T-pose, metres; only where wanted
 };
 
+/// Thread-safe.
 class FrameCache {
  public:
-  explicit FrameCache(int64_t limit_mb = 512);
-  ~FrameCache();
+  using Open = std::function<std::unique_ptr<Source>(const SourceOptions&)>;
+  /// `open`: where scans come from, called on the cache's thread.
+  explicit FrameCache(int64_t limit_mb = 512, Open open = open_source);
+  ~FrameCache();  ///< waits for the one frame that is being made
 
   /// From now on scans are read from this source with these edits; a change forgets those made before.
   void set_source(const SourceOptions& source, const ScanEdits& edits);
+  /// The newest four frames are kept whatever their size: one drawn picture needs several.
   void set_limit(int64_t limit_mb);
 
   /// The scan of a frame, or null: it is being made now.
@@ -47,11 +52,11 @@ class FrameCache {
   /// Frames that will be wanted soon, made when there is nothing else to do.
   void prefetch_scan(int frame);
   void prefetch_posed(const TakeState& take, const Wanted& wanted);
-  /// Waits until all that was asked for is there; for pictures, video and tests.
+  /// Waits until all that was asked for (not only prefetched) is there; for pictures, video and tests.
   void wait() const;
 
   int64_t bytes() const;  ///< held now
-  bool busy() const;
+  bool busy() const;      ///< prefetching too
 
  private:
   struct Impl;

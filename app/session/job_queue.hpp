@@ -23,6 +23,7 @@ class JobControl {
 };
 struct Cancelled {};
 
+/// For one thread, the UI's; only `Work` runs elsewhere.
 class JobQueue {
  public:
   using Work = std::function<void(JobControl&)>;
@@ -32,6 +33,7 @@ class JobQueue {
   /// `done` runs on the UI thread in drain() when the work ended without throwing.
   int64_t start(const std::string& name, Work work, Done done = {});
   void cancel(int64_t id);
+  /// Whether any job runs, or waits for drain().
   bool running() const;
   /// On the UI thread: runs what is done and gives what failed (Error's sentence; a cancelled job fails
   /// silently).
