@@ -15,10 +15,10 @@ constexpr float kOnFloor = 0.08f;
 /// One foot over time.
 struct Foot {
   Leg leg;
-  float level = 0, heel_level = 0;  // heights of ball and heel where the foot stands
+  float level = 0, heel_level = 0;     // heights of ball and heel where the foot stands
   std::vector<Vec3> ankle, ball;       // [T] world
   std::vector<Vec3> heel;              // [T] world, of the sole
-  std::vector<float> clearance;        // [T] of the lowest of the sole over the floor
+  std::vector<float> clearance;        // [T] of the lowest of the sole over the floor; 0 without soles
   std::vector<char> on_ball, on_heel;  // [T] in contact
   std::vector<Vec3> offset;            // [T] added to the ankle
   bool stands(int t) const { return on_ball[static_cast<size_t>(t)] || on_heel[static_cast<size_t>(t)]; }
@@ -84,9 +84,7 @@ Foot observed(const Motion& motion, const EditedBody& body, int side) {
   }
   foot.level = quantile(heights, 0.05f);
   foot.heel_level = quantile(heel_heights, 0.05f);
-  if (sole.points.empty())
-    for (size_t t = 0; t < count; ++t)
-      foot.clearance[t] = std::min(foot.ball[t].y() - foot.level, foot.heel[t].y() - foot.heel_level);
+  if (sole.points.empty()) foot.clearance.assign(count, 0.0f);
   foot.offset.assign(count, Vec3::Zero());
   foot.on_ball.assign(count, 0);
   foot.on_heel.assign(count, 0);
@@ -128,7 +126,7 @@ Vec3 over_floor(const Vec3& v) {
 
 /// Corrections of one stance, frames begin .. end - 1: what keeps its pivot in place, from frame to frame, so
 /// that the foot may roll from heel to ball; on the whole the foot stays where it was on average.
-void hold_stance(Foot& foot, int begin, int end, float step_m) {
+void hold_stance(Foot& foot, int begin, int end, float max_lift) {
   Vec3 offset = Vec3::Zero(), mean = Vec3::Zero();
   for (int t = begin; t < end; ++t) {
     const auto now = static_cast<size_t>(t);
@@ -142,7 +140,7 @@ void hold_stance(Foot& foot, int begin, int end, float step_m) {
   }
   // Up or down as a whole: heel and toes keep their way of coming and leaving.
   const float clearance = quantile({foot.clearance.begin() + begin, foot.clearance.begin() + end}, 0.5f);
-  const float lift = std::clamp(-clearance, -step_m, step_m);
+  const float lift = std::clamp(-clearance, -max_lift, max_lift);
   for (int t = begin; t < end; ++t) {
     const auto now = static_cast<size_t>(t);
     foot.offset[now] -= mean;
@@ -177,7 +175,7 @@ void find_offsets(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
   };
   for (int begin = 0, end; begin < count; begin = end) {
     end = span_end(begin);
-    if (foot.stands(begin)) hold_stance(foot, begin, end, kOnFloor * leg_m);
+    if (foot.stands(begin)) hold_stance(foot, begin, end, edit.to_floor ? kOnFloor * leg_m : 0);
   }
   for (int begin = 0, end; begin < count; begin = end) {
     end = span_end(begin);
@@ -192,7 +190,7 @@ void find_offsets(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
 /// than needed but for the limit.
 std::vector<float> pelvis_drops(const Motion& motion, const Joints& rest, const std::vector<Foot>& feet,
                                 float limit) {
-  constexpr float kReach = 0.985f;  // share of the leg's length; beyond it the leg straightens softly
+  constexpr float kReach = 0.992f;  // share of the leg's length; beyond it the leg straightens softly
   const int count = static_cast<int>(motion.poses.size());
   std::vector<float> needed(motion.poses.size(), 0.0f), widest = needed, drops = needed;
   for (int t = 0; t < count; ++t)
@@ -218,10 +216,27 @@ std::vector<float> pelvis_drops(const Motion& motion, const Joints& rest, const 
   return drops;
 }
 
-void pin(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
+void find_contacts(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
   foot.on_ball = contacts(foot.ball, foot.level, edit, leg_m, fps);
   foot.on_heel = contacts(foot.heel, foot.heel_level, edit, leg_m, fps);
-  find_offsets(foot, edit, leg_m, fps);
+}
+
+/// Puts the whole body onto the floor by what its standing feet have over it as a rule, so that legs need not
+/// stretch for it.
+void settle(Motion& motion, std::vector<Foot>& feet, float limit) {
+  std::vector<float> standing;
+  for (const Foot& foot : feet)
+    for (size_t t = 0; t < motion.poses.size(); ++t)
+      if (foot.stands(static_cast<int>(t))) standing.push_back(foot.clearance[t]);
+  if (standing.empty()) return;
+  const float lift = std::clamp(-quantile(standing, 0.5f), -limit, limit);
+  const Vec3 up(0, lift, 0);
+  for (Pose& pose : motion.poses) pose.root += up;
+  for (Foot& foot : feet)
+    for (size_t t = 0; t < motion.poses.size(); ++t) {
+      for (auto* points : {&foot.ankle, &foot.ball, &foot.heel}) (*points)[t] += up;
+      foot.clearance[t] += lift;
+    }
 }
 
 }  // namespace
@@ -229,12 +244,14 @@ void pin(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
 void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body) {
   if (motion.poses.empty()) return;
   const float leg_m = leg_length(body.rest);
-  std::vector<Foot> feet;
-  for (const int side : {0, 1}) {
-    Foot foot = observed(motion, body, side);
-    if (side == 0 ? edit.left : edit.right) pin(foot, edit, leg_m, motion.fps);
-    feet.push_back(std::move(foot));  // a foot not pinned stays where it is when the pelvis sinks
-  }
+  const auto pinned = [&edit](const Foot& foot) { return foot.leg.hip == LeftHip ? edit.left : edit.right; };
+  std::vector<Foot> feet = {observed(motion, body, 0), observed(motion, body, 1)};
+  for (Foot& foot : feet)
+    if (pinned(foot)) find_contacts(foot, edit, leg_m, motion.fps);
+  if (edit.to_floor) settle(motion, feet, kOnFloor * leg_m);
+  for (Foot& foot : feet)
+    if (pinned(foot)) find_offsets(foot, edit, leg_m, motion.fps);
+  // A foot that is not pinned stays where it is when the pelvis sinks.
   const auto drops = pelvis_drops(motion, body.rest, feet, edit.max_drop_m * leg_m / 0.8f);
   for (size_t t = 0; t < motion.poses.size(); ++t) {
     motion.poses[t].root.y() -= drops[t];

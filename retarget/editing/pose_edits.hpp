@@ -30,13 +30,16 @@ struct FloorEdit {
   float offset_m = 0;
 };
 
-/// Feet on the floor stay where they are: the legs follow by inverse kinematics.
+/// Feet on the floor stay where they are: the legs follow by inverse kinematics. The body is put onto the
+/// floor y = 0 by its soles, where these are known; a foot may roll from heel to ball but not slide.
 struct PinEdit {
   bool left = true, right = true;
   FootContactOptions contact;
   float blend_s = 0.25f;      ///< a correction comes and goes within this time, or less between near contacts
   bool keep_soles_up = true;  ///< soles that are under the floor are lifted onto it at any time
-  float max_drop_m = 0.04f;   ///< how far the pelvis may sink where a leg is too short (leg 0.8 m)
+  bool to_floor =
+      true;  ///< the body is moved so that standing soles are at y = 0, not only held where they are
+  float max_drop_m = 0.04f;  ///< how far the pelvis may sink where a leg is too short (leg 0.8 m)
 };
 
 /// The motion turned about the vertical through its first pelvis.
@@ -72,7 +75,7 @@ struct EditedBody {
 /// frame numbers are always the original ones. Deterministic. Flags go with their frames. Throws Error for
 /// joints that are none, a strength outside 0..1 or a trim that leaves nothing.
 Motion apply(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
-/// The same without soles: a foot stands where its ball is lowest in the motion.
+/// The same without soles: pinned feet keep their heights.
 Motion apply(const PoseEdits& edits, const Motion& motion, const Joints& rest);
 /// The same without trim and skip: as many frames as before, for a timeline that still shows them.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);

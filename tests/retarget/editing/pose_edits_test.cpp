@@ -9,6 +9,7 @@
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
+#include "retarget/skeleton/skinning.hpp"
 
 namespace understudy {
 namespace {
@@ -200,6 +201,31 @@ TEST(PinEdit, PutsSolesOnTheFloor) {
   };
   EXPECT_LT(deepest(sunk), -0.02f);
   EXPECT_GT(deepest(pinned(sunk)), -0.004f);
+}
+
+TEST(PinEdit, PutsTheSkinOnTheFloorWhateverTheHeightWas) {
+  const ShapedBody& shape = walker().shape;
+  for (const float height : {-0.03f, 0.025f}) {
+    Motion moved = walker().walk;
+    for (Pose& pose : moved.poses) pose.root.y() += height;
+    const Motion held = pinned(moved);
+    for (size_t t = 0; t < held.poses.size(); t += 7) {
+      const Points skin = linear_blend_skinning(shape.vertices, shape.weights, shape.joints,
+                                                forward_kinematics(shape.joints, held.poses[t]));
+      EXPECT_NEAR(skin.col(1).minCoeff(), 0, 0.012f) << height << " frame " << t;
+    }
+  }
+}
+
+TEST(PinEdit, HoldsHeightsWhenNotAskedForTheFloor) {
+  Motion raised = walker().walk;
+  for (Pose& pose : raised.poses) pose.root.y() += 0.3f;  // on a table
+  PoseEdits edits;
+  edits.pin = PinEdit{};
+  edits.pin->to_floor = false;
+  const auto before = joints(raised), after = joints(apply(edits, raised, walker().body));
+  for (size_t t = 0; t < before.size(); ++t)
+    EXPECT_NEAR(before[t](LeftAnkle, 1), after[t](LeftAnkle, 1), 5e-3f);
 }
 
 TEST(PinEdit, OfOneFootLeavesTheOther) {
