@@ -5,6 +5,7 @@
 
 #include "render/gl/debug.hpp"
 #include "render/gl/scopes.hpp"
+#include "render/gl/store.hpp"
 #include "render/passes/background_pass.hpp"
 #include "render/passes/ground_pass.hpp"
 #include "render/passes/mesh_pass.hpp"
@@ -16,8 +17,8 @@
 namespace understudy::render {
 namespace {
 
-/// The multisampled picture, its depth resolved for the passes that read it, and a plain picture to read
-/// back.
+/// The pictures drawn into: the one in work, with as many samples as wanted; one of the same kind that keeps
+/// what stands still; where there are several samples, a plain one for their means.
 class Canvas {
  public:
   explicit Canvas(int samples) {
@@ -26,43 +27,54 @@ class Canvas {
     samples_ = std::clamp(samples, 1, std::max(1, most));
   }
 
-  void resize(PixelSize size) {
+  int samples() const { return samples_; }
+  /// Whether the size is another one and all pictures are lost.
+  bool resize(PixelSize size) {
     US_CHECK(size.width > 0 && size.height > 0 && size.width <= 16384 && size.height <= 16384,
              "a picture cannot be ", size.width, " x ", size.height, " pixels");
-    if (size.width == size_.width && size.height == size_.height) return;
+    if (size.width == size_.width && size.height == size_.height) return false;
     size_ = size;
-    attach_storage(many_, many_color_, samples_ > 1 ? samples_ : 0);
-    attach_storage(one_, one_color_, 0);
-    attach_depth();
-    complete(many_);
-    complete(one_);
+    attach_color(work_, work_color_, samples_);
+    attach_color(still_, still_color_, samples_);
+    if (samples_ > 1) {
+      attach_color(plain_, plain_color_, 1);
+      attach_depth_samples();
+    }
+    attach_depth_texture(samples_ > 1 ? plain_ : work_);
+    for (const gl::Framebuffer* each : {&work_, &still_, &plain_})
+      if (each != &plain_ || samples_ > 1) complete(*each);
+    return true;
   }
 
-  /// Copies the depth of one sample a pixel into depth_texture().
-  void resolve_depth() const { blit(many_.name(), one_.name(), GL_DEPTH_BUFFER_BIT); }
-  /// Averages the samples into `framebuffer`.
-  void resolve_color(unsigned framebuffer) const { blit(many_.name(), framebuffer, GL_COLOR_BUFFER_BIT); }
-  unsigned framebuffer() const { return many_.name(); }
-  unsigned plain_framebuffer() const { return one_.name(); }
+  unsigned work() const { return work_.name(); }
+  unsigned still() const { return still_.name(); }
+  unsigned plain() const { return samples_ > 1 ? plain_.name() : work_.name(); }
   unsigned depth_texture() const { return depth_texture_.name(); }
+  void copy_still() const { blit(still(), work(), GL_COLOR_BUFFER_BIT); }
+  /// One sample's depth of each pixel into depth_texture().
+  void resolve_depth() const { blit(work(), plain(), GL_DEPTH_BUFFER_BIT); }
+  /// The samples' means into `framebuffer`.
+  void resolve_color(unsigned framebuffer) const { blit(work(), framebuffer, GL_COLOR_BUFFER_BIT); }
 
  private:
-  void attach_storage(const gl::Framebuffer& framebuffer, const gl::Renderbuffer& color, int samples) const {
+  void attach_color(const gl::Framebuffer& framebuffer, const gl::Renderbuffer& color, int samples) const {
     gl::api().BindRenderbuffer(GL_RENDERBUFFER, color.name());
-    gl::api().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, size_.width, size_.height);
+    gl::api().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? samples : 0, GL_RGBA8,
+                                             size_.width, size_.height);
     const gl::TargetScope target(framebuffer.name(), size_.width, size_.height);
     gl::api().FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.name());
   }
 
-  void attach_depth() const {
-    gl::api().BindRenderbuffer(GL_RENDERBUFFER, many_depth_.name());
-    gl::api().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples_ > 1 ? samples_ : 0,
-                                             GL_DEPTH_COMPONENT24, size_.width, size_.height);
-    {
-      const gl::TargetScope target(many_.name(), size_.width, size_.height);
-      gl::api().FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-                                        many_depth_.name());
-    }
+  void attach_depth_samples() const {
+    gl::api().BindRenderbuffer(GL_RENDERBUFFER, work_depth_.name());
+    gl::api().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, GL_DEPTH_COMPONENT24, size_.width,
+                                             size_.height);
+    const gl::TargetScope target(work_.name(), size_.width, size_.height);
+    gl::api().FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                      work_depth_.name());
+  }
+
+  void attach_depth_texture(const gl::Framebuffer& framebuffer) const {
     gl::api().BindTexture(GL_TEXTURE_2D, depth_texture_.name());
     gl::api().TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size_.width, size_.height, 0,
                          GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
@@ -70,7 +82,7 @@ class Canvas {
       gl::api().TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
     for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
       gl::api().TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
-    const gl::TargetScope target(one_.name(), size_.width, size_.height);
+    const gl::TargetScope target(framebuffer.name(), size_.width, size_.height);
     gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_texture_.name(),
                                    0);
   }
@@ -83,6 +95,7 @@ class Canvas {
   }
 
   void blit(unsigned from, unsigned to, GLbitfield what) const {
+    if (from == to) return;
     const gl::TargetScope restore(from, size_.width, size_.height);
     gl::api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
     gl::api().BlitFramebuffer(0, 0, size_.width, size_.height, 0, 0, size_.width, size_.height, what,
@@ -91,40 +104,96 @@ class Canvas {
 
   int samples_ = 1;
   PixelSize size_;
-  gl::Framebuffer many_, one_;
-  gl::Renderbuffer many_color_, many_depth_, one_color_;
+  gl::Framebuffer work_, still_, plain_;
+  gl::Renderbuffer work_color_, work_depth_, still_color_, plain_color_;
   gl::Texture depth_texture_;
 };
+
+/// All that the still part of a picture depends on.
+std::vector<float> still_key(const Scene& scene, const Camera& camera, PixelSize size) {
+  const auto& [target, yaw, pitch, distance, fov, orthographic] = camera;
+  const BackgroundView& b = scene.background;
+  const GroundView& g = scene.ground;
+  const auto number = [](auto value) { return static_cast<float>(value); };
+  return {target.x(),
+          target.y(),
+          target.z(),
+          yaw,
+          pitch,
+          distance,
+          fov,
+          number(orthographic),
+          number(size.width),
+          number(size.height),
+          b.top.x(),
+          b.top.y(),
+          b.top.z(),
+          b.bottom.x(),
+          b.bottom.y(),
+          b.bottom.z(),
+          number(b.transparent),
+          number(g.visible),
+          g.height,
+          g.spacing,
+          g.radius,
+          g.line.x(),
+          g.line.y(),
+          g.line.z()};
+}
 
 }  // namespace
 
 struct Renderer::Parts {
-  explicit Parts(const RendererOptions& options) : canvas(options.samples) {}
+  explicit Parts(const RendererOptions& o) : options(o), canvas(o.samples) {}
 
+  void draw_still(const Scene& scene, const Camera& camera, PixelSize size);
   void draw_solid(const Scene& scene);
   void draw_over(const Scene& scene);
 
+  RendererOptions options;
   Canvas canvas;
+  std::vector<float> still;  ///< the still_key() of what the canvas keeps
+  gl::Store store;
   FrameBlock frame;
   BackgroundPass background;
-  MeshPass meshes;
-  PointsPass points;
+  MeshPass meshes{store};
+  PointsPass points{store};
   SkeletonPass skeletons;
   OcclusionPass occlusion;
   GroundPass ground;
 };
 
+/// Background and grid, drawn anew only when the view or they have changed.
+void Renderer::Parts::draw_still(const Scene& scene, const Camera& camera, PixelSize size) {
+  std::vector<float> key = still_key(scene, camera, size);
+  if (key != still) {
+    const gl::TargetScope target(canvas.still(), size.width, size.height);
+    background.draw(scene.background);
+    if (scene.ground.visible) ground.draw_grid(scene.ground, camera.target);
+    still = std::move(key);
+  }
+  canvas.copy_still();
+}
+
 void Renderer::Parts::draw_solid(const Scene& scene) {
   for (const auto& mesh : scene.meshes)
-    if (mesh.opacity >= 1) meshes.draw(mesh);
+    if (mesh.opacity >= 1) meshes.draw(mesh, scene.occlusion);
   for (const auto& skeleton : scene.skeletons)
     if (!skeleton.x_ray) skeletons.draw(meshes, skeleton);
+  if (options.quality == Quality::Best && scene.occlusion > 0 && !scene.meshes.empty()) {
+    canvas.resolve_depth();
+    occlusion.draw(canvas.depth_texture(), frame.size(), scene.occlusion);
+  }
+  for (const auto& cloud : scene.clouds)  // too rough for occlusion from depth
+    points.draw(cloud, canvas.samples() > 1);
 }
 
 /// What lies over the opaque part: see-through meshes, then the skeletons that show through everything.
 void Renderer::Parts::draw_over(const Scene& scene) {
   for (const auto& mesh : scene.meshes)
-    if (mesh.opacity < 1) meshes.draw(mesh);
+    if (mesh.opacity < 1) meshes.draw(mesh, scene.occlusion);
+  const auto x_ray = [](const SkeletonView& skeleton) { return skeleton.x_ray; };
+  if (std::none_of(scene.skeletons.begin(), scene.skeletons.end(), x_ray)) return;
   gl::api().Clear(GL_DEPTH_BUFFER_BIT);
   for (const auto& skeleton : scene.skeletons)
     if (skeleton.x_ray) skeletons.draw(meshes, skeleton);
@@ -140,33 +209,29 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 void Renderer::draw(const Scene& scene, const Camera& camera, const Target& target) {
   Parts& p = *parts_;
   for (const auto& mesh : scene.meshes) check(mesh);
-  p.canvas.resize(target.size);
+  if (p.canvas.resize(target.size)) p.still.clear();
   {
-    const gl::TargetScope canvas(p.canvas.framebuffer(), target.size.width, target.size.height);
+    const gl::TargetScope canvas(p.canvas.work(), target.size.width, target.size.height);
     const gl::CapabilityScope depth(GL_DEPTH_TEST, true), samples(GL_MULTISAMPLE, true);
     p.frame.set(camera, scene.light, target.size);
+    p.draw_still(scene, camera, target.size);
     gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-    p.background.draw(scene.background);
+    if (scene.ground.visible && scene.ground.shadow > 0) p.ground.draw_shadow(scene);
     p.draw_solid(scene);
-    if (scene.occlusion > 0 && !scene.meshes.empty()) {
-      p.canvas.resolve_depth();
-      p.occlusion.draw(p.canvas.depth_texture(), target.size, scene.occlusion);
-    }
-    for (const auto& cloud : scene.clouds) p.points.draw(cloud);  // too rough for occlusion from depth
-    p.ground.draw(scene);
     p.draw_over(scene);
   }
   p.canvas.resolve_color(target.framebuffer);
+  p.store.next_picture();
   gl::check_debug();
 }
 
 Image Renderer::render_image(const Scene& scene, const Camera& camera, PixelSize size) {
   Canvas& canvas = parts_->canvas;
-  canvas.resize(size);
-  draw(scene, camera, {canvas.plain_framebuffer(), size});
+  if (canvas.resize(size)) parts_->still.clear();
+  draw(scene, camera, {canvas.plain(), size});
   Image bottom_up(size.width, size.height), image(size.width, size.height);
   {
-    const gl::TargetScope source(canvas.plain_framebuffer(), size.width, size.height);
+    const gl::TargetScope source(canvas.plain(), size.width, size.height);
     gl::api().PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl::api().ReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, bottom_up.pixels.data());
   }

@@ -10,8 +10,14 @@
 
 namespace understudy::render {
 
+enum class Quality {
+  Interactive,  ///< for views at many pictures a second: occlusion is what the meshes' ambient values say
+  Best          ///< for pictures: occlusion also of what touches in this very pose, from the depths seen
+};
+
 struct RendererOptions {
   int samples = 4;  ///< a pixel, against jagged edges; fewer where the driver has fewer
+  Quality quality = Quality::Best;
 };
 
 /// Where to draw: a framebuffer (0: the window's) and its size.

@@ -37,8 +37,8 @@ void add(Scene& scene, const Mesh& mesh) {
 
 Points all_points(const Scene& scene) {
   std::vector<const Points*> parts;
-  for (const auto& mesh : scene.meshes) parts.push_back(&mesh.vertices);
-  for (const auto& cloud : scene.clouds) parts.push_back(&cloud.positions);
+  for (const auto& mesh : scene.meshes) parts.push_back(&*mesh.vertices);
+  for (const auto& cloud : scene.clouds) parts.push_back(&*cloud.positions);
   for (const auto& skeleton : scene.skeletons) parts.push_back(&skeleton.joints);
   Eigen::Index rows = 0, used = 0;
   for (const Points* part : parts) rows += part->rows();

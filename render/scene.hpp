@@ -3,27 +3,36 @@
 
 #include <vector>
 
+#include "render/shared.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::render {
 
-/// A lit smooth surface.
+using SharedPoints = Shared<Points>;
+using SharedFaces = Shared<Faces>;
+using SharedValues = Shared<Eigen::VectorXf>;
+
+/// A lit smooth surface. Its arrays stay on the graphics card for as long as the same ones are drawn: keep
+/// and hand in the same Shared (or shared_ptr) where nothing changed.
 struct MeshView {
-  Points vertices{0, 3};  ///< [V, 3]
-  Faces faces{0, 3};      ///< [F, 3]
-  Points normals{0, 3};   ///< [V, 3]; empty: from the faces
-  Points colors{0, 3};    ///< [V, 3]; empty: `color` everywhere
+  SharedPoints vertices;  ///< [V, 3]
+  SharedFaces faces;      ///< [F, 3]
+  SharedPoints normals;   ///< [V, 3]; empty: from the faces, each time it is drawn
+  SharedPoints colors;    ///< [V, 3]; empty: `color` everywhere
+  SharedValues
+      ambient;  ///< [V] share of the light from all around, see ambient_occlusion(); empty: all of it
   Vec3 color = Vec3(0.77f, 0.74f, 0.71f);
-  float opacity = 1;      ///< below 1 only the front layer is seen, and what is behind it
-  bool two_sided = true;  ///< light the inside like the outside (scans have holes)
+  float opacity = 1;  ///< below 1 only the front layer is seen, and what is behind it
+  bool two_sided =
+      true;  ///< show the inside, lit like the outside (scans have holes); a closed one draws faster without
 };
 
 /// Points as lit round discs.
 struct PointsView {
-  Points positions{0, 3};  ///< [N, 3]
-  Points normals{0, 3};    ///< [N, 3], either side; empty: each point looks like a small ball
-  Points colors{0, 3};     ///< [N, 3]; empty: `color` everywhere
+  SharedPoints positions;  ///< [N, 3]
+  SharedPoints normals;    ///< [N, 3], either side; empty: each point looks like a small ball
+  SharedPoints colors;     ///< [N, 3]; empty: `color` everywhere
   Vec3 color = Vec3(0.60f, 0.66f, 0.72f);
   float radius = 0.008f;  ///< metres
 };
@@ -44,7 +53,7 @@ struct GroundView {
   bool visible = true;
   float height = 0;      ///< metres
   float spacing = 0.5f;  ///< metres between lines
-  float radius = 3.5f;   ///< metres from what stands there until it has faded
+  float radius = 4.5f;   ///< metres from below the camera's target until it has faded
   float shadow = 0.55f;  ///< 0 none .. 1 black
   Vec3 line = Vec3(0.52f, 0.55f, 0.60f);
 };
@@ -63,6 +72,7 @@ struct LightView {
 struct BackgroundView {
   Vec3 top = Vec3(0.885f, 0.905f, 0.925f);
   Vec3 bottom = Vec3(0.970f, 0.973f, 0.976f);
+  bool transparent = false;  ///< nothing there: pictures with an alpha channel
 };
 
 struct Scene {
@@ -72,7 +82,7 @@ struct Scene {
   GroundView ground;
   LightView light;
   BackgroundView background;
-  float occlusion = 0.6f;  ///< strength of ambient occlusion on meshes, 0 off
+  float occlusion = 0.6f;  ///< strength of ambient occlusion on meshes, 0 off: see Quality
 };
 
 /// The 22 joints with sides.

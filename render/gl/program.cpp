@@ -78,10 +78,10 @@ void upload(const Buffer& buffer, GLenum target, const void* data, size_t bytes)
   api().BufferData(target, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
 }
 
-void use_vec3_attribute(unsigned index, const Buffer& buffer) {
+void use_attribute(unsigned index, const Buffer& buffer, int width) {
   api().BindBuffer(GL_ARRAY_BUFFER, buffer.name());
   api().EnableVertexAttribArray(index);
-  api().VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+  api().VertexAttribPointer(index, width, GL_FLOAT, GL_FALSE, 0, nullptr);
 }
 
 void use_constant_attribute(unsigned index, const Eigen::Vector3f& value) {

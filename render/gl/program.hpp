@@ -39,8 +39,8 @@ class Uniform {
 /// Replaces a buffer's contents with `bytes` bytes.
 void upload(const Buffer& buffer, GLenum target, const void* data, size_t bytes);
 
-/// Points attribute `index` of the bound vertex array at rows of three floats in `buffer`.
-void use_vec3_attribute(unsigned index, const Buffer& buffer);
+/// An attribute of the bound vertex array: rows of `width` floats (1..4), one for each vertex.
+void use_attribute(unsigned index, const Buffer& buffer, int width);
 /// Gives attribute `index` of the bound vertex array one value for every vertex.
 void use_constant_attribute(unsigned index, const Eigen::Vector3f& value);
 

@@ -18,6 +18,10 @@ void main() { o_color = vec4(mix(u_bottom, u_top, smoothstep(0.0, 1.0, v_place.y
 BackgroundPass::BackgroundPass() : program_("background", kCoverGlsl, kFragment) {}
 
 void BackgroundPass::draw(const BackgroundView& view) {
+  if (view.transparent) {
+    gl::api().ClearColor(0, 0, 0, 0);
+    return gl::api().Clear(GL_COLOR_BUFFER_BIT);
+  }
   const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
   const gl::ProgramScope program(program_.id());
   const gl::VertexArrayScope array(none_.name());

@@ -16,8 +16,8 @@ struct PixelSize {
 
 /// GLSL of the block `Frame`, for both stages.
 extern const char* const kFrameGlsl;
-/// GLSL of vec3 shade(vec3 srgb_color, vec3 world_normal, vec3 world_position): lit, sRGB again. Wants
-/// kFrameGlsl.
+/// GLSL of vec3 shade(vec3 srgb_color, vec3 world_normal, vec3 world_position, float ambient): lit, sRGB
+/// again; ambient is the share of the light from all around that gets there. Wants kFrameGlsl.
 extern const char* const kShadeGlsl;
 /// Vertex stage of a triangle that covers the picture; gives vec2 v_place, 0..1 with y up.
 extern const char* const kCoverGlsl;
@@ -27,8 +27,10 @@ class FrameBlock {
  public:
   /// Fills it and binds it to binding 0, where every Program looks.
   void set(const Camera& camera, const LightView& light, PixelSize size);
+  PixelSize size() const { return size_; }
 
  private:
+  PixelSize size_;
   gl::Buffer buffer_;
 };
 

@@ -2,31 +2,33 @@
 #pragma once
 
 #include "render/gl/program.hpp"
+#include "render/gl/store.hpp"
 #include "render/scene.hpp"
 
 namespace understudy::render {
 
 class MeshPass {
  public:
-  MeshPass();
-  /// The view has passed check().
-  void draw(const MeshView& view);
+  /// `store` outlives the pass.
+  explicit MeshPass(gl::Store& store);
+  /// The view has passed check(). occlusion: how much its ambient values count, 0..1.
+  void draw(const MeshView& view, float occlusion);
 
  private:
-  void upload(const MeshView& view);
+  void bind(const MeshView& view);
 
+  gl::Store& store_;
   gl::Program program_;
-  gl::Uniform<float> opacity_{program_, "u_opacity"};
+  gl::Uniform<float> opacity_{program_, "u_opacity"}, occlusion_{program_, "u_occlusion"};
   gl::Uniform<int> two_sided_{program_, "u_two_sided"};
   gl::VertexArray array_;
-  gl::Buffer positions_, normals_, colors_, indices_;
 };
 
-/// Throws Error when faces name vertices that are not there, or normals or colours are of another number.
-/// Every pass that draws the mesh relies on it: a driver may crash on such faces.
+/// Throws Error when faces name vertices that are not there, or normals, colours or ambient values are of
+/// another number. Every pass that draws the mesh relies on it: a driver may crash on such faces.
 void check(const MeshView& view);
 
 /// Throws Error unless an optional array is empty or has one row for each vertex.
-void check_rows(const char* what, const Points& optional, Eigen::Index vertices);
+void check_rows(const char* what, Eigen::Index rows, Eigen::Index vertices);
 
 }  // namespace understudy::render

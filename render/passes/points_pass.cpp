@@ -7,73 +7,100 @@
 namespace understudy::render {
 namespace {
 
-const std::string kVertex = std::string(kFrameGlsl) + R"(
+// A disc is lit once, as a whole; its tilt makes it an ellipse on the screen. All of it has its centre's
+// depth: writing a depth of its own would cost twice as much as all the rest.
+const std::string kDiscVertex = std::string(kFrameGlsl) + kShadeGlsl + R"(
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec3 a_color;
 uniform float u_radius;
-out vec3 v_center, v_normal, v_color;  // centre and normal in camera axes
-out float v_pixels;
+flat out vec3 v_color;
+flat out vec3 v_tilt;  // slope of the disc across the screen; its size in pixels
 void main() {
-  vec4 center = u_view * vec4(a_position, 1.0);
-  v_center = center.xyz;
-  v_normal = mat3(u_view) * a_normal;
-  if (v_normal.z < 0.0) v_normal = -v_normal;  // either side of the surface will do: show the one we see
+  gl_Position = u_projection * (u_view * vec4(a_position, 1.0));
+  vec3 n = mat3(u_view) * a_normal, seen = mat3(u_view) * towards_eye(a_position);
+  float side = dot(n, seen) < 0.0 ? -1.0 : 1.0;  // either side of the surface will do: show the one we see
+  bool known = dot(n, n) > 0.5;
+  n = known ? side * n : seen;
+  v_tilt.xy = n.xy / max(n.z, 0.35);  // edge-on discs keep some width
+  v_tilt.z = max(2.0, u_radius * u_projection[1][1] * u_size.y / gl_Position.w);
+  v_color = shade(a_color, known ? side * a_normal : towards_eye(a_position), a_position, 1.0);
+  gl_PointSize = v_tilt.z;
+}
+)";
+const std::string kDiscFragment = R"(
+uniform float u_smooth;  // 1: the rim's alpha becomes coverage
+flat in vec3 v_color;
+flat in vec3 v_tilt;
+out vec4 o_color;
+void main() {
+  vec2 d = (2.0 * gl_PointCoord - 1.0) * vec2(1.0, -1.0);
+  float height = dot(v_tilt.xy, d), r2 = dot(d, d) + height * height;
+  if (r2 > 1.0) discard;
+  o_color = vec4(v_color, u_smooth > 0.5 ? clamp((1.0 - r2) * 0.25 * v_tilt.z + 0.5, 0.0, 1.0) : 1.0);
+}
+)";
+
+// Without normals each point is a small ball.
+const std::string kBallVertex = std::string(kFrameGlsl) + R"(
+layout(location = 0) in vec3 a_position;
+layout(location = 2) in vec3 a_color;
+uniform float u_radius;
+flat out vec3 v_color, v_position;
+flat out float v_pixels;
+void main() {
+  gl_Position = u_projection * (u_view * vec4(a_position, 1.0));
   v_color = a_color;
-  gl_Position = u_projection * center;
+  v_position = a_position;
   v_pixels = max(2.0, u_radius * u_projection[1][1] * u_size.y / gl_Position.w);
   gl_PointSize = v_pixels;
 }
 )";
-
-const std::string kFragment = std::string(kFrameGlsl) + kShadeGlsl + R"(
-uniform float u_radius;
-uniform int u_has_normals;
-in vec3 v_center, v_normal, v_color;
-in float v_pixels;
+const std::string kBallFragment = std::string(kFrameGlsl) + kShadeGlsl + R"(
+uniform float u_smooth;
+flat in vec3 v_color, v_position;
+flat in float v_pixels;
 out vec4 o_color;
 void main() {
   vec2 d = (2.0 * gl_PointCoord - 1.0) * vec2(1.0, -1.0);
   float r2 = dot(d, d);
-  vec3 n = vec3(d, sqrt(max(0.0, 1.0 - r2)));
-  float height = n.z;
-  if (u_has_normals != 0 && dot(v_normal, v_normal) > 0.5) {
-    n = normalize(v_normal);
-    height = -dot(n.xy, d) / max(n.z, 0.35);  // of the disc's plane, in radii; edge-on discs keep some width
-    r2 += height * height;
-  }
   if (r2 > 1.0) discard;
-  vec3 position = v_center + u_radius * vec3(d, height);
-  vec4 clip = u_projection * vec4(position, 1.0);
-  gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
-  mat3 to_world = transpose(mat3(u_view));
-  vec3 world = to_world * (position - u_view[3].xyz);
-  float alpha = clamp((1.0 - sqrt(r2)) * 0.5 * v_pixels + 0.5, 0.0, 1.0);  // becomes MSAA coverage
-  o_color = vec4(shade(v_color, to_world * n, world), alpha);
+  vec3 n = vec3(d, sqrt(1.0 - r2)) * mat3(u_view);  // transposed: to the world
+  o_color = vec4(shade(v_color, n, v_position, 1.0),
+                 u_smooth > 0.5 ? clamp((1.0 - r2) * 0.25 * v_pixels + 0.5, 0.0, 1.0) : 1.0);
 }
 )";
 
 }  // namespace
 
-PointsPass::PointsPass() : program_("points", kVertex, kFragment) {}
+PointsPass::Kind::Kind(const char* name, const std::string& vertex, const std::string& fragment)
+    : program(name, vertex, fragment) {}
 
-void PointsPass::draw(const PointsView& view) {
-  if (view.positions.rows() == 0) return;
-  check_rows("normals", view.normals, view.positions.rows());
-  check_rows("colours", view.colors, view.positions.rows());
-  const auto bytes = [](const Points& array) { return static_cast<size_t>(array.size()) * sizeof(float); };
-  const gl::ProgramScope program(program_.id());
-  const gl::VertexArrayScope array(array_.name());
-  const gl::CapabilityScope size(GL_PROGRAM_POINT_SIZE, true), coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, true);
-  gl::upload(positions_, GL_ARRAY_BUFFER, view.positions.data(), bytes(view.positions));
-  gl::upload(normals_, GL_ARRAY_BUFFER, view.normals.data(), bytes(view.normals));
-  gl::upload(colors_, GL_ARRAY_BUFFER, view.colors.data(), bytes(view.colors));
-  gl::use_vec3_attribute(0, positions_);
-  view.normals.rows() > 0 ? gl::use_vec3_attribute(1, normals_) : gl::use_constant_attribute(1, Vec3::Zero());
-  view.colors.rows() > 0 ? gl::use_vec3_attribute(2, colors_) : gl::use_constant_attribute(2, view.color);
-  radius_.set(view.radius);
-  has_normals_.set(view.normals.rows() > 0 ? 1 : 0);
-  gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(view.positions.rows()));
+PointsPass::PointsPass(gl::Store& store)
+    : store_(store),
+      discs_("discs", kDiscVertex, kDiscFragment),
+      balls_("balls", kBallVertex, kBallFragment) {}
+
+void PointsPass::draw(const PointsView& view, bool multisampled) {
+  const Eigen::Index count = view.positions->rows();
+  check_rows("normals", view.normals->rows(), count);
+  check_rows("colours", view.colors->rows(), count);
+  if (count == 0) return;
+  const bool flat = view.normals->rows() > 0;
+  const Kind& kind = flat ? discs_ : balls_;
+  const gl::ProgramScope program(kind.program.id());
+  const gl::VertexArrayScope array((flat ? disc_array_ : ball_array_).name());
+  const gl::CapabilityScope size(GL_PROGRAM_POINT_SIZE, true),
+      coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, multisampled), whole(GL_SAMPLE_ALPHA_TO_ONE, multisampled);
+  gl::use_attribute(0, store_.of(view.positions), 3);
+  if (flat) gl::use_attribute(1, store_.of(view.normals), 3);
+  if (view.colors->rows() > 0)
+    gl::use_attribute(2, store_.of(view.colors), 3);
+  else
+    gl::use_constant_attribute(2, view.color);
+  kind.radius.set(view.radius);
+  kind.smooth.set(multisampled ? 1.f : 0.f);
+  gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
 }
 
 }  // namespace understudy::render

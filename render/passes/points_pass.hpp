@@ -1,24 +1,30 @@
-// Points as lit round discs with true depth: flat ones along their normals, or small balls where there are
-// none.
+// Points as lit round discs, tilted along their normals, or small balls where there are none.
 #pragma once
 
 #include "render/gl/program.hpp"
+#include "render/gl/store.hpp"
 #include "render/scene.hpp"
 
 namespace understudy::render {
 
 class PointsPass {
  public:
-  PointsPass();
-  /// Throws Error when normals or colours are of another number than the points.
-  void draw(const PointsView& view);
+  /// `store` outlives the pass.
+  explicit PointsPass(gl::Store& store);
+  /// Throws Error when normals or colours are of another number than the points. multisampled: of the target
+  /// that is bound.
+  void draw(const PointsView& view, bool multisampled);
 
  private:
-  gl::Program program_;
-  gl::Uniform<float> radius_{program_, "u_radius"};
-  gl::Uniform<int> has_normals_{program_, "u_has_normals"};
-  gl::VertexArray array_;
-  gl::Buffer positions_, normals_, colors_;
+  struct Kind {
+    Kind(const char* name, const std::string& vertex, const std::string& fragment);
+    gl::Program program;
+    gl::Uniform<float> radius{program, "u_radius"}, smooth{program, "u_smooth"};
+  };
+
+  gl::Store& store_;
+  Kind discs_, balls_;
+  gl::VertexArray disc_array_, ball_array_;
 };
 
 }  // namespace understudy::render

@@ -45,8 +45,10 @@ class SolidBuilder {
     view.vertices = rows(positions_);
     view.normals = rows(normals_);
     view.colors = rows(colors_);
-    view.faces.resize(static_cast<Eigen::Index>(faces_.size()), 3);
-    for (size_t f = 0; f < faces_.size(); ++f) view.faces.row(static_cast<Eigen::Index>(f)) = faces_[f];
+    Faces faces(static_cast<Eigen::Index>(faces_.size()), 3);
+    for (size_t f = 0; f < faces_.size(); ++f) faces.row(static_cast<Eigen::Index>(f)) = faces_[f];
+    view.faces = std::move(faces);
+    view.two_sided = false;
     return view;
   }
 

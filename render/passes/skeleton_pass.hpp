@@ -12,7 +12,7 @@ MeshView skeleton_solids(const SkeletonView& view);
 class SkeletonPass {
  public:
   /// Draws with the mesh pass's shader; the caller clears depth first for an x-ray view.
-  void draw(MeshPass& meshes, const SkeletonView& view) { meshes.draw(skeleton_solids(view)); }
+  void draw(MeshPass& meshes, const SkeletonView& view) { meshes.draw(skeleton_solids(view), 0); }
 };
 
 }  // namespace understudy::render

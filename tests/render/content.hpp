@@ -1,6 +1,8 @@
 // Things to draw in tests, made by formula.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "render/camera.hpp"
@@ -41,6 +43,35 @@ inline Joints make_joints() {
       1.45f, 0, .07f, 1.37f, 0, -.07f, 1.37f, 0, 0, 1.58f, .02f, .18f, 1.39f, -.01f, -.18f, 1.39f, -.01f,
       .44f, 1.38f, -.02f, -.44f, 1.38f, -.02f, .69f, 1.38f, 0, -.69f, 1.38f, 0;
   return joints;
+}
+
+/// A person of tubes about the bones of make_joints(), about `vertices` vertices (and twice as many faces).
+inline Mesh make_person(int vertices = 13000) {
+  const Joints joints = make_joints();
+  const int rings = std::max(4, static_cast<int>(std::lround(std::sqrt(vertices / 21.0)))), around = rings;
+  Mesh mesh;
+  mesh.vertices.resize(21 * rings * around, 3);
+  mesh.faces.resize(21 * 2 * (rings - 1) * around, 3);
+  int face = 0, base = 0;
+  for (int j = 1; j < kJointCount; ++j, base += rings * around) {
+    const Vec3 a = joints.row(kParents[j]), along = joints.row(j).transpose() - a;
+    const Vec3 w = along.normalized(), u = w.unitOrthogonal(), v = w.cross(u);
+    const float thick = kMirror[j] == j ? 0.13f : 0.065f;
+    for (int r = 0; r < rings; ++r)
+      for (int k = 0; k < around; ++k) {
+        const float t = static_cast<float>(r) / static_cast<float>(rings - 1) * kPi;
+        const float angle = 2 * kPi * static_cast<float>(k) / static_cast<float>(around);
+        const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
+        const float radius = thick * std::sqrt(std::max(0.f, std::sin(t)));
+        mesh.vertices.row(base + r * around + k) =
+            (a + (0.5f - 0.62f * std::cos(t)) * along + radius * out).transpose();
+        if (r == 0) continue;
+        const int here = base + r * around + k, next = base + r * around + (k + 1) % around;
+        mesh.faces.row(face++) << here, here - around, next - around;
+        mesh.faces.row(face++) << here, next - around, next;
+      }
+  }
+  return mesh;
 }
 
 /// Three-quarter view of all of a scene.

@@ -103,7 +103,9 @@ TEST(NullRenderer, RefusesFacesThatNameNoVertex) {
   const Scene scene = everything();
   for (const size_t which : {0, 1}) {  // the opaque and the see-through one
     Scene broken = scene;
-    broken.meshes[which].faces(3, 1) = static_cast<int>(broken.meshes[which].vertices.rows());
+    Faces faces = broken.meshes[which].faces;
+    faces(3, 1) = static_cast<int>(broken.meshes[which].vertices->rows());
+    broken.meshes[which].faces = faces;
     EXPECT_THROW(renderer.render_image(broken, Camera(), {32, 32}), Error);
     EXPECT_EQ(null_counts().draws, 0);
   }
@@ -113,7 +115,7 @@ TEST(NullRenderer, RefusesArraysOfOtherLengths) {
   const auto context = make_offscreen_context({ContextKind::Null});
   Renderer renderer;
   Scene colors = everything(), parents = everything();
-  colors.clouds[0].colors = Points::Zero(3, 3);
+  colors.clouds[0].colors = Points(Points::Zero(3, 3));
   parents.skeletons[0].parents.pop_back();
   EXPECT_THROW(renderer.render_image(colors, Camera(), {32, 32}), Error);
   EXPECT_THROW(renderer.render_image(parents, Camera(), {32, 32}), Error);

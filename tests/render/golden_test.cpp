@@ -70,9 +70,11 @@ Scene shell() {
   Scene scene = pear();
   MeshView& mesh = scene.meshes[0];
   Eigen::Index kept = 0;
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
-    if (mesh.vertices(mesh.faces(f, 0), 2) < 0) mesh.faces.row(kept++) = Faces(mesh.faces.row(f));
-  mesh.faces.conservativeResize(kept, 3);
+  Faces faces = mesh.faces;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f)
+    if ((*mesh.vertices)(faces(f, 0), 2) < 0) faces.row(kept++) = Faces(faces.row(f));
+  faces.conservativeResize(kept, 3);
+  mesh.faces = faces;
   return scene;
 }
 
@@ -89,9 +91,9 @@ TEST(GoldenTwoSided, NoticesOneSidedLight) {
 Scene weighted() {
   Scene scene = pear();
   MeshView& mesh = scene.meshes[0];
-  RowMatrix weights = RowMatrix::Zero(mesh.vertices.rows(), 22);
+  RowMatrix weights = RowMatrix::Zero(mesh.vertices->rows(), 22);
   for (Eigen::Index v = 0; v < weights.rows(); ++v) {
-    const float at = std::clamp(mesh.vertices(v, 1) / 1.2f, 0.f, 1.f) * 20.99f;
+    const float at = std::clamp((*mesh.vertices)(v, 1) / 1.2f, 0.f, 1.f) * 20.99f;
     const int j = static_cast<int>(at);
     weights(v, j) = 1 - (at - static_cast<float>(j));
     weights(v, j + 1) = at - static_cast<float>(j);
@@ -130,7 +132,7 @@ TEST(GoldenPoints, NoticeTheMissingPass) {
 
 TEST(GoldenPoints, NoticeMissingNormals) {
   Scene broken = viridis_cloud();
-  broken.clouds[0].normals.resize(0, 3);
+  broken.clouds[0].normals = {};
   expect_noticed("points", viridis_cloud(), broken);
 }
 
