@@ -101,6 +101,7 @@ struct Session {
   Document document;
   std::string path;      ///< where it is saved; empty: never
   bool changed = false;  ///< since it was last saved
+  std::string weights;   ///< checksums of the networks here; empty: not known yet
   History history;
   View view;
   Playback playback;

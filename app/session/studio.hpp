@@ -48,12 +48,40 @@ class Studio {
 
   /// Opens what was dropped or chosen: a scan, a target, a motion, a document, a case folder.
   void open(const std::string& path);
+  /// Whether nothing works in the background.
+  bool idle() const;
+  /// Shows a sentence in a dialog; details are for "copy details".
+  void fail(const std::string& sentence, const std::string& details = "");
+  /// Shows a sentence for some seconds.
+  void notify(const std::string& sentence, bool warning = false);
+  /// What would be written now.
+  SavedDocument saved_document() const;
+  /// A new, an opened or a recovered document takes the place of the open one.
+  void replace_document(SavedDocument saved, const std::string& path);
+  void save_settings();
+  /// Which vertices of a take's target are joined; made on first use.
+  const Neighbours& neighbours(size_t take);
+  void pause_work(bool paused);
+  /// Makes every frame anew.
+  void restart_work();
 
  private:
   struct Background;
-  friend struct StudioCommands;
-  void take_in_results();
+  void ask_about_autosaves();
+  void load_weights_name();
   void follow_document();
+  void follow_source();
+  void follow_edits();
+  void forget_outdated(TakeState& state, const Take& before, const Take& now);
+  void apply_weights(size_t k);
+  void take_in_results();
+  template <class Event>
+  void take_in(Event& event);
+  void take_in_refined();
+  void refine_dirty();
+  void measure_finished();
+  void measure(size_t k);
+  TakeState* take_of(int64_t id);
   void autosave(double seconds);
 
   StudioServices services_;

@@ -1,0 +1,47 @@
+// What works behind a Studio, and what it was last told.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <set>
+
+#include "app/session/engine.hpp"
+#include "app/session/refiner.hpp"
+#include "app/session/studio.hpp"
+
+namespace understudy::app {
+
+struct Studio::Background {
+  explicit Background(Engine::NetworksOf networks) : engine(std::move(networks)) {}
+
+  /// What a take in the session was made of.
+  struct Applied {
+    std::shared_ptr<const Deformer> deformer;   // with the networks' weights
+    std::shared_ptr<const WeightRows> weights;  // the user's, put over them
+    std::string poses;                          // pose_key of the edits of the result
+    double refined_at = -1e9;                   // Session::time
+    size_t refined_frames = 0;
+    std::shared_ptr<const Target> neighbours_of;  // the target that `neighbours` are of
+    Neighbours neighbours;
+    bool measured = false;
+    int64_t measuring = 0;  // the job; 0: none
+  };
+
+  Engine engine;
+  Refiner refiner;
+  Document followed;
+  std::vector<int64_t> take_ids;  // beside document.takes
+  int64_t next_id = 1;
+  std::map<int64_t, Applied> applied;
+  std::set<int64_t> dirty;  // takes whose result is to be refined
+  std::string plan_key, source_key, truth_path;
+  double since_autosave = 0;
+  std::shared_ptr<std::atomic<bool>> autosaving = std::make_shared<std::atomic<bool>>(false);
+};
+
+/// Equal texts: the engine has nothing to do.
+std::string plan_key(const Plan& plan);
+/// Equal texts: the result looks the same.
+std::string pose_key(const PoseEdits& edits);
+
+}  // namespace understudy::app

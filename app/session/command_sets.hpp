@@ -1,0 +1,35 @@
+// The commands, a file a family.
+#pragma once
+
+#include "app/session/studio.hpp"
+
+namespace understudy::app {
+
+void add_document_commands(Commands& commands);
+void add_source_commands(Commands& commands);
+void add_take_commands(Commands& commands);
+void add_playback_commands(Commands& commands);
+void add_view_commands(Commands& commands);
+void add_edit_commands(Commands& commands);
+void add_export_commands(Commands& commands);
+void add_program_commands(Commands& commands);
+void add_all_commands(Commands& commands);
+
+// What arguments say. Each throws Error naming the command's word that is wrong.
+
+double number(const Arguments& arguments, size_t i, const char* what);
+int whole_number(const Arguments& arguments, size_t i, const char* what);
+bool on_off(const Arguments& arguments, size_t i);
+/// "on", "off" or "toggle" of what is `now`.
+bool switched(const Arguments& arguments, size_t i, bool now);
+const std::string& word(const Arguments& arguments, size_t i, const char* what);
+/// One of the words; gives its index.
+size_t choice(const Arguments& arguments, size_t i, const char* what, const std::vector<std::string>& words);
+/// A joint by name ("left_wrist") or number.
+int joint_argument(const Arguments& arguments, size_t i);
+Vec3 vector_argument(const Arguments& arguments, size_t i, const char* what);
+/// The take of that number.
+Take& take_argument(Session& session, const Arguments& arguments, size_t i);
+bool has_word(const Arguments& arguments, size_t from, const std::string& word);
+
+}  // namespace understudy::app

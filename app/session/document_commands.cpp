@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "app/run/case_folder.hpp"
+#include "app/session/command_sets.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/npz.hpp"
+
+namespace understudy::app {
+namespace fs = std::filesystem;
+namespace {
+
+/// What can be done at once when nothing is unsaved; else the question comes first. True: go on.
+bool nothing_unsaved(Studio& studio, const std::string& then) {
+  Session& session = studio.session();
+  if (!session.changed) return true;
+  Question question;
+  question.kind = Question::Kind::UnsavedChanges;
+  question.text =
+      "Save the changes to " +
+      (session.path.empty() ? std::string("this document") : fs::path(session.path).filename().string()) +
+      "?";
+  question.then = then;
+  session.question = question;
+  return false;
+}
+
+/// A document whose files are not all there asks for their new place; the rest opens.
+void ask_for_missing(Session& session) {
+  const std::vector<std::string> missing = missing_files(session.document);
+  if (missing.empty()) return;
+  Question question;
+  question.kind = Question::Kind::MissingFiles;
+  question.text = missing.size() == 1 ? "A file of this document is not where it was."
+                                      : "Some files of this document are not where they were.";
+  question.missing = missing;
+  session.question = question;
+}
+
+void open_document(Studio& studio, const std::string& path) {
+  const std::string whole = fs::absolute(path).lexically_normal().string();
+  const SavedDocument saved = read_document(whole);
+  studio.replace_document(saved, whole);
+  remember(studio.session().settings.recent, whole);
+  if (!saved.weights.empty() && !studio.session().weights.empty() &&
+      saved.weights != studio.session().weights)
+    studio.notify("This document was made with other network weights: its result may differ.", true);
+}
+
+void save_document(Studio& studio, const std::string& path) {
+  Session& session = studio.session();
+  const std::string whole = fs::absolute(path).lexically_normal().string();
+  write_document(whole, studio.saved_document());
+  session.path = whole;
+  session.changed = false;
+  remember(session.settings.recent, whole);
+  if (!studio.services().autosave_folder.empty()) remove_autosave(studio.services().autosave_folder);
+  studio.notify("Saved " + fs::path(whole).filename().string());
+}
+
+void answer(Studio& studio, const std::string& how) {
+  Session& session = studio.session();
+  US_CHECK(session.question, "nothing was asked");
+  const Question question = *session.question;
+  if (how == "save") {
+    US_CHECK(!session.path.empty(), "the document has no file yet: save it under a name first");
+    save_document(studio, session.path);
+  }
+  session.question.reset();
+  if (how == "cancel" || question.kind != Question::Kind::UnsavedChanges) return;
+  session.changed = false;
+  Arguments words = split_line(question.then);
+  const std::string name = words.front();
+  words.erase(words.begin());
+  studio.run(name, words);
+}
+
+void add_files(Commands& commands) {
+  commands.add({"document.new", "New", "", "Ctrl+N", false, false, [](Studio& s, const Arguments&) {
+                  if (nothing_unsaved(s, "document.new")) s.replace_document({}, "");
+                }});
+  commands.add(
+      {"document.open", "Open document", "PATH", "", false, false, [](Studio& s, const Arguments& a) {
+         const std::string& path = word(a, 0, "path");
+         if (nothing_unsaved(s, join_line("document.open", {path}))) open_document(s, path);
+       }});
+  commands.add({"document.save", "Save", "", "Ctrl+S", false, false, [](Studio& s, const Arguments&) {
+                  US_CHECK(!s.session().path.empty(), "the document has no file yet: save it under a name");
+                  save_document(s, s.session().path);
+                }});
+  commands.add({"document.save_as", "Save as", "PATH", "", false, false, [](Studio& s, const Arguments& a) {
+                  std::string path = word(a, 0, "path");
+                  if (fs::path(path).extension() != ".understudy") path += ".understudy";
+                  save_document(s, path);
+                }});
+  commands.add({"open", "Open", "PATH ...: a scan, target, document or case", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  word(a, 0, "path");
+                  for (const std::string& path : a) s.open(path);
+                }});
+}
+
+void add_recovery(Commands& commands) {
+  commands.add({"question.answer", "Answer", "save|discard|cancel", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 0, "answer", {"save", "discard", "cancel"});
+                  answer(s, a[0]);
+                }});
+  commands.add({"document.recover", "Recover", "FILE", "", false, false, [](Studio& s, const Arguments& a) {
+                  for (const Autosave& found : found_autosaves(s.services().autosave_folder)) {
+                    if (found.file != word(a, 0, "file")) continue;
+                    const SavedDocument saved = read_autosave(found);
+                    s.session().question.reset();
+                    s.replace_document(saved, found.document_path);
+                    s.session().changed = true;
+                    discard(found);
+                    return;
+                  }
+                  throw Error(a[0] + ": there is no such unsaved work");
+                }});
+  commands.add(
+      {"document.discard_recovery", "Discard", "FILE", "", false, false, [](Studio& s, const Arguments& a) {
+         for (const Autosave& found : found_autosaves(s.services().autosave_folder))
+           if (found.file == word(a, 0, "file")) discard(found);
+         auto& question = s.session().question;
+         if (!question) return;
+         auto& left = question->autosaves;
+         left.erase(std::remove_if(left.begin(), left.end(),
+                                   [&](const Autosave& copy) { return copy.file == a[0]; }),
+                    left.end());
+         if (left.empty()) question.reset();
+       }});
+  commands.add({"document.relocate", "Find the file", "OLD NEW: where it is now", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  Session& session = s.session();
+                  session.document =
+                      relocated(session.document, word(a, 0, "old place"), word(a, 1, "new place"));
+                  session.question.reset();
+                  ask_for_missing(session);
+                }});
+}
+
+enum class Kind { Document, Case, Scans, Body, Motion, Mesh };
+
+Kind kind_of_npz(const std::string& path) {
+  const Npz npz = read_npz(path);
+  if (npz.count("v_template")) return Kind::Body;
+  if (npz.count("poses")) return Kind::Motion;
+  return Kind::Scans;
+}
+
+Kind kind_of(const std::string& path) {
+  std::error_code failed;
+  US_CHECK(fs::exists(path, failed), path, ": there is no such file or folder");
+  if (fs::is_directory(path, failed))
+    return fs::exists(fs::path(path) / "case.json") ? Kind::Case : Kind::Scans;
+  const std::string suffix = fs::path(path).extension().string();
+  if (suffix == ".understudy") return Kind::Document;
+  if (fs::path(path).filename() == "case.json") return Kind::Case;
+  if (suffix == ".npz") return kind_of_npz(path);
+  if (suffix == ".npy" || suffix == ".lst") return Kind::Scans;
+  US_CHECK(format_of_suffix(path), path, ": is neither a scan, a target, a motion nor a document");
+  return Kind::Mesh;
+}
+
+void open_case(Studio& studio, std::string folder) {
+  if (!fs::is_directory(folder)) folder = fs::path(folder).parent_path().string();
+  const Case found = read_case(folder);
+  SavedDocument fresh;
+  fresh.document.source.path = found.source;
+  fresh.document.source.fps = found.fps;
+  fresh.document.truth = found.truth;
+  if (!found.target.empty()) {
+    Take take;
+    take.name = found.name;
+    take.target.path = found.target;
+    fresh.document.takes.push_back(take);
+  }
+  studio.replace_document(fresh, "");
+}
+
+}  // namespace
+
+void Studio::replace_document(SavedDocument saved, const std::string& path) {
+  session_.document = std::move(saved.document);
+  session_.view = std::move(saved.view);
+  if (session_.view.cameras.empty()) session_.view.cameras.push_back({});
+  session_.playback = saved.playback;
+  session_.playback.playing = false;
+  session_.playback.live = true;
+  session_.path = path;
+  session_.changed = false;
+  session_.history.clear();
+  session_.selected_take = 0;
+  session_.selected_joint = -1;
+  session_.tool = Tool::Look;
+  ask_for_missing(session_);
+  follow_document();
+}
+
+void Studio::open(const std::string& path) {
+  const std::string whole = fs::absolute(path).lexically_normal().string();
+  switch (kind_of(whole)) {
+    case Kind::Document:
+      return run("document.open", {whole});
+    case Kind::Case:
+      if (nothing_unsaved(*this, join_line("open", {whole}))) open_case(*this, whole);
+      return;
+    case Kind::Scans:
+      return run("source.open", {whole});
+    case Kind::Motion:
+      US_CHECK(!session_.document.takes.empty() &&
+                   fs::path(session_.document.takes.back().target.path).extension() == ".npz",
+               whole, ": a motion wants a body that performs it: open the SMPL-format body first");
+      return run("source.motion", {session_.document.takes.back().target.path, whole});
+    case Kind::Body:
+    case Kind::Mesh:
+      return run("target.add", {whole});
+  }
+}
+
+void add_document_commands(Commands& commands) {
+  add_files(commands);
+  add_recovery(commands);
+}
+
+}  // namespace understudy::app

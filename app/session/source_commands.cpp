@@ -1,0 +1,83 @@
+#include <filesystem>
+
+#include "app/session/command_sets.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/formats/scan_source.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Another source: what was said about the old one's frames no longer holds.
+void set_source(Studio& studio, SourceOptions source) {
+  Session& session = studio.session();
+  Document& document = session.document;
+  const std::string path = source.motion.empty() ? source.path : source.motion;
+  document.source = std::move(source);
+  document.truth.clear();
+  document.scan_edits = {};
+  document.skeleton_edits.clear();
+  for (Take& take : document.takes) take.pose_edits = {};
+  session.playback = Playback{};
+  remember(session.settings.recent_sources, path);
+}
+
+void add_opening(Commands& commands) {
+  commands.add({"source.open", "Open scan", "PATH: a folder, list or array of scans", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  SourceOptions source;
+                  source.path = fs::absolute(word(a, 0, "path")).lexically_normal().string();
+                  ScanSource{source.path};  // throws at once when there is no frame
+                  set_source(s, source);
+                }});
+  commands.add({"source.motion", "Open motion", "BODY MOTION: SMPL-format body, AMASS-format motion", "",
+                true, false, [](Studio& s, const Arguments& a) {
+                  SourceOptions source;
+                  source.path = fs::absolute(word(a, 0, "body")).lexically_normal().string();
+                  source.motion = fs::absolute(word(a, 1, "motion")).lexically_normal().string();
+                  set_source(s, source);
+                }});
+  commands.add({"source.fps", "Frame rate", "FRAMES_PER_SECOND; 0: the source's own, or 30", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  const double fps = number(a, 0, "frame rate");
+                  US_CHECK(fps == 0 || (fps >= 1 && fps <= 1000), "a frame rate is 1 to 1000, not ", fps);
+                  s.session().document.source.fps = fps;
+                }});
+}
+
+void add_import(Commands& commands) {
+  commands.add({"source.units", "Units of the scan", "auto|m|dm|cm|mm|in", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 0, "unit", {"auto", "m", "dm", "cm", "mm", "in"});
+                  s.session().document.source.import.units = a[0];
+                }});
+  commands.add({"source.up", "Up axis of the scan", "auto|x|y|z|-x|-y|-z", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 0, "axis", {"auto", "x", "y", "z", "-x", "-y", "-z"});
+                  s.session().document.source.import.up = a[0];
+                }});
+  commands.add({"source.yaw", "Turn the scan", "DEGREES", "", true, true, [](Studio& s, const Arguments& a) {
+                  s.session().document.source.import.yaw_deg = static_cast<float>(number(a, 0, "angle"));
+                }});
+  commands.add(
+      {"source.floor", "Floor of the scan", "METRES|auto", "", true, true, [](Studio& s, const Arguments& a) {
+         auto& floor = s.session().document.source.import.floor;
+         floor.reset();
+         if (word(a, 0, "height") != "auto") floor = static_cast<float>(number(a, 0, "height"));
+       }});
+  commands.add({"source.extractor", "Skeleton extraction", "dense|paper", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 0, "extractor", {"dense", "paper"});
+                  for (Take& take : s.session().document.takes) take.method.extractor = a[0];
+                }});
+}
+
+}  // namespace
+
+void add_source_commands(Commands& commands) {
+  add_opening(commands);
+  add_import(commands);
+}
+
+}  // namespace understudy::app

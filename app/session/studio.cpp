@@ -1,0 +1,301 @@
+#include "app/session/studio.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "app/session/background.hpp"
+#include "app/session/command_sets.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+
+namespace understudy::app {
+namespace {
+
+constexpr double kNoticeSeconds = 6;
+
+/// For each take of `now` the index of the take of `before` that it continues, -1 for a new one: the same
+/// target made the same way, else the same target, else the one in its place.
+std::vector<int> matched_takes(const std::vector<Take>& before, const std::vector<Take>& now) {
+  std::vector<int> match(now.size(), -1);
+  std::vector<bool> used(before.size(), false);
+  const auto pass = [&](const auto& alike) {
+    for (size_t k = 0; k < now.size(); ++k)
+      for (size_t i = 0; match[k] < 0 && i < before.size(); ++i)
+        if (!used[i] && alike(before[i], now[k], i == k)) match[k] = static_cast<int>(i), used[i] = true;
+  };
+  const auto same_target = [](const Take& a, const Take& b) {
+    return target_key(a.target) == target_key(b.target);
+  };
+  pass([&](const Take& a, const Take& b, bool) {
+    return same_target(a, b) && method_key(a.method) == method_key(b.method) && a.name == b.name;
+  });
+  pass([&](const Take& a, const Take& b, bool) { return same_target(a, b); });
+  pass([](const Take&, const Take&, bool in_place) { return in_place; });
+  return match;
+}
+
+}  // namespace
+
+Studio::Studio(StudioServices services)
+    : services_(std::move(services)),
+      cache_(512),
+      background_(std::make_unique<Background>(services_.networks)) {
+  if (!services_.settings_file.empty()) session_.settings = read_settings(services_.settings_file);
+  session_.history = History(session_.settings.undo_depth);
+  cache_.set_limit(session_.settings.cache_mb);
+  add_all_commands(commands_);
+  ask_about_autosaves();
+  load_weights_name();
+}
+
+Studio::~Studio() {
+  try {
+    if (!services_.autosave_folder.empty()) remove_autosave(services_.autosave_folder);
+    save_settings();
+  } catch (const std::exception& error) {
+    log::warn(error.what());
+  }
+}
+
+void Studio::save_settings() {
+  if (!services_.settings_file.empty()) write_settings(services_.settings_file, session_.settings);
+}
+
+/// The checksum of the weights takes a moment: read once, in the background.
+void Studio::load_weights_name() {
+  if (!services_.weights) return;
+  auto name = std::make_shared<std::string>();
+  const auto weights = services_.weights;
+  jobs_.start(
+      "Reading weights", [name, weights](JobControl&) { *name = weights(); },
+      [this, name] { session_.weights = *name; });
+}
+
+void Studio::ask_about_autosaves() {
+  if (services_.autosave_folder.empty()) return;
+  const auto found = found_autosaves(services_.autosave_folder);
+  if (found.empty()) return;
+  Question question;
+  question.kind = Question::Kind::Recover;
+  question.text = "The studio was not closed properly. Unsaved work was kept.";
+  question.autosaves = found;
+  session_.question = question;
+}
+
+void Studio::run(const std::string& name, const Arguments& arguments) {
+  const Command* const command = commands_.find(name);
+  US_CHECK(command, "there is no command ", name);
+  if (!command->undoable) {
+    command->run(*this, arguments);
+    follow_document();
+    return;
+  }
+  const Document before = session_.document;
+  try {
+    command->run(*this, arguments);
+  } catch (...) {
+    session_.document = before;  // a command does all of its work or nothing
+    throw;
+  }
+  if (same(before, session_.document)) return;
+  const std::string merge = command->merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
+  session_.history.add(before, command->label, merge);
+  session_.changed = true;
+  follow_document();
+}
+
+void Studio::try_run(const std::string& name, const Arguments& arguments) {
+  try {
+    run(name, arguments);
+  } catch (const std::exception& error) {
+    fail(error.what(), join_line(name, arguments));
+  }
+}
+
+void Studio::run_all(CommandQueue& queue) {
+  const CommandQueue now = std::exchange(queue, {});
+  for (const auto& [name, arguments] : now) try_run(name, arguments);
+}
+
+void Studio::fail(const std::string& sentence, const std::string& details) {
+  log::warn(sentence);
+  session_.errors.push_back({Notice::Kind::Error, sentence, details, 0});
+}
+
+void Studio::notify(const std::string& sentence, bool warning) {
+  const auto kind = warning ? Notice::Kind::Warning : Notice::Kind::Info;
+  session_.notices.push_back({kind, sentence, "", session_.time + kNoticeSeconds});
+}
+
+/// Tells the background what is wanted now, and drops what no longer belongs to anything.
+void Studio::follow_document() {
+  Background& b = *background_;
+  const Document& document = session_.document;
+  const auto match = matched_takes(b.followed.takes, document.takes);
+  std::vector<int64_t> ids;
+  std::vector<TakeState> takes;
+  for (size_t k = 0; k < document.takes.size(); ++k) {
+    const int old = match[k];
+    ids.push_back(old >= 0 ? b.take_ids[static_cast<size_t>(old)] : b.next_id++);
+    takes.push_back(old >= 0 ? std::move(session_.takes[static_cast<size_t>(old)]) : TakeState{});
+    if (old >= 0)
+      forget_outdated(takes.back(), b.followed.takes[static_cast<size_t>(old)], document.takes[k]);
+  }
+  session_.takes = std::move(takes);
+  b.take_ids = ids;
+  if (session_.selected_take >= static_cast<int>(ids.size()))
+    session_.selected_take = std::max(0, static_cast<int>(ids.size()) - 1);
+  follow_source();
+  follow_edits();
+  b.followed = document;
+  Plan plan = plan_of(document, ids);
+  const std::string key = plan_key(plan);
+  if (key == b.plan_key) return;
+  b.plan_key = key;
+  b.engine.set_plan(std::move(plan));
+  session_.working = true;
+}
+
+/// A take whose target was replaced shows nothing of the old one.
+void Studio::forget_outdated(TakeState& state, const Take& before, const Take& now) {
+  if (target_key(before.target) == target_key(now.target)) {
+    if (method_key(before.method) != method_key(now.method)) state.problem.clear(), state.latency = {};
+    return;
+  }
+  const int64_t generation = state.generation + 1;
+  state = TakeState{};
+  state.generation = generation;
+}
+
+void Studio::follow_source() {
+  Background& b = *background_;
+  const Document& document = session_.document;
+  const std::string key = source_key(document.source, document.scan_edits);
+  if (key != b.source_key) {
+    b.source_key = key;
+    cache_.set_source(document.source, document.scan_edits);
+    if (document.source.path.empty()) session_.source = SourceState{};
+  }
+  if (document.truth == b.truth_path) return;
+  b.truth_path = document.truth;
+  session_.truth.reset();
+  if (document.truth.empty()) return;
+  auto truth = std::make_shared<Truth>();
+  const std::string path = document.truth;
+  jobs_.start(
+      "Reading the truth", [truth, path](JobControl&) { *truth = read_truth(path); },
+      [this, truth, path] {
+        if (path != background_->truth_path) return;
+        session_.truth = truth;
+        for (int64_t id : background_->take_ids) background_->dirty.insert(id);
+      });
+}
+
+/// Edits that need no new frames: painted weights at once, edits of the result in the background.
+void Studio::follow_edits() {
+  Background& b = *background_;
+  for (size_t k = 0; k < session_.document.takes.size(); ++k) {
+    const Take& take = session_.document.takes[k];
+    Background::Applied& applied = b.applied[b.take_ids[k]];
+    if (take.target_edits.weights != applied.weights) apply_weights(k);
+    const std::string key = pose_key(take.pose_edits);
+    if (key == applied.poses) continue;
+    applied.poses = key;
+    b.dirty.insert(b.take_ids[k]);
+  }
+}
+
+/// Puts the user's skin weights over the networks'.
+void Studio::apply_weights(size_t k) {
+  Background::Applied& applied = background_->applied[background_->take_ids[k]];
+  TakeState& state = session_.takes[k];
+  applied.weights = session_.document.takes[k].target_edits.weights;
+  if (!applied.deformer) return;
+  state.deformer = applied.deformer;
+  if (applied.weights && !applied.weights->empty()) {
+    RowMatrix weights = applied.deformer->weights();
+    understudy::apply(*applied.weights, weights);
+    state.deformer = applied.deformer->with_weights(std::move(weights));
+  }
+  state.weights = std::shared_ptr<const RowMatrix>(state.deformer, &state.deformer->weights());
+  ++state.generation;
+}
+
+const Neighbours& Studio::neighbours(size_t take) {
+  US_CHECK(take < session_.takes.size() && session_.takes[take].target, "the target is still being prepared");
+  Background::Applied& applied = background_->applied[background_->take_ids[take]];
+  if (applied.neighbours_of != session_.takes[take].target) {
+    applied.neighbours_of = session_.takes[take].target;
+    applied.neighbours = Neighbours::from(applied.neighbours_of->mesh);
+  }
+  return applied.neighbours;
+}
+
+void Studio::tick(double seconds) {
+  session_.time += seconds;
+  take_in_results();
+  const bool takes = !session_.takes.empty();
+  const PoseEdits none;
+  const PoseEdits& edits =
+      takes ? session_.document.takes[static_cast<size_t>(session_.selected_take)].pose_edits : none;
+  const int count = frame_count(session_);
+  if (session_.playback.live && session_.working && !session_.playback.playing)
+    session_.playback.frame = count - 1;
+  Playback trimmed = session_.playback;
+  if (edits.trim && trimmed.in < 0) trimmed.in = edits.trim->first;
+  if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
+  advance(trimmed, seconds, session_.source.fps, count, edits.skip);
+  session_.playback.frame = std::clamp(trimmed.frame, 0.0, std::max(0.0, count - 1e-3));
+  session_.playback.playing = trimmed.playing;
+  if (session_.view.turntable_deg_s != 0)
+    for (CameraState& camera : session_.view.cameras)
+      camera.yaw += static_cast<float>(seconds) * session_.view.turntable_deg_s * kPi / 180;
+  session_.jobs = jobs_.views();
+  auto& notices = session_.notices;
+  notices.erase(std::remove_if(notices.begin(), notices.end(),
+                               [this](const Notice& notice) { return notice.until < session_.time; }),
+                notices.end());
+  autosave(seconds);
+}
+
+void Studio::autosave(double seconds) {
+  Background& b = *background_;
+  if (services_.autosave_folder.empty() || session_.question) return;
+  b.since_autosave += seconds;
+  if (!session_.changed || b.since_autosave < session_.settings.autosave_s || *b.autosaving) return;
+  b.since_autosave = 0;
+  *b.autosaving = true;
+  const SavedDocument saved = saved_document();
+  jobs_.start("Autosave", [saved, folder = services_.autosave_folder, path = session_.path,
+                           writing = b.autosaving](JobControl&) {
+    struct Reset {
+      std::atomic<bool>& flag;
+      ~Reset() { flag = false; }
+    } reset{*writing};
+    write_autosave(folder, saved, path);
+  });
+}
+
+SavedDocument Studio::saved_document() const {
+  return {session_.document, session_.view, session_.playback, session_.weights};
+}
+
+bool Studio::idle() const {
+  return !session_.working && !jobs_.running() && !background_->refiner.busy() &&
+         background_->dirty.empty() && !cache_.busy();
+}
+
+void Studio::wait_idle(double timeout_s) {
+  const auto began = std::chrono::steady_clock::now();
+  do {
+    tick(0);
+    US_CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() < timeout_s,
+             "the studio was still working after ", timeout_s, " s");
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  } while (!idle());
+  tick(0);
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,326 @@
+// What the background has finished, taken into the session.
+#include <algorithm>
+#include <sstream>
+
+#include "app/session/background.hpp"
+#include "app/session/frame_figures.hpp"
+#include "retarget/base/error.hpp"
+
+namespace understudy::app {
+namespace {
+
+constexpr double kRefineEvery = 0.4;  // seconds between two passes over a result that still grows
+
+/// Puts `frames` at `first`, over what is there and behind it. True when earlier ones were replaced.
+template <class Frame>
+bool put(std::vector<Frame>& all, int first, std::vector<Frame> frames) {
+  const size_t at = static_cast<size_t>(first);
+  const bool replaces = at < all.size();
+  if (at + frames.size() > all.size()) all.resize(at + frames.size());
+  std::move(frames.begin(), frames.end(), all.begin() + first);
+  return replaces;
+}
+
+/// Frames appended to a result that nobody edits are shown at once.
+void append_shown(TakeState& take, int first, double fps) {
+  take.shown.fps = static_cast<float>(fps);
+  const size_t count = take.performed.size();
+  if (static_cast<size_t>(first) > take.shown.poses.size()) first = static_cast<int>(take.shown.poses.size());
+  take.shown.poses.resize(count);
+  take.shown.flags.resize(count);
+  take.joints.resize(count);
+  for (size_t t = static_cast<size_t>(first); t < count; ++t) {
+    take.shown.poses[t] = take.performed[t].pose;
+    take.shown.flags[t] = take.performed[t].flagged;
+    take.joints[t] = forward_kinematics(take.target->joints, take.shown.poses[t]).joints;
+  }
+}
+
+/// The series of both; where both have a key, the newer.
+void merge_series(std::vector<Series>& into, std::vector<Series> newer) {
+  for (Series& series : newer) {
+    const auto same =
+        std::find_if(into.begin(), into.end(), [&](const Series& s) { return s.key == series.key; });
+    if (same == into.end())
+      into.push_back(std::move(series));
+    else
+      *same = std::move(series);
+  }
+}
+
+}  // namespace
+
+std::string plan_key(const Plan& plan) {
+  std::ostringstream out;
+  out << source_key(plan.source, plan.scan_edits) << '\n' << plan.extractor << '\n';
+  for (const SkeletonEdit& edit : plan.skeleton_edits)
+    if (const auto* drag = std::get_if<DragEdit>(&edit))
+      out << drag->frame << ' ' << drag->joint << ' ' << drag->offset.transpose() << ' ' << drag->falloff
+          << ' ' << drag->with_children << ';';
+    else if (const auto* swap = std::get_if<SwapEdit>(&edit))
+      out << "s " << swap->first << ' ' << swap->last << ' ' << static_cast<int>(swap->limbs) << ';';
+  for (const Plan::TakePlan& take : plan.takes) {
+    out << '\n' << take.id << ' ' << target_key(take.target) << ' ' << method_key(take.method);
+    for (const JointMove& move : take.joints)
+      out << ' ' << move.joint << ' ' << move.position.transpose() << ' ' << move.mirror;
+  }
+  return out.str();
+}
+
+std::string pose_key(const PoseEdits& edits) {
+  std::ostringstream out;
+  for (const RotateEdit& rotate : edits.rotate)
+    out << rotate.frame << ' ' << rotate.joint << ' ' << rotate.axis_angle.transpose() << ' '
+        << rotate.falloff << ';';
+  if (edits.smooth) out << "smooth " << edits.smooth->strength;
+  if (edits.floor) out << "floor " << edits.floor->offset_m;
+  if (edits.pin)
+    out << "pin " << edits.pin->left << edits.pin->right << edits.pin->keep_soles_up << edits.pin->blend_s;
+  if (edits.heading) out << "heading " << edits.heading->yaw_deg;
+  return out.str();  // trim and skip change what plays, not the poses
+}
+
+TakeState* Studio::take_of(int64_t id) {
+  const auto& ids = background_->take_ids;
+  const auto found = std::find(ids.begin(), ids.end(), id);
+  return found == ids.end() ? nullptr : &session_.takes[static_cast<size_t>(found - ids.begin())];
+}
+
+template <>
+void Studio::take_in(SourceOpened& event) {
+  const int64_t generation = session_.source.generation + 1;
+  session_.source = SourceState{};
+  session_.source.generation = generation;
+  session_.source.name = event.name;
+  session_.source.count = event.count;
+  session_.source.fps = event.fps;
+  for (TakeState& take : session_.takes) {
+    take.performed.clear();
+    take.shown = Motion{};
+    take.joints.clear();
+    take.series.clear();
+    take.metrics.clear();
+    take.latency = {};
+    ++take.generation;
+  }
+}
+
+template <>
+void Studio::take_in(SourceFailed& event) {
+  fail(event.sentence, "source.open");
+}
+
+template <>
+void Studio::take_in(SourceFrames& event) {
+  SourceState& source = session_.source;
+  if (put(source.frames, event.first, std::move(event.frames))) ++source.generation;
+  source.decision = event.decision;
+  source.has_faces = event.has_faces;
+}
+
+template <>
+void Studio::take_in(TakeReady& event) {
+  TakeState* const take = take_of(event.id);
+  if (!take) return;
+  take->ready = true;
+  take->problem.clear();
+  take->target = event.target;
+  background_->applied[event.id].deformer = event.deformer;
+  apply_weights(static_cast<size_t>(take - session_.takes.data()));
+  for (const std::string& warning : event.target->warnings) notify(warning, true);
+}
+
+template <>
+void Studio::take_in(TakeFailed& event) {
+  TakeState* const take = take_of(event.id);
+  if (!take) return;
+  take->problem = event.sentence;
+  fail(event.sentence, "target.add");
+}
+
+template <>
+void Studio::take_in(TakeFrames& event) {
+  TakeState* const take = take_of(event.id);
+  if (!take || !take->target) return;
+  const bool redone = put(take->performed, event.first, std::move(event.frames));
+  for (const FrameTimes& times : event.times) take->latency.add(times);
+  const size_t k = static_cast<size_t>(take - session_.takes.data());
+  if (redone) ++take->generation;
+  if (session_.document.takes[k].pose_edits.empty() || !redone)
+    append_shown(*take, event.first, session_.source.fps);
+  background_->applied[event.id].measured = false;
+  background_->dirty.insert(event.id);
+}
+
+void Studio::take_in_refined() {
+  for (Refined& refined : background_->refiner.drain()) {
+    TakeState* const take = take_of(refined.take_id);
+    if (!take) continue;
+    if (!refined.problem.empty()) fail(refined.problem);
+    const size_t count = refined.shown.poses.size();
+    const size_t k = static_cast<size_t>(take - session_.takes.data());
+    const bool edited =
+        !session_.document.takes[k].pose_edits.empty() ||
+        !std::equal(take->joints.begin(),
+                    take->joints.begin() + static_cast<long>(std::min(count, take->joints.size())),
+                    refined.joints.begin());
+    if (edited && count <= take->shown.poses.size()) {
+      std::move(refined.shown.poses.begin(), refined.shown.poses.end(), take->shown.poses.begin());
+      std::move(refined.joints.begin(), refined.joints.end(), take->joints.begin());
+      ++take->generation;
+    }
+    take->cost = refined.cost;
+    merge_series(take->series, std::move(refined.series));
+    background_->applied[refined.take_id].refined_frames = count;
+  }
+}
+
+void Studio::refine_dirty() {
+  Background& b = *background_;
+  for (auto id = b.dirty.begin(); id != b.dirty.end();) {
+    TakeState* const take = take_of(*id);
+    Background::Applied& applied = b.applied[*id];
+    if (take && (!take->target || (session_.working && session_.time - applied.refined_at < kRefineEvery))) {
+      if (!take->target && !session_.working) {
+        id = b.dirty.erase(id);
+        continue;
+      }
+      ++id;
+      continue;
+    }
+    if (take && !take->performed.empty()) {
+      const size_t k = static_cast<size_t>(take - session_.takes.data());
+      RefineRequest request{
+          *id,           {}, session_.document.takes[k].pose_edits, take->target, session_.source.frames,
+          session_.truth};
+      request.performed.fps = static_cast<float>(session_.source.fps);
+      for (const KeptFrame& frame : take->performed) {
+        request.performed.poses.push_back(frame.pose);
+        request.performed.flags.push_back(frame.flagged);
+      }
+      b.refiner.request(std::move(request));
+      applied.refined_at = session_.time;
+      applied.measured = false;
+    }
+    id = b.dirty.erase(id);
+  }
+}
+
+/// Once all frames are there, each take's surface is judged frame by frame, one take after the other.
+void Studio::measure_finished() {
+  Background& b = *background_;
+  if (session_.working || session_.paused || b.refiner.busy() || !b.dirty.empty()) return;
+  for (size_t k = 0; k < session_.takes.size(); ++k) {
+    Background::Applied& applied = b.applied[b.take_ids[k]];
+    if (applied.measuring != 0) return;
+    if (applied.measured || session_.takes[k].shown.poses.empty() || !session_.takes[k].deformer) continue;
+    applied.measured = true;
+    return measure(k);
+  }
+}
+
+namespace {
+
+/// All that judging a take needs, copied for its thread.
+struct Measuring {
+  SourceOptions source;
+  ScanEdits edits;
+  Motion shown;
+  std::vector<Joints> joints, raw_joints, source_joints;
+  std::shared_ptr<const Target> target;
+  std::shared_ptr<const Deformer> deformer;
+  std::shared_ptr<const Truth> truth;
+  std::vector<Series> series;
+  Metrics metrics;
+};
+
+void keep_figures(std::vector<Series>& series, size_t t, const SurfaceFigures& figures) {
+  const double values[] = {figures.mpvd_m,   figures.pa_mpvd_m,        figures.medl_mm,
+                           figures.floor_mm, figures.self_penetration, figures.inside};
+  for (size_t i = 0; i < series.size(); ++i) series[i].values[t] = static_cast<float>(values[i]);
+}
+
+void judge_all(Measuring& m, JobControl& control) {
+  const size_t count = m.shown.poses.size();
+  const bool comparable = m.truth && m.truth->frames == static_cast<int64_t>(count) &&
+                          m.truth->vertex_count == m.target->mesh.vertices.rows();
+  Judge judge(m.shown.fps, comparable ? m.truth.get() : nullptr, &m.target->mesh);
+  for (const char* key : {"mpvd_m", "pa_mpvd_m", "medl_mm", "floor_mm", "self_penetration", "inside"})
+    m.series.push_back(blank_series(key, count));
+  SourceOptions quiet = m.source;
+  quiet.quiet = true;
+  const std::unique_ptr<Source> source = open_source(quiet);
+  for (size_t t = 0; t < count; ++t) {
+    control.check();
+    control.progress(static_cast<float>(t) / static_cast<float>(count));
+    auto scan = source->next();
+    if (scan && scan->usable) scan->mesh = understudy::apply(m.edits, scan->mesh);
+    const Points vertices = m.deformer->deform(m.shown.poses[t]);
+    judge.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.raw_joints[t],
+                scan && scan->usable ? &scan->mesh : nullptr});
+    keep_figures(m.series, t, judge.last());
+  }
+  m.metrics = judge.metrics();
+}
+
+}  // namespace
+
+void Studio::measure(size_t k) {
+  const int64_t id = background_->take_ids[k];
+  const TakeState& take = session_.takes[k];
+  auto m = std::make_shared<Measuring>();
+  m->source = session_.document.source;
+  m->edits = session_.document.scan_edits;
+  m->shown = take.shown;
+  m->joints = take.joints;
+  for (const KeptSource& frame : session_.source.frames) {
+    m->raw_joints.push_back(frame.raw);
+    m->source_joints.push_back(frame.joints);
+  }
+  if (m->source_joints.size() < m->shown.poses.size()) return;
+  m->target = take.target;
+  m->deformer = take.deformer;
+  m->truth = session_.truth;
+  const int64_t generation = take.generation;
+  Background::Applied& applied = background_->applied[id];
+  applied.measuring = jobs_.start(
+      "Measuring " + session_.document.takes[k].name, [m](JobControl& control) { judge_all(*m, control); },
+      [this, id, m, generation] {
+        background_->applied[id].measuring = 0;
+        TakeState* const state = take_of(id);
+        if (!state || state->generation != generation) return;
+        merge_series(state->series, std::move(m->series));
+        state->metrics = std::move(m->metrics);
+      });
+}
+
+void Studio::take_in_results() {
+  Background& b = *background_;
+  session_.working = b.engine.working();
+  for (EngineEvent& event : b.engine.drain()) std::visit([this](auto& e) { take_in(e); }, event);
+  take_in_refined();
+  refine_dirty();
+  for (const std::string& sentence : jobs_.drain()) fail(sentence);
+  for (auto& [id, applied] : b.applied) {  // a measuring that failed or was cancelled is over, too
+    const auto views = jobs_.views();
+    const bool running = std::any_of(views.begin(), views.end(), [&applied = applied](const JobView& view) {
+      return view.id == applied.measuring;
+    });
+    if (applied.measuring != 0 && !running) applied.measuring = 0;
+  }
+  measure_finished();
+}
+
+void Studio::pause_work(bool paused) {
+  session_.paused = paused;
+  background_->engine.pause(paused);
+}
+
+void Studio::restart_work() {
+  Background& b = *background_;
+  b.engine.set_plan(Plan{});
+  b.plan_key.clear();
+  follow_document();
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,162 @@
+#include <filesystem>
+#include <sstream>
+
+#include "app/session/command_sets.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr size_t kMostTakes = 8;
+
+std::string target_file(const Arguments& arguments, size_t i) {
+  const std::string path = fs::absolute(word(arguments, i, "path")).lexically_normal().string();
+  std::error_code failed;
+  US_CHECK(fs::exists(path, failed), path, ": there is no such file");
+  US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
+  US_CHECK(format_of_suffix(path) || fs::path(path).extension() == ".npz", path,
+           ": is no mesh that is known");
+  return path;
+}
+
+std::vector<float> betas(const std::string& text) {
+  std::vector<float> values;
+  std::stringstream list(text);
+  std::string item;
+  while (std::getline(list, item, ','))
+    values.push_back(static_cast<float>(number({item}, 0, "shape parameter")));
+  return values;
+}
+
+void add_targets(Commands& commands) {
+  commands.add({"target.add", "Add target", "PATH", "", true, false, [](Studio& s, const Arguments& a) {
+                  Session& session = s.session();
+                  auto& takes = session.document.takes;
+                  US_CHECK(takes.size() < kMostTakes, "there are ", kMostTakes, " takes already");
+                  Take take;
+                  take.target.path = target_file(a, 0);
+                  take.name = fs::path(take.target.path).stem().string();
+                  remember(session.settings.recent_targets, take.target.path);
+                  takes.push_back(std::move(take));
+                  session.selected_take = static_cast<int>(takes.size()) - 1;
+                }});
+  commands.add(
+      {"target.replace", "Replace target", "TAKE PATH", "", true, false, [](Studio& s, const Arguments& a) {
+         Take& take = take_argument(s.session(), a, 0);
+         take.target = TargetOptions{};
+         take.target.path = target_file(a, 1);
+         take.target_edits = {};
+         take.name = fs::path(take.target.path).stem().string();
+       }});
+  commands.add({"target.remove", "Remove take", "TAKE", "", true, false, [](Studio& s, const Arguments& a) {
+                  take_argument(s.session(), a, 0);
+                  auto& takes = s.session().document.takes;
+                  takes.erase(takes.begin() + whole_number(a, 0, "take"));
+                }});
+  commands.add({"target.select", "Select take", "TAKE", "", false, false, [](Studio& s, const Arguments& a) {
+                  take_argument(s.session(), a, 0);
+                  s.session().selected_take = whole_number(a, 0, "take");
+                  s.session().view.active_pane = s.session().selected_take + 1;
+                }});
+  commands.add(
+      {"take.rename", "Rename take", "TAKE NAME", "", true, false,
+       [](Studio& s, const Arguments& a) { take_argument(s.session(), a, 0).name = word(a, 1, "name"); }});
+}
+
+void add_target_import(Commands& commands) {
+  commands.add({"target.units", "Units of the target", "TAKE auto|m|dm|cm|mm|in", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 1, "unit", {"auto", "m", "dm", "cm", "mm", "in"});
+                  take_argument(s.session(), a, 0).target.import.units = a[1];
+                }});
+  commands.add({"target.up", "Up axis of the target", "TAKE auto|x|y|z|-x|-y|-z", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 1, "axis", {"auto", "x", "y", "z", "-x", "-y", "-z"});
+                  take_argument(s.session(), a, 0).target.import.up = a[1];
+                }});
+  commands.add({"target.yaw", "Turn the target", "TAKE DEGREES: it must face +z", "", true, true,
+                [](Studio& s, const Arguments& a) {
+                  take_argument(s.session(), a, 0).target.import.yaw_deg =
+                      static_cast<float>(number(a, 1, "angle"));
+                }});
+  commands.add({"target.betas", "Shape of the target", "TAKE \"1.2,-0.5\"", "", true, true,
+                [](Studio& s, const Arguments& a) {
+                  take_argument(s.session(), a, 0).target.betas =
+                      betas(word(a, 1, "list of shape parameters"));
+                }});
+}
+
+/// One setting of a method, "engine=paper".
+void set_method(Method& method, const std::string& key, const std::string& value) {
+  const auto on = [&] { return on_off({value}, 0); };
+  switch (
+      choice({key}, 0, "setting", {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths"})) {
+    case 0:
+      choice({value}, 0, "engine", {"copy", "paper"});
+      method.engine = value;
+      break;
+    case 1:
+      choice({value}, 0, "extractor", {"dense", "paper"});
+      method.extractor = value;
+      break;
+    case 2:
+      method.offsets = on();
+      break;
+    case 3:
+      method.root = static_cast<RootMode>(choice({value}, 0, "path", {"scaled", "original", "in-place"}));
+      break;
+    case 4:
+      method.repair_swaps = on();
+      break;
+    case 5:
+      method.smooth_joints = on();
+      break;
+    default:
+      method.fix_lengths = on();
+  }
+}
+
+void add_methods(Commands& commands) {
+  const auto setting = [&commands](const char* key, const char* label, const char* usage) {
+    const std::string name = key;
+    commands.add({"method." + name, label, usage, "", true, false, [name](Studio& s, const Arguments& a) {
+                    set_method(take_argument(s.session(), a, 0).method, name, word(a, 1, "setting"));
+                  }});
+  };
+  setting("engine", "Motion transfer", "TAKE copy|paper");
+  setting("extractor", "Skeleton extraction", "TAKE dense|paper");
+  setting("offsets", "Pose-corrective offsets", "TAKE on|off");
+  setting("root", "Path", "TAKE scaled|original|in-place");
+  commands.add({"method.filter", "Joint filter", "TAKE swaps|smooth|lengths on|off", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 1, "filter", {"swaps", "smooth", "lengths"});
+                  set_method(take_argument(s.session(), a, 0).method, a[1], word(a, 2, "switch"));
+                }});
+  commands.add(
+      {"compare.add", "Compare with another method", "TAKE [SETTING=VALUE ...]", "", true, false,
+       [](Studio& s, const Arguments& a) {
+         Session& session = s.session();
+         Take other = take_argument(session, a, 0);
+         US_CHECK(session.document.takes.size() < kMostTakes, "there are ", kMostTakes, " takes already");
+         for (size_t i = 1; i < a.size(); ++i) {
+           const size_t equals = a[i].find('=');
+           US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", a[i]);
+           set_method(other.method, a[i].substr(0, equals), a[i].substr(equals + 1));
+           other.name += (i == 1 ? " (" : ", ") + a[i].substr(0, equals) + " " + a[i].substr(equals + 1);
+         }
+         other.name += a.size() > 1 ? ")" : " (2)";
+         session.document.takes.push_back(std::move(other));
+       }});
+}
+
+}  // namespace
+
+void add_take_commands(Commands& commands) {
+  add_targets(commands);
+  add_target_import(commands);
+  add_methods(commands);
+}
+
+}  // namespace understudy::app

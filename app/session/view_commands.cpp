@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/session/command_sets.hpp"
+#include "retarget/base/error.hpp"
+
+namespace understudy::app {
+namespace {
+
+constexpr float kDegree = kPi / 180;
+
+/// The camera of the active pane, made where there is none yet.
+CameraState& camera(Session& session, int pane) {
+  View& view = session.view;
+  if (view.linked || pane < 0) pane = 0;
+  const CameraState first = view.cameras.empty() ? CameraState{} : view.cameras[0];
+  if (static_cast<size_t>(pane) >= view.cameras.size())
+    view.cameras.resize(static_cast<size_t>(pane) + 1, first);
+  return view.cameras[static_cast<size_t>(pane)];
+}
+
+CameraState& active_camera(Studio& studio) {
+  return camera(studio.session(), studio.session().view.active_pane);
+}
+
+struct Preset {
+  const char* name;
+  const char* label;
+  const char* key;
+  float yaw, pitch;  // degrees
+};
+constexpr Preset kPresets[] = {
+    {"front", "Front view", "1", 0, 0},      {"right", "Right view", "3", 90, 0},
+    {"top", "Top view", "7", 0, 89},         {"back", "Back view", "Ctrl+1", 180, 0},
+    {"left", "Left view", "Ctrl+3", -90, 0}, {"three-quarter", "Three-quarter view", "0", 32, 10}};
+
+void add_cameras(Commands& commands) {
+  for (const Preset& preset : kPresets)
+    commands.add({std::string("view.preset_") + preset.name, preset.label, "", preset.key, false, false,
+                  [&preset](Studio& s, const Arguments&) { s.run("view.preset", {preset.name}); }});
+  commands.add({"view.preset", "Camera preset", "front|right|top|back|left|three-quarter", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  std::vector<std::string> names;
+                  for (const Preset& preset : kPresets) names.push_back(preset.name);
+                  const Preset& preset = kPresets[choice(a, 0, "preset", names)];
+                  active_camera(s).yaw = preset.yaw * kDegree;
+                  active_camera(s).pitch = preset.pitch * kDegree;
+                }});
+  commands.add({"view.camera", "Camera", "YAW_DEG PITCH_DEG [DISTANCE]", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  CameraState& c = active_camera(s);
+                  c.yaw = static_cast<float>(number(a, 0, "yaw")) * kDegree;
+                  c.pitch = std::clamp(static_cast<float>(number(a, 1, "pitch")), -89.f, 89.f) * kDegree;
+                  if (a.size() > 2)
+                    c.distance = std::clamp(static_cast<float>(number(a, 2, "distance")), 0.05f, 500.f);
+                }});
+  commands.add({"view.camera_state", "Camera", "PANE X Y Z YAW PITCH DISTANCE: radians, metres", "", false,
+                false, [](Studio& s, const Arguments& a) {
+                  CameraState& c = camera(s.session(), whole_number(a, 0, "pane"));
+                  c.target = vector_argument(a, 1, "target");
+                  c.yaw = static_cast<float>(number(a, 4, "yaw"));
+                  c.pitch = static_cast<float>(number(a, 5, "pitch"));
+                  c.distance = std::clamp(static_cast<float>(number(a, 6, "distance")), 0.05f, 500.f);
+                }});
+  commands.add(
+      {"view.ortho", "Orthographic", "on|off|toggle", "5", false, false, [](Studio& s, const Arguments& a) {
+         CameraState& c = active_camera(s);
+         c.orthographic = switched(a, 0, c.orthographic);
+       }});
+}
+
+/// The mean of what is shown at the frame, and how large it is.
+void fit(Studio& studio) {
+  Session& session = studio.session();
+  const int frame = shown_frame(session);
+  Joints joints = Joints::Zero();
+  bool any = false;
+  if (frame >= 0 && static_cast<size_t>(frame) < session.source.frames.size()) {
+    joints = session.source.frames[static_cast<size_t>(frame)].joints;
+    any = true;
+  }
+  const size_t k = static_cast<size_t>(session.selected_take);
+  if (!any && k < session.takes.size() && session.takes[k].target) {
+    joints = session.takes[k].target->joints;
+    any = true;
+  }
+  CameraState& c = active_camera(studio);
+  if (!any) {
+    c.target = Vec3(0, 0.9f, 0);
+    c.distance = 4.2f;
+    return;
+  }
+  const Vec3 low = joints.colwise().minCoeff().transpose(), high = joints.colwise().maxCoeff().transpose();
+  c.target = 0.5f * (low + high);
+  const float size = std::max(0.6f, (high - low).norm() + 0.35f);
+  c.distance = 0.5f * size / std::tan(0.5f * c.fov) * 1.12f;
+}
+
+void add_camera_motion(Commands& commands) {
+  commands.add({"view.fit", "Fit", "all that is shown", "F", false, false,
+                [](Studio& s, const Arguments&) { fit(s); }});
+  commands.add(
+      {"view.orbit", "Orbit", "YAW_DEG PITCH_DEG", "", false, false, [](Studio& s, const Arguments& a) {
+         CameraState& c = active_camera(s);
+         c.yaw += static_cast<float>(number(a, 0, "yaw")) * kDegree;
+         const float pitch = c.pitch + static_cast<float>(number(a, 1, "pitch")) * kDegree;
+         c.pitch = std::clamp(pitch, -89 * kDegree, 89 * kDegree);
+       }});
+  commands.add({"view.pan", "Pan", "RIGHT UP: metres", "", false, false, [](Studio& s, const Arguments& a) {
+                  CameraState& c = active_camera(s);
+                  const float right = static_cast<float>(number(a, 0, "distance"));
+                  c.target += Vec3(right * std::cos(c.yaw), static_cast<float>(number(a, 1, "distance")),
+                                   -right * std::sin(c.yaw));
+                }});
+  commands.add(
+      {"view.zoom", "Zoom", "FACTOR: of the distance", "", false, false, [](Studio& s, const Arguments& a) {
+         CameraState& c = active_camera(s);
+         c.distance = std::clamp(c.distance * static_cast<float>(number(a, 0, "factor")), 0.05f, 500.f);
+       }});
+  commands.add({"view.turntable", "Turntable", "DEGREES_PER_SECOND", "T", false, false,
+                [](Studio& s, const Arguments& a) {
+                  float& speed = s.session().view.turntable_deg_s;
+                  speed = a.empty() ? (speed == 0 ? 30.f : 0.f) : static_cast<float>(number(a, 0, "speed"));
+                }});
+  commands.add({"view.follow", "Follow the person", "on|off|toggle", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  s.session().view.follow = switched(a, 0, s.session().view.follow);
+                }});
+  commands.add(
+      {"view.link", "Link the cameras", "on|off|toggle", "", false, false, [](Studio& s, const Arguments& a) {
+         s.session().view.linked = switched(a, 0, s.session().view.linked);
+       }});
+}
+
+bool& layer(Layers& layers, const Arguments& a) {
+  const std::vector<std::string> names = {"surface",     "as_points", "skeleton", "x_ray",
+                                          "joint_names", "ground",    "trails",   "ghosts"};
+  bool* const which[] = {&layers.surface,     &layers.as_points, &layers.skeleton, &layers.x_ray,
+                         &layers.joint_names, &layers.ground,    &layers.trails,   &layers.ghosts};
+  return *which[choice(a, 1, "layer", names)];
+}
+
+Layers& layers(Session& session, const Arguments& a) {
+  return choice(a, 0, "pane", {"source", "take"}) == 0 ? session.view.source : session.view.take;
+}
+
+void add_layers(Commands& commands) {
+  commands.add({"view.layer", "Layer", "source|take LAYER on|off|toggle", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  bool& shown = layer(layers(s.session(), a), a);
+                  shown = switched(a, 2, shown);
+                }});
+  commands.add(
+      {"view.colour", "Colour by", "source|take plain|weights|offsets|error|difference|confidence", "", false,
+       false, [](Studio& s, const Arguments& a) {
+         layers(s.session(), a).colouring = static_cast<Colouring>(
+             choice(a, 1, "colouring", {"plain", "weights", "offsets", "error", "difference", "confidence"}));
+       }});
+  commands.add(
+      {"view.weights_joint", "Weights of", "JOINT|all", "", false, false, [](Studio& s, const Arguments& a) {
+         s.session().view.weights_joint = word(a, 0, "joint") == "all" ? -1 : joint_argument(a, 0);
+       }});
+  commands.add(
+      {"view.trail_joint", "Trail of", "JOINT on|off", "", false, false, [](Studio& s, const Arguments& a) {
+         std::vector<int>& joints = s.session().view.trail_joints;
+         const int joint = joint_argument(a, 0);
+         joints.erase(std::remove(joints.begin(), joints.end(), joint), joints.end());
+         if (on_off(a, 1)) joints.push_back(joint);
+       }});
+  commands.add({"view.ghosts", "Ghosts", "COUNT STEP: to each side, frames between", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  s.session().view.ghost_count = std::clamp(whole_number(a, 0, "count"), 0, 10);
+                  s.session().view.ghost_step = std::clamp(whole_number(a, 1, "step"), 1, 1000);
+                }});
+  commands.add({"view.error_scale", "Error scale", "MM: the upper end", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  s.session().view.error_scale_mm =
+                      std::clamp(static_cast<float>(number(a, 0, "scale")), 0.1f, 1e4f);
+                }});
+  commands.add({"view.metric", "Plot in the timeline", "KEY", "", false, false,
+                [](Studio& s, const Arguments& a) { s.session().view.metric = word(a, 0, "figure"); }});
+}
+
+void add_panes(Commands& commands) {
+  commands.add({"view.layout", "Layout", "side-by-side|single|overlay|wipe", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  s.session().view.layout = static_cast<Layout>(
+                      choice(a, 0, "layout", {"side-by-side", "single", "overlay", "wipe"}));
+                }});
+  commands.add({"view.pane", "Active view", "PANE: 0 the source, K + 1 the take K", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  Session& session = s.session();
+                  const int pane = whole_number(a, 0, "pane");
+                  US_CHECK(pane >= 0 && pane <= static_cast<int>(session.document.takes.size()),
+                           "there is no view ", pane);
+                  session.view.active_pane = pane;
+                  if (pane > 0) session.selected_take = pane - 1;
+                }});
+  commands.add({"view.wipe", "Wipe line", "SHARE: 0 to 1 of the width", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  s.session().view.wipe = std::clamp(static_cast<float>(number(a, 0, "share")), 0.f, 1.f);
+                }});
+}
+
+}  // namespace
+
+void add_view_commands(Commands& commands) {
+  add_panes(commands);
+  add_cameras(commands);
+  add_camera_motion(commands);
+  add_layers(commands);
+}
+
+}  // namespace understudy::app
