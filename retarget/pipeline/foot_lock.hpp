@@ -8,11 +8,10 @@
 namespace understudy {
 
 struct FootLockOptions {
-  FootContactOptions contact;
-  float release_s = 0.12f;  ///< time constant in which a correction fades once the foot has left
-  float creep_s = 3.0f;     ///< the same while it stands: what was wrong at the landing is made good slowly
-  float max_offset_m =
-      0.12f;  ///< a foot that would be held further from where it should be slips (leg 0.8 m)
+  FootContactOptions contact = {0.02f, 0.04f, 0.6f, 1.0f};  ///< of the source's feet
+  float release_s = 0.08f;  ///< time constant in which a correction fades once the foot has left
+  float creep_s = 1.0f;     ///< the same while it stands: what was wrong at the landing is made good slowly
+  float max_offset_m = 0.12f;  ///< a foot held further from where it should be slips (leg 0.8 m)
 };
 
 /// Holds each standing foot of the target by inverse kinematics of its leg. Looks only back, memory is

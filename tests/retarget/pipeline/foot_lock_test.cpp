@@ -45,10 +45,21 @@ float fastest_turn(const std::vector<Pose>& poses, float fps) {
 }
 
 TEST(FootLock, HoldsStandingFeetAtAnyRate) {
+  FootLockOptions firm;
+  firm.creep_s = 100;
   for (const float fps : {30.0f, 60.0f, 120.0f}) {
     const Walk walk(fps);
-    EXPECT_GT(walk.skate(walk.sliding.poses), 4 * walk.skate(walk.locked())) << fps;
+    EXPECT_GT(walk.skate(walk.sliding.poses), 4 * walk.skate(walk.locked(firm))) << fps;
+    EXPECT_GT(walk.skate(walk.sliding.poses), 1.8 * walk.skate(walk.locked())) << fps;
   }
+}
+
+TEST(FootLock, TakesTheTremorOfAStandingFootAway) {
+  Walk walk;
+  Rng rng(1);
+  for (size_t t = 0; t < walk.sliding.poses.size(); ++t)
+    walk.sliding.poses[t].root = walk.source.poses[t].root + 0.006f * Vec3(rng.normal(), 0, rng.normal());
+  EXPECT_GT(walk.skate(walk.sliding.poses), 10 * walk.skate(walk.locked()));
 }
 
 TEST(FootLock, DoesNotMakeLegsSnap) {
