@@ -5,4 +5,5 @@ pkg_check_modules(FREETYPE REQUIRED IMPORTED_TARGET freetype2)
 us_module(gui SOURCES
   ui/theme.cpp ui/gui/ui.cpp ui/gui/fonts.cpp ui/gui/gui.cpp ui/gui/draw_pass.cpp
   ui/widgets/icons.cpp ui/widgets/controls.cpp ui/widgets/dialogs.cpp ui/widgets/lists.cpp
+  ui/widgets/axis.cpp ui/widgets/plot.cpp ui/widgets/timeline_track.cpp
   PUBLIC understudy_render PkgConfig::IMGUI PRIVATE PkgConfig::FREETYPE)

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
+
+#include "ui/widgets/axis.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -20,6 +21,14 @@ bool starts(const std::string& text, const char* with) {
 }
 
 }  // namespace
+
+const std::array<ToolChoice, 6> kTools = {
+    {{app::Tool::Look, "look", "Look around", Icon::Camera},
+     {app::Tool::Joints, "joints", "Drag extracted joints", Icon::Skeleton},
+     {app::Tool::Bones, "bones", "Rotate bones of the result", Icon::Move},
+     {app::Tool::TargetJoints, "target-joints", "Place the target's joints", Icon::Person},
+     {app::Tool::Paint, "paint", "Paint skin weights", Icon::Brush},
+     {app::Tool::Crop, "crop", "Crop the scan", Icon::Select}}};
 
 std::string argument(double value) {
   std::string text = printed("%.6g", value);
@@ -40,12 +49,6 @@ std::string joint_label(int joint) {
 
 std::string joint_name(int joint) {
   return joint < 0 || joint >= kJointCount ? "all" : kJointNames[static_cast<size_t>(joint)];
-}
-
-std::string clock(double seconds) {
-  const int64_t tenths = std::llround(std::max(seconds, 0.0) * 10);
-  return printed("%d:%02d.%d", static_cast<int>(tenths / 600), static_cast<int>(tenths / 10 % 60),
-                 static_cast<int>(tenths % 10));
 }
 
 std::string time_left(double seconds) {
@@ -71,10 +74,7 @@ std::string grouped(int64_t count) {
 }
 
 std::string figure(double value, const std::string& unit) {
-  if (!std::isfinite(value)) return "-";
-  const double size = std::abs(value);
-  const int digits = size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : size >= 0.01 ? 3 : 4;
-  return printed("%.*f", digits, value) + (unit.empty() ? "" : " " + unit);
+  return short_number(value) + (unit.empty() ? "" : " " + unit);
 }
 
 const app::Take* selected_take(const app::Session& session) {

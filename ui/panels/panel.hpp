@@ -1,6 +1,7 @@
 // What every panel is handed besides the session, and the words it writes.
 #pragma once
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "app/session/commands.hpp"
 #include "app/session/session.hpp"
 #include "ui/gui/ui.hpp"
+#include "ui/widgets/icons.hpp"
 
 namespace understudy::ui {
 
@@ -30,16 +32,14 @@ std::string joint_label(int joint);
 /// As commands name it: "left_wrist"; "all" below 0.
 std::string joint_name(int joint);
 
-/// "1:02.5" from seconds.
-std::string clock(double seconds);
 /// "about 40 s left", "about 3 min left"; empty where it is not known.
 std::string time_left(double seconds);
 /// The last part of a path, also of one that ends in a slash.
 std::string file_name(const std::string& path);
 /// "12,345".
 std::string grouped(int64_t count);
-/// A figure of a report or a series, with few digits and its unit: "12.4 mm".
-std::string figure(double value, const std::string& unit = "");
+/// With few digits and its unit: "12.4 mm".
+std::string figure(double value, const std::string& unit);
 
 /// The take that panels are about; null when there is none.
 const app::Take* selected_take(const app::Session& session);
@@ -49,6 +49,15 @@ bool has_document(const app::Session& session);
 /// The frames that the timeline is as long as: those known to come, or those made.
 int known_frames(const app::Session& session);
 double frames_per_second(const app::Session& session);
+
+/// The tools as they are offered.
+struct ToolChoice {
+  app::Tool tool;
+  const char* argument;  ///< of the command tool
+  const char* label;
+  Icon icon;
+};
+extern const std::array<ToolChoice, 6> kTools;
 
 /// Whether a command makes sense now; menus and buttons are grey where it does not.
 bool possible(const app::Session& session, const std::string& command);

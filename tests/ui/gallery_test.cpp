@@ -1,0 +1,104 @@
+// The gallery drawn by a real OpenGL, in both themes and at several scales. US_GALLERY=FOLDER keeps the
+// pictures.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <tuple>
+
+#include "render/context/context.hpp"
+#include "support/gallery.hpp"
+#include "support/pictures.hpp"
+#include "ui/gui/gui.hpp"
+
+namespace understudy::ui {
+namespace {
+
+class Gallery : public testing::TestWithParam<std::tuple<ThemeKind, int>> {
+ protected:
+  void SetUp() override {
+    const int scale = std::get<1>(GetParam());
+    input.theme = std::get<0>(GetParam()), input.scale = static_cast<float>(scale);
+    input.size = {1280 * scale, 800 * scale};
+  }
+  const ImDrawData& frame() {
+    gui.begin_frame(input);
+    draw_gallery(gui.ui(), state);
+    return gui.end_frame();
+  }
+  GalleryState state;
+  FrameInput input;
+  Gui gui;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Gallery,
+                         testing::Combine(testing::Values(ThemeKind::Dark, ThemeKind::Light),
+                                          testing::Values(1, 2)));
+
+TEST_P(Gallery, CutsNoWordAndHidesNoWidget) {
+  frame(), frame();
+  const ImDrawData& data = frame();
+  for (const Rect& letter : cut_letters(data, gui.atlas()))
+    ADD_FAILURE() << "a letter is cut at " << letter.min.x << ", " << letter.min.y << " .. " << letter.max.x
+                  << ", " << letter.max.y;
+  const float width = static_cast<float>(input.size.width), height = static_cast<float>(input.size.height);
+  EXPECT_GT(gui.marks().size(), 60u);
+  for (const Mark& mark : gui.marks()) {
+    EXPECT_FALSE(mark.visible.empty()) << mark.name << " is not to be seen";
+    EXPECT_TRUE(mark.rect.min.x >= 0 && mark.rect.min.y >= 0 && mark.rect.max.x <= width &&
+                mark.rect.max.y <= height)
+        << mark.name << " reaches out of the window";
+  }
+}
+
+/// Share of the pixels inside the mark that differ from its upper left one.
+double drawn(const render::Image& image, const Rect& rect) {
+  int different = 0, all = 0;
+  const uint8_t* ground = image.at(static_cast<int>(rect.min.x) + 1, static_cast<int>(rect.min.y) + 1);
+  for (int y = static_cast<int>(rect.min.y) + 1; y < static_cast<int>(rect.max.y) - 1; ++y)
+    for (int x = static_cast<int>(rect.min.x) + 1; x < static_cast<int>(rect.max.x) - 1; ++x, ++all) {
+      const uint8_t* p = image.at(x, y);
+      different +=
+          std::abs(p[0] - ground[0]) + std::abs(p[1] - ground[1]) + std::abs(p[2] - ground[2]) > 60 ? 1 : 0;
+    }
+  return all > 0 ? static_cast<double>(different) / all : 0;
+}
+
+TEST_P(Gallery, DrawsEveryIconAndPlot) {
+  const auto context =
+      render::make_offscreen_context({render::ContextKind::Any, render::gl::DebugMode::Fatal});
+  DrawPass pass;
+  frame(), frame();
+  const render::Image image = picture(pass, frame(), gui.atlas(), input.size);
+  if (const char* folder = std::getenv("US_GALLERY"))
+    render::write_png(std::string(folder) + "/gallery_" +
+                          (input.theme == ThemeKind::Dark ? "dark_" : "light_") +
+                          std::to_string(std::get<1>(GetParam())) + ".png",
+                      image);
+  int icons = 0;
+  for (const Mark& mark : gui.marks()) {
+    if (mark.name.rfind("icon.", 0) != 0) continue;
+    ++icons;
+    EXPECT_GT(drawn(image, mark.rect), mark.enabled ? 0.02 : 0.0) << mark.name << " is empty";
+  }
+  EXPECT_GT(icons, 36);
+  for (const char* name :
+       {"gallery.mpjpe", "gallery.acc", "gallery.latency", "gallery.scale", "gallery.track"})
+    EXPECT_GT(drawn(image, gui.find(name)->rect), 0.01) << name;
+}
+
+TEST_P(Gallery, FindsAWordThatIsCut) {
+  const auto draw = [&]() -> const ImDrawData& {
+    gui.begin_frame(input);
+    ImGui::SetNextWindowSize({gui.ui().px(100), gui.ui().px(60)});
+    ImGui::Begin("narrow", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::TextUnformatted("These words are wider than the WWWWWWWWWWWWWWWWWW");
+    ImGui::End();
+    return gui.end_frame();
+  };
+  draw(), draw();  // windows appear in their second frame
+  EXPECT_FALSE(cut_letters(draw(), gui.atlas()).empty());
+}
+
+}  // namespace
+}  // namespace understudy::ui

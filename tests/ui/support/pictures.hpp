@@ -1,0 +1,22 @@
+// What a finished frame looks like, and which of its words are cut off.
+#pragma once
+
+#include <imgui.h>
+
+#include <vector>
+
+#include "render/image.hpp"
+#include "render/renderer.hpp"
+#include "ui/gui/draw_pass.hpp"
+#include "ui/gui/ui.hpp"
+
+namespace understudy::ui {
+
+/// Where letters are drawn only in part, or reach out of the display: their rectangles.
+std::vector<Rect> cut_letters(const ImDrawData& data, const ImFontAtlas& atlas);
+
+/// The frame on a black picture, drawn by the current context.
+render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas& atlas,
+                      render::PixelSize size);
+
+}  // namespace understudy::ui

@@ -1,0 +1,169 @@
+#include "ui/panels/bindings.hpp"
+
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ui/gui/gui.hpp"
+
+namespace understudy::ui {
+namespace {
+
+// Keys of commands with arguments, and of those that ask for a file first.
+const std::vector<Binding>& built_in() {
+  static const std::vector<Binding> kBuiltIn = {
+      {"Ctrl+N", "document.new", {}, "New"},
+      {"Ctrl+O", "open", {}, "Open"},
+      {"Ctrl+S", "document.save", {}, "Save"},
+      {"Ctrl+Shift+S", "document.save_as", {}, "Save as"},
+      {"Ctrl+E", "dialog.open", {"export"}, "Export"},
+      {"Ctrl+Q", "app.quit", {}, "Quit"},
+      {"Ctrl+Z", "edit.undo", {}, "Undo"},
+      {"Ctrl+Shift+Z", "edit.redo", {}, "Redo"},
+      {"Ctrl+Y", "edit.redo", {}, "Redo"},
+      {"Ctrl+Comma", "dialog.open", {"settings"}, "Settings"},
+      {"Space", "playback.toggle", {}, "Play or pause"},
+      {"Left", "playback.step", {"-1"}, "Frame back"},
+      {"Right", "playback.step", {"1"}, "Frame forward"},
+      {"Shift+Left", "playback.step", {"-10"}, "Ten frames back"},
+      {"Shift+Right", "playback.step", {"10"}, "Ten frames forward"},
+      {"Home", "playback.first", {}, "First frame"},
+      {"End", "playback.last", {}, "Last frame"},
+      {"I", "playback.in", {}, "Loop from here"},
+      {"O", "playback.out", {}, "Loop to here"},
+      {"L", "playback.loop", {"toggle"}, "Loop"},
+      {"1", "view.preset", {"front"}, "View from the front"},
+      {"Ctrl+1", "view.preset", {"back"}, "View from the back"},
+      {"3", "view.preset", {"right"}, "View from the right"},
+      {"Ctrl+3", "view.preset", {"left"}, "View from the left"},
+      {"7", "view.preset", {"top"}, "View from the top"},
+      {"0", "view.preset", {"three-quarter"}, "Three-quarter view"},
+      {"5", "view.ortho", {"toggle"}, "Orthographic"},
+      {"F", "view.fit", {}, "Fit the view"},
+      {"Q", "tool", {"look"}, "Look around"},
+      {"J", "tool", {"joints"}, "Drag joints"},
+      {"R", "tool", {"bones"}, "Rotate bones"},
+      {"T", "tool", {"target-joints"}, "Joints of the target"},
+      {"B", "tool", {"paint"}, "Paint weights"},
+      {"C", "tool", {"crop"}, "Crop the scan"},
+      {"H", "help.keys", {}, "All keys"},
+      {"Shift+Slash", "help.keys", {}, "All keys"},
+  };
+  return kBuiltIn;
+}
+
+
+struct Chord {
+  render::Key key = render::Key::Unknown;
+  render::Modifiers modifiers;
+};
+
+Chord parse(const std::string& keys) {
+  Chord chord;
+  size_t from = 0;
+  for (size_t plus = keys.find('+'); plus != std::string::npos && plus + 1 < keys.size();
+       plus = keys.find('+', from)) {
+    const std::string modifier = keys.substr(from, plus - from);
+    chord.modifiers.control |= modifier == "Ctrl";
+    chord.modifiers.shift |= modifier == "Shift";
+    chord.modifiers.alt |= modifier == "Alt";
+    from = plus + 1;
+  }
+  std::string key = keys.substr(from);
+  constexpr std::array<std::pair<const char*, const char*>, 7> kSigns = {
+      {{",", "Comma"}, {".", "Period"}, {"/", "Slash"}, {"+", "Equal"}, {"-", "Minus"}, {"[", "LeftBracket"},
+       {"]", "RightBracket"}}};
+  for (const auto& [sign, name] : kSigns)
+    if (key == sign) key = name;
+  if (key == "?") key = "Slash", chord.modifiers.shift = true;
+  if (key == "Esc") key = "Escape";
+  if (key == "Del") key = "Delete";
+  chord.key = render::key_of_name(key).value_or(render::Key::Unknown);
+  return chord;
+}
+
+/// The dialog that asks for what a command without arguments misses; null where nothing is missing.
+const char* dialog_for(const app::Session& session, const std::string& command) {
+  if (command == "document.save") return session.path.empty() ? "save_as" : nullptr;
+  constexpr std::array<std::pair<const char*, const char*>, 11> kDialogs = {{{"open", "open"},
+                                                                            {"document.open", "open_document"},
+                                                                            {"document.save_as", "save_as"},
+                                                                            {"source.open", "open_scan"},
+                                                                            {"source.motion", "open_motion"},
+                                                                            {"target.add", "open_target"},
+                                                                            {"target.replace", "replace_target"},
+                                                                            {"export.glb", "export"},
+                                                                            {"picture.save", "picture"},
+                                                                            {"video.save", "video"},
+                                                                            {"compare.add", "compare"}}};
+  for (const auto& [name, dialog] : kDialogs)
+    if (command == name) return dialog;
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<Binding> bindings(const app::Commands& commands) {
+  std::vector<Binding> all;
+  for (const app::Command& command : commands.all())
+    if (!command.shortcut.empty()) all.push_back({command.shortcut, command.name, {}, command.label});
+  const size_t registered = all.size();
+  for (const Binding& binding : built_in()) {
+    const auto taken = [&](const Binding& other) { return other.keys == binding.keys; };
+    const auto last = all.begin() + static_cast<std::ptrdiff_t>(registered);
+    if (std::none_of(all.begin(), last, taken)) all.push_back(binding);
+  }
+  return all;
+}
+
+std::string keys_of(const app::Commands& commands, const std::string& command,
+                    const app::Arguments& arguments) {
+  const app::Command* found = commands.find(command);
+  if (arguments.empty() && found != nullptr && !found->shortcut.empty()) return found->shortcut;
+  for (const Binding& binding : built_in()) {
+    if (binding.command != command || binding.arguments != arguments) continue;
+    const auto& all = commands.all();
+    const bool taken = std::any_of(all.begin(), all.end(), [&](const app::Command& other) {
+      return other.shortcut == binding.keys;
+    });
+    if (!taken) return binding.keys;
+  }
+  return "";
+}
+
+bool pressed(const std::string& keys) {
+  const Chord chord = parse(keys);
+  if (chord.key == render::Key::Unknown) return false;
+  const ImGuiIO& io = ImGui::GetIO();
+  const render::Modifiers held{io.KeyShift, io.KeyCtrl, io.KeyAlt, false};
+  return held == chord.modifiers && key_pressed(chord.key);
+}
+
+void ask_or_open(const app::Session& session, PanelContext& context, const std::string& command,
+                 const app::Arguments& arguments) {
+  if (!possible(session, command)) return;
+  const char* dialog = arguments.empty() ? dialog_for(session, command) : nullptr;
+  if (dialog != nullptr)
+    context.ask("dialog.open", {dialog});
+  else
+    context.ask(command, arguments);
+}
+
+void ask_for_keys(const app::Session& session, PanelContext& context) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantTextInput || ImGui::GetTopMostPopupModal() != nullptr) return;
+  for (const Binding& binding : bindings(context.commands)) {
+    if (!pressed(binding.keys)) continue;
+    if (binding.command == "view.ortho") {
+      const auto& cameras = session.view.cameras;
+      return ask_or_open(session, context, "view.ortho",
+                         {on_off(cameras.empty() || !cameras.front().orthographic)});
+    }
+    if (binding.command == "playback.loop")
+      return ask_or_open(session, context, "playback.loop", {on_off(!session.playback.loop)});
+    return ask_or_open(session, context, binding.command, binding.arguments);
+  }
+}
+
+}  // namespace understudy::ui

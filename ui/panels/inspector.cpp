@@ -1,0 +1,226 @@
+#include "ui/panels/inspector.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "ui/panels/rows.hpp"
+
+namespace understudy::ui {
+namespace {
+
+const std::vector<std::string> kUnits = {"auto", "m", "cm", "mm", "dm", "in"};
+const std::vector<std::string> kAxes = {"auto", "x", "y", "z", "-x", "-y", "-z"};
+
+int index_of(const std::vector<std::string>& choices, const std::string& value) {
+  const auto found = std::find(choices.begin(), choices.end(), value.empty() ? "auto" : value);
+  return found == choices.end() ? -1 : static_cast<int>(found - choices.begin());
+}
+
+void warn(Ui& ui, const std::string& sentence) {
+  icon_label(ui, Icon::Warning, ui.theme().warning);
+  ImGui::SameLine();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(sentence.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+/// Units, axis and turn, alike for scans and targets. `before`: what comes first in the commands.
+void draw_import(PanelContext& context, const std::string& group, const ImportOptions& import,
+                 const app::Arguments& before) {
+  Ui& ui = context.ui;
+  const auto ask = [&](const char* what, const std::string& value) {
+    app::Arguments arguments = before;
+    arguments.push_back(value);
+    context.ask(group + "." + what, arguments);
+  };
+  if (const auto i = choice_row(ui, {group + ".units", "Units", "Of the file"}, kUnits,
+                                index_of(kUnits, import.units)))
+    ask("units", kUnits[static_cast<size_t>(*i)]);
+  if (const auto i = choice_row(ui, {group + ".up", "Up", "The file's axis that points up"}, kAxes,
+                                index_of(kAxes, import.up)))
+    ask("up", kAxes[static_cast<size_t>(*i)]);
+  if (const auto deg = typed_number_row(ui, {group + ".yaw", "Turned by", "Degrees about the vertical"},
+                                        import.yaw_deg, 1))
+    ask("yaw", argument(*deg));
+}
+
+void draw_source_facts(const app::Session& session, Ui& ui) {
+  const app::SourceState& source = session.source;
+  row_text(ui, "File", source.name.empty() ? file_name(session.document.source.path) : source.name);
+  const std::string made = grouped(static_cast<int64_t>(source.frames.size()));
+  row_text(ui, "Frames", source.count ? made + " of " + grouped(*source.count) : made);
+  const int frame = app::shown_frame(session);
+  if (frame >= 0 && frame < static_cast<int>(source.frames.size())) {
+    const app::KeptSource& kept = source.frames[static_cast<size_t>(frame)];
+    row_text(ui, "Points", grouped(kept.points) + (source.has_faces ? ", with faces" : ""));
+    row_text(ui, "Confidence", figure(100 * kept.confidence, "%"));
+    if (kept.flagged) warn(ui, kept.reason);
+  }
+  if (!source.decision.empty()) hint(ui, source.decision);
+}
+
+void draw_source_fields(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  const app::SourceOptions& source = session.document.source;
+  if (const auto fps = typed_number_row(ui, {"source.fps", "Frames/s", "0: as the file says, or 30"}, source.fps, 2))
+    context.ask("source.fps", {argument(std::max(0.0, *fps))});
+  draw_import(context, "source", source.import, {});
+  const std::string floor = source.import.floor ? argument(*source.import.floor) : "auto";
+  if (const auto text = text_row(ui, {"source.floor", "Floor", "Its height in metres, or auto"}, floor)) {
+    const auto height = parse_number(*text);
+    context.ask("source.floor", {height ? argument(*height) : "auto"});
+  }
+  const app::Take* take = session.document.takes.empty() ? nullptr : &session.document.takes.front();
+  int extractor = take != nullptr && take->method.extractor == "paper" ? 1 : 0;
+  if (const auto i = choice_row(ui, {"source.extractor", "Extractor", "The network that finds the joints"},
+                                {"Dense", "Paper"}, extractor))
+    context.ask("source.extractor", {*i == 1 ? "paper" : "dense"});
+}
+
+void draw_source(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!section(ui, "inspector.source", "Source")) return;
+  if (session.document.source.path.empty()) {
+    hint(ui, "No scan is open. Drop a folder of scans anywhere, or choose one.");
+  } else {
+    draw_source_facts(session, ui);
+    draw_source_fields(session, context);
+  }
+  ButtonRow buttons(2);
+  if (buttons.add(ui, "source.open", "Open scan\u2026")) context.ask("dialog.open", {"open_scan"});
+  if (buttons.add(ui, "source.motion", "Open motion\u2026")) context.ask("dialog.open", {"open_motion"});
+}
+
+void draw_takes(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!section(ui, "inspector.takes", "Takes")) return;
+  const auto& takes = session.document.takes;
+  if (takes.empty()) hint(ui, "No target yet. Drop a character anywhere, or add one.");
+  for (size_t i = 0; i < takes.size(); ++i) {
+    const std::string k = std::to_string(i), name = "take." + k;
+    const IdScope id(name);
+    const bool selected = static_cast<int>(i) == session.selected_take;
+    const app::Method& method = takes[i].method;
+    const std::string how = method.engine + (method.offsets ? "" : ", no offsets");
+    const float room = ImGui::CalcTextSize(how.c_str()).x + ui.px(14);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (ImGui::Selectable("##take", selected, 0, {0, ImGui::GetTextLineHeight() + ui.px(6)}))
+      context.ask("target.select", {k});
+    ui.mark(name);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float y = at.y + ui.px(3);
+    list.AddText({at.x + ui.px(6), y}, color(ui.theme().text),
+                 cut_to(takes[i].name, width - room - ui.px(10)).c_str());
+    list.AddText({at.x + width - room + ui.px(8), y}, color(ui.theme().text_dim), how.c_str());
+  }
+  const bool any = selected_take(session) != nullptr;
+  ButtonRow buttons(2);
+  if (buttons.add(ui, "take.add", "Add target\u2026")) context.ask("dialog.open", {"open_target"});
+  ButtonOptions remove;
+  remove.disabled = !any, remove.tooltip = "Takes the selected take away; can be undone";
+  if (buttons.add(ui, "take.remove", "Remove", remove))
+    context.ask("target.remove", {std::to_string(session.selected_take)});
+}
+
+void draw_target_facts(const app::TakeState& state, Ui& ui) {
+  if (!state.problem.empty()) warn(ui, state.problem);
+  if (!state.target) {
+    if (state.problem.empty()) hint(ui, "Being prepared\u2026");
+    return;
+  }
+  const Mesh& mesh = state.target->mesh;
+  row_text(ui, "Vertices", grouped(mesh.vertices.rows()));
+  row_text(ui, "Faces", grouped(mesh.faces.rows()));
+  if (mesh.vertices.rows() > 0) {
+    const auto y = mesh.vertices.col(1);
+    row_text(ui, "Height", figure(y.maxCoeff() - y.minCoeff(), "m"));
+  }
+  row_text(ui, "Joints", std::to_string(kJointCount) + " found in the T-pose");
+  for (const std::string& warning : state.target->warnings) warn(ui, warning);
+}
+
+void draw_target(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  const app::Take* take = selected_take(session);
+  if (take == nullptr || !section(ui, "inspector.target", "Target")) return;
+  const std::string k = std::to_string(session.selected_take);
+  if (const auto name = text_row(ui, {"take.name", "Name", ""}, take->name))
+    if (!name->empty()) context.ask("take.rename", {k, *name});
+  row_text(ui, "File", file_name(take->target.path));
+  if (const app::TakeState* state = selected_state(session)) draw_target_facts(*state, ui);
+  draw_import(context, "target", take->target.import, {k});
+  std::ostringstream betas;
+  for (size_t i = 0; i < take->target.betas.size(); ++i) betas << (i > 0 ? "," : "") << argument(take->target.betas[i]);
+  if (const auto text = text_row(ui, {"target.betas", "Shape", "Shape parameters of an SMPL-format body: 1.2, -0.5"},
+                                 betas.str(), "only SMPL bodies"))
+    context.ask("target.betas", {k, *text});
+  ButtonOptions wide;
+  wide.width = -1;
+  if (button(ui, "take.replace", "Replace\u2026", wide)) context.ask("dialog.open", {"replace_target"});
+}
+
+void draw_filter(const app::Method& method, PanelContext& context, const std::string& k) {
+  struct Switch {
+    const char* name;
+    const char* label;
+    const char* explanation;
+    bool on;
+  };
+  const Switch switches[] = {
+      {"swaps", "Repair swaps", "Left and right that were taken for each other are put right", method.repair_swaps},
+      {"smooth", "Smooth joints", "Noise of the extracted joints is smoothed as they come", method.smooth_joints},
+      {"lengths", "Fix lengths", "Bones keep their length", method.fix_lengths}};
+  for (const Switch& s : switches)
+    if (const auto on = toggle_row(context.ui, {std::string("method.") + s.name, s.label, s.explanation}, s.on))
+      context.ask("method.filter", {k, s.name, on_off(*on)});
+}
+
+void draw_work(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  ButtonRow buttons(2);
+  ButtonOptions pause, restart;
+  pause.disabled = !possible(session, "work.pause") && !session.paused;
+  pause.tooltip = session.paused ? "Goes on making frames" : "Stops making frames for now";
+  if (buttons.add(ui, session.paused ? "work.resume" : "work.pause", session.paused ? "Go on" : "Pause", pause))
+    context.ask(session.paused ? "work.resume" : "work.pause");
+  restart.disabled = !possible(session, "work.restart");
+  restart.tooltip = "Makes all frames again";
+  if (buttons.add(ui, "work.restart", "Again", restart)) context.ask("work.restart");
+}
+
+void draw_method(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  const app::Take* take = selected_take(session);
+  if (take == nullptr || !section(ui, "inspector.method", "Method")) return;
+  const std::string k = std::to_string(session.selected_take);
+  const app::Method& method = take->method;
+  if (const auto i = choice_row(ui, {"method.engine", "Transfer", "How the motion is brought to the target"},
+                                {"Copy", "Paper"}, method.engine == "paper" ? 1 : 0))
+    context.ask("method.engine", {k, *i == 1 ? "paper" : "copy"});
+  if (const auto i = choice_row(ui, {"method.extractor", "Extractor", "The network that finds the joints"},
+                                {"Dense", "Paper"}, method.extractor == "paper" ? 1 : 0))
+    context.ask("method.extractor", {k, *i == 1 ? "paper" : "dense"});
+  if (const auto on = toggle_row(ui, {"method.offsets", "Offsets", "Pose-corrective offsets of the skin"}, method.offsets))
+    context.ask("method.offsets", {k, on_off(*on)});
+  constexpr const char* kRoots[] = {"scaled", "original", "in-place"};
+  if (const auto i = choice_row(ui, {"method.root", "Path", "Over the floor: scaled by the legs' lengths, the source's own, or none"},
+                                {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
+    context.ask("method.root", {k, kRoots[*i]});
+  draw_filter(method, context, k);
+  ButtonOptions compare;
+  compare.width = -1, compare.tooltip = "A second take of this target, made another way";
+  if (button(ui, "method.compare", "Compare with\u2026", compare)) context.ask("dialog.open", {"compare"});
+  draw_work(session, context);
+}
+
+}  // namespace
+
+void draw_inspector(const app::Session& session, PanelContext& context) {
+  draw_source(session, context);
+  draw_takes(session, context);
+  draw_target(session, context);
+  draw_method(session, context);
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,34 @@
+// What the menus hold: plain data, so that tests can read every entry without opening it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ui/panels/panel.hpp"
+
+namespace understudy::ui {
+
+struct MenuItem {
+  std::string label;  ///< empty: a line between groups
+  std::string command;
+  app::Arguments arguments;
+  std::string keys_of;           ///< the command whose keys are shown; empty: `command`'s with `arguments`
+  bool checked = false;          ///< on, or chosen
+  std::vector<MenuItem> inside;  ///< a menu of its own
+};
+
+struct Menu {
+  std::string name;  ///< "file"; marked menu.file
+  std::string label;
+  std::vector<MenuItem> items;
+};
+
+/// File, Edit, View, Target, Tools, Window, Help.
+std::vector<Menu> menus(const app::Session& session);
+
+/// The mark of an entry: "menu.view.layout.single".
+std::string mark_of(const MenuItem& item);
+/// Whether the entry can be chosen now.
+bool possible(const app::Session& session, const MenuItem& item);
+
+}  // namespace understudy::ui

@@ -1,0 +1,141 @@
+#include "ui/panels/metrics.hpp"
+
+#include <algorithm>
+
+#include "ui/panels/rows.hpp"
+#include "ui/widgets/lists.hpp"
+#include "ui/widgets/plot.hpp"
+
+namespace understudy::ui {
+namespace {
+
+/// The same figure of all takes, the selected one first.
+std::vector<Series> overlaid(const app::Session& session, const app::Series& of_selected) {
+  std::vector<Series> all;
+  const auto add = [&](size_t take, const app::Series& series) {
+    const bool named = take < session.document.takes.size();
+    all.push_back({named ? session.document.takes[take].name : "", series.values, static_cast<int>(take % 8)});
+  };
+  const size_t selected = static_cast<size_t>(session.selected_take);
+  add(selected, of_selected);
+  for (size_t k = 0; k < session.takes.size(); ++k)
+    if (const app::Series* same = k == selected ? nullptr : app::find(session.takes[k].series, of_selected.key))
+      add(k, *same);
+  return all;
+}
+
+void draw_curve_of(const app::Session& session, PanelContext& context, const TimelineState& timeline,
+                   const app::Series& series) {
+  Ui& ui = context.ui;
+  const bool in_timeline = session.view.metric == series.key;
+  const float side = ImGui::GetFrameHeight();
+  const FontScope strong(ui.fonts().strong);
+  ImGui::AlignTextToFramePadding();
+  text_cut(ui, series.label, ImGui::GetContentRegionAvail().x - side - ui.px(8));
+  ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - side);
+  const FontScope body(ui.fonts().body);
+  if (icon_button(ui, "metrics.in_timeline." + series.key, Icon::Chart,
+                  {in_timeline ? "In the timeline" : "Show it in the timeline", "", in_timeline, false, 26}))
+    context.ask("view.metric", {series.key});
+  PlotOptions options;
+  options.unit = series.unit, options.height = 128;
+  options.current = app::shown_frame(session);
+  options.bad_frames = timeline.bad_numbers;
+  const PlotAnswer answer = plot(ui, "metrics.plot." + series.key, overlaid(session, series), options);
+  if (answer.seek) context.ask("playback.frame", {std::to_string(*answer.seek)});
+}
+
+/// The keys of all takes' figures, in the order of first appearance.
+std::vector<std::string> figure_keys(const app::Session& session) {
+  std::vector<std::string> keys;
+  for (const app::TakeState& take : session.takes)
+    for (const auto& [key, value] : take.metrics)
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  return keys;
+}
+
+std::string figure_of(const app::Metrics& metrics, const std::string& key) {
+  for (const auto& [name, value] : metrics)
+    if (name == key) return figure(value, "");
+  return "\u2013";
+}
+
+void draw_figures(const app::Session& session, Ui& ui) {
+  const std::vector<std::string> keys = figure_keys(session);
+  if (keys.empty()) {
+    hint(ui, session.working ? "Known when all frames are made." : "Nothing to compare yet.");
+    return;
+  }
+  std::vector<Column> columns = {{"Figure", 0, false}};
+  for (size_t k = 0; k < session.takes.size() && k < session.document.takes.size(); ++k)
+    columns.push_back({session.document.takes[k].name, 72, true});
+  Table table(ui, "metrics.figures", columns);
+  if (!table.open()) return;
+  for (const std::string& key : keys) {
+    table.row(false, false);
+    table.cell(key);
+    for (size_t k = 0; k + 1 < columns.size(); ++k) table.cell(figure_of(session.takes[k].metrics, key));
+  }
+}
+
+void draw_stages(const app::Latency& latency, Ui& ui) {
+  Table table(ui, "metrics.stages", {{"Stage", 0, false}, {"p50, ms", 72, true}, {"p95, ms", 72, true}});
+  if (!table.open()) return;
+  for (int stage = 0; stage < static_cast<int>(app::Latency::kStages.size()); ++stage) {
+    table.row(false, false);
+    table.cell(app::Latency::kStages[static_cast<size_t>(stage)]);
+    table.cell(latency.quantile(stage, 0.5));
+    table.cell(latency.quantile(stage, 0.95));
+  }
+}
+
+/// Durations that are distributed as those measured, without the few extremes that would squeeze the rest.
+void follow_latency(const app::Latency& latency, int take, MetricsState& state) {
+  if (state.frames == latency.frames() && state.of_stage == state.stage && state.of_take == take) return;
+  state.frames = latency.frames(), state.of_stage = state.stage, state.of_take = take;
+  constexpr int kCount = 256;
+  state.durations.resize(kCount);
+  for (int i = 0; i < kCount; ++i)
+    state.durations[static_cast<size_t>(i)] =
+        static_cast<float>(latency.quantile(state.stage, 0.99 * (i + 0.5) / kCount));
+}
+
+void draw_latency(const app::Session& session, PanelContext& context, MetricsState& state) {
+  Ui& ui = context.ui;
+  const app::TakeState* take = selected_state(session);
+  if (take == nullptr || take->latency.frames() == 0) {
+    hint(ui, "Nothing measured yet.");
+    return;
+  }
+  draw_stages(take->latency, ui);
+  std::vector<std::string> stages(app::Latency::kStages.begin(), app::Latency::kStages.end());
+  row(ui, "Histogram of", "How often a frame took so long; without the slowest 1 %");
+  dropdown(ui, "metrics.stage", stages, state.stage);
+  follow_latency(take->latency, session.selected_take, state);
+  HistogramOptions options;
+  options.unit = "ms";
+  options.marks = {{"p50", static_cast<float>(take->latency.quantile(state.stage, 0.5))},
+                   {"p95", static_cast<float>(take->latency.quantile(state.stage, 0.95))}};
+  histogram(ui, "metrics.histogram", state.durations, options);
+}
+
+}  // namespace
+
+void draw_metrics(const app::Session& session, PanelContext& context, MetricsState& state,
+                  const TimelineState& timeline) {
+  Ui& ui = context.ui;
+  const app::TakeState* take = selected_state(session);
+  ButtonOptions csv;
+  csv.width = -1, csv.disabled = take == nullptr || take->series.empty();
+  csv.tooltip = "Every figure of every frame, as a table for other programs";
+  if (section(ui, "metrics.curves", "Over time")) {
+    if (take == nullptr || take->series.empty()) hint(ui, "Figures appear as frames are made.");
+    if (take != nullptr)
+      for (const app::Series& series : take->series) draw_curve_of(session, context, timeline, series);
+    if (button(ui, "metrics.csv", "Export CSV\u2026", csv)) context.ask("dialog.open", {"csv"});
+  }
+  if (section(ui, "metrics.table", "Whole sequence")) draw_figures(session, ui);
+  if (section(ui, "metrics.latency", "Latency")) draw_latency(session, context, state);
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,25 @@
+// Figures: curves over time tied to the timeline, the table of the whole, latency.
+// Marks: metrics.curves, metrics.table, metrics.latency (sections); metrics.plot.KEY, metrics.in_timeline.KEY,
+// metrics.figures.ROW, metrics.stages.ROW, metrics.stage, metrics.histogram, metrics.csv.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ui/panels/panel.hpp"
+#include "ui/panels/timeline.hpp"
+
+namespace understudy::ui {
+
+struct MetricsState {
+  int stage = 4;  ///< of the histogram: Latency::kStages
+  // The durations of that stage, as many as tell their distribution; made again when there are more frames.
+  int64_t frames = -1;
+  int of_stage = -1, of_take = -1;
+  std::vector<float> durations;
+};
+
+void draw_metrics(const app::Session& session, PanelContext& context, MetricsState& state,
+                  const TimelineState& timeline);
+
+}  // namespace understudy::ui

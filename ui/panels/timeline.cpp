@@ -1,0 +1,197 @@
+#include "ui/panels/timeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/bindings.hpp"
+#include "ui/panels/rows.hpp"
+#include "ui/widgets/timeline_track.hpp"
+
+namespace understudy::ui {
+namespace {
+
+constexpr double kRates[] = {0.1, 0.25, 0.5, 1, 2, 4};
+
+struct Metric {
+  std::string key, label;
+  Values values;
+};
+
+/// What the timeline may carry: the series of the selected take, or the source's confidence.
+std::vector<Metric> carried_metrics(const app::Session& session, const TimelineState& state) {
+  std::vector<Metric> metrics;
+  if (const app::TakeState* take = selected_state(session))
+    for (const app::Series& series : take->series)
+      metrics.push_back(
+          {series.key, series.unit.empty() ? series.label : series.label + ", " + series.unit, series.values});
+  const auto is_confidence = [](const Metric& m) { return m.key == "confidence"; };
+  if (std::none_of(metrics.begin(), metrics.end(), is_confidence))
+    metrics.push_back({"confidence", "Confidence", state.confidence});
+  return metrics;
+}
+
+void transport_button(const app::Session& session, PanelContext& context, const char* name, Icon icon,
+                      const Binding& what) {
+  IconButtonOptions options{what.label, keys_of(context.commands, what.command, what.arguments), false,
+                            !possible(session, what.command), 28};
+  if (icon_button(context.ui, name, icon, options)) context.ask(what.command, what.arguments);
+  ImGui::SameLine(0, context.ui.px(3));
+}
+
+void draw_transport(const app::Session& session, PanelContext& context) {
+  const bool playing = session.playback.playing;
+  transport_button(session, context, "timeline.first", Icon::ToStart,
+                   {"", "playback.first", {}, "First frame"});
+  transport_button(session, context, "timeline.back", Icon::StepBack,
+                   {"", "playback.step", {"-1"}, "One frame back"});
+  transport_button(session, context, "timeline.play", playing ? Icon::Pause : Icon::Play,
+                   {"", "playback.toggle", {}, playing ? "Pause" : "Play"});
+  transport_button(session, context, "timeline.forward", Icon::StepForward,
+                   {"", "playback.step", {"1"}, "One frame forward"});
+  transport_button(session, context, "timeline.last", Icon::ToEnd, {"", "playback.last", {}, "Last frame"});
+}
+
+void draw_marks(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  const app::Playback& playback = session.playback;
+  const bool disabled = !possible(session, "playback.loop");
+  ImGui::SameLine(0, ui.px(10));
+  if (icon_button(ui, "timeline.loop", Icon::Loop, {"Play again from the start", "L", playback.loop, disabled, 28}))
+    context.ask("playback.loop", {on_off(!playback.loop)});
+  const auto word = [&](const char* name, const char* label, const char* command, const char* tip) {
+    ImGui::SameLine(0, ui.px(3));
+    ButtonOptions options;
+    options.look = ButtonLook::Quiet, options.tooltip = tip, options.disabled = disabled;
+    options.shortcut = keys_of(context.commands, command);
+    if (button(ui, name, label, options)) context.ask(command);
+  };
+  word("timeline.in", "In", "playback.in", "Play from this frame");
+  word("timeline.out", "Out", "playback.out", "Play up to this frame");
+  ImGui::SameLine(0, ui.px(3));
+  const bool none = playback.in < 0 && playback.out < 0;
+  if (icon_button(ui, "timeline.clear_marks", Icon::Close, {"Play all frames", "", false, none, 28}))
+    context.ask("playback.clear_marks");
+  ImGui::SameLine(0, ui.px(3));
+  if (icon_button(ui, "timeline.live", Icon::Clock, {"Show the newest frame while they are made", "", playback.live,
+                                                     disabled, 28}))
+    context.ask("playback.follow_live");
+}
+
+void draw_rate(const app::Session& session, PanelContext& context) {
+  std::vector<std::string> labels;
+  int chosen = -1;
+  for (const double rate : kRates) {
+    if (std::abs(rate - session.playback.rate) < 1e-6) chosen = static_cast<int>(labels.size());
+    labels.push_back(argument(rate) + " \u00d7");
+  }
+  if (chosen < 0) chosen = static_cast<int>(labels.size()), labels.push_back(argument(session.playback.rate) + " \u00d7");
+  if (!dropdown(context.ui, "timeline.rate", labels, chosen) || chosen >= static_cast<int>(std::size(kRates))) return;
+  context.ask("playback.rate", {argument(kRates[chosen])});
+}
+
+void draw_metric(PanelContext& context, const std::vector<Metric>& metrics, const std::string& key) {
+  std::vector<std::string> labels;
+  int chosen = -1;
+  for (const Metric& metric : metrics) {
+    if (metric.key == key) chosen = static_cast<int>(labels.size());
+    labels.push_back(metric.label);
+  }
+  if (dropdown(context.ui, "timeline.metric", labels, chosen))
+    context.ask("view.metric", {metrics[static_cast<size_t>(chosen)].key});
+}
+
+/// "12 / 240" and "0:00.40", both to type into.
+void draw_readout(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  const int frame = app::shown_frame(session), known = known_frames(session);
+  const DisabledScope disabled(frame < 0);
+  const float height = ImGui::GetFrameHeight();
+  ImGui::BeginChild("##frame", {ui.px(62), height});
+  const auto typed = committed_text(ui, "timeline.frame", frame < 0 ? "" : std::to_string(frame), "-");
+  ImGui::EndChild();
+  if (const auto f = typed ? parse_number(*typed) : std::nullopt)
+    context.ask("playback.frame", {argument(std::round(*f))});
+  ImGui::SameLine(0, ui.px(6));
+  ImGui::AlignTextToFramePadding();
+  text_cut(ui, "/ " + std::to_string(std::max(0, known - 1)), ui.px(72));
+  ImGui::SameLine(0, 0);
+  ImGui::SetCursorPosX(ImGui::GetWindowWidth() - ui.px(12 + 76));
+  ImGui::BeginChild("##time", {ui.px(76), height});
+  const double seconds = std::max(frame, 0) / frames_per_second(session);
+  const auto time = committed_text(ui, "timeline.time", clock_time(seconds));
+  ImGui::EndChild();
+  if (!time) return;
+  const size_t colon = time->find(':');
+  const auto minutes = colon == std::string::npos ? std::optional<double>(0) : parse_number(time->substr(0, colon));
+  const auto rest = parse_number(colon == std::string::npos ? *time : time->substr(colon + 1));
+  if (minutes && rest) context.ask("playback.seek", {argument(60 * *minutes + *rest)});
+}
+
+void draw_track(const app::Session& session, PanelContext& context, const TimelineState& state, const Metric* metric) {
+  TrackData data;
+  data.total = known_frames(session);
+  data.processed = app::frame_count(session);
+  data.current = std::max(0, app::shown_frame(session));
+  data.fps = frames_per_second(session);
+  const app::FrameRange range = app::play_range(session.playback, data.processed);
+  const bool marked = session.playback.in >= 0 || session.playback.out >= 0;
+  if (marked && !range.empty()) data.loop = LoopRange{range.first, range.last};
+  data.bad_frames = state.bad_numbers;
+  if (metric != nullptr) data.curve = metric->values, data.curve_label = metric->label;
+  data.describe = [&state](int frame) { return state.why(frame); };
+  data.follow = session.playback.playing;
+  data.height = ImGui::GetContentRegionAvail().y / context.ui.scale();
+  const TrackAnswer answer = timeline_track(context.ui, "timeline.track", data);
+  if (answer.seek && *answer.seek != data.current) context.ask("playback.frame", {std::to_string(*answer.seek)});
+  if (!answer.loop) return;
+  if (answer.loop->first != range.first) context.ask("playback.in", {std::to_string(answer.loop->first)});
+  if (answer.loop->last != range.last) context.ask("playback.out", {std::to_string(answer.loop->last)});
+}
+
+}  // namespace
+
+void TimelineState::follow(const app::Session& session) {
+  const app::SourceState& source = session.source;
+  if (source.generation == generation && source.frames.size() == frames) return;
+  generation = source.generation, frames = source.frames.size();
+  bad = app::bad_frames(session);
+  bad_numbers.clear();
+  for (const app::BadFrame& frame : bad) bad_numbers.push_back(frame.frame);
+  confidence.clear();
+  for (const app::KeptSource& frame : source.frames) confidence.push_back(frame.confidence);
+}
+
+std::string TimelineState::why(int frame) const {
+  const auto found = std::lower_bound(bad_numbers.begin(), bad_numbers.end(), frame);
+  if (found == bad_numbers.end() || *found != frame) return "";
+  return bad[static_cast<size_t>(found - bad_numbers.begin())].why;
+}
+
+void draw_timeline(const app::Session& session, PanelContext& context, TimelineState& state) {
+  Ui& ui = context.ui;
+  state.follow(session);
+  const std::vector<Metric> metrics = carried_metrics(session, state);
+  const float width = ImGui::GetContentRegionAvail().x, wide = width / ui.scale(), start = ImGui::GetCursorPosX();
+  const auto field = [&](const char* id, float from_right, float size, const auto& draw) {
+    ImGui::SameLine(start + width - ui.px(from_right));
+    ImGui::BeginChild(id, {ui.px(size), ImGui::GetFrameHeight()});
+    draw();
+    ImGui::EndChild();
+  };
+  draw_transport(session, context);
+  if (wide >= 580) draw_marks(session, context);
+  if (wide >= 900) field("##rate", 230 + 180 + 96, 84, [&] { draw_rate(session, context); });
+  if (wide >= 790) field("##metric", 230 + 180, 168, [&] { draw_metric(context, metrics, session.view.metric); });
+  if (wide >= 392) {
+    ImGui::SameLine(start + width - ui.px(222));
+    draw_readout(session, context);
+  } else {
+    ImGui::NewLine();
+  }
+  if (ImGui::GetContentRegionAvail().y < ui.px(40)) return;
+  const auto chosen = std::find_if(metrics.begin(), metrics.end(),
+                                   [&](const Metric& m) { return m.key == session.view.metric; });
+  draw_track(session, context, state, chosen == metrics.end() ? nullptr : &*chosen);
+}
+
+}  // namespace understudy::ui

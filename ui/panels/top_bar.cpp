@@ -1,0 +1,159 @@
+#include "ui/panels/top_bar.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/bindings.hpp"
+#include "ui/panels/menus.hpp"
+#include "ui/widgets/controls.hpp"
+
+namespace understudy::ui {
+namespace {
+
+const std::vector<std::string> kLayouts = {"Side by side", "Single", "Overlay", "Wipe"};
+const std::array<const char*, 4> kLayoutArguments = {"side-by-side", "single", "overlay", "wipe"};
+
+void draw_items(const app::Session& session, PanelContext& context, const std::vector<MenuItem>& items) {
+  for (const MenuItem& item : items) {
+    if (item.label.empty()) {
+      ImGui::Separator();
+      continue;
+    }
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (!item.inside.empty()) {
+      const float width = std::max(ImGui::GetContentRegionAvail().x, ImGui::CalcTextSize(item.label.c_str()).x);
+      context.ui.mark("menu." + item.label, {at, {at.x + width, at.y + ImGui::GetTextLineHeight()}});
+      if (!ImGui::BeginMenu(item.label.c_str())) continue;
+      draw_items(session, context, item.inside);
+      ImGui::EndMenu();
+      continue;
+    }
+    const std::string keys = item.keys_of.empty() ? keys_of(context.commands, item.command, item.arguments)
+                                                  : keys_of(context.commands, item.keys_of);
+    const IdScope id(mark_of(item));
+    if (ImGui::MenuItem(item.label.c_str(), keys.c_str(), item.checked, possible(session, item)))
+      context.ask(item.command, item.arguments);
+    context.ui.mark(mark_of(item));
+  }
+}
+
+void draw_menu(const app::Session& session, PanelContext& context, const Menu& menu) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 size(ImGui::CalcTextSize(menu.label.c_str()).x, ImGui::GetFrameHeight());
+  context.ui.mark("menu." + menu.name, {at, {at.x + size.x, at.y + size.y}});
+  if (!ImGui::BeginMenu(menu.label.c_str())) return;
+  draw_items(session, context, menu.items);
+  ImGui::EndMenu();
+}
+
+/// One menu that holds the others, where the bar is narrow.
+void draw_one_menu(const app::Session& session, PanelContext& context, float height) {
+  const float side = context.ui.px(28);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::SetCursorScreenPos({at.x, at.y + (height - side) / 2});
+  if (icon_button(context.ui, "menu", Icon::Menu, {"Menu", "", false, false, 28})) ImGui::OpenPopup("menus");
+  ImGui::SetNextWindowPos({at.x, at.y + height});
+  if (!ImGui::BeginPopup("menus")) return;
+  for (const Menu& menu : menus(session)) draw_menu(session, context, menu);
+  ImGui::EndPopup();
+}
+
+/// Icons beside each other, in the middle of the bar's height, from `x` on.
+class IconStrip {
+ public:
+  IconStrip(Ui& ui, const Rect& bar, float x) : ui_(ui), bar_(bar), x_(x) {}
+  bool add(const std::string& name, Icon icon, const IconButtonOptions& options) {
+    ImGui::SetCursorScreenPos({std::round(x_), std::round(bar_.at(0, 0.5f).y - ui_.px(14))});
+    x_ += ui_.px(31);
+    return icon_button(ui_, name, icon, options);
+  }
+  void gap() { x_ += ui_.px(10); }
+
+ private:
+  Ui& ui_;
+  Rect bar_;
+  float x_;
+};
+
+void draw_tools(const app::Session& session, PanelContext& context, const Rect& bar, float x) {
+  IconStrip strip(context.ui, bar, x);
+  for (const ToolChoice& tool : kTools) {
+    IconButtonOptions options{tool.label, keys_of(context.commands, "tool", {tool.argument}),
+                              session.tool == tool.tool, !possible(session, "tool"), 28};
+    if (strip.add(std::string("tools.") + tool.argument, tool.icon, options))
+      context.ask("tool", {tool.argument});
+  }
+  strip.gap();
+  const auto history = [&](const char* name, const char* command, Icon icon, const std::string& what) {
+    if (strip.add(name, icon, {what, keys_of(context.commands, command), false, !possible(session, command), 28}))
+      context.ask(command);
+  };
+  const std::string undo = session.history.undo_label(), redo = session.history.redo_label();
+  history("top.undo", "edit.undo", Icon::Undo, undo.empty() ? "Nothing to undo" : "Undo " + undo);
+  history("top.redo", "edit.redo", Icon::Redo, redo.empty() ? "Nothing to redo" : "Redo " + redo);
+}
+
+void draw_side_switch(const app::Session& session, PanelContext& context, const Rect& bar) {
+  const auto found = session.settings.panels.find("side");
+  const bool shown = found == session.settings.panels.end() || found->second;
+  IconStrip strip(context.ui, bar, bar.max.x - context.ui.px(36));
+  if (strip.add("top.side", Icon::Layers, {shown ? "Hide the side panel" : "Show the side panel", "", false, false, 28}))
+    context.ask("panel.show", {"side", "toggle"});
+}
+
+void draw_layouts(const app::Session& session, PanelContext& context, const Rect& place) {
+  ImGui::SetCursorScreenPos({place.min.x, std::round(place.at(0, 0.5f).y - ImGui::GetFrameHeight() / 2)});
+  const DisabledScope disabled(!possible(session, "view.layout"));
+  int chosen = static_cast<int>(session.view.layout);
+  ImGui::BeginChild("##layouts", {place.width(), ImGui::GetFrameHeight()});
+  const bool changed = place.width() > context.ui.px(250)
+                           ? segmented(context.ui, "top.layout", kLayouts, chosen)
+                           : dropdown(context.ui, "top.layout", kLayouts, chosen);
+  ImGui::EndChild();
+  if (changed) context.ask("view.layout", {kLayoutArguments[static_cast<size_t>(chosen)]});
+}
+
+void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_one) {
+  const float height = context.ui.px(kTopBarHeight);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {context.ui.px(8), std::floor((height - ImGui::GetFontSize()) / 2)});
+  if (ImGui::BeginMenuBar()) {
+    ImGui::PopStyleVar();
+    if (as_one)
+      draw_one_menu(session, context, height);
+    else
+      for (const Menu& menu : menus(session)) draw_menu(session, context, menu);
+    ImGui::EndMenuBar();
+  } else {
+    ImGui::PopStyleVar();
+  }
+}
+
+}  // namespace
+
+void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area) {
+  Ui& ui = context.ui;
+  const float wide = area.width() / ui.scale();  // in pixels of the design
+  const bool as_one = wide < 1060;
+  ImGui::SetNextWindowPos(area.min);
+  ImGui::SetNextWindowSize({area.width(), area.height()});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(4), 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+  const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ui.px(8), std::floor((area.height() - ImGui::GetFontSize()) / 2)});
+  ImGui::Begin("##top", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_MenuBar |
+                                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar(4);
+  ImGui::PushClipRect(area.min, area.max, false);
+  draw_menu_bar(session, context, as_one);
+  const float tools = ui.px(8 * 31 + 10), layouts = ui.px(wide >= 900 ? 330 : 130);
+  const float right = area.max.x - ui.px(44);
+  const float left = as_one ? area.min.x + ui.px(42) : std::round(area.at(0.5f, 0).x - tools / 2);
+  if (wide >= 345) draw_tools(session, context, area, left);
+  if (wide >= 500) draw_layouts(session, context, {{right - layouts, area.min.y}, {right, area.max.y}});
+  if (wide >= 90) draw_side_switch(session, context, area);
+  ImGui::PopClipRect();
+  ImGui::End();
+}
+
+}  // namespace understudy::ui

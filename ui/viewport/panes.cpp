@@ -1,0 +1,222 @@
+#include "ui/viewport/panes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/session/follow.hpp"
+#include "ui/panels/panel.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using app::Layout;
+using app::Session;
+
+int clamped_take(const Session& session, int take) {
+  return std::clamp(take, 0, static_cast<int>(session.takes.size()) - 1);
+}
+
+PaneContent overlay(const Session& session) {
+  PaneContent pane = pane_of(0);
+  const int takes = static_cast<int>(session.takes.size());
+  if (takes > 0) pane.takes.push_back(clamped_take(session, session.selected_take));
+  for (int k = 0; k < takes; ++k)
+    if (k != pane.takes.front()) pane.takes.push_back(k);
+  return pane;
+}
+
+std::string method_words(const app::Method& method) {
+  std::string words = method.engine == "paper" ? "paper's network" : "copied rotations";
+  if (method.extractor == "paper") words += ", paper's extractor";
+  if (!method.offsets) words += ", no offsets";
+  return words;
+}
+
+const app::TakeState* state_of_take(const Session& session, const PaneContent& pane) {
+  const bool there = !pane.takes.empty() && static_cast<size_t>(pane.takes[0]) < session.takes.size();
+  return there ? &session.takes[static_cast<size_t>(pane.takes[0])] : nullptr;
+}
+
+int frames_of(const Session& session, const PaneContent& pane) {
+  const app::TakeState* take = pane.source ? nullptr : state_of_take(session, pane);
+  return static_cast<int>(take != nullptr ? take->joints.size() : session.source.frames.size());
+}
+
+/// The T-pose is seen where the person would be.
+Vec3 rest_offset(const Session& session, const PaneContent& pane) {
+  const app::Target& target = *state_of_take(session, pane)->target;
+  const float floor = target.mesh.vertices.rows() > 0 ? target.mesh.vertices.col(1).minCoeff() : 0;
+  Vec3 offset(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
+  const PaneContent moving = pane_of(pane.number);
+  const Joints* now = app::pane_joints(session, pane.number, pane_frame(session, moving));
+  if (!session.view.follow && now != nullptr) offset -= Vec3((*now)(Pelvis, 0), 0, (*now)(Pelvis, 2));
+  return offset;
+}
+
+}  // namespace
+
+std::vector<PaneContent> panes_of(const Session& session) {
+  const int takes = static_cast<int>(session.takes.size());
+  switch (session.view.layout) {
+    case Layout::Single:
+      return {pane_of(std::clamp(session.view.active_pane, 0, takes))};
+    case Layout::Overlay:
+      return {overlay(session)};
+    case Layout::Wipe:
+      if (takes == 0) return {pane_of(0)};
+      if (takes == 1) return {pane_of(0), pane_of(1)};
+      return {pane_of(1), pane_of(2)};
+    case Layout::SideBySide:
+      break;
+  }
+  std::vector<PaneContent> panes;
+  for (int number = 0; number <= takes; ++number) panes.push_back(pane_of(number));
+  return panes;
+}
+
+PaneContent pane_of(int number) {
+  PaneContent pane;
+  pane.number = number;
+  pane.source = number == 0;
+  if (number > 0) pane.takes = {number - 1};
+  return pane;
+}
+
+std::string pane_title(const Session& session, const PaneContent& pane) {
+  std::string title = pane.source ? session.source.name : "";
+  for (const int k : pane.takes) {
+    if (static_cast<size_t>(k) >= session.document.takes.size()) continue;
+    const app::Take& take = session.document.takes[static_cast<size_t>(k)];
+    title += (title.empty() ? "" : "  +  ") + take.name;
+    if (pane.takes.size() == 1 && !pane.source) title += "  \u00b7  " + method_words(take.method);
+  }
+  return title;
+}
+
+std::string pane_hint(const Session& session, const PaneContent& pane) {
+  if (pane.source && session.document.source.path.empty())
+    return "Drop a scan folder or a motion here";
+  if (pane.empty() || (!pane.source && static_cast<size_t>(pane.takes[0]) >= session.takes.size()))
+    return "Drop a character here";
+  if (const app::TakeState* take = pane.source ? nullptr : state_of_take(session, pane)) {
+    if (!take->problem.empty()) return take->problem;
+    if (!take->ready) return "Preparing the target\u2026";
+    if (shows_rest(session, pane)) return "";
+    if (session.document.source.path.empty()) return "Drop a scan folder or a motion for it to perform";
+  }
+  if (pane_frame(session, pane) < 0) return "Reading the first frame\u2026";
+  return "";
+}
+
+int pane_frame(const Session& session, const PaneContent& pane) {
+  const int count = frames_of(session, pane);
+  const int shown = shown_frame(session);
+  if (shown < 0 && count > 0) return shown_frame(session.playback, count);  // the selected take has none yet
+  return std::min(shown, count - 1);
+}
+
+bool shows_rest(const Session& session, const PaneContent& pane) {
+  const app::TakeState* take = state_of_take(session, pane);
+  return session.tool == app::Tool::TargetJoints && take != nullptr && take->target != nullptr &&
+         pane.takes[0] == session.selected_take;
+}
+
+const Joints* pane_joints(const Session& session, const PaneContent& pane, int frame) {
+  return app::pane_joints(session, pane.source || pane.takes.empty() ? 0 : pane.takes[0] + 1, frame);
+}
+
+render::Camera camera_of(const app::CameraState& state) {
+  render::Camera camera;
+  camera.target = state.target;
+  camera.yaw = state.yaw, camera.pitch = state.pitch;
+  camera.distance = state.distance, camera.fov = state.fov;
+  camera.orthographic = state.orthographic;
+  return camera;
+}
+
+app::CameraState state_of(const render::Camera& camera) {
+  app::CameraState state;
+  state.target = camera.target;
+  state.yaw = camera.yaw, state.pitch = camera.pitch;
+  state.distance = camera.distance, state.fov = camera.fov;
+  state.orthographic = camera.orthographic;
+  return state;
+}
+
+int camera_index(const app::View& view, const PaneContent& pane) {
+  return view.linked ? 0 : pane.number;
+}
+
+app::CameraState camera_state(const app::View& view, const PaneContent& pane) {
+  const size_t index = static_cast<size_t>(camera_index(view, pane));
+  if (index < view.cameras.size()) return view.cameras[index];
+  return view.cameras.empty() ? app::CameraState{} : view.cameras[0];
+}
+
+Vec3 follow_offset(const Session& session, const PaneContent& pane) {
+  if (shows_rest(session, pane)) return rest_offset(session, pane);
+  const int person = pane.source || pane.takes.empty() ? 0 : pane.takes[0] + 1;
+  return app::follow_offset(session, person, pane_frame(session, pane));
+}
+
+render::Camera pane_camera(const Session& session, const PaneContent& pane) {
+  render::Camera camera = camera_of(camera_state(session.view, pane));
+  camera.target += follow_offset(session, pane);
+  return camera;
+}
+
+std::vector<std::string> camera_arguments(const Session& session, const PaneContent& pane,
+                                          const render::Camera& camera) {
+  const Vec3 target = camera.target - follow_offset(session, pane);
+  std::vector<std::string> words{std::to_string(camera_index(session.view, pane))};
+  for (const float x : {target.x(), target.y(), target.z(), camera.yaw, camera.pitch, camera.distance})
+    words.push_back(argument(static_cast<double>(x)));
+  return words;
+}
+
+render::Camera fitted_camera(const Session& session, const PaneContent& pane, float aspect) {
+  render::Camera camera = pane_camera(session, pane);
+  const Joints* joints = shows_rest(session, pane) ? &state_of_take(session, pane)->target->joints
+                                                   : pane_joints(session, pane, pane_frame(session, pane));
+  if (joints == nullptr || !joints->allFinite()) return camera;
+  // A body reaches further than its joints: over the crown, below the soles, around the hands.
+  const float height = joints->col(1).maxCoeff() - joints->col(1).minCoeff(), more = 0.12f * height;
+  Points corners(2 * kJointCount, 3);
+  corners << joints->rowwise() + Eigen::RowVector3f(more, 1.2f * more, more),
+      joints->rowwise() - Eigen::RowVector3f(more, 0.4f * more, more);
+  return render::fitted(camera, corners, aspect, 0.06f);
+}
+
+render::Ray PaneView::ray(const ImVec2& at) const {
+  const Eigen::Vector2f place(2 * (at.x - rect.min.x) / rect.width() - 1,
+                              1 - 2 * (at.y - rect.min.y) / rect.height());
+  return render::ray_through(camera, aspect(), place);
+}
+
+std::optional<ImVec2> PaneView::project(const Vec3& point) const {
+  const Eigen::Vector4f clip = render::projection_matrix(camera, aspect()) *
+                               (render::view_matrix(camera) * point.homogeneous());
+  if (!(clip.w() > 1e-6f)) return std::nullopt;
+  return rect.at(0.5f + 0.5f * clip.x() / clip.w(), 0.5f - 0.5f * clip.y() / clip.w());
+}
+
+float PaneView::metres_per_pixel(const Vec3& point) const {
+  const float depth = camera.orthographic
+                          ? camera.distance
+                          : (render::eye(camera) - point).dot(render::axes(camera).col(2));
+  return 2 * std::max(depth, 0.01f) * std::tan(camera.fov / 2) / rect.height();
+}
+
+int joint_at(const PaneView& view, const Joints& joints, const ImVec2& at, float reach) {
+  int best = -1;
+  float least = reach;
+  for (int j = 0; j < kJointCount; ++j) {
+    const auto seen = joints.row(j).allFinite() ? view.project(joints.row(j)) : std::nullopt;
+    if (!seen) continue;
+    const float away = std::hypot(seen->x - at.x, seen->y - at.y);
+    if (away < least) least = away, best = j;
+  }
+  return best;
+}
+
+}  // namespace understudy::ui

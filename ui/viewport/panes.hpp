@@ -1,0 +1,76 @@
+// The panes of the views: what each one shows, and from where.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/session.hpp"
+#include "render/camera.hpp"
+#include "ui/gui/ui.hpp"
+
+namespace understudy::ui {
+
+/// What one picture shows. Numbers as in View::active_pane: 0 the source, k the take k - 1.
+struct PaneContent {
+  bool source = false;
+  std::vector<int> takes;  ///< indices of takes, the first is the one that tools and hovering are about
+  int number = 0;          ///< what clicking it makes active
+  bool empty() const { return !source && takes.empty(); }
+  bool operator==(const PaneContent& o) const {
+    return source == o.source && takes == o.takes && number == o.number;
+  }
+};
+
+/// Pane by pane, left to right, as the layout says. A wipe has two, drawn over each other: what is left of
+/// its line and what is right of it (source and take where there is only one take).
+std::vector<PaneContent> panes_of(const app::Session& session);
+/// One pane that shows the source or one take.
+PaneContent pane_of(int number);
+
+/// "dance", or "adult, paper" with the method where two takes are of one target.
+std::string pane_title(const app::Session& session, const PaneContent& pane);
+/// Why nothing is to be seen yet, in words for the user; empty where something is.
+std::string pane_hint(const app::Session& session, const PaneContent& pane);
+
+/// The frame a pane shows: the shown frame, or its own last where it has not come that far; -1 without any.
+int pane_frame(const app::Session& session, const PaneContent& pane);
+/// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited.
+bool shows_rest(const app::Session& session, const PaneContent& pane);
+/// The joints of the pane's first person in a frame (extracted or performed); null where there are none.
+const Joints* pane_joints(const app::Session& session, const PaneContent& pane, int frame);
+
+render::Camera camera_of(const app::CameraState& state);
+app::CameraState state_of(const render::Camera& camera);
+/// Which of View::cameras a pane looks through, and that camera.
+int camera_index(const app::View& view, const PaneContent& pane);
+app::CameraState camera_state(const app::View& view, const PaneContent& pane);
+
+/// What a pane's camera adds to its target: app::follow_offset() of its person, or the way to the T-pose.
+Vec3 follow_offset(const app::Session& session, const PaneContent& pane);
+/// The camera that a pane is drawn with.
+render::Camera pane_camera(const app::Session& session, const PaneContent& pane);
+/// The arguments of view.camera_state: the number of the camera, then target, yaw, pitch (radians) and
+/// distance of a camera that a pane is to be drawn with.
+std::vector<std::string> camera_arguments(const app::Session& session, const PaneContent& pane,
+                                          const render::Camera& camera);
+/// The camera that sees the pane's people in the frames up to now, from the side it looks from.
+render::Camera fitted_camera(const app::Session& session, const PaneContent& pane, float aspect);
+
+/// A pane's picture on the screen: where it is and what it is seen through.
+struct PaneView {
+  Rect rect;  ///< pixels
+  render::Camera camera;
+  float aspect() const { return rect.width() / rect.height(); }
+  /// The ray through a pixel.
+  render::Ray ray(const ImVec2& at) const;
+  /// Where a point of the world is seen; none behind the eye.
+  std::optional<ImVec2> project(const Vec3& point) const;
+  /// Metres that one pixel spans at a point of the world.
+  float metres_per_pixel(const Vec3& point) const;
+};
+
+/// The joint seen nearest to a pixel, at most `reach` pixels away; -1 for none.
+int joint_at(const PaneView& view, const Joints& joints, const ImVec2& at, float reach);
+
+}  // namespace understudy::ui

@@ -1,0 +1,287 @@
+#include "ui/viewport/scene_builder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/colors.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using app::Colouring;
+using app::Session;
+using render::SharedPoints;
+
+constexpr float kGhostOpacity = 0.16f, kOverlaidOpacity = 0.62f, kTrailSeconds = 1.2f;
+const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
+
+/// A member of something shared, shared with the whole.
+template <class Whole, class Part>
+std::shared_ptr<const Part> part_of(const std::shared_ptr<const Whole>& whole, const Part& part) {
+  return {whole, &part};
+}
+
+const app::TakeState* take_of(const Session& session, int k) {
+  return static_cast<size_t>(k) < session.takes.size() ? &session.takes[static_cast<size_t>(k)] : nullptr;
+}
+
+template <class Array>
+void append(std::vector<float>& values, const Array& array) {
+  values.insert(values.end(), array.data(), array.data() + array.size());
+}
+
+/// Colours of the values along the legend's scale; none where there is no scale.
+SharedPoints scale_colors(const SurfaceValues& surface) {
+  if (surface.values == nullptr) return {};
+  return render::viridis_colors(*surface.values, surface.legend.low, surface.legend.high);
+}
+
+class Builder {
+ public:
+  Builder(const SceneInput& input, ColourMemory* memory)
+      : in_(input), session_(input.session), memory_(memory != nullptr ? *memory : own_) {}
+
+  PaneScene build();
+
+ private:
+  void add_frame();
+  void add_rest();
+  void add_scan();
+  void add_take(size_t i);
+  void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, float opacity);
+  void add_skeleton(const Joints& joints, const app::Layers& layers);
+  void add_trails();
+  void add_trail(const PaneContent& of, int joint, const Vec3& color);
+  void add_ghosts();
+  void add_crop_box();
+  void set_ground();
+  bool layer(bool app::Layers::*which) const {
+    return (in_.pane.source && session_.view.source.*which) ||
+           (!in_.pane.takes.empty() && session_.view.take.*which);
+  }
+  const ColourMemory::Made& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
+  const ColourMemory::Made& scan_colors();
+  void tell(const ColourMemory::Made& made, int take);
+
+  const SceneInput& in_;
+  const Session& session_;
+  ColourMemory own_;
+  ColourMemory& memory_;
+  PaneScene out_;
+};
+
+PaneScene Builder::build() {
+  out_.scene.background = background_of(in_.theme);
+  out_.values_take = in_.pane.takes.empty() ? -1 : in_.pane.takes[0];
+  if (shows_rest(session_, in_.pane))
+    add_rest();
+  else
+    add_frame();
+  set_ground();
+  return std::move(out_);
+}
+
+void Builder::add_frame() {
+  if (in_.pane.source) add_scan();
+  for (size_t i = 0; i < in_.pane.takes.size(); ++i) add_take(i);
+  add_ghosts();
+  add_trails();
+  add_crop_box();
+}
+
+void Builder::add_rest() {
+  const app::TakeState& take = *take_of(session_, in_.pane.takes[0]);
+  if (!in_.pictures.takes.empty() && in_.pictures.takes[0] != nullptr)
+    add_target_surface(0, in_.pictures.takes[0], 1);
+  render::SkeletonView view = render::skeleton_view(in_.preview.take_joints.value_or(take.target->joints));
+  out_.scene.skeletons.push_back(std::move(view));
+}
+
+void Builder::add_scan() {
+  const app::Layers& layers = session_.view.source;
+  if (layers.surface && in_.pictures.scan != nullptr) {
+    const auto& scan = in_.pictures.scan;
+    const ColourMemory::Made& made = scan_colors();
+    const SharedPoints colors =
+        made.colors->rows() > 0 ? made.colors : SharedPoints(part_of(scan, scan->mesh.colors));
+    if (scan->mesh.is_cloud() || layers.as_points) {
+      render::PointsView view;
+      view.positions = part_of(scan, scan->mesh.vertices);
+      view.normals = part_of(scan, scan->normals);
+      view.colors = colors, view.color = kScanColor;
+      if (scan->spacing > 0) view.radius = scan->spacing;
+      out_.scene.clouds.push_back(std::move(view));
+    } else {
+      render::MeshView view;
+      view.vertices = part_of(scan, scan->mesh.vertices), view.faces = part_of(scan, scan->mesh.faces);
+      view.normals = part_of(scan, scan->normals);
+      view.colors = colors, view.color = kScanColor;
+      out_.scene.meshes.push_back(std::move(view));
+    }
+    tell(made, -1);
+  }
+  const Joints* joints = pane_joints(session_, pane_of(0), in_.pictures.frame);
+  if (in_.preview.source_joints) joints = &*in_.preview.source_joints;
+  if (joints != nullptr) add_skeleton(*joints, layers);
+}
+
+void Builder::add_take(size_t i) {
+  const app::Layers& layers = session_.view.take;
+  const int k = in_.pane.takes[i];
+  const bool over = in_.pane.source || in_.pane.takes.size() > 1;
+  if (layers.surface && i < in_.pictures.takes.size() && in_.pictures.takes[i] != nullptr)
+    add_target_surface(i, in_.pictures.takes[i], over ? kOverlaidOpacity : 1);
+  const Joints* joints = pane_joints(session_, pane_of(k + 1), in_.pictures.frame);
+  if (i == 0 && in_.preview.take_joints) joints = &*in_.preview.take_joints;
+  if (joints != nullptr) add_skeleton(*joints, layers);
+}
+
+void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed,
+                                 float opacity) {
+  const int k = in_.pane.takes[i];
+  const app::TakeState* take = take_of(session_, k);
+  if (take == nullptr || take->target == nullptr || posed->vertices.rows() == 0 ||
+      posed->vertices.rows() != take->target->mesh.vertices.rows())
+    return;
+  const auto& look = i < in_.looks.size() ? in_.looks[i] : nullptr;
+  const ColourMemory::Made& made = take_colors(k, posed);
+  const Mesh& mesh = take->target->mesh;
+  SharedPoints colors = made.colors;
+  if (colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
+    colors = part_of(take->target, mesh.colors);
+  if (i == 0 || out_.legend.title.empty()) tell(made, k);
+  if (mesh.is_cloud()) {
+    render::PointsView view;
+    view.positions = part_of(posed, posed->vertices);
+    view.colors = colors, view.color = take_color(k);
+    if (look != nullptr && look->spacing > 0) view.radius = look->spacing;
+    out_.scene.clouds.push_back(std::move(view));
+    return;
+  }
+  render::MeshView view;
+  view.vertices = part_of(posed, posed->vertices), view.faces = part_of(take->target, mesh.faces);
+  view.normals = part_of(posed, posed->normals);
+  view.colors = colors, view.color = take_color(k), view.opacity = opacity;
+  if (look != nullptr) view.ambient = look->ambient, view.two_sided = !look->closed;
+  out_.scene.meshes.push_back(std::move(view));
+}
+
+void Builder::add_skeleton(const Joints& joints, const app::Layers& layers) {
+  if (!layers.skeleton) return;
+  render::SkeletonView view = render::skeleton_view(joints);
+  view.x_ray = layers.x_ray;
+  out_.scene.skeletons.push_back(std::move(view));
+}
+
+/// Poses before and after, fainter than the one shown.
+void Builder::add_ghosts() {
+  if (!layer(&app::Layers::ghosts)) return;
+  const render::BackgroundView behind = out_.scene.background;
+  const Vec3 air = (behind.top + behind.bottom) / 2;
+  for (const PanePictures::Ghost& ghost : in_.pictures.ghosts) {
+    if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts) {
+      add_target_surface(0, ghost.take, kGhostOpacity);
+      if (!out_.scene.meshes.empty()) out_.scene.meshes.back().colors = {};
+    }
+    if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
+      render::PointsView view;
+      view.positions = part_of(ghost.scan, ghost.scan->mesh.vertices);
+      view.normals = part_of(ghost.scan, ghost.scan->normals);
+      view.color = 0.75f * air + 0.25f * kScanColor;
+      view.radius = 0.6f * (ghost.scan->spacing > 0 ? ghost.scan->spacing : view.radius);
+      out_.scene.clouds.push_back(std::move(view));
+    }
+  }
+}
+
+void Builder::set_ground() {
+  render::GroundView& ground = out_.scene.ground;
+  ground.visible = layer(&app::Layers::ground);
+  if (in_.theme == ThemeKind::Dark) ground.line = Vec3(0.40f, 0.43f, 0.48f);
+  if (!shows_rest(session_, in_.pane)) return;
+  const Points& rest = take_of(session_, in_.pane.takes[0])->target->mesh.vertices;
+  if (rest.rows() > 0) ground.height = rest.col(1).minCoeff();
+}
+
+void Builder::tell(const ColourMemory::Made& made, int take) {
+  if (made.values.legend.title.empty()) return;
+  out_.legend = made.values.legend;
+  out_.values = made.values.values;
+  out_.values_take = take;
+}
+
+const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed) {
+  const app::TakeState& take = *take_of(session_, k);
+  ColourMemory::Made now;
+  const Colouring colouring = take_colouring(session_);
+  const float frame = static_cast<float>(in_.pictures.frame);
+  now.settings = {static_cast<float>(colouring), session_.view.error_scale_mm,
+                  static_cast<float>(weights_joint(session_))};
+  if (colouring == Colouring::Weights) {  // the same in every frame
+    now.kept = {take.weights};
+  } else if (colouring != Colouring::Plain) {
+    now.kept = {posed, in_.pictures.reference, session_.truth};
+    now.settings.push_back(frame);
+  }
+  const size_t f = static_cast<size_t>(std::max(0, in_.pictures.frame));
+  if (colouring == Colouring::Confidence && f < session_.source.frames.size() && f < take.joints.size()) {
+    append(now.settings, session_.source.frames[f].confidence_of);
+    append(now.settings, take.joints[f]);
+  }
+  for (const auto& pointer : now.kept) now.from.push_back(pointer.get());
+  ColourMemory::Made& made = memory_.made[k];
+  if (!made.from.empty() && made.from == now.from && made.settings == now.settings) return made;
+  now.values = take_values(session_, k, in_.pictures, posed);
+  const bool categories = colouring == Colouring::Weights && !now.values.legend.categories.empty();
+  now.colors = categories ? SharedPoints(render::weight_colors(*take.weights)) : scale_colors(now.values);
+  return made = std::move(now);
+}
+
+const ColourMemory::Made& Builder::scan_colors() {
+  ColourMemory::Made now;
+  const size_t f = static_cast<size_t>(std::max(0, in_.pictures.frame));
+  now.kept = {in_.pictures.scan};
+  now.settings = {static_cast<float>(session_.view.source.colouring)};
+  if (f < session_.source.frames.size()) {
+    append(now.settings, session_.source.frames[f].confidence_of);
+    append(now.settings, session_.source.frames[f].joints);
+  }
+  now.from = {in_.pictures.scan.get()};
+  ColourMemory::Made& made = memory_.made[-1];
+  if (made.from == now.from && made.settings == now.settings) return made;
+  now.values = scan_values(session_, in_.pictures);
+  now.colors = scale_colors(now.values);
+  return made = std::move(now);
+}
+
+}  // namespace
+
+PaneScene build_scene(const SceneInput& input, ColourMemory* memory) {
+  return Builder(input, memory).build();
+}
+
+Box crop_box(const Session& session, const PanePictures& pictures) {
+  if (session.document.scan_edits.crop) return *session.document.scan_edits.crop;
+  Box box;
+  box.low = Vec3(-1, -0.05f, -1), box.high = Vec3(1, 2.1f, 1);
+  if (pictures.scan == nullptr || pictures.scan->mesh.vertices.rows() == 0) return box;
+  const Points& points = pictures.scan->mesh.vertices;
+  box.low = points.colwise().minCoeff().transpose() - Vec3::Constant(0.05f);
+  box.high = points.colwise().maxCoeff().transpose() + Vec3::Constant(0.05f);
+  return box;
+}
+
+Vec3 take_color(int k) {
+  static const std::array<Vec3, 4> kTints = {Vec3(0.77f, 0.74f, 0.71f), Vec3(0.66f, 0.75f, 0.69f),
+                                             Vec3(0.72f, 0.68f, 0.78f), Vec3(0.79f, 0.69f, 0.64f)};
+  return kTints[static_cast<size_t>(std::max(0, k)) % kTints.size()];
+}
+
+render::BackgroundView background_of(ThemeKind theme) {
+  render::BackgroundView view;
+  if (theme == ThemeKind::Dark) view.top = Vec3(0.235f, 0.255f, 0.285f), view.bottom = Vec3(0.155f, 0.165f, 0.185f);
+  return view;
+}
+
+}  // namespace understudy::ui

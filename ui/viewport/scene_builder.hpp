@@ -1,0 +1,67 @@
+// From what the session holds and what the cache has made to what the renderer draws. No GL, no ImGui calls.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "render/scene.hpp"
+#include "ui/viewport/panes.hpp"
+#include "ui/viewport/surface_values.hpp"
+#include "ui/viewport/target_look.hpp"
+
+namespace understudy::ui {
+
+/// What the hand is doing just now, shown before it is asked for.
+struct Preview {
+  std::optional<Joints> source_joints;  ///< in place of the extracted ones
+  std::optional<Joints> take_joints;    ///< in place of those of the pane's first take (or of its T-pose)
+  std::optional<Box> crop;              ///< in place of the document's
+  bool empty() const { return !source_joints && !take_joints && !crop; }
+};
+
+/// Colours once made, kept for as long as they stay the same: one for each pane.
+struct ColourMemory {
+  struct Made {
+    std::vector<const void*> from;
+    std::vector<float> settings;
+    std::vector<std::shared_ptr<const void>> kept;  ///< so that no address in `from` is used again
+    SurfaceValues values;
+    render::SharedPoints colors;
+  };
+  std::map<int, Made> made;  ///< by take, -1 the scan
+};
+
+struct SceneInput {
+  const app::Session& session;
+  const PaneContent& pane;
+  const PanePictures& pictures;
+  const std::vector<std::shared_ptr<const TargetLook>>& looks;  ///< as pane.takes; null: not there yet
+  const Preview& preview;
+  ThemeKind theme = ThemeKind::Dark;
+};
+
+/// A pane as it is to be drawn, and what its colours mean.
+struct PaneScene {
+  render::Scene scene;
+  Legend legend;
+  std::shared_ptr<const Eigen::VectorXf> values;  ///< of the first surface: what hovering tells
+  int values_take = -1;                           ///< whose surface; -1 the scan
+};
+
+/// Follows View and Layers: surfaces and their colouring, skeletons, trails, ghosts, ground, the crop box
+/// while that tool is active. What is not there yet is left out. memory: null to make all colours anew.
+PaneScene build_scene(const SceneInput& input, ColourMemory* memory = nullptr);
+
+/// Whether both give the same picture: shared arrays are compared by identity, the rest by value.
+bool same_picture(const render::Scene& a, const render::Scene& b);
+
+/// The box that the crop tool shows: the document's, or one around the scan.
+Box crop_box(const app::Session& session, const PanePictures& pictures);
+/// A skeleton's ghost, trail and surface colour for the k-th take of the views.
+Vec3 take_color(int k);
+/// What is behind everything.
+render::BackgroundView background_of(ThemeKind theme);
+
+}  // namespace understudy::ui

@@ -1,0 +1,63 @@
+// What the colours of a surface mean: a figure for each vertex, and the words beside its scale.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/session/frame_cache.hpp"
+#include "app/session/session.hpp"
+
+namespace understudy::ui {
+
+/// What one pane shows as far as it has been made; null is not there.
+struct PanePictures {
+  int frame = -1;
+  std::shared_ptr<const app::ScanPicture> scan;
+  std::vector<std::shared_ptr<const app::PosedPicture>> takes;  ///< as PaneContent::takes
+  std::shared_ptr<const app::PosedPicture> reference;           ///< the first take, for differences
+  struct Ghost {
+    int frame = 0;
+    std::shared_ptr<const app::ScanPicture> scan;
+    std::shared_ptr<const app::PosedPicture> take;
+  };
+  std::vector<Ghost> ghosts;
+};
+
+/// A scale along viridis, or categories, or nothing (plain).
+struct Legend {
+  std::string title;  ///< "Offsets"; empty: no legend
+  std::string unit;   ///< "mm"
+  float low = 0, high = 1;
+  struct Category {
+    std::string label;
+    Vec3 color;
+  };
+  std::vector<Category> categories;  ///< then there is no scale
+  std::string missing;               ///< why there is nothing to show; empty: there is
+};
+
+/// A surface's figures, in the legend's unit.
+struct SurfaceValues {
+  Legend legend;
+  std::shared_ptr<const Eigen::VectorXf> values;  ///< [V]; null: plain, categories, or missing
+};
+
+/// The colouring that a take is shown with: the one chosen, or the painted joint's weights while painting.
+app::Colouring take_colouring(const app::Session& session);
+/// The joint whose weights are shown, -1 for all.
+int weights_joint(const app::Session& session);
+
+/// Of take `k` in a picture of it in frame `frame`. reference: of the first take.
+SurfaceValues take_values(const app::Session& session, int k, const PanePictures& pictures,
+                          const std::shared_ptr<const app::PosedPicture>& posed);
+/// Of the source's scan.
+SurfaceValues scan_values(const app::Session& session, const PanePictures& pictures);
+
+/// Millimetres between rows of the same number; both [V, 3].
+Eigen::VectorXf distances_mm(const Points& a, const Points& b);
+/// Each point's joint, the nearest one, and of that its value: [N].
+Eigen::VectorXf of_nearest_joint(const Points& points, const Joints& joints,
+                                 const Eigen::Array<float, kJointCount, 1>& value);
+
+}  // namespace understudy::ui

@@ -1,0 +1,269 @@
+#include "ui/widgets/plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/colors.hpp"
+#include "ui/widgets/controls.hpp"
+
+namespace understudy::ui {
+namespace {
+
+/// Everything one plot's drawing needs.
+struct Plot {
+  Ui& ui;
+  const std::vector<Series>& series;
+  const PlotOptions& options;
+  ImDrawList& list;
+  Rect all;
+  FrameAxis axis;
+  Range range;
+
+  ImU32 color_of(size_t k) const {
+    const auto& colors = ui.theme().series;
+    const int wanted = series[k].color >= 0 ? series[k].color : static_cast<int>(k);
+    return color(colors[static_cast<size_t>(wanted) % colors.size()]);
+  }
+};
+
+float word_width(const std::string& words) {
+  return ImGui::CalcTextSize(words.c_str()).x;
+}
+
+double tick_step(const std::vector<double>& ticks) {
+  return ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
+}
+
+/// The values' range with some air, or what was asked for.
+Range value_range(const std::vector<Series>& series, const PlotOptions& options, double first, double last) {
+  if (!options.range.empty()) return options.range;
+  Range range;
+  for (const Series& one : series)
+    for (int i = std::max(0, static_cast<int>(first));
+         i <= std::min(one.values.size - 1, static_cast<int>(last)); ++i)
+      range.include(one.values.data[i]);
+  if (range.empty()) return {0, 1};
+  const float air =
+      range.high > range.low ? 0.06f * (range.high - range.low) : std::max(0.5f, std::abs(range.low) * 0.1f);
+  const bool from_zero = range.low >= 0 && range.low < 0.4f * range.high;
+  return {from_zero ? 0 : range.low - air, range.high + air};
+}
+
+void draw_legend(Plot& p, const ImVec2& at, float width) {
+  float x = at.x;
+  const float line = ImGui::GetTextLineHeight(),
+              right = at.x + width - word_width(p.options.unit) - p.ui.px(10);
+  for (size_t k = 0; k < p.series.size(); ++k) {
+    const float dash = p.ui.px(12), room = right - x - dash - p.ui.px(5);
+    if (room < p.ui.px(24)) break;
+    const std::string label = cut_to(p.series[k].label, room);
+    p.list.AddLine({x, at.y + line / 2}, {x + dash, at.y + line / 2}, p.color_of(k), p.ui.px(2));
+    p.list.AddText({x + dash + p.ui.px(5), at.y}, color(p.ui.theme().text_dim), label.c_str());
+    x += dash + p.ui.px(5) + word_width(label) + p.ui.px(14);
+  }
+  p.list.AddText({at.x + width - word_width(p.options.unit), at.y}, color(p.ui.theme().text_dim),
+                 p.options.unit.c_str());
+}
+
+void draw_value_axis(Plot& p, const std::vector<double>& ticks) {
+  const Rect& area = p.axis.area;
+  const float line = ImGui::GetTextLineHeight();
+  for (const double tick : ticks) {
+    const float y = std::round(
+        area.max.y - static_cast<float>((tick - p.range.low) / (p.range.high - p.range.low)) * area.height());
+    p.list.AddLine({area.min.x, y}, {area.max.x, y}, color(p.ui.theme().line, tick == 0 ? 1 : 0.6f));
+    const std::string label = tick_label(tick, tick_step(ticks));
+    p.list.AddText({area.min.x - word_width(label) - p.ui.px(6), y - line / 2}, color(p.ui.theme().text_dim),
+                   label.c_str());
+  }
+}
+
+void draw_frame_axis(Plot& p) {
+  const Rect& area = p.axis.area;
+  const auto ticks =
+      round_ticks(p.axis.first, p.axis.last, std::max(1, static_cast<int>(area.width() / p.ui.px(64))));
+  for (const double tick : ticks) {
+    if (tick != std::floor(tick)) continue;
+    const float x = std::round(p.axis.x(tick));
+    const std::string label = tick_label(tick, std::max(1.0, tick_step(ticks)));
+    p.list.AddLine({x, area.max.y}, {x, area.max.y + p.ui.px(3)}, color(p.ui.theme().line));
+    const float left = std::clamp(x - word_width(label) / 2, p.all.min.x,
+                                  std::max(p.all.min.x, p.all.max.x - word_width(label)));
+    p.list.AddText({left, area.max.y + p.ui.px(4)}, color(p.ui.theme().text_dim), label.c_str());
+  }
+  for (const int bad : p.options.bad_frames) {
+    if (bad < p.axis.first || bad > p.axis.last) continue;
+    const float x = p.axis.x(bad), half = std::max(1.f, 0.5f * (p.axis.x(1) - p.axis.x(0)));
+    p.list.AddRectFilled({x - half, area.max.y - p.ui.px(4)}, {x + half, area.max.y},
+                         color(p.ui.theme().danger));
+  }
+}
+
+void draw_hover(Plot& p, int frame) {
+  const Rect& area = p.axis.area;
+  const float x = std::round(p.axis.x(frame));
+  p.list.AddLine({x, area.min.y}, {x, area.max.y}, color(p.ui.theme().text_dim, 0.7f));
+  for (size_t k = 0; k < p.series.size(); ++k) {
+    const float value = p.series[k].values.at(frame);
+    const float y = area.max.y - (value - p.range.low) / (p.range.high - p.range.low) * area.height();
+    if (std::isfinite(value)) p.list.AddCircleFilled({x, y}, p.ui.px(3), p.color_of(k));
+  }
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {p.ui.px(9), p.ui.px(6)});
+  ImGui::BeginTooltip();
+  ImGui::TextColored(p.ui.theme().text_dim, "Frame %d", frame);
+  for (size_t k = 0; k < p.series.size(); ++k)
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(p.color_of(k)), "%s  %s %s", p.series[k].label.c_str(),
+                       short_number(p.series[k].values.at(frame)).c_str(), p.options.unit.c_str());
+  ImGui::EndTooltip();
+  ImGui::PopStyleVar();
+}
+
+int frame_count(const std::vector<Series>& series) {
+  int count = 0;
+  for (const Series& one : series) count = std::max(count, one.values.size);
+  return count;
+}
+
+}  // namespace
+
+PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<Series>& series,
+                const PlotOptions& options) {
+  const FontScope small(ui.fonts().small);
+  const ImVec2 at = ImGui::GetCursorScreenPos(),
+               size(std::max(ImGui::GetContentRegionAvail().x, ui.px(60)), ui.px(options.height));
+  Plot p{ui, series, options, *ImGui::GetWindowDrawList(), {at, {at.x + size.x, at.y + size.y}}, {}, {}};
+  p.axis.first = options.first, p.axis.last = options.last;
+  if (options.last < options.first) p.axis.first = 0, p.axis.last = std::max(1, frame_count(series) - 1);
+  p.range = value_range(series, options, p.axis.first, p.axis.last);
+  const float line = ImGui::GetTextLineHeight();
+  const auto ticks = round_ticks(p.range.low, p.range.high,
+                                 std::max(1, static_cast<int>((size.y - 3 * line) / (1.6f * line))));
+  float labels = 0;
+  for (const double tick : ticks) labels = std::max(labels, word_width(tick_label(tick, tick_step(ticks))));
+  p.axis.area = {{at.x + labels + ui.px(8), at.y + line + ui.px(8)},
+                 {at.x + size.x - ui.px(6), at.y + size.y - line - ui.px(5)}};
+
+  const bool pressed = ImGui::InvisibleButton(name.c_str(), size);
+  ui.mark(name, p.axis.area);
+  draw_legend(p, at, size.x);
+  draw_value_axis(p, ticks);
+  draw_frame_axis(p);
+  p.list.PushClipRect(p.axis.area.min, p.axis.area.max, true);
+  for (size_t k = 0; k < series.size(); ++k)
+    draw_curve(p.list, p.axis, series[k].values, p.range, p.color_of(k), ui.px(1.5f));
+  const float now = std::round(p.axis.x(options.current));
+  if (options.current >= 0)
+    p.list.AddLine({now, p.axis.area.min.y}, {now, p.axis.area.max.y}, color(ui.theme().accent), ui.px(1.5f));
+  p.list.PopClipRect();
+
+  PlotAnswer answer;
+  const int frame = std::clamp(static_cast<int>(std::lround(p.axis.frame(ImGui::GetIO().MousePos.x))), 0,
+                               std::max(0, frame_count(series) - 1));
+  const bool held = ImGui::IsItemActive();
+  if (frame_count(series) == 0) return answer;
+  if (held || pressed) answer.seek = frame;
+  if (held || ImGui::IsItemHovered()) answer.hovered = frame, draw_hover(p, frame);
+  return answer;
+}
+
+void histogram(Ui& ui, const std::string& name, const Values& values, const HistogramOptions& options) {
+  const FontScope small(ui.fonts().small);
+  const ImVec2 at = ImGui::GetCursorScreenPos(),
+               size(std::max(ImGui::GetContentRegionAvail().x, ui.px(60)), ui.px(options.height));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImGui::Dummy(size);
+  ui.mark(name);
+  Range range;
+  for (int i = 0; i < values.size; ++i) range.include(values.data[i]);
+  if (range.empty()) return list.AddText(at, color(ui.theme().text_dim), "No values yet.");
+  if (range.high == range.low) range.high += 1;
+  std::vector<int> counts(static_cast<size_t>(std::max(1, options.bins)));
+  for (int i = 0; i < values.size; ++i)
+    if (std::isfinite(values.data[i])) {
+      const auto bin = static_cast<size_t>((values.data[i] - range.low) / (range.high - range.low) *
+                                           static_cast<float>(counts.size()));
+      ++counts[std::min(bin, counts.size() - 1)];
+    }
+  const float line = ImGui::GetTextLineHeight(),
+              most = static_cast<float>(*std::max_element(counts.begin(), counts.end()));
+  const Rect area{{at.x, at.y + line + ui.px(6)}, {at.x + size.x, at.y + size.y - line - ui.px(4)}};
+  const float each = area.width() / static_cast<float>(counts.size());
+  for (size_t b = 0; b < counts.size(); ++b) {
+    const float left = area.min.x + each * static_cast<float>(b),
+                high = static_cast<float>(counts[b]) / most * area.height();
+    if (counts[b] > 0)
+      list.AddRectFilled({left, area.max.y - std::max(high, 1.f)},
+                         {left + std::max(1.f, each - 1), area.max.y}, color(ui.theme().series[0], 0.8f));
+  }
+  list.AddLine({area.min.x, area.max.y}, area.max, color(ui.theme().line));
+  const auto write = [&](float x, float y, const std::string& words, const ImVec4& with) {
+    const float left = std::clamp(x - word_width(words) / 2, area.min.x,
+                                  std::max(area.min.x, area.max.x - word_width(words)));
+    list.AddText({left, y}, color(with), words.c_str());
+    return left + word_width(words);
+  };
+  const auto ticks =
+      round_ticks(range.low, range.high, std::max(2, static_cast<int>(area.width() / ui.px(64))));
+  const auto x_of = [&](double v) {
+    return area.min.x + static_cast<float>((v - range.low) / (range.high - range.low)) * area.width();
+  };
+  for (const double tick : ticks)
+    write(x_of(tick), area.max.y + ui.px(3), tick_label(tick, tick_step(ticks)), ui.theme().text_dim);
+  float written = area.min.x;
+  for (const auto& [label, value] : options.marks) {
+    const float x = std::round(x_of(value));
+    list.AddLine({x, area.min.y}, {x, area.max.y}, color(ui.theme().series[1]), ui.px(1.5f));
+    const std::string words =
+        label + " " + short_number(value) + (options.unit.empty() ? "" : " " + options.unit);
+    written = write(std::max(x, written + word_width(words) / 2 + (written > area.min.x ? ui.px(10) : 0)),
+                    at.y, words, ui.theme().series[1]);
+  }
+}
+
+void viridis_legend(Ui& ui, const std::string& name, float low, float high, const std::string& unit) {
+  const FontScope small(ui.fonts().small);
+  constexpr int kSteps = 32;
+  const float line = ImGui::GetTextLineHeight(), bar = std::round(ui.px(8)),
+              width = std::max(ImGui::GetContentRegionAvail().x, ui.px(60));
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto at_step = [](int k) {
+    const auto c = render::viridis(static_cast<float>(k) / kSteps);
+    return color({c.x(), c.y(), c.z(), 1});
+  };
+  for (int k = 0; k < kSteps; ++k) {
+    const float left = at.x + width * static_cast<float>(k) / kSteps,
+                right = at.x + width * static_cast<float>(k + 1) / kSteps;
+    list.AddRectFilledMultiColor({left, at.y}, {right, at.y + bar}, at_step(k), at_step(k + 1),
+                                 at_step(k + 1), at_step(k));
+  }
+  for (int k = 0; k <= 2; ++k) {
+    const float share = static_cast<float>(k) / 2, value = low + share * (high - low);
+    const std::string words = short_number(value) + (k == 2 && !unit.empty() ? " " + unit : "");
+    list.AddText({at.x + share * (width - word_width(words)), at.y + bar + ui.px(3)},
+                 color(ui.theme().text_dim), words.c_str());
+  }
+  ImGui::Dummy({width, bar + ui.px(3) + line});
+  ui.mark(name);
+}
+
+void category_legend(Ui& ui, const std::string& name, const std::vector<Category>& categories) {
+  const FontScope small(ui.fonts().small);
+  ImGui::BeginGroup();
+  const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x,
+              box = std::round(ui.px(10));
+  for (size_t i = 0; i < categories.size(); ++i) {
+    const float width = box + ui.px(5) + word_width(categories[i].label), gap = ui.px(12);
+    if (i > 0 && ImGui::GetItemRectMax().x + gap + width < right) ImGui::SameLine(0, gap);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float line = ImGui::GetTextLineHeight(), top = at.y + std::round((line - box) / 2);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled({at.x, top}, {at.x + box, top + box}, color(categories[i].color), ui.px(2));
+    list.AddText({at.x + box + ui.px(5), at.y}, color(ui.theme().text_dim), categories[i].label.c_str());
+    ImGui::Dummy({width, line});
+  }
+  ImGui::EndGroup();
+  ui.mark(name);
+}
+
+}  // namespace understudy::ui
