@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/session/command_sets.hpp"
+#include "app/session/follow.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {
@@ -74,14 +75,17 @@ void fit(Studio& studio) {
   Session& session = studio.session();
   const int frame = shown_frame(session);
   Joints joints = Joints::Zero();
+  Vec3 followed = Vec3::Zero();  // what the camera adds by itself
   bool any = false;
   if (frame >= 0 && static_cast<size_t>(frame) < session.source.frames.size()) {
     joints = session.source.frames[static_cast<size_t>(frame)].joints;
+    followed = follow_offset(session, 0, frame);
     any = true;
   }
   const size_t k = static_cast<size_t>(session.selected_take);
   if (!any && k < session.takes.size() && session.takes[k].target) {
     joints = session.takes[k].target->joints;
+    followed = {joints(Pelvis, 0), session.takes[k].target->mesh.vertices.col(1).minCoeff(), joints(Pelvis, 2)};
     any = true;
   }
   CameraState& c = active_camera(studio);
@@ -91,7 +95,7 @@ void fit(Studio& studio) {
     return;
   }
   const Vec3 low = joints.colwise().minCoeff().transpose(), high = joints.colwise().maxCoeff().transpose();
-  c.target = 0.5f * (low + high);
+  c.target = 0.5f * (low + high) - followed;
   const float size = std::max(0.6f, (high - low).norm() + 0.35f);
   c.distance = 0.5f * size / std::tan(0.5f * c.fov) * 1.12f;
 }

@@ -1,0 +1,36 @@
+#include "app/session/follow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace understudy::app {
+namespace {
+
+constexpr double kSmoothing = 0.25;  // standard deviation, seconds
+
+}  // namespace
+
+const Joints* pane_joints(const Session& session, int pane, int frame) {
+  const size_t f = static_cast<size_t>(frame), k = static_cast<size_t>(pane - 1);
+  if (frame < 0) return nullptr;
+  if (pane == 0) return f < session.source.frames.size() ? &session.source.frames[f].joints : nullptr;
+  return k < session.takes.size() && f < session.takes[k].joints.size() ? &session.takes[k].joints[f] : nullptr;
+}
+
+Vec3 follow_offset(const Session& session, int pane, int frame) {
+  if (!session.view.follow) return Vec3::Zero();
+  const double sigma = std::max(1.0, kSmoothing * session.source.fps);
+  const int reach = static_cast<int>(std::ceil(2 * sigma));
+  Vec3 sum = Vec3::Zero();
+  float total = 0;
+  for (int f = std::max(0, frame - reach); f <= frame + reach; ++f) {
+    const Joints* joints = pane_joints(session, pane, f);
+    if (joints == nullptr || !joints->row(Pelvis).allFinite()) continue;
+    const float w = static_cast<float>(std::exp(-0.5 * std::pow((f - frame) / sigma, 2.0)));
+    sum += w * joints->row(Pelvis).transpose();
+    total += w;
+  }
+  return total > 0 ? Vec3(sum.x() / total, 0, sum.z() / total) : Vec3::Zero();
+}
+
+}  // namespace understudy::app
