@@ -9,8 +9,10 @@
 namespace understudy {
 namespace {
 
-constexpr float kLevelFall = 0.1f;   // seconds in which the level follows a foot that is lower
-constexpr float kLevelRise = 0.01f;  // m/s at which it rises when no foot is: a source may climb
+// Where a foot stands is learnt: it follows what is lower within kLevelFall, a slow foot not far above it
+// within kLevelSettle (seconds), and rises by kLevelRise (m/s) in any case.
+constexpr float kLevelFall = 0.2f, kLevelSettle = 0.3f, kLevelRise = 0.01f;
+constexpr float kLevelReach = 0.06f;  // metres, leg 0.8 m
 constexpr std::array<int, 4> kPoints = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
 
 Vec3 over_floor(const Vec3& v) {
@@ -36,10 +38,16 @@ void FootLock::start(const Joints& source) {
 
 std::array<bool, 4> FootLock::contacts(const Joints& source, float dt) {
   std::array<bool, 4> on{};
+  const float leg_m = leg_length(source);
   for (size_t k = 0; k < kPoints.size(); ++k) {
     const Vec3 point = source.row(kPoints[k]).transpose();
-    const float below = point.y() - levels_[k];
-    levels_[k] += below < 0 ? (1 - std::exp(-dt / kLevelFall)) * below : std::min(kLevelRise * dt, below);
+    const float above = point.y() - levels_[k];
+    const bool settling =
+        above < kLevelReach * leg_m / 0.8f && switches_[k].speed() < options_.contact.begin_speed;
+    if (above < 0 || settling)
+      levels_[k] += (1 - std::exp(-dt / (above < 0 ? kLevelFall : kLevelSettle))) * above;
+    else
+      levels_[k] += std::min(kLevelRise * dt, above);
     on[k] = switches_[k].push(point, levels_[k], dt);
   }
   return on;

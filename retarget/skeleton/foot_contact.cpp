@@ -16,9 +16,8 @@ bool ContactSwitch::push(const Vec3& position, float standing_height, float dt) 
   const float height = (position.y() - standing_height) / scale_;
   if (!started_) velocity_.setZero();
   if (started_ && dt > 0) velocity_ += (1 - std::exp(-dt / kSettle)) * ((position - last_) / dt - velocity_);
-  const float speed = velocity_.norm() / scale_;
-  on_ = on_ ? height < options_.end_height_m && speed < options_.end_speed
-            : height < options_.begin_height_m && speed < options_.begin_speed;
+  on_ = on_ ? height < options_.end_height_m && speed() < options_.end_speed
+            : height < options_.begin_height_m && speed() < options_.begin_speed;
   last_ = position;
   started_ = true;
   return on_;

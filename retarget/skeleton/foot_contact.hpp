@@ -21,6 +21,8 @@ class ContactSwitch {
   void reset() { on_ = started_ = false; }
   /// Whether the point is in contact. position: world; standing_height: y of the point when it stands.
   bool push(const Vec3& position, float standing_height, float dt);
+  /// m/s of a person with legs of 0.8 m, as of the last push().
+  float speed() const { return velocity_.norm() / scale_; }
 
  private:
   FootContactOptions options_;

@@ -30,9 +30,15 @@ TEST(DragEdit, MovesTheJointFullyAtItsFrameAndLessAround) {
   for (const int away : {0, 1, 2, 3, 4, 5}) {
     const float y = moved(seen, apply(edits, seen, 10 + away), LeftElbow).y();
     EXPECT_NEAR(y, moved(seen, apply(edits, seen, 10 - away), LeftElbow).y(), 1e-6f);
-    if (away == 0) EXPECT_NEAR(y, 0.1f, 1e-6f);
-    if (away > 0) EXPECT_LT(y, last);
-    if (away == 5) EXPECT_EQ(y, 0);
+    if (away == 0) {
+      EXPECT_NEAR(y, 0.1f, 1e-6f);
+    }
+    if (away > 0) {
+      EXPECT_LT(y, last);
+    }
+    if (away == 5) {
+      EXPECT_EQ(y, 0);
+    }
     last = y;
   }
   EXPECT_TRUE(touches(edits, 14));
