@@ -6,6 +6,8 @@ target_link_libraries(ui_test_support PUBLIC understudy_gui GTest::gtest PRIVATE
 
 us_test(gui_test LABELS fast SOURCES ${PROJECT_SOURCE_DIR}/tests/ui/gui_test.cpp LIBS ui_test_support)
 us_test(widgets_test LABELS fast SOURCES ${PROJECT_SOURCE_DIR}/tests/ui/widgets_test.cpp LIBS ui_test_support)
+us_test(file_browser_test LABELS fast SOURCES ${PROJECT_SOURCE_DIR}/tests/ui/file_browser_test.cpp
+  LIBS ui_test_support)
 us_test(gallery_test LABELS gl SOURCES
   ${PROJECT_SOURCE_DIR}/tests/ui/gallery_test.cpp ${PROJECT_SOURCE_DIR}/tests/ui/support/gallery.cpp
   LIBS ui_test_support)

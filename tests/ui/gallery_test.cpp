@@ -4,12 +4,16 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <string>
+#include <thread>
 #include <tuple>
 
 #include "render/context/context.hpp"
 #include "support/gallery.hpp"
 #include "support/pictures.hpp"
+#include "ui/file_browser.hpp"
 #include "ui/gui/gui.hpp"
+#include "ui/widgets/dialogs.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -25,6 +29,13 @@ class Gallery : public testing::TestWithParam<std::tuple<ThemeKind, int>> {
     gui.begin_frame(input);
     draw_gallery(gui.ui(), state);
     return gui.end_frame();
+  }
+  void keep(const render::Image& image, const std::string& name) const {
+    const char* folder = std::getenv("US_GALLERY");
+    const char* look = input.theme == ThemeKind::Dark ? "_dark_" : "_light_";
+    if (folder != nullptr)
+      render::write_png(
+          std::string(folder) + "/" + name + look + std::to_string(std::get<1>(GetParam())) + ".png", image);
   }
   GalleryState state;
   FrameInput input;
@@ -70,11 +81,7 @@ TEST_P(Gallery, DrawsEveryIconAndPlot) {
   DrawPass pass;
   frame(), frame();
   const render::Image image = picture(pass, frame(), gui.atlas(), input.size);
-  if (const char* folder = std::getenv("US_GALLERY"))
-    render::write_png(std::string(folder) + "/gallery_" +
-                          (input.theme == ThemeKind::Dark ? "dark_" : "light_") +
-                          std::to_string(std::get<1>(GetParam())) + ".png",
-                      image);
+  keep(image, "gallery");
   int icons = 0;
   for (const Mark& mark : gui.marks()) {
     if (mark.name.rfind("icon.", 0) != 0) continue;
@@ -87,12 +94,50 @@ TEST_P(Gallery, DrawsEveryIconAndPlot) {
     EXPECT_GT(drawn(image, gui.find(name)->rect), 0.01) << name;
 }
 
+TEST_P(Gallery, CutsNoWordOfTheBrowserOrADialog) {
+  const auto context =
+      render::make_offscreen_context({render::ContextKind::Any, render::gl::DebugMode::Fatal});
+  DrawPass pass;
+  FileBrowser browser;
+  browser.places = {{"Samples", US_SOURCE_DIR "/assets/samples", Icon::Person}};
+  browser.preview = [](const std::string&) { return FilePreview{nullptr, 0, 0, "9,830 points each"}; };
+  BrowseRequest request;
+  request.title = "Open a scan", request.folder = US_SOURCE_DIR "/assets/samples";
+  request.filters = {scan_filter(), any_filter()};
+  browser.open(request);
+  Notices notices;
+  notices.add("Saved walk_female_03.understudy", NoticeKind::Good);
+  bool asking = false;
+  const auto draw = [&]() -> const ImDrawData& {
+    gui.begin_frame(input);
+    draw_gallery(gui.ui(), state);
+    browser.draw(gui.ui());
+    if (asking)
+      ask(gui.ui(), "unsaved",
+          {"Unsaved changes", "Save walk_female_03 before closing it?", "Save", "Don't save"});
+    notices.draw(gui.ui());
+    return gui.end_frame();
+  };
+  for (int i = 0; i < 40; ++i) {
+    draw();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_NE(gui.find("browser.look.scan"), nullptr) << "the sample is not known as a sequence of scans";
+  for (const bool question : {false, true}) {
+    if (question) browser = FileBrowser(), asking = true, draw(), draw();
+    const ImDrawData& data = draw();
+    for (const Rect& letter : cut_letters(data, gui.atlas()))
+      ADD_FAILURE() << "a letter is cut at " << letter.min.x << ", " << letter.min.y;
+    keep(picture(pass, data, gui.atlas(), input.size), question ? "question" : "browser");
+  }
+}
+
 TEST_P(Gallery, FindsAWordThatIsCut) {
   const auto draw = [&]() -> const ImDrawData& {
     gui.begin_frame(input);
     ImGui::SetNextWindowSize({gui.ui().px(100), gui.ui().px(60)});
     ImGui::Begin("narrow", nullptr, ImGuiWindowFlags_NoDecoration);
-    ImGui::TextUnformatted("These words are wider than the WWWWWWWWWWWWWWWWWW");
+    ImGui::TextUnformatted("WWWWWWWWWWWWWWWWWW");
     ImGui::End();
     return gui.end_frame();
   };

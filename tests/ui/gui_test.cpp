@@ -128,7 +128,7 @@ TEST_F(UiTest, MarksSayWhatIsHiddenAndGreyedOut) {
 TEST_F(UiTest, GuisFollowEachOther) {
   for (int i = 0; i < 3; ++i) {
     Gui other;
-    other.begin_frame({{100, 100}, 1.f + static_cast<float>(i)});
+    other.begin_frame({{1200, 800}, 1.f + static_cast<float>(i)});
     EXPECT_FLOAT_EQ(other.ui().px(10), 10.f * static_cast<float>(i + 1));
     other.end_frame();
   }
@@ -145,11 +145,21 @@ TEST_F(UiTest, ScaleMakesLettersAndControlsLarger) {
     ui.mark("play");
   });
   const Rect at_one = mark("play").rect;
-  input.scale = 2;
+  input.scale = 2, input.size = {1280, 800};
   frame(2);
   const Rect at_two = mark("play").rect;
   EXPECT_NEAR(at_two.width() / at_one.width(), 2, 0.15f);
   EXPECT_NEAR(at_two.height() / at_one.height(), 2, 0.05f);
+}
+
+TEST_F(UiTest, ASmallDisplayLimitsTheScale) {
+  in_window([](Ui&) {});
+  input.scale = 3;
+  for (const auto& [size, scale] : {std::pair(render::PixelSize{400, 300}, 1.f), std::pair(render::PixelSize{1920, 1080}, 3.f), std::pair(render::PixelSize{720, 500}, 2.f)}) {
+    input.size = size;
+    frame();
+    EXPECT_EQ(gui.ui().scale(), scale);
+  }
 }
 
 TEST_F(UiTest, DigitsAreEquallyWide) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bitset>
+#include <cmath>
 #include <utility>
 
 #include "ui/gui/fonts.hpp"
@@ -115,7 +116,9 @@ const ImDrawData& Gui::end_frame() {
 }
 
 void Gui::set_look(const FrameInput& input) {
-  const float scale = std::clamp(input.scale, 1.f, 3.f);
+  const float width = static_cast<float>(input.size.width), height = static_cast<float>(input.size.height);
+  const float room = std::floor(4 * std::min(width / 360, height / 240)) / 4;  // in steps: new letters take 20 ms
+  const float scale = std::clamp(input.scale, 1.f, std::clamp(room, 1.f, 3.f));
   const Theme& wanted = theme(input.theme);
   const bool first = ui_.fonts_.body == nullptr;
   if (first || scale != ui_.scale_) {

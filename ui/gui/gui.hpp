@@ -17,7 +17,8 @@ namespace understudy::ui {
 
 struct FrameInput {
   render::PixelSize size;  ///< of the framebuffer
-  float scale = 1;         ///< of text and controls, 1 to 3 (clamped); a change makes new letters
+  /// Of text and controls, 1 to 3, less where the display is too small for it; a change makes new letters.
+  float scale = 1;
   float dt = 1.f / 60;     ///< seconds since the last frame
   ThemeKind theme = ThemeKind::Dark;
 };

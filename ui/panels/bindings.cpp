@@ -10,49 +10,20 @@
 namespace understudy::ui {
 namespace {
 
-// Keys of commands with arguments, and of those that ask for a file first.
+// Keys of commands that ask for a file first, of dialogs, and second keys.
 const std::vector<Binding>& built_in() {
-  static const std::vector<Binding> kBuiltIn = {
-      {"Ctrl+N", "document.new", {}, "New"},
-      {"Ctrl+O", "open", {}, "Open"},
-      {"Ctrl+S", "document.save", {}, "Save"},
-      {"Ctrl+Shift+S", "document.save_as", {}, "Save as"},
-      {"Ctrl+E", "dialog.open", {"export"}, "Export"},
-      {"Ctrl+Q", "app.quit", {}, "Quit"},
-      {"Ctrl+Z", "edit.undo", {}, "Undo"},
-      {"Ctrl+Shift+Z", "edit.redo", {}, "Redo"},
-      {"Ctrl+Y", "edit.redo", {}, "Redo"},
-      {"Ctrl+Comma", "dialog.open", {"settings"}, "Settings"},
-      {"Space", "playback.toggle", {}, "Play or pause"},
-      {"Left", "playback.step", {"-1"}, "Frame back"},
-      {"Right", "playback.step", {"1"}, "Frame forward"},
-      {"Shift+Left", "playback.step", {"-10"}, "Ten frames back"},
-      {"Shift+Right", "playback.step", {"10"}, "Ten frames forward"},
-      {"Home", "playback.first", {}, "First frame"},
-      {"End", "playback.last", {}, "Last frame"},
-      {"I", "playback.in", {}, "Loop from here"},
-      {"O", "playback.out", {}, "Loop to here"},
-      {"L", "playback.loop", {"toggle"}, "Loop"},
-      {"1", "view.preset", {"front"}, "View from the front"},
-      {"Ctrl+1", "view.preset", {"back"}, "View from the back"},
-      {"3", "view.preset", {"right"}, "View from the right"},
-      {"Ctrl+3", "view.preset", {"left"}, "View from the left"},
-      {"7", "view.preset", {"top"}, "View from the top"},
-      {"0", "view.preset", {"three-quarter"}, "Three-quarter view"},
-      {"5", "view.ortho", {"toggle"}, "Orthographic"},
-      {"F", "view.fit", {}, "Fit the view"},
-      {"Q", "tool", {"look"}, "Look around"},
-      {"J", "tool", {"joints"}, "Drag joints"},
-      {"R", "tool", {"bones"}, "Rotate bones"},
-      {"T", "tool", {"target-joints"}, "Joints of the target"},
-      {"B", "tool", {"paint"}, "Paint weights"},
-      {"C", "tool", {"crop"}, "Crop the scan"},
-      {"H", "help.keys", {}, "All keys"},
-      {"Shift+Slash", "help.keys", {}, "All keys"},
-  };
+  static const std::vector<Binding> kBuiltIn = {{"Ctrl+O", "open", {}, "Open"},
+                                                {"Ctrl+S", "document.save", {}, "Save"},
+                                                {"Ctrl+Shift+S", "document.save_as", {}, "Save as"},
+                                                {"Ctrl+E", "dialog.open", {"export"}, "Export"},
+                                                {"Ctrl+Comma", "dialog.open", {"settings"}, "Settings"},
+                                                {"Ctrl+Y", "edit.redo", {}, "Redo"},
+                                                {"Shift+Left", "playback.step", {"-10"}, "Ten frames back"},
+                                                {"Shift+Right", "playback.step", {"10"}, "Ten frames on"},
+                                                {"H", "help.keys", {}, "All keys"},
+                                                {"Shift+Slash", "help.keys", {}, "All keys"}};
   return kBuiltIn;
 }
-
 
 struct Chord {
   render::Key key = render::Key::Unknown;
@@ -119,16 +90,14 @@ std::vector<Binding> bindings(const app::Commands& commands) {
 
 std::string keys_of(const app::Commands& commands, const std::string& command,
                     const app::Arguments& arguments) {
-  const app::Command* found = commands.find(command);
-  if (arguments.empty() && found != nullptr && !found->shortcut.empty()) return found->shortcut;
-  for (const Binding& binding : built_in()) {
-    if (binding.command != command || binding.arguments != arguments) continue;
-    const auto& all = commands.all();
-    const bool taken = std::any_of(all.begin(), all.end(), [&](const app::Command& other) {
-      return other.shortcut == binding.keys;
-    });
-    if (!taken) return binding.keys;
+  std::vector<std::string> names = {command};  // "view.preset front" is "view.preset_front", too
+  if (!arguments.empty()) names = {command + "_" + arguments.front(), command + "." + arguments.front()};
+  for (const std::string& name : names) {
+    const app::Command* found = commands.find(name);
+    if (found != nullptr && !found->shortcut.empty()) return found->shortcut;
   }
+  for (const Binding& binding : bindings(commands))
+    if (binding.command == command && binding.arguments == arguments) return binding.keys;
   return "";
 }
 
@@ -155,13 +124,6 @@ void ask_for_keys(const app::Session& session, PanelContext& context) {
   if (io.WantTextInput || ImGui::GetTopMostPopupModal() != nullptr) return;
   for (const Binding& binding : bindings(context.commands)) {
     if (!pressed(binding.keys)) continue;
-    if (binding.command == "view.ortho") {
-      const auto& cameras = session.view.cameras;
-      return ask_or_open(session, context, "view.ortho",
-                         {on_off(cameras.empty() || !cameras.front().orthographic)});
-    }
-    if (binding.command == "playback.loop")
-      return ask_or_open(session, context, "playback.loop", {on_off(!session.playback.loop)});
     return ask_or_open(session, context, binding.command, binding.arguments);
   }
 }

@@ -138,11 +138,6 @@ Items tools_menu(const app::Session& session) {
   return items;
 }
 
-bool is_shown(const app::Session& session, const std::string& panel) {
-  const auto found = session.settings.panels.find(panel);
-  return found != session.settings.panels.end() ? found->second : panel != "log";
-}
-
 Items window_menu(const app::Session& session) {
   Items items;
   for (const char* tab : {"inspector", "layers", "edit", "metrics"}) {
@@ -151,9 +146,9 @@ Items window_menu(const app::Session& session) {
     items.push_back({label, "panel.show", {tab, "on"}, "", false, {}});
   }
   items.push_back(line());
-  items.push_back(flag("Side panel", "panel.show", is_shown(session, "side"), {"side"}));
-  items.push_back(flag("Timeline", "panel.show", is_shown(session, "timeline"), {"timeline"}));
-  items.push_back(flag("Log", "panel.show", is_shown(session, "log"), {"log"}));
+  items.push_back(flag("Side panel", "panel.show", panel_shown(session, "side"), {"side"}));
+  items.push_back(flag("Timeline", "panel.show", panel_shown(session, "timeline"), {"timeline"}));
+  items.push_back(flag("Log", "panel.show", panel_shown(session, "log"), {"log"}));
   items.push_back(line());
   items.push_back({"Dark", "settings.theme", {"dark"}, "", session.settings.dark, {}});
   items.push_back({"Light", "settings.theme", {"light"}, "", !session.settings.dark, {}});

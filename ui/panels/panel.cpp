@@ -101,6 +101,11 @@ double frames_per_second(const app::Session& session) {
   return session.source.fps > 0 ? session.source.fps : 30;
 }
 
+bool panel_shown(const app::Session& session, const std::string& panel) {
+  const auto found = session.settings.panels.find(panel);
+  return found != session.settings.panels.end() ? found->second : panel != "log";
+}
+
 bool possible(const app::Session& session, const std::string& command) {
   const bool source = !session.document.source.path.empty();
   const bool take = selected_take(session) != nullptr;

@@ -43,11 +43,11 @@ void draw_transport(const app::Session& session, PanelContext& context) {
   transport_button(session, context, "timeline.first", Icon::ToStart,
                    {"", "playback.first", {}, "First frame"});
   transport_button(session, context, "timeline.back", Icon::StepBack,
-                   {"", "playback.step", {"-1"}, "One frame back"});
+                   {"", "playback.step_back", {}, "One frame back"});
   transport_button(session, context, "timeline.play", playing ? Icon::Pause : Icon::Play,
                    {"", "playback.toggle", {}, playing ? "Pause" : "Play"});
   transport_button(session, context, "timeline.forward", Icon::StepForward,
-                   {"", "playback.step", {"1"}, "One frame forward"});
+                   {"", "playback.step_on", {}, "One frame forward"});
   transport_button(session, context, "timeline.last", Icon::ToEnd, {"", "playback.last", {}, "Last frame"});
 }
 
@@ -56,7 +56,7 @@ void draw_marks(const app::Session& session, PanelContext& context) {
   const app::Playback& playback = session.playback;
   const bool disabled = !possible(session, "playback.loop");
   ImGui::SameLine(0, ui.px(10));
-  if (icon_button(ui, "timeline.loop", Icon::Loop, {"Play again from the start", "L", playback.loop, disabled, 28}))
+  if (icon_button(ui, "timeline.loop", Icon::Loop, {"Play again from the start", keys_of(context.commands, "playback.loop"), playback.loop, disabled, 28}))
     context.ask("playback.loop", {on_off(!playback.loop)});
   const auto word = [&](const char* name, const char* label, const char* command, const char* tip) {
     ImGui::SameLine(0, ui.px(3));

@@ -94,11 +94,10 @@ void draw_tools(const app::Session& session, PanelContext& context, const Rect& 
 }
 
 void draw_side_switch(const app::Session& session, PanelContext& context, const Rect& bar) {
-  const auto found = session.settings.panels.find("side");
-  const bool shown = found == session.settings.panels.end() || found->second;
+  const bool shown = panel_shown(session, "side");
   IconStrip strip(context.ui, bar, bar.max.x - context.ui.px(36));
   if (strip.add("top.side", Icon::Layers, {shown ? "Hide the side panel" : "Show the side panel", "", false, false, 28}))
-    context.ask("panel.show", {"side", "toggle"});
+    context.ask("panel.show", {"side", on_off(!shown)});
 }
 
 void draw_layouts(const app::Session& session, PanelContext& context, const Rect& place) {

@@ -1,5 +1,6 @@
 #include "ui/viewport/panes.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -44,7 +45,7 @@ int frames_of(const Session& session, const PaneContent& pane) {
 
 /// The T-pose is seen where the person would be.
 Vec3 rest_offset(const Session& session, const PaneContent& pane) {
-  const app::Target& target = *state_of_take(session, pane)->target;
+  const Target& target = *state_of_take(session, pane)->target;
   const float floor = target.mesh.vertices.rows() > 0 ? target.mesh.vertices.col(1).minCoeff() : 0;
   Vec3 offset(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
   const PaneContent moving = pane_of(pane.number);
@@ -102,7 +103,6 @@ std::string pane_hint(const Session& session, const PaneContent& pane) {
     if (!take->problem.empty()) return take->problem;
     if (!take->ready) return "Preparing the target\u2026";
     if (shows_rest(session, pane)) return "";
-    if (session.document.source.path.empty()) return "Drop a scan folder or a motion for it to perform";
   }
   if (pane_frame(session, pane) < 0) return "Reading the first frame\u2026";
   return "";
@@ -117,8 +117,9 @@ int pane_frame(const Session& session, const PaneContent& pane) {
 
 bool shows_rest(const Session& session, const PaneContent& pane) {
   const app::TakeState* take = state_of_take(session, pane);
-  return session.tool == app::Tool::TargetJoints && take != nullptr && take->target != nullptr &&
-         pane.takes[0] == session.selected_take;
+  if (take == nullptr || take->target == nullptr) return false;
+  const bool edited = session.tool == app::Tool::TargetJoints && pane.takes[0] == session.selected_take;
+  return edited || (take->joints.empty() && !pane.source);
 }
 
 const Joints* pane_joints(const Session& session, const PaneContent& pane, int frame) {

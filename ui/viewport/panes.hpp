@@ -35,7 +35,8 @@ std::string pane_hint(const app::Session& session, const PaneContent& pane);
 
 /// The frame a pane shows: the shown frame, or its own last where it has not come that far; -1 without any.
 int pane_frame(const app::Session& session, const PaneContent& pane);
-/// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited.
+/// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited, and before
+/// there is a frame.
 bool shows_rest(const app::Session& session, const PaneContent& pane);
 /// The joints of the pane's first person in a frame (extracted or performed); null where there are none.
 const Joints* pane_joints(const app::Session& session, const PaneContent& pane, int frame);

@@ -49,7 +49,11 @@ class Builder {
   void add_rest();
   void add_scan();
   void add_take(size_t i);
-  void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, float opacity);
+  struct Look {
+    float opacity = 1;
+    bool coloured = true;
+  };
+  void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, const Look& how);
   void add_skeleton(const Joints& joints, const app::Layers& layers);
   void add_trails();
   void add_trail(const PaneContent& of, int joint, const Vec3& color);
@@ -93,7 +97,7 @@ void Builder::add_frame() {
 void Builder::add_rest() {
   const app::TakeState& take = *take_of(session_, in_.pane.takes[0]);
   if (!in_.pictures.takes.empty() && in_.pictures.takes[0] != nullptr)
-    add_target_surface(0, in_.pictures.takes[0], 1);
+    add_target_surface(0, in_.pictures.takes[0], {});
   render::SkeletonView view = render::skeleton_view(in_.preview.take_joints.value_or(take.target->joints));
   out_.scene.skeletons.push_back(std::move(view));
 }
@@ -131,26 +135,29 @@ void Builder::add_take(size_t i) {
   const int k = in_.pane.takes[i];
   const bool over = in_.pane.source || in_.pane.takes.size() > 1;
   if (layers.surface && i < in_.pictures.takes.size() && in_.pictures.takes[i] != nullptr)
-    add_target_surface(i, in_.pictures.takes[i], over ? kOverlaidOpacity : 1);
+    add_target_surface(i, in_.pictures.takes[i], {over ? kOverlaidOpacity : 1});
   const Joints* joints = pane_joints(session_, pane_of(k + 1), in_.pictures.frame);
   if (i == 0 && in_.preview.take_joints) joints = &*in_.preview.take_joints;
   if (joints != nullptr) add_skeleton(*joints, layers);
 }
 
 void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed,
-                                 float opacity) {
+                                 const Look& how) {
   const int k = in_.pane.takes[i];
   const app::TakeState* take = take_of(session_, k);
   if (take == nullptr || take->target == nullptr || posed->vertices.rows() == 0 ||
       posed->vertices.rows() != take->target->mesh.vertices.rows())
     return;
   const auto& look = i < in_.looks.size() ? in_.looks[i] : nullptr;
-  const ColourMemory::Made& made = take_colors(k, posed);
   const Mesh& mesh = take->target->mesh;
-  SharedPoints colors = made.colors;
-  if (colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
-    colors = part_of(take->target, mesh.colors);
-  if (i == 0 || out_.legend.title.empty()) tell(made, k);
+  SharedPoints colors;
+  if (how.coloured) {
+    const ColourMemory::Made& made = take_colors(k, posed);
+    colors = made.colors;
+    if (colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
+      colors = part_of(take->target, mesh.colors);
+    if (i == 0 || out_.legend.title.empty()) tell(made, k);
+  }
   if (mesh.is_cloud()) {
     render::PointsView view;
     view.positions = part_of(posed, posed->vertices);
@@ -162,7 +169,7 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
   render::MeshView view;
   view.vertices = part_of(posed, posed->vertices), view.faces = part_of(take->target, mesh.faces);
   view.normals = part_of(posed, posed->normals);
-  view.colors = colors, view.color = take_color(k), view.opacity = opacity;
+  view.colors = colors, view.color = take_color(k), view.opacity = how.opacity;
   if (look != nullptr) view.ambient = look->ambient, view.two_sided = !look->closed;
   out_.scene.meshes.push_back(std::move(view));
 }
@@ -180,10 +187,8 @@ void Builder::add_ghosts() {
   const render::BackgroundView behind = out_.scene.background;
   const Vec3 air = (behind.top + behind.bottom) / 2;
   for (const PanePictures::Ghost& ghost : in_.pictures.ghosts) {
-    if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts) {
-      add_target_surface(0, ghost.take, kGhostOpacity);
-      if (!out_.scene.meshes.empty()) out_.scene.meshes.back().colors = {};
-    }
+    if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts)
+      add_target_surface(0, ghost.take, {kGhostOpacity, false});
     if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
       render::PointsView view;
       view.positions = part_of(ghost.scan, ghost.scan->mesh.vertices);

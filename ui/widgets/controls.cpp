@@ -192,7 +192,9 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
   draw_icon(*ImGui::GetWindowDrawList(), Icon::ChevronDown,
             {p.rect.max.x - arrow - ui.px(5), p.rect.min.y + (height - arrow) / 2}, arrow, color(t.text_dim));
   if (p.clicked) ImGui::OpenPopup(popup.c_str());
-  ImGui::SetNextWindowPos({p.rect.min.x, p.rect.max.y + ui.px(3)});
+  const float wanted = static_cast<float>(choices.size()) * ImGui::GetTextLineHeightWithSpacing() + ui.px(24);
+  const bool above = p.rect.max.y + wanted > ImGui::GetIO().DisplaySize.y && p.rect.min.y > wanted;
+  ImGui::SetNextWindowPos({p.rect.min.x, above ? p.rect.min.y - ui.px(3) : p.rect.max.y + ui.px(3)}, ImGuiCond_Always, {0, above ? 1.f : 0.f});
   ImGui::SetNextWindowSizeConstraints({width, 0}, {std::max(width, ui.px(480)), ui.px(360)});
   bool changed = false;
   if (ImGui::BeginPopup(popup.c_str())) {

@@ -1,0 +1,27 @@
+// Where the parts of the window are.
+#pragma once
+
+#include "ui/gui/ui.hpp"
+
+namespace understudy::ui {
+
+/// What there is to place. Sizes at scale 1.
+struct Parts {
+  bool side = true, timeline = true, log = false;
+  float side_width = 328, log_height = 150;
+};
+
+/// Pixels. Parts that are hidden, or for which there is no room, are empty.
+struct Arrangement {
+  Rect top, views, log, side, timeline, status;
+  Rect side_edge;       ///< where the side panel's width is dragged
+  bool narrow = false;  ///< the side panel lies over the views
+};
+
+/// Whether a window of this width has the side panel over the views.
+bool is_narrow(float width, float scale);
+
+/// Fits any size: what matters least goes first.
+Arrangement arrange(const ImVec2& display, float scale, const Parts& parts);
+
+}  // namespace understudy::ui

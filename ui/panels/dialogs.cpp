@@ -1,0 +1,187 @@
+#include "ui/panels/dialogs.hpp"
+
+#include <algorithm>
+
+#include "ui/gui/gui.hpp"
+#include "ui/panels/rows.hpp"
+
+namespace understudy::ui {
+namespace {
+
+constexpr const char* kRoots[] = {"scaled", "original", "in-place"};
+
+void sentence(const std::string& words) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(words.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+/// Ends a dialog of one's own; `stays` is what it returns.
+bool finish(bool stays) {
+  const bool escape = !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
+  if (escape) stays = false;
+  if (!stays) ImGui::CloseCurrentPopup();
+  end_dialog();
+  return stays;
+}
+
+QuestionAnswer draw_unsaved(const app::Session& session, PanelContext& context) {
+  Question question;
+  question.title = "Unsaved changes";
+  question.sentence = session.question->text.empty() ? "Save the changes first?" : session.question->text;
+  question.yes = session.path.empty() ? "Save\u2026" : "Save", question.no = "Don't save";
+  switch (ask(context.ui, "unsaved", question)) {
+    case Answer::Yes:
+      if (session.path.empty()) return {true, ""};
+      context.ask("question.answer", {"save"});
+      break;
+    case Answer::No:
+      context.ask("question.answer", {"discard"});
+      break;
+    case Answer::Cancel:
+      context.ask("question.answer", {"cancel"});
+      break;
+    default:
+      break;
+  }
+  return {};
+}
+
+QuestionAnswer draw_recover(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!begin_dialog(ui, "recover", "Unsaved work", 480)) return {};
+  sentence(session.question->text);
+  for (size_t i = 0; i < session.question->autosaves.size(); ++i) {
+    const app::Autosave& copy = session.question->autosaves[i];
+    const std::string what = copy.document_path.empty() ? "Never saved" : file_name(copy.document_path);
+    text_cut(ui, what + ", " + copy.time);
+    ButtonRow buttons(2);
+    ButtonOptions recover, discard;
+    recover.look = i == 0 ? ButtonLook::Main : ButtonLook::Plain;
+    discard.tooltip = "Forgets this work for good";
+    if (buttons.add(ui, "recover." + std::to_string(i), "Recover", recover)) context.ask("document.recover", {copy.file});
+    if (buttons.add(ui, "discard." + std::to_string(i), "Discard", discard)) context.ask("document.discard_recovery", {copy.file});
+  }
+  ButtonOptions later;
+  later.look = ButtonLook::Quiet, later.width = -1, later.tooltip = "It is kept, and asked about at the next start";
+  if (!finish(!button(ui, "recover.later", "Decide later", later))) context.ask("question.answer", {"cancel"});
+  return {};
+}
+
+QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!begin_dialog(ui, "missing", "Files are missing", 520)) return {};
+  sentence(session.question->text);
+  QuestionAnswer answer;
+  for (size_t i = 0; i < session.question->missing.size(); ++i) {
+    const std::string& path = session.question->missing[i];
+    const IdScope id(static_cast<int>(i));
+    const float width = ui.px(80);
+    ImGui::AlignTextToFramePadding();
+    text_cut(ui, path, ImGui::GetContentRegionAvail().x - width - ui.px(10));
+    ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - width);
+    ButtonOptions find;
+    find.width = width;
+    if (button(ui, "missing." + std::to_string(i), "Find\u2026", find)) answer.look_for = path;
+  }
+  ButtonOptions leave;
+  leave.look = ButtonLook::Quiet, leave.width = -1, leave.tooltip = "What is there is opened";
+  const bool stays = finish(!button(ui, "missing.leave", "Go on without them", leave));
+  if (!stays) context.ask("question.answer", {"cancel"});
+  return answer;
+}
+
+void draw_method_rows(app::Method& method, Ui& ui) {
+  if (const auto i = choice_row(ui, {"compare.engine", "Transfer", ""}, {"Copy", "Paper"}, method.engine == "paper"))
+    method.engine = *i == 1 ? "paper" : "copy";
+  if (const auto i = choice_row(ui, {"compare.extractor", "Extractor", ""}, {"Dense", "Paper"}, method.extractor == "paper"))
+    method.extractor = *i == 1 ? "paper" : "dense";
+  if (const auto on = toggle_row(ui, {"compare.offsets", "Offsets", ""}, method.offsets)) method.offsets = *on;
+  if (const auto i = choice_row(ui, {"compare.root", "Path", ""}, {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
+    method.root = static_cast<RootMode>(*i);
+}
+
+/// The settings in which `other` is not as `base`, as compare.add wants them.
+app::Arguments differences(const app::Method& base, const app::Method& other) {
+  app::Arguments settings;
+  if (base.engine != other.engine) settings.push_back("engine=" + other.engine);
+  if (base.extractor != other.extractor) settings.push_back("extractor=" + other.extractor);
+  if (base.offsets != other.offsets) settings.push_back("offsets=" + on_off(other.offsets));
+  if (base.root != other.root) settings.push_back(std::string("root=") + kRoots[static_cast<int>(other.root)]);
+  return settings;
+}
+
+}  // namespace
+
+bool draw_error(const app::Session& session, PanelContext& context) {
+  if (session.errors.empty()) return false;
+  const app::Notice& error = session.errors.front();
+  if (show_error(context.ui, "error", error.text, error.details)) context.ask("error.dismiss");
+  return true;
+}
+
+QuestionAnswer draw_question(const app::Session& session, PanelContext& context) {
+  using Kind = app::Question::Kind;
+  switch (session.question->kind) {
+    case Kind::Recover:
+      return draw_recover(session, context);
+    case Kind::MissingFiles:
+      return draw_missing(session, context);
+    default:
+      return draw_unsaved(session, context);
+  }
+}
+
+void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state) {
+  double newest = state.newest;
+  for (const app::Notice& notice : session.notices) {
+    if (notice.until <= state.newest) continue;
+    const bool info = notice.kind == app::Notice::Kind::Info;
+    state.shown.add(notice.text, info ? NoticeKind::Good : NoticeKind::Warning,
+                    static_cast<float>(std::max(1.0, notice.until - session.time)));
+    newest = std::max(newest, notice.until);
+  }
+  state.newest = newest;
+  state.shown.draw(context.ui);
+}
+
+bool draw_about(PanelContext& context, const std::string& about) {
+  Ui& ui = context.ui;
+  if (!begin_dialog(ui, "about", "Understudy", 520)) return true;
+  ImGui::BeginChild("##about", {0, std::min(ui.px(280), ImGui::GetIO().DisplaySize.y * 0.5f)});
+  sentence(about);
+  ImGui::EndChild();
+  ButtonRow buttons(2);
+  ButtonOptions close;
+  close.look = ButtonLook::Main;
+  if (buttons.add(ui, "about.copy", "Copy", {})) ImGui::SetClipboardText(about.c_str());
+  return finish(!buttons.add(ui, "about.close", "Close", close));
+}
+
+bool draw_compare(const app::Session& session, PanelContext& context, CompareState& state) {
+  Ui& ui = context.ui;
+  const app::Take* take = selected_take(session);
+  if (take == nullptr) return false;
+  if (!begin_dialog(ui, "compare", "Compare with", 420)) return true;
+  if (!state.method) state.method = take->method;
+  hint(ui, "A second take of " + take->name + ", made like this:");
+  draw_method_rows(*state.method, ui);
+  ImGui::Dummy({0, ui.px(4)});
+  ButtonRow buttons(2);
+  ButtonOptions apply;
+  apply.look = ButtonLook::Main;
+  bool stays = !buttons.add(ui, "compare.cancel", "Cancel", {});
+  if (buttons.add(ui, "compare.apply", "Compare", apply)) {
+    app::Arguments arguments = differences(take->method, *state.method);
+    arguments.insert(arguments.begin(), std::to_string(session.selected_take));
+    context.ask("compare.add", arguments);
+    stays = false;
+  }
+  if (!finish(stays)) {
+    state.method.reset();
+    return false;
+  }
+  return true;
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,40 @@
+// Saving what is not the document: animations, figures, pictures, video.
+// Marks: export.format(.0 to .2), export.take, export.path, export.browse, export.size, export.width,
+// export.height, export.all, export.transparent, export.save, export.cancel; export.overwrite.yes and .cancel.
+#pragma once
+
+#include <string>
+
+#include "ui/panels/panel.hpp"
+
+namespace understudy::ui {
+
+enum class ExportKind { Animation, Picture, Video };
+
+struct ExportState {
+  ExportKind kind = ExportKind::Animation;
+  int format = 0;    ///< of an animation: GLB, NPZ, CSV
+  std::string path;  ///< empty: one is proposed
+  int width = 1920, height = 1080;
+  bool all = true;           ///< all views; false: the active one
+  bool transparent = false;  ///< pictures
+  bool asking = false;       ///< whether to write over the file that is there
+};
+
+/// Turns to another kind; the path is proposed anew.
+void begin_export(ExportState& state, ExportKind kind, int format = 0);
+/// "dance.glb" beside the document, or in the folder used last.
+std::string proposed_path(const app::Session& session, const ExportState& state);
+/// The suffix of what is written; "" for a video's folder of pictures.
+std::string suffix_of(const ExportState& state);
+/// Asks for the command that writes it.
+void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state);
+
+struct ExportAnswer {
+  bool stays = true;    ///< false: done, or cancelled
+  bool browse = false;  ///< the user wants to choose the path
+};
+/// A dialog; call every frame while it is to be seen.
+ExportAnswer draw_export(const app::Session& session, PanelContext& context, ExportState& state);
+
+}  // namespace understudy::ui

@@ -1,0 +1,125 @@
+#include "ui/panels/start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/rows.hpp"
+
+namespace understudy::ui {
+namespace {
+
+constexpr float kCard = 196, kPicture = 112, kCardHeight = 170;  // at scale 1
+
+/// A picture that keeps its shape and fills the rectangle, or an icon.
+void draw_picture(Ui& ui, const SampleCard& card, const Rect& rect) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float corner = ui.px(6);
+  list.AddRectFilled(rect.min, rect.max, color(ui.theme().backdrop), corner, ImDrawFlags_RoundCornersTop);
+  if (card.picture != nullptr) {
+    list.AddImageRounded(card.picture, rect.min, rect.max, {0, 0}, {1, 1}, IM_COL32_WHITE, corner,
+                         ImDrawFlags_RoundCornersTop);
+    return;
+  }
+  const float side = ui.px(40);
+  draw_icon(list, Icon::Person, {rect.at(0.5f, 0).x - side / 2, rect.at(0, 0.5f).y - side / 2}, side,
+            color(ui.theme().text_faint));
+}
+
+bool draw_card(Ui& ui, const std::string& name, const SampleCard& card, float width) {
+  const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, ui.px(kCardHeight)});
+  ui.mark(name);
+  const Rect rect{ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  const bool hovered = ImGui::IsItemHovered();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(rect.min, rect.max, color(hovered ? ui.theme().field : ui.theme().raised), ui.px(6));
+  draw_picture(ui, card, {rect.min, {rect.max.x, rect.min.y + ui.px(kPicture)}});
+  list.AddRect(rect.min, rect.max, color(hovered ? ui.theme().accent_hover : ui.theme().line), ui.px(6));
+  const float x = rect.min.x + ui.px(10), room = width - ui.px(20);
+  {
+    const FontScope strong(ui.fonts().strong);
+    list.AddText({x, rect.min.y + ui.px(kPicture + 8)}, color(ui.theme().text), cut_to(card.title, room).c_str());
+  }
+  const FontScope small(ui.fonts().small);
+  list.AddText({x, rect.min.y + ui.px(kPicture + 31)}, color(ui.theme().text_dim), cut_to(card.caption, room).c_str());
+  tooltip(ui, card.caption);
+  return clicked;
+}
+
+void draw_samples(PanelContext& context, const std::vector<SampleCard>& samples) {
+  Ui& ui = context.ui;
+  const float gap = ImGui::GetStyle().ItemSpacing.x + ui.px(4), width = ImGui::GetContentRegionAvail().x;
+  const float card = std::min(ui.px(kCard), std::max(1.f, width));
+  const int a_line = std::max(1, static_cast<int>((width + gap) / (card + gap)));
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (i % static_cast<size_t>(a_line) != 0) ImGui::SameLine(0, gap);
+    if (draw_card(ui, "start.sample." + std::to_string(i), samples[i], card)) context.ask("open", samples[i].paths);
+  }
+}
+
+void heading(Ui& ui, const std::string& words) {
+  ImGui::Dummy({0, ui.px(10)});
+  const FontScope strong(ui.fonts().strong);
+  text_cut(ui, words);
+}
+
+void draw_openers(PanelContext& context) {
+  Ui& ui = context.ui;
+  struct Opener {
+    const char *name, *label, *dialog;
+  };
+  constexpr Opener kOpeners[] = {{"start.open_scan", "Open scan\u2026", "open_scan"},
+                                 {"start.open_target", "Open target\u2026", "open_target"},
+                                 {"start.open_document", "Open document\u2026", "open_document"}};
+  const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+  for (const Opener& opener : kOpeners) {
+    const float width = ImGui::CalcTextSize(opener.label).x + ui.px(28);
+    if (&opener != kOpeners) {
+      ImGui::SameLine();
+      if (ImGui::GetCursorScreenPos().x + width > end) ImGui::NewLine();
+    }
+    ButtonOptions options;
+    options.look = &opener == kOpeners ? ButtonLook::Main : ButtonLook::Plain;
+    if (button(ui, opener.name, opener.label, options)) context.ask("dialog.open", {opener.dialog});
+  }
+}
+
+void draw_recent(const app::Session& session, PanelContext& context) {
+  const auto& recent = session.settings.recent;
+  if (recent.empty()) return;
+  heading(context.ui, "Recent");
+  for (size_t i = 0; i < recent.size(); ++i) {
+    ButtonOptions options;
+    options.look = ButtonLook::Quiet, options.tooltip = recent[i];
+    const std::string label = cut_to(file_name(recent[i]), ImGui::GetContentRegionAvail().x - context.ui.px(16));
+    const IdScope id(static_cast<int>(i));
+    if (button(context.ui, "start.recent." + std::to_string(i), label, options))
+      context.ask("document.open", {recent[i]});
+  }
+}
+
+}  // namespace
+
+void draw_start(const app::Session& session, PanelContext& context, const std::vector<SampleCard>& samples) {
+  Ui& ui = context.ui;
+  const float all = ImGui::GetContentRegionAvail().x, width = std::min(all, ui.px(840));
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::floor((all - width) / 2));
+  ImGui::BeginChild("##start", {width, 0});
+  ImGui::Dummy({0, std::min(ui.px(36), 0.06f * ImGui::GetContentRegionAvail().y)});
+  {
+    const FontScope title(ui.fonts().title);
+    text_cut(ui, "Any body, any motion");
+  }
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextColored(ui.theme().text_dim, "%s", "Drop a scan folder or a character here.");
+  ImGui::PopTextWrapPos();
+  ImGui::Dummy({0, ui.px(6)});
+  draw_openers(context);
+  if (!samples.empty()) {
+    heading(ui, "Samples");
+    draw_samples(context, samples);
+  }
+  draw_recent(session, context);
+  ImGui::EndChild();
+}
+
+}  // namespace understudy::ui

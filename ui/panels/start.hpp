@@ -1,0 +1,22 @@
+// The start screen, where the views will be: samples, recent documents, what can be dropped.
+// Marks: start.sample.K, start.recent.K, start.open_scan, start.open_target, start.open_document.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ui/panels/panel.hpp"
+
+namespace understudy::ui {
+
+/// Something to try at once.
+struct SampleCard {
+  std::string title, caption;  ///< "A walk", "3D scans of a person, 60 frames"
+  app::Arguments paths;        ///< of the command open
+  ImTextureID picture = nullptr;
+};
+
+/// Fills the current window.
+void draw_start(const app::Session& session, PanelContext& context, const std::vector<SampleCard>& samples);
+
+}  // namespace understudy::ui

@@ -1,0 +1,94 @@
+#include "ui/panels/status.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/widgets/controls.hpp"
+
+namespace understudy::ui {
+namespace {
+
+void draw_job(const app::Session& session, PanelContext& context, float width) {
+  Ui& ui = context.ui;
+  const app::JobView& job = session.jobs.front();
+  ImGui::BeginChild("##job", {width, ui.px(kStatusHeight - 6)});
+  ProgressOptions options;
+  options.fraction = job.progress, options.left = job.name;
+  if (session.jobs.size() > 1) options.left += " (+" + std::to_string(session.jobs.size() - 1) + ")";
+  options.right = time_left(job.seconds_left);
+  options.cancellable = job.cancellable;
+  if (progress(ui, "status.job", options)) context.ask("job.cancel", {std::to_string(job.id)});
+  ImGui::EndChild();
+}
+
+/// What all jobs do, when there are several: each with its own cancel.
+void draw_more_jobs(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  ImGui::SameLine();
+  const float side = ui.px(24);
+  ImGui::SetCursorPosY((ui.px(kStatusHeight) - side) / 2);
+  if (icon_button(ui, "status.more_jobs", Icon::ChevronUp, {"All jobs", "", false, false, 24})) ImGui::OpenPopup("jobs");
+  const ImVec2 above = ImGui::GetItemRectMin();
+  ImGui::SetNextWindowPos({above.x, above.y - ui.px(4)}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSize({ui.px(320), 0});
+  if (!ImGui::BeginPopup("jobs")) return;
+  for (const app::JobView& job : session.jobs) {
+    const ProgressOptions options{job.progress, job.name, time_left(job.seconds_left), job.cancellable};
+    if (progress(ui, "status.job." + std::to_string(job.id), options))
+      context.ask("job.cancel", {std::to_string(job.id)});
+  }
+  ImGui::EndPopup();
+}
+
+/// What there is to say without a job: the newest warning or line of the log.
+void draw_message(const app::Session& session, PanelContext& context, float width) {
+  Ui& ui = context.ui;
+  if (session.log.empty() || width < ui.px(40)) return;
+  const app::LogLine& line = session.log.back();
+  ImGui::SetCursorPosY((ui.px(kStatusHeight) - ImGui::GetFrameHeight()) / 2);
+  const std::string words = cut_to(line.text, width - ui.px(20));
+  ButtonOptions options;
+  options.look = ButtonLook::Quiet, options.tooltip = line.text;
+  const ColorScope color(ImGuiCol_Text, line.warning ? ui.theme().warning : ui.theme().text_dim);
+  if (button(ui, "status.message", words, options))
+    context.ask("panel.show", {"log", on_off(!panel_shown(session, "log"))});
+}
+
+std::string document_words(const app::Session& session) {
+  if (!has_document(session)) return "";
+  return (session.path.empty() ? "Not saved yet" : file_name(session.path)) + (session.changed ? " *" : "");
+}
+
+}  // namespace
+
+void draw_status(const app::Session& session, PanelContext& context, float frame_rate) {
+  Ui& ui = context.ui;
+  const float width = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
+  const FontScope small(ui.fonts().small);
+  const std::string rate = frame_rate > 0 ? std::to_string(std::lround(frame_rate)) + " fps" : "";
+  const bool wide = width > ui.px(560);
+  const float rate_width = rate.empty() ? 0 : ui.px(58);
+  const float document_width = wide ? std::min(ui.px(220), ImGui::CalcTextSize(document_words(session).c_str()).x + ui.px(20)) : 0;
+  float left = width - rate_width - document_width;
+  if (!session.jobs.empty()) {
+    const float job = std::min(ui.px(340), wide ? left * 0.6f : left);
+    draw_job(session, context, job);
+    if (session.jobs.size() > 1 && wide) draw_more_jobs(session, context), left -= ui.px(32);
+    left -= job + ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SameLine();
+  }
+  draw_message(session, context, left);
+  const float y = (ui.px(kStatusHeight) - ImGui::GetTextLineHeight()) / 2;
+  const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
+  if (document_width > 0) {
+    ImGui::SetCursorPos({start + width - rate_width - document_width + ui.px(10), y});
+    text_cut(ui, document_words(session), document_width - ui.px(10));
+    ui.mark("status.document");
+  }
+  if (rate.empty()) return;
+  ImGui::SetCursorPos({start + width - ImGui::CalcTextSize(rate.c_str()).x, y});
+  ImGui::TextUnformatted(rate.c_str());
+  ui.mark("status.rate");
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,228 @@
+#include "ui/viewport/overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/colors.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/widgets/controls.hpp"
+#include "ui/widgets/icons.hpp"
+
+namespace understudy::ui {
+namespace {
+
+constexpr int kBarSteps = 24;
+
+ImU32 color_of(const Vec3& rgb) {
+  return color(ImVec4(rgb.x(), rgb.y(), rgb.z(), 1));
+}
+
+class Writer {
+ public:
+  Writer(Ui& ui, const Overlay& overlay) : ui_(ui), in_(overlay), list_(*ImGui::GetWindowDrawList()) {}
+  void draw();
+
+ private:
+  float px(float length) const { return ui_.px(length); }
+  static float line() { return ImGui::GetTextLineHeight(); }
+  /// A quiet box to write upon.
+  void box(const Rect& rect, const ImVec4& fill, float opacity = 0.78f) {
+    list_.AddRectFilled(rect.min, rect.max, color(fill, opacity), px(5));
+  }
+  void text(const ImVec2& at, const ImVec4& ink, const std::string& words) {
+    list_.AddText(at, color(ink), words.c_str());
+  }
+  void draw_title();
+  void draw_warning(float top);
+  void draw_hint();
+  void draw_scale();
+  void draw_categories();
+  void draw_missing();
+  void draw_labels();
+  void draw_tip();
+
+  Ui& ui_;
+  const Overlay& in_;
+  ImDrawList& list_;
+};
+
+void Writer::draw() {
+  list_.PushClipRect(in_.rect.min, in_.rect.max, true);
+  draw_labels();
+  draw_title();
+  draw_hint();
+  if (!in_.legend.title.empty()) {
+    if (!in_.legend.missing.empty())
+      draw_missing();
+    else if (in_.legend.categories.empty())
+      draw_scale();
+    else
+      draw_categories();
+  }
+  if (in_.active) list_.AddRect(in_.rect.min, in_.rect.max, color(ui_.theme().accent), 0, 0, px(1.5f));
+  list_.PopClipRect();
+  draw_tip();
+}
+
+void Writer::draw_title() {
+  const float pad = px(8), room = in_.rect.width() - px(20) - 2 * pad;
+  if (room < px(30)) return;
+  std::string title, subtitle;
+  ImVec2 title_size, subtitle_size(0, 0);
+  {
+    const FontScope strong(ui_.fonts().strong);
+    title = cut_to(in_.title, room);
+    title_size = ImGui::CalcTextSize(title.c_str());
+  }
+  const FontScope small(ui_.fonts().small);
+  if (!in_.subtitle.empty()) subtitle = cut_to(in_.subtitle, room);
+  if (!subtitle.empty()) subtitle_size = ImGui::CalcTextSize(subtitle.c_str());
+  const float width = std::max(title_size.x, subtitle_size.x) + 2 * pad;
+  const float height = title_size.y + subtitle_size.y + px(8);
+  const float left = in_.title_right ? in_.rect.max.x - px(10) - width : in_.rect.min.x + px(10);
+  const ImVec2 at(left, in_.rect.min.y + px(10));
+  if (!title.empty() || !subtitle.empty()) {
+    box({at, {at.x + width, at.y + height}}, ui_.theme().panel);
+    text({at.x + pad, at.y + px(4) + title_size.y}, ui_.theme().text_dim, subtitle);
+    const FontScope strong(ui_.fonts().strong);
+    text({at.x + pad, at.y + px(4)}, ui_.theme().text, title);
+  }
+  draw_warning(at.y + height + px(6));
+}
+
+void Writer::draw_warning(float top) {
+  if (in_.warning.empty()) return;
+  const float icon = line(), pad = px(6);
+  const std::string words = cut_to(in_.warning, in_.rect.width() - px(20) - icon - 3 * pad);
+  const float width = ImGui::CalcTextSize(words.c_str()).x + icon + 3 * pad;
+  const float left = in_.title_right ? in_.rect.max.x - px(10) - width : in_.rect.min.x + px(10);
+  const Rect rect{{left, top}, {left + width, top + line() + px(6)}};
+  box(rect, mix(ui_.theme().panel, ui_.theme().warning, 0.18f), 0.92f);
+  draw_icon(list_, Icon::Warning, {left + pad, top + px(3)}, icon, color(ui_.theme().warning));
+  text({left + icon + 2 * pad, top + px(3)}, ui_.theme().text, words);
+  ui_.mark("view.warning", rect);
+}
+
+void Writer::draw_hint() {
+  if (in_.hint.empty()) return;
+  const float room = std::max(px(60), std::min(in_.rect.width() - px(32), px(300)));
+  const ImVec2 size = ImGui::CalcTextSize(in_.hint.c_str(), nullptr, false, room);
+  const ImVec2 middle = in_.rect.at(0.5f, 0.5f);
+  const ImVec2 at(middle.x - size.x / 2, middle.y - size.y / 2);
+  box({{at.x - px(14), at.y - px(10)}, {at.x + size.x + px(14), at.y + size.y + px(10)}}, ui_.theme().panel);
+  list_.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color(ui_.theme().text_dim), in_.hint.c_str(), nullptr,
+                room);
+}
+
+void Writer::draw_scale() {
+  const FontScope small(ui_.fonts().small);
+  const float width = std::min(px(170), in_.rect.width() - px(36)), bar = px(9);
+  if (width < px(50)) return;
+  const float height = 2 * line() + bar + px(16);
+  const ImVec2 at(in_.rect.min.x + px(10), in_.rect.max.y - px(10) - height);
+  const Rect rect{at, {at.x + width + px(16), at.y + height}};
+  box(rect, ui_.theme().panel);
+  ui_.mark("view.legend", rect);
+  const float left = at.x + px(8), top = at.y + px(6) + line();
+  const std::string unit = in_.legend.unit.empty() ? "" : ", " + in_.legend.unit;
+  text({left, at.y + px(4)}, ui_.theme().text, cut_to(in_.legend.title + unit, width));
+  for (int i = 0; i < kBarSteps; ++i) {
+    const float from = static_cast<float>(i) / kBarSteps, to = static_cast<float>(i + 1) / kBarSteps;
+    const ImU32 a = color_of(render::viridis(from)), b = color_of(render::viridis(to));
+    list_.AddRectFilledMultiColor({left + from * width, top}, {left + to * width, top + bar}, a, b, b, a);
+  }
+  const auto number_at = [&](float share, float value) {
+    const std::string words = figure(static_cast<double>(value));
+    const float x = left + share * (width - ImGui::CalcTextSize(words.c_str()).x);
+    text({x, top + bar + px(2)}, ui_.theme().text_dim, words);
+  };
+  number_at(0, in_.legend.low);
+  if (width > px(110)) number_at(0.5f, (in_.legend.low + in_.legend.high) / 2);
+  number_at(1, in_.legend.high);
+}
+
+/// All of them in one column, or nothing but the title where there is no room.
+void Writer::draw_categories() {
+  const FontScope small(ui_.fonts().small);
+  const float swatch = px(9), step = line() + px(1);
+  const auto& all = in_.legend.categories;
+  float widest = ImGui::CalcTextSize(in_.legend.title.c_str()).x;
+  for (const auto& one : all) widest = std::max(widest, swatch + px(6) + ImGui::CalcTextSize(one.label.c_str()).x);
+  const float whole = step * static_cast<float>(all.size() + 1) + px(12);
+  const bool room = whole < in_.rect.height() - px(70) && widest < 0.4f * in_.rect.width();
+  const float height = room ? whole : step + px(8);
+  const ImVec2 at(in_.rect.min.x + px(10), in_.rect.max.y - px(10) - height);
+  const Rect rect{at, {at.x + widest + px(16), at.y + height}};
+  box(rect, ui_.theme().panel);
+  ui_.mark("view.legend", rect);
+  text({at.x + px(8), at.y + px(4)}, ui_.theme().text, in_.legend.title);
+  if (!room) return;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const float y = at.y + px(6) + step * static_cast<float>(i + 1), middle = y + line() / 2 - swatch / 2;
+    list_.AddRectFilled({at.x + px(8), middle}, {at.x + px(8) + swatch, middle + swatch}, color_of(all[i].color),
+                        px(2));
+    text({at.x + px(8) + swatch + px(6), y}, ui_.theme().text_dim, all[i].label);
+  }
+}
+
+void Writer::draw_missing() {
+  const FontScope small(ui_.fonts().small);
+  const std::string words = cut_to(in_.legend.title + ": " + in_.legend.missing, in_.rect.width() - px(36));
+  const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+  const ImVec2 at(in_.rect.min.x + px(10), in_.rect.max.y - px(18) - size.y);
+  const Rect rect{at, {at.x + size.x + px(16), at.y + size.y + px(8)}};
+  box(rect, ui_.theme().panel);
+  ui_.mark("view.legend", rect);
+  text({at.x + px(8), at.y + px(4)}, ui_.theme().text_dim, words);
+}
+
+void Writer::draw_labels() {
+  const FontScope small(ui_.fonts().small);
+  for (const Overlay::Label& label : in_.labels) {
+    if (label.strong) {
+      list_.AddCircle(label.at, px(9), color(ui_.theme().panel, 0.8f), 24, px(3.5f));
+      list_.AddCircle(label.at, px(9), color(ui_.theme().accent_hover), 24, px(2));
+    }
+    const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
+    const float away = label.strong ? px(14) : px(7);
+    const ImVec2 at(label.at.x + away, label.at.y - size.y / 2);
+    box({{at.x - px(3), at.y - px(1)}, {at.x + size.x + px(3), at.y + size.y + px(1)}}, ui_.theme().panel,
+        label.strong ? 0.85f : 0.6f);
+    text(at, label.strong ? ui_.theme().text : ui_.theme().text_dim, label.text);
+  }
+}
+
+void Writer::draw_tip() {
+  if (in_.tip.empty()) return;
+  const FontScope small(ui_.fonts().small);
+  const ImVec2 size = ImGui::CalcTextSize(in_.tip.c_str());
+  ImVec2 at(in_.tip_at.x + px(16), in_.tip_at.y + px(14));
+  at.x = std::min(at.x, in_.rect.max.x - size.x - px(10));
+  at.y = std::min(at.y, in_.rect.max.y - size.y - px(8));
+  const Rect rect{{at.x - px(6), at.y - px(3)}, {at.x + size.x + px(6), at.y + size.y + px(3)}};
+  box(rect, ui_.theme().raised, 0.95f);
+  ui_.mark("view.tip", rect);
+  text(at, ui_.theme().text, in_.tip);
+}
+
+}  // namespace
+
+void draw_overlay(Ui& ui, const Overlay& overlay) {
+  if (overlay.rect.empty()) return;
+  Writer(ui, overlay).draw();
+}
+
+std::vector<Overlay::Label> joint_labels(const PaneView& view, const Joints& joints, bool all, int hovered,
+                                         int selected) {
+  std::vector<Overlay::Label> labels;
+  for (int j = 0; j < kJointCount; ++j) {
+    const bool strong = j == hovered || j == selected;
+    if ((!all && !strong) || !joints.row(j).allFinite()) continue;
+    const auto at = view.project(joints.row(j));
+    if (at && view.rect.contains(*at)) labels.push_back({*at, joint_label(j), strong});
+  }
+  std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.strong < b.strong; });
+  return labels;
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,38 @@
+// What is written over a pane's picture: its name, the legend, names of joints, warnings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ui/viewport/panes.hpp"
+#include "ui/viewport/surface_values.hpp"
+
+namespace understudy::ui {
+
+struct Overlay {
+  Rect rect;  ///< of the pane; all is kept inside
+  std::string title, subtitle;
+  bool title_right = false;  ///< at the top right: the right half of a wipe
+  std::string hint;          ///< in the middle, where nothing is to be seen
+  std::string warning;       ///< why the frame is flagged; empty: it is good
+  bool busy = false;         ///< what should be seen is being made
+  Legend legend;
+  struct Label {
+    ImVec2 at;
+    std::string text;
+    bool strong = false;  ///< hovered or chosen: with a ring around the place
+  };
+  std::vector<Label> labels;  ///< of joints
+  std::string tip;            ///< beside the pointer
+  ImVec2 tip_at{0, 0};
+  bool active = false;  ///< the pane that keys and panels are about, among several
+};
+
+/// Draws into the current window.
+void draw_overlay(Ui& ui, const Overlay& overlay);
+
+/// The labels of a pane's joints: all of them where the layer asks for it, hovered and selected ones always.
+std::vector<Overlay::Label> joint_labels(const PaneView& view, const Joints& joints, bool all, int hovered,
+                                         int selected);
+
+}  // namespace understudy::ui
