@@ -239,18 +239,34 @@ void settle(Motion& motion, std::vector<Foot>& feet, float limit) {
     }
 }
 
+/// Both feet with their contacts; a foot that is not to be pinned never stands.
+std::vector<Foot> observed_feet(const PinEdit& edit, const Motion& motion, const EditedBody& body) {
+  std::vector<Foot> feet = {observed(motion, body, 0), observed(motion, body, 1)};
+  const float leg_m = leg_length(body.rest);
+  if (edit.left) find_contacts(feet[0], edit, leg_m, motion.fps);
+  if (edit.right) find_contacts(feet[1], edit, leg_m, motion.fps);
+  return feet;
+}
+
 }  // namespace
+
+std::vector<std::array<bool, 2>> foot_contacts(const PinEdit& edit, const Motion& motion,
+                                               const EditedBody& body) {
+  std::vector<std::array<bool, 2>> result;
+  if (motion.poses.empty()) return result;
+  const std::vector<Foot> feet = observed_feet(edit, motion, body);
+  for (int t = 0; t < static_cast<int>(motion.poses.size()); ++t)
+    result.push_back({feet[0].stands(t), feet[1].stands(t)});
+  return result;
+}
 
 void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body) {
   if (motion.poses.empty()) return;
   const float leg_m = leg_length(body.rest);
-  const auto pinned = [&edit](const Foot& foot) { return foot.leg.hip == LeftHip ? edit.left : edit.right; };
-  std::vector<Foot> feet = {observed(motion, body, 0), observed(motion, body, 1)};
-  for (Foot& foot : feet)
-    if (pinned(foot)) find_contacts(foot, edit, leg_m, motion.fps);
+  std::vector<Foot> feet = observed_feet(edit, motion, body);
   if (edit.to_floor) settle(motion, feet, kOnFloor * leg_m);
   for (Foot& foot : feet)
-    if (pinned(foot)) find_offsets(foot, edit, leg_m, motion.fps);
+    if (foot.leg.hip == LeftHip ? edit.left : edit.right) find_offsets(foot, edit, leg_m, motion.fps);
   // A foot that is not pinned stays where it is when the pelvis sinks.
   const auto drops = pelvis_drops(motion, body.rest, feet, edit.max_drop_m * leg_m / 0.8f);
   for (size_t t = 0; t < motion.poses.size(); ++t) {

@@ -29,11 +29,16 @@ class PointGrid {
 
   /// Index of the nearest point within `reach`, -1 where there is none; of equals the first.
   int nearest(const Vec3& query, float reach) const;
-  /// Calls visit(index) for all points in the cells that a ball touches.
+  /// Calls visit(index) for at least all points in the cells that a ball touches.
   template <class Visit>
   void around(const Vec3& centre, float radius, Visit&& visit) const {
     const Cell low = cell_of(centre - Vec3::Constant(radius)),
                high = cell_of(centre + Vec3::Constant(radius));
+    // A ball of more cells than there are: all points, far quicker than a look into each.
+    if (((high - low).cast<double>().array() + 1).prod() > cells()) {
+      for (const int i : order_) visit(i);
+      return;
+    }
     for (int x = low.x(); x <= high.x(); ++x)
       for (int y = low.y(); y <= high.y(); ++y)
         for (int z = low.z(); z <= high.z(); ++z) {

@@ -1,6 +1,7 @@
 // Edits of the result: rotated bones, smoothing, floor, pinned feet, heading, trim.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <set>
 #include <vector>
@@ -87,6 +88,10 @@ void rotate(const RotateEdit& edit, Motion& motion);
 void smooth(const SmoothEdit& edit, Motion& motion);
 void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body);
 void turn(const HeadingEdit& edit, Motion& motion);
+/// When each foot (left, right) stands, as pin_feet sees it: for a timeline to show. Of the motion that pins
+/// get, that is after rotate, smooth and floor. [T]
+std::vector<std::array<bool, 2>> foot_contacts(const PinEdit& edit, const Motion& motion,
+                                               const EditedBody& body);
 
 /// What an edit does to a motion, in figures; both of one length.
 struct EditCost {

@@ -50,8 +50,8 @@ class FromAbove {
   explicit FromAbove(const Vec3& up) : u_(up.unitOrthogonal()), v_(up.cross(u_)) {}
   Points flat(const Points& points) const {
     Points result = Points::Zero(points.rows(), 3);
-    result.col(0) = points * u_;
-    result.col(1) = points * v_;
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      result.row(i) << points.row(i).dot(u_.transpose()), points.row(i).dot(v_.transpose()), 0;
     return result;
   }
 

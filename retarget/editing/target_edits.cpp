@@ -258,6 +258,7 @@ WeightRows changed_rows(const RowMatrix& before, const RowMatrix& after) {
 
 Neighbours Neighbours::from(const Mesh& mesh) {
   const int count = static_cast<int>(mesh.vertices.rows());
+  US_CHECK(mesh.vertices.allFinite(), "a vertex of the target is not finite");
   Pairs pairs = mesh.is_cloud() ? nearest_pairs(mesh.vertices) : edges(mesh.faces, count);
   if (!mesh.is_cloud()) add_seams(mesh.vertices, pairs);
   std::sort(pairs.begin(), pairs.end());
@@ -313,6 +314,7 @@ WeightRows smoothed(const RowMatrix& weights, const Neighbours& neighbours, cons
 
 WeightRows mirrored_weights(const RowMatrix& weights, const Points& vertices, BodySide from, float centre) {
   check_weights(weights, vertices.rows());
+  US_CHECK(vertices.allFinite() && std::isfinite(centre), "a vertex of the target is not finite");
   RowCollector rows;
   if (vertices.rows() == 0) return rows.finish();
   const Vec3 size = (vertices.colwise().maxCoeff() - vertices.colwise().minCoeff()).transpose();

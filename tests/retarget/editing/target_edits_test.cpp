@@ -225,6 +225,19 @@ TEST(MirroredWeights, LeaveTheSideTheyComeFrom) {
   EXPECT_GT(both(person().vertex(other), Head), 0.85f);
 }
 
+TEST(MirroredWeights, OfALopsidedBodyComeToAnEnd) {
+  Points vertices = person().mesh.vertices;
+  for (Eigen::Index v = 0; v < vertices.rows();
+       ++v)  // the left half shrinks to a hand's size: images are far off
+    if (vertices(v, 0) > 1e-3f) vertices.row(v) = 0.1f * vertices.row(v) + Eigen::RowVector3f(1, 0, 0);
+  const auto start = std::chrono::steady_clock::now();
+  const WeightRows rows = mirrored_weights(person().body.weights, vertices, BodySide::Left);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 5);
+  expect_weights(rows.rows);
+  vertices(3, 1) = NAN;
+  EXPECT_THROW(mirrored_weights(person().body.weights, vertices, BodySide::Left), Error);
+}
+
 TEST(SmoothedWeights, FlattenAndStayWeights) {
   RowMatrix weights = RowMatrix::Zero(person().mesh.vertices.rows(), kJointCount);
   for (Eigen::Index v = 0; v < weights.rows(); ++v) weights(v, v % 2 ? Head : Neck) = 1;
