@@ -42,9 +42,13 @@ Chord parse(const std::string& keys) {
     from = plus + 1;
   }
   std::string key = keys.substr(from);
-  constexpr std::array<std::pair<const char*, const char*>, 7> kSigns = {
-      {{",", "Comma"}, {".", "Period"}, {"/", "Slash"}, {"+", "Equal"}, {"-", "Minus"}, {"[", "LeftBracket"},
-       {"]", "RightBracket"}}};
+  constexpr std::array<std::pair<const char*, const char*>, 7> kSigns = {{{",", "Comma"},
+                                                                          {".", "Period"},
+                                                                          {"/", "Slash"},
+                                                                          {"+", "Equal"},
+                                                                          {"-", "Minus"},
+                                                                          {"[", "LeftBracket"},
+                                                                          {"]", "RightBracket"}}};
   for (const auto& [sign, name] : kSigns)
     if (key == sign) key = name;
   if (key == "?") key = "Slash", chord.modifiers.shift = true;
@@ -57,17 +61,18 @@ Chord parse(const std::string& keys) {
 /// The dialog that asks for what a command without arguments misses; null where nothing is missing.
 const char* dialog_for(const app::Session& session, const std::string& command) {
   if (command == "document.save") return session.path.empty() ? "save_as" : nullptr;
-  constexpr std::array<std::pair<const char*, const char*>, 11> kDialogs = {{{"open", "open"},
-                                                                            {"document.open", "open_document"},
-                                                                            {"document.save_as", "save_as"},
-                                                                            {"source.open", "open_scan"},
-                                                                            {"source.motion", "open_motion"},
-                                                                            {"target.add", "open_target"},
-                                                                            {"target.replace", "replace_target"},
-                                                                            {"export.glb", "export"},
-                                                                            {"picture.save", "picture"},
-                                                                            {"video.save", "video"},
-                                                                            {"compare.add", "compare"}}};
+  constexpr std::array<std::pair<const char*, const char*>, 11> kDialogs = {
+      {{"open", "open"},
+       {"document.open", "open_document"},
+       {"document.save_as", "save_as"},
+       {"source.open", "open_scan"},
+       {"source.motion", "open_motion"},
+       {"target.add", "open_target"},
+       {"target.replace", "replace_target"},
+       {"export.glb", "export"},
+       {"picture.save", "picture"},
+       {"video.save", "video"},
+       {"compare.add", "compare"}}};
   for (const auto& [name, dialog] : kDialogs)
     if (command == name) return dialog;
   return nullptr;

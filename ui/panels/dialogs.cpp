@@ -18,7 +18,8 @@ void sentence(const std::string& words) {
 
 /// Ends a dialog of one's own; `stays` is what it returns.
 bool finish(bool stays) {
-  const bool escape = !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
+  const bool escape =
+      !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
   if (escape) stays = false;
   if (!stays) ImGui::CloseCurrentPopup();
   end_dialog();
@@ -59,12 +60,16 @@ QuestionAnswer draw_recover(const app::Session& session, PanelContext& context) 
     ButtonOptions recover, discard;
     recover.look = i == 0 ? ButtonLook::Main : ButtonLook::Plain;
     discard.tooltip = "Forgets this work for good";
-    if (buttons.add(ui, "recover." + std::to_string(i), "Recover", recover)) context.ask("document.recover", {copy.file});
-    if (buttons.add(ui, "discard." + std::to_string(i), "Discard", discard)) context.ask("document.discard_recovery", {copy.file});
+    if (buttons.add(ui, "recover." + std::to_string(i), "Recover", recover))
+      context.ask("document.recover", {copy.file});
+    if (buttons.add(ui, "discard." + std::to_string(i), "Discard", discard))
+      context.ask("document.discard_recovery", {copy.file});
   }
   ButtonOptions later;
-  later.look = ButtonLook::Quiet, later.width = -1, later.tooltip = "It is kept, and asked about at the next start";
-  if (!finish(!button(ui, "recover.later", "Decide later", later))) context.ask("question.answer", {"cancel"});
+  later.look = ButtonLook::Quiet, later.width = -1,
+  later.tooltip = "It is kept, and asked about at the next start";
+  if (!finish(!button(ui, "recover.later", "Decide later", later)))
+    context.ask("question.answer", {"cancel"});
   return {};
 }
 
@@ -92,12 +97,16 @@ QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) 
 }
 
 void draw_method_rows(app::Method& method, Ui& ui) {
-  if (const auto i = choice_row(ui, {"compare.engine", "Transfer", ""}, {"Copy", "Paper"}, method.engine == "paper"))
+  if (const auto i =
+          choice_row(ui, {"compare.engine", "Transfer", ""}, {"Copy", "Paper"}, method.engine == "paper"))
     method.engine = *i == 1 ? "paper" : "copy";
-  if (const auto i = choice_row(ui, {"compare.extractor", "Extractor", ""}, {"Dense", "Paper"}, method.extractor == "paper"))
+  if (const auto i = choice_row(ui, {"compare.extractor", "Extractor", ""}, {"Dense", "Paper"},
+                                method.extractor == "paper"))
     method.extractor = *i == 1 ? "paper" : "dense";
-  if (const auto on = toggle_row(ui, {"compare.offsets", "Offsets", ""}, method.offsets)) method.offsets = *on;
-  if (const auto i = choice_row(ui, {"compare.root", "Path", ""}, {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
+  if (const auto on = toggle_row(ui, {"compare.offsets", "Offsets", ""}, method.offsets))
+    method.offsets = *on;
+  if (const auto i = choice_row(ui, {"compare.root", "Path", ""}, {"Scaled", "Original", "In place"},
+                                static_cast<int>(method.root)))
     method.root = static_cast<RootMode>(*i);
 }
 
@@ -107,7 +116,8 @@ app::Arguments differences(const app::Method& base, const app::Method& other) {
   if (base.engine != other.engine) settings.push_back("engine=" + other.engine);
   if (base.extractor != other.extractor) settings.push_back("extractor=" + other.extractor);
   if (base.offsets != other.offsets) settings.push_back("offsets=" + on_off(other.offsets));
-  if (base.root != other.root) settings.push_back(std::string("root=") + kRoots[static_cast<int>(other.root)]);
+  if (base.root != other.root)
+    settings.push_back(std::string("root=") + kRoots[static_cast<int>(other.root)]);
   return settings;
 }
 

@@ -17,8 +17,8 @@ bool draw_error(const app::Session& session, PanelContext& context);
 
 /// What only the window can do about a question.
 struct QuestionAnswer {
-  bool save_as = false;     ///< the document has no file yet: ask for one, then save
-  std::string look_for;     ///< MissingFiles: ask for the new place of this path
+  bool save_as = false;  ///< the document has no file yet: ask for one, then save
+  std::string look_for;  ///< MissingFiles: ask for the new place of this path
 };
 /// Draws the session's question, which must be there.
 QuestionAnswer draw_question(const app::Session& session, PanelContext& context);

@@ -14,7 +14,8 @@ std::string plural(size_t count, const std::string& one) {
 }
 
 /// A button that takes a tool, lit while it is taken.
-void tool_button(const app::Session& session, PanelContext& context, const std::string& name, app::Tool tool) {
+void tool_button(const app::Session& session, PanelContext& context, const std::string& name,
+                 app::Tool tool) {
   for (const ToolChoice& choice : kTools) {
     if (choice.tool != tool) continue;
     const bool taken = session.tool == tool;
@@ -23,7 +24,8 @@ void tool_button(const app::Session& session, PanelContext& context, const std::
     options.shortcut = keys_of(context.commands, "tool", {choice.argument});
     options.tooltip = taken ? "Back to looking around" : choice.label;
     options.disabled = !possible(session, "tool");
-    if (button(context.ui, name, choice.label, options)) context.ask("tool", {taken ? "look" : choice.argument});
+    if (button(context.ui, name, choice.label, options))
+      context.ask("tool", {taken ? "look" : choice.argument});
   }
 }
 
@@ -44,7 +46,8 @@ void ask_for_crop(PanelContext& context, const Box& box) {
 void draw_crop(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const std::optional<Box>& crop = session.document.scan_edits.crop;
-  if (const auto on = toggle_row(ui, {"edit.crop", "Crop", "Only what is inside a box is looked at"}, crop.has_value())) {
+  if (const auto on =
+          toggle_row(ui, {"edit.crop", "Crop", "Only what is inside a box is looked at"}, crop.has_value())) {
     if (*on)
       ask_for_crop(context, {Vec3(-1, -0.1f, -1), Vec3(1, 2.2f, 1)});
     else
@@ -77,23 +80,27 @@ void draw_scan(const app::Session& session, PanelContext& context) {
   const DisabledScope disabled(!possible(session, "edit.crop"));
   draw_crop(session, context);
   const ScanEdits& edits = session.document.scan_edits;
-  if (const auto on = toggle_row(ui, {"edit.floor_removal", "Remove floor", "Points of the floor are taken out, the soles stay"},
-                                 edits.floor.has_value()))
+  if (const auto on = toggle_row(
+          ui, {"edit.floor_removal", "Remove floor", "Points of the floor are taken out, the soles stay"},
+          edits.floor.has_value()))
     context.ask("edit.floor_removal", {on_off(*on)});
   if (edits.floor && !edits.floor->plane) {
     NumberOptions height{-5, 5, 0.002f, "%.3f m", 0, true};
-    if (const auto h = number_row(ui, {"edit.floor_height", "Floor at", "Height of the floor that is taken out"},
-                                  edits.floor->height_m, height))
+    if (const auto h =
+            number_row(ui, {"edit.floor_height", "Floor at", "Height of the floor that is taken out"},
+                       edits.floor->height_m, height))
       context.ask("edit.floor_removal", {"on", argument(*h)});
   }
-  if (const auto on = toggle_row(ui, {"edit.cluster", "Largest part only", "A second person or a prop goes"}, edits.largest_cluster))
+  if (const auto on = toggle_row(ui, {"edit.cluster", "Largest part only", "A second person or a prop goes"},
+                                 edits.largest_cluster))
     context.ask("edit.cluster", {on_off(*on)});
 }
 
 void draw_falloff(const app::Session& session, PanelContext& context, const std::string& name) {
   NumberOptions frames{0, 120, 0.1f, "\u00b1 %.0f frames", 5, true};
-  if (const auto n = number_row(context.ui, {name, "Falloff", "So many frames to each side follow less and less"},
-                                static_cast<float>(session.falloff), frames))
+  if (const auto n =
+          number_row(context.ui, {name, "Falloff", "So many frames to each side follow less and less"},
+                     static_cast<float>(session.falloff), frames))
     context.ask("tool.falloff", {argument(std::round(*n))});
 }
 
@@ -127,9 +134,11 @@ void draw_swap(const app::Session& session, PanelContext& context, EditState& st
   const int first = state.swap_first >= 0 ? state.swap_first : marked ? range.first : shown;
   const int last = std::max(first, state.swap_last >= 0 ? state.swap_last : marked ? range.last : shown);
   hint(ui, "Left and right were taken for each other:");
-  if (const auto f = typed_number_row(ui, {"edit.swap.first", "From frame", "The loop's start, unless typed"}, first, 0))
+  if (const auto f =
+          typed_number_row(ui, {"edit.swap.first", "From frame", "The loop's start, unless typed"}, first, 0))
     state.swap_first = static_cast<int>(std::max(0.0, *f));
-  if (const auto f = typed_number_row(ui, {"edit.swap.last", "To frame", "The loop's end, unless typed"}, last, 0))
+  if (const auto f =
+          typed_number_row(ui, {"edit.swap.last", "To frame", "The loop's end, unless typed"}, last, 0))
     state.swap_last = static_cast<int>(std::max(0.0, *f));
   row(ui, "Limbs");
   segmented(ui, "edit.swap.limbs", {"Arms", "Legs", "Both"}, state.swap_limbs);
@@ -147,7 +156,9 @@ void draw_skeleton(const app::Session& session, PanelContext& context, EditState
   const DisabledScope disabled(!possible(session, "edit.swap"));
   tool_button(session, context, "edit.joints_tool", app::Tool::Joints);
   draw_falloff(session, context, "edit.falloff");
-  if (const auto on = toggle_row(ui, {"edit.children", "Whole limb", "What hangs on a dragged joint moves along"}, session.drag_children))
+  if (const auto on =
+          toggle_row(ui, {"edit.children", "Whole limb", "What hangs on a dragged joint moves along"},
+                     session.drag_children))
     context.ask("tool.children", {on_off(*on)});
   draw_swap(session, context, state);
   const auto& edits = session.document.skeleton_edits;
@@ -161,26 +172,32 @@ void draw_cost(const app::TakeState* state, Ui& ui) {
   const EditCost& cost = state->cost;
   hint(ui, "These edits take the acceleration from " + figure(cost.acceleration_before, "") + " to " +
                figure(cost.acceleration_after, "m/s\u00b2") + " and move joints by " +
-               figure(100 * cost.mean_displacement_m, "cm") + ", " + figure(100 * cost.max_displacement_m, "cm") +
-               " at most.");
+               figure(100 * cost.mean_displacement_m, "cm") + ", " +
+               figure(100 * cost.max_displacement_m, "cm") + " at most.");
 }
 
 void draw_amounts(const PoseEdits& edits, PanelContext& context, const std::string& k) {
   Ui& ui = context.ui;
-  if (const auto on = toggle_row(ui, {"edit.pin", "Pin feet", "Feet on the floor stay where they are"}, edits.pin.has_value()))
+  if (const auto on = toggle_row(ui, {"edit.pin", "Pin feet", "Feet on the floor stay where they are"},
+                                 edits.pin.has_value()))
     context.ask("edit.pin", {k, on_off(*on)});
   NumberOptions strength{0, 1, 0.005f, "%.2f", 0, true};
-  if (const auto s = number_row(ui, {"edit.smooth", "Smooth", "0 nothing, 1 very much"}, edits.smooth ? edits.smooth->strength : 0, strength))
+  if (const auto s = number_row(ui, {"edit.smooth", "Smooth", "0 nothing, 1 very much"},
+                                edits.smooth ? edits.smooth->strength : 0, strength))
     context.ask("edit.smooth", {k, argument(*s)});
   NumberOptions floor{-1, 1, 0.001f, "%.3f m", 0, true};
-  if (const auto m = number_row(ui, {"edit.floor_offset", "Raise by", "The whole motion goes up or down"}, edits.floor ? edits.floor->offset_m : 0, floor))
+  if (const auto m = number_row(ui, {"edit.floor_offset", "Raise by", "The whole motion goes up or down"},
+                                edits.floor ? edits.floor->offset_m : 0, floor))
     context.ask("edit.floor_offset", {k, argument(*m)});
   NumberOptions heading{-180, 180, 0.5f, "%.1f\u00b0", 0, true};
-  if (const auto deg = number_row(ui, {"edit.heading", "Turn by", "The whole motion turns about the vertical"}, edits.heading ? edits.heading->yaw_deg : 0, heading))
+  if (const auto deg =
+          number_row(ui, {"edit.heading", "Turn by", "The whole motion turns about the vertical"},
+                     edits.heading ? edits.heading->yaw_deg : 0, heading))
     context.ask("edit.heading", {k, argument(*deg)});
 }
 
-void draw_trim(const app::Session& session, PanelContext& context, const PoseEdits& edits, const std::string& k) {
+void draw_trim(const app::Session& session, PanelContext& context, const PoseEdits& edits,
+               const std::string& k) {
   Ui& ui = context.ui;
   const app::FrameRange range = app::play_range(session.playback, app::frame_count(session));
   ButtonRow buttons(2);
@@ -191,11 +208,15 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
   if (buttons.add(ui, "edit.trim", "Trim to marks", trim))
     context.ask("edit.trim", {k, std::to_string(range.first), std::to_string(range.last)});
   off.disabled = !edits.trim;
-  off.tooltip = edits.trim ? "Frames " + std::to_string(edits.trim->first) + " to " + std::to_string(edits.trim->last) + " are kept" : "Nothing is trimmed";
+  off.tooltip = edits.trim ? "Frames " + std::to_string(edits.trim->first) + " to " +
+                                 std::to_string(edits.trim->last) + " are kept"
+                           : "Nothing is trimmed";
   if (buttons.add(ui, "edit.trim_off", "Untrim", off)) context.ask("edit.trim", {k, "off"});
   const int frame = app::shown_frame(session);
   const DisabledScope disabled(frame < 0);
-  if (const auto on = toggle_row(ui, {"edit.skip", "Skip this frame", "It is left out when playing and exporting"}, edits.skip.count(frame) > 0))
+  if (const auto on =
+          toggle_row(ui, {"edit.skip", "Skip this frame", "It is left out when playing and exporting"},
+                     edits.skip.count(frame) > 0))
     context.ask("edit.skip", {k, std::to_string(frame), on_off(*on)});
 }
 
@@ -227,7 +248,8 @@ void draw_target(const app::Session& session, PanelContext& context) {
   const app::Take* take = selected_take(session);
   if (take == nullptr) return hint(ui, "Add a target first.");
   tool_button(session, context, "edit.target_tool", app::Tool::TargetJoints);
-  if (const auto on = toggle_row(ui, {"edit.mirror", "Both sides", "The joint on the other side follows"}, session.mirror_joint))
+  if (const auto on = toggle_row(ui, {"edit.mirror", "Both sides", "The joint on the other side follows"},
+                                 session.mirror_joint))
     context.ask("tool.mirror", {on_off(*on)});
   const auto& moved = take->target_edits.joints;
   if (!moved.empty()) hint(ui, plural(moved.size(), "joint") + " moved by hand.");
@@ -243,12 +265,15 @@ void draw_brush(const app::Session& session, PanelContext& context) {
   int joint = session.selected_joint;
   if (dropdown(ui, "edit.joint", joints, joint)) context.ask("select.joint", {joint_name(joint)});
   NumberOptions radius{0.005f, 0.5f, 0.0005f, "%.3f m"}, strength{0.01f, 1, 0.005f, "%.2f"};
-  if (const auto r = number_row(ui, {"edit.brush_radius", "Radius", "Of the brush on the surface"}, session.brush.radius_m, radius))
+  if (const auto r = number_row(ui, {"edit.brush_radius", "Radius", "Of the brush on the surface"},
+                                session.brush.radius_m, radius))
     context.ask("tool.brush_radius", {argument(*r)});
-  if (const auto s = number_row(ui, {"edit.brush_strength", "Strength", "Of one dab at its centre"}, session.brush.strength, strength))
+  if (const auto s = number_row(ui, {"edit.brush_strength", "Strength", "Of one dab at its centre"},
+                                session.brush.strength, strength))
     context.ask("tool.brush_strength", {argument(*s)});
   constexpr const char* kModes[] = {"add", "subtract", "smooth"};
-  if (const auto i = choice_row(ui, {"edit.brush_mode", "Brush", "What a dab does"}, {"Add", "Take", "Smooth"}, static_cast<int>(session.brush.mode)))
+  if (const auto i = choice_row(ui, {"edit.brush_mode", "Brush", "What a dab does"},
+                                {"Add", "Take", "Smooth"}, static_cast<int>(session.brush.mode)))
     context.ask("tool.brush_mode", {kModes[*i]});
 }
 
@@ -264,8 +289,10 @@ void draw_weights(const app::Session& session, PanelContext& context) {
   ButtonOptions left, right, smooth;
   left.tooltip = "The right side becomes the left one's mirror image";
   right.tooltip = "The left side becomes the right one's mirror image";
-  if (buttons.add(ui, "edit.weights_mirror.left", "Mirror left", left)) context.ask("edit.weights_mirror", {k, "left"});
-  if (buttons.add(ui, "edit.weights_mirror.right", "Mirror right", right)) context.ask("edit.weights_mirror", {k, "right"});
+  if (buttons.add(ui, "edit.weights_mirror.left", "Mirror left", left))
+    context.ask("edit.weights_mirror", {k, "left"});
+  if (buttons.add(ui, "edit.weights_mirror.right", "Mirror right", right))
+    context.ask("edit.weights_mirror", {k, "right"});
   smooth.width = -1, smooth.tooltip = "Smooths the weights of the whole surface by the brush's strength";
   if (button(ui, "edit.weights_smooth", "Smooth all", smooth))
     context.ask("edit.weights_smooth", {k, argument(session.brush.strength)});

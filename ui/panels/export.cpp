@@ -39,7 +39,8 @@ const Format& format_of(const ExportState& state) {
 /// A name that any file system takes.
 std::string safe_name(std::string name) {
   for (char& c : name)
-    if (static_cast<unsigned char>(c) < 32 || std::string("/\\:*?\"<>|").find(c) != std::string::npos) c = '_';
+    if (static_cast<unsigned char>(c) < 32 || std::string("/\\:*?\"<>|").find(c) != std::string::npos)
+      c = '_';
   return name.empty() ? "take" : name;
 }
 
@@ -68,18 +69,23 @@ void draw_size_rows(Ui& ui, ExportState& state) {
   if (chosen < 0) chosen = static_cast<int>(labels.size()), labels.push_back("Another");
   row(ui, "Size");
   if (dropdown(ui, "export.size", labels, chosen) && chosen < static_cast<int>(kSizes.size()))
-    state.width = kSizes[static_cast<size_t>(chosen)].width, state.height = kSizes[static_cast<size_t>(chosen)].height;
+    state.width = kSizes[static_cast<size_t>(chosen)].width,
+    state.height = kSizes[static_cast<size_t>(chosen)].height;
   const auto whole = [](double value) { return static_cast<int>(std::clamp(value, 16.0, double{kLargest})); };
-  if (const auto w = typed_number_row(ui, {"export.width", "Width", "Pixels"}, state.width, 0)) state.width = whole(*w);
-  if (const auto h = typed_number_row(ui, {"export.height", "Height", "Pixels"}, state.height, 0)) state.height = whole(*h);
+  if (const auto w = typed_number_row(ui, {"export.width", "Width", "Pixels"}, state.width, 0))
+    state.width = whole(*w);
+  if (const auto h = typed_number_row(ui, {"export.height", "Height", "Pixels"}, state.height, 0))
+    state.height = whole(*h);
 }
 
 void draw_picture_rows(Ui& ui, ExportState& state) {
   draw_size_rows(ui, state);
-  if (const auto i = choice_row(ui, {"export.all", "What", ""}, {"All views", "Active view"}, state.all ? 0 : 1))
+  if (const auto i =
+          choice_row(ui, {"export.all", "What", ""}, {"All views", "Active view"}, state.all ? 0 : 1))
     state.all = *i == 0;
   if (state.kind == ExportKind::Picture) {
-    if (const auto on = toggle_row(ui, {"export.transparent", "Transparent", "Nothing behind the bodies"}, state.transparent))
+    if (const auto on = toggle_row(ui, {"export.transparent", "Transparent", "Nothing behind the bodies"},
+                                   state.transparent))
       state.transparent = *on;
   } else {
     hint(ui, "A name with .mp4 gives a film, any other a folder of PNG pictures.");
@@ -95,7 +101,8 @@ bool draw_path(const app::Session& session, Ui& ui, ExportState& state) {
   if (const auto path = committed_text(ui, "export.path", state.path)) state.path = *path;
   ImGui::EndChild();
   ImGui::SameLine(0, ui.px(6));
-  return icon_button(ui, "export.browse", Icon::Folder, {"Choose the folder and the name", "", false, false, side / ui.scale()});
+  return icon_button(ui, "export.browse", Icon::Folder,
+                     {"Choose the folder and the name", "", false, false, side / ui.scale()});
 }
 
 ExportAnswer draw_overwrite(const app::Session& session, PanelContext& context, ExportState& state) {
@@ -112,7 +119,9 @@ ExportAnswer draw_overwrite(const app::Session& session, PanelContext& context, 
 }
 
 const char* title_of(ExportKind kind) {
-  return kind == ExportKind::Animation ? "Export" : kind == ExportKind::Picture ? "Save picture" : "Save video";
+  return kind == ExportKind::Animation ? "Export"
+         : kind == ExportKind::Picture ? "Save picture"
+                                       : "Save video";
 }
 
 bool file_is_there(const std::string& path) {
@@ -124,7 +133,7 @@ bool file_is_there(const std::string& path) {
 
 void begin_export(ExportState& state, ExportKind kind, int format) {
   state.kind = kind, state.format = format;
-  state.path.clear();
+  state.path.clear(), state.agreed.clear();
   state.asking = false;
 }
 
@@ -134,10 +143,12 @@ std::string suffix_of(const ExportState& state) {
 }
 
 std::string proposed_path(const app::Session& session, const ExportState& state) {
-  const fs::path folder = session.path.empty() ? fs::path(session.settings.last_folder) : fs::path(session.path).parent_path();
+  const fs::path folder =
+      session.path.empty() ? fs::path(session.settings.last_folder) : fs::path(session.path).parent_path();
   const app::Take* take = selected_take(session);
   std::string name = take != nullptr ? take->name : session.source.name;
-  if (state.kind != ExportKind::Animation && !session.path.empty()) name = fs::path(session.path).stem().string();
+  if (state.kind != ExportKind::Animation && !session.path.empty())
+    name = fs::path(session.path).stem().string();
   const fs::path file = safe_name(name) + suffix_of(state);
   return (folder.empty() ? fs::absolute(file) : folder / file).string();
 }
@@ -165,10 +176,11 @@ ExportAnswer draw_export(const app::Session& session, PanelContext& context, Exp
   ButtonRow buttons(2);
   ButtonOptions save;
   save.look = ButtonLook::Main, save.disabled = state.path.empty();
-  const bool escape = !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
+  const bool escape =
+      !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
   if (buttons.add(ui, "export.cancel", "Cancel", {}) || escape) answer.stays = false;
   if (buttons.add(ui, "export.save", "Save", save)) {
-    state.asking = file_is_there(state.path);
+    state.asking = state.path != state.agreed && file_is_there(state.path);
     if (!state.asking) ask_for_export(session, context, state), answer.stays = false;
   }
   if (!answer.stays) ImGui::CloseCurrentPopup();

@@ -1,6 +1,7 @@
 // Saving what is not the document: animations, figures, pictures, video.
 // Marks: export.format(.0 to .2), export.take, export.path, export.browse, export.size, export.width,
-// export.height, export.all, export.transparent, export.save, export.cancel; export.overwrite.yes and .cancel.
+// export.height, export.all, export.transparent, export.save, export.cancel; export.overwrite.yes and
+// .cancel.
 #pragma once
 
 #include <string>
@@ -19,6 +20,7 @@ struct ExportState {
   bool all = true;           ///< all views; false: the active one
   bool transparent = false;  ///< pictures
   bool asking = false;       ///< whether to write over the file that is there
+  std::string agreed;        ///< the path that may be written over, as the browser has asked
 };
 
 /// Turns to another kind; the path is proposed anew.

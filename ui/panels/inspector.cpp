@@ -33,8 +33,8 @@ void draw_import(PanelContext& context, const std::string& group, const ImportOp
     arguments.push_back(value);
     context.ask(group + "." + what, arguments);
   };
-  if (const auto i = choice_row(ui, {group + ".units", "Units", "Of the file"}, kUnits,
-                                index_of(kUnits, import.units)))
+  if (const auto i =
+          choice_row(ui, {group + ".units", "Units", "Of the file"}, kUnits, index_of(kUnits, import.units)))
     ask("units", kUnits[static_cast<size_t>(*i)]);
   if (const auto i = choice_row(ui, {group + ".up", "Up", "The file's axis that points up"}, kAxes,
                                 index_of(kAxes, import.up)))
@@ -62,7 +62,8 @@ void draw_source_facts(const app::Session& session, Ui& ui) {
 void draw_source_fields(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::SourceOptions& source = session.document.source;
-  if (const auto fps = typed_number_row(ui, {"source.fps", "Frames/s", "0: as the file says, or 30"}, source.fps, 2))
+  if (const auto fps =
+          typed_number_row(ui, {"source.fps", "Frames/s", "0: as the file says, or 30"}, source.fps, 2))
     context.ask("source.fps", {argument(std::max(0.0, *fps))});
   draw_import(context, "source", source.import, {});
   const std::string floor = source.import.floor ? argument(*source.import.floor) : "auto";
@@ -151,9 +152,11 @@ void draw_target(const app::Session& session, PanelContext& context) {
   if (const app::TakeState* state = selected_state(session)) draw_target_facts(*state, ui);
   draw_import(context, "target", take->target.import, {k});
   std::ostringstream betas;
-  for (size_t i = 0; i < take->target.betas.size(); ++i) betas << (i > 0 ? "," : "") << argument(take->target.betas[i]);
-  if (const auto text = text_row(ui, {"target.betas", "Shape", "Shape parameters of an SMPL-format body: 1.2, -0.5"},
-                                 betas.str(), "only SMPL bodies"))
+  for (size_t i = 0; i < take->target.betas.size(); ++i)
+    betas << (i > 0 ? "," : "") << argument(take->target.betas[i]);
+  if (const auto text =
+          text_row(ui, {"target.betas", "Shape", "Shape parameters of an SMPL-format body: 1.2, -0.5"},
+                   betas.str(), "only SMPL bodies"))
     context.ask("target.betas", {k, *text});
   ButtonOptions wide;
   wide.width = -1;
@@ -168,11 +171,14 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
     bool on;
   };
   const Switch switches[] = {
-      {"swaps", "Repair swaps", "Left and right that were taken for each other are put right", method.repair_swaps},
-      {"smooth", "Smooth joints", "Noise of the extracted joints is smoothed as they come", method.smooth_joints},
+      {"swaps", "Repair swaps", "Left and right that were taken for each other are put right",
+       method.repair_swaps},
+      {"smooth", "Smooth joints", "Noise of the extracted joints is smoothed as they come",
+       method.smooth_joints},
       {"lengths", "Fix lengths", "Bones keep their length", method.fix_lengths}};
   for (const Switch& s : switches)
-    if (const auto on = toggle_row(context.ui, {std::string("method.") + s.name, s.label, s.explanation}, s.on))
+    if (const auto on =
+            toggle_row(context.ui, {std::string("method.") + s.name, s.label, s.explanation}, s.on))
       context.ask("method.filter", {k, s.name, on_off(*on)});
 }
 
@@ -182,7 +188,8 @@ void draw_work(const app::Session& session, PanelContext& context) {
   ButtonOptions pause, restart;
   pause.disabled = !possible(session, "work.pause") && !session.paused;
   pause.tooltip = session.paused ? "Goes on making frames" : "Stops making frames for now";
-  if (buttons.add(ui, session.paused ? "work.resume" : "work.pause", session.paused ? "Go on" : "Pause", pause))
+  if (buttons.add(ui, session.paused ? "work.resume" : "work.pause", session.paused ? "Go on" : "Pause",
+                  pause))
     context.ask(session.paused ? "work.resume" : "work.pause");
   restart.disabled = !possible(session, "work.restart");
   restart.tooltip = "Makes all frames again";
@@ -201,11 +208,14 @@ void draw_method(const app::Session& session, PanelContext& context) {
   if (const auto i = choice_row(ui, {"method.extractor", "Extractor", "The network that finds the joints"},
                                 {"Dense", "Paper"}, method.extractor == "paper" ? 1 : 0))
     context.ask("method.extractor", {k, *i == 1 ? "paper" : "dense"});
-  if (const auto on = toggle_row(ui, {"method.offsets", "Offsets", "Pose-corrective offsets of the skin"}, method.offsets))
+  if (const auto on = toggle_row(ui, {"method.offsets", "Offsets", "Pose-corrective offsets of the skin"},
+                                 method.offsets))
     context.ask("method.offsets", {k, on_off(*on)});
   constexpr const char* kRoots[] = {"scaled", "original", "in-place"};
-  if (const auto i = choice_row(ui, {"method.root", "Path", "Over the floor: scaled by the legs' lengths, the source's own, or none"},
-                                {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
+  if (const auto i = choice_row(
+          ui,
+          {"method.root", "Path", "Over the floor: scaled by the legs' lengths, the source's own, or none"},
+          {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
     context.ask("method.root", {k, kRoots[*i]});
   draw_filter(method, context, k);
   ButtonOptions compare;

@@ -56,7 +56,8 @@ bool draw_keys(const app::Session& session, PanelContext& context) {
   bool stays = !button(ui, "keys.close", "Close", close);
   stays &= ImGui::IsWindowAppearing() || !key_pressed(render::Key::Escape, false);
   if (chosen >= 0 && !lines[static_cast<size_t>(chosen)].command.empty()) {
-    ask_or_open(session, context, lines[static_cast<size_t>(chosen)].command, lines[static_cast<size_t>(chosen)].arguments);
+    ask_or_open(session, context, lines[static_cast<size_t>(chosen)].command,
+                lines[static_cast<size_t>(chosen)].arguments);
     stays = false;
   }
   if (!stays) ImGui::CloseCurrentPopup();

@@ -152,11 +152,11 @@ void draw_camera(const app::Session& session, PanelContext& context) {
   const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
   if (const auto on = toggle_row(ui, {"layers.ortho", "Orthographic", "Without perspective"}, ortho))
     context.ask("view.ortho", {on_off(*on)});
-  if (const auto on = toggle_row(ui, {"layers.linked", "Linked", "All views share one camera"},
-                                 session.view.linked))
+  if (const auto on =
+          toggle_row(ui, {"layers.linked", "Linked", "All views share one camera"}, session.view.linked))
     context.ask("view.link", {on_off(*on)});
-  if (const auto on = toggle_row(ui, {"layers.follow", "Follow", "The camera goes with the person"},
-                                 session.view.follow))
+  if (const auto on =
+          toggle_row(ui, {"layers.follow", "Follow", "The camera goes with the person"}, session.view.follow))
     context.ask("view.follow", {on_off(*on)});
   NumberOptions speed{-180, 180, 0.5f, "%.0f\u00b0/s", 0, true};
   if (const auto deg = number_row(ui, {"layers.turntable", "Turntable", "The camera turns by itself"},

@@ -47,8 +47,12 @@ Items file_menu(const app::Session& session) {
           dialog("Open motion\u2026", "open_motion"),
           dialog("Add target\u2026", "open_target"),
           line(),
-          {never_saved ? "Save\u2026" : "Save", never_saved ? "dialog.open" : "document.save",
-           never_saved ? app::Arguments{"save_as"} : app::Arguments{}, "document.save", false, {}},
+          {never_saved ? "Save\u2026" : "Save",
+           never_saved ? "dialog.open" : "document.save",
+           never_saved ? app::Arguments{"save_as"} : app::Arguments{},
+           "document.save",
+           false,
+           {}},
           dialog("Save as\u2026", "save_as", "document.save_as"),
           line(),
           dialog("Export\u2026", "export"),
@@ -77,11 +81,10 @@ Items edit_menu(const app::Session& session) {
 
 MenuItem layouts(const app::Session& session) {
   const auto is = [&](Layout layout) { return session.view.layout == layout; };
-  return group("Layout",
-               {{"Side by side", "view.layout", {"side-by-side"}, "", is(Layout::SideBySide), {}},
-                {"Single", "view.layout", {"single"}, "", is(Layout::Single), {}},
-                {"Overlay", "view.layout", {"overlay"}, "", is(Layout::Overlay), {}},
-                {"Wipe", "view.layout", {"wipe"}, "", is(Layout::Wipe), {}}});
+  return group("Layout", {{"Side by side", "view.layout", {"side-by-side"}, "", is(Layout::SideBySide), {}},
+                          {"Single", "view.layout", {"single"}, "", is(Layout::Single), {}},
+                          {"Overlay", "view.layout", {"overlay"}, "", is(Layout::Overlay), {}},
+                          {"Wipe", "view.layout", {"wipe"}, "", is(Layout::Wipe), {}}});
 }
 
 MenuItem turntable(const app::Session& session) {

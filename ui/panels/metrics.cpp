@@ -14,12 +14,14 @@ std::vector<Series> overlaid(const app::Session& session, const app::Series& of_
   std::vector<Series> all;
   const auto add = [&](size_t take, const app::Series& series) {
     const bool named = take < session.document.takes.size();
-    all.push_back({named ? session.document.takes[take].name : "", series.values, static_cast<int>(take % 8)});
+    all.push_back(
+        {named ? session.document.takes[take].name : "", series.values, static_cast<int>(take % 8)});
   };
   const size_t selected = static_cast<size_t>(session.selected_take);
   add(selected, of_selected);
   for (size_t k = 0; k < session.takes.size(); ++k)
-    if (const app::Series* same = k == selected ? nullptr : app::find(session.takes[k].series, of_selected.key))
+    if (const app::Series* same =
+            k == selected ? nullptr : app::find(session.takes[k].series, of_selected.key))
       add(k, *same);
   return all;
 }

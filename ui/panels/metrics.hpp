@@ -1,6 +1,7 @@
 // Figures: curves over time tied to the timeline, the table of the whole, latency.
-// Marks: metrics.curves, metrics.table, metrics.latency (sections); metrics.plot.KEY, metrics.in_timeline.KEY,
-// metrics.figures.ROW, metrics.stages.ROW, metrics.stage, metrics.histogram, metrics.csv.
+// Marks: metrics.curves, metrics.table, metrics.latency (sections); metrics.plot.KEY,
+// metrics.in_timeline.KEY, metrics.figures.ROW, metrics.stages.ROW, metrics.stage, metrics.histogram,
+// metrics.csv.
 #pragma once
 
 #include <cstdint>

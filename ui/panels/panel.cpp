@@ -103,7 +103,7 @@ double frames_per_second(const app::Session& session) {
 
 bool panel_shown(const app::Session& session, const std::string& panel) {
   const auto found = session.settings.panels.find(panel);
-  return found != session.settings.panels.end() ? found->second : panel != "log";
+  return found != session.settings.panels.end() ? found->second : panel != "log" && panel != "side_over";
 }
 
 bool possible(const app::Session& session, const std::string& command) {

@@ -24,21 +24,30 @@ void draw_scale(const app::Settings& settings, PanelContext& context) {
 
 void draw_rows(const app::Settings& settings, PanelContext& context) {
   Ui& ui = context.ui;
-  if (const auto i = choice_row(ui, {"settings.theme", "Theme", ""}, {"Dark", "Light"}, settings.dark ? 0 : 1))
+  if (const auto i =
+          choice_row(ui, {"settings.theme", "Theme", ""}, {"Dark", "Light"}, settings.dark ? 0 : 1))
     context.ask("settings.theme", {*i == 0 ? "dark" : "light"});
   draw_scale(settings, context);
   const int samples = settings.samples >= 4 ? 2 : settings.samples >= 2 ? 1 : 0;
-  if (const auto i = choice_row(ui, {"settings.samples", "Antialiasing", "Samples of a pixel; fewer are faster"},
-                                {"Off", "2", "4"}, samples))
+  if (const auto i =
+          choice_row(ui, {"settings.samples", "Antialiasing", "Samples of a pixel; fewer are faster"},
+                     {"Off", "2", "4"}, samples))
     context.ask("settings.samples", {std::to_string(1 << *i)});
   NumberOptions mouse{0.2f, 4, 0.01f, "%.2f \u00d7", 1, true};
-  if (const auto x = number_row(ui, {"settings.mouse", "Mouse", "How fast dragging turns the views"}, settings.mouse_sensitivity, mouse))
+  if (const auto x = number_row(ui, {"settings.mouse", "Mouse", "How fast dragging turns the views"},
+                                settings.mouse_sensitivity, mouse))
     context.ask("settings.mouse", {argument(*x)});
-  if (const auto mb = typed_number_row(ui, {"settings.cache", "Frames kept, MB", "Memory for frames that were looked at"}, settings.cache_mb, 0))
+  if (const auto mb =
+          typed_number_row(ui, {"settings.cache", "Frames kept, MB", "Memory for frames that were looked at"},
+                           settings.cache_mb, 0))
     context.ask("settings.cache_mb", {argument(std::round(*mb))});
-  if (const auto s = typed_number_row(ui, {"settings.autosave", "Autosave, s", "Unsaved work is put aside this often"}, settings.autosave_s, 0))
+  if (const auto s =
+          typed_number_row(ui, {"settings.autosave", "Autosave, s", "Unsaved work is put aside this often"},
+                           settings.autosave_s, 0))
     context.ask("settings.autosave_s", {argument(*s)});
-  if (const auto n = typed_number_row(ui, {"settings.undo_depth", "Undo steps", "As many can be taken back; from the next start"}, settings.undo_depth, 0))
+  if (const auto n = typed_number_row(
+          ui, {"settings.undo_depth", "Undo steps", "As many can be taken back; from the next start"},
+          settings.undo_depth, 0))
     context.ask("settings.undo_depth", {argument(std::round(*n))});
 }
 
@@ -52,7 +61,8 @@ bool draw_settings(const app::Session& session, PanelContext& context) {
   ButtonOptions close;
   close.look = ButtonLook::Main, close.width = -1;
   bool stays = !button(ui, "settings.close", "Close", close);
-  stays &= ImGui::IsWindowAppearing() || ImGui::GetIO().WantTextInput || !key_pressed(render::Key::Escape, false);
+  stays &=
+      ImGui::IsWindowAppearing() || ImGui::GetIO().WantTextInput || !key_pressed(render::Key::Escape, false);
   if (!stays) ImGui::CloseCurrentPopup();
   end_dialog();
   return stays;

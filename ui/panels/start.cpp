@@ -37,10 +37,12 @@ bool draw_card(Ui& ui, const std::string& name, const SampleCard& card, float wi
   const float x = rect.min.x + ui.px(10), room = width - ui.px(20);
   {
     const FontScope strong(ui.fonts().strong);
-    list.AddText({x, rect.min.y + ui.px(kPicture + 8)}, color(ui.theme().text), cut_to(card.title, room).c_str());
+    list.AddText({x, rect.min.y + ui.px(kPicture + 8)}, color(ui.theme().text),
+                 cut_to(card.title, room).c_str());
   }
   const FontScope small(ui.fonts().small);
-  list.AddText({x, rect.min.y + ui.px(kPicture + 31)}, color(ui.theme().text_dim), cut_to(card.caption, room).c_str());
+  list.AddText({x, rect.min.y + ui.px(kPicture + 31)}, color(ui.theme().text_dim),
+               cut_to(card.caption, room).c_str());
   tooltip(ui, card.caption);
   return clicked;
 }
@@ -52,7 +54,8 @@ void draw_samples(PanelContext& context, const std::vector<SampleCard>& samples)
   const int a_line = std::max(1, static_cast<int>((width + gap) / (card + gap)));
   for (size_t i = 0; i < samples.size(); ++i) {
     if (i % static_cast<size_t>(a_line) != 0) ImGui::SameLine(0, gap);
-    if (draw_card(ui, "start.sample." + std::to_string(i), samples[i], card)) context.ask("open", samples[i].paths);
+    if (draw_card(ui, "start.sample." + std::to_string(i), samples[i], card))
+      context.ask("open", samples[i].paths);
   }
 }
 
@@ -90,7 +93,8 @@ void draw_recent(const app::Session& session, PanelContext& context) {
   for (size_t i = 0; i < recent.size(); ++i) {
     ButtonOptions options;
     options.look = ButtonLook::Quiet, options.tooltip = recent[i];
-    const std::string label = cut_to(file_name(recent[i]), ImGui::GetContentRegionAvail().x - context.ui.px(16));
+    const std::string label =
+        cut_to(file_name(recent[i]), ImGui::GetContentRegionAvail().x - context.ui.px(16));
     const IdScope id(static_cast<int>(i));
     if (button(context.ui, "start.recent." + std::to_string(i), label, options))
       context.ask("document.open", {recent[i]});

@@ -27,7 +27,8 @@ void draw_more_jobs(const app::Session& session, PanelContext& context) {
   ImGui::SameLine();
   const float side = ui.px(24);
   ImGui::SetCursorPosY((ui.px(kStatusHeight) - side) / 2);
-  if (icon_button(ui, "status.more_jobs", Icon::ChevronUp, {"All jobs", "", false, false, 24})) ImGui::OpenPopup("jobs");
+  if (icon_button(ui, "status.more_jobs", Icon::ChevronUp, {"All jobs", "", false, false, 24}))
+    ImGui::OpenPopup("jobs");
   const ImVec2 above = ImGui::GetItemRectMin();
   ImGui::SetNextWindowPos({above.x, above.y - ui.px(4)}, ImGuiCond_Always, {0, 1});
   ImGui::SetNextWindowSize({ui.px(320), 0});
@@ -68,7 +69,8 @@ void draw_status(const app::Session& session, PanelContext& context, float frame
   const std::string rate = frame_rate > 0 ? std::to_string(std::lround(frame_rate)) + " fps" : "";
   const bool wide = width > ui.px(560);
   const float rate_width = rate.empty() ? 0 : ui.px(58);
-  const float document_width = wide ? std::min(ui.px(220), ImGui::CalcTextSize(document_words(session).c_str()).x + ui.px(20)) : 0;
+  const float document_width =
+      wide ? std::min(ui.px(220), ImGui::CalcTextSize(document_words(session).c_str()).x + ui.px(20)) : 0;
   float left = width - rate_width - document_width;
   if (!session.jobs.empty()) {
     const float job = std::min(ui.px(340), wide ? left * 0.6f : left);

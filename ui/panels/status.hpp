@@ -1,6 +1,6 @@
 // The line at the bottom: what works, how far it is, what was last told, frames per second.
-// Marks: status.job (with status.job.cancel), status.more_jobs, status.message (opens the log), status.document,
-// status.rate.
+// Marks: status.job (with status.job.cancel), status.more_jobs, status.message (opens the log),
+// status.document, status.rate.
 #pragma once
 
 #include "ui/panels/panel.hpp"

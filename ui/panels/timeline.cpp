@@ -22,8 +22,8 @@ std::vector<Metric> carried_metrics(const app::Session& session, const TimelineS
   std::vector<Metric> metrics;
   if (const app::TakeState* take = selected_state(session))
     for (const app::Series& series : take->series)
-      metrics.push_back(
-          {series.key, series.unit.empty() ? series.label : series.label + ", " + series.unit, series.values});
+      metrics.push_back({series.key, series.unit.empty() ? series.label : series.label + ", " + series.unit,
+                         series.values});
   const auto is_confidence = [](const Metric& m) { return m.key == "confidence"; };
   if (std::none_of(metrics.begin(), metrics.end(), is_confidence))
     metrics.push_back({"confidence", "Confidence", state.confidence});
@@ -56,7 +56,9 @@ void draw_marks(const app::Session& session, PanelContext& context) {
   const app::Playback& playback = session.playback;
   const bool disabled = !possible(session, "playback.loop");
   ImGui::SameLine(0, ui.px(10));
-  if (icon_button(ui, "timeline.loop", Icon::Loop, {"Play again from the start", keys_of(context.commands, "playback.loop"), playback.loop, disabled, 28}))
+  if (icon_button(ui, "timeline.loop", Icon::Loop,
+                  {"Play again from the start", keys_of(context.commands, "playback.loop"), playback.loop,
+                   disabled, 28}))
     context.ask("playback.loop", {on_off(!playback.loop)});
   const auto word = [&](const char* name, const char* label, const char* command, const char* tip) {
     ImGui::SameLine(0, ui.px(3));
@@ -72,8 +74,8 @@ void draw_marks(const app::Session& session, PanelContext& context) {
   if (icon_button(ui, "timeline.clear_marks", Icon::Close, {"Play all frames", "", false, none, 28}))
     context.ask("playback.clear_marks");
   ImGui::SameLine(0, ui.px(3));
-  if (icon_button(ui, "timeline.live", Icon::Clock, {"Show the newest frame while they are made", "", playback.live,
-                                                     disabled, 28}))
+  if (icon_button(ui, "timeline.live", Icon::Clock,
+                  {"Show the newest frame while they are made", "", playback.live, disabled, 28}))
     context.ask("playback.follow_live");
 }
 
@@ -84,8 +86,10 @@ void draw_rate(const app::Session& session, PanelContext& context) {
     if (std::abs(rate - session.playback.rate) < 1e-6) chosen = static_cast<int>(labels.size());
     labels.push_back(argument(rate) + " \u00d7");
   }
-  if (chosen < 0) chosen = static_cast<int>(labels.size()), labels.push_back(argument(session.playback.rate) + " \u00d7");
-  if (!dropdown(context.ui, "timeline.rate", labels, chosen) || chosen >= static_cast<int>(std::size(kRates))) return;
+  if (chosen < 0)
+    chosen = static_cast<int>(labels.size()), labels.push_back(argument(session.playback.rate) + " \u00d7");
+  if (!dropdown(context.ui, "timeline.rate", labels, chosen) || chosen >= static_cast<int>(std::size(kRates)))
+    return;
   context.ask("playback.rate", {argument(kRates[chosen])});
 }
 
@@ -122,12 +126,14 @@ void draw_readout(const app::Session& session, PanelContext& context) {
   ImGui::EndChild();
   if (!time) return;
   const size_t colon = time->find(':');
-  const auto minutes = colon == std::string::npos ? std::optional<double>(0) : parse_number(time->substr(0, colon));
+  const auto minutes =
+      colon == std::string::npos ? std::optional<double>(0) : parse_number(time->substr(0, colon));
   const auto rest = parse_number(colon == std::string::npos ? *time : time->substr(colon + 1));
   if (minutes && rest) context.ask("playback.seek", {argument(60 * *minutes + *rest)});
 }
 
-void draw_track(const app::Session& session, PanelContext& context, const TimelineState& state, const Metric* metric) {
+void draw_track(const app::Session& session, PanelContext& context, const TimelineState& state,
+                const Metric* metric) {
   TrackData data;
   data.total = known_frames(session);
   data.processed = app::frame_count(session);
@@ -142,7 +148,8 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   data.follow = session.playback.playing;
   data.height = ImGui::GetContentRegionAvail().y / context.ui.scale();
   const TrackAnswer answer = timeline_track(context.ui, "timeline.track", data);
-  if (answer.seek && *answer.seek != data.current) context.ask("playback.frame", {std::to_string(*answer.seek)});
+  if (answer.seek && *answer.seek != data.current)
+    context.ask("playback.frame", {std::to_string(*answer.seek)});
   if (!answer.loop) return;
   if (answer.loop->first != range.first) context.ask("playback.in", {std::to_string(answer.loop->first)});
   if (answer.loop->last != range.last) context.ask("playback.out", {std::to_string(answer.loop->last)});
@@ -171,7 +178,8 @@ void draw_timeline(const app::Session& session, PanelContext& context, TimelineS
   Ui& ui = context.ui;
   state.follow(session);
   const std::vector<Metric> metrics = carried_metrics(session, state);
-  const float width = ImGui::GetContentRegionAvail().x, wide = width / ui.scale(), start = ImGui::GetCursorPosX();
+  const float width = ImGui::GetContentRegionAvail().x, wide = width / ui.scale(),
+              start = ImGui::GetCursorPosX();
   const auto field = [&](const char* id, float from_right, float size, const auto& draw) {
     ImGui::SameLine(start + width - ui.px(from_right));
     ImGui::BeginChild(id, {ui.px(size), ImGui::GetFrameHeight()});
@@ -181,7 +189,8 @@ void draw_timeline(const app::Session& session, PanelContext& context, TimelineS
   draw_transport(session, context);
   if (wide >= 580) draw_marks(session, context);
   if (wide >= 900) field("##rate", 230 + 180 + 96, 84, [&] { draw_rate(session, context); });
-  if (wide >= 790) field("##metric", 230 + 180, 168, [&] { draw_metric(context, metrics, session.view.metric); });
+  if (wide >= 790)
+    field("##metric", 230 + 180, 168, [&] { draw_metric(context, metrics, session.view.metric); });
   if (wide >= 392) {
     ImGui::SameLine(start + width - ui.px(222));
     draw_readout(session, context);

@@ -1,6 +1,6 @@
 // The timeline: transport, and a track with what has been made, bad frames, loop marks and a metric.
-// Marks: timeline.first, .back, .play, .forward, .last, .loop, .in, .out, .clear_marks, .live, .rate, .metric,
-// .frame, .time; timeline.track and what timeline_track() marks in it.
+// Marks: timeline.first, .back, .play, .forward, .last, .loop, .in, .out, .clear_marks, .live, .rate,
+// .metric, .frame, .time; timeline.track and what timeline_track() marks in it.
 #pragma once
 
 #include <cstdint>

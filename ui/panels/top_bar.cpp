@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/arrangement.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/menus.hpp"
 #include "ui/widgets/controls.hpp"
@@ -21,7 +22,8 @@ void draw_items(const app::Session& session, PanelContext& context, const std::v
     }
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (!item.inside.empty()) {
-      const float width = std::max(ImGui::GetContentRegionAvail().x, ImGui::CalcTextSize(item.label.c_str()).x);
+      const float width =
+          std::max(ImGui::GetContentRegionAvail().x, ImGui::CalcTextSize(item.label.c_str()).x);
       context.ui.mark("menu." + item.label, {at, {at.x + width, at.y + ImGui::GetTextLineHeight()}});
       if (!ImGui::BeginMenu(item.label.c_str())) continue;
       draw_items(session, context, item.inside);
@@ -85,7 +87,8 @@ void draw_tools(const app::Session& session, PanelContext& context, const Rect& 
   }
   strip.gap();
   const auto history = [&](const char* name, const char* command, Icon icon, const std::string& what) {
-    if (strip.add(name, icon, {what, keys_of(context.commands, command), false, !possible(session, command), 28}))
+    if (strip.add(name, icon,
+                  {what, keys_of(context.commands, command), false, !possible(session, command), 28}))
       context.ask(command);
   };
   const std::string undo = session.history.undo_label(), redo = session.history.redo_label();
@@ -94,10 +97,12 @@ void draw_tools(const app::Session& session, PanelContext& context, const Rect& 
 }
 
 void draw_side_switch(const app::Session& session, PanelContext& context, const Rect& bar) {
-  const bool shown = panel_shown(session, "side");
+  const char* side = is_narrow(bar.width(), context.ui.scale()) ? "side_over" : "side";
+  const bool shown = panel_shown(session, side);
   IconStrip strip(context.ui, bar, bar.max.x - context.ui.px(36));
-  if (strip.add("top.side", Icon::Layers, {shown ? "Hide the side panel" : "Show the side panel", "", false, false, 28}))
-    context.ask("panel.show", {"side", on_off(!shown)});
+  if (strip.add("top.side", Icon::Layers,
+                {shown ? "Hide the side panel" : "Show the side panel", "", false, false, 28}))
+    context.ask("panel.show", {side, on_off(!shown)});
 }
 
 void draw_layouts(const app::Session& session, PanelContext& context, const Rect& place) {
@@ -114,7 +119,8 @@ void draw_layouts(const app::Session& session, PanelContext& context, const Rect
 
 void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_one) {
   const float height = context.ui.px(kTopBarHeight);
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {context.ui.px(8), std::floor((height - ImGui::GetFontSize()) / 2)});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                      {context.ui.px(8), std::floor((height - ImGui::GetFontSize()) / 2)});
   if (ImGui::BeginMenuBar()) {
     ImGui::PopStyleVar();
     if (as_one)
@@ -139,9 +145,11 @@ void draw_top_bar(const app::Session& session, PanelContext& context, const Rect
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ui.px(8), std::floor((area.height() - ImGui::GetFontSize()) / 2)});
-  ImGui::Begin("##top", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_MenuBar |
-                                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                      {ui.px(8), std::floor((area.height() - ImGui::GetFontSize()) / 2)});
+  ImGui::Begin("##top", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_MenuBar |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(4);
   ImGui::PushClipRect(area.min, area.max, false);
   draw_menu_bar(session, context, as_one);

@@ -1,0 +1,39 @@
+// Files and folders chosen for commands. Marks: those of FileBrowser.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "ui/file_browser.hpp"
+#include "ui/panels/panel.hpp"
+
+namespace understudy::ui {
+
+/// What a path is chosen for.
+enum class FilePurpose {
+  Anything,       ///< open PATH
+  Scan,           ///< source.open PATH
+  MotionBody,     ///< the first of source.motion BODY MOTION; the motion is asked for next
+  Motion,         ///< the second
+  Target,         ///< target.add PATH
+  ReplaceTarget,  ///< target.replace K PATH
+  Document,       ///< document.open PATH
+  SaveDocument,   ///< document.save_as PATH; answers the question about unsaved changes where one waits
+  Relocate,       ///< document.relocate OLD NEW
+  Export          ///< comes back to the export dialog
+};
+
+struct FilesState {
+  FileBrowser browser;
+  FilePurpose purpose = FilePurpose::Anything;
+  std::string first;  ///< Motion: the body; Relocate: the old place
+};
+
+/// Opens the browser. `name`: when saving, the path proposed; Relocate: the old place.
+void choose_file(const app::Session& session, FilesState& state, FilePurpose purpose,
+                 const std::string& name = {});
+
+/// Call every frame while the browser is open: asks for the command. The path, where it is for an export.
+std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state);
+
+}  // namespace understudy::ui
