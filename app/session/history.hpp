@@ -11,11 +11,15 @@ namespace understudy::app {
 
 class History {
  public:
-  explicit History(int depth = 200) : depth_(depth) {}
+  using Time = std::chrono::steady_clock::time_point;
+  explicit History(int depth = 200) { set_depth(depth); }
   void clear();
+  /// At least 1; what is older is forgotten.
+  void set_depth(int depth);
   /// Remembers `before`, the state that `label` ("Drag left wrist") has changed. A step with the same `merge`
   /// within a second of the last one becomes one with it (the dragging of a slider); empty: never.
-  void add(const Document& before, const std::string& label, const std::string& merge = "");
+  void add(const Document& before, const std::string& label, const std::string& merge = "",
+           Time now = std::chrono::steady_clock::now());
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
   /// What undo() would take back, redo() bring back; "" for nothing.
@@ -30,10 +34,10 @@ class History {
     Document document;
     std::string label;
   };
-  int depth_;
+  int depth_ = 1;
   std::vector<Step> past_, future_;
   std::string merge_;
-  std::chrono::steady_clock::time_point merged_at_;
+  Time merged_at_;
 };
 
 }  // namespace understudy::app

@@ -1,0 +1,58 @@
+#include "app/session/series.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "app/session/whole_file.hpp"
+#include "retarget/base/error.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// In as few digits as give the same number again; the point is a point in every locale.
+template <class Number>
+void append(std::string& text, Number value) {
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+/// In quotes where a comma, a quote or a line's end is in it.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+const Series* find(const std::vector<Series>& series, const std::string& key) {
+  for (const Series& one : series)
+    if (one.key == key) return &one;
+  return nullptr;
+}
+
+void write_csv(const std::string& path, const std::vector<Series>& series, double fps) {
+  US_CHECK(fps > 0 && std::isfinite(fps), path, ": seconds cannot be told at ", fps, " frames/s");
+  size_t frames = 0;
+  std::string text = "frame,seconds";
+  for (const Series& one : series) {
+    frames = std::max(frames, one.values.size());
+    text += ',' + cell(one.key);
+  }
+  text += '\n';
+  for (size_t frame = 0; frame < frames; ++frame) {
+    append(text, frame);
+    text += ',';
+    append(text, std::round(static_cast<double>(frame) / fps * 1e6) / 1e6);
+    for (const Series& one : series) {
+      text += ',';
+      if (frame < one.values.size() && std::isfinite(one.values[frame])) append(text, one.values[frame]);
+    }
+    text += '\n';
+  }
+  write_whole_file(path, text);
+}
+
+}  // namespace understudy::app
