@@ -1,5 +1,5 @@
 us_module(formats SOURCES
-  formats/bytes.cpp formats/gltf_mesh.cpp formats/mesh_reader.cpp formats/obj.cpp formats/off.cpp formats/pcd.cpp
+  formats/bytes.cpp formats/gltf_file.cpp formats/gltf_mesh.cpp formats/mesh_reader.cpp formats/obj.cpp formats/off.cpp formats/pcd.cpp
   formats/ply.cpp formats/stl.cpp formats/xyz.cpp
   formats/scan_source.cpp formats/scan_follow.cpp formats/scan_array.cpp formats/import.cpp
   PUBLIC understudy_core PRIVATE PkgConfig::LIBZIP nlohmann_json::nlohmann_json Threads::Threads)
