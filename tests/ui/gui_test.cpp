@@ -155,7 +155,9 @@ TEST_F(UiTest, ScaleMakesLettersAndControlsLarger) {
 TEST_F(UiTest, ASmallDisplayLimitsTheScale) {
   in_window([](Ui&) {});
   input.scale = 3;
-  for (const auto& [size, scale] : {std::pair(render::PixelSize{400, 300}, 1.f), std::pair(render::PixelSize{1920, 1080}, 3.f), std::pair(render::PixelSize{720, 500}, 2.f)}) {
+  for (const auto& [size, scale] :
+       {std::pair(render::PixelSize{400, 300}, 1.f), std::pair(render::PixelSize{1920, 1080}, 3.f),
+        std::pair(render::PixelSize{720, 500}, 2.f)}) {
     input.size = size;
     frame();
     EXPECT_EQ(gui.ui().scale(), scale);

@@ -101,9 +101,9 @@ void Gui::set_up_keys() {
 
 void Gui::begin_frame(const FrameInput& input, const std::vector<InputEvent>& events) {
   ImGui::SetCurrentContext(context_);
+  io().DisplaySize = {static_cast<float>(input.size.width), static_cast<float>(input.size.height)};
   set_look(input);
   queue_.insert(queue_.end(), events.begin(), events.end());
-  io().DisplaySize = {static_cast<float>(input.size.width), static_cast<float>(input.size.height)};
   io().DeltaTime = std::max(input.dt, 1e-6f);
   feed();
   ImGui::NewFrame();
@@ -116,8 +116,9 @@ const ImDrawData& Gui::end_frame() {
 }
 
 void Gui::set_look(const FrameInput& input) {
-  const float width = static_cast<float>(input.size.width), height = static_cast<float>(input.size.height);
-  const float room = std::floor(4 * std::min(width / 360, height / 240)) / 4;  // in steps: new letters take 20 ms
+  const ImVec2 display = io().DisplaySize;
+  const float room =
+      std::floor(4 * std::min(display.x / 360, display.y / 240)) / 4;  // in steps: letters cost 20 ms
   const float scale = std::clamp(input.scale, 1.f, std::clamp(room, 1.f, 3.f));
   const Theme& wanted = theme(input.theme);
   const bool first = ui_.fonts_.body == nullptr;

@@ -19,7 +19,7 @@ struct FrameInput {
   render::PixelSize size;  ///< of the framebuffer
   /// Of text and controls, 1 to 3, less where the display is too small for it; a change makes new letters.
   float scale = 1;
-  float dt = 1.f / 60;     ///< seconds since the last frame
+  float dt = 1.f / 60;  ///< seconds since the last frame
   ThemeKind theme = ThemeKind::Dark;
 };
 

@@ -194,7 +194,8 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
   if (p.clicked) ImGui::OpenPopup(popup.c_str());
   const float wanted = static_cast<float>(choices.size()) * ImGui::GetTextLineHeightWithSpacing() + ui.px(24);
   const bool above = p.rect.max.y + wanted > ImGui::GetIO().DisplaySize.y && p.rect.min.y > wanted;
-  ImGui::SetNextWindowPos({p.rect.min.x, above ? p.rect.min.y - ui.px(3) : p.rect.max.y + ui.px(3)}, ImGuiCond_Always, {0, above ? 1.f : 0.f});
+  ImGui::SetNextWindowPos({p.rect.min.x, above ? p.rect.min.y - ui.px(3) : p.rect.max.y + ui.px(3)},
+                          ImGuiCond_Always, {0, above ? 1.f : 0.f});
   ImGui::SetNextWindowSizeConstraints({width, 0}, {std::max(width, ui.px(480)), ui.px(360)});
   bool changed = false;
   if (ImGui::BeginPopup(popup.c_str())) {
