@@ -30,7 +30,7 @@ bool equal(const PinEdit& a, const PinEdit& b) {
   const auto members = [](const PinEdit& edit) {
     const FootContactOptions& contact = edit.contact;
     return std::tie(edit.left, edit.right, contact.begin_height_m, contact.end_height_m, contact.begin_speed,
-                    contact.end_speed, edit.blend_s, edit.keep_soles_up, edit.max_drop_m);
+                    contact.end_speed, edit.blend_s, edit.keep_soles_up, edit.to_floor, edit.max_drop_m);
   };
   return members(a) == members(b);
 }

@@ -37,6 +37,14 @@ void print(const Json& json, size_t depth, std::string& out) {
   out += object ? '}' : ']';
 }
 
+std::string folder_of(const std::string& path) {
+  US_CHECK(!path.empty(), "a document without a name can be neither read nor written");
+  std::error_code error;
+  const fs::path whole = fs::absolute(path, error);
+  US_CHECK(!error, path, ": cannot be found (", error.message(), ")");
+  return whole.parent_path().string();
+}
+
 /// The path's last part is kept, "" and "." are gone: "a/b/" and "a/./b" are one place.
 fs::path place(const std::string& path) {
   fs::path normal = fs::path(path).lexically_normal();
@@ -72,13 +80,12 @@ nlohmann::ordered_json read_document_json(const std::string& path) {
 }
 
 void write_document(const std::string& path, const SavedDocument& saved) {
-  const std::string folder = fs::absolute(path).parent_path().string();
-  write_whole_file(path, document_text(to_json(saved, folder)));
+  write_whole_file(path, document_text(to_json(saved, folder_of(path))));
 }
 
 SavedDocument read_document(const std::string& path) {
-  const Json json = read_document_json(path);
-  return from_json(json, fs::absolute(path).parent_path().string(), path);
+  const std::string folder = folder_of(path);
+  return from_json(read_document_json(path), folder, path);
 }
 
 std::vector<std::string> missing_files(const Document& document) {

@@ -407,6 +407,7 @@ void fields(A& a, typename A::template Of<PinEdit>& edit) {
   a("contact", edit.contact);
   a.number("blend_s", edit.blend_s, kAny);
   a("keep_soles_up", edit.keep_soles_up);
+  a("to_floor", edit.to_floor);
   a.number("max_drop_m", edit.max_drop_m, kAny);
 }
 
@@ -519,6 +520,12 @@ void Reader::read_struct(const Json& json, T& value, const std::string& where) {
   fields(reader, value);
 }
 
+/// The first folder below the root, "" for the root itself.
+fs::path first_folder(const fs::path& absolute) {
+  const fs::path below = absolute.relative_path();
+  return below.empty() ? fs::path() : *below.begin();
+}
+
 /// Relative to the folder, unless they have nothing but the root in common.
 void Writer::path(const char* name, const std::string& value) {
   US_CHECK(is_utf8(value), where_, name, ": a path that is not UTF-8 cannot be saved");
@@ -526,12 +533,9 @@ void Writer::path(const char* name, const std::string& value) {
   if (value.empty() || folder_.empty()) return;
   const fs::path whole = fs::absolute(value).lexically_normal(),
                  base = fs::absolute(folder_).lexically_normal();
-  const auto first_below_root = [](const fs::path& path) { return path.relative_path().begin(); };
-  if (whole.root_path() != base.root_path() || whole.relative_path().empty() ||
-      base.relative_path().empty() || *first_below_root(whole) != *first_below_root(base))
-    json_[name] = whole.generic_string();
-  else
-    json_[name] = whole.lexically_relative(base).generic_string();
+  const bool near = whole.root_path() == base.root_path() && !first_folder(whole).empty() &&
+                    first_folder(whole) == first_folder(base);
+  json_[name] = (near ? whole.lexically_relative(base) : whole).generic_string();
 }
 
 void Reader::path(const char* name, std::string& value) {

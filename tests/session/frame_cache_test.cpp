@@ -93,6 +93,7 @@ FrameCache::Open opens(Probe& probe, int count, int points = 16) {
 
 SourceOptions source_at(const std::string& path) {
   SourceOptions options;
+  options.import.up = "y";
   options.path = path;
   return options;
 }

@@ -1,0 +1,411 @@
+#include "app/session/document_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/rng.hpp"
+#include "tests/app/program.hpp"
+#include "tests/session/full_document.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using tests::read_bytes;
+using tests::ScratchFolder;
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string text_of(const SavedDocument& saved) {
+  return to_json(saved, "").dump();
+}
+
+/// What reading says; empty when it reads.
+std::string problem_of(const std::string& path) {
+  try {
+    read_document(path);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// What is said of the full document with this put at a JSON pointer; "doc: " is taken off.
+std::string problem_with(const std::string& pointer, const Json& value) {
+  Json json = to_json(full_document("/a"), "/a");
+  json[nlohmann::json::json_pointer(pointer)] = value;
+  try {
+    from_json(json, "/a", "doc");
+    return "";
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    return what.substr(0, 5) == "doc: " ? what.substr(5) : "not named: " + what;
+  }
+}
+
+TEST(DocumentFile, GivesBackAllThatWasSaved) {
+  ScratchFolder scratch;
+  const std::string path = scratch.path("my dance ö.understudy");
+  const SavedDocument saved = full_document(scratch.path("data"));
+  write_document(path, saved);
+  const SavedDocument read = read_document(path);
+  EXPECT_TRUE(same(read.document, saved.document));
+  EXPECT_EQ(text_of(read), text_of(saved));  // view, playback and checksums too
+  EXPECT_EQ(scratch.files().size(), 1u);
+}
+
+/// Each member of what is saved but not undone: none is forgotten on one of both ways.
+TEST(DocumentFile, ViewAndPlaybackDifferFromTheirDefaultsInEachMember) {
+  const Json full = to_json(full_document("/a"), "/a"), plain = to_json(SavedDocument{}, "/a");
+  for (const char* part : {"playback", "view"})
+    for (const auto& item : plain[part].items())
+      EXPECT_NE(full[part][item.key()], item.value()) << item.key();
+  const Json again = to_json(from_json(full, "/a", "doc"), "/a");
+  EXPECT_EQ(again, full);
+}
+
+TEST(DocumentFile, PathsAreRelativeToIt) {
+  ScratchFolder scratch;
+  fs::create_directories(scratch.path("old/docs"));
+  fs::create_directories(scratch.path("new"));
+  const SavedDocument saved = full_document(scratch.path("old/data"));
+  write_document(scratch.path("old/docs/a.understudy"), saved);
+  EXPECT_EQ(read_bytes(scratch.path("old/docs/a.understudy")).find(scratch.path("")), std::string::npos);
+  fs::rename(scratch.path("old"), scratch.path("new/moved"));
+  const SavedDocument read = read_document(scratch.path("new/moved/docs/a.understudy"));
+  EXPECT_EQ(read.document.truth, scratch.path("new/moved/data/truth.npz"));
+  EXPECT_EQ(read.document.takes[1].target.path, scratch.path("new/moved/data/b.glb"));
+}
+
+TEST(DocumentFile, PathsWithOnlyTheRootInCommonStayAbsolute) {
+  SavedDocument saved;
+  saved.document.source.path = "/data/scans";
+  saved.document.truth = "/home/me/truth.npz";
+  const Json json = to_json(saved, "/home/me/docs");
+  EXPECT_EQ(json["source"]["path"], "/data/scans");
+  EXPECT_EQ(json["truth"], "../truth.npz");
+  EXPECT_EQ(from_json(json, "/home/me/docs", "doc").document.source.path, "/data/scans");
+  saved.document.source.path = "/home/me/docs";  // the folder itself
+  EXPECT_EQ(from_json(to_json(saved, "/home/me/docs"), "/home/you", "doc").document.source.path,
+            "/home/you/");
+}
+
+TEST(DocumentFile, MembersThatAreMissingAreDefaultsAndUnknownOnesPassedOver) {
+  const Json json{{"format", "understudy document"}, {"version", 1}, {"of the future", {1, 2}}};
+  EXPECT_EQ(text_of(from_json(json, "/a", "doc")), text_of(SavedDocument{}));
+  Json full = to_json(full_document("/a"), "/a");
+  full["takes"][0]["method"]["speed"] = "fast";
+  EXPECT_TRUE(same(from_json(full, "/a", "doc").document, full_document("/a").document));
+}
+
+TEST(DocumentFile, WhatIsWrongIsNamed) {
+  EXPECT_EQ(problem_with("/takes/0/method/offsets", 1), "takes[0].method.offsets must be true or false");
+  EXPECT_EQ(problem_with("/takes", 7), "takes must be a list");
+  EXPECT_EQ(problem_with("/takes/1", "x"), "takes[1] must be an object");
+  EXPECT_EQ(problem_with("/source/path", nullptr), "source.path must be text");
+  EXPECT_EQ(problem_with("/source/path", std::string("a\0b", 3)), "source.path must be a path");
+  EXPECT_EQ(problem_with("/source/fps", -1), "source.fps must be a finite number from 0 to 1e+06");
+  EXPECT_EQ(problem_with("/source/betas/0", 1e39), "source.betas must be a finite number");
+  EXPECT_EQ(problem_with("/scan_edits/crop/low", {1, 2}), "scan_edits.crop.low must be three numbers");
+  EXPECT_EQ(problem_with("/scan_edits/crop/low/0", "a"), "scan_edits.crop.low must be a finite number");
+  EXPECT_EQ(problem_with("/skeleton_edits/0/kind", "push"), "skeleton_edits[0].kind must be drag or swap");
+  EXPECT_EQ(problem_with("/skeleton_edits/1/limbs", "ears"),
+            "skeleton_edits[1].limbs must be arms, legs or both");
+  EXPECT_EQ(problem_with("/skeleton_edits/0/joint", 22),
+            "skeleton_edits[0].joint must be a whole number from 0 to 21");
+  EXPECT_EQ(problem_with("/takes/0/pose_edits/rotate/1/frame", 1.5),
+            "takes[0].pose_edits.rotate[1].frame must be a whole number");
+  EXPECT_EQ(problem_with("/takes/0/pose_edits/rotate/1/falloff", 1e18),
+            "takes[0].pose_edits.rotate[1].falloff must be a whole number");
+  EXPECT_EQ(problem_with("/takes/0/pose_edits/skip", {-1}),
+            "takes[0].pose_edits.skip must be a whole number");
+  EXPECT_EQ(problem_with("/view/layout", "round"),
+            "view.layout must be side-by-side, single, overlay or wipe");
+  EXPECT_EQ(problem_with("/view/trail_joints", {99}),
+            "view.trail_joints must be a whole number from 0 to 21");
+}
+
+TEST(DocumentFile, WeightsMustBeWeights) {
+  const std::string weights = "/takes/0/target_edits/weights";
+  EXPECT_NE(problem_with(weights + "/vertices/1", 5).find("must ascend"), std::string::npos);
+  EXPECT_NE(problem_with(weights + "/vertices", {1, 2}).find("for 2 vertices"), std::string::npos);
+  EXPECT_NE(problem_with(weights + "/rows/0", {0, 0.5}).find("sum 1"), std::string::npos);
+  EXPECT_NE(problem_with(weights + "/rows/0", {0}).find("pairs"), std::string::npos);
+  EXPECT_NE(problem_with(weights + "/rows/0", {22, 1}).find("rows[0]"), std::string::npos);
+  EXPECT_NE(problem_with(weights + "/rows/0", {0, -1, 1, 2}).find("rows[0]"), std::string::npos);
+  EXPECT_EQ(problem_with(weights, nullptr), "");
+}
+
+TEST(DocumentFile, WhatIsOnlyShownIsBroughtIntoItsRange) {
+  Json json = to_json(full_document("/a"), "/a");
+  json["view"]["wipe"] = 7;
+  json["view"]["cameras"] = Json::array();
+  json["playback"]["rate"] = 1e300;
+  json["playback"]["in"] = -1e300;
+  const SavedDocument read = from_json(json, "/a", "doc");
+  EXPECT_EQ(read.view.wipe, 1);
+  EXPECT_EQ(read.view.cameras.size(), 1u);  // the first is always there
+  EXPECT_EQ(read.playback.rate, 4);
+  EXPECT_EQ(read.playback.in, -1);
+}
+
+TEST(DocumentFile, WhatCouldNotBeReadAgainIsNotWritten) {
+  ScratchFolder scratch;
+  const std::string path = scratch.path("a.understudy");
+  const auto refuses = [&](SavedDocument saved, auto change) {
+    change(saved);
+    EXPECT_THROW(write_document(path, saved), Error);
+    EXPECT_FALSE(fs::exists(path));
+  };
+  const SavedDocument full = full_document(scratch.path(""));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  refuses(full, [&](SavedDocument& s) { s.document.takes[0].pose_edits.floor->offset_m = nan; });
+  refuses(full, [&](SavedDocument& s) { s.document.scan_edits.crop->low.x() = nan; });
+  refuses(full, [&](SavedDocument& s) { s.document.takes[0].target_edits.joints[0].joint = -1; });
+  refuses(full, [&](SavedDocument& s) { s.document.truth = "/a/caf\xe9.npz"; });
+  SavedDocument blind = full;  // but no view keeps a document from being saved
+  blind.view.cameras[0].yaw = nan;
+  blind.playback.frame = std::numeric_limits<double>::infinity();
+  blind.document.takes[0].name = "caf\xe9";
+  write_document(path, blind);
+  EXPECT_EQ(problem_of(path), "");
+}
+
+TEST(DocumentFile, FloatsComeBackToTheBit) {
+  Rng rng(11);
+  SavedDocument saved;
+  for (int i = 0; i < 20000; ++i) {
+    const uint32_t bits = static_cast<uint32_t>(rng.next());
+    float value = 0;
+    std::memcpy(&value, &bits, sizeof value);
+    if (std::isfinite(value)) saved.document.source.betas.push_back(value);
+  }
+  const std::string text = to_json(saved, "").dump();
+  const SavedDocument read = from_json(Json::parse(text), "", "doc");
+  EXPECT_EQ(read.document.source.betas, saved.document.source.betas);
+  EXPECT_LT(text.size(), 17 * saved.document.source.betas.size());
+}
+
+TEST(DocumentFile, WhatIsNoDocumentSaysSo) {
+  ScratchFolder scratch;
+  const std::string path = scratch.path("a.understudy");
+  EXPECT_EQ(problem_of(path), path + ": there is no such file");
+  EXPECT_EQ(problem_of(scratch.path("")), scratch.path("") + ": is a folder, not a file");
+  EXPECT_EQ(problem_of("/dev/zero"), "/dev/zero: is a device, not a file");
+  write(path, "");
+  EXPECT_EQ(problem_of(path), path + ": is empty");
+  write(path, "{\"a\": }");
+  EXPECT_EQ(problem_of(path), path + ": is damaged at byte 7");
+  for (const char* text : {"{}", "[1, 2]", "3", "{\"format\": 1}", "{\"format\": \"gltf\"}"}) {
+    write(path, text);
+    EXPECT_EQ(problem_of(path), path + ": is no Understudy document") << text;
+  }
+  write(path, "{\"format\": \"understudy document\", \"version\": 2, \"source\": 4}");
+  EXPECT_EQ(problem_of(path), path +
+                                  ": was saved by a newer Understudy (version 2 of documents, this program "
+                                  "knows 1)");
+  write(path, "{\"format\": \"understudy document\", \"version\": 1, \"source\": {\"fps\": 1e999}}");
+  EXPECT_EQ(problem_of(path), path + ": holds a number that is none");
+  write(path, std::string(1 << 20, '['));
+  EXPECT_NE(problem_of(path).find("damaged"), std::string::npos);
+}
+
+/// Whatever the bytes: a document or an Error, and a document that was read can be saved.
+void survives(const std::string& path, const std::string& bytes) {
+  write(path, bytes);
+  try {
+    to_json(read_document(path), "/a");
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+  }
+}
+
+TEST(DocumentFile, ATruncatedFileIsAnError) {
+  ScratchFolder scratch;
+  const std::string path = scratch.path("a.understudy");
+  write_document(path, full_document(scratch.path("")));
+  const std::string bytes = read_bytes(path);
+  for (size_t length = 0; length + 2 < bytes.size(); length += 7) {
+    write(path, bytes.substr(0, length));
+    EXPECT_NE(problem_of(path), "") << length;
+  }
+}
+
+TEST(DocumentFile, SurvivesMutations) {
+  ScratchFolder scratch;
+  const std::string path = scratch.path("a.understudy");
+  write_document(path, full_document(scratch.path("")));
+  const std::string bytes = read_bytes(path);
+  const std::string inserts[] = {"9999999999", "-",  "[",   "]",       "{",    "}",
+                                 "null",       "\"", "e99", "\\u0000", "\xff", ","};
+  Rng rng(5);
+  for (int round = 0; round < 3000; ++round) {
+    std::string mutant = bytes;
+    for (int i = 0; i <= rng.below(3); ++i) {
+      const size_t at = static_cast<size_t>(rng.below(static_cast<int>(mutant.size())));
+      switch (rng.below(4)) {
+        case 0:
+          mutant[at] = static_cast<char>(rng.below(256));
+          break;
+        case 1:
+          mutant.erase(at, static_cast<size_t>(1 + rng.below(20)));
+          break;
+        case 2:
+          mutant.insert(at, inserts[rng.below(12)]);
+          break;
+        default:
+          mutant[at] = static_cast<char>('0' + rng.below(10));
+          break;
+      }
+    }
+    survives(path, mutant);
+  }
+}
+
+/// Values are exchanged as a whole, so that all mutants are JSON and reach the reading of members.
+TEST(DocumentFile, SurvivesMembersOfAnotherKind) {
+  const Json full = to_json(full_document("/a"), "/a").flatten();
+  const Json others[] = {nullptr,       true,           -1,         1e300,    "text",
+                         Json::array(), Json::object(), 4294967296, Json{{1}}};
+  int refused = 0;
+  for (const auto& item : full.items())
+    for (const Json& other : others) {
+      Json mutant = full;
+      mutant[item.key()] = other;
+      try {
+        to_json(from_json(mutant.unflatten(), "/a", "doc"), "/a");
+      } catch (const Error&) {
+        ++refused;
+      } catch (const nlohmann::json::exception&) {
+        // unflatten() takes no structured values: not what is tested
+      }
+    }
+  EXPECT_GT(refused, 500);
+}
+
+/// While it lives no file may grow beyond so many bytes, as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{bytes, old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit old_{};
+  void (*handler_)(int);
+};
+
+TEST(DocumentFile, AFullDiskLeavesTheOldDocument) {
+  ScratchFolder scratch;
+  const std::string path = scratch.path("a.understudy");
+  write_document(path, SavedDocument{});
+  const std::string before = read_bytes(path);
+  std::string problem;
+  {
+    const FullDisk full(1000);
+    try {
+      write_document(path, full_document(scratch.path("")));
+    } catch (const Error& error) {
+      problem = error.what();
+    }
+  }
+  EXPECT_EQ(problem, path + ": cannot be written (File too large)");
+  EXPECT_EQ(read_bytes(path), before);
+  EXPECT_EQ(scratch.files().size(), 1u);  // nothing half-written is left
+}
+
+TEST(DocumentFile, WritesOnlyWhereItMay) {
+  ScratchFolder scratch;
+  EXPECT_THROW(write_document(scratch.path("no/such/a.understudy"), {}), Error);
+  EXPECT_THROW(write_document(scratch.path(""), {}), Error);
+  EXPECT_THROW(write_document("/dev/full", {}), Error);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+  EXPECT_THROW(write_document("/proc/a.understudy", {}), Error);
+  EXPECT_THROW(write_document("", {}), Error);
+}
+
+TEST(DocumentFile, FollowsALinkAndKeepsThePermissions) {
+  ScratchFolder scratch;
+  write(scratch.path("real.understudy"), "old");
+  chmod(scratch.path("real.understudy").c_str(), 0600);
+  fs::create_symlink("real.understudy", scratch.path("link.understudy"));
+  write_document(scratch.path("link.understudy"), {});
+  EXPECT_TRUE(fs::is_symlink(scratch.path("link.understudy")));
+  EXPECT_EQ(problem_of(scratch.path("real.understudy")), "");
+  struct stat status {};
+  stat(scratch.path("real.understudy").c_str(), &status);
+  EXPECT_EQ(status.st_mode & 0777, 0600u);
+}
+
+TEST(DocumentFile, ALargePaintedDocumentIsSmallAndQuick) {
+  ScratchFolder scratch;
+  Rng rng(1);
+  WeightRows rows;
+  const int count = 50000;
+  rows.rows = RowMatrix::Zero(count, kJointCount);
+  for (int v = 0; v < count; ++v) {
+    rows.vertex.push_back(v);
+    for (int k = 0; k < 4; ++k) rows.rows(v, rng.below(kJointCount)) += 0.01f + rng.uniform();
+    rows.rows.row(v) /= rows.rows.row(v).sum();
+  }
+  SavedDocument saved;
+  saved.document.takes.resize(1);
+  saved.document.takes[0].target_edits.weights = std::make_shared<const WeightRows>(rows);
+  const auto began = std::chrono::steady_clock::now();
+  write_document(scratch.path("a.understudy"), saved);
+  const SavedDocument read = read_document(scratch.path("a.understudy"));
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
+  EXPECT_TRUE(same(read.document, saved.document));
+  EXPECT_LT(fs::file_size(scratch.path("a.understudy")), 80u * count);
+}
+
+TEST(MissingFiles, AreNamedOnce) {
+  ScratchFolder scratch;
+  write(scratch.path("there.obj"), "");
+  Document document;
+  document.source.path = scratch.path("scans");
+  document.takes.resize(3);
+  document.takes[0].target.path = scratch.path("there.obj");
+  document.takes[1].target.path = document.takes[2].target.path = scratch.path("gone.obj");
+  EXPECT_EQ(missing_files(document),
+            (std::vector<std::string>{scratch.path("scans"), scratch.path("gone.obj")}));
+  EXPECT_TRUE(missing_files({}).empty());
+}
+
+TEST(Relocated, MovesWhatIsBelowAndLeavesTheRest) {
+  Document document;
+  document.source.path = "/data/old/scans";
+  document.truth = "/data/older/truth.npz";
+  document.takes.resize(2);
+  document.takes[0].target.path = "/data/old";
+  document.takes[1].target.path = "/data/old/bodies/a b.obj";
+  for (const char* slash : {"", "/"}) {
+    const Document moved = relocated(document, std::string("/data/old") + slash, std::string("/new") + slash);
+    EXPECT_EQ(moved.source.path, "/new/scans");
+    EXPECT_EQ(moved.truth, "/data/older/truth.npz");
+    EXPECT_EQ(moved.takes[0].target.path, "/new");
+    EXPECT_EQ(moved.takes[1].target.path, "/new/bodies/a b.obj");
+    EXPECT_EQ(moved.source.motion, "");
+  }
+  EXPECT_THROW(relocated(document, "", "/new"), Error);
+}
+
+}  // namespace
+}  // namespace understudy::app

@@ -1,0 +1,289 @@
+#include "app/session/document.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "app/session/history.hpp"
+#include "retarget/base/error.hpp"
+#include "tests/session/full_document.hpp"
+
+namespace understudy::app {
+namespace {
+
+using Change = std::function<void(SavedDocument&)>;
+using Changes = std::vector<std::pair<const char*, Change>>;
+
+DragEdit& drag(Document& d) {
+  return std::get<DragEdit>(d.skeleton_edits[0]);
+}
+SwapEdit& swap(Document& d) {
+  return std::get<SwapEdit>(d.skeleton_edits[1]);
+}
+void change_weights(SavedDocument& s, const std::function<void(WeightRows&)>& change) {
+  WeightRows rows = *s.document.takes[0].target_edits.weights;
+  change(rows);
+  s.document.takes[0].target_edits.weights = std::make_shared<const WeightRows>(std::move(rows));
+}
+
+#define CHANGE(what)                                              \
+  {                                                               \
+#what, [](SavedDocument& s) { Document& d = s.document; d.what; } \
+  }
+#define TAKE(what)                                                     \
+  {                                                                    \
+#what, [](SavedDocument& s) { Take& t = s.document.takes[0]; t.what; } \
+  }
+#define POSES(what)                                                                    \
+  {                                                                                    \
+#what, [](SavedDocument& s) { PoseEdits& p = s.document.takes[0].pose_edits; p.what; } \
+  }
+
+/// One change of each member of a document.
+const Changes& document_changes() {
+  static const Changes changes{
+      CHANGE(source.path += "x"),
+      CHANGE(source.motion.clear()),
+      CHANGE(source.betas[0] += 1),
+      CHANGE(source.betas.pop_back()),
+      CHANGE(source.fps = 30),
+      CHANGE(source.import.units = "m"),
+      CHANGE(source.import.up = "y"),
+      CHANGE(source.import.yaw_deg += 1),
+      CHANGE(source.import.floor.reset()),
+      CHANGE(source.import.floor = 0),
+      CHANGE(source.follow = false),
+      CHANGE(truth.clear()),
+      CHANGE(scan_edits.crop.reset()),
+      CHANGE(scan_edits.crop->low.x() -= 1),
+      CHANGE(scan_edits.crop->high.z() += 1),
+      CHANGE(scan_edits.floor.reset()),
+      CHANGE(scan_edits.floor->height_m += 1),
+      CHANGE(scan_edits.floor->plane.reset()),
+      CHANGE(scan_edits.floor->plane->normal.x() = 0),
+      CHANGE(scan_edits.floor->plane->height_m = 0),
+      CHANGE(scan_edits.floor->tolerance_m += 1),
+      CHANGE(scan_edits.floor->sole_radius_m += 1),
+      CHANGE(scan_edits.floor->sole_band_m += 1),
+      CHANGE(scan_edits.largest_cluster = false),
+      CHANGE(scan_edits.cluster_gap_m += 1),
+      CHANGE(skeleton_edits.pop_back()),
+      CHANGE(skeleton_edits[0] = SwapEdit{}),
+      {"drag.frame", [](SavedDocument& s) { ++drag(s.document).frame; }},
+      {"drag.joint", [](SavedDocument& s) { ++drag(s.document).joint; }},
+      {"drag.offset", [](SavedDocument& s) { drag(s.document).offset.y() = 0; }},
+      {"drag.falloff", [](SavedDocument& s) { ++drag(s.document).falloff; }},
+      {"drag.with_children", [](SavedDocument& s) { drag(s.document).with_children = false; }},
+      {"swap.first", [](SavedDocument& s) { ++swap(s.document).first; }},
+      {"swap.last", [](SavedDocument& s) { ++swap(s.document).last; }},
+      {"swap.limbs", [](SavedDocument& s) { swap(s.document).limbs = SwapEdit::Limbs::Arms; }},
+      CHANGE(takes.pop_back()),
+      TAKE(name = "other"),
+      TAKE(target.path += "x"),
+      TAKE(target.betas.clear()),
+      TAKE(target.import.units = "m"),
+      TAKE(method.engine = "copy"),
+      TAKE(method.extractor = "dense"),
+      TAKE(method.offsets = true),
+      TAKE(method.repair_swaps = true),
+      TAKE(method.smooth_joints = true),
+      TAKE(method.fix_lengths = true),
+      TAKE(method.root = RootMode::Original),
+      TAKE(target_edits.joints.pop_back()),
+      TAKE(target_edits.joints[0].joint = Head),
+      TAKE(target_edits.joints[0].position.x() = 0),
+      TAKE(target_edits.joints[0].mirror = true),
+      TAKE(target_edits.weights.reset()),
+      {"weights.vertex",
+       [](SavedDocument& s) { change_weights(s, [](WeightRows& rows) { --rows.vertex[0]; }); }},
+      {"weights.rows",
+       [](SavedDocument& s) {
+         change_weights(s, [](WeightRows& rows) { rows.rows.row(0) = RowMatrix::Identity(1, kJointCount); });
+       }},
+      POSES(rotate.pop_back()),
+      POSES(rotate[0].frame = 1),
+      POSES(rotate[0].joint = 1),
+      POSES(rotate[0].axis_angle.z() += 0.1f),
+      POSES(rotate[0].falloff = 1),
+      POSES(smooth.reset()),
+      POSES(smooth->strength = 0.5f),
+      POSES(floor.reset()),
+      POSES(floor->offset_m = 0),
+      POSES(pin.reset()),
+      POSES(pin->left = true),
+      POSES(pin->right = true),
+      POSES(pin->contact.begin_height_m += 1),
+      POSES(pin->contact.end_height_m += 1),
+      POSES(pin->contact.begin_speed += 1),
+      POSES(pin->contact.end_speed += 1),
+      POSES(pin->blend_s += 1),
+      POSES(pin->keep_soles_up = true),
+      POSES(pin->to_floor = true),
+      POSES(pin->max_drop_m += 1),
+      POSES(heading.reset()),
+      POSES(heading->yaw_deg += 1),
+      POSES(trim.reset()),
+      POSES(trim->first = 0),
+      POSES(trim->last = 9),
+      POSES(skip.insert(6)),
+  };
+  return changes;
+}
+
+/// Does not compile once a member is added: then it belongs into same(), fields() and the changes above, too.
+[[maybe_unused]] void all_members_are_known() {
+  [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
+  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, quiet] = SourceOptions();
+  [[maybe_unused]] const auto& [units, up, yaw, floor] = ImportOptions();
+  [[maybe_unused]] const auto& [crop, cut, cluster, gap] = ScanEdits();
+  [[maybe_unused]] const auto& [low, high] = Box();
+  [[maybe_unused]] const auto& [cut_height, plane, tolerance, radius, band] = FloorCut();
+  [[maybe_unused]] const auto& [normal, height] = FloorPlane();
+  [[maybe_unused]] const auto& [drag_frame, drag_joint, offset, drag_falloff, children] = DragEdit();
+  [[maybe_unused]] const auto& [swap_first, swap_last, limbs] = SwapEdit();
+  [[maybe_unused]] const auto& [name, target, method, target_edits, pose_edits] = Take();
+  [[maybe_unused]] const auto& [target_path, target_betas, target_import] = TargetOptions();
+  [[maybe_unused]] const auto& [engine, extractor, offsets, swaps, smooth, lengths, root] = Method();
+  [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
+  [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
+  [[maybe_unused]] const auto& [vertex, rows] = WeightRows();
+  [[maybe_unused]] const auto& [rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();
+  [[maybe_unused]] const auto& [frame, joint, turn, falloff] = RotateEdit();
+  [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();
+  [[maybe_unused]] const auto& [begin_height, end_height, begin_speed, end_speed] = FootContactOptions();
+  [[maybe_unused]] const auto& [strength] = SmoothEdit();
+  [[maybe_unused]] const auto& [offset_m] = FloorEdit();
+  [[maybe_unused]] const auto& [yaw_deg] = HeadingEdit();
+  [[maybe_unused]] const auto& [first, last] = Trim();
+  [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
+                                weights_joint, trails, ghosts, step, scale, wipe, metric] = View();
+  [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();
+  [[maybe_unused]] const auto& [surface, points, bones, x_ray, names, ground, trail, ghost, colouring] =
+      Layers();
+  [[maybe_unused]] const auto& [playing, loop, live, rate, now, in, out] = Playback();
+}
+
+TEST(Document, IsAnotherAfterAnyChange) {
+  const SavedDocument before = full_document("/a");
+  EXPECT_TRUE(same(before.document, full_document("/a").document));  // weights of another address
+  for (const auto& [name, change] : document_changes()) {
+    SavedDocument after = before;
+    change(after);
+    EXPECT_FALSE(same(before.document, after.document)) << name;
+    EXPECT_FALSE(same(after.document, before.document)) << name;
+  }
+}
+
+TEST(Document, SameAreThoseWithTheSameText) {
+  const SavedDocument before = full_document("/a");
+  const std::string text = to_json(before, "/a").dump();
+  EXPECT_EQ(text, to_json(full_document("/a"), "/a").dump());
+  for (const auto& [name, change] : document_changes()) {
+    SavedDocument after = before;
+    change(after);
+    const auto json = to_json(after, "/a");
+    EXPECT_NE(json.dump(), text) << name;
+    EXPECT_TRUE(same(from_json(json, "/a", "doc").document, after.document)) << name;
+  }
+}
+
+TEST(Document, WhoTellsIsNoMatter) {
+  Document a, b;
+  b.source.quiet = true;
+  EXPECT_TRUE(same(a, b));
+}
+
+TEST(Document, NoWeightsAreAsGoodAsNone) {
+  TargetEdits a, b;
+  b.weights = std::make_shared<const WeightRows>();
+  EXPECT_TRUE(same(a, b));
+}
+
+class HistoryTest : public testing::Test {
+ protected:
+  static Document state(double fps) {
+    Document document;
+    document.source.fps = fps;
+    return document;
+  }
+  History history;
+  History::Time now{};
+  void later(int ms) { now += std::chrono::milliseconds(ms); }
+};
+
+TEST_F(HistoryTest, GoesBackAndForth) {
+  history.add(state(1), "First");
+  history.add(state(2), "Second");
+  EXPECT_EQ(history.undo_label(), "Second");
+  EXPECT_EQ(history.undo(state(3)).source.fps, 2);
+  EXPECT_EQ(history.undo_label(), "First");
+  EXPECT_EQ(history.redo_label(), "Second");
+  EXPECT_EQ(history.undo(state(2)).source.fps, 1);
+  EXPECT_FALSE(history.can_undo());
+  EXPECT_EQ(history.undo_label(), "");
+  EXPECT_THROW(history.undo(state(1)), Error);
+  EXPECT_EQ(history.redo(state(1)).source.fps, 2);
+  EXPECT_EQ(history.redo(state(2)).source.fps, 3);
+  EXPECT_FALSE(history.can_redo());
+  EXPECT_THROW(history.redo(state(3)), Error);
+}
+
+TEST_F(HistoryTest, AStepForgetsWhatWasUndone) {
+  history.add(state(1), "First");
+  history.undo(state(2));
+  history.add(state(1), "Other");
+  EXPECT_FALSE(history.can_redo());
+  EXPECT_EQ(history.undo(state(5)).source.fps, 1);
+}
+
+TEST_F(HistoryTest, ADragIsOneStep) {
+  for (int i = 0; i < 10; ++i) {
+    history.add(state(i), "Drag", "drag left_wrist", now);
+    later(900);  // each within a second of the last, not of the first
+  }
+  EXPECT_EQ(history.undo(state(10)).source.fps, 0);
+  EXPECT_FALSE(history.can_undo());
+}
+
+TEST_F(HistoryTest, APauseAnotherDragOrNoNameIsANewStep) {
+  history.add(state(0), "Drag", "left", now);
+  later(1001);
+  history.add(state(1), "Drag", "left", now);
+  history.add(state(2), "Drag", "right", now);
+  history.add(state(3), "Add", "", now);
+  history.add(state(4), "Add", "", now);
+  for (const double fps : {4, 3, 2, 1, 0}) EXPECT_EQ(history.undo(state(9)).source.fps, fps);
+}
+
+TEST_F(HistoryTest, ADragAfterAnUndoIsANewStep) {
+  history.add(state(0), "Drag", "left", now);
+  history.add(state(1), "Drag", "right", now);
+  history.undo(state(2));
+  history.add(state(1), "Drag", "right", now);
+  EXPECT_EQ(history.undo(state(2)).source.fps, 1);
+  EXPECT_EQ(history.undo(state(1)).source.fps, 0);
+}
+
+TEST_F(HistoryTest, ForgetsWhatIsTooOld) {
+  History shallow(3);
+  for (int i = 0; i < 10; ++i) shallow.add(state(i), "Step");
+  for (const double fps : {9, 8, 7}) EXPECT_EQ(shallow.undo(state(10)).source.fps, fps);
+  EXPECT_FALSE(shallow.can_undo());
+  for (int i = 0; i < 10; ++i) history.add(state(i), "Step");
+  history.set_depth(2);
+  history.undo(state(10));
+  history.undo(state(9));
+  EXPECT_FALSE(history.can_undo());
+}
+
+TEST_F(HistoryTest, SharesWhatIsLarge) {
+  Document document = full_document("/a").document;
+  const auto weights = document.takes[0].target_edits.weights;
+  const long users = weights.use_count();
+  for (int i = 0; i < 5; ++i) history.add(document, "Step");
+  EXPECT_EQ(weights.use_count(), users + 5);
+  EXPECT_EQ(history.undo(document).takes[0].target_edits.weights, weights);
+}
+
+}  // namespace
+}  // namespace understudy::app

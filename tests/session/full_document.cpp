@@ -1,0 +1,94 @@
+#include "tests/session/full_document.hpp"
+
+#include "retarget/base/rng.hpp"
+
+namespace understudy::app {
+namespace {
+
+ScanEdits scan_edits() {
+  ScanEdits edits;
+  edits.crop = Box{Vec3(-1.1f, 0.1f, -2), Vec3(1.2f, 2.1f, 2)};
+  edits.floor = FloorCut{0.03f, FloorPlane{Vec3(0.1f, 0.99f, 0), 0.02f}, 0.03f, 0.04f, 0.11f};
+  edits.largest_cluster = true;
+  edits.cluster_gap_m = 0.07f;
+  return edits;
+}
+
+std::shared_ptr<const WeightRows> weight_rows() {
+  WeightRows rows;
+  Rng rng(3);
+  for (int v = 5; v < 60; v += 1 + rng.below(4)) rows.vertex.push_back(v);
+  rows.rows = RowMatrix::Zero(static_cast<Eigen::Index>(rows.vertex.size()), kJointCount);
+  for (Eigen::Index i = 0; i < rows.rows.rows(); ++i) {
+    for (int k = 0; k < 4; ++k) rows.rows(i, rng.below(kJointCount)) += rng.uniform();
+    rows.rows.row(i) /= rows.rows.row(i).sum();
+  }
+  return std::make_shared<const WeightRows>(std::move(rows));
+}
+
+PoseEdits pose_edits() {
+  PoseEdits edits;
+  edits.rotate = {{12, LeftElbow, Vec3(0.1f, -0.2f, 1 / 3.0f), 7}, {0, Head, Vec3(1e-7f, 0, 0), 0}};
+  edits.smooth = SmoothEdit{0.7f};
+  edits.floor = FloorEdit{-0.012f};
+  edits.pin = PinEdit{false, false, {0.02f, 0.06f, 0.5f, 1.1f}, 0.3f, false, false, 0.05f};
+  edits.heading = HeadingEdit{-91.5f};
+  edits.trim = Trim{3, 95};
+  edits.skip = {4, 50, 51};
+  return edits;
+}
+
+Take take(const std::string& folder) {
+  Take take;
+  take.name = "Gräfin \"Zwei\"";
+  take.target = {folder + "/targets/a b ü.obj", {0.5f, -1.25f}, {"cm", "-z", 12.5f, 0.01f}};
+  take.method = {"paper", "paper", false, false, false, false, RootMode::InPlace};
+  take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
+  take.target_edits.weights = weight_rows();
+  take.pose_edits = pose_edits();
+  return take;
+}
+
+View view() {
+  View view;
+  view.layout = Layout::Wipe;
+  view.linked = false;
+  view.cameras = {{Vec3(1, 2, 3), -0.5f, 0.25f, 3.3f, 0.6f, true}, {}};
+  view.follow = false;
+  view.turntable_deg_s = 12;
+  view.source = {false, true, false, false, true, false, true, true, Colouring::Confidence};
+  view.take = {false, true, false, false, true, false, true, true, Colouring::Difference};
+  view.active_pane = 2;
+  view.weights_joint = LeftKnee;
+  view.trail_joints = {LeftFoot, Head, Pelvis};
+  view.ghost_count = 5;
+  view.ghost_step = 3;
+  view.error_scale_mm = 25;
+  view.wipe = 0.3f;
+  view.metric = "foot_skate";
+  return view;
+}
+
+}  // namespace
+
+SavedDocument full_document(const std::string& folder) {
+  SavedDocument saved;
+  saved.document.source = {folder + "/scans/läuft schnell", folder + "/walk.npz", {1.5f, 0},      59.94,
+                           {"mm", "z", -90, 0.25f},         /*follow=*/true,      /*quiet=*/false};
+  saved.document.truth = folder + "/truth.npz";
+  saved.document.scan_edits = scan_edits();
+  saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},
+                                   SwapEdit{10, 20, SwapEdit::Limbs::Legs}};
+  saved.document.takes = {take(folder), Take{}};
+  saved.document.takes[1].target.path = folder + "/b.glb";
+  saved.view = view();
+  saved.playback.loop = false;
+  saved.playback.rate = 0.25;
+  saved.playback.frame = 17.5;
+  saved.playback.in = 3;
+  saved.playback.out = 77;
+  saved.weights = "skeleton.weights:0a1b2c3d";
+  return saved;
+}
+
+}  // namespace understudy::app
