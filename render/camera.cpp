@@ -63,6 +63,27 @@ Ray ray_through(const Camera& camera, float aspect, const Eigen::Vector2f& place
   return {eye(camera), (R.col(0) * at.x() + R.col(1) * at.y() - R.col(2)).normalized()};
 }
 
+Ray ray_through(const Camera& camera, PixelSize size, const Eigen::Vector2f& pixel) {
+  return ray_through(camera, size.aspect(),
+                     {2 * pixel.x() / static_cast<float>(size.width) - 1,
+                      1 - 2 * pixel.y() / static_cast<float>(size.height)});
+}
+
+Vec3 on_screen(const Camera& camera, PixelSize size, const Vec3& point) {
+  const Vec3 seen = axes(camera).transpose() * (point - eye(camera));  // camera axes, from the eye
+  const float away = camera.orthographic ? camera.distance : -seen.z();
+  const Eigen::Vector2f place = seen.head<2>().cwiseQuotient(half_extent(camera, size.aspect())) / away;
+  return {(place.x() + 1) / 2 * static_cast<float>(size.width),
+          (1 - place.y()) / 2 * static_cast<float>(size.height),
+          camera.orthographic ? -seen.z() - camera.distance : -seen.z()};
+}
+
+float metres_a_pixel(const Camera& camera, PixelSize size, const Vec3& point) {
+  const float away =
+      camera.orthographic ? camera.distance : std::max(0.01f, (eye(camera) - point).dot(axes(camera).col(2)));
+  return 2 * away * std::tan(camera.fov / 2) / static_cast<float>(size.height);
+}
+
 Camera orbited(Camera camera, float yaw, float pitch) {
   camera.yaw = std::remainder(camera.yaw + yaw, 2 * kPi);
   camera.pitch = std::clamp(camera.pitch + pitch, -kMaxPitch, kMaxPitch);

@@ -9,6 +9,11 @@ namespace understudy::render {
 
 using Mat4 = Eigen::Matrix4f;
 
+struct PixelSize {
+  int width = 0, height = 0;
+  float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
+};
+
 struct Camera {
   Vec3 target = Vec3(0, 0.9f, 0);  ///< metres; what it turns about and looks at
   float yaw = 0;        ///< radians about +y; 0 looks along -z, at the front of a T-pose; +90 deg from +x
@@ -31,6 +36,14 @@ struct Ray {
   Vec3 direction;  ///< unit length
 };
 Ray ray_through(const Camera& camera, float aspect, const Eigen::Vector2f& place);
+
+/// The ray through a pixel, x right and y down from the picture's top left corner.
+Ray ray_through(const Camera& camera, PixelSize size, const Eigen::Vector2f& pixel);
+/// Where a point is seen: x and y in pixels from the top left, z metres before the eye (before the camera's
+/// target plane when orthographic: negative is nearer). Behind the eye z is negative and x, y mean nothing.
+Vec3 on_screen(const Camera& camera, PixelSize size, const Vec3& point);
+/// How many metres a pixel covers at a point.
+float metres_a_pixel(const Camera& camera, PixelSize size, const Vec3& point);
 
 /// Turned about its target; the pitch stops short of the poles.
 Camera orbited(Camera camera, float yaw, float pitch);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "retarget/math/types.hpp"
 
@@ -13,11 +14,21 @@ extern const Vec3 kLeftColor, kRightColor, kMiddleColor;
 /// Kelly's 22 colours of maximum contrast, ordered so that each differs most from those before it.
 extern const std::array<Vec3, 22> kCategories;
 
-/// Viridis at t in 0..1 (clamped).
+/// Viridis at t in 0..1 (clamped; NaN is grey, as in all scales).
 Vec3 viridis(float t);
+/// For errors: pale where there is none, through red and violet to near black; magma from its bright end.
+Vec3 error_color(float t);
+/// For signed values: blue, near white in the middle, orange brown.
+Vec3 diverging_color(float t);
 
 /// A colour for each value, `low` to `high` along viridis, [N, 3].
 Points viridis_colors(const Eigen::VectorXf& values, float low, float high);
+/// 0 to `high` along error_color().
+Points error_colors(const Eigen::VectorXf& values, float high);
+/// -`most` to `most` along diverging_color().
+Points diverging_colors(const Eigen::VectorXf& values, float most);
+/// A category colour for each index (from the start again after 22), [N, 3].
+Points category_colors(const std::vector<int>& indices);
 
 /// Skin weights as colours: each vertex the mix of its joints' category colours. weights [V, J] -> [V, 3].
 Points weight_colors(const RowMatrix& weights);

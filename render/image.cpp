@@ -17,18 +17,38 @@ uint8_t to_byte(float value) {
   return static_cast<uint8_t>(std::clamp(value, 0.f, 1.f) * 255 + 0.5f);
 }
 
+std::vector<uint8_t> interleaved(const Image& image) {
+  std::vector<uint8_t> rgba(image.alpha.size() * 4);
+  for (size_t i = 0; i < image.alpha.size(); ++i) {
+    std::copy_n(image.pixels.data() + 3 * i, 3, rgba.data() + 4 * i);
+    rgba[4 * i + 3] = image.alpha[i];
+  }
+  return rgba;
+}
+
 std::vector<uint8_t> png_bytes(const std::string& path, const Image& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
-  png.format = PNG_FORMAT_RGB;
+  const std::vector<uint8_t> rgba = image.alpha.empty() ? image.pixels : interleaved(image);
+  png.format = image.alpha.empty() ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::vector<uint8_t> bytes(size);
-  const int ok = png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr);
+  const int ok = png_image_write_to_memory(&png, bytes.data(), &size, 0, rgba.data(), 0, nullptr);
   US_CHECK(ok != 0, path, ": ", png.message);
   bytes.resize(size);
   return bytes;
+}
+
+/// Fills `image` from RGBA.
+Image separated(const std::vector<uint8_t>& rgba, Image image) {
+  image.alpha.resize(rgba.size() / 4);
+  for (size_t i = 0; i < image.alpha.size(); ++i) {
+    std::copy_n(rgba.data() + 4 * i, 3, image.pixels.data() + 3 * i);
+    image.alpha[i] = rgba[4 * i + 3];
+  }
+  return image;
 }
 
 }  // namespace
@@ -43,12 +63,25 @@ Image::Image(int w, int h, const Vec3& color) : width(w), height(h) {
 void paste(Image& image, const Image& source, int x, int y) {
   const int left = std::max(0, x), right = std::min(image.width, x + source.width);
   if (left >= right) return;
-  for (int row = std::max(0, y); row < std::min(image.height, y + source.height); ++row)
-    std::memcpy(image.at(left, row), source.at(left - x, row - y), static_cast<size_t>(right - left) * 3);
+  for (int row = std::max(0, y); row < std::min(image.height, y + source.height); ++row) {
+    uint8_t* to = image.at(left, row);
+    const uint8_t* from = source.at(left - x, row - y);
+    if (source.alpha.empty()) {
+      std::memcpy(to, from, static_cast<size_t>(right - left) * 3);
+      continue;
+    }
+    const uint8_t* alpha = source.alpha.data() + static_cast<size_t>(row - y) * source.width + (left - x);
+    for (int i = 0; i < 3 * (right - left); ++i) {
+      const int a = alpha[i / 3];
+      to[i] = static_cast<uint8_t>((from[i] * a + to[i] * (255 - a) + 127) / 255);
+    }
+  }
 }
 
 void write_png(const std::string& path, const Image& image) {
   US_CHECK(image.width > 0 && image.height > 0, path, ": the picture is empty");
+  US_CHECK(image.alpha.empty() || 3 * image.alpha.size() == image.pixels.size(), path, ": ",
+           image.alpha.size(), " alpha values for ", image.pixels.size() / 3, " pixels");
   const auto bytes = png_bytes(path, image);
   const std::string part = path + ".part";
   std::ofstream out(part, std::ios::binary);
@@ -66,16 +99,16 @@ Image read_png(const std::string& path) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   US_CHECK(png_image_begin_read_from_file(&png, path.c_str()) != 0, path, ": ", png.message);
-  png.format = PNG_FORMAT_RGB;
+  const bool has_alpha = (png.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+  png.format = has_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   if (png.width > 32768 || png.height > 32768) {
     png_image_free(&png);
     throw Error(path + ": larger than 32768 pixels");
   }
   Image image(static_cast<int>(png.width), static_cast<int>(png.height));
-  const png_color white{255, 255, 255};  // what shows through transparent pixels
-  US_CHECK(png_image_finish_read(&png, &white, image.pixels.data(), 0, nullptr) != 0, path, ": ",
-           png.message);
-  return image;
+  std::vector<uint8_t> bytes(PNG_IMAGE_SIZE(png));
+  US_CHECK(png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr) != 0, path, ": ", png.message);
+  return has_alpha ? separated(bytes, std::move(image)) : (image.pixels = std::move(bytes), image);
 }
 
 }  // namespace understudy::render

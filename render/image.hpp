@@ -13,6 +13,7 @@ namespace understudy::render {
 struct Image {
   int width = 0, height = 0;
   std::vector<uint8_t> pixels;
+  std::vector<uint8_t> alpha;  ///< one byte a pixel, 255 opaque, colours not multiplied; empty: all opaque
 
   Image() = default;
   /// All of one colour (0..1). Throws Error when a side is not in 1..32768.
@@ -22,11 +23,12 @@ struct Image {
 };
 
 /// Copies `source` into `image` with its top left corner at x, y; what falls outside is left out.
+/// Transparent pixels of `source` let `image` show through.
 void paste(Image& image, const Image& source, int x, int y);
 
 /// Writes a PNG beside and renames it, so that no half file is ever seen. Throws Error naming the file.
 void write_png(const std::string& path, const Image& image);
-/// Reads a PNG as RGB. Throws Error naming the file.
+/// Reads a PNG as RGB, with alpha where the file has it. Throws Error naming the file.
 Image read_png(const std::string& path);
 
 }  // namespace understudy::render

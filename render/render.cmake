@@ -6,8 +6,8 @@ us_module(render SOURCES
   render/context/context.cpp render/context/egl.cpp render/context/osmesa.cpp render/context/null.cpp
   render/context/input_event.cpp render/context/glfw.cpp
   render/camera.cpp render/colors.cpp render/image.cpp render/scene.cpp
-  render/floor_shadow.cpp
+  render/floor_shadow.cpp render/solids.cpp render/gizmo.cpp render/picking.cpp
   render/passes/frame.cpp render/passes/background_pass.cpp render/passes/mesh_pass.cpp
   render/passes/points_pass.cpp render/passes/skeleton_pass.cpp render/passes/ground_pass.cpp
-  render/passes/occlusion_pass.cpp render/renderer.cpp render/text.cpp render/contact_sheet.cpp
+  render/passes/occlusion_pass.cpp render/passes/lines_pass.cpp render/renderer.cpp render/text.cpp render/contact_sheet.cpp
   PUBLIC understudy_core PRIVATE PNG::PNG PkgConfig::GLFW ${CMAKE_DL_LIBS})

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "render/gizmo.hpp"
 #include "render/gl/debug.hpp"
 #include "render/gl/scopes.hpp"
 #include "render/gl/store.hpp"
 #include "render/passes/background_pass.hpp"
 #include "render/passes/ground_pass.hpp"
+#include "render/passes/lines_pass.hpp"
 #include "render/passes/mesh_pass.hpp"
 #include "render/passes/occlusion_pass.hpp"
 #include "render/passes/points_pass.hpp"
@@ -141,6 +143,25 @@ std::vector<float> still_key(const Scene& scene, const Camera& camera, PixelSize
           g.line.z()};
 }
 
+/// The picture of bottom-up premultiplied RGBA.
+Image upright(const std::vector<uint8_t>& rgba, PixelSize size, bool transparent) {
+  Image image(size.width, size.height);
+  if (transparent) image.alpha.resize(rgba.size() / 4);
+  for (int y = 0; y < size.height; ++y) {
+    const uint8_t* from = rgba.data() + 4 * static_cast<size_t>(size.height - 1 - y) * size.width;
+    uint8_t* to = image.at(0, y);
+    for (int x = 0; x < size.width; ++x, from += 4, to += 3) {
+      std::copy_n(from, 3, to);
+      if (!transparent) continue;
+      const int alpha = from[3];
+      image.alpha[static_cast<size_t>(y) * size.width + x] = from[3];
+      for (int c = 0; c < 3 && alpha > 0; ++c)
+        to[c] = static_cast<uint8_t>(std::min(255, (255 * to[c] + alpha / 2) / alpha));
+    }
+  }
+  return image;
+}
+
 }  // namespace
 
 struct Renderer::Parts {
@@ -148,7 +169,8 @@ struct Renderer::Parts {
 
   void draw_still(const Scene& scene, const Camera& camera, PixelSize size);
   void draw_solid(const Scene& scene);
-  void draw_over(const Scene& scene);
+  void draw_over(const Scene& scene, const Camera& camera);
+  void draw_lines(const Scene& scene, bool x_ray);
 
   RendererOptions options;
   Canvas canvas;
@@ -161,6 +183,7 @@ struct Renderer::Parts {
   SkeletonPass skeletons;
   OcclusionPass occlusion;
   GroundPass ground;
+  LinesPass lines;
 };
 
 /// Background and grid, drawn anew only when the view or they have changed.
@@ -188,15 +211,27 @@ void Renderer::Parts::draw_solid(const Scene& scene) {
     points.draw(cloud, canvas.samples() > 1);
 }
 
-/// What lies over the opaque part: see-through meshes, then the skeletons that show through everything.
-void Renderer::Parts::draw_over(const Scene& scene) {
+void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
+  for (const auto& view : scene.lines)
+    if (view.x_ray == x_ray) lines.draw(view);
+}
+
+/// What lies over the opaque part: see-through meshes, lines, then what shows through everything.
+void Renderer::Parts::draw_over(const Scene& scene, const Camera& camera) {
+  draw_lines(scene, false);
   for (const auto& mesh : scene.meshes)
     if (mesh.opacity < 1) meshes.draw(mesh, scene.occlusion);
-  const auto x_ray = [](const SkeletonView& skeleton) { return skeleton.x_ray; };
-  if (std::none_of(scene.skeletons.begin(), scene.skeletons.end(), x_ray)) return;
+  const auto x_ray = [](const auto& view) { return view.x_ray; };
+  if (std::any_of(scene.skeletons.begin(), scene.skeletons.end(), x_ray) ||
+      std::any_of(scene.lines.begin(), scene.lines.end(), x_ray)) {
+    gl::api().Clear(GL_DEPTH_BUFFER_BIT);
+    for (const auto& skeleton : scene.skeletons)
+      if (skeleton.x_ray) skeletons.draw(meshes, skeleton);
+    draw_lines(scene, true);
+  }
+  if (scene.gizmos.empty()) return;
   gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-  for (const auto& skeleton : scene.skeletons)
-    if (skeleton.x_ray) skeletons.draw(meshes, skeleton);
+  for (const auto& gizmo : scene.gizmos) meshes.draw(gizmo_solids(gizmo, camera), 0);
 }
 
 Renderer::Renderer(const RendererOptions& options) : parts_(std::make_unique<Parts>(options)) {
@@ -218,7 +253,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera, const Target& targ
     gl::api().Clear(GL_DEPTH_BUFFER_BIT);
     if (scene.ground.visible && scene.ground.shadow > 0) p.ground.draw_shadow(scene);
     p.draw_solid(scene);
-    p.draw_over(scene);
+    p.draw_over(scene, camera);
   }
   p.canvas.resolve_color(target.framebuffer);
   p.store.next_picture();
@@ -229,16 +264,15 @@ Image Renderer::render_image(const Scene& scene, const Camera& camera, PixelSize
   Canvas& canvas = parts_->canvas;
   if (canvas.resize(size)) parts_->still.clear();
   draw(scene, camera, {canvas.plain(), size});
-  Image bottom_up(size.width, size.height), image(size.width, size.height);
+  const size_t count = static_cast<size_t>(size.width) * static_cast<size_t>(size.height);
+  std::vector<uint8_t> rgba(4 * count);
   {
     const gl::TargetScope source(canvas.plain(), size.width, size.height);
     gl::api().PixelStorei(GL_PACK_ALIGNMENT, 1);
-    gl::api().ReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, bottom_up.pixels.data());
+    gl::api().ReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   }
-  for (int y = 0; y < size.height; ++y)
-    std::memcpy(image.at(0, y), bottom_up.at(0, size.height - 1 - y), static_cast<size_t>(size.width) * 3);
   gl::check_debug();
-  return image;
+  return upright(rgba, size, scene.background.transparent);
 }
 
 }  // namespace understudy::render

@@ -35,6 +35,33 @@ void add(Scene& scene, const Mesh& mesh) {
   }
 }
 
+LinesView trail(const Points& points, const Vec3& color, float width) {
+  LinesView view;
+  view.positions = points;
+  view.color = color;
+  view.width = width;
+  view.opacities = Eigen::VectorXf::LinSpaced(points.rows(), 0, 1);
+  return view;
+}
+
+LinesView box(const Vec3& low, const Vec3& high, const Vec3& color, float width) {
+  LinesView view;
+  view.connected = false;
+  view.color = color;
+  view.width = width;
+  view.positions.resize(24, 3);
+  Eigen::Index row = 0;
+  for (int corner = 0; corner < 8; ++corner)
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1) != 0) continue;  // each edge from its lower end
+      for (const int end : {corner, corner | 1 << axis})
+        for (int k = 0; k < 3; ++k)
+          view.positions(row + (end != corner), k) = (end >> k & 1) != 0 ? high[k] : low[k];
+      row += 2;
+    }
+  return view;
+}
+
 Points all_points(const Scene& scene) {
   std::vector<const Points*> parts;
   for (const auto& mesh : scene.meshes) parts.push_back(&*mesh.vertices);

@@ -48,6 +48,31 @@ struct SkeletonView {
   bool x_ray = true;         ///< seen through everything else
 };
 
+/// Lines in space: trails, boxes.
+struct LinesView {
+  Points positions{0, 3};     ///< [N, 3]; a line to or from one that is not finite is left out
+  bool connected = true;      ///< one polyline; false: each two points are a line
+  Points colors{0, 3};        ///< [N, 3]; empty: `color` everywhere
+  Eigen::VectorXf opacities;  ///< [N] in 0..1; empty: `opacity` everywhere
+  Vec3 color = Vec3(0.25f, 0.28f, 0.33f);
+  float opacity = 1;
+  float width = 2;     ///< pixels
+  bool x_ray = false;  ///< seen through everything else
+};
+
+enum class GizmoHandle : int { None, AxisX, AxisY, AxisZ, PlaneYz, PlaneZx, PlaneXy, Centre };
+
+/// Handles to drag something by: arrows and plates to move it, rings to turn it. Seen through everything; see
+/// gizmo.hpp.
+struct GizmoView {
+  enum class Kind { Move, Turn };
+  Kind kind = Kind::Move;
+  Vec3 position = Vec3::Zero();             ///< metres
+  Mat3 axes = Mat3::Identity();             ///< its x, y, z as columns
+  float size = 0.13f;                       ///< of an arrow, as a share of the picture's height
+  GizmoHandle hovered = GizmoHandle::None;  ///< drawn bright
+};
+
 /// The floor: a grid that fades out, and soft shadows of all that stands above it.
 struct GroundView {
   bool visible = true;
@@ -79,6 +104,8 @@ struct Scene {
   std::vector<MeshView> meshes;
   std::vector<PointsView> clouds;
   std::vector<SkeletonView> skeletons;
+  std::vector<LinesView> lines;
+  std::vector<GizmoView> gizmos;
   GroundView ground;
   LightView light;
   BackgroundView background;
@@ -90,7 +117,12 @@ SkeletonView skeleton_view(const Joints& joints);
 /// A mesh as a mesh, a cloud as discs that just cover its surface; its colours are kept.
 void add(Scene& scene, const Mesh& mesh);
 
-/// Everything's positions, the finite ones, below one another: for fitting a camera.
+/// Where something has been: a polyline through `points` that fades out towards the first of them.
+LinesView trail(const Points& points, const Vec3& color, float width = 2);
+/// The twelve edges of a box with sides along the axes.
+LinesView box(const Vec3& low, const Vec3& high, const Vec3& color, float width = 1.5f);
+
+/// The positions of meshes, clouds and skeletons, the finite ones, below one another: for fitting a camera.
 Points all_points(const Scene& scene);
 
 }  // namespace understudy::render

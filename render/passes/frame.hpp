@@ -9,11 +9,6 @@
 
 namespace understudy::render {
 
-struct PixelSize {
-  int width = 0, height = 0;
-  float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
-};
-
 /// GLSL of the block `Frame`, for both stages.
 extern const char* const kFrameGlsl;
 /// GLSL of vec3 shade(vec3 srgb_color, vec3 world_normal, vec3 world_position, float ambient): lit, sRGB

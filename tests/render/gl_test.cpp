@@ -81,6 +81,8 @@ Scene everything() {
   cloud.vertices = ghost.vertices;
   add(scene, cloud);
   scene.skeletons.push_back(skeleton_view(make_joints()));
+  scene.lines.push_back(box(Vec3::Zero(), Vec3::Ones(), Vec3::Zero()));
+  scene.gizmos.emplace_back();
   return scene;
 }
 

@@ -8,6 +8,7 @@
 #include "content.hpp"
 #include "pictures.hpp"
 #include "render/colors.hpp"
+#include "retarget/geometry/ambient_occlusion.hpp"
 
 namespace understudy::render {
 namespace {
@@ -19,8 +20,8 @@ std::string golden_path(const std::string& name) {
 }
 
 /// The pass draws what it drew when someone last looked.
-void expect_golden(const std::string& name, const Scene& scene) {
-  const Image now = picture(scene, view_of(scene));
+void expect_golden(const std::string& name, const Scene& scene, Quality quality = Quality::Best) {
+  const Image now = picture(scene, view_of(scene), {160, 160}, ContextKind::Any, quality);
   const char* update = std::getenv("US_UPDATE_GOLDEN");
   if (update != nullptr && std::string(update) == "1") write_png(golden_path(name), now);
   const double difference_now = difference(now, read_png(golden_path(name)));
@@ -32,8 +33,10 @@ void expect_golden(const std::string& name, const Scene& scene) {
 }
 
 /// This scene, seen as `original` is, is not what the stored picture shows.
-void expect_noticed(const std::string& name, const Scene& original, const Scene& broken) {
-  EXPECT_GT(difference(picture(broken, view_of(original)), read_png(golden_path(name))), kUnlike) << name;
+void expect_noticed(const std::string& name, const Scene& original, const Scene& broken,
+                    Quality quality = Quality::Best) {
+  const Image now = picture(broken, view_of(original), {160, 160}, ContextKind::Any, quality);
+  EXPECT_GT(difference(now, read_png(golden_path(name))), kUnlike) << name;
 }
 
 Scene pear() {
@@ -243,6 +246,157 @@ TEST(GoldenOcclusion, NoticesTheMissingPass) {
   Scene broken = creased();
   broken.occlusion = 0;
   expect_noticed("occlusion", creased(), broken);
+}
+
+/// Half a pear seen from its hollow side, with ambient light of its own and nothing from the depths.
+Scene ambient() {
+  Scene scene = shell();
+  MeshView& mesh = scene.meshes[0];
+  mesh.faces = mesh.faces->rowwise().reverse();  // the hollow side is the outside
+  mesh.normals = vertex_normals(mesh.vertices, mesh.faces);
+  mesh.ambient = ambient_occlusion(mesh.vertices, mesh.faces, mesh.normals);
+  scene.occlusion = 1;
+  return scene;
+}
+
+TEST(GoldenAmbient, IsAsItWas) {
+  expect_golden("ambient", ambient(), Quality::Interactive);
+}
+
+TEST(GoldenAmbient, NoticesTheMissingTerm) {
+  Scene broken = ambient();
+  broken.meshes[0].ambient = {};
+  expect_noticed("ambient", ambient(), broken, Quality::Interactive);
+}
+
+TEST(GoldenAmbient, NoticesInvertedNormals) {
+  Scene broken = ambient();
+  broken.meshes[0].normals = -*broken.meshes[0].normals;
+  expect_noticed("ambient", ambient(), broken, Quality::Interactive);
+}
+
+Scene errors() {
+  Scene scene = pear();
+  MeshView& mesh = scene.meshes[0];
+  mesh.colors = error_colors(mesh.vertices->col(1) * 0.05f, 0.05f);
+  return scene;
+}
+
+TEST(GoldenErrors, AreAsTheyWere) {
+  expect_golden("errors", errors());
+}
+
+TEST(GoldenErrors, NoticeAnotherScale) {
+  Scene broken = errors();
+  broken.meshes[0].colors = viridis_colors(broken.meshes[0].vertices->col(1), 0, 1);
+  expect_noticed("errors", errors(), broken);
+}
+
+TEST(GoldenErrors, NoticeInvertedNormals) {
+  Scene broken = errors();
+  MeshView& mesh = broken.meshes[0];
+  mesh.normals = -vertex_normals(mesh.vertices, mesh.faces);
+  expect_noticed("errors", errors(), broken);
+}
+
+/// A trail around a pear, partly behind it, and a box.
+Scene lined() {
+  Scene scene = pear();
+  Points spiral(120, 3);
+  for (int i = 0; i < 120; ++i) {
+    const float t = static_cast<float>(i) / 119, angle = 12 * t;
+    spiral.row(i) << 0.7f * std::cos(angle), 1.3f * t, 0.7f * std::sin(angle);
+  }
+  scene.lines.push_back(trail(spiral, kRightColor, 5));
+  scene.lines.push_back(box(Vec3(-0.6f, 0, -0.5f), Vec3(0.6f, 1.25f, 0.5f), kLeftColor, 3));
+  scene.lines[1].x_ray = true;
+  return scene;
+}
+
+TEST(GoldenLines, AreAsTheyWere) {
+  expect_golden("lines", lined());
+}
+
+TEST(GoldenLines, NoticeEachMissingLine) {
+  for (const size_t which : {0, 1}) {
+    Scene broken = lined();
+    broken.lines.erase(broken.lines.begin() + static_cast<long>(which));
+    expect_noticed("lines", lined(), broken);
+  }
+}
+
+TEST(GoldenLines, NoticeThatNoneFades) {
+  Scene broken = lined();
+  broken.lines[0].opacities.setZero();
+  expect_noticed("lines", lined(), broken);
+}
+
+TEST(GoldenLines, NoticeOtherWidths) {
+  Scene broken = lined();
+  for (auto& line : broken.lines) line.width = 1;
+  expect_noticed("lines", lined(), broken);
+}
+
+Scene handled(GizmoView::Kind kind) {
+  Scene scene = pear();
+  GizmoView gizmo;
+  gizmo.kind = kind;
+  gizmo.position = Vec3(0, 0.6f, 0);
+  gizmo.size = 0.42f;
+  gizmo.hovered = GizmoHandle::AxisY;
+  scene.gizmos.push_back(gizmo);
+  return scene;
+}
+
+TEST(GoldenGizmo, IsAsItWas) {
+  expect_golden("gizmo_move", handled(GizmoView::Kind::Move));
+  expect_golden("gizmo_turn", handled(GizmoView::Kind::Turn));
+}
+
+TEST(GoldenGizmo, NoticesTheMissingOne) {
+  expect_noticed("gizmo_move", handled(GizmoView::Kind::Move), pear());
+  expect_noticed("gizmo_turn", handled(GizmoView::Kind::Turn), pear());
+}
+
+TEST(GoldenGizmo, NoticesTheOtherKind) {
+  expect_noticed("gizmo_move", pear(), handled(GizmoView::Kind::Turn));
+}
+
+TEST(GoldenGizmo, NoticesAnExchangedAxis) {
+  Scene broken = handled(GizmoView::Kind::Move);
+  broken.gizmos[0].axes.col(0).swap(broken.gizmos[0].axes.col(1));
+  expect_noticed("gizmo_move", broken, broken);
+}
+
+Scene cut_out() {
+  Scene scene = ghost();
+  scene.background.transparent = true;
+  scene.ground.visible = true;
+  return scene;
+}
+
+TEST(GoldenTransparent, IsAsItWas) {
+  expect_golden("transparent", cut_out());
+}
+
+TEST(GoldenTransparent, HasAlphaWhereItShould) {
+  Scene scene = pear();
+  scene.background.transparent = true;
+  scene.ground.visible = false;
+  const Image image = picture(scene, view_of(scene));
+  ASSERT_EQ(image.alpha.size(), 160u * 160u);
+  EXPECT_EQ(image.alpha[0], 0);
+  EXPECT_EQ(image.alpha[80 * 160 + 80], 255);
+}
+
+TEST(GoldenTransparent, NoticesTheBackground) {
+  expect_noticed("transparent", cut_out(), ghost());
+}
+
+TEST(GoldenTransparent, NoticesTheMissingGround) {
+  Scene broken = cut_out();
+  broken.ground.visible = false;
+  expect_noticed("transparent", cut_out(), broken);
 }
 
 }  // namespace

@@ -46,6 +46,28 @@ TEST_F(ImageFile, PngRoundTripKeepsEveryPixel) {
   EXPECT_FALSE(fs::exists(path("a.png.part")));
 }
 
+TEST_F(ImageFile, KeepsAlpha) {
+  Image image = gradient();
+  image.alpha.resize(37 * 21);
+  for (size_t i = 0; i < image.alpha.size(); ++i) image.alpha[i] = static_cast<uint8_t>(i);
+  write_png(path("a.png"), image);
+  const Image back = read_png(path("a.png"));
+  EXPECT_EQ(back.alpha, image.alpha);
+  EXPECT_EQ(back.pixels, image.pixels);
+  image.alpha.pop_back();
+  EXPECT_THROW(write_png(path("a.png"), image), Error);
+}
+
+TEST(Paste, LetsThroughWhereTheSourceIsTransparent) {
+  Image below(4, 1, Vec3::Ones()), above(3, 1, Vec3::Zero());
+  above.alpha = {255, 0, 128};
+  paste(below, above, 1, 0);
+  EXPECT_EQ(*below.at(0, 0), 255);
+  EXPECT_EQ(*below.at(1, 0), 0);
+  EXPECT_EQ(*below.at(2, 0), 255);
+  EXPECT_NEAR(*below.at(3, 0), 127, 1);
+}
+
 TEST_F(ImageFile, TruncatedPngIsAnErrorWithItsName) {
   write_png(path("a.png"), gradient());
   fs::resize_file(path("a.png"), fs::file_size(path("a.png")) / 2);

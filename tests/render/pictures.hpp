@@ -17,7 +17,11 @@ inline double difference(const Image& a, const Image& b) {
   int different = 0;
   for (size_t i = 0; i < a.pixels.size(); i += 3) {
     int most = 0;
-    for (size_t c = i; c < i + 3; ++c) most = std::max(most, std::abs(a.pixels[c] - b.pixels[c]));
+    const int alpha_a = a.alpha.empty() ? 255 : a.alpha[i / 3],
+              alpha_b = b.alpha.empty() ? 255 : b.alpha[i / 3];
+    most = std::abs(alpha_a - alpha_b);
+    for (size_t c = i; c < i + 3; ++c)  // as seen over black: the colour of what is transparent is no matter
+      most = std::max(most, std::abs(a.pixels[c] * alpha_a - b.pixels[c] * alpha_b) / 255);
     different += most > 20 ? 1 : 0;
   }
   return different / (static_cast<double>(a.width) * a.height);
@@ -25,9 +29,9 @@ inline double difference(const Image& a, const Image& b) {
 
 /// Draws once with a context of its own whose complaints are fatal.
 inline Image picture(const Scene& scene, const Camera& camera, PixelSize size = {160, 160},
-                     ContextKind kind = ContextKind::Any) {
+                     ContextKind kind = ContextKind::Any, Quality quality = Quality::Best) {
   const auto context = make_offscreen_context({kind, gl::DebugMode::Fatal});
-  Renderer renderer;
+  Renderer renderer({4, quality});
   return renderer.render_image(scene, camera, size);
 }
 

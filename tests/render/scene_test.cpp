@@ -7,6 +7,7 @@
 
 #include "content.hpp"
 #include "render/colors.hpp"
+#include "render/floor_shadow.hpp"
 #include "render/passes/skeleton_pass.hpp"
 #include "retarget/base/error.hpp"
 
@@ -59,6 +60,80 @@ TEST(Viridis, RunsFromPurpleToYellowAndClamps) {
   EXPECT_TRUE(viridis(0.5f).isApprox(Vec3(0.128f, 0.567f, 0.551f), 0.05f));
   EXPECT_TRUE(viridis(1).isApprox(Vec3(0.993f, 0.906f, 0.144f), 0.05f));
   EXPECT_EQ(viridis(-3), viridis(0));
+}
+
+double brightness(const Vec3& color) {
+  return 0.2126 * color.x() + 0.7152 * color.y() + 0.0722 * color.z();
+}
+
+TEST(ErrorColors, DarkenWithTheErrorSoThatAnyEyeCanOrderThem) {
+  Points colors = error_colors(Eigen::VectorXf::LinSpaced(11, 0, 0.05f), 0.05f);
+  for (Eigen::Index i = 1; i < colors.rows(); ++i)
+    EXPECT_LT(brightness(colors.row(i)), brightness(colors.row(i - 1)) - 0.02) << i;
+  EXPECT_GT(brightness(colors.row(0)), 0.9);
+  EXPECT_LT(brightness(colors.row(10)), 0.1);
+}
+
+TEST(DivergingColors, AreBlueBelowBrightInTheMiddleAndOrangeAbove) {
+  const Points colors = diverging_colors(Eigen::Vector3f(-1, 0, 1), 1);
+  EXPECT_GT(colors(0, 2), colors(0, 0) + 0.3f);
+  EXPECT_GT(brightness(colors.row(1)), 0.9);
+  EXPECT_GT(colors(2, 0), colors(2, 2) + 0.3f);
+  EXPECT_TRUE(diverging_color(-7).isApprox(diverging_color(0)));
+}
+
+TEST(Scales, ShowWhatIsNoNumberAsGrey) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const auto scale : {viridis, error_color, diverging_color})
+    EXPECT_TRUE(scale(nan).isApprox(Vec3(0.5f, 0.5f, 0.5f)));
+}
+
+TEST(CategoryColors, BeginAgainAfterTheLast) {
+  const Points colors = category_colors({0, 22, 5, -1});
+  EXPECT_EQ(colors.row(0), colors.row(1));
+  EXPECT_TRUE(colors.row(2).transpose().isApprox(kCategories[5]));
+  EXPECT_TRUE(colors.row(3).transpose().isApprox(kCategories[21]));
+}
+
+TEST(FloorShadow, IsDarkestUnderTheFeetAndNothingAtItsEdge) {
+  Scene scene;
+  add(scene, make_person(2000));
+  const FloorShadow shadow = floor_shadow(scene);
+  const auto at = [&](float x, float z) {
+    const float cell = shadow.area.z() / FloorShadow::kSide;
+    return shadow.dark[static_cast<size_t>((z - shadow.area.y()) / cell) * FloorShadow::kSide +
+                       static_cast<size_t>((x - shadow.area.x()) / cell)];
+  };
+  EXPECT_GT(at(0.13f, 0.05f), 130);          // the left foot
+  EXPECT_LT(at(0.6f, 0), at(0.13f, 0.05f));  // below the hand
+  EXPECT_GT(at(0.6f, 0), at(0.6f, 0.5f));
+  for (int i = 0; i < FloorShadow::kSide; ++i) EXPECT_EQ(shadow.dark[static_cast<size_t>(i)], 0);
+}
+
+TEST(FloorShadow, ClosesLargeTriangles) {
+  Scene scene;
+  Points corners(3, 3);
+  corners << -1, 0.1f, -1, 1, 0.1f, -1, 0, 0.1f, 1;
+  Faces face(1, 3);
+  face << 0, 1, 2;
+  add(scene, Mesh{corners, face});
+  const FloorShadow shadow = floor_shadow(scene);
+  const auto middle =
+      static_cast<size_t>(FloorShadow::kSide / 2 * FloorShadow::kSide + FloorShadow::kSide / 2);
+  EXPECT_GT(shadow.dark[middle], 120);
+}
+
+TEST(Box, HasTwelveEdgesAlongTheAxes) {
+  const LinesView view = box(Vec3(0, 0, 0), Vec3(1, 2, 3), Vec3::Zero());
+  ASSERT_EQ(view.positions.rows(), 24);
+  EXPECT_FALSE(view.connected);
+  float length = 0;
+  for (Eigen::Index i = 0; i < 24; i += 2) {
+    const Eigen::RowVector3f edge = view.positions.row(i + 1) - view.positions.row(i);
+    EXPECT_EQ((edge.array() != 0).count(), 1);
+    length += edge.norm();
+  }
+  EXPECT_FLOAT_EQ(length, 4 * (1 + 2 + 3));
 }
 
 TEST(WeightColors, OfOneJointAreItsCategory) {
