@@ -17,7 +17,7 @@ double number(const Arguments& arguments, size_t i, const char* what) {
   const std::string& text = word(arguments, i, what);
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  US_CHECK(end != text.c_str() && *end == '\0' && std::isfinite(value), what, " is a number, not '", text,
+  US_CHECK(end != text.c_str() && *end == '\0' && std::abs(value) < 1e12, what, " is a number, not '", text,
            "'");
   return value;
 }

@@ -108,8 +108,9 @@ void add_recovery(Commands& commands) {
                   answer(s, a[0]);
                 }});
   commands.add({"document.recover", "Recover", "FILE", "", false, false, [](Studio& s, const Arguments& a) {
+                  const std::string file = word(a, 0, "file");
                   for (const Autosave& found : found_autosaves(s.services().autosave_folder)) {
-                    if (found.file != word(a, 0, "file")) continue;
+                    if (found.file != file) continue;
                     const SavedDocument saved = read_autosave(found);
                     s.session().question.reset();
                     s.replace_document(saved, found.document_path);
@@ -117,17 +118,18 @@ void add_recovery(Commands& commands) {
                     discard(found);
                     return;
                   }
-                  throw Error(a[0] + ": there is no such unsaved work");
+                  throw Error(file + ": there is no such unsaved work");
                 }});
   commands.add(
       {"document.discard_recovery", "Discard", "FILE", "", false, false, [](Studio& s, const Arguments& a) {
+         const std::string file = word(a, 0, "file");
          for (const Autosave& found : found_autosaves(s.services().autosave_folder))
-           if (found.file == word(a, 0, "file")) discard(found);
+           if (found.file == file) discard(found);
          auto& question = s.session().question;
          if (!question) return;
          auto& left = question->autosaves;
          left.erase(std::remove_if(left.begin(), left.end(),
-                                   [&](const Autosave& copy) { return copy.file == a[0]; }),
+                                   [&](const Autosave& copy) { return copy.file == file; }),
                     left.end());
          if (left.empty()) question.reset();
        }});
