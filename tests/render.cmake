@@ -7,6 +7,8 @@ us_test(render_gl_test LABELS gl TIMEOUT 300 SOURCES
   ${PROJECT_SOURCE_DIR}/tests/render/golden_test.cpp ${PROJECT_SOURCE_DIR}/tests/render/context_test.cpp
   ${PROJECT_SOURCE_DIR}/tests/render/contact_sheet_test.cpp
   LIBS understudy_render)
+us_test(video_test LABELS fast SOURCES ${PROJECT_SOURCE_DIR}/tests/render/video_test.cpp
+  LIBS understudy_render PkgConfig::LIBAV)
 us_test(window_test LABELS gl SOURCES ${PROJECT_SOURCE_DIR}/tests/render/window_test.cpp LIBS understudy_render)
 # Prints what drawing costs; not a test.
 add_executable(render_bench ${PROJECT_SOURCE_DIR}/tests/benchmarks/render_bench.cpp)

@@ -1,0 +1,245 @@
+#include "render/video_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/opt.h>
+#include <libswscale/swscale.h>
+}
+
+#include "retarget/base/error.hpp"
+
+namespace understudy::render {
+
+class VideoWriter::Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual void push(const Image& image, int frame) = 0;
+  virtual void finish() = 0;
+};
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string words_of(int code) {
+  char words[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(code, words, sizeof words);
+  return words;
+}
+
+/// Owners of libav's things.
+struct Free {
+  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
+  void operator()(AVFrame* p) const { av_frame_free(&p); }
+  void operator()(AVPacket* p) const { av_packet_free(&p); }
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
+  void operator()(AVFormatContext* p) const {
+    if (p->pb != nullptr) avio_closep(&p->pb);
+    avformat_free_context(p);
+  }
+};
+template <class T>
+using Owned = std::unique_ptr<T, Free>;
+
+class Mp4 final : public VideoWriter::Sink {
+ public:
+  Mp4(std::string path, const VideoOptions& options)
+      : path_(std::move(path)), part_(path_ + ".part"), width_(options.width), height_(options.height) {
+    av_log_set_level(AV_LOG_FATAL);  // what goes wrong is told by our own sentences
+    open_encoder(options);
+    try {
+      open_file();
+    } catch (...) {
+      remove_part();
+      throw;
+    }
+    open_picture();
+  }
+  ~Mp4() override {
+    format_.reset();  // closes the file
+    if (!finished_) remove_part();
+  }
+
+  void push(const Image& image, int frame) override {
+    check(av_frame_make_writable(picture_.get()), "picture");
+    const std::vector<uint8_t> rgb = padded(image);
+    const uint8_t* rows[] = {rgb.data()};
+    const int strides[] = {3 * encoder_->width};
+    sws_scale(scale_.get(), rows, strides, 0, encoder_->height, picture_->data, picture_->linesize);
+    picture_->pts = frame;
+    encode(picture_.get());
+  }
+
+  void finish() override {
+    encode(nullptr);
+    check(av_write_trailer(format_.get()), "end");
+    const int closed = avio_closep(&format_->pb);
+    check(closed, "end");
+    std::error_code why;
+    fs::rename(part_, path_, why);
+    US_CHECK(!why, path_, ": cannot be written, ", why.message());
+    finished_ = true;
+  }
+
+ private:
+  void check(int code, const char* what) const {
+    US_CHECK(code >= 0, path_, ": the film's ", what, " cannot be written, ", words_of(code));
+  }
+  void remove_part() const noexcept { std::remove(part_.c_str()); }
+
+  void open_encoder(const VideoOptions& options) {
+    const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
+    if (codec == nullptr) codec = avcodec_find_encoder(AV_CODEC_ID_H264);
+    US_CHECK(codec != nullptr, path_,
+             ": this computer's libavcodec has no H.264 encoder; PNGs can be written instead");
+    encoder_.reset(avcodec_alloc_context3(codec));
+    encoder_->width = width_ + width_ % 2;
+    encoder_->height = height_ + height_ % 2;
+    encoder_->pix_fmt = AV_PIX_FMT_YUV420P;  // what every player shows
+    encoder_->time_base = av_inv_q(av_d2q(options.fps, 1000000));
+    encoder_->framerate = av_inv_q(encoder_->time_base);
+    encoder_->color_range = AVCOL_RANGE_MPEG;
+    encoder_->colorspace = AVCOL_SPC_BT709;
+    encoder_->color_primaries = AVCOL_PRI_BT709;
+    encoder_->color_trc = AVCOL_TRC_BT709;
+    encoder_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // MP4 keeps it apart
+    av_opt_set_int(encoder_->priv_data, "crf", options.quality, 0);
+    av_opt_set(encoder_->priv_data, "preset", "medium", 0);
+    const int opened = avcodec_open2(encoder_.get(), codec, nullptr);
+    US_CHECK(opened >= 0, path_, ": the H.264 encoder takes no ", width_, " x ", height_, " pixels at ",
+             options.fps, " frames/s, ", words_of(opened));
+  }
+
+  void open_file() {
+    AVFormatContext* format = nullptr;
+    check(avformat_alloc_output_context2(&format, nullptr, "mp4", part_.c_str()), "file");
+    format_.reset(format);
+    stream_ = avformat_new_stream(format_.get(), nullptr);
+    US_CHECK(stream_ != nullptr, path_, ": no memory for a film");
+    stream_->time_base = encoder_->time_base;
+    stream_->avg_frame_rate = encoder_->framerate;
+    check(avcodec_parameters_from_context(stream_->codecpar, encoder_.get()), "format");
+    const int opened = avio_open(&format_->pb, part_.c_str(), AVIO_FLAG_WRITE);
+    US_CHECK(opened >= 0, path_, ": cannot be written, ", words_of(opened));
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "movflags", "+faststart", 0);
+    const int written = avformat_write_header(format_.get(), &options);
+    av_dict_free(&options);
+    check(written, "head");
+  }
+
+  void open_picture() {
+    picture_.reset(av_frame_alloc());
+    picture_->format = encoder_->pix_fmt;
+    picture_->width = encoder_->width;
+    picture_->height = encoder_->height;
+    check(av_frame_get_buffer(picture_.get(), 0), "picture");
+    packet_.reset(av_packet_alloc());
+    scale_.reset(sws_getContext(encoder_->width, encoder_->height, AV_PIX_FMT_RGB24, encoder_->width,
+                                encoder_->height, encoder_->pix_fmt, SWS_BICUBIC | SWS_ACCURATE_RND, nullptr,
+                                nullptr, nullptr));
+    US_CHECK(scale_ != nullptr && packet_ != nullptr, path_, ": no memory for a film");
+    sws_setColorspaceDetails(scale_.get(), sws_getCoefficients(SWS_CS_ITU709), 1,
+                             sws_getCoefficients(SWS_CS_ITU709), 0, 0, 1 << 16, 1 << 16);
+  }
+
+  /// With even sides, over white.
+  std::vector<uint8_t> padded(const Image& image) const {
+    if (image.alpha.empty() && width_ == encoder_->width && height_ == encoder_->height) return image.pixels;
+    Image opaque(width_, height_), even(encoder_->width, encoder_->height);
+    paste(opaque, image, 0, 0);
+    for (const int dy : {height_ % 2, 0})  // the picture last, over the repeated edges
+      for (const int dx : {width_ % 2, 0}) paste(even, opaque, dx, dy);
+    return even.pixels;
+  }
+
+  /// Hands a picture (null: no more) to the encoder and writes what it gives back.
+  void encode(const AVFrame* picture) {
+    check(avcodec_send_frame(encoder_.get(), picture), "picture");
+    for (;;) {
+      const int got = avcodec_receive_packet(encoder_.get(), packet_.get());
+      if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
+      check(got, "picture");
+      packet_->duration = 1;
+      av_packet_rescale_ts(packet_.get(), encoder_->time_base, stream_->time_base);
+      packet_->stream_index = stream_->index;
+      check(av_interleaved_write_frame(format_.get(), packet_.get()), "picture");
+    }
+  }
+
+  std::string path_, part_;
+  int width_, height_;
+  bool finished_ = false;
+  Owned<AVCodecContext> encoder_;
+  Owned<AVFormatContext> format_;
+  AVStream* stream_ = nullptr;  // the format's
+  Owned<AVFrame> picture_;
+  Owned<AVPacket> packet_;
+  Owned<SwsContext> scale_;
+};
+
+class PngFolder final : public VideoWriter::Sink {
+ public:
+  explicit PngFolder(std::string path) : path_(std::move(path)) {
+    std::error_code why;
+    fs::create_directories(path_, why);
+    US_CHECK(!why && fs::is_directory(path_), path_, ": is no folder and cannot be made one");
+  }
+  void push(const Image& image, int frame) override {
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%05d.png", frame);
+    write_png((fs::path(path_) / name).string(), image);
+  }
+  void finish() override {}
+
+ private:
+  std::string path_;
+};
+
+std::unique_ptr<VideoWriter::Sink> sink_for(const std::string& path, const VideoOptions& options) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".mp4") return std::make_unique<Mp4>(path, options);
+  return std::make_unique<PngFolder>(path);
+}
+
+}  // namespace
+
+VideoWriter::VideoWriter(const std::string& path, const VideoOptions& options)
+    : path_(path), options_(options) {
+  US_CHECK(options.width > 0 && options.height > 0 && options.width <= 16384 && options.height <= 16384, path,
+           ": a film cannot be ", options.width, " x ", options.height, " pixels");
+  US_CHECK(std::isfinite(options.fps) && options.fps >= 1 && options.fps <= 1000, path,
+           ": a film cannot have ", options.fps, " frames/s");
+  sink_ = sink_for(path, options);
+}
+VideoWriter::~VideoWriter() = default;
+VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
+VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
+
+int VideoWriter::frames() const {
+  return frames_;
+}
+
+void VideoWriter::push(const Image& image) {
+  US_CHECK(sink_ != nullptr, path_, ": the film is finished");
+  US_CHECK(image.width == options_.width && image.height == options_.height, path_, ": a picture of ",
+           image.width, " x ", image.height, " pixels in a film of ", options_.width, " x ", options_.height);
+  sink_->push(image, frames_++);
+}
+
+void VideoWriter::finish() {
+  US_CHECK(sink_ != nullptr, path_, ": the film is finished");
+  US_CHECK(frames_ > 0, path_, ": a film without pictures");
+  sink_->finish();
+  sink_.reset();
+}
+
+}  // namespace understudy::render
