@@ -132,6 +132,74 @@ TEST_P(Gallery, CutsNoWordOfTheBrowserOrADialog) {
   }
 }
 
+TEST_P(Gallery, PresentingTheDifferencesLooksLikeDrawingAll) {
+  const auto context =
+      render::make_offscreen_context({render::ContextKind::Any, render::gl::DebugMode::Fatal});
+  DrawPass differences, everything;
+  frame(), frame();
+  const char* visited[] = {"gallery.track", "gallery.mpjpe", "gallery.open",  "gallery.list.3",
+                           "edit.undo",     "icon.gear",     "gallery.view.0"};
+  for (int i = 0; i < 24; i += std::get<1>(GetParam())) {
+    const Rect rect = gui.find(visited[i / 2 % 7])->rect;
+    render::InputEvent move;
+    move.x = rect.at(0.3f, 0).x + static_cast<float>(i), move.y = rect.at(0, 0.5f).y;
+    state.frame = 412 + 7 * i;
+    if (i == 20) input.theme = input.theme == ThemeKind::Dark ? ThemeKind::Light : ThemeKind::Dark;
+    if (i == 22) input.size.width -= 100;
+    input.dt = 0.3f;  // tooltips appear
+    gui.begin_frame(input, {move});
+    draw_gallery(gui.ui(), state);
+    const ImDrawData& data = gui.end_frame();
+    const auto backdrop = gui.ui().theme().backdrop;
+    const auto all = picture(input.size, [&](const render::Target& target) {
+      render::gl::api().ClearColor(backdrop.x, backdrop.y, backdrop.z, 1);
+      render::gl::api().Clear(GL_COLOR_BUFFER_BIT);
+      everything.draw(data, gui.atlas(), target);
+    });
+    const auto presented = picture(input.size, [&](const render::Target& target) {
+      differences.present(data, gui.atlas(), target, backdrop);
+    });
+    ASSERT_TRUE(all.pixels == presented.pixels) << "step " << i;
+  }
+}
+
+TEST(Damage, IsOnlyWhereSomethingChanged) {
+  Gui gui;
+  Damage damage;
+  float at = 50;
+  bool second = false;
+  const auto changed = [&] {
+    gui.begin_frame({{800, 600}});
+    ImGui::SetNextWindowPos({0, 0}), ImGui::SetNextWindowSize({400, 600});
+    ImGui::Begin("one", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::TextUnformatted("These words stay");
+    ImGui::GetWindowDrawList()->AddRectFilled({at, 300}, {at + 10, 320}, IM_COL32_WHITE);
+    ImGui::End();
+    ImGui::SetNextWindowPos({500, 100}), ImGui::SetNextWindowSize({100, 100});
+    if (second) ImGui::Begin("two", nullptr, ImGuiWindowFlags_NoDecoration), ImGui::End();
+    return damage.update(gui.end_frame());
+  };
+  changed(), changed();
+  EXPECT_TRUE(changed().empty());
+  at = 200;
+  const auto moved = changed();
+  ASSERT_FALSE(moved.empty());
+  for (const Rect& rect : moved) {
+    EXPECT_GE(rect.min.x, 49);
+    EXPECT_LE(rect.max.x, 211);
+    EXPECT_GE(rect.min.y, 299);
+    EXPECT_LE(rect.max.y, 321);
+  }
+  second = true;
+  auto appeared = changed();
+  if (appeared.empty()) appeared = changed();  // windows appear in their first or second frame
+  ASSERT_EQ(appeared.size(), 1u);
+  EXPECT_NEAR(appeared[0].min.x, 500, 1);
+  EXPECT_NEAR(appeared[0].max.y, 200, 1);
+  damage.forget();
+  EXPECT_EQ(changed()[0].max.x, 800);
+}
+
 TEST_P(Gallery, FindsAWordThatIsCut) {
   const auto draw = [&]() -> const ImDrawData& {
     gui.begin_frame(input);

@@ -191,6 +191,10 @@ TEST_F(UiTest, DrawsOnTheNullContextAndLeavesNoNames) {
     pass.draw(data, gui.atlas(), {0, input.size});
     EXPECT_GE(render::null_counts().draws, data.CmdListsCount - 1);
     EXPECT_GT(render::null_counts().draws, 2);
+    pass.present(data, gui.atlas(), {0, input.size}, {0, 0, 0, 1});
+    const int draws = render::null_counts().draws;
+    pass.present(data, gui.atlas(), {0, input.size}, {0, 0, 0, 1});
+    EXPECT_EQ(render::null_counts().draws, draws);  // nothing has changed
   }
   EXPECT_EQ(render::null_counts().live_names, 0);
 }

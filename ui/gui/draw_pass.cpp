@@ -1,7 +1,9 @@
 #include "ui/gui/draw_pass.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 #include "render/gl/debug.hpp"
 #include "render/gl/scopes.hpp"
@@ -63,16 +65,37 @@ void DrawPass::draw(const ImDrawData& data, const ImFontAtlas& atlas, const rend
   if (data.TotalIdxCount == 0 || target.size.width <= 0 || target.size.height <= 0) return;
   upload_atlas(atlas);
   const render::gl::TargetScope canvas(target.framebuffer, target.size.width, target.size.height);
-  const render::gl::ProgramScope program(program_.id());
-  const render::gl::VertexArrayScope array(vertex_array_.name());
-  const render::gl::BlendScope blend(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  const render::gl::CapabilityScope depth(GL_DEPTH_TEST, false), faces(GL_CULL_FACE, false),
-      scissor(GL_SCISSOR_TEST, true), samples(GL_MULTISAMPLE, false);
-  api().BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  upload_lists(data);
-  to_clip_.set({2 / static_cast<float>(target.size.width), 2 / static_cast<float>(target.size.height)});
-  draw_commands(data, target.size);
+  draw_rects(data, {{{0, 0}, data.DisplaySize}}, target.size, nullptr);
   render::gl::check_debug();
+}
+
+void DrawPass::present(const ImDrawData& data, const ImFontAtlas& atlas, const render::Target& target,
+                       const ImVec4& backdrop) {
+  if (target.size.width <= 0 || target.size.height <= 0) return;
+  const bool new_letters = atlas.TexPixelsRGBA32 != atlas_pixels_;
+  const bool new_backdrop = std::memcmp(&backdrop, &backdrop_, sizeof backdrop) != 0;
+  const bool new_size = canvas_size_.width != target.size.width || canvas_size_.height != target.size.height;
+  if (new_letters || new_backdrop || new_size) damage_.forget();
+  backdrop_ = backdrop;
+  upload_atlas(atlas);
+  if (new_size) resize_canvas(target.size);
+  const std::vector<Rect> rects = damage_.update(data);
+  const int width = target.size.width, height = target.size.height;
+  const render::gl::TargetScope canvas(framebuffer_.name(), width, height);
+  if (!rects.empty()) draw_rects(data, rects, target.size, &backdrop);
+  api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+  api().BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  render::gl::check_debug();
+}
+
+void DrawPass::resize_canvas(render::PixelSize size) {
+  canvas_size_ = size;
+  api().BindTexture(GL_TEXTURE_2D, canvas_.name());
+  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   nullptr);
+  const render::gl::TargetScope target(framebuffer_.name(), size.width, size.height);
+  api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, canvas_.name(), 0);
 }
 
 void DrawPass::upload_atlas(const ImFontAtlas& atlas) {
@@ -88,47 +111,96 @@ void DrawPass::upload_atlas(const ImFontAtlas& atlas) {
                    atlas.TexPixelsRGBA32);
 }
 
-/// All lists one after the other in one buffer for vertices and one for indices.
-void DrawPass::upload_lists(const ImDrawData& data) {
+/// All lists one after the other in one buffer.
+void DrawPass::upload_vertices(const ImDrawData& data) {
   api().BindBuffer(GL_ARRAY_BUFFER, vertices_.name());
   api().BufferData(GL_ARRAY_BUFFER, data.TotalVtxCount * static_cast<GLsizeiptr>(sizeof(ImDrawVert)), nullptr,
                    GL_STREAM_DRAW);
-  api().BufferData(GL_ELEMENT_ARRAY_BUFFER, data.TotalIdxCount * static_cast<GLsizeiptr>(sizeof(ImDrawIdx)),
-                   nullptr, GL_STREAM_DRAW);
-  GLintptr vertex_at = 0, index_at = 0;
+  GLintptr at = 0;
   for (int i = 0; i < data.CmdListsCount; ++i) {
-    const ImDrawList& list = *data.CmdLists[i];
-    api().BufferSubData(GL_ARRAY_BUFFER, vertex_at, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data);
-    api().BufferSubData(GL_ELEMENT_ARRAY_BUFFER, index_at, list.IdxBuffer.size_in_bytes(),
-                        list.IdxBuffer.Data);
-    vertex_at += list.VtxBuffer.size_in_bytes();
-    index_at += list.IdxBuffer.size_in_bytes();
+    const ImVector<ImDrawVert>& vertices = data.CmdLists[i]->VtxBuffer;
+    api().BufferSubData(GL_ARRAY_BUFFER, at, vertices.size_in_bytes(), vertices.Data);
+    at += vertices.size_in_bytes();
   }
 }
 
-void DrawPass::draw_commands(const ImDrawData& data, render::PixelSize size) {
-  unsigned bound = 0;  // what is bound already; the scene's passes leave anything
+/// Draws everything inside each rectangle, over `backdrop` when there is one.
+void DrawPass::draw_rects(const ImDrawData& data, const std::vector<Rect>& rects, render::PixelSize size,
+                          const ImVec4* backdrop) {
+  const render::gl::ProgramScope program(program_.id());
+  const render::gl::VertexArrayScope array(vertex_array_.name());
+  const render::gl::BlendScope blend(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  const render::gl::CapabilityScope depth(GL_DEPTH_TEST, false), faces(GL_CULL_FACE, false),
+      scissor(GL_SCISSOR_TEST, true), samples(GL_MULTISAMPLE, false);
+  api().BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  to_clip_.set({2 / static_cast<float>(size.width), 2 / static_cast<float>(size.height)});
+  calls_.clear(), all_indices_.clear();
+  std::vector<size_t> ends;  // where each rectangle's calls end
+  for (const Rect& rect : rects) collect(data, rect), ends.push_back(calls_.size());
+  upload_vertices(data);
+  render::gl::upload(indices_, GL_ELEMENT_ARRAY_BUFFER, all_indices_.data(),
+                     all_indices_.size() * sizeof(ImDrawIdx));
+  for (size_t i = 0; i < rects.size(); ++i) {
+    if (backdrop != nullptr) {
+      const Rect& r = rects[i];
+      api().Scissor(static_cast<int>(r.min.x), size.height - static_cast<int>(r.max.y),
+                    static_cast<int>(r.width()), static_cast<int>(r.height()));
+      api().ClearColor(backdrop->x, backdrop->y, backdrop->z, backdrop->w);
+      api().Clear(GL_COLOR_BUFFER_BIT);
+    }
+    issue(i == 0 ? 0 : ends[i - 1], ends[i], size);
+  }
+}
+
+void DrawPass::collect(const ImDrawData& data, const Rect& rect) {
   int first_vertex = 0;
-  size_t first_index = 0;
   for (int i = 0; i < data.CmdListsCount; ++i) {
     const ImDrawList& list = *data.CmdLists[i];
     for (const ImDrawCmd& command : list.CmdBuffer) {
-      const int left = std::max(0, static_cast<int>(command.ClipRect.x)),
-                top = std::max(0, static_cast<int>(command.ClipRect.y)),
-                right = std::min(size.width, static_cast<int>(std::ceil(command.ClipRect.z))),
-                bottom = std::min(size.height, static_cast<int>(std::ceil(command.ClipRect.w)));
-      if (command.ElemCount == 0 || right <= left || bottom <= top) continue;
-      const auto named = static_cast<unsigned>(reinterpret_cast<uintptr_t>(command.GetTexID()));
-      const unsigned texture = named == 0 ? atlas_.name() : named;
-      if (texture != bound) api().BindTexture(GL_TEXTURE_2D, bound = texture);
-      api().Scissor(left, size.height - bottom, right - left, bottom - top);
-      api().DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), GL_UNSIGNED_SHORT,
-                                   offset((first_index + command.IdxOffset) * sizeof(ImDrawIdx)),
-                                   first_vertex + static_cast<int>(command.VtxOffset));
+      const ImVec4& c = command.ClipRect;
+      const Rect clip =
+          intersection(rect, {{std::floor(c.x), std::floor(c.y)}, {std::ceil(c.z), std::ceil(c.w)}});
+      if (!clip.empty()) collect(list, command, clip, first_vertex + static_cast<int>(command.VtxOffset));
     }
     first_vertex += list.VtxBuffer.Size;
-    first_index += static_cast<size_t>(list.IdxBuffer.Size);
   }
+}
+
+/// A call with those of the command's triangles that reach into `clip`.
+void DrawPass::collect(const ImDrawList& list, const ImDrawCmd& command, const Rect& clip, int first_vertex) {
+  const auto named = static_cast<unsigned>(reinterpret_cast<uintptr_t>(command.GetTexID()));
+  Call call{named == 0 ? atlas_.name() : named, clip, named == 0, all_indices_.size(), 0, first_vertex};
+  const ImDrawVert* vertices = list.VtxBuffer.Data + command.VtxOffset;
+  const ImDrawIdx* index = list.IdxBuffer.Data + command.IdxOffset;
+  for (const ImDrawIdx* end = index + command.ElemCount; index < end; index += 3) {
+    const ImVec2 &a = vertices[index[0]].pos, &b = vertices[index[1]].pos, &c = vertices[index[2]].pos;
+    if (std::max({a.x, b.x, c.x}) < clip.min.x || std::min({a.x, b.x, c.x}) > clip.max.x ||
+        std::max({a.y, b.y, c.y}) < clip.min.y || std::min({a.y, b.y, c.y}) > clip.max.y)
+      continue;
+    all_indices_.insert(all_indices_.end(), index, index + 3);
+    for (int k = 0; k < 3; ++k) call.blend |= vertices[index[k]].col >> IM_COL32_A_SHIFT != 255;
+  }
+  call.count = static_cast<int>(all_indices_.size() - call.first_index);
+  if (call.count > 0) calls_.push_back(call);
+}
+
+void DrawPass::issue(size_t from, size_t to, render::PixelSize size) {
+  unsigned bound = 0;
+  bool blending = true;
+  for (size_t i = from; i < to; ++i) {
+    const Call& call = calls_[i];
+    if (call.texture != bound) api().BindTexture(GL_TEXTURE_2D, bound = call.texture);
+    if (call.blend != blending) (blending = call.blend) ? api().Enable(GL_BLEND) : api().Disable(GL_BLEND);
+    const int left = std::max(0, static_cast<int>(call.clip.min.x)),
+              top = std::max(0, static_cast<int>(call.clip.min.y)),
+              right = std::min(size.width, static_cast<int>(call.clip.max.x)),
+              bottom = std::min(size.height, static_cast<int>(call.clip.max.y));
+    if (right <= left || bottom <= top) continue;
+    api().Scissor(left, size.height - bottom, right - left, bottom - top);
+    api().DrawElementsBaseVertex(GL_TRIANGLES, call.count, GL_UNSIGNED_SHORT,
+                                 offset(call.first_index * sizeof(ImDrawIdx)), call.first_vertex);
+  }
+  if (!blending) api().Enable(GL_BLEND);
 }
 
 }  // namespace understudy::ui

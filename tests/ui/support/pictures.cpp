@@ -50,8 +50,7 @@ std::vector<Rect> cut_letters(const ImDrawData& data, const ImFontAtlas& atlas) 
   return cut;
 }
 
-render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas& atlas,
-                      render::PixelSize size) {
+render::Image picture(render::PixelSize size, const std::function<void(const render::Target&)>& draw) {
   namespace gl = render::gl;
   const gl::Framebuffer framebuffer;
   const gl::Texture texture;
@@ -62,13 +61,18 @@ render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas&
   gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
   gl::api().ClearColor(0, 0, 0, 1);
   gl::api().Clear(GL_COLOR_BUFFER_BIT);
-  pass.draw(data, atlas, {framebuffer.name(), size});
+  draw({framebuffer.name(), size});
   render::Image upside_down(size.width, size.height), image(size.width, size.height);
   gl::api().PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl::api().ReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.pixels.data());
   for (int y = 0; y < size.height; ++y)
     std::memcpy(image.at(0, y), upside_down.at(0, size.height - 1 - y), static_cast<size_t>(size.width) * 3);
   return image;
+}
+
+render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas& atlas,
+                      render::PixelSize size) {
+  return picture(size, [&](const render::Target& target) { pass.draw(data, atlas, target); });
 }
 
 }  // namespace understudy::ui

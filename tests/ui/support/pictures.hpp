@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include <functional>
 #include <vector>
 
 #include "render/image.hpp"
@@ -15,7 +16,9 @@ namespace understudy::ui {
 /// Where letters are drawn only in part, or reach out of the display: their rectangles.
 std::vector<Rect> cut_letters(const ImDrawData& data, const ImFontAtlas& atlas);
 
-/// The frame on a black picture, drawn by the current context.
+/// A black picture after `draw` has drawn into it with the current context.
+render::Image picture(render::PixelSize size, const std::function<void(const render::Target&)>& draw);
+/// The frame on a black picture.
 render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas& atlas,
                       render::PixelSize size);
 
