@@ -10,5 +10,5 @@ us_module(render SOURCES
   render/floor_shadow.cpp render/solids.cpp render/gizmo.cpp render/picking.cpp
   render/passes/frame.cpp render/passes/background_pass.cpp render/passes/mesh_pass.cpp
   render/passes/points_pass.cpp render/passes/skeleton_pass.cpp render/passes/ground_pass.cpp
-  render/passes/occlusion_pass.cpp render/passes/lines_pass.cpp render/renderer.cpp render/text.cpp render/contact_sheet.cpp render/video_writer.cpp
+  render/passes/occlusion_pass.cpp render/passes/lines_pass.cpp render/passes/smooth_pass.cpp render/renderer.cpp render/text.cpp render/contact_sheet.cpp render/video_writer.cpp
   PUBLIC understudy_core PRIVATE PNG::PNG PkgConfig::GLFW PkgConfig::LIBAV ${CMAKE_DL_LIBS})

@@ -14,13 +14,14 @@
 #include "render/passes/occlusion_pass.hpp"
 #include "render/passes/points_pass.hpp"
 #include "render/passes/skeleton_pass.hpp"
+#include "render/passes/smooth_pass.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::render {
 namespace {
 
 /// The pictures drawn into: the one in work, with as many samples as wanted; one of the same kind that keeps
-/// what stands still; where there are several samples, a plain one for their means.
+/// what stands still; a plain one to read back.
 class Canvas {
  public:
   explicit Canvas(int samples) {
@@ -36,25 +37,31 @@ class Canvas {
              "a picture cannot be ", size.width, " x ", size.height, " pixels");
     if (size.width == size_.width && size.height == size_.height) return false;
     size_ = size;
-    attach_color(work_, work_color_, samples_);
     attach_color(still_, still_color_, samples_);
+    attach_color(plain_, plain_color_, 1);
     if (samples_ > 1) {
-      attach_color(plain_, plain_color_, 1);
+      attach_color(work_, work_color_, samples_);
       attach_depth_samples();
+      attach_depth_texture(plain_);
+    } else {
+      attach_color_texture();
+      attach_depth_texture(work_);
     }
-    attach_depth_texture(samples_ > 1 ? plain_ : work_);
-    for (const gl::Framebuffer* each : {&work_, &still_, &plain_})
-      if (each != &plain_ || samples_ > 1) complete(*each);
+    for (const gl::Framebuffer* each : {&work_, &still_, &plain_}) complete(*each);
     return true;
   }
 
   unsigned work() const { return work_.name(); }
   unsigned still() const { return still_.name(); }
-  unsigned plain() const { return samples_ > 1 ? plain_.name() : work_.name(); }
+  unsigned plain() const { return plain_.name(); }
+  /// The picture in work, where it has one sample a pixel.
+  unsigned color_texture() const { return color_texture_.name(); }
   unsigned depth_texture() const { return depth_texture_.name(); }
   void copy_still() const { blit(still(), work(), GL_COLOR_BUFFER_BIT); }
   /// One sample's depth of each pixel into depth_texture().
-  void resolve_depth() const { blit(work(), plain(), GL_DEPTH_BUFFER_BIT); }
+  void resolve_depth() const {
+    if (samples_ > 1) blit(work(), plain(), GL_DEPTH_BUFFER_BIT);
+  }
   /// The samples' means into `framebuffer`.
   void resolve_color(unsigned framebuffer) const { blit(work(), framebuffer, GL_COLOR_BUFFER_BIT); }
 
@@ -65,6 +72,19 @@ class Canvas {
                                              size_.width, size_.height);
     const gl::TargetScope target(framebuffer.name(), size_.width, size_.height);
     gl::api().FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.name());
+  }
+
+  void attach_color_texture() const {
+    gl::api().BindTexture(GL_TEXTURE_2D, color_texture_.name());
+    gl::api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size_.width, size_.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                         nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      gl::api().TexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+      gl::api().TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    const gl::TargetScope target(work_.name(), size_.width, size_.height);
+    gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_texture_.name(),
+                                   0);
   }
 
   void attach_depth_samples() const {
@@ -97,7 +117,6 @@ class Canvas {
   }
 
   void blit(unsigned from, unsigned to, GLbitfield what) const {
-    if (from == to) return;
     const gl::TargetScope restore(from, size_.width, size_.height);
     gl::api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
     gl::api().BlitFramebuffer(0, 0, size_.width, size_.height, 0, 0, size_.width, size_.height, what,
@@ -108,7 +127,7 @@ class Canvas {
   PixelSize size_;
   gl::Framebuffer work_, still_, plain_;
   gl::Renderbuffer work_color_, work_depth_, still_color_, plain_color_;
-  gl::Texture depth_texture_;
+  gl::Texture color_texture_, depth_texture_;
 };
 
 /// All that the still part of a picture depends on.
@@ -143,6 +162,45 @@ std::vector<float> still_key(const Scene& scene, const Camera& camera, PixelSize
           g.line.z()};
 }
 
+/// The rectangle of a picture that what is drawn covers, pixels from the bottom left, `margin` more all
+/// round; everything when part of it is behind the eye.
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+Rectangle covered(const Points& corners, const Camera& camera, PixelSize size, float margin) {
+  if (corners.rows() == 0) return {};
+  Eigen::Vector2f low(1e6f, 1e6f), high(-1e6f, -1e6f);
+  for (Eigen::Index i = 0; i < corners.rows(); ++i) {
+    const Vec3 at = on_screen(camera, size, corners.row(i));
+    if (!camera.orthographic && at.z() < 0.01f) return {0, 0, size.width, size.height};
+    low = low.cwiseMin(at.head<2>());
+    high = high.cwiseMax(at.head<2>());
+  }
+  const auto inside = [](float value, int most) {
+    return static_cast<int>(std::clamp(value, 0.f, static_cast<float>(most)));
+  };
+  const int left = inside(low.x() - margin, size.width), right = inside(high.x() + margin, size.width);
+  const int top = inside(low.y() - margin, size.height), bottom = inside(high.y() + margin, size.height);
+  return {left, size.height - bottom, right - left, bottom - top};
+}
+
+/// Corners of the box around all that has edges: everything but lines, which are soft by themselves.
+Points corners_of(const Scene& scene, const Camera& camera) {
+  Points all = all_points(scene);
+  for (const auto& gizmo : scene.gizmos) {
+    const float reach = gizmo_reach(gizmo, camera);
+    all.conservativeResize(all.rows() + 2, 3);
+    all.bottomRows(2) << (gizmo.position.array() - reach).transpose(),
+        (gizmo.position.array() + reach).transpose();
+  }
+  if (all.rows() == 0) return all;
+  const Eigen::RowVector3f low = all.colwise().minCoeff(), high = all.colwise().maxCoeff();
+  Points corners(8, 3);
+  for (int corner = 0; corner < 8; ++corner)
+    for (int k = 0; k < 3; ++k) corners(corner, k) = (corner >> k & 1) != 0 ? high[k] : low[k];
+  return corners;
+}
+
 /// The picture of bottom-up premultiplied RGBA.
 Image upright(const std::vector<uint8_t>& rgba, PixelSize size, bool transparent) {
   Image image(size.width, size.height);
@@ -168,6 +226,7 @@ struct Renderer::Parts {
   explicit Parts(const RendererOptions& o) : options(o), canvas(o.samples) {}
 
   void draw_still(const Scene& scene, const Camera& camera, PixelSize size);
+  void show(const Scene& scene, const Camera& camera, const Target& target);
   void draw_solid(const Scene& scene);
   void draw_over(const Scene& scene, const Camera& camera);
   void draw_lines(const Scene& scene, bool x_ray);
@@ -184,6 +243,7 @@ struct Renderer::Parts {
   OcclusionPass occlusion;
   GroundPass ground;
   LinesPass lines;
+  SmoothPass smooth;
 };
 
 /// Background and grid, drawn anew only when the view or they have changed.
@@ -234,6 +294,18 @@ void Renderer::Parts::draw_over(const Scene& scene, const Camera& camera) {
   for (const auto& gizmo : scene.gizmos) meshes.draw(gizmo_solids(gizmo, camera), 0);
 }
 
+/// Into the target: the samples' means, or one sample with its edges smoothed afterwards.
+void Renderer::Parts::show(const Scene& scene, const Camera& camera, const Target& target) {
+  canvas.resolve_color(target.framebuffer);
+  if (canvas.samples() > 1 || !options.smooth) return;
+  const float margin = 4 + 0.04f / metres_a_pixel(camera, target.size, camera.target);  // bones, discs
+  const Rectangle edges = covered(corners_of(scene, camera), camera, target.size, margin);
+  if (edges.width <= 0 || edges.height <= 0) return;
+  const gl::TargetScope framebuffer(target.framebuffer, target.size.width, target.size.height);
+  const gl::ScissorScope scissor(edges.x, edges.y, edges.width, edges.height);
+  smooth.draw(canvas.color_texture());
+}
+
 Renderer::Renderer(const RendererOptions& options) : parts_(std::make_unique<Parts>(options)) {
   gl::check_debug();
 }
@@ -255,7 +327,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera, const Target& targ
     p.draw_solid(scene);
     p.draw_over(scene, camera);
   }
-  p.canvas.resolve_color(target.framebuffer);
+  p.show(scene, camera, target);
   p.store.next_picture();
   gl::check_debug();
 }

@@ -74,6 +74,20 @@ class TargetScope : Scope {
   std::array<GLint, 4> viewport_{};
 };
 
+/// Draws inside one rectangle only, pixels from the bottom left.
+class ScissorScope : Scope {
+ public:
+  ScissorScope(int x, int y, int width, int height) : enabled_(GL_SCISSOR_TEST, true) {
+    api().GetIntegerv(GL_SCISSOR_BOX, before_.data());
+    api().Scissor(x, y, width, height);
+  }
+  ~ScissorScope() { api().Scissor(before_[0], before_[1], before_[2], before_[3]); }
+
+ private:
+  CapabilityScope enabled_;
+  std::array<GLint, 4> before_{};
+};
+
 /// Blending of the whole colour, alpha included.
 class BlendScope : Scope {
  public:

@@ -37,7 +37,7 @@ Points swayed(const Points& points, int frame) {
 
 class Bench {
  public:
-  Bench(PixelSize size, int samples) : size_(size), renderer_({samples, Quality::Interactive}) {}
+  Bench(PixelSize size, const RendererOptions& options) : size_(size), renderer_(options) {}
 
   void run(const char* name, const Scene& scene) {
     const Camera camera = view_of(scene, size_.aspect());
@@ -101,16 +101,18 @@ Scene with_skeleton(Scene scene, bool x_ray) {
   return scene;
 }
 
-void bench(PixelSize size, int samples) {
-  std::printf("%d x %d, %d samples\n", size.width, size.height, samples);
-  Bench bench(size, samples);
+void bench(PixelSize size, const RendererOptions& options) {
+  std::printf("%d x %d, %d samples%s\n", size.width, size.height, options.samples,
+              options.samples == 1 && options.smooth ? ", smoothed" : "");
+  Bench bench(size, options);
   Rng rng(3);
   Scene cloud;
   Mesh points;
   points.vertices = sample_points(make_person(), 8000, rng);
   add(cloud, points);
   Scene ground = person(13000);
-  ground.meshes[0].vertices = Points(0.5f * Points::Ones(ground.meshes[0].vertices->rows(), 3));  // casts and shows nothing
+  ground.meshes[0].vertices =
+      Points(0.5f * Points::Ones(ground.meshes[0].vertices->rows(), 3));  // casts and shows nothing
   bench.run("background", without_ground(with_skeleton({}, false)));
   bench.run("ground", ground);
   bench.run("skeleton", without_ground(with_skeleton({}, true)));
@@ -125,10 +127,13 @@ void bench(PixelSize size, int samples) {
 }  // namespace understudy::render
 
 int main() {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // each line as it comes, into files too
   using namespace understudy::render;
   const auto context = make_offscreen_context();
   std::printf("%s\n", context->description().c_str());
-  for (const int samples : {1, 2, 4}) bench({500, 600}, samples);
-  bench({640, 720}, 1);
+  bench({500, 600}, {1, Quality::Interactive, false});
+  bench({500, 600}, {1, Quality::Interactive, true});
+  bench({500, 600}, {4, Quality::Interactive});
+  bench({640, 720}, {1, Quality::Interactive, true});
   return 0;
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+
 #include "content.hpp"
 #include "pictures.hpp"
 #include "render/gl/program.hpp"
@@ -61,9 +64,60 @@ TEST(Renderer, LeavesTheStateAsItWas) {
 TEST(Renderer, SmoothsEdgesByMultisampling) {
   const auto context = make_offscreen_context({ContextKind::Any, gl::DebugMode::Fatal});
   Scene scene = pear_and_skeleton();
-  Renderer smooth({4}), jagged({1});
+  Renderer smooth({4}), jagged({1, Quality::Best, false});
   EXPECT_NE(smooth.render_image(scene, view_of(scene), {64, 64}).pixels,
             jagged.render_image(scene, view_of(scene), {64, 64}).pixels);
+}
+
+/// Root mean square of what the pictures differ by, levels.
+double rms(const Image& a, const Image& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) sum += std::pow(a.pixels[i] - b.pixels[i], 2);
+  return std::sqrt(sum / static_cast<double>(a.pixels.size()));
+}
+
+/// How many different colours: jagged edges add few of their own.
+size_t distinct_colors(const Image& image) {
+  std::set<int> colors;
+  for (size_t i = 0; i < image.pixels.size(); i += 3)
+    colors.insert(image.pixels[i] << 16 | image.pixels[i + 1] << 8 | image.pixels[i + 2]);
+  return colors.size();
+}
+
+TEST(Renderer, SmoothsOneSampleAfterwards) {
+  const auto context = make_offscreen_context({ContextKind::Any, gl::DebugMode::Fatal});
+  Scene scene;
+  scene.ground.visible = false;
+  scene.background = {Vec3::Zero(), Vec3::Zero()};
+  scene.light.key = scene.light.fill = Vec3::Zero();
+  scene.light.sky = scene.light.floor = Vec3::Ones();
+  scene.light.shine = 0;
+  add(scene, make_pear());
+  scene.meshes[0].color = Vec3::Ones();  // white on black
+  const Quality quick = Quality::Interactive;
+  Renderer smooth({1, quick, true}), jagged({1, quick, false}), sampled({4, quick});
+  const Image soft = smooth.render_image(scene, view_of(scene), {200, 200});
+  const Image hard = jagged.render_image(scene, view_of(scene), {200, 200});
+  EXPECT_LE(distinct_colors(hard), 3u);
+  EXPECT_GE(distinct_colors(soft), 8u);
+  const Image truth = sampled.render_image(scene, view_of(scene), {200, 200});
+  EXPECT_LT(rms(soft, truth), 0.8 * rms(hard, truth));
+}
+
+TEST(Renderer, DrawsTheSameWhateverItDrewBefore) {
+  const auto context = make_offscreen_context({ContextKind::Any, gl::DebugMode::Fatal});
+  const Scene scene = pear_and_skeleton();
+  Scene other = scene;
+  other.background.top = Vec3::Zero();
+  other.ground.spacing = 0.1f;
+  Renderer used, fresh;
+  for (int i = 0; i < 12; ++i) {  // other grounds, sizes and arrays, enough for buffers to change hands
+    Scene moved = other;
+    moved.meshes[0].vertices = Points(*other.meshes[0].vertices * (1 + 0.01f * static_cast<float>(i)));
+    used.render_image(moved, view_of(moved), {64 + i % 2, 64});
+  }
+  EXPECT_EQ(used.render_image(scene, view_of(scene), {64, 64}).pixels,
+            fresh.render_image(scene, view_of(scene), {64, 64}).pixels);
 }
 
 TEST(Program, NamesAUniformThatIsNotThere) {

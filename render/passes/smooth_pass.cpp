@@ -1,0 +1,49 @@
+#include "render/passes/smooth_pass.hpp"
+
+#include "render/gl/scopes.hpp"
+#include "render/passes/frame.hpp"
+
+namespace understudy::render {
+namespace {
+
+// Lottes, "FXAA", 2009, in its short form: mixes pixels along the direction in which brightness changes
+// least.
+const std::string kFragment = R"(
+uniform sampler2D u_source;
+in vec2 v_place;
+out vec4 o_color;
+float brightness(vec4 c) { return dot(c.rgb, vec3(0.30, 0.59, 0.11)); }
+void main() {
+  ivec2 p = ivec2(gl_FragCoord.xy), last = textureSize(u_source, 0) - 1;
+  vec4 middle = texelFetch(u_source, p, 0);
+  float m = brightness(middle);
+  float nw = brightness(texelFetch(u_source, clamp(p + ivec2(-1, 1), ivec2(0), last), 0));
+  float ne = brightness(texelFetch(u_source, clamp(p + ivec2(1, 1), ivec2(0), last), 0));
+  float sw = brightness(texelFetch(u_source, clamp(p + ivec2(-1, -1), ivec2(0), last), 0));
+  float se = brightness(texelFetch(u_source, clamp(p + ivec2(1, -1), ivec2(0), last), 0));
+  vec2 along = vec2(sw + se - nw - ne, ne + se - nw - sw);
+  float least = min(m, min(min(nw, ne), min(sw, se))), most = max(m, max(max(nw, ne), max(sw, se)));
+  float damping = max((nw + ne + sw + se) * 0.03125, 0.0078125);
+  along = clamp(along / (min(abs(along.x), abs(along.y)) + damping), -6.0, 6.0) / vec2(last + 1);
+  vec4 near = 0.5 * (texture(u_source, v_place - along / 6.0) + texture(u_source, v_place + along / 6.0));
+  vec4 far = 0.5 * near + 0.25 * (texture(u_source, v_place - 0.5 * along) + texture(u_source, v_place + 0.5 * along));
+  float b = brightness(far);
+  o_color = most - least < 0.04 ? middle : b < least || b > most ? near : far;
+}
+)";
+
+}  // namespace
+
+SmoothPass::SmoothPass() : program_("smoothing", kCoverGlsl, kFragment) {}
+
+void SmoothPass::draw(unsigned texture) {
+  const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
+  const gl::ProgramScope program(program_.id());
+  const gl::VertexArrayScope array(none_.name());
+  gl::api().ActiveTexture(GL_TEXTURE0);
+  gl::api().BindTexture(GL_TEXTURE_2D, texture);
+  source_.set(0);
+  gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace understudy::render
