@@ -97,7 +97,7 @@ bool same(const TargetOptions& a, const TargetOptions& b) {
 bool same(const Method& a, const Method& b) {
   const auto members = [](const Method& method) {
     return std::tie(method.engine, method.extractor, method.offsets, method.repair_swaps,
-                    method.smooth_joints, method.fix_lengths, method.root);
+                    method.smooth_joints, method.fix_lengths, method.lock_feet, method.root);
   };
   return members(a) == members(b);
 }

@@ -67,8 +67,7 @@ std::string document_text(const nlohmann::ordered_json& json) {
   return text + '\n';
 }
 
-nlohmann::ordered_json read_document_json(const std::string& path) {
-  const std::string text = read_whole_file(path, kLargestDocument);
+nlohmann::ordered_json parse_document(const std::string& text, const std::string& path) {
   US_CHECK(!text.empty(), path, ": is empty");
   try {
     return Json::parse(text);
@@ -77,6 +76,10 @@ nlohmann::ordered_json read_document_json(const std::string& path) {
   } catch (const nlohmann::json::exception&) {
     throw Error(path + ": holds a number that is none");
   }
+}
+
+nlohmann::ordered_json read_document_json(const std::string& path) {
+  return parse_document(read_whole_file(path, kLargestDocument), path);
 }
 
 void write_document(const std::string& path, const SavedDocument& saved) {

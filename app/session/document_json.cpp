@@ -358,6 +358,7 @@ void fields(A& a, typename A::template Of<Method>& method) {
   a("repair_swaps", method.repair_swaps);
   a("smooth_joints", method.smooth_joints);
   a("fix_lengths", method.fix_lengths);
+  a("lock_feet", method.lock_feet);
   a.choice("root", method.root, kRootNames);
 }
 

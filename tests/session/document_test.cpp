@@ -88,6 +88,7 @@ const Changes& document_changes() {
       TAKE(method.repair_swaps = true),
       TAKE(method.smooth_joints = true),
       TAKE(method.fix_lengths = true),
+      TAKE(method.lock_feet = false),
       TAKE(method.root = RootMode::Original),
       TAKE(target_edits.joints.pop_back()),
       TAKE(target_edits.joints[0].joint = Head),
@@ -143,7 +144,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [swap_first, swap_last, limbs] = SwapEdit();
   [[maybe_unused]] const auto& [name, target, method, target_edits, pose_edits] = Take();
   [[maybe_unused]] const auto& [target_path, target_betas, target_import] = TargetOptions();
-  [[maybe_unused]] const auto& [engine, extractor, offsets, swaps, smooth, lengths, root] = Method();
+  [[maybe_unused]] const auto& [engine, extractor, offsets, swaps, smooth, lengths, feet, root] = Method();
   [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows] = WeightRows();
