@@ -159,6 +159,7 @@ std::optional<std::string> FileBrowser::draw(Ui& ui) {
     }
   }
   const char* id = "browser";
+  if (!ui.claim_dialog(id)) return std::nullopt;
   if (!ImGui::IsPopupOpen(id)) ImGui::OpenPopup(id);
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});

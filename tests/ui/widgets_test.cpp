@@ -236,6 +236,22 @@ TEST_F(Widgets, ErrorsCopyTheirDetails) {
   EXPECT_TRUE(closed);
 }
 
+TEST_F(Widgets, DialogsWaitForEachOther) {
+  bool asking = true, closed = false;
+  content = [&](Ui& ui) {
+    if (asking) asking = ask(ui, "question", {"Unsaved changes", "Save first?", "Save", ""}) == Answer::None;
+    if (!closed) closed = show_error(ui, "error", "walk.obj: ends before vertex 3", "");
+  };
+  frame(4);
+  EXPECT_TRUE(shown("question.yes"));
+  EXPECT_FALSE(shown("error.close"));
+  click("question.yes");
+  EXPECT_FALSE(asking);
+  frame(4);
+  click("error.close");
+  EXPECT_TRUE(closed);
+}
+
 TEST_F(Widgets, PlotSeeksWhereItIsClickedAndDragged) {
   std::vector<float> values(101, 1);
   std::vector<int> seeks;

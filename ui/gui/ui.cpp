@@ -41,6 +41,13 @@ const Mark* Ui::find(const std::string& name) const {
   return found == finished_at_.end() ? nullptr : &finished_[found->second];
 }
 
+bool Ui::claim_dialog(const std::string& name) {
+  const int frame = ImGui::GetFrameCount();
+  if (dialog_ != name && dialog_frame_ >= frame - 1) return false;
+  dialog_ = name, dialog_frame_ = frame;
+  return true;
+}
+
 void Ui::add(Mark mark) {
   const auto [at, is_new] = drawing_at_.try_emplace(mark.name, drawing_.size());
   if (is_new)

@@ -62,6 +62,10 @@ class Ui {
   /// Scrolls to an item when it is next drawn.
   void reveal(const std::string& name) { reveal_ = name; }
 
+  /// Whether the dialog `name` may be open now: only one stands above the windows at a time, the others wait.
+  /// Ask in every frame; a dialog that no longer asks has gone. One inside another need not ask.
+  bool claim_dialog(const std::string& name);
+
   /// What the widget `id` remembers between frames; T() at first.
   template <class T>
   T& state(ImGuiID id) {
@@ -81,7 +85,8 @@ class Ui {
   std::vector<Mark> drawing_, finished_;
   std::unordered_map<std::string, size_t> drawing_at_, finished_at_;
   std::unordered_map<ImGuiID, std::any> memory_;
-  std::string reveal_;
+  std::string reveal_, dialog_;
+  int dialog_frame_ = -2;
 };
 
 /// Uses a font until the end of the scope.

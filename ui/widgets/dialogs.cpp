@@ -1,5 +1,7 @@
 #include "ui/widgets/dialogs.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 
 #include "ui/gui/gui.hpp"
@@ -88,6 +90,8 @@ void Notices::draw(Ui& ui) {
 }
 
 bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width) {
+  const bool inside_another = ImGui::GetCurrentContext()->BeginPopupStack.Size > 0;
+  if (!inside_another && !ui.claim_dialog(name)) return false;
   if (!ImGui::IsPopupOpen(name.c_str())) ImGui::OpenPopup(name.c_str());
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
