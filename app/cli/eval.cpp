@@ -20,6 +20,7 @@ struct EvalOptions {
   std::string cases, out, oracle, filter;
   int limit = 0;  ///< cases; 0: all
   nn::NetworkOptions networks;
+  RetargetOptions retarget;
 };
 
 struct Verdict {
@@ -89,7 +90,7 @@ void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) 
 void judge_performance(const Case& c, const EvalOptions& options, const Mesh& target,
                        const std::vector<Joints>* oracle, Judging& to) {
   const auto source = open_source(case_source(c));
-  Performer performer(*source, target, nn::load_networks(options.networks));
+  Performer performer(*source, target, nn::load_networks(options.networks), options.retarget);
   for (size_t t = 0;; ++t) {
     check_interrupt("in case " + c.name);
     US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");
@@ -240,6 +241,7 @@ Action declare_eval(CLI::App& command) {
       ->check(CLI::IsMember({"skeleton", "pose"}));
   command.add_option("--filter", options->filter, "only cases whose name holds this");
   command.add_option("--limit", options->limit, "at most so many cases")->check(CLI::NonNegativeNumber);
+  command.add_flag("!--no-foot-lock", options->retarget.lock_feet, "standing feet may slide");
   add_network_options(command, options->networks);
   return [options] { return eval(*options); };
 }

@@ -59,6 +59,7 @@ Action declare_retarget(CLI::App& command) {
                                                                           {"original", RootMode::Original},
                                                                           {"in-place", RootMode::InPlace}},
                                           CLI::ignore_case));
+  command.add_flag("!--no-foot-lock", job->retarget.lock_feet, "standing feet may slide");
   command.add_option("--out", job->out, "the animated target: .glb, or .npz with all figures");
   command.add_option("--report", job->report, "report as JSON");
   command.add_option("--preview", job->preview, "contact sheet as PNG");

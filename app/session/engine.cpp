@@ -56,6 +56,7 @@ RetargetOptions retarget_options(const Method& method) {
   RetargetOptions options;
   options.filter = filter_options(method);
   options.root.mode = method.root;
+  options.lock_feet = method.lock_feet;
   options.vertices = false;  // made from the poses when they are looked at
   return options;
 }
@@ -127,7 +128,7 @@ std::string target_key(const TargetOptions& target) {
 std::string method_key(const Method& method) {
   std::ostringstream out;
   out << method.engine << ' ' << method.extractor << ' ' << method.offsets << method.repair_swaps
-      << method.smooth_joints << method.fix_lengths << static_cast<int>(method.root);
+      << method.smooth_joints << method.fix_lengths << method.lock_feet << static_cast<int>(method.root);
   return out.str();
 }
 

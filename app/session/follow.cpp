@@ -14,7 +14,8 @@ const Joints* pane_joints(const Session& session, int pane, int frame) {
   const size_t f = static_cast<size_t>(frame), k = static_cast<size_t>(pane - 1);
   if (frame < 0) return nullptr;
   if (pane == 0) return f < session.source.frames.size() ? &session.source.frames[f].joints : nullptr;
-  return k < session.takes.size() && f < session.takes[k].joints.size() ? &session.takes[k].joints[f] : nullptr;
+  return k < session.takes.size() && f < session.takes[k].joints.size() ? &session.takes[k].joints[f]
+                                                                        : nullptr;
 }
 
 Vec3 follow_offset(const Session& session, int pane, int frame) {

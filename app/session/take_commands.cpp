@@ -91,8 +91,8 @@ void add_target_import(Commands& commands) {
 /// One setting of a method, "engine=paper".
 void set_method(Method& method, const std::string& key, const std::string& value) {
   const auto on = [&] { return on_off({value}, 0); };
-  switch (
-      choice({key}, 0, "setting", {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths"})) {
+  switch (choice({key}, 0, "setting",
+                 {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths", "feet"})) {
     case 0:
       choice({value}, 0, "engine", {"copy", "paper"});
       method.engine = value;
@@ -113,8 +113,11 @@ void set_method(Method& method, const std::string& key, const std::string& value
     case 5:
       method.smooth_joints = on();
       break;
-    default:
+    case 6:
       method.fix_lengths = on();
+      break;
+    default:
+      method.lock_feet = on();
   }
 }
 
@@ -129,9 +132,9 @@ void add_methods(Commands& commands) {
   setting("extractor", "Skeleton extraction", "TAKE dense|paper");
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
   setting("root", "Path", "TAKE scaled|original|in-place");
-  commands.add({"method.filter", "Joint filter", "TAKE swaps|smooth|lengths on|off", "", true, false,
+  commands.add({"method.filter", "Filter", "TAKE swaps|smooth|lengths|feet on|off", "", true, false,
                 [](Studio& s, const Arguments& a) {
-                  choice(a, 1, "filter", {"swaps", "smooth", "lengths"});
+                  choice(a, 1, "filter", {"swaps", "smooth", "lengths", "feet"});
                   set_method(take_argument(s.session(), a, 0).method, a[1], word(a, 2, "switch"));
                 }});
   commands.add(

@@ -39,7 +39,11 @@ bool finite(const Rotations& rotations) {
 }  // namespace
 
 Retargeter::Retargeter(Networks networks, const RetargetOptions& options)
-    : networks_(std::move(networks)), options_(options), filter_(options.filter), root_(options.root) {
+    : networks_(std::move(networks)),
+      options_(options),
+      filter_(options.filter),
+      root_(options.root),
+      feet_(options.feet) {
   US_CHECK(networks_.transfer && networks_.deformer, "the pipeline wants a motion transfer and a deformer");
 }
 
@@ -62,6 +66,7 @@ void Retargeter::restart() {
   networks_.transfer->reset(target_.joints);
   filter_.reset();
   root_.reset(target_.mesh.vertices, target_.joints);
+  feet_.reset();
   last_ = Pose{};
   waited_ = 0;
 }
@@ -111,15 +116,19 @@ RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt) {
                   detail::join("the confidence in the skeleton is only ", frame.confidence));
   const JointFilter filter_before = filter_;
   const RootPath root_before = root_;
+  const FootLock feet_before = feet_;
   const auto refuse = [&](const std::string& reason) {
     filter_ = filter_before;  // a frame that is not believed leaves no trace
     root_ = root_before;
+    feet_ = feet_before;
     return repeat(std::move(frame), reason);
   };
   try {
     frame.source = filter_.push(seen, waited_);
     frame.pose.local = networks_.transfer->push(frame.source, waited_);
     frame.pose.root = root_.push(frame.source, frame.pose.local, waited_);
+    if (options_.lock_feet && options_.root.mode == RootMode::Scaled)
+      frame.pose = feet_.push(frame.pose, target_.joints, waited_, frame.source.joints);
     frame.ms.transfer = watch.lap();
     if (!finite(frame.pose.local) || !frame.pose.root.allFinite())
       return refuse("the motion transfer gave numbers that are not finite");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "retarget/pipeline/foot_lock.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
 #include "retarget/pipeline/root_path.hpp"
@@ -14,6 +15,8 @@ namespace understudy {
 struct RetargetOptions {
   JointFilterOptions filter;
   RootPathOptions root;
+  bool lock_feet = true;  ///< feet that stand do not slide
+  FootLockOptions feet;
   float min_confidence = 0.08f;  ///< mean over joints below which a frame is not believed
   int min_points = 32;           ///< finite points below which a frame is not looked at
   bool vertices = true;          ///< false: poses only, no deformation
@@ -94,6 +97,7 @@ class Retargeter {
   Target target_;
   JointFilter filter_;
   RootPath root_;
+  FootLock feet_;
   Pose last_;
   float waited_ = 0;  // seconds of flagged frames since the last good one
   bool has_target_ = false;

@@ -240,7 +240,8 @@ TEST_F(StudioTest, ACaseComesWithItsTruth) {
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   const Series* const error = find(studio.session().takes[0].series, "extraction_mpjpe_mm");
   ASSERT_NE(error, nullptr);
-  EXPECT_NEAR(error->values[10], 120, 30);  // the import lifts the scan onto the floor, the truth here does not
+  EXPECT_NEAR(error->values[10], 120,
+              30);  // the import lifts the scan onto the floor, the truth here does not
   EXPECT_NE(find(studio.session().takes[0].series, "pa_mpjpe_m"), nullptr);
 }
 

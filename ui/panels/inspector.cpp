@@ -62,9 +62,9 @@ void draw_source_facts(const app::Session& session, Ui& ui) {
 void draw_source_fields(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::SourceOptions& source = session.document.source;
-  if (const auto fps =
-          typed_number_row(ui, {"source.fps", "Frames/s", "0: as the file says, or 30"}, source.fps, 2))
-    context.ask("source.fps", {argument(std::max(0.0, *fps))});
+  const std::string fps = source.fps > 0 ? argument(source.fps) : "auto";
+  if (const auto text = text_row(ui, {"source.fps", "Frames/s", "auto: as the file says, or 30"}, fps))
+    context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
   draw_import(context, "source", source.import, {});
   const std::string floor = source.import.floor ? argument(*source.import.floor) : "auto";
   if (const auto text = text_row(ui, {"source.floor", "Floor", "Its height in metres, or auto"}, floor)) {
@@ -175,7 +175,8 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
        method.repair_swaps},
       {"smooth", "Smooth joints", "Noise of the extracted joints is smoothed as they come",
        method.smooth_joints},
-      {"lengths", "Fix lengths", "Bones keep their length", method.fix_lengths}};
+      {"lengths", "Fix lengths", "Bones keep their length", method.fix_lengths},
+      {"feet", "Lock feet", "Feet that stand do not slide", method.lock_feet}};
   for (const Switch& s : switches)
     if (const auto on =
             toggle_row(context.ui, {std::string("method.") + s.name, s.label, s.explanation}, s.on))
