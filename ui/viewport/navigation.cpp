@@ -34,17 +34,18 @@ Pointer pointer_of_item() {
   return pointer;
 }
 
-render::Camera turned(const render::Camera& camera, const ImVec2& moved, const NavigationOptions& options) {
+render::Camera orbit_drag(const render::Camera& camera, const ImVec2& moved,
+                          const NavigationOptions& options) {
   const float turn = kTurn * options.sensitivity / options.scale;
   return render::orbited(camera, -turn * moved.x, turn * moved.y);
 }
 
-render::Camera dragged(const PaneView& view, const ImVec2& moved) {
+render::Camera pan_drag(const PaneView& view, const ImVec2& moved) {
   const float height = view.rect.height();
   return render::panned(view.camera, {moved.x / height, -moved.y / height});
 }
 
-render::Camera wheeled(const PaneView& view, const ImVec2& at, float notches) {
+render::Camera wheel_zoom(const PaneView& view, const ImVec2& at, float notches) {
   const render::Camera camera = render::zoomed(view.camera, std::pow(kNotch, notches));
   const float factor = camera.distance / view.camera.distance;
   const Vec3 under = on_target_plane(view.camera, view.ray(at));
@@ -56,11 +57,11 @@ render::Camera wheeled(const PaneView& view, const ImVec2& at, float notches) {
 std::optional<render::Camera> navigated(const PaneView& view, const Pointer& pointer, bool free_left,
                                         const NavigationOptions& options) {
   const bool still = pointer.moved.x == 0 && pointer.moved.y == 0;
-  if (pointer.wheel != 0) return wheeled(view, pointer.at, pointer.wheel);
+  if (pointer.wheel != 0) return wheel_zoom(view, pointer.at, pointer.wheel);
   if (still) return std::nullopt;
-  if (pointer.panning) return dragged(view, pointer.moved);
+  if (pointer.panning) return pan_drag(view, pointer.moved);
   if (pointer.turning || (pointer.held && free_left && !pointer.pressed))
-    return turned(view.camera, pointer.moved, options);
+    return orbit_drag(view.camera, pointer.moved, options);
   return std::nullopt;
 }
 

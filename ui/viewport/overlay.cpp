@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/colors.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/widgets/controls.hpp"
 #include "ui/widgets/icons.hpp"
@@ -110,8 +109,8 @@ void Writer::draw_hint() {
   const ImVec2 middle = in_.rect.at(0.5f, 0.5f);
   const ImVec2 at(middle.x - size.x / 2, middle.y - size.y / 2);
   box({{at.x - px(14), at.y - px(10)}, {at.x + size.x + px(14), at.y + size.y + px(10)}}, ui_.theme().panel);
-  list_.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color(ui_.theme().text_dim), in_.hint.c_str(), nullptr,
-                room);
+  list_.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color(ui_.theme().text_dim), in_.hint.c_str(),
+                nullptr, room);
 }
 
 void Writer::draw_scale() {
@@ -128,11 +127,12 @@ void Writer::draw_scale() {
   text({left, at.y + px(4)}, ui_.theme().text, cut_to(in_.legend.title + unit, width));
   for (int i = 0; i < kBarSteps; ++i) {
     const float from = static_cast<float>(i) / kBarSteps, to = static_cast<float>(i + 1) / kBarSteps;
-    const ImU32 a = color_of(render::viridis(from)), b = color_of(render::viridis(to));
+    const ImU32 a = color_of(scale_color(in_.legend.scale, from)),
+                b = color_of(scale_color(in_.legend.scale, to));
     list_.AddRectFilledMultiColor({left + from * width, top}, {left + to * width, top + bar}, a, b, b, a);
   }
   const auto number_at = [&](float share, float value) {
-    const std::string words = figure(static_cast<double>(value));
+    const std::string words = figure(static_cast<double>(value), "");
     const float x = left + share * (width - ImGui::CalcTextSize(words.c_str()).x);
     text({x, top + bar + px(2)}, ui_.theme().text_dim, words);
   };
@@ -147,7 +147,8 @@ void Writer::draw_categories() {
   const float swatch = px(9), step = line() + px(1);
   const auto& all = in_.legend.categories;
   float widest = ImGui::CalcTextSize(in_.legend.title.c_str()).x;
-  for (const auto& one : all) widest = std::max(widest, swatch + px(6) + ImGui::CalcTextSize(one.label.c_str()).x);
+  for (const auto& one : all)
+    widest = std::max(widest, swatch + px(6) + ImGui::CalcTextSize(one.label.c_str()).x);
   const float whole = step * static_cast<float>(all.size() + 1) + px(12);
   const bool room = whole < in_.rect.height() - px(70) && widest < 0.4f * in_.rect.width();
   const float height = room ? whole : step + px(8);
@@ -159,8 +160,8 @@ void Writer::draw_categories() {
   if (!room) return;
   for (size_t i = 0; i < all.size(); ++i) {
     const float y = at.y + px(6) + step * static_cast<float>(i + 1), middle = y + line() / 2 - swatch / 2;
-    list_.AddRectFilled({at.x + px(8), middle}, {at.x + px(8) + swatch, middle + swatch}, color_of(all[i].color),
-                        px(2));
+    list_.AddRectFilled({at.x + px(8), middle}, {at.x + px(8) + swatch, middle + swatch},
+                        color_of(all[i].color), px(2));
     text({at.x + px(8) + swatch + px(6), y}, ui_.theme().text_dim, all[i].label);
   }
 }
@@ -221,7 +222,8 @@ std::vector<Overlay::Label> joint_labels(const PaneView& view, const Joints& joi
     const auto at = view.project(joints.row(j));
     if (at && view.rect.contains(*at)) labels.push_back({*at, joint_label(j), strong});
   }
-  std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.strong < b.strong; });
+  std::stable_sort(labels.begin(), labels.end(),
+                   [](const auto& a, const auto& b) { return a.strong < b.strong; });
   return labels;
 }
 

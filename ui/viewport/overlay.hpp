@@ -15,7 +15,6 @@ struct Overlay {
   bool title_right = false;  ///< at the top right: the right half of a wipe
   std::string hint;          ///< in the middle, where nothing is to be seen
   std::string warning;       ///< why the frame is flagged; empty: it is good
-  bool busy = false;         ///< what should be seen is being made
   Legend legend;
   struct Label {
     ImVec2 at;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/session/follow.hpp"
+#include "render/picking.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -95,8 +96,7 @@ std::string pane_title(const Session& session, const PaneContent& pane) {
 }
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {
-  if (pane.source && session.document.source.path.empty())
-    return "Drop a scan folder or a motion here";
+  if (pane.source && session.document.source.path.empty()) return "Drop a scan folder or a motion here";
   if (pane.empty() || (!pane.source && static_cast<size_t>(pane.takes[0]) >= session.takes.size()))
     return "Drop a character here";
   if (const app::TakeState* take = pane.source ? nullptr : state_of_take(session, pane)) {
@@ -189,35 +189,18 @@ render::Camera fitted_camera(const Session& session, const PaneContent& pane, fl
 }
 
 render::Ray PaneView::ray(const ImVec2& at) const {
-  const Eigen::Vector2f place(2 * (at.x - rect.min.x) / rect.width() - 1,
-                              1 - 2 * (at.y - rect.min.y) / rect.height());
-  return render::ray_through(camera, aspect(), place);
+  return render::ray_through(camera, size(), Eigen::Vector2f(at.x - rect.min.x, at.y - rect.min.y));
 }
 
 std::optional<ImVec2> PaneView::project(const Vec3& point) const {
-  const Eigen::Vector4f clip = render::projection_matrix(camera, aspect()) *
-                               (render::view_matrix(camera) * point.homogeneous());
-  if (!(clip.w() > 1e-6f)) return std::nullopt;
-  return rect.at(0.5f + 0.5f * clip.x() / clip.w(), 0.5f - 0.5f * clip.y() / clip.w());
-}
-
-float PaneView::metres_per_pixel(const Vec3& point) const {
-  const float depth = camera.orthographic
-                          ? camera.distance
-                          : (render::eye(camera) - point).dot(render::axes(camera).col(2));
-  return 2 * std::max(depth, 0.01f) * std::tan(camera.fov / 2) / rect.height();
+  const Vec3 seen = render::on_screen(camera, size(), point);
+  if (!camera.orthographic && !(seen.z() > 0)) return std::nullopt;
+  return ImVec2(rect.min.x + seen.x(), rect.min.y + seen.y());
 }
 
 int joint_at(const PaneView& view, const Joints& joints, const ImVec2& at, float reach) {
-  int best = -1;
-  float least = reach;
-  for (int j = 0; j < kJointCount; ++j) {
-    const auto seen = joints.row(j).allFinite() ? view.project(joints.row(j)) : std::nullopt;
-    if (!seen) continue;
-    const float away = std::hypot(seen->x - at.x, seen->y - at.y);
-    if (away < least) least = away, best = j;
-  }
-  return best;
+  const Eigen::Vector2f pixel(at.x - view.rect.min.x, at.y - view.rect.min.y);
+  return render::point_under(joints, view.camera, view.size(), pixel, reach).value_or(-1);
 }
 
 }  // namespace understudy::ui

@@ -60,15 +60,15 @@ render::Camera fitted_camera(const app::Session& session, const PaneContent& pan
 
 /// A pane's picture on the screen: where it is and what it is seen through.
 struct PaneView {
-  Rect rect;  ///< pixels
+  Rect rect;  ///< whole pixels
   render::Camera camera;
-  float aspect() const { return rect.width() / rect.height(); }
+  render::PixelSize size() const { return {static_cast<int>(rect.width()), static_cast<int>(rect.height())}; }
   /// The ray through a pixel.
   render::Ray ray(const ImVec2& at) const;
   /// Where a point of the world is seen; none behind the eye.
   std::optional<ImVec2> project(const Vec3& point) const;
-  /// Metres that one pixel spans at a point of the world.
-  float metres_per_pixel(const Vec3& point) const;
+  /// Metres that a pixel covers at a point of the world.
+  float metres_a_pixel(const Vec3& point) const { return render::metres_a_pixel(camera, size(), point); }
 };
 
 /// The joint seen nearest to a pixel, at most `reach` pixels away; -1 for none.

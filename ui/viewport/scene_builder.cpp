@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/session/follow.hpp"
 #include "render/colors.hpp"
 
 namespace understudy::ui {
@@ -14,6 +15,7 @@ using app::Session;
 using render::SharedPoints;
 
 constexpr float kGhostOpacity = 0.16f, kOverlaidOpacity = 0.62f, kTrailSeconds = 1.2f;
+constexpr float kHandleRadius = 0.022f;  // metres, of the crop box's handles
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
 /// A member of something shared, shared with the whole.
@@ -34,7 +36,14 @@ void append(std::vector<float>& values, const Array& array) {
 /// Colours of the values along the legend's scale; none where there is no scale.
 SharedPoints scale_colors(const SurfaceValues& surface) {
   if (surface.values == nullptr) return {};
+  if (surface.legend.scale == Legend::Scale::Error)
+    return render::error_colors(*surface.values, surface.legend.high);
   return render::viridis_colors(*surface.values, surface.legend.low, surface.legend.high);
+}
+
+Vec3 trail_color(int joint) {
+  if (kMirror[static_cast<size_t>(joint)] == joint) return {0.62f, 0.66f, 0.72f};
+  return kJointNames[static_cast<size_t>(joint)][0] == 'l' ? render::kLeftColor : render::kRightColor;
 }
 
 class Builder {
@@ -56,7 +65,7 @@ class Builder {
   void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, const Look& how);
   void add_skeleton(const Joints& joints, const app::Layers& layers);
   void add_trails();
-  void add_trail(const PaneContent& of, int joint, const Vec3& color);
+  void add_trail(int person, int joint);
   void add_ghosts();
   void add_crop_box();
   void set_ground();
@@ -82,6 +91,7 @@ PaneScene Builder::build() {
     add_rest();
   else
     add_frame();
+  if (in_.preview.gizmo) out_.scene.gizmos.push_back(*in_.preview.gizmo);
   set_ground();
   return std::move(out_);
 }
@@ -200,6 +210,52 @@ void Builder::add_ghosts() {
   }
 }
 
+/// Paths of the chosen joints up to now and from now on.
+void Builder::add_trails() {
+  for (const int joint : session_.view.trail_joints) {
+    if (joint < 0 || joint >= kJointCount) continue;
+    if (in_.pane.source && session_.view.source.trails) add_trail(0, joint);
+    for (const int k : in_.pane.takes)
+      if (session_.view.take.trails) add_trail(k + 1, joint);
+  }
+}
+
+void Builder::add_trail(int person, int joint) {
+  const int now = in_.pictures.frame,
+            reach = static_cast<int>(std::lround(kTrailSeconds * session_.source.fps));
+  const Vec3 color = trail_color(joint);
+  for (const int step :
+       {1, -1}) {  // what was comes up to now, what comes goes back to it: both fade outwards
+    std::vector<Vec3> path;
+    for (int f = now - step * reach; f != now + step; f += step)
+      if (const Joints* joints = app::pane_joints(session_, person, f)) path.push_back(joints->row(joint));
+    if (path.size() < 2) continue;
+    Points points(static_cast<Eigen::Index>(path.size()), 3);
+    for (size_t i = 0; i < path.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = path[i];
+    render::LinesView line = render::trail(points, color, step == 1 ? 3.f : 1.5f);
+    line.x_ray = true;
+    out_.scene.lines.push_back(std::move(line));
+  }
+}
+
+void Builder::add_crop_box() {
+  if (session_.tool != app::Tool::Crop || !in_.pane.source) return;
+  const Box box = in_.preview.crop.value_or(crop_box(session_, in_.pictures));
+  const Vec3 color(0.90f, 0.62f, 0.20f);
+  render::LinesView lines = render::box(box.low, box.high, color, 2);
+  lines.x_ray = true, lines.opacity = 0.9f;
+  out_.scene.lines.push_back(std::move(lines));
+  render::PointsView handles;
+  Points centres(6, 3), colors(6, 3);
+  for (int face = 0; face < 6; ++face) {
+    centres.row(face) = face_centre(box, face);
+    colors.row(face) = face == in_.preview.crop_face ? Vec3(1, 0.85f, 0.4f) : color;
+  }
+  handles.positions = std::move(centres), handles.colors = std::move(colors);
+  handles.radius = kHandleRadius;
+  out_.scene.clouds.push_back(std::move(handles));
+}
+
 void Builder::set_ground() {
   render::GroundView& ground = out_.scene.ground;
   ground.visible = layer(&app::Layers::ground);
@@ -277,6 +333,12 @@ Box crop_box(const Session& session, const PanePictures& pictures) {
   return box;
 }
 
+Vec3 face_centre(const Box& box, int face) {
+  Vec3 centre = (box.low + box.high) / 2;
+  centre[face / 2] = face % 2 == 1 ? box.high[face / 2] : box.low[face / 2];
+  return centre;
+}
+
 Vec3 take_color(int k) {
   static const std::array<Vec3, 4> kTints = {Vec3(0.77f, 0.74f, 0.71f), Vec3(0.66f, 0.75f, 0.69f),
                                              Vec3(0.72f, 0.68f, 0.78f), Vec3(0.79f, 0.69f, 0.64f)};
@@ -285,7 +347,8 @@ Vec3 take_color(int k) {
 
 render::BackgroundView background_of(ThemeKind theme) {
   render::BackgroundView view;
-  if (theme == ThemeKind::Dark) view.top = Vec3(0.235f, 0.255f, 0.285f), view.bottom = Vec3(0.155f, 0.165f, 0.185f);
+  if (theme == ThemeKind::Dark)
+    view.top = Vec3(0.235f, 0.255f, 0.285f), view.bottom = Vec3(0.155f, 0.165f, 0.185f);
   return view;
 }
 

@@ -18,7 +18,8 @@ struct Preview {
   std::optional<Joints> source_joints;  ///< in place of the extracted ones
   std::optional<Joints> take_joints;    ///< in place of those of the pane's first take (or of its T-pose)
   std::optional<Box> crop;              ///< in place of the document's
-  bool empty() const { return !source_joints && !take_joints && !crop; }
+  int crop_face = -1;                   ///< the one under the pointer: 2 * axis, + 1 the high one
+  std::optional<render::GizmoView> gizmo;
 };
 
 /// Colours once made, kept for as long as they stay the same: one for each pane.
@@ -54,12 +55,11 @@ struct PaneScene {
 /// while that tool is active. What is not there yet is left out. memory: null to make all colours anew.
 PaneScene build_scene(const SceneInput& input, ColourMemory* memory = nullptr);
 
-/// Whether both give the same picture: shared arrays are compared by identity, the rest by value.
-bool same_picture(const render::Scene& a, const render::Scene& b);
-
 /// The box that the crop tool shows: the document's, or one around the scan.
 Box crop_box(const app::Session& session, const PanePictures& pictures);
-/// A skeleton's ghost, trail and surface colour for the k-th take of the views.
+/// The middle of a face of a box, numbered as Preview::crop_face.
+Vec3 face_centre(const Box& box, int face);
+/// The plain surface of a take.
 Vec3 take_color(int k);
 /// What is behind everything.
 render::BackgroundView background_of(ThemeKind theme);

@@ -19,10 +19,22 @@ SurfaceValues missing(const std::string& title, const std::string& why) {
   return none;
 }
 
+Legend scale(const std::string& title, const std::string& unit, float high) {
+  Legend legend;
+  legend.title = title, legend.unit = unit, legend.high = high;
+  return legend;
+}
+
 SurfaceValues millimetres(const Session& session, const std::string& title, Eigen::VectorXf values) {
   SurfaceValues out;
-  out.legend = {title, "mm", 0, session.view.error_scale_mm, {}, ""};
+  out.legend = scale(title, "mm", session.view.error_scale_mm);
   out.values = std::make_shared<const Eigen::VectorXf>(std::move(values));
+  return out;
+}
+
+SurfaceValues errors(const Session& session, const std::string& title, Eigen::VectorXf values) {
+  SurfaceValues out = millimetres(session, title, std::move(values));
+  out.legend.scale = Legend::Scale::Error;
   return out;
 }
 
@@ -31,7 +43,7 @@ SurfaceValues weights(const Session& session, const app::TakeState& take) {
   const int joint = weights_joint(session);
   SurfaceValues out;
   if (joint >= 0 && joint < take.weights->cols()) {
-    out.legend = {"Weight of the " + joint_label(joint), "", 0, 1, {}, ""};
+    out.legend = scale("Weight of the " + joint_label(joint), "", 1);
     out.values = std::make_shared<const Eigen::VectorXf>(take.weights->col(joint));
     return out;
   }
@@ -48,7 +60,7 @@ SurfaceValues error(const Session& session, const Points& vertices, int frame) {
   if (truth.vertices.empty()) return missing(title, "the truth has no vertices");
   if (truth.vertex_count != vertices.rows()) return missing(title, "the truth is of another mesh");
   if (frame < 0 || frame >= truth.frames) return missing(title, "the truth is shorter");
-  return millimetres(session, title, distances_mm(vertices, truth.frame_vertices(frame)));
+  return errors(session, title, distances_mm(vertices, truth.frame_vertices(frame)));
 }
 
 SurfaceValues confidence(const Session& session, const Points& points, const std::optional<Joints>& joints,
@@ -57,13 +69,17 @@ SurfaceValues confidence(const Session& session, const Points& points, const std
   if (!joints || frame < 0 || static_cast<size_t>(frame) >= session.source.frames.size())
     return missing(title, "not ready yet");
   SurfaceValues out;
-  out.legend = {title, "", 0, 1, {}, ""};
+  out.legend = scale(title, "", 1);
   const app::KeptSource& seen = session.source.frames[static_cast<size_t>(frame)];
   out.values = std::make_shared<const Eigen::VectorXf>(of_nearest_joint(points, *joints, seen.confidence_of));
   return out;
 }
 
 }  // namespace
+
+Vec3 scale_color(Legend::Scale scale, float share) {
+  return scale == Legend::Scale::Error ? render::error_color(share) : render::viridis(share);
+}
 
 Colouring take_colouring(const Session& session) {
   return session.tool == app::Tool::Paint ? Colouring::Weights : session.view.take.colouring;
@@ -88,15 +104,16 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
     case Colouring::Error:
       return error(session, posed->vertices, pictures.frame);
     case Colouring::Difference:
-      if (k == 0) return millimetres(session, "Difference", Eigen::VectorXf::Zero(posed->vertices.rows()));
+      if (k == 0) return errors(session, "Difference", Eigen::VectorXf::Zero(posed->vertices.rows()));
       if (pictures.reference == nullptr) return missing("Difference", "the first take is not ready");
       if (pictures.reference->vertices.rows() != posed->vertices.rows())
         return missing("Difference", "the first take is of another mesh");
-      return millimetres(session, "Difference", distances_mm(posed->vertices, pictures.reference->vertices));
+      return errors(session, "Difference", distances_mm(posed->vertices, pictures.reference->vertices));
     case Colouring::Confidence:
       const size_t f = static_cast<size_t>(std::max(0, pictures.frame));
       return confidence(session, posed->vertices,
-                        f < take.joints.size() ? std::optional(take.joints[f]) : std::nullopt, pictures.frame);
+                        f < take.joints.size() ? std::optional(take.joints[f]) : std::nullopt,
+                        pictures.frame);
   }
   return {};
 }

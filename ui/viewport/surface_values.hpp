@@ -24,11 +24,13 @@ struct PanePictures {
   std::vector<Ghost> ghosts;
 };
 
-/// A scale along viridis, or categories, or nothing (plain).
+/// A scale, or categories, or nothing (plain).
 struct Legend {
+  enum class Scale { Viridis, Error };
   std::string title;  ///< "Offsets"; empty: no legend
   std::string unit;   ///< "mm"
   float low = 0, high = 1;
+  Scale scale = Scale::Viridis;
   struct Category {
     std::string label;
     Vec3 color;
@@ -42,6 +44,9 @@ struct SurfaceValues {
   Legend legend;
   std::shared_ptr<const Eigen::VectorXf> values;  ///< [V]; null: plain, categories, or missing
 };
+
+/// A legend's colour at a share of its scale, 0..1.
+Vec3 scale_color(Legend::Scale scale, float share);
 
 /// The colouring that a take is shown with: the one chosen, or the painted joint's weights while painting.
 app::Colouring take_colouring(const app::Session& session);

@@ -62,7 +62,8 @@ TargetLook look_of(const Target& target) {
 
 std::shared_ptr<const TargetLook> TargetLooks::of(const std::shared_ptr<const Target>& target) {
   if (target == nullptr) return nullptr;
-  auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.target == target; });
+  auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.target == target; });
   if (found == entries_.end()) {
     entries_.emplace_front();
     found = entries_.begin();

@@ -1,0 +1,355 @@
+#include "ui/viewport/hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/session/follow.hpp"
+#include "render/gizmo.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/skeleton/skinning.hpp"
+#include "ui/panels/panel.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using app::Session;
+using app::Tool;
+using render::GizmoHandle;
+
+constexpr float kReach = 12;                // points around a joint in which it is met
+constexpr float kLeastMove = 5e-4f;         // metres or radians: less was a click
+constexpr float kThinnest = 0.05f;          // metres, of a crop box
+constexpr float kDabStep = 0.35f;           // of the brush's radius, between dabs
+constexpr double kSettleSeconds = 1.5;      // an edit shows within this time, or never
+constexpr Eigen::Index kMostPosed = 60000;  // vertices posed for a preview on the thread that draws
+
+const app::TakeState* take_of(const Session& session, int k) {
+  return k >= 0 && static_cast<size_t>(k) < session.takes.size() ? &session.takes[static_cast<size_t>(k)]
+                                                                 : nullptr;
+}
+
+const Pose* pose_of(const Session& session, int take, int frame) {
+  const app::TakeState* state = take_of(session, take);
+  const size_t f = static_cast<size_t>(frame);
+  return state != nullptr && frame >= 0 && f < state->shown.poses.size() ? &state->shown.poses[f] : nullptr;
+}
+
+app::Arguments& operator<<(app::Arguments& words, const Vec3& v) {
+  for (int i = 0; i < 3; ++i) words.push_back(argument(static_cast<double>(v[i])));
+  return words;
+}
+
+int axis_of(GizmoHandle handle) {
+  return std::clamp(static_cast<int>(handle) - static_cast<int>(GizmoHandle::AxisX), 0, 2);
+}
+
+/// The pose with one bone turned in its own frame.
+Pose turned(Pose pose, int joint, const Vec3& axis_angle) {
+  Mat3& R = pose.local[static_cast<size_t>(joint)];
+  R = R * rotation_from_axis_angle(axis_angle);
+  return pose;
+}
+
+}  // namespace
+
+std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
+  const Session& session = place.session;
+  const int frame = place.pictures.frame, joint = session.selected_joint;
+  Subject subject;
+  subject.take = place.pane.takes.empty() ? -1 : place.pane.takes[0];
+  const app::TakeState* take = take_of(session, subject.take);
+  if (session.tool == Tool::TargetJoints && shows_rest(session, place.pane)) {
+    subject.grip = Grip::RestJoint;
+    subject.joints = take->target->joints;
+    return subject;
+  }
+  const int person = session.tool == Tool::Bones ? subject.take + 1 : 0;
+  const bool there =
+      session.tool == Tool::Joints ? place.pane.source : session.tool == Tool::Bones && take != nullptr;
+  const Joints* joints = there ? app::pane_joints(session, person, frame) : nullptr;
+  if (joints == nullptr || shows_rest(session, place.pane)) return std::nullopt;
+  subject.joints = *joints;
+  subject.grip = session.tool == Tool::Joints ? Grip::Joint : Grip::Bone;
+  if (subject.grip == Grip::Joint) subject.take = -1;
+  const Pose* pose = subject.grip == Grip::Bone ? pose_of(session, subject.take, frame) : nullptr;
+  if (pose != nullptr && take->target != nullptr && joint >= 0)
+    subject.axes = forward_kinematics(take->target->joints, *pose).global[static_cast<size_t>(joint)];
+  return subject;
+}
+
+render::GizmoView Hand::gizmo_of(const Subject& subject, int joint) {
+  render::GizmoView gizmo;
+  gizmo.kind = subject.grip == Grip::Bone ? render::GizmoView::Kind::Turn : render::GizmoView::Kind::Move;
+  gizmo.position = subject.joints.row(joint);
+  gizmo.axes = subject.axes;
+  return gizmo;
+}
+
+void Hand::let_go() {
+  grip_ = settling_ = Grip::None;
+  handle_ = GizmoHandle::None;
+  hovered_ = face_ = -1;
+  brush_.reset();
+  tip_.clear();
+}
+
+bool Hand::work(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
+  const bool here = pointer.over || pointer.held || pointer.released;
+  if (busy() && !(place.pane == pane_)) return false;
+  if (!here && !busy()) {
+    if (place.pane == pane_)
+      hovered_ = -1, brush_.reset(), tip_.clear(), handle_ = GizmoHandle::None, face_ = -1;
+    return false;
+  }
+  pane_ = place.pane;
+  tip_.clear();
+  if (place.session.tool != Tool::Paint) brush_.reset();
+  switch (place.session.tool) {
+    case Tool::Crop:
+      return work_on_box(place, pointer, queue);
+    case Tool::Paint:
+      return paint(place, pointer, queue);
+    default:
+      return work_on_joints(place, pointer, queue);
+  }
+}
+
+bool Hand::work_on_joints(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
+  if (busy()) {
+    drag(place, pointer);
+    if (pointer.released || !pointer.held) finish(place, queue);
+    return true;
+  }
+  const auto subject = subject_of(place);
+  const Joints* any = app::pane_joints(
+      place.session, place.pane.source || place.pane.takes.empty() ? 0 : place.pane.takes[0] + 1,
+      place.pictures.frame);
+  const Joints* joints = subject ? &subject->joints : any;
+  hovered_ = joints == nullptr ? -1 : joint_at(place.view, *joints, pointer.at, kReach * place.scale);
+  handle_ = GizmoHandle::None;
+  if (!subject) return false;
+  const int selected = place.session.selected_joint;
+  if (selected >= 0)
+    handle_ =
+        render::handle_under(gizmo_of(*subject, selected), place.view.camera, place.view.ray(pointer.at));
+  if (handle_ != GizmoHandle::None) hovered_ = -1;
+  const bool meant = handle_ != GizmoHandle::None || hovered_ >= 0;
+  if (pointer.pressed && meant) grab(place, *subject, pointer, queue);
+  return meant;
+}
+
+void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& pointer,
+                app::CommandQueue& queue) {
+  const Session& session = place.session;
+  joint_ = handle_ != GizmoHandle::None ? session.selected_joint : hovered_;
+  if (joint_ != session.selected_joint) queue.push_back({"select.joint", {joint_name(joint_)}});
+  if (session.playback.playing) queue.push_back({"playback.pause", {}});
+  if (subject.grip == Grip::Bone && handle_ == GizmoHandle::None) return;  // a bone turns by its rings alone
+  if (handle_ == GizmoHandle::None) handle_ = GizmoHandle::Centre;
+  grip_ = subject.grip, settling_ = Grip::None;
+  frame_ = place.pictures.frame, take_ = subject.take;
+  before_ = subject.joints;
+  gizmo_ = gizmo_of(subject, joint_);
+  start_ = last_ = place.view.ray(pointer.at);
+  offset_.setZero();
+  corrections_.resize(0, 3);
+  const app::TakeState* take = take_of(session, take_);
+  const Pose* pose = pose_of(session, take_, frame_);
+  const bool posed = grip_ == Grip::Bone && take != nullptr && pose != nullptr && take->deformer != nullptr;
+  if (posed && take->target->mesh.vertices.rows() <= kMostPosed)
+    corrections_ = take->deformer->offsets(*pose);
+}
+
+void Hand::drag(const HandPlace& place, const Pointer& pointer) {
+  const render::Ray now = place.view.ray(pointer.at);
+  const render::Camera& camera = place.view.camera;
+  if (grip_ == Grip::Bone) {  // step by step, so that more than half a turn is one, too
+    Vec3 axis = Vec3::Zero();
+    axis[axis_of(handle_)] = 1;
+    offset_ += render::turned(gizmo_, handle_, camera, last_, now) * axis;
+    tip_ = figure(static_cast<double>(offset_.norm() * 180 / kPi), "deg");
+  } else {
+    offset_ = render::dragged(gizmo_, handle_, camera, start_, now);
+    tip_ = figure(static_cast<double>(offset_.norm() * 1000), "mm");
+  }
+  last_ = now;
+}
+
+void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
+  const Session& session = place.session;
+  const Grip grip = grip_;
+  grip_ = Grip::None;
+  handle_ = GizmoHandle::None;
+  tip_.clear();
+  if (offset_.norm() < kLeastMove) return;
+  app::Arguments words;
+  if (grip == Grip::Joint) {
+    words = {std::to_string(frame_), joint_name(joint_)};
+    words << offset_;
+    words.push_back(std::to_string(session.falloff));
+    if (session.drag_children) words.push_back("children");
+    queue.push_back({"edit.drag", words});
+  } else if (grip == Grip::Bone) {
+    words = {std::to_string(take_), std::to_string(frame_), joint_name(joint_)};
+    words << offset_;
+    words.push_back(std::to_string(session.falloff));
+    queue.push_back({"edit.rotate", words});
+  } else {
+    words = {std::to_string(take_), joint_name(joint_)};
+    words << Vec3(before_.row(joint_).transpose() + offset_);
+    if (session.mirror_joint) words.push_back("mirror");
+    queue.push_back({"edit.target_joint", words});
+  }
+  settling_ = grip;
+  settle_until_ = session.time + kSettleSeconds;
+}
+
+/// Whether the drag, or the edit just asked for, belongs to this pane and does not show by itself yet.
+bool Hand::shown_in(const HandPlace& place) const {
+  const Grip grip = busy() ? grip_ : settling_;
+  if (grip != Grip::Joint && grip != Grip::Bone && grip != Grip::RestJoint) return false;
+  if (!(place.pane == pane_)) return false;
+  if (busy()) return true;
+  const auto subject = subject_of(place);
+  return place.session.time < settle_until_ && subject && subject->grip == grip && subject->take == take_ &&
+         (grip == Grip::RestJoint || place.pictures.frame == frame_) && subject->joints == before_;
+}
+
+Joints Hand::moved_joints(const HandPlace& place) const {
+  const Session& session = place.session;
+  const Grip grip = busy() ? grip_ : settling_;
+  Joints joints = before_;
+  if (grip == Grip::RestJoint) {
+    JointMove move;
+    move.joint = joint_, move.position = before_.row(joint_).transpose() + offset_;
+    move.mirror = session.mirror_joint;
+    return understudy::apply({move}, before_);
+  }
+  if (grip == Grip::Bone) {
+    const app::TakeState* take = take_of(session, take_);
+    const Pose* pose = pose_of(session, take_, frame_);
+    if (take == nullptr || take->target == nullptr || pose == nullptr) return joints;
+    return forward_kinematics(take->target->joints, turned(*pose, joint_, offset_)).joints;
+  }
+  std::array<bool, kJointCount> moves{};
+  for (int j = 0; j < kJointCount; ++j) {  // parents come first
+    moves[static_cast<size_t>(j)] =
+        j == joint_ || (session.drag_children && kParents[static_cast<size_t>(j)] >= 0 &&
+                        moves[static_cast<size_t>(kParents[static_cast<size_t>(j)])]);
+    if (moves[static_cast<size_t>(j)]) joints.row(j) += offset_.transpose();
+  }
+  return joints;
+}
+
+Preview Hand::preview(const HandPlace& place) const {
+  Preview preview;
+  const Session& session = place.session;
+  auto subject = subject_of(place);
+  if (shown_in(place)) {
+    const Joints moved = moved_joints(place);
+    (grip_ == Grip::Joint || settling_ == Grip::Joint ? preview.source_joints : preview.take_joints) = moved;
+    if (subject) subject->joints = moved;
+  }
+  const bool chosen = session.selected_joint >= 0 && subject && !session.playback.playing &&
+                      (subject->take < 0 || subject->take == session.selected_take);
+  if (chosen) {
+    preview.gizmo = gizmo_of(*subject, session.selected_joint);
+    if (place.pane == pane_) preview.gizmo->hovered = handle_;
+  }
+  if (session.tool == Tool::Crop && place.pane.source) {
+    const bool mine = place.pane == pane_;
+    if (mine && grip_ == Grip::Face) preview.crop = box_;
+    preview.crop_face = mine ? face_ : -1;
+  }
+  return preview;
+}
+
+std::shared_ptr<const app::PosedPicture> Hand::turned_picture(const HandPlace& place) const {
+  const Grip grip = busy() ? grip_ : settling_;
+  const app::TakeState* take = take_of(place.session, take_);
+  const Pose* pose = pose_of(place.session, take_, frame_);
+  if (grip != Grip::Bone || !shown_in(place) || pose == nullptr || take->weights == nullptr ||
+      corrections_.rows() == 0)
+    return nullptr;
+  const Target& target = *take->target;
+  if (corrections_.rows() != target.mesh.vertices.rows()) return nullptr;
+  const PosedSkeleton skeleton = forward_kinematics(target.joints, turned(*pose, joint_, offset_));
+  app::PosedPicture picture;
+  picture.vertices =
+      linear_blend_skinning(target.mesh.vertices + corrections_, *take->weights, target.joints, skeleton);
+  picture.offsets = corrections_;
+  if (!target.mesh.is_cloud()) picture.normals = vertex_normals(picture.vertices, target.mesh.faces);
+  return std::make_shared<const app::PosedPicture>(std::move(picture));
+}
+
+bool Hand::work_on_box(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
+  if (!place.pane.source) return false;
+  if (!busy()) {
+    box_ = crop_box(place.session, place.pictures);
+    Points centres(6, 3);
+    for (int face = 0; face < 6; ++face) centres.row(face) = face_centre(box_, face);
+    const Eigen::Vector2f pixel(pointer.at.x - place.view.rect.min.x, pointer.at.y - place.view.rect.min.y);
+    face_ =
+        render::point_under(centres, place.view.camera, place.view.size(), pixel, 1.3f * kReach * place.scale)
+            .value_or(-1);
+    if (!pointer.pressed || face_ < 0) return face_ >= 0;
+    grip_ = Grip::Face;
+    gizmo_ = {};
+    gizmo_.position = face_centre(box_, face_);
+    start_ = place.view.ray(pointer.at);
+    return true;
+  }
+  const int axis = face_ / 2;
+  const auto handle = static_cast<GizmoHandle>(static_cast<int>(GizmoHandle::AxisX) + axis);
+  const Vec3 moved = render::dragged(gizmo_, handle, place.view.camera, start_, place.view.ray(pointer.at));
+  const float to = gizmo_.position[axis] + moved[axis];
+  if (face_ % 2 == 1)
+    box_.high[axis] = std::max(to, box_.low[axis] + kThinnest);
+  else
+    box_.low[axis] = std::min(to, box_.high[axis] - kThinnest);
+  if (pointer.released || !pointer.held) {
+    grip_ = Grip::None;
+    app::Arguments words;
+    words << box_.low << box_.high;
+    if (std::abs(moved[axis]) >= kLeastMove) queue.push_back({"edit.crop", words});
+  }
+  return true;
+}
+
+bool Hand::paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
+  brush_.reset();
+  hovered_ = -1;
+  const int k = place.pane.takes.empty() ? -1 : place.pane.takes[0];
+  const app::TakeState* take = take_of(place.session, k);
+  const auto posed = place.pictures.takes.empty() ? nullptr : place.pictures.takes[0];
+  if (busy() && (pointer.released || !pointer.held)) grip_ = Grip::None;
+  if (take == nullptr || take->target == nullptr || posed == nullptr) return busy();
+  const Mesh& mesh = take->target->mesh;
+  if (mesh.is_cloud() || posed->vertices.rows() != mesh.vertices.rows()) return busy();
+  const auto hit = render::surface_under(place.view.ray(pointer.at), posed->vertices, mesh.faces);
+  if (!hit) return busy();
+  Vec3 rest = Vec3::Zero();
+  for (int c = 0; c < 3; ++c)
+    rest += hit->barycentric[c] * mesh.vertices.row(mesh.faces(hit->face, c)).transpose();
+  const Vec3 normal =
+      posed->normals.rows() > hit->vertex ? Vec3(posed->normals.row(hit->vertex)) : Vec3::UnitY();
+  brush_ = BrushPlace{hit->position, normal};
+  if (place.session.selected_joint < 0) tip_ = "Choose the joint to paint first";
+  if (place.session.selected_joint < 0) return true;
+  const bool apart = (rest - last_dab_).norm() > kDabStep * place.session.brush.radius_m;
+  if (pointer.pressed || (busy() && apart)) {
+    if (pointer.pressed && place.session.playback.playing) queue.push_back({"playback.pause", {}});
+    grip_ = Grip::Paint;
+    last_dab_ = rest;
+    app::Arguments words{std::to_string(k)};
+    words << rest;
+    queue.push_back({"edit.paint", words});
+  }
+  return true;
+}
+
+std::optional<Hand::BrushPlace> Hand::brush(const PaneContent& pane) const {
+  return pane == pane_ ? brush_ : std::nullopt;
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,93 @@
+// The tools: what the left button does in a pane, with a preview of it, and the edit that is asked for in the
+// end.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/session/commands.hpp"
+#include "render/picking.hpp"
+#include "ui/viewport/navigation.hpp"
+#include "ui/viewport/scene_builder.hpp"
+
+namespace understudy::ui {
+
+/// A pane as a tool sees it.
+struct HandPlace {
+  const app::Session& session;
+  const PaneContent& pane;
+  const PaneView& view;
+  const PanePictures& pictures;
+  float scale = 1;  ///< of the interface: pixels a point
+};
+
+/// One for all panes: there is one mouse.
+class Hand {
+ public:
+  /// What the pointer does in this frame; finished edits are asked for in `queue`. True when the left button
+  /// is the tool's here, false when the camera may have it.
+  bool work(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
+  /// Drops what is under way (Escape, another tool).
+  void let_go();
+  bool busy() const { return grip_ != Grip::None; }
+  /// The pane that the pointer was in last, or that a drag began in.
+  const PaneContent& pane() const { return pane_; }
+
+  /// What is to be shown in the pane of what is under way, or has just been asked for.
+  Preview preview(const HandPlace& place) const;
+  /// The first take's picture with the bone turned; null where it is as it was.
+  std::shared_ptr<const app::PosedPicture> turned_picture(const HandPlace& place) const;
+
+  /// The joint under the pointer in a pane, -1 for none.
+  int hovered_joint(const PaneContent& pane) const { return pane == pane_ ? hovered_ : -1; }
+  /// Where the brush is on a pane's surface, and the surface's normal there.
+  struct BrushPlace {
+    Vec3 position, normal;
+  };
+  std::optional<BrushPlace> brush(const PaneContent& pane) const;
+  /// A word beside the pointer: what a click would do; often empty.
+  const std::string& tip() const { return tip_; }
+
+ private:
+  enum class Grip { None, Joint, Bone, RestJoint, Face, Paint };
+  /// A skeleton that a tool works on: the extracted one, a take's, or a target's in T-pose.
+  struct Subject {
+    Grip grip = Grip::None;
+    int take = -1;
+    Joints joints;
+    Mat3 axes = Mat3::Identity();  ///< of the selected joint
+  };
+  static std::optional<Subject> subject_of(const HandPlace& place);
+  static render::GizmoView gizmo_of(const Subject& subject, int joint);
+  bool work_on_joints(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
+  void grab(const HandPlace& place, const Subject& subject, const Pointer& pointer, app::CommandQueue& queue);
+  void drag(const HandPlace& place, const Pointer& pointer);
+  void finish(const HandPlace& place, app::CommandQueue& queue);
+  bool work_on_box(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
+  bool paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
+  Joints moved_joints(const HandPlace& place) const;
+  bool shown_in(const HandPlace& place) const;
+
+  Grip grip_ = Grip::None;
+  PaneContent pane_;  ///< the one that the pointer is in or the drag began in
+  int hovered_ = -1;
+  render::GizmoHandle handle_ = render::GizmoHandle::None;  ///< under the pointer, or gripped
+  std::string tip_;
+
+  // While something is gripped, and shortly after, until the edit shows.
+  int joint_ = -1, frame_ = -1, take_ = -1;
+  Joints before_ = Joints::Zero();
+  render::GizmoView gizmo_;
+  render::Ray start_{}, last_{};
+  Vec3 offset_ = Vec3::Zero();  ///< metres, world; of Bone: axis times angle, in the joint's frame
+  Points corrections_{0, 3};    ///< of a turned bone: pose-corrective offsets when it was gripped
+  double settle_until_ = -1;    ///< Session::time
+  Grip settling_ = Grip::None;
+  Box box_;
+  int face_ = -1;
+  std::optional<BrushPlace> brush_;
+  Vec3 last_dab_ = Vec3::Zero();
+};
+
+}  // namespace understudy::ui

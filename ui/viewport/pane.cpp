@@ -1,0 +1,92 @@
+#include "ui/viewport/pane.hpp"
+
+#include "render/gl/scopes.hpp"
+#include "render/picking.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/viewport/same_picture.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using render::gl::api;
+
+constexpr float kNearScan = 0.02f;  // metres around the pointer's ray in which a point of a scan is met
+
+/// What of a pane can be met: a take's surface before the scan.
+struct Met {
+  int vertex = 0;
+  Vec3 position = Vec3::Zero();
+};
+
+std::optional<Met> met_scan(const app::Session& session, const Pane& pane, const render::Ray& ray) {
+  const auto& scan = pane.keeper.pictures().scan;
+  if (scan == nullptr || !session.view.source.surface) return std::nullopt;
+  const auto vertex = render::point_near(scan->mesh.vertices, ray, kNearScan);
+  if (!vertex) return std::nullopt;
+  return Met{*vertex, scan->mesh.vertices.row(*vertex)};
+}
+
+std::optional<Met> met_take(const app::Session& session, const Pane& pane, const render::Ray& ray) {
+  const auto& takes = pane.keeper.pictures().takes;
+  if (takes.empty() || takes[0] == nullptr || pane.content.takes.empty()) return std::nullopt;
+  const size_t k = static_cast<size_t>(pane.content.takes[0]);
+  if (k >= session.takes.size() || session.takes[k].target == nullptr) return std::nullopt;
+  const Mesh& mesh = session.takes[k].target->mesh;
+  if (mesh.is_cloud() || mesh.vertices.rows() != takes[0]->vertices.rows()) return std::nullopt;
+  const auto hit = render::surface_under(ray, takes[0]->vertices, mesh.faces);
+  if (!hit) return std::nullopt;
+  return Met{hit->vertex, hit->position};
+}
+
+std::string weight_words(const app::Session& session, const Pane& pane, int vertex) {
+  const auto& weights = session.takes[static_cast<size_t>(pane.content.takes[0])].weights;
+  if (weights == nullptr || vertex >= weights->rows()) return "";
+  Eigen::Index joint = 0;
+  const float most = weights->row(vertex).maxCoeff(&joint);
+  return joint_label(static_cast<int>(joint)) + "  " + figure(static_cast<double>(most), "");
+}
+
+}  // namespace
+
+bool PaneCanvas::draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
+                      render::PixelSize size) {
+  const bool same_size = size.width == size_.width && size.height == size_.height;
+  if (drawn_ && same_size && same_picture(camera, camera_) && same_picture(scene, scene_)) return false;
+  if (!same_size) resize(size);
+  renderer.draw(scene, camera, {framebuffer_.name(), size});
+  scene_ = scene, camera_ = camera;
+  return drawn_ = true;
+}
+
+void PaneCanvas::resize(render::PixelSize size) {
+  size_ = size;
+  api().BindTexture(GL_TEXTURE_2D, texture_.name());
+  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   nullptr);
+  const render::gl::TargetScope target(framebuffer_.name(), size.width, size.height);
+  api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
+}
+
+std::string value_under(const app::Session& session, const Pane& pane, const ImVec2& at) {
+  const Legend& legend = pane.made.legend;
+  const auto& values = pane.made.values;
+  if (legend.title.empty() || (values == nullptr && legend.categories.empty())) return "";
+  const render::Ray ray = pane.view.ray(at);
+  const auto met = pane.made.values_take < 0 ? met_scan(session, pane, ray) : met_take(session, pane, ray);
+  if (!met) return "";
+  if (values == nullptr) return weight_words(session, pane, met->vertex);
+  return met->vertex < values->size() ? figure(static_cast<double>((*values)[met->vertex]), legend.unit) : "";
+}
+
+std::optional<Vec3> surface_place(const app::Session& session, const Pane& pane, const ImVec2& at) {
+  const render::Ray ray = pane.view.ray(at);
+  if (const auto met = met_take(session, pane, ray)) return met->position;
+  if (const auto met = met_scan(session, pane, ray)) return met->position;
+  return std::nullopt;
+}
+
+}  // namespace understudy::ui

@@ -1,0 +1,40 @@
+// Pictures of the views for files and videos: any size, the best quality, nothing missing.
+#pragma once
+
+#include "app/session/frame_cache.hpp"
+#include "app/session/session.hpp"
+#include "render/renderer.hpp"
+#include "ui/viewport/scene_builder.hpp"
+#include "ui/viewport/target_look.hpp"
+
+namespace understudy::ui {
+
+struct PictureOptions {
+  int pane = -1;  ///< as View::active_pane; -1: all of them, as the layout has them
+  render::PixelSize size{1600, 1000};
+  bool transparent = false;  ///< nothing behind what is shown
+  bool legend = true;        ///< what the colours mean, at the bottom left
+};
+
+/// Makes pictures of what the views show at the session's frame. Make, use and destroy it with one GL context
+/// current; keep it for all pictures of a video.
+class PictureMaker {
+ public:
+  explicit PictureMaker(int samples = 4);
+  ~PictureMaker();
+  PictureMaker(PictureMaker&&) noexcept;
+
+  /// Waits for the cache until every part is there. Without a frame to show: the empty stage. Throws Error
+  /// for a size that is none or a pane that is not there.
+  render::Image picture(const app::Session& session, app::FrameCache& cache,
+                        const PictureOptions& options = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Writes the legend onto a picture; `height` of its words in pixels.
+void draw_legend(render::Image& image, const Legend& legend, float height, const Vec3& ink);
+
+}  // namespace understudy::ui

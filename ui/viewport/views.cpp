@@ -1,0 +1,316 @@
+#include "ui/viewport/views.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ui/gui/draw_pass.hpp"
+#include "ui/gui/gui.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/viewport/overlay.hpp"
+#include "ui/viewport/pane.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using app::Session;
+
+constexpr float kLeastSide = 24;  // pixels; a smaller pane is not drawn
+constexpr float kGap = 2;         // points between panes
+
+struct Frame {
+  const Session& session;
+  app::FrameCache& cache;
+  app::CommandQueue& queue;
+  Ui& ui;
+};
+
+Rect whole_pixels(const Rect& rect) {
+  const auto down = [](const ImVec2& p) { return ImVec2(std::floor(p.x), std::floor(p.y)); };
+  return {down(rect.min), down(rect.max)};
+}
+
+/// Cells of one size, in one row, in two where there are many.
+std::vector<Rect> cells(const Rect& area, int count, float gap) {
+  const int columns = count <= 3 ? count : (count + 1) / 2, rows = (count + columns - 1) / columns;
+  const float width =
+      std::floor((area.width() - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns));
+  const float height =
+      std::floor((area.height() - gap * static_cast<float>(rows - 1)) / static_cast<float>(rows));
+  std::vector<Rect> all;
+  for (int i = 0; i < count; ++i) {
+    const ImVec2 at(area.min.x + static_cast<float>(i % columns) * (width + gap),
+                    area.min.y + static_cast<float>(i / columns) * (height + gap));
+    all.push_back({at, {at.x + width, at.y + height}});
+  }
+  return all;
+}
+
+}  // namespace
+
+struct Views::Impl {
+  void draw(const Frame& f);
+  void prepare(const Frame& f, size_t count);
+  void draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
+  void draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
+  float wipe_line(const Frame& f, const Rect& area);
+  void set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view);
+  void interact(const Frame& f, Pane& pane);
+  void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
+  void make_picture(const Frame& f, Pane& pane);
+  void show(const Frame& f, Pane& pane, const Rect& part, bool right);
+  void describe(const Session& session, const Pane& pane, Overlay& overlay) const;
+  void draw_brush(const Frame& f, const Pane& pane);
+  void keep_view_when_following_changes(const Frame& f);
+
+  std::optional<render::Renderer> renderer;
+  int samples = 0;
+  std::vector<std::unique_ptr<Pane>> panes;
+  TargetLooks looks;
+  Hand hand;
+  Pointer pointer;        // of the pane that it is in
+  Pane* under = nullptr;  // which
+  app::Tool tool = app::Tool::Look;
+  std::optional<bool> followed;
+  bool hold = false;  // cameras stay for this frame as they were
+  int64_t drawn = 0;
+};
+
+Views::Views() : impl_(std::make_unique<Impl>()) {}
+Views::~Views() = default;
+
+void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui) {
+  impl_->draw({session, cache, queue, ui});
+}
+
+bool Views::waiting() const {
+  return std::any_of(impl_->panes.begin(), impl_->panes.end(),
+                     [](const auto& p) { return p->keeper.waiting(); });
+}
+
+int64_t Views::drawn() const {
+  return impl_->drawn;
+}
+
+void Views::Impl::draw(const Frame& f) {
+  constexpr int kFlags = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                         ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
+  if (ImGui::BeginChild("##views", {0, 0}, false, kFlags)) {
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
+    const Rect area = whole_pixels({at, {at.x + size.x, at.y + size.y}});
+    const std::vector<PaneContent> contents = panes_of(f.session);
+    prepare(f, contents.size());
+    keep_view_when_following_changes(f);
+    if (area.width() >= kLeastSide && area.height() >= kLeastSide) {
+      if (f.session.view.layout == app::Layout::Wipe && contents.size() == 2)
+        draw_wipe(f, contents, area);
+      else
+        draw_row(f, contents, area);
+    }
+  }
+  ImGui::EndChild();
+}
+
+void Views::Impl::prepare(const Frame& f, size_t count) {
+  if (!renderer || samples != f.session.settings.samples) {
+    samples = f.session.settings.samples;
+    renderer.emplace(render::RendererOptions{samples, render::Quality::Interactive});
+    for (auto& pane : panes) pane->canvas.forget();
+  }
+  if (panes.size() != count) hand.let_go();
+  while (panes.size() < count) panes.push_back(std::make_unique<Pane>());
+  panes.resize(count);
+  if (tool != f.session.tool || (hand.busy() && key_pressed(render::Key::Escape, false))) hand.let_go();
+  tool = f.session.tool;
+  under = nullptr;
+}
+
+void Views::Impl::draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
+  const auto rects = cells(area, static_cast<int>(contents.size()), f.ui.px(kGap));
+  for (size_t i = 0; i < contents.size(); ++i) {
+    if (rects[i].width() < kLeastSide || rects[i].height() < kLeastSide) continue;
+    Pane& pane = *panes[i];
+    set_up(f, pane, contents[i], {rects[i], pane_camera(f.session, contents[i])});
+    ImGui::SetCursorScreenPos(rects[i].min);
+    const std::string name = "view." + std::to_string(contents[i].number);
+    ImGui::InvisibleButton(name.c_str(), {rects[i].width(), rects[i].height()},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                               ImGuiButtonFlags_MouseButtonMiddle);
+    f.ui.mark(name);
+    interact(f, pane);
+    make_picture(f, pane);
+    show(f, pane, rects[i], false);
+  }
+}
+
+/// Two pictures over each other in one place, seen through the camera of the first.
+void Views::Impl::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
+  const float line = wipe_line(f, area);
+  const render::Camera camera = pane_camera(f.session, contents[0]);
+  ImGui::SetCursorScreenPos(area.min);
+  ImGui::InvisibleButton("view.both", {area.width(), area.height()},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  const size_t mouse_in = ImGui::GetIO().MousePos.x < line ? 0 : 1;
+  for (size_t i = 0; i < 2; ++i) set_up(f, *panes[i], contents[i], {area, camera});
+  const size_t gripped = hand.pane() == contents[0] ? 0 : 1;
+  interact(f, *panes[hand.busy() ? gripped : mouse_in]);
+  for (size_t i = 0; i < 2; ++i) {
+    make_picture(f, *panes[i]);
+    const Rect part = i == 0 ? Rect{area.min, {line, area.max.y}} : Rect{{line, area.min.y}, area.max};
+    f.ui.mark("view." + std::to_string(contents[i].number), part);
+    show(f, *panes[i], part, i == 1);
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float middle = area.min.y + 0.5f * area.height();
+  list.AddLine({line, area.min.y}, {line, area.max.y}, color(f.ui.theme().text, 0.85f), f.ui.px(1.5f));
+  list.AddCircleFilled({line, middle}, f.ui.px(7), color(f.ui.theme().text), 24);
+}
+
+/// The handle comes before the picture's item, so that it is met first.
+float Views::Impl::wipe_line(const Frame& f, const Rect& area) {
+  const float line = std::floor(area.min.x + std::clamp(f.session.view.wipe, 0.f, 1.f) * area.width());
+  const float reach = f.ui.px(6);
+  ImGui::SetCursorScreenPos({line - reach, area.min.y});
+  ImGui::InvisibleButton("view.wipe", {2 * reach, area.height()});
+  f.ui.mark("view.wipe");
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0) {
+    const float share = (ImGui::GetIO().MousePos.x - area.min.x) / area.width();
+    f.queue.push_back({"view.wipe", {argument(static_cast<double>(std::clamp(share, 0.f, 1.f)))}});
+  }
+  return line;
+}
+
+void Views::Impl::set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view) {
+  if (!(pane.content == content)) pane.colours = {};
+  const render::Camera before = pane.view.camera;
+  const bool held = hold && pane.content == content && !pane.view.rect.empty();
+  pane.content = content;
+  pane.view = view;
+  if (held) pane.view.camera = before;
+  pane.keeper.update(f.session, f.cache, looks, content);
+  prefetch(f.session, f.cache, content);
+}
+
+/// The item just made is the pane's.
+void Views::Impl::interact(const Frame& f, Pane& pane) {
+  const Pointer now = pointer_of_item();
+  const HandPlace place{f.session, pane.content, pane.view, pane.keeper.pictures(), f.ui.scale()};
+  const bool taken = hand.work(place, now, f.queue);
+  if (now.over || now.held) {
+    pointer = now, under = &pane;
+    const bool steering = now.turning || now.panning || now.wheel != 0;
+    if ((now.pressed || steering) && pane.content.number != f.session.view.active_pane)
+      f.queue.push_back({"view.pane", {std::to_string(pane.content.number)}});
+  }
+  steer(f, pane, now, !taken);
+}
+
+void Views::Impl::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left) {
+  NavigationOptions options;
+  options.sensitivity = f.session.settings.mouse_sensitivity, options.scale = f.ui.scale();
+  std::optional<render::Camera> camera;
+  if (!hand.busy()) camera = navigated(pane.view, now, free_left, options);
+  if (now.doubled && free_left) {
+    if (const auto place = surface_place(f.session, pane, now.at)) {
+      camera = pane.view.camera;
+      camera->target = *place;
+    }
+  }
+  if (!camera) return;
+  f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, *camera)});
+}
+
+void Views::Impl::make_picture(const Frame& f, Pane& pane) {
+  const HandPlace place{f.session, pane.content, pane.view, pane.keeper.pictures(), f.ui.scale()};
+  PanePictures pictures = pane.keeper.pictures();
+  pane.preview = hand.preview(place);
+  if (const auto turned = hand.turned_picture(place); turned != nullptr && !pictures.takes.empty())
+    pictures.takes[0] = turned;
+  std::vector<std::shared_ptr<const TargetLook>> found;
+  for (const int k : pane.content.takes)
+    found.push_back(static_cast<size_t>(k) < f.session.takes.size()
+                        ? looks.of(f.session.takes[static_cast<size_t>(k)].target)
+                        : nullptr);
+  const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.ui.theme().kind};
+  pane.made = build_scene(input, &pane.colours);
+  drawn += pane.canvas.draw(*renderer, pane.made.scene, pane.view.camera, pane.view.size()) ? 1 : 0;
+}
+
+void Views::Impl::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
+  const Rect& rect = pane.view.rect;
+  const float from = (part.min.x - rect.min.x) / rect.width(), to = (part.max.x - rect.min.x) / rect.width();
+  if (part.empty()) return;
+  ImGui::GetWindowDrawList()->AddImage(texture_id(pane.canvas.texture()), part.min, part.max, {from, 1},
+                                       {to, 0});
+  Overlay overlay;
+  overlay.rect = part, overlay.title_right = right;
+  describe(f.session, pane, overlay);
+  overlay.active = panes.size() > 1 && f.session.view.layout == app::Layout::SideBySide &&
+                   pane.content.number == f.session.view.active_pane;
+  draw_overlay(f.ui, overlay);
+  draw_brush(f, pane);
+}
+
+/// The words and labels over a pane.
+void Views::Impl::describe(const Session& session, const Pane& pane, Overlay& overlay) const {
+  const int frame = pane.keeper.pictures().frame;
+  const bool rest = shows_rest(session, pane.content);
+  overlay.title = pane_title(session, pane.content);
+  overlay.hint = pane_hint(session, pane.content);
+  if (overlay.hint.empty()) {
+    overlay.subtitle = rest ? "T-pose" : frame >= 0 ? "frame " + std::to_string(frame) : "";
+    overlay.legend = pane.made.legend;
+  }
+  const size_t seen = static_cast<size_t>(std::max(0, frame));
+  if (frame >= 0 && seen < session.source.frames.size() && session.source.frames[seen].flagged)
+    overlay.warning = session.source.frames[seen].reason;
+  const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
+  const Joints* joints = pane_joints(session, pane.content, frame);
+  if (rest) joints = &session.takes[static_cast<size_t>(pane.content.takes[0])].target->joints;
+  const auto& moved = pane.content.source ? pane.preview.source_joints : pane.preview.take_joints;
+  if (moved) joints = &*moved;
+  const int selected = pane.preview.gizmo ? session.selected_joint : -1;
+  if (joints != nullptr)
+    overlay.labels = joint_labels(pane.view, *joints, layers.joint_names && layers.skeleton,
+                                  hand.hovered_joint(pane.content), selected);
+  if (under != &pane) return;
+  overlay.tip_at = pointer.at;
+  overlay.tip = hand.tip();
+  if (overlay.tip.empty() && !session.playback.playing) overlay.tip = value_under(session, pane, pointer.at);
+}
+
+/// The brush's circle, flat on the surface.
+void Views::Impl::draw_brush(const Frame& f, const Pane& pane) {
+  const auto brush = hand.brush(pane.content);
+  if (!brush) return;
+  const Vec3 u = brush->normal.unitOrthogonal(), v = brush->normal.cross(u);
+  std::vector<ImVec2> circle;
+  for (int i = 0; i < 48; ++i) {
+    const float angle = 2 * kPi * static_cast<float>(i) / 48;
+    const Vec3 at = brush->position + f.session.brush.radius_m * (std::cos(angle) * u + std::sin(angle) * v);
+    if (const auto seen = pane.view.project(at)) circle.push_back(*seen);
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddPolyline(circle.data(), static_cast<int>(circle.size()), color(ImVec4(0, 0, 0, 0.5f)),
+                   ImDrawFlags_Closed, f.ui.px(3));
+  list.AddPolyline(circle.data(), static_cast<int>(circle.size()), color(ImVec4(1, 1, 1, 0.9f)),
+                   ImDrawFlags_Closed, f.ui.px(1.5f));
+}
+
+/// Following says how the camera goes on: what is seen now stays as it is.
+void Views::Impl::keep_view_when_following_changes(const Frame& f) {
+  const bool now = f.session.view.follow;
+  hold = followed && *followed != now;
+  followed = now;
+  if (!hold) return;
+  for (size_t i = 0; i < panes.size(); ++i) {
+    const Pane& pane = *panes[i];
+    if (i > 0 && f.session.view.linked) break;
+    if (pane.view.rect.empty() || shows_rest(f.session, pane.content)) continue;
+    f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, pane.view.camera)});
+  }
+}
+
+}  // namespace understudy::ui
