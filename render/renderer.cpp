@@ -162,6 +162,11 @@ std::vector<float> still_key(const Scene& scene, const Camera& camera, PixelSize
           g.line.z()};
 }
 
+/// A person's folds are shallow: they want more than occlusion from depths does to be seen as well.
+float ambient_strength(const Scene& scene) {
+  return std::min(1.f, 1.6f * scene.occlusion);
+}
+
 /// The rectangle of a picture that what is drawn covers, pixels from the bottom left, `margin` more all
 /// round; everything when part of it is behind the eye.
 struct Rectangle {
@@ -260,7 +265,7 @@ void Renderer::Parts::draw_still(const Scene& scene, const Camera& camera, Pixel
 
 void Renderer::Parts::draw_solid(const Scene& scene) {
   for (const auto& mesh : scene.meshes)
-    if (mesh.opacity >= 1) meshes.draw(mesh, scene.occlusion);
+    if (mesh.opacity >= 1) meshes.draw(mesh, ambient_strength(scene));
   for (const auto& skeleton : scene.skeletons)
     if (!skeleton.x_ray) skeletons.draw(meshes, skeleton);
   if (options.quality == Quality::Best && scene.occlusion > 0 && !scene.meshes.empty()) {
@@ -280,7 +285,7 @@ void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
 void Renderer::Parts::draw_over(const Scene& scene, const Camera& camera) {
   draw_lines(scene, false);
   for (const auto& mesh : scene.meshes)
-    if (mesh.opacity < 1) meshes.draw(mesh, scene.occlusion);
+    if (mesh.opacity < 1) meshes.draw(mesh, ambient_strength(scene));
   const auto x_ray = [](const auto& view) { return view.x_ray; };
   if (std::any_of(scene.skeletons.begin(), scene.skeletons.end(), x_ray) ||
       std::any_of(scene.lines.begin(), scene.lines.end(), x_ray)) {
@@ -312,6 +317,14 @@ Renderer::Renderer(const RendererOptions& options) : parts_(std::make_unique<Par
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::set_options(const RendererOptions& options) {
+  if (options.samples != parts_->options.samples) {
+    parts_->canvas = Canvas(options.samples);
+    parts_->still.clear();
+  }
+  parts_->options = options;
+}
 
 void Renderer::draw(const Scene& scene, const Camera& camera, const Target& target) {
   Parts& p = *parts_;

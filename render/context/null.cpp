@@ -44,7 +44,9 @@ void agree_to_everything(gl::Functions& f) {
   f.GetShaderiv = f.GetProgramiv = [](GLuint, GLenum, GLint* value) { *value = GL_TRUE; };
   f.CheckFramebufferStatus = [](GLenum) -> GLenum { return GL_FRAMEBUFFER_COMPLETE; };
   f.GetString = [](GLenum) { return reinterpret_cast<const GLubyte*>("null"); };
-  f.GetIntegerv = [](GLenum what, GLint* value) { std::fill_n(value, what == GL_VIEWPORT || what == GL_SCISSOR_BOX ? 4 : 1, 0); };
+  f.GetIntegerv = [](GLenum what, GLint* value) {
+    std::fill_n(value, what == GL_VIEWPORT || what == GL_SCISSOR_BOX ? 4 : 1, 0);
+  };
   f.GetBooleanv = [](GLenum what, GLboolean* value) {
     std::fill_n(value, what == GL_COLOR_WRITEMASK ? 4 : 1, static_cast<GLboolean>(GL_TRUE));
   };
