@@ -6,6 +6,7 @@
 #include <array>
 
 #include "retarget/base/error.hpp"
+#include "ui/gui/gui.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/inspector.hpp"
 #include "ui/panels/keys.hpp"
@@ -49,6 +50,15 @@ bool tab_on(const app::Session& session, size_t tab) {
   return found != session.settings.panels.end() && found->second;
 }
 
+/// Menus and lists close by Escape; dialogs do so themselves.
+void close_menu_by_escape() {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  if (context.OpenPopupStack.empty() || !key_pressed(render::Key::Escape, false)) return;
+  const ImGuiWindow* top = context.OpenPopupStack.back().Window;
+  if (top == nullptr || (top->Flags & ImGuiWindowFlags_Modal) != 0) return;
+  ImGui::ClosePopupToLevel(context.OpenPopupStack.Size - 1, true);
+}
+
 /// A dialog that vanished without closing must not keep the rest from being used.
 void close_forgotten_dialog(bool any_drawn) {
   if (!any_drawn && ImGui::GetTopMostPopupModal() != nullptr) ImGui::ClosePopupToLevel(0, true);
@@ -68,6 +78,7 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   draw_centre(session, context);
   draw_bottom(session, context, frame_rate);
   draw_side(session, context);
+  close_menu_by_escape();
   draw_dialog(session, context);
   draw_notices(session, context, notices_);
   ask_for_keys(session, context);
@@ -80,6 +91,7 @@ void Workspace::draw_centre(const app::Session& session, PanelContext& context) 
     const bool open = has_document(session);
     const Pane pane(ui, "##views", places_.views, open ? ImVec2(0, 0) : ImVec2(16, 8), ui.theme().backdrop,
                     !open);
+    ImGui::BringWindowToDisplayBack(ImGui::GetCurrentWindow());  // the side panel may lie over it
     ui.mark("views", places_.views);
     if (!open)
       draw_start(session, context, services_.samples);

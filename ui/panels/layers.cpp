@@ -59,24 +59,38 @@ void draw_colour(PanelContext& context, const std::string& pane, const Colour (&
     context.ask("view.colour", {pane, colours[static_cast<size_t>(chosen)].argument});
 }
 
-void draw_layer(PanelContext& context, const std::string& pane, const Layer& layer, bool on) {
-  const auto wanted =
-      toggle_row(context.ui, {"layers." + pane + "." + layer.name, layer.label, layer.explanation}, on);
-  if (wanted) context.ask("view.layer", {pane, layer.name, on_off(*wanted)});
-}
+/// Switches in two columns.
+class SwitchGrid {
+ public:
+  explicit SwitchGrid(PanelContext& context)
+      : context_(context), start_(ImGui::GetCursorPosX()), half_(ImGui::GetContentRegionAvail().x / 2) {}
+  std::optional<bool> add(const std::string& name, const char* label, const char* explanation, bool on) {
+    if (count_++ % 2 == 1) ImGui::SameLine(start_ + half_);
+    const bool changed = toggle(context_.ui, name, label, on);
+    tooltip(context_.ui, explanation);
+    return changed ? std::optional<bool>(on) : std::nullopt;
+  }
+
+ private:
+  PanelContext& context_;
+  float start_, half_;
+  int count_ = 0;
+};
 
 void draw_pane(const app::Session& session, PanelContext& context, bool source) {
   const app::Layers& layers = source ? session.view.source : session.view.take;
   const std::string pane = source ? "source" : "take";
   if (!section(context.ui, "layers." + pane, source ? "Source" : "Takes")) return;
-  draw_layer(context, pane,
-             {"surface", source ? "Scan" : "Mesh", source ? "The scan of this frame" : "The target's surface",
-              &app::Layers::surface},
-             layers.surface);
+  SwitchGrid grid(context);
+  const auto add = [&](const char* name, const char* label, const char* explanation, bool on) {
+    if (const auto wanted = grid.add("layers." + pane + "." + name, label, explanation, on))
+      context.ask("view.layer", {pane, name, on_off(*wanted)});
+  };
+  add("surface", source ? "Scan" : "Mesh", source ? "The scan of this frame" : "The target's surface",
+      layers.surface);
   if (source && session.source.has_faces)
-    draw_layer(context, pane, {"as_points", "As points", "The scan's points without its faces", nullptr},
-               layers.as_points);
-  for (const Layer& layer : kLayers) draw_layer(context, pane, layer, layers.*layer.on);
+    add("as_points", "As points", "The scan's points without its faces", layers.as_points);
+  for (const Layer& layer : kLayers) add(layer.name, layer.label, layer.explanation, layers.*layer.on);
   if (source)
     draw_colour(context, pane, kSourceColours, layers.colouring);
   else
@@ -150,13 +164,13 @@ void draw_camera(const app::Session& session, PanelContext& context) {
   fit.shortcut = keys_of(context.commands, "view.fit"), fit.width = -1;
   if (button(ui, "layers.fit", "Fit", fit)) context.ask("view.fit");
   const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
-  if (const auto on = toggle_row(ui, {"layers.ortho", "Orthographic", "Without perspective"}, ortho))
+  SwitchGrid grid(context);
+  if (const auto on = grid.add("layers.ortho", "Orthographic", "Without perspective", ortho))
     context.ask("view.ortho", {on_off(*on)});
-  if (const auto on =
-          toggle_row(ui, {"layers.linked", "Linked", "All views share one camera"}, session.view.linked))
+  if (const auto on = grid.add("layers.linked", "Linked", "All views share one camera", session.view.linked))
     context.ask("view.link", {on_off(*on)});
   if (const auto on =
-          toggle_row(ui, {"layers.follow", "Follow", "The camera goes with the person"}, session.view.follow))
+          grid.add("layers.follow", "Follow", "The camera goes with the person", session.view.follow))
     context.ask("view.follow", {on_off(*on)});
   NumberOptions speed{-180, 180, 0.5f, "%.0f\u00b0/s", 0, true};
   if (const auto deg = number_row(ui, {"layers.turntable", "Turntable", "The camera turns by itself"},

@@ -5,7 +5,6 @@
 namespace understudy::ui {
 namespace {
 
-using app::Colouring;
 using app::Layout;
 using Items = std::vector<MenuItem>;
 
@@ -19,72 +18,66 @@ MenuItem group(const std::string& label, Items inside) {
   return item;
 }
 
-MenuItem dialog(const std::string& label, const std::string& which, const std::string& keys_of = "") {
-  return {label, "dialog.open", {which}, keys_of, false, {}};
+MenuItem dialog(const std::string& label, const std::string& which) {
+  return {label, "dialog.open", {which}, false, {}};
 }
 
 /// A switch: chosen, it becomes what it is not now.
 MenuItem flag(const std::string& label, const std::string& command, bool on, app::Arguments before = {}) {
   before.push_back(on_off(!on));
-  return {label, command, before, "", on, {}};
+  return {label, command, before, on, {}};
 }
 
 MenuItem recent(const app::Session& session) {
   Items items;
   for (const std::string& path : session.settings.recent)
-    items.push_back({file_name(path), "document.open", {path}, "", false, {}});
-  if (items.empty()) items.push_back({"Nothing yet", "", {}, "", false, {}});
+    items.push_back({file_name(path), "document.open", {path}, false, {}});
+  if (items.empty()) items.push_back({"Nothing yet", "", {}, false, {}});
   return group("Open recent", items);
 }
 
 Items file_menu(const app::Session& session) {
-  const bool never_saved = session.path.empty();
-  return {{"New", "document.new", {}, "", false, {}},
-          dialog("Open\u2026", "open", "open"),
+  return {{"New", "document.new", {}, false, {}},
+          {"Open\u2026", "open", {}, false, {}},
           recent(session),
           line(),
-          dialog("Open scan\u2026", "open_scan"),
-          dialog("Open motion\u2026", "open_motion"),
-          dialog("Add target\u2026", "open_target"),
+          {"Open scan\u2026", "source.open", {}, false, {}},
+          {"Open motion\u2026", "source.motion", {}, false, {}},
+          dialog("Open target\u2026", "open_target"),
           line(),
-          {never_saved ? "Save\u2026" : "Save",
-           never_saved ? "dialog.open" : "document.save",
-           never_saved ? app::Arguments{"save_as"} : app::Arguments{},
-           "document.save",
-           false,
-           {}},
-          dialog("Save as\u2026", "save_as", "document.save_as"),
+          {session.path.empty() ? "Save\u2026" : "Save", "document.save", {}, false, {}},
+          {"Save as\u2026", "document.save_as", {}, false, {}},
           line(),
           dialog("Export\u2026", "export"),
           dialog("Save picture\u2026", "picture"),
           dialog("Save video\u2026", "video"),
           line(),
           dialog("Settings\u2026", "settings"),
-          {"Quit", "app.quit", {}, "", false, {}}};
+          {"Quit", "app.quit", {}, false, {}}};
 }
 
 Items edit_menu(const app::Session& session) {
   const std::string undo = session.history.undo_label(), redo = session.history.redo_label();
   const std::string k = std::to_string(session.selected_take);
-  return {{undo.empty() ? "Undo" : "Undo " + undo, "edit.undo", {}, "", false, {}},
-          {redo.empty() ? "Redo" : "Redo " + redo, "edit.redo", {}, "", false, {}},
+  return {{undo.empty() ? "Undo" : "Undo " + undo, "edit.undo", {}, false, {}},
+          {redo.empty() ? "Redo" : "Redo " + redo, "edit.redo", {}, false, {}},
           line(),
-          {"Clear edits of the skeleton", "edit.skeleton_clear", {}, "", false, {}},
-          {"Clear edits of the result", "edit.poses_clear", {k}, "", false, {}},
-          {"Clear moved joints", "edit.target_joints_clear", {k}, "", false, {}},
-          {"Clear painted weights", "edit.weights_clear", {k}, "", false, {}},
+          {"Clear edits of the skeleton", "edit.skeleton_clear", {}, false, {}},
+          {"Clear edits of the result", "edit.poses_clear", {k}, false, {}},
+          {"Clear moved joints", "edit.target_joints_clear", {k}, false, {}},
+          {"Clear painted weights", "edit.weights_clear", {k}, false, {}},
           line(),
-          {"Pause the work", "work.pause", {}, "", false, {}},
-          {"Go on with the work", "work.resume", {}, "", false, {}},
-          {"Make all frames again", "work.restart", {}, "", false, {}}};
+          {"Pause the work", "work.pause", {}, false, {}},
+          {"Go on with the work", "work.resume", {}, false, {}},
+          {"Make all frames again", "work.restart", {}, false, {}}};
 }
 
 MenuItem layouts(const app::Session& session) {
   const auto is = [&](Layout layout) { return session.view.layout == layout; };
-  return group("Layout", {{"Side by side", "view.layout", {"side-by-side"}, "", is(Layout::SideBySide), {}},
-                          {"Single", "view.layout", {"single"}, "", is(Layout::Single), {}},
-                          {"Overlay", "view.layout", {"overlay"}, "", is(Layout::Overlay), {}},
-                          {"Wipe", "view.layout", {"wipe"}, "", is(Layout::Wipe), {}}});
+  return group("Layout", {{"Side by side", "view.layout", {"side-by-side"}, is(Layout::SideBySide), {}},
+                          {"Single", "view.layout", {"single"}, is(Layout::Single), {}},
+                          {"Overlay", "view.layout", {"overlay"}, is(Layout::Overlay), {}},
+                          {"Wipe", "view.layout", {"wipe"}, is(Layout::Wipe), {}}});
 }
 
 MenuItem turntable(const app::Session& session) {
@@ -93,7 +86,6 @@ MenuItem turntable(const app::Session& session) {
     items.push_back({speed == 0 ? "Off" : std::to_string(speed) + "\u00b0 a second",
                      "view.turntable",
                      {std::to_string(speed)},
-                     "",
                      session.view.turntable_deg_s == static_cast<float>(speed),
                      {}});
   return group("Turntable", items);
@@ -103,13 +95,13 @@ Items view_menu(const app::Session& session) {
   const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
   return {layouts(session),
           line(),
-          {"Front", "view.preset", {"front"}, "", false, {}},
-          {"Back", "view.preset", {"back"}, "", false, {}},
-          {"Right", "view.preset", {"right"}, "", false, {}},
-          {"Left", "view.preset", {"left"}, "", false, {}},
-          {"Top", "view.preset", {"top"}, "", false, {}},
-          {"Three-quarter", "view.preset", {"three-quarter"}, "", false, {}},
-          {"Fit", "view.fit", {}, "", false, {}},
+          {"Front", "view.preset", {"front"}, false, {}},
+          {"Back", "view.preset", {"back"}, false, {}},
+          {"Right", "view.preset", {"right"}, false, {}},
+          {"Left", "view.preset", {"left"}, false, {}},
+          {"Top", "view.preset", {"top"}, false, {}},
+          {"Three-quarter", "view.preset", {"three-quarter"}, false, {}},
+          {"Fit", "view.fit", {}, false, {}},
           line(),
           flag("Orthographic", "view.ortho", ortho),
           flag("Linked cameras", "view.link", session.view.linked),
@@ -119,16 +111,15 @@ Items view_menu(const app::Session& session) {
 
 Items target_menu(const app::Session& session) {
   const std::string k = std::to_string(session.selected_take);
-  Items items = {dialog("Add target\u2026", "open_target"),
-                 dialog("Replace\u2026", "replace_target", "target.replace"),
-                 dialog("Compare with\u2026", "compare", "compare.add"),
-                 {"Remove", "target.remove", {k}, "", false, {}}};
+  Items items = {{"Add target\u2026", "target.add", {}, false, {}},
+                 {"Replace\u2026", "target.replace", {}, false, {}},
+                 {"Compare with\u2026", "compare.add", {}, false, {}},
+                 {"Remove", "target.remove", {k}, false, {}}};
   if (!session.document.takes.empty()) items.push_back(line());
   for (size_t i = 0; i < session.document.takes.size(); ++i)
     items.push_back({session.document.takes[i].name,
                      "target.select",
                      {std::to_string(i)},
-                     "",
                      static_cast<int>(i) == session.selected_take,
                      {}});
   return items;
@@ -137,7 +128,7 @@ Items target_menu(const app::Session& session) {
 Items tools_menu(const app::Session& session) {
   Items items;
   for (const ToolChoice& tool : kTools)
-    items.push_back({tool.label, "tool", {tool.argument}, "", session.tool == tool.tool, {}});
+    items.push_back({tool.label, "tool", {tool.argument}, session.tool == tool.tool, {}});
   return items;
 }
 
@@ -146,21 +137,20 @@ Items window_menu(const app::Session& session) {
   for (const char* tab : {"inspector", "layers", "edit", "metrics"}) {
     std::string label = tab;
     label[0] = static_cast<char>(label[0] - 'a' + 'A');
-    items.push_back({label, "panel.show", {tab, "on"}, "", false, {}});
+    items.push_back({label, "panel.show", {tab, "on"}, false, {}});
   }
   items.push_back(line());
   items.push_back(flag("Side panel", "panel.show", panel_shown(session, "side"), {"side"}));
   items.push_back(flag("Timeline", "panel.show", panel_shown(session, "timeline"), {"timeline"}));
   items.push_back(flag("Log", "panel.show", panel_shown(session, "log"), {"log"}));
   items.push_back(line());
-  items.push_back({"Dark", "settings.theme", {"dark"}, "", session.settings.dark, {}});
-  items.push_back({"Light", "settings.theme", {"light"}, "", !session.settings.dark, {}});
-  Items scales = {{"As the screen", "settings.scale", {"auto"}, "", session.settings.scale == 0, {}}};
+  items.push_back({"Dark", "settings.theme", {"dark"}, session.settings.dark, {}});
+  items.push_back({"Light", "settings.theme", {"light"}, !session.settings.dark, {}});
+  Items scales = {{"As the screen", "settings.scale", {"auto"}, session.settings.scale == 0, {}}};
   for (const int percent : {100, 125, 150, 200, 300})
     scales.push_back({std::to_string(percent) + " %",
                       "settings.scale",
                       {argument(percent / 100.0)},
-                      "",
                       session.settings.scale == static_cast<float>(percent) / 100,
                       {}});
   items.push_back(group("Scale", scales));
@@ -178,9 +168,9 @@ std::vector<Menu> menus(const app::Session& session) {
           {"window", "Window", window_menu(session)},
           {"help",
            "Help",
-           {{"All keys", "help.keys", {}, "", false, {}},
+           {{"All keys", "help.keys", {}, false, {}},
             dialog("About Understudy", "about"),
-            {"Log", "panel.show", {"log", "on"}, "", false, {}}}}};
+            {"Log", "panel.show", {"log", "on"}, false, {}}}}};
 }
 
 std::string mark_of(const MenuItem& item) {

@@ -9,10 +9,9 @@
 namespace understudy::ui {
 
 struct MenuItem {
-  std::string label;  ///< empty: a line between groups
-  std::string command;
+  std::string label;    ///< empty: a line between groups
+  std::string command;  ///< one that wants a path and has none opens the dialog that asks for it
   app::Arguments arguments;
-  std::string keys_of;           ///< the command whose keys are shown; empty: `command`'s with `arguments`
   bool checked = false;          ///< on, or chosen
   std::vector<MenuItem> inside;  ///< a menu of its own
 };

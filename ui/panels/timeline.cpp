@@ -117,7 +117,7 @@ void draw_readout(const app::Session& session, PanelContext& context) {
     context.ask("playback.frame", {argument(std::round(*f))});
   ImGui::SameLine(0, ui.px(6));
   ImGui::AlignTextToFramePadding();
-  text_cut(ui, "/ " + std::to_string(std::max(0, known - 1)), ui.px(72));
+  text_cut(ui, "/ " + std::to_string(std::max(0, known - 1)), ui.px(60));
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(ImGui::GetWindowWidth() - ui.px(12 + 76));
   ImGui::BeginChild("##time", {ui.px(76), height});
@@ -188,11 +188,11 @@ void draw_timeline(const app::Session& session, PanelContext& context, TimelineS
   };
   draw_transport(session, context);
   if (wide >= 580) draw_marks(session, context);
-  if (wide >= 900) field("##rate", 230 + 180 + 96, 84, [&] { draw_rate(session, context); });
+  if (wide >= 900) field("##rate", 218 + 180 + 96, 84, [&] { draw_rate(session, context); });
   if (wide >= 790)
-    field("##metric", 230 + 180, 168, [&] { draw_metric(context, metrics, session.view.metric); });
-  if (wide >= 392) {
-    ImGui::SameLine(start + width - ui.px(222));
+    field("##metric", 218 + 180, 168, [&] { draw_metric(context, metrics, session.view.metric); });
+  if (wide >= 366) {
+    ImGui::SameLine(start + width - ui.px(210));
     draw_readout(session, context);
   } else {
     ImGui::NewLine();

@@ -30,11 +30,10 @@ void draw_items(const app::Session& session, PanelContext& context, const std::v
       ImGui::EndMenu();
       continue;
     }
-    const std::string keys = item.keys_of.empty() ? keys_of(context.commands, item.command, item.arguments)
-                                                  : keys_of(context.commands, item.keys_of);
+    const std::string keys = keys_of(context.commands, item.command, item.arguments);
     const IdScope id(mark_of(item));
     if (ImGui::MenuItem(item.label.c_str(), keys.c_str(), item.checked, possible(session, item)))
-      context.ask(item.command, item.arguments);
+      ask_or_open(session, context, item.command, item.arguments);
     context.ui.mark(mark_of(item));
   }
 }
@@ -138,7 +137,7 @@ void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_o
 void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area) {
   Ui& ui = context.ui;
   const float wide = area.width() / ui.scale();  // in pixels of the design
-  const bool as_one = wide < 1060;
+  const bool as_one = wide < 1120;
   ImGui::SetNextWindowPos(area.min);
   ImGui::SetNextWindowSize({area.width(), area.height()});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(4), 0});
@@ -153,7 +152,7 @@ void draw_top_bar(const app::Session& session, PanelContext& context, const Rect
   ImGui::PopStyleVar(4);
   ImGui::PushClipRect(area.min, area.max, false);
   draw_menu_bar(session, context, as_one);
-  const float tools = ui.px(8 * 31 + 10), layouts = ui.px(wide >= 900 ? 330 : 130);
+  const float tools = ui.px(8 * 31 + 10), layouts = ui.px(wide >= 740 ? 392 : 130);
   const float right = area.max.x - ui.px(44);
   const float left = as_one ? area.min.x + ui.px(42) : std::round(area.at(0.5f, 0).x - tools / 2);
   if (wide >= 345) draw_tools(session, context, area, left);

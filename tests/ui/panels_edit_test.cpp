@@ -1,0 +1,105 @@
+// The edit panel: what each control asks for.
+#include "support/panels_test.hpp"
+#include "ui/panels/edit.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+class EditPanel : public PanelsTest {
+ protected:
+  EditPanel() {
+    panel([this] { draw_edit(session, context, state); });
+    for (const char* closed : {"edit.target", "edit.weights"}) click(closed);
+    frame(2);
+  }
+  EditState state;
+};
+
+TEST_F(EditPanel, OfTheScan) {
+  expect_click("edit.crop", {"edit.crop off"});
+  expect_click("edit.crop_tool", {"tool crop"});
+  expect_drag("edit.crop.low.x", "edit.crop ");
+  expect_drag("edit.crop.high.y", "edit.crop -1 0 -1 1 ");
+  expect_click("edit.floor_removal", {"edit.floor_removal off"});
+  expect_drag("edit.floor_height", "edit.floor_removal on ");
+  expect_click("edit.cluster", {"edit.cluster on"});
+  session.document.scan_edits = ScanEdits{};
+  frame(2);
+  expect_click("edit.crop", {"edit.crop -1 -0.1 -1 1 2.2 1"});
+  expect_click("edit.floor_removal", {"edit.floor_removal on"});
+  EXPECT_FALSE(shown("edit.crop.low.x"));
+}
+
+TEST_F(EditPanel, OfTheSkeleton) {
+  expect_click("edit.joints_tool", {"tool joints"});
+  expect_drag("edit.falloff", "tool.falloff ");
+  expect_click("edit.children", {"tool.children on"});
+  expect_click("edit.skeleton.0", {"playback.frame 4"});
+  expect_click("edit.skeleton.1", {"playback.frame 10"});
+  expect_click("edit.skeleton_clear", {"edit.skeleton_clear"});
+}
+
+TEST_F(EditPanel, SwappingTakesTheLoopMarksUnlessFramesAreWritten) {
+  expect_click("edit.swap.apply", {"edit.swap 5 30 both"});
+  expect_click("edit.swap.limbs.0", {});
+  expect_typed("edit.swap.first", "7", {});
+  expect_typed("edit.swap.last", "9", {});
+  expect_click("edit.swap.apply", {"edit.swap 7 9 arms"});
+  session.playback.in = session.playback.out = -1;
+  frame(2);
+  expect_click("edit.swap.apply", {"edit.swap 20 20 arms"});
+}
+
+TEST_F(EditPanel, OfTheResult) {
+  expect_click("edit.bones_tool", {"tool bones"});
+  expect_drag("edit.bone_falloff", "tool.falloff ");
+  expect_click("edit.pin", {"edit.pin 0 on"});
+  expect_drag("edit.smooth", "edit.smooth 0 ");
+  expect_drag("edit.floor_offset", "edit.floor_offset 0 ");
+  expect_drag("edit.heading", "edit.heading 0 ");
+  expect_click("edit.trim", {"edit.trim 0 5 30"});
+  expect_click("edit.trim_off", {"edit.trim 0 off"});
+  expect_click("edit.skip", {"edit.skip 0 20 on"});
+  expect_click("edit.rotation.0", {"playback.frame 12"});
+  expect_click("edit.poses_clear", {"edit.poses_clear 0"});
+}
+
+TEST_F(EditPanel, OfTheTarget) {
+  expect_click("edit.target_tool", {"tool target-joints"});
+  expect_click("edit.mirror", {"tool.mirror off"});
+  expect_click("edit.target_joints_clear", {"edit.target_joints_clear 0"});
+}
+
+TEST_F(EditPanel, OfTheWeights) {
+  expect_click("edit.paint_tool", {"tool paint"});
+  expect_choice("edit.joint", 15, {"select.joint head"});
+  expect_drag("edit.brush_radius", "tool.brush_radius ");
+  expect_drag("edit.brush_strength", "tool.brush_strength ");
+  expect_click("edit.brush_mode.2", {"tool.brush_mode smooth"});
+  expect_click("edit.weights_mirror.left", {"edit.weights_mirror 0 left"});
+  expect_click("edit.weights_mirror.right", {"edit.weights_mirror 0 right"});
+  expect_click("edit.weights_smooth", {"edit.weights_smooth 0 0.5"});
+  expect_click("edit.weights_clear", {"edit.weights_clear 0"});
+}
+
+TEST_F(EditPanel, ATakenToolIsPutBackByItsButton) {
+  session.tool = app::Tool::Bones;
+  frame(2);
+  expect_click("edit.bones_tool", {"tool look"});
+}
+
+TEST_F(EditPanel, WithoutEditsThereIsNothingToClear) {
+  session.document.skeleton_edits.clear();
+  session.document.takes[0].pose_edits = PoseEdits{};
+  session.document.takes[0].target_edits = app::TargetEdits{};
+  session.playback.in = session.playback.out = -1;
+  frame(2);
+  for (const char* name : {"edit.skeleton_clear", "edit.poses_clear", "edit.target_joints_clear",
+                           "edit.weights_clear", "edit.trim", "edit.trim_off"})
+    EXPECT_FALSE(mark(name).enabled) << name;
+}
+
+}  // namespace
+}  // namespace understudy::ui

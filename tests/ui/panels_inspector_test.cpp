@@ -1,0 +1,174 @@
+// Inspector, layers and metrics: what each control asks for.
+#include "support/panels_test.hpp"
+#include "ui/panels/inspector.hpp"
+#include "ui/panels/layers.hpp"
+#include "ui/panels/metrics.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+class Inspector : public PanelsTest {
+ protected:
+  Inspector() {
+    panel([this] { draw_inspector(session, context); });
+  }
+};
+
+TEST_F(Inspector, ButtonsAskForTheirCommands) {
+  expect_click("source.open", {"dialog.open open_scan"});
+  expect_click("source.motion", {"dialog.open open_motion"});
+  expect_click("take.add", {"dialog.open open_target"});
+  expect_click("take.replace", {"dialog.open replace_target"});
+  expect_click("take.remove", {"target.remove 0"});
+  expect_click("take.1", {"target.select 1"});
+  expect_click("method.compare", {"dialog.open compare"});
+  expect_click("work.pause", {"work.pause"});
+  expect_click("work.restart", {"work.restart"});
+  session.paused = true;
+  frame(2);
+  expect_click("work.resume", {"work.resume"});
+}
+
+TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
+  expect_typed("source.fps", "25", {"source.fps 25"});
+  expect_typed("source.fps", "auto", {});  // it was automatic
+  expect_typed("source.yaw", "90", {"source.yaw 90"});
+  expect_typed("source.floor", "0.05 m", {"source.floor 0.05"});
+  expect_choice("source.units", 3, {"source.units mm"});
+  expect_choice("source.up", 6, {"source.up -z"});
+  expect_click("source.extractor.1", {"source.extractor paper"});
+  expect_choice("target.units", 2, {"target.units 0 cm"});
+  expect_choice("target.up", 3, {"target.up 0 z"});
+  expect_typed("target.yaw", "-45", {"target.yaw 0 -45"});
+  expect_typed("target.betas", "1.2,-0.5", {"target.betas 0 1.2,-0.5"});
+  expect_typed("take.name", "the adult", {"take.rename 0 \"the adult\""});
+}
+
+TEST_F(Inspector, WhatIsLeftWithoutEnterIsAskedForToo) {
+  write_into("source.yaw", "15");
+  EXPECT_EQ(asked(), Lines());
+  click("source.fps");
+  EXPECT_EQ(asked(), Lines{"source.yaw 15"});
+}
+
+TEST_F(Inspector, EscapeAndNonsenseAskForNothing) {
+  write_into("source.yaw", "15");
+  key(render::Key::Escape);
+  EXPECT_EQ(asked(), Lines());
+  expect_typed("source.yaw", "north", {});
+}
+
+TEST_F(Inspector, MethodSwitchesNameTheSelectedTake) {
+  session.selected_take = 1;
+  frame(2);
+  expect_click("method.engine.0", {"method.engine 1 copy"});
+  expect_click("method.extractor.1", {"method.extractor 1 paper"});
+  expect_click("method.offsets", {"method.offsets 1 off"});
+  expect_click("method.root.2", {"method.root 1 in-place"});
+  expect_click("method.swaps", {"method.filter 1 swaps off"});
+  expect_click("method.smooth", {"method.filter 1 smooth off"});
+  expect_click("method.lengths", {"method.filter 1 lengths off"});
+}
+
+TEST_F(Inspector, WithNothingOpenOnlyOpeningIsOffered) {
+  session = app::Session();
+  frame(2);
+  EXPECT_TRUE(shown("source.open"));
+  EXPECT_FALSE(shown("source.fps"));
+  EXPECT_FALSE(shown("method.engine"));
+  EXPECT_FALSE(mark("take.remove").enabled);
+}
+
+class LayersPanel : public PanelsTest {
+ protected:
+  LayersPanel() {
+    panel([this] { draw_layers(session, context); });
+  }
+};
+
+TEST_F(LayersPanel, EverySwitchOfBothPanesAsksForItsLayer) {
+  const app::Layers& layers = session.view.source;
+  const std::pair<const char*, bool> rows[] = {
+      {"surface", layers.surface}, {"skeleton", layers.skeleton},
+      {"x_ray", layers.x_ray},     {"joint_names", layers.joint_names},
+      {"ground", layers.ground},   {"trails", layers.trails},
+      {"ghosts", layers.ghosts}};
+  for (const std::string pane : {"source", "take"})
+    for (const auto& [name, on] : rows)
+      expect_click("layers." + pane + "." + name,
+                   {"view.layer " + pane + " " + name + (on ? " off" : " on")});
+  expect_click("layers.source.as_points", {"view.layer source as_points on"});
+  session.source.has_faces = false;
+  frame(2);
+  EXPECT_FALSE(shown("layers.source.as_points"));
+}
+
+TEST_F(LayersPanel, ColoursTrailsAndScales) {
+  expect_choice("layers.source.colour", 1, {"view.colour source confidence"});
+  expect_choice("layers.take.colour", 3, {"view.colour take error"});
+  expect_choice("layers.weights_joint", 1, {"view.weights_joint pelvis"});
+  expect_choice("layers.trail_joint", 5, {"view.trail_joint right_knee on"});
+  expect_click("layers.trail.left_wrist", {"view.trail_joint left_wrist off"});
+  expect_drag("layers.ghost_count", "view.ghosts ");
+  expect_drag("layers.ghost_step", "view.ghosts 3 ");
+  expect_drag("layers.error_scale", "view.error_scale ");
+}
+
+TEST_F(LayersPanel, Cameras) {
+  for (const std::string name : {"front", "right", "top", "back", "left", "three-quarter"})
+    expect_click("layers.preset." + name, {"view.preset " + name});
+  expect_click("layers.fit", {"view.fit"});
+  expect_click("layers.ortho", {"view.ortho on"});
+  expect_click("layers.linked", {"view.link off"});
+  expect_click("layers.follow", {"view.follow off"});
+  expect_drag("layers.turntable", "view.turntable ");
+}
+
+class MetricsPanel : public PanelsTest {
+ protected:
+  MetricsPanel() {
+    timeline.follow(session);
+    panel([this] { draw_metrics(session, context, state, timeline); });
+  }
+  MetricsState state;
+  TimelineState timeline;
+};
+
+TEST_F(MetricsPanel, AClickInACurveGoesToItsFrame) {
+  queue.clear();
+  click(mark("metrics.plot.foot_skate").visible.at(0.5f, 0.5f));
+  const Lines lines = asked();
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ(lines.front().rfind("playback.frame ", 0), 0u);
+  const int frame_asked = std::stoi(lines.front().substr(15));
+  EXPECT_GT(frame_asked, 10);
+  EXPECT_LT(frame_asked, 40);
+}
+
+TEST_F(MetricsPanel, ACurveCanBePutIntoTheTimelineAndTheTableExported) {
+  expect_click("metrics.in_timeline.foot_skate", {"view.metric foot_skate"});
+  expect_click("metrics.csv", {"dialog.open csv"});
+}
+
+TEST_F(MetricsPanel, TheHistogramShowsTheStageChosen) {
+  const float whole = state.durations.back();
+  click("metrics.stage");
+  frame(2);
+  click("metrics.stage.0");
+  EXPECT_EQ(state.stage, 0);
+  EXPECT_EQ(state.durations.size(), 256u);
+  EXPECT_LT(state.durations.back(), whole);
+  EXPECT_NEAR(state.durations[128], 2.1, 0.1);
+}
+
+TEST_F(MetricsPanel, WithoutTakesItSaysSo) {
+  session.takes.clear(), session.document.takes.clear();
+  frame(2);
+  EXPECT_FALSE(shown("metrics.plot.confidence"));
+  EXPECT_FALSE(mark("metrics.csv").enabled);
+}
+
+}  // namespace
+}  // namespace understudy::ui

@@ -1,0 +1,174 @@
+// Timeline, log, start screen and status line.
+#include "support/panels_test.hpp"
+#include "ui/panels/bindings.hpp"
+#include "ui/panels/log.hpp"
+#include "ui/panels/rows.hpp"
+#include "ui/panels/status.hpp"
+#include "ui/panels/timeline.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+class Timeline : public PanelsTest {
+ protected:
+  Timeline() {
+    input.size = {1280, 140};
+    panel([this] { draw_timeline(session, context, state); });
+  }
+  TimelineState state;
+};
+
+TEST_F(Timeline, TransportAsksForItsCommands) {
+  expect_click("timeline.first", {"playback.first"});
+  expect_click("timeline.back", {"playback.step_back"});
+  expect_click("timeline.play", {"playback.toggle"});
+  expect_click("timeline.forward", {"playback.step_on"});
+  expect_click("timeline.last", {"playback.last"});
+  expect_click("timeline.loop", {"playback.loop off"});
+  expect_click("timeline.in", {"playback.in"});
+  expect_click("timeline.out", {"playback.out"});
+  expect_click("timeline.clear_marks", {"playback.clear_marks"});
+  expect_click("timeline.live", {"playback.follow_live"});
+  expect_choice("timeline.rate", 1, {"playback.rate 0.25"});
+  expect_choice("timeline.metric", 1, {"view.metric foot_skate"});
+}
+
+TEST_F(Timeline, FrameAndTimeCanBeWritten) {
+  expect_typed("timeline.frame", "17", {"playback.frame 17"});
+  expect_typed("timeline.time", "1:02.5", {"playback.seek 62.5"});
+  expect_typed("timeline.time", "0.5", {"playback.seek 0.5"});
+  expect_typed("timeline.time", "soon", {});
+}
+
+TEST_F(Timeline, AClickInTheTrackGoesThere) {
+  queue.clear();
+  click(mark("timeline.track").rect.at(0.25f, 0.6f));
+  const Lines lines = asked();
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ(lines.front(), "playback.frame 15");
+}
+
+TEST_F(Timeline, LoopMarksAreDragged) {
+  queue.clear();
+  const Mark first = mark("timeline.track.loop_first"), track = mark("timeline.track");
+  drag(first.rect.at(0.5f, 0.5f), {track.rect.at(0.2f, 0).x, first.rect.at(0, 0.5f).y});
+  const Lines lines = asked();
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ(lines.back(), "playback.in 12");
+}
+
+TEST_F(Timeline, KnowsTheBadFramesAndWhy) {
+  EXPECT_EQ(state.why(20), "no points");
+  EXPECT_EQ(state.why(31), "low confidence");
+  EXPECT_EQ(state.why(21), "");
+  session.source.frames[21].flagged = true, session.source.frames[21].reason = "too few points";
+  ++session.source.generation;
+  frame();
+  EXPECT_EQ(state.why(21), "too few points");
+}
+
+TEST_F(Timeline, WithoutFramesNothingCanBePressed) {
+  session = app::Session();
+  frame(2);
+  for (const char* name :
+       {"timeline.first", "timeline.play", "timeline.last", "timeline.in", "timeline.loop"})
+    EXPECT_FALSE(mark(name).enabled) << name;
+}
+
+TEST_F(Timeline, ManyDigitsFitTheirFields) {
+  session.source.count = 100000;
+  for (int i = 48; i < 2000; ++i) session.source.frames.push_back(session.source.frames[1]);
+  float frame_words = 0, time_words = 0;
+  in_window([&](Ui&) {
+    draw_timeline(session, context, state);
+    const float padding = 2 * ImGui::GetStyle().FramePadding.x;
+    frame_words = ImGui::CalcTextSize("99999").x + padding;
+    time_words = ImGui::CalcTextSize("59:59.99").x + padding;
+  });
+  for (const float scale : {1.f, 1.5f, 2.f}) {
+    input.scale = scale, input.size = {static_cast<int>(1280 * scale), static_cast<int>(600 * scale)};
+    frame(3);
+    EXPECT_LE(frame_words, mark("timeline.frame").visible.width() + 1);
+    EXPECT_LE(time_words, mark("timeline.time").visible.width() + 1);
+  }
+}
+
+class Log : public PanelsTest {
+ protected:
+  Log() {
+    input.size = {700, 300};
+    panel([this] { draw_log(session, context, state); });
+  }
+  LogState state;
+};
+
+TEST_F(Log, CopiesClearsFiltersAndCloses) {
+  expect_click("log.clear", {"log.clear"});
+  expect_click("log.close", {"panel.show log off"});
+  click("log.copy");
+  EXPECT_STREQ(ImGui::GetClipboardText(), "opened dance\nframe 20 has no points\n");
+  click("log.warnings");
+  click("log.copy");
+  EXPECT_STREQ(ImGui::GetClipboardText(), "frame 20 has no points\n");
+}
+
+TEST_F(PanelsTest, StatusShowsJobsAndCancelsThem) {
+  input.size = {1280, 60};
+  session.jobs.push_back({9, "Exporting dance.glb", -1, -1, true});
+  panel([this] { draw_status(session, context, 60); });
+  expect_click("status.job.cancel", {"job.cancel 7"});
+  click("status.more_jobs");
+  frame(2);
+  EXPECT_TRUE(gui.find("status.job.9.cancel") != nullptr);
+  click("status.rate");  // closes the list
+  expect_click("status.message", {"panel.show log on"});
+  EXPECT_TRUE(shown("status.rate"));
+}
+
+TEST_F(PanelsTest, StartOpensSamplesRecentDocumentsAndDialogs) {
+  input.size = {900, 800};
+  session = app::Session();
+  session.settings.recent = {"/home/ada/a dance.understudy"};
+  const std::vector<SampleCard> samples = {{"A walk", "scans", {"/s/scan", "/s/adult.glb"}, nullptr}};
+  panel([&] { draw_start(session, context, samples); });
+  expect_click("start.sample.0", {"open /s/scan /s/adult.glb"});
+  expect_click("start.recent.0", {"document.open \"/home/ada/a dance.understudy\""});
+  expect_click("start.open_scan", {"dialog.open open_scan"});
+  expect_click("start.open_target", {"dialog.open open_target"});
+  expect_click("start.open_document", {"dialog.open open_document"});
+}
+
+TEST(PanelWords, AreShortAndPlain) {
+  EXPECT_EQ(argument(0.25), "0.25");
+  EXPECT_EQ(argument(-1), "-1");
+  EXPECT_EQ(joint_label(LeftWrist), "left wrist");
+  EXPECT_EQ(joint_name(-1), "all");
+  EXPECT_EQ(time_left(-1), "");
+  EXPECT_EQ(time_left(12.2), "about 13 s left");
+  EXPECT_EQ(time_left(600), "about 10 min left");
+  EXPECT_EQ(file_name("/a/b/c.glb"), "c.glb");
+  EXPECT_EQ(file_name("/a/b/"), "b");
+  EXPECT_EQ(file_name("/"), "/");
+  EXPECT_EQ(grouped(1234567), "1,234,567");
+  EXPECT_EQ(grouped(-123), "-123");
+  EXPECT_EQ(parse_number("0,5 m").value(), 0.5);
+  EXPECT_FALSE(parse_number("m"));
+  EXPECT_FALSE(parse_number("inf"));
+}
+
+TEST_F(PanelsTest, EveryKeyIsOneThat) {
+  std::vector<std::string> seen;
+  for (const Binding& binding : bindings(studio.commands())) {
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), binding.keys), 0) << binding.keys << " does two things";
+    seen.push_back(binding.keys);
+  }
+  EXPECT_EQ(keys_of(studio.commands(), "view.preset", {"front"}), "1");
+  EXPECT_EQ(keys_of(studio.commands(), "tool", {"look"}), "Q");
+  EXPECT_EQ(keys_of(studio.commands(), "document.save_as"), "Ctrl+Shift+S");
+  EXPECT_EQ(keys_of(studio.commands(), "edit.swap"), "");
+}
+
+}  // namespace
+}  // namespace understudy::ui

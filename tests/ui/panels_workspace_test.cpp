@@ -1,0 +1,436 @@
+// The whole window: how it lies at any size, its menus, keys and dialogs.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "retarget/base/error.hpp"
+#include "support/panels_test.hpp"
+#include "ui/panels/menus.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using Lines = std::vector<std::string>;
+using render::Key;
+
+const std::vector<std::pair<render::PixelSize, float>> kSizes = {
+    {{1280, 800}, 1}, {{400, 300}, 1}, {{400, 300}, 3}, {{1280, 800}, 3}, {{3840, 2160}, 3},
+    {{760, 430}, 1},  {{200, 120}, 1}, {{60, 40}, 2},   {{1, 1}, 1},      {{2000, 90}, 1}};
+constexpr const char* kTabs[] = {"inspector", "layers", "edit", "metrics"};
+
+TEST_F(WorkspaceTest, DrawsAtAnySizeWithAndWithoutAnythingOpen) {
+  for (const bool loaded : {true, false}) {
+    if (!loaded) session = app::Session();
+    for (const auto& [size, scale] : kSizes)
+      for (const char* tab : kTabs) {
+        input.size = size, input.scale = scale;
+        session.settings.panels = {{tab, true}, {"log", true}, {"side_over", true}};
+        frame(3);
+        EXPECT_FALSE(gui.marks().empty()) << size.width << " x " << size.height;
+      }
+  }
+  EXPECT_GT(views_drawn, 0);
+}
+
+TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
+  for (const auto& [size, scale] : kSizes)
+    for (const char* name :
+         {"open", "open_scan", "open_motion", "open_target", "replace_target", "open_document", "save_as",
+          "export", "csv", "picture", "video", "compare", "settings", "about", "keys"}) {
+      input.size = size, input.scale = scale;
+      workspace.open_dialog(session, name);
+      frame(3);
+      EXPECT_FALSE(workspace.dialog().empty()) << name;
+      workspace.browser() = FileBrowser();
+      workspace.open_dialog(session, "none");
+      frame(2);
+    }
+  EXPECT_THROW(workspace.open_dialog(session, "nothing"), Error);
+}
+
+TEST_F(WorkspaceTest, PartsNeitherOverlapNorLeaveTheWindow) {
+  Parts parts;
+  parts.log = true;
+  for (int width = 1; width < 2000; width += 37)
+    for (int height = 1; height < 1300; height += 41)
+      for (const float scale : {1.f, 2.f, 3.f}) {
+        const Arrangement a = arrange({static_cast<float>(width), static_cast<float>(height)}, scale, parts);
+        std::vector<Rect> rects = {a.top, a.views, a.log, a.timeline, a.status, a.side_edge};
+        if (!a.narrow) rects.push_back(a.side);
+        for (size_t i = 0; i < rects.size(); ++i) {
+          if (rects[i].empty()) continue;
+          ASSERT_TRUE(rects[i].min.x >= 0 && rects[i].min.y >= 0 &&
+                      rects[i].max.x <= static_cast<float>(width) &&
+                      rects[i].max.y <= static_cast<float>(height))
+              << width << " x " << height << " part " << i;
+          for (size_t k = 0; k < i; ++k)
+            if (!rects[k].empty())
+              ASSERT_TRUE(intersection(rects[i], rects[k]).empty()) << width << " x " << height;
+        }
+      }
+}
+
+TEST_F(WorkspaceTest, ASmallWindowKeepsTheViewsAndThePlayButton) {
+  input.size = {400, 300};
+  frame(3);
+  EXPECT_GT(mark("views").rect.height(), 100);
+  EXPECT_FALSE(mark("timeline.play").visible.empty());
+  EXPECT_FALSE(shown("side.tab"));
+  click("top.side");
+  EXPECT_EQ(take_log(), Lines{"panel.show side_over on"});
+  frame(2);
+  click("side.tab.1");
+  EXPECT_EQ(take_log(), Lines{"panel.show layers on"});
+  frame(2);
+  EXPECT_TRUE(shown("layers.source.surface"));
+}
+
+TEST_F(WorkspaceTest, TabsAndPanelsFollowTheirCommands) {
+  for (int i = 1; i < 4; ++i) {
+    click("side.tab." + std::to_string(i));
+    frame(2);
+  }
+  int on = 0;
+  for (const char* tab : kTabs)
+    on += session.settings.panels.count(tab) > 0 && session.settings.panels.at(tab) ? 1 : 0;
+  EXPECT_EQ(on, 1) << "one tab is on at a time";
+  session.settings.panels["side"] = false;
+  frame(2);
+  EXPECT_FALSE(shown("side.tab"));
+  session.settings.panels["edit"] = true;  // as a script does
+  frame(3);
+  EXPECT_TRUE(shown("edit.scan"));
+  session.settings.panels["timeline"] = false;
+  frame(2);
+  EXPECT_FALSE(shown("timeline.play"));
+}
+
+TEST_F(WorkspaceTest, TheSidePanelsWidthIsDragged) {
+  frame(2);
+  const Mark edge = mark("side.edge");
+  const float before = mark("side.tab").rect.width();
+  const ImVec2 at = edge.rect.at(0.5f, 0.5f);
+  drag(at, {at.x - 100, at.y});
+  frame(2);
+  EXPECT_NEAR(mark("side.tab").rect.width(), before + 100, 2);
+}
+
+TEST_F(WorkspaceTest, ToolsLayoutsAndUndo) {
+  for (const ToolChoice& tool : kTools) {
+    click(std::string("tools.") + tool.argument);
+    EXPECT_EQ(take_log(), Lines{std::string("tool ") + tool.argument});
+  }
+  click("top.layout.2");
+  EXPECT_EQ(take_log(), Lines{"view.layout overlay"});
+  EXPECT_FALSE(mark("top.undo").enabled);
+  session.history.add(session.document, "Drag a joint");
+  frame(2);
+  click("top.undo");
+  EXPECT_EQ(take_log(), Lines{"edit.undo"});
+  click("top.side");
+  EXPECT_EQ(take_log(), Lines{"panel.show side off"});
+}
+
+TEST_F(WorkspaceTest, EscapeClosesMenus) {
+  click("menu.view");
+  frame(2);
+  EXPECT_TRUE(shown("menu.view.fit"));
+  key(Key::Escape);
+  frame(2);
+  EXPECT_FALSE(shown("menu.view.fit"));
+}
+
+TEST_F(WorkspaceTest, MenusOpenAndAsk) {
+  click("menu.file");
+  frame(2);
+  click("menu.source.open");
+  EXPECT_EQ(take_log(), Lines{"dialog.open open_scan"});
+  frame(2);
+  EXPECT_EQ(workspace.dialog(), "files");
+  click("browser.cancel");
+  click("menu.view");
+  frame(2);
+  click("menu.view.preset.front");
+  EXPECT_EQ(take_log(), Lines{"view.preset front"});
+  input.size = {700, 600};  // one menu that holds the others
+  frame(2);
+  click("menu");
+  frame(2);
+  hover("menu.help");
+  frame(2);
+  click("menu.dialog.open.about");
+  EXPECT_EQ(take_log(), Lines{"dialog.open about"});
+}
+
+void collect(const std::vector<MenuItem>& items, std::vector<MenuItem>& all) {
+  for (const MenuItem& item : items) {
+    if (!item.command.empty()) all.push_back(item);
+    collect(item.inside, all);
+  }
+}
+
+TEST_F(WorkspaceTest, EveryMenuEntryIsACommandThatExists) {
+  const std::set<std::string> of_the_window = {"dialog.open", "help.keys"};
+  std::set<std::string> marks;
+  for (const Menu& menu : menus(session)) {
+    std::vector<MenuItem> items;
+    collect(menu.items, items);
+    for (const MenuItem& item : items) {
+      EXPECT_TRUE(of_the_window.count(item.command) > 0 || studio.commands().find(item.command) != nullptr)
+          << item.command;
+      if (item.command == "dialog.open") EXPECT_NO_THROW(workspace.open_dialog(session, item.arguments[0]));
+      workspace.browser() = FileBrowser();
+      EXPECT_TRUE(menu.name == "help" || marks.insert(mark_of(item)).second)
+          << mark_of(item) << " is there twice";
+    }
+  }
+}
+
+TEST_F(WorkspaceTest, WhatIsNotPossibleIsGrey) {
+  const app::Session empty;
+  std::vector<MenuItem> items;
+  for (const Menu& menu : menus(empty)) collect(menu.items, items);
+  for (const MenuItem& item : items) {
+    const bool of_work = item.command.rfind("edit.", 0) == 0 || item.command.rfind("view.", 0) == 0 ||
+                         item.command == "document.save";
+    if (of_work) EXPECT_FALSE(possible(empty, item)) << item.command;
+    if (item.command == "document.new" || item.command == "app.quit") EXPECT_TRUE(possible(empty, item));
+  }
+}
+
+TEST_F(WorkspaceTest, KeysAskUnlessSomethingIsWritten) {
+  frame(2);
+  key(Key::Space);
+  key(Key::Digit1);
+  key(Key::Left, {true});
+  key(Key::S, {false, true});
+  EXPECT_EQ(take_log(),
+            (Lines{"playback.toggle", "view.preset_front", "playback.step -10", "dialog.open save_as"}));
+  frame(2);
+  key(Key::Space);  // a dialog is open
+  EXPECT_EQ(take_log(), Lines());
+  click("browser.cancel");
+  frame(2);
+  click("timeline.frame");
+  key(Key::Digit1), type("1");
+  EXPECT_EQ(take_log(), Lines());
+  key(Key::Escape);
+  session.path = "/tmp/dance.understudy";
+  key(Key::S, {false, true});
+  EXPECT_EQ(take_log(), Lines{"document.save"});
+}
+
+TEST_F(WorkspaceTest, KeysAreListedSearchedAndChosen) {
+  key(Key::H);
+  frame(3);
+  EXPECT_EQ(workspace.dialog(), "keys");
+  click("keys.search");
+  type("turntable");
+  key(Key::Enter);
+  frame(2);
+  EXPECT_EQ(workspace.dialog(), "");
+  EXPECT_EQ(take_log(), (Lines{"help.keys", "view.turntable"}));
+}
+
+TEST_F(WorkspaceTest, ErrorsComeOneAfterTheOther) {
+  for (const char* text : {"dance: no such folder", "walk: no such folder"})
+    session.errors.push_back({app::Notice::Kind::Error, text, "understudy 0.1.0", 0});
+  frame(3);
+  click("error.copy");
+  EXPECT_STREQ(ImGui::GetClipboardText(), "dance: no such folder\nunderstudy 0.1.0");
+  click("error.close");
+  frame(2);
+  click("error.close");
+  frame(3);
+  EXPECT_EQ(take_log(), (Lines{"error.dismiss", "error.dismiss"}));
+  click("timeline.play");
+  EXPECT_EQ(take_log(), Lines{"playback.toggle"}) << "nothing is left in the way";
+}
+
+TEST_F(WorkspaceTest, ADialogThatVanishesLeavesTheWindowUsable) {
+  session.errors.push_back({app::Notice::Kind::Error, "gone soon", "", 0});
+  frame(3);
+  session.errors.clear();
+  frame(3);
+  click("timeline.play");
+  EXPECT_EQ(take_log(), Lines{"playback.toggle"});
+}
+
+TEST_F(WorkspaceTest, UnsavedChangesAreAskedAbout) {
+  const auto asked_with = [&](const std::string& path, const char* answer) {
+    session.path = path;
+    session.question = app::Question{app::Question::Kind::UnsavedChanges, "Save?", "app.quit", {}, {}};
+    frame(3);
+    click(answer);
+    frame(2);
+    return take_log();
+  };
+  EXPECT_EQ(asked_with("/tmp/a.understudy", "unsaved.yes"), Lines{"question.answer save"});
+  EXPECT_EQ(asked_with("/tmp/a.understudy", "unsaved.no"), Lines{"question.answer discard"});
+  EXPECT_EQ(asked_with("/tmp/a.understudy", "unsaved.cancel"), Lines{"question.answer cancel"});
+  EXPECT_EQ(asked_with("", "unsaved.yes"), Lines());  // a file is asked for first
+  EXPECT_EQ(workspace.dialog(), "files");
+}
+
+TEST_F(WorkspaceTest, SavingFirstAnswersTheQuestion) {
+  const auto folder = std::filesystem::temp_directory_path() / "understudy_panels_save";
+  std::filesystem::create_directories(folder);
+  session.settings.last_folder = folder.string();
+  session.question = app::Question{app::Question::Kind::UnsavedChanges, "Save?", "app.quit", {}, {}};
+  frame(3);
+  click("unsaved.yes");
+  frame(3);
+  click("browser.accept");
+  EXPECT_EQ(take_log(),
+            (Lines{"document.save_as " + (folder / "dance.understudy").string(), "question.answer save"}));
+  std::filesystem::remove_all(folder);
+}
+
+TEST_F(WorkspaceTest, RecoveryAndMissingFiles) {
+  session.question = app::Question{app::Question::Kind::Recover,
+                                   "Unsaved work was kept.",
+                                   "",
+                                   {},
+                                   {{"/s/1.auto", "/d/dance.understudy", "2024-05-01 14:03"}}};
+  frame(3);
+  click("recover.0");
+  EXPECT_EQ(take_log(), Lines{"document.recover /s/1.auto"});
+  click("discard.0");
+  EXPECT_EQ(take_log(), Lines{"document.discard_recovery /s/1.auto"});
+  click("recover.later");
+  EXPECT_EQ(take_log(), Lines{"question.answer cancel"});
+  session.question =
+      app::Question{app::Question::Kind::MissingFiles, "A file is missing.", "", {"/gone/adult.glb"}, {}};
+  frame(3);
+  click("missing.0");
+  frame(3);
+  EXPECT_EQ(workspace.dialog(), "files");
+  click("browser.cancel");
+  frame(3);
+  click("missing.leave");
+  EXPECT_EQ(take_log(), Lines{"question.answer cancel"});
+}
+
+class Exporting : public WorkspaceTest {
+ protected:
+  Exporting() {
+    std::filesystem::create_directories(folder);
+    session.path = (folder / "dance.understudy").string();
+  }
+  ~Exporting() override { std::filesystem::remove_all(folder); }
+  void open(const char* name) {
+    workspace.open_dialog(session, name);
+    frame(3);
+  }
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "understudy_panels_export";
+};
+
+TEST_F(Exporting, TheFormatDecidesTheCommandAndTheSuffix) {
+  open("export");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.glb 0 " + (folder / "adult.glb").string()});
+  EXPECT_EQ(workspace.dialog(), "");
+  open("export");
+  click("export.format.1");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.npz 0 " + (folder / "adult.npz").string()});
+  open("csv");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.csv 0 " + (folder / "adult.csv").string()});
+}
+
+TEST_F(Exporting, AFileThatIsThereIsAskedAbout) {
+  std::ofstream(folder / "adult.glb") << "old";
+  open("export");
+  click("export.save");
+  frame(3);
+  EXPECT_EQ(take_log(), Lines());
+  click("export.overwrite.cancel");
+  frame(3);
+  click("export.save");
+  frame(3);
+  click("export.overwrite.yes");
+  EXPECT_EQ(take_log(), Lines{"export.glb 0 " + (folder / "adult.glb").string()});
+}
+
+TEST_F(Exporting, PicturesAndVideosHaveASize) {
+  open("picture");
+  click("export.transparent");
+  click("export.all.1");
+  write_into("export.width", "800");
+  key(Key::Enter);
+  click("export.save");
+  EXPECT_EQ(take_log(),
+            Lines{"picture.save " + (folder / "dance.png").string() + " 800 1080 transparent view"});
+  open("video");
+  click("export.size");
+  frame(2);
+  click("export.size.0");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"video.save " + (folder / "dance.mp4").string() + " 1280 720 view"});
+}
+
+TEST_F(Exporting, BrowsingComesBackWithThePath) {
+  open("export");
+  click("export.browse");
+  frame(3);
+  EXPECT_EQ(workspace.dialog(), "files");
+  click("browser.accept");
+  frame(3);
+  EXPECT_EQ(workspace.dialog(), "export");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.glb 0 " + (folder / "adult.glb").string()});
+}
+
+TEST_F(WorkspaceTest, ComparingAddsATakeWithWhatDiffers) {
+  workspace.open_dialog(session, "compare");
+  frame(3);
+  click("compare.engine.1");
+  click("compare.offsets");
+  click("compare.apply");
+  EXPECT_EQ(take_log(), Lines{"compare.add 0 engine=paper offsets=off"});
+  EXPECT_EQ(workspace.dialog(), "");
+}
+
+TEST_F(WorkspaceTest, SettingsAreAskedFor) {
+  workspace.open_dialog(session, "settings");
+  frame(3);
+  click("settings.theme.1");
+  click("settings.samples.0");
+  write_into("settings.cache", "1024");
+  key(Key::Enter);
+  click("settings.scale");
+  frame(2);
+  click("settings.scale.5");
+  click("settings.close");
+  EXPECT_EQ(take_log(), (Lines{"settings.theme light", "settings.samples 1", "settings.cache_mb 1024",
+                               "settings.scale 2"}));
+}
+
+TEST_F(WorkspaceTest, NoticesComeOnce) {
+  session.time = 10;
+  session.notices.push_back({app::Notice::Kind::Info, "Saved dance.understudy", "", 12});
+  frame(3);
+  EXPECT_TRUE(shown("notice.0"));
+  frame(240);
+  EXPECT_FALSE(shown("notice.0"));
+}
+
+TEST_F(WorkspaceTest, WordsOfFixedPlacesFit) {
+  frame(3);
+  const float padding = 6;
+  const auto fits = [&](const std::string& name, const char* words) {
+    EXPECT_GE(mark(name).rect.width(), ImGui::CalcTextSize(words).x + padding) << words;
+  };
+  const char* const tabs[] = {"Inspector", "Layers", "Edit", "Metrics"};
+  const char* const layouts[] = {"Side by side", "Single", "Overlay", "Wipe"};
+  for (int i = 0; i < 4; ++i) {
+    fits("side.tab." + std::to_string(i), tabs[i]);
+    fits("top.layout." + std::to_string(i), layouts[i]);
+  }
+}
+
+}  // namespace
+}  // namespace understudy::ui
