@@ -31,7 +31,9 @@ class LowestHeights {
     for (Eigen::Index i = 0; i < points.rows(); ++i) add(points.data() + 3 * i);
   }
   void add_line(const Vec3& a, const Vec3& b) {
-    const int steps = std::clamp(static_cast<int>((b - a).norm() * cells_), 0, 4 * kSide);
+    const float length = (b - a).norm() * cells_;
+    if (!std::isfinite(length)) return;
+    const int steps = static_cast<int>(std::min(length, 4.f * kSide));
     for (int i = 0; i <= steps; ++i) {
       const Vec3 at = a + (b - a) * (static_cast<float>(i) / static_cast<float>(std::max(1, steps)));
       add(at.data());
