@@ -8,7 +8,7 @@ us_module(run SOURCES
   PRIVATE understudy_npz understudy_body ZLIB::ZLIB)
 
 include(app/session/session.cmake)
-include(app/studio/studio.cmake OPTIONAL)
+include(app/studio/studio.cmake)
 
 # What the subcommands share, apart from the program so that tests can link it.
 us_module(app SOURCES
@@ -16,10 +16,11 @@ us_module(app SOURCES
   PUBLIC understudy_run understudy_networks understudy_render
   PRIVATE understudy_results ${CMAKE_DL_LIBS})
 
-add_executable(understudy app/main.cpp app/cli/commands.cpp app/cli/bench.cpp app/cli/demo.cpp app/cli/doctor.cpp
-  app/cli/eval.cpp app/cli/retarget.cpp app/cli/sample.cpp app/cli/train.cpp)
+add_executable(understudy app/main.cpp app/cli/commands.cpp app/cli/bench.cpp app/cli/bench_ui.cpp app/cli/demo.cpp
+  app/cli/doctor.cpp app/cli/eval.cpp app/cli/play.cpp app/cli/retarget.cpp app/cli/sample.cpp app/cli/studio.cpp
+  app/cli/train.cpp)
 target_include_directories(understudy PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app understudy_builtin)
+target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app understudy_studio understudy_builtin)
 
 # The program and what it loads at run time.
 add_custom_target(understudy_all DEPENDS understudy networks_plugin)

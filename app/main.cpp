@@ -14,7 +14,7 @@ int run(int argc, char** argv) {
   CLI::App app("Understudy lets any body perform any captured motion.", "understudy");
   app.require_subcommand(1);
   std::vector<std::pair<CLI::App*, understudy::app::Action>> actions;
-  for (const auto& command : understudy::app::commands()) {
+  for (const auto& command : understudy::app::subcommands()) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     actions.emplace_back(sub, command.declare(*sub));
   }

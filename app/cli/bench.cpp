@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "app/cli/bench_ui.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/job.hpp"
 #include "app/cli/machine.hpp"
@@ -119,7 +120,13 @@ Action declare_bench(CLI::App& command) {
   command.add_option("--frames", options->frames, "how many; 10000 shows whether memory grows")
       ->check(CLI::Range(2, 10000000));
   add_network_options(command, options->networks);
-  return [options] { return bench(*options); };
+  const auto ui_options = std::make_shared<UiBenchOptions>();
+  CLI::App* ui = command.add_subcommand("ui", "the studio: frames a second, delays, start-up, memory");
+  ui->add_option("--context", ui_options->context, "how to draw: any, egl, osmesa")
+      ->check(CLI::IsMember({"any", "egl", "osmesa"}));
+  ui->add_option("--seconds", ui_options->seconds, "of each measurement")->check(CLI::Range(0.5, 600.0));
+  ui->add_option("--weights", ui_options->weights, "folder of the weights (default: beside the program)");
+  return [options, ui_options, ui] { return ui->parsed() ? bench_ui(*ui_options) : bench(*options); };
 }
 
 }  // namespace understudy::app

@@ -9,9 +9,13 @@ Action declare_sample(CLI::App& command);
 Action declare_doctor(CLI::App& command);
 Action declare_bench(CLI::App& command);
 Action declare_demo(CLI::App& command);
+Action declare_studio(CLI::App& command);
+Action declare_play(CLI::App& command);
 
-const std::vector<Command>& commands() {
-  static const std::vector<Command> table = {
+const std::vector<Subcommand>& subcommands() {
+  static const std::vector<Subcommand> table = {
+      {"studio", "opens the window", declare_studio},
+      {"play", "plays a script of the studio without a window", declare_play},
       {"retarget", "lets a target perform what a source does", declare_retarget},
       {"eval", "judges the method on a folder of cases", declare_eval},
       {"train", "trains a network", declare_train},

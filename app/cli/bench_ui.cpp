@@ -1,0 +1,407 @@
+#include "app/cli/bench_ui.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "app/cli/machine.hpp"
+#include "app/cli/studio.hpp"
+#include "app/run/target_file.hpp"
+#include "app/studio/application.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/rng.hpp"
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kScanPoints = 8000, kVertices = 13000, kManyVertices = 200000;
+
+double seconds_since(Clock::time_point from) {
+  return std::chrono::duration<double>(Clock::now() - from).count();
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+// What is shown: the bundled samples, brought to the sizes asked for.
+
+/// Every face cut into four.
+Mesh subdivided(const Mesh& mesh) {
+  std::map<std::pair<int, int>, int> middles;
+  std::vector<Vec3> vertices;
+  for (int v = 0; v < mesh.vertices.rows(); ++v) vertices.emplace_back(mesh.vertices.row(v));
+  const auto middle = [&](int a, int b) {
+    const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
+    if (is_new) {
+      const Vec3 between = 0.5f * (mesh.vertices.row(a) + mesh.vertices.row(b)).transpose();
+      vertices.push_back(between);
+    }
+    return at->second;
+  };
+  Mesh finer;
+  finer.faces.resize(4 * mesh.faces.rows(), 3);
+  for (int f = 0; f < mesh.faces.rows(); ++f) {
+    const int a = mesh.faces(f, 0), b = mesh.faces(f, 1), c = mesh.faces(f, 2);
+    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    finer.faces.middleRows(4 * f, 4) << a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca;
+  }
+  finer.vertices.resize(static_cast<Eigen::Index>(vertices.size()), 3);
+  for (size_t v = 0; v < vertices.size(); ++v)
+    finer.vertices.row(static_cast<Eigen::Index>(v)) = vertices[v].transpose();
+  return finer;
+}
+
+/// Exactly `count` vertices: faces cut into four while they are too few, then into three one by one.
+Mesh with_vertices(Mesh mesh, int count) {
+  while (mesh.vertices.rows() + mesh.faces.rows() < count) mesh = subdivided(mesh);
+  const int first = static_cast<int>(mesh.vertices.rows()), faces = static_cast<int>(mesh.faces.rows());
+  const int more = std::max(0, count - first);
+  mesh.vertices.conservativeResize(first + more, 3);
+  mesh.faces.conservativeResize(faces + 2 * more, 3);
+  for (int i = 0; i < more; ++i) {
+    const int a = mesh.faces(i, 0), b = mesh.faces(i, 1), c = mesh.faces(i, 2), centre = first + i;
+    mesh.vertices.row(centre) = (mesh.vertices.row(a) + mesh.vertices.row(b) + mesh.vertices.row(c)) / 3;
+    mesh.faces.row(i) << a, b, centre;
+    mesh.faces.row(faces + 2 * i) << b, c, centre;
+    mesh.faces.row(faces + 2 * i + 1) << c, a, centre;
+  }
+  return mesh;
+}
+
+void write_obj(const std::string& path, const Mesh& mesh) {
+  std::ofstream file(path);
+  for (int v = 0; v < mesh.vertices.rows(); ++v)
+    file << "v " << mesh.vertices(v, 0) << ' ' << mesh.vertices(v, 1) << ' ' << mesh.vertices(v, 2) << '\n';
+  for (int f = 0; f < mesh.faces.rows(); ++f)
+    file << "f " << mesh.faces(f, 0) + 1 << ' ' << mesh.faces(f, 1) + 1 << ' ' << mesh.faces(f, 2) + 1
+         << '\n';
+  US_CHECK(file.flush(), path, ": cannot be written");
+}
+
+/// Points drawn again from the scan, some millimetres aside, until there are as many as asked for.
+void write_scan(const std::string& path, const Points& points) {
+  Rng rng(1);
+  Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> dense(kScanPoints, 3);
+  for (int i = 0; i < kScanPoints; ++i) {
+    const auto from =
+        static_cast<Eigen::Index>(i) < points.rows() ? i : rng.below(static_cast<int>(points.rows()));
+    for (int axis = 0; axis < 3; ++axis)
+      dense(i, axis) = points(from, axis) + (i < points.rows() ? 0 : 0.004f * rng.normal());
+  }
+  std::ofstream file(path, std::ios::binary);
+  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << kScanPoints
+       << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  file.write(reinterpret_cast<const char*>(dense.data()),
+             dense.size() * static_cast<std::streamsize>(sizeof(float)));
+  US_CHECK(file.flush(), path, ": cannot be written");
+}
+
+/// A folder that goes when the measuring is over.
+class BenchFiles {
+ public:
+  explicit BenchFiles(const std::string& samples) {
+    std::string name = (fs::temp_directory_path() / "understudy-bench-XXXXXX").string();
+    US_CHECK(mkdtemp(name.data()), name, ": cannot be made");
+    folder_ = name;
+    fs::create_directories(scan());
+    SourceOptions from;
+    from.path = samples + "/scan";
+    from.quiet = true;
+    const auto source = open_source(from);
+    for (int i = 0; const auto frame = source->next(); ++i) {
+      char file[32];
+      std::snprintf(file, sizeof file, "/frame_%05d.ply", i);
+      write_scan(scan() + file, frame->mesh.vertices);
+    }
+    const Mesh adult = import_target({samples + "/target_adult.glb", {}, {}});
+    write_obj(target(kVertices), with_vertices(adult, kVertices));
+    write_obj(target(kManyVertices), with_vertices(adult, kManyVertices));
+  }
+  ~BenchFiles() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  BenchFiles(const BenchFiles&) = delete;
+  BenchFiles& operator=(const BenchFiles&) = delete;
+  std::string scan() const { return folder_ + "/scan"; }
+  std::string target(int vertices) const { return folder_ + "/target_" + std::to_string(vertices) + ".obj"; }
+
+ private:
+  std::string folder_;
+};
+
+// The hand: moves the mouse over the views from a thread of its own, as a device would, and remembers when.
+
+class Hand {
+ public:
+  explicit Hand(OffscreenSurface& surface) : surface_(surface), thread_([this] { move(); }) {}
+  ~Hand() {
+    stop_ = true;
+    thread_.join();
+  }
+  /// When the oldest `count` movements not yet asked for were made.
+  std::vector<Clock::time_point> taken(size_t count) {
+    const std::lock_guard lock(mutex_);
+    count = std::min(count, moved_.size());
+    std::vector<Clock::time_point> times(moved_.begin(), moved_.begin() + static_cast<std::ptrdiff_t>(count));
+    moved_.erase(moved_.begin(), moved_.begin() + static_cast<std::ptrdiff_t>(count));
+    return times;
+  }
+
+ private:
+  void move() {
+    Rng rng(7);
+    for (int i = 0; !stop_; ++i) {
+      render::InputEvent event;
+      event.x = 400 + 150 * std::sin(0.05f * static_cast<float>(i));
+      event.y = 300 + 60 * std::cos(0.07f * static_cast<float>(i));
+      {
+        const std::lock_guard lock(mutex_);
+        moved_.push_back(Clock::now());
+        surface_.push(event);
+      }
+      // Not in step with the frames: every delay that can be is seen.
+      std::this_thread::sleep_for(std::chrono::microseconds(15000 + rng.below(10000)));
+    }
+  }
+  OffscreenSurface& surface_;
+  std::mutex mutex_;
+  std::deque<Clock::time_point> moved_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// Counts the input that a frame has taken.
+struct InputCounter final : Observer {
+  size_t events = 0;
+  void input(double, const std::vector<render::InputEvent>& input, const Session&) override {
+    for (const render::InputEvent& event : input) events += event.kind == render::InputEvent::Kind::MouseMove;
+  }
+  void command(const std::string&, const Arguments&) override {}
+};
+
+class UiBench {
+ public:
+  explicit UiBench(const UiBenchOptions& options) : seconds_(options.seconds) {
+    OffscreenSurface::Options seen;
+    seen.context.kind = options.context == "osmesa" ? render::ContextKind::Osmesa
+                        : options.context == "egl"  ? render::ContextKind::Egl
+                                                    : render::ContextKind::Any;
+    auto surface = std::make_unique<OffscreenSurface>(seen);
+    surface_ = surface.get();
+    ApplicationOptions how;
+    how.echo_log = false;
+    application_ = std::make_unique<Application>(studio_services(options.weights), std::move(surface), how);
+    application_->observe(&counter_);
+  }
+
+  void run() {
+    start();
+    const BenchFiles files(application_->studio().services().samples);
+    open(files, kVertices);
+    idle();
+    play("playing kept frames", kVertices);
+    live();
+    scrub();
+    memory();
+    open(files, kManyVertices);
+    play("playing", kManyVertices);
+  }
+
+ private:
+  void line(const std::string& what, const std::string& figures) {
+    std::printf("%-34s %s\n", what.c_str(), figures.c_str());
+    std::fflush(stdout);
+  }
+  void command(const std::string& name, const Arguments& arguments = {}) {
+    application_->studio().run(name, arguments);
+  }
+  void settle() {
+    application_->studio().wait_idle();
+    for (int i = 0; i < 10; ++i) {
+      application_->frame(1.0 / 60);
+      application_->studio().cache().wait();
+    }
+  }
+  static std::string milliseconds(const std::vector<double>& times) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%.1f ms median (%.0f frames/s), p95 %.1f ms",
+                  1e3 * quantile(times, 0.5), 1 / quantile(times, 0.5), 1e3 * quantile(times, 0.95));
+    return text;
+  }
+
+  /// The start of the program, and the bundled sample performed by a bundled target.
+  void start() {
+    application_->frame(0);
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f s", seconds_since_start());
+    line("start to the first frame", text);
+    const std::string& samples = application_->studio().services().samples;
+    command("open", {samples + "/scan", samples + "/target_adult.glb"});
+    while (frame_count(application_->session()) < 1 || !shown_whole()) application_->step();
+    application_->frame(0);
+    std::snprintf(text, sizeof text, "%.2f s", seconds_since_start());
+    line("start to the sample performed", text);
+  }
+
+  /// Whether scan and target of the shown frame have been made.
+  bool shown_whole() {
+    const Session& s = application_->session();
+    const int frame = shown_frame(s);
+    if (frame < 0 || !application_->studio().cache().scan(frame)) return false;
+    for (size_t k = 0; k < s.takes.size(); ++k)
+      if (s.takes[k].ready &&
+          !application_->studio().cache().posed(s.takes[k], {static_cast<int>(k), frame, false}))
+        return false;
+    return true;
+  }
+
+  void open(const BenchFiles& files, int vertices) {
+    const auto began = Clock::now();
+    command("document.new");
+    if (application_->session().question) command("question.answer", {"discard"});
+    command("open", {files.scan(), files.target(vertices)});
+    settle();
+    char text[96];
+    std::snprintf(text, sizeof text, "%.1f s for %d frames of %d points, %d vertices", seconds_since(began),
+                  frame_count(application_->session()), kScanPoints, vertices);
+    line("opened and retargeted", text);
+  }
+
+  void idle() {
+    std::vector<double> times;
+    command("playback.pause");
+    for (const auto began = Clock::now(); seconds_since(began) < seconds_;) {
+      const auto start = Clock::now();
+      command("view.orbit", {"1", "0"});
+      application_->frame(1.0 / 60);
+      times.push_back(seconds_since(start));
+    }
+    line("interface and two views, turning", milliseconds(times));
+  }
+
+  /// Plays at the highest rate in real time: every picture is of another frame.
+  void play(const std::string& what, int vertices) {
+    std::vector<double> times;
+    command("playback.rate", {"4"});
+    command("playback.play");
+    for (int i = 0; i < 30; ++i) application_->step();
+    int advanced = 0, last = -1;
+    const auto began = Clock::now();
+    auto before = began;
+    while (seconds_since(began) < seconds_) {
+      const int64_t drawn = application_->drawn();
+      application_->step();
+      if (application_->drawn() == drawn) continue;
+      times.push_back(seconds_since(before));
+      before = Clock::now();
+      advanced += shown_whole() && shown_frame(application_->session()) != last;
+      last = shown_frame(application_->session());
+    }
+    command("playback.pause");
+    char text[64];
+    std::snprintf(text, sizeof text, "; new frames complete %.1f/s", advanced / seconds_since(began));
+    line(what + ", " + std::to_string(vertices) + " vertices", milliseconds(times) + text);
+  }
+
+  /// The shown target advances while frames are made and the mouse moves.
+  void live() {
+    command("work.restart");
+    command("playback.follow_live");
+    std::vector<double> delays;
+    std::set<int> shown;
+    while (frame_count(application_->session()) > 1) application_->step();  // it has begun anew
+    counter_.events = 0;
+    Hand hand(*surface_);
+    const auto began = Clock::now();
+    do {
+      const int64_t drawn = application_->drawn();
+      application_->step();
+      if (application_->drawn() == drawn) continue;
+      for (const auto moved : hand.taken(std::exchange(counter_.events, 0)))
+        delays.push_back(seconds_since(moved));
+      shown.insert(shown_frame(application_->session()));
+    } while (application_->session().working && seconds_since(began) < 60);
+    char text[128];
+    std::snprintf(text, sizeof text, "target advances %.1f/s (%zu frames in %.1f s)",
+                  static_cast<double>(shown.size()) / seconds_since(began), shown.size(),
+                  seconds_since(began));
+    line("retargeting live", text);
+    std::snprintf(text, sizeof text, "p50 %.1f ms, p99 %.1f ms, worst %.1f ms of %zu",
+                  1e3 * quantile(delays, 0.5), 1e3 * quantile(delays, 0.99), 1e3 * quantile(delays, 1),
+                  delays.size());
+    line("  input to presented frame", text);
+  }
+
+  /// Jumps to frames that have been forgotten since.
+  void scrub() {
+    settle();
+    std::vector<double> times;
+    Rng rng(3);
+    const int count = frame_count(application_->session());
+    for (int i = 0; i < 60; ++i) {
+      command("settings.cache_mb", {"64"});
+      const auto start = Clock::now();
+      command("playback.frame", {std::to_string(rng.below(count))});
+      do application_->step();
+      while (!shown_whole());
+      application_->frame(0);
+      times.push_back(seconds_since(start));
+    }
+    command("settings.cache_mb", {"512"});
+    char text[96];
+    std::snprintf(text, sizeof text, "%.0f ms median, %.0f ms at most", 1e3 * quantile(times, 0.5),
+                  1e3 * quantile(times, 1));
+    line("scrubbing to any frame", text);
+  }
+
+  void memory() {
+    double after[2] = {0, 0};
+    for (double& mb : after) {
+      for (int frame = 0; frame < frame_count(application_->session()); ++frame) {
+        command("playback.frame", {std::to_string(frame)});
+        application_->frame(1.0 / 60);
+        application_->studio().cache().wait();
+        application_->frame(1.0 / 60);
+      }
+      mb = resident_mb();
+    }
+    char text[96];
+    std::snprintf(text, sizeof text, "%.0f MB, after the second time %.0f MB (x %.3f)", after[0], after[1],
+                  after[1] / after[0]);
+    line("memory, all frames looked at", text);
+  }
+
+  double seconds_;
+  InputCounter counter_;
+  OffscreenSurface* surface_ = nullptr;
+  std::unique_ptr<Application> application_;
+};
+
+}  // namespace
+
+int bench_ui(const UiBenchOptions& options) {
+  UiBench bench(options);
+  bench.run();
+  std::printf("%-34s %s\n", "machine", processor().c_str());
+  return 0;
+}
+
+}  // namespace understudy::app

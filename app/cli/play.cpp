@@ -1,0 +1,90 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "app/cli/commands.hpp"
+#include "app/cli/studio.hpp"
+#include "app/studio/application.hpp"
+#include "app/studio/script.hpp"
+#include "retarget/base/error.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PlayOptions {
+  std::string script, out = ".", size = "1280x800", context = "any", state, weights, marks;
+  float scale = 1;
+  double timeout_s = 600;
+};
+
+render::ContextKind context_kind(const std::string& name) {
+  if (name == "egl") return render::ContextKind::Egl;
+  if (name == "osmesa") return render::ContextKind::Osmesa;
+  return name == "null" ? render::ContextKind::Null : render::ContextKind::Any;
+}
+
+OffscreenSurface::Options surface_options(const PlayOptions& options) {
+  OffscreenSurface::Options surface;
+  const size_t x = options.size.find('x');
+  US_CHECK(x != std::string::npos, "--size wants WIDTHxHEIGHT, not ", options.size);
+  surface.width = std::atoi(options.size.c_str()), surface.height = std::atoi(options.size.c_str() + x + 1);
+  surface.content_scale = options.scale;
+  surface.context = {context_kind(options.context), render::gl::DebugMode::Fatal};
+  return surface;
+}
+
+std::string script_text(const std::string& path) {
+  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  US_CHECK(!fs::is_directory(path), path, ": is a folder, not a script");
+  std::ifstream file(path, std::ios::binary);
+  US_CHECK(file, path, ": there is no such script");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+int play(const PlayOptions& options) {
+  const std::string text = script_text(options.script);
+  StudioServices services = studio_services(options.weights);
+  if (!options.state.empty()) {
+    fs::create_directories(options.state);
+    services.settings_file = options.state + "/settings.json";
+    services.autosave_folder = options.state;
+  }
+  auto surface = std::make_unique<OffscreenSurface>(surface_options(options));
+  OffscreenSurface& seen = *surface;
+  ApplicationOptions how;
+  how.marks_file = options.marks;
+  Application application(std::move(services), std::move(surface), how);
+  ScriptOptions script_options;
+  script_options.name = options.script;
+  script_options.out = options.out;
+  script_options.timeout_s = options.timeout_s;
+  Script script(application, seen, script_options);
+  script.play(text);
+  script.check_no_error();
+  return 0;
+}
+
+}  // namespace
+
+Action declare_play(CLI::App& command) {
+  const auto options = std::make_shared<PlayOptions>();
+  command.add_option("SCRIPT", options->script, "commands and input, a line each; - reads them from stdin")
+      ->required();
+  command.add_option("--out", options->out, "folder for pictures and whatever a script calls out/...");
+  command.add_option("--size", options->size, "of the window that would be, WIDTHxHEIGHT");
+  command.add_option("--scale", options->scale, "of its text and controls")->check(CLI::Range(0.5, 4.0));
+  command.add_option("--context", options->context, "how to draw: any, egl, osmesa, null (not at all)")
+      ->check(CLI::IsMember({"any", "egl", "osmesa", "null"}));
+  command.add_option("--state", options->state, "folder for settings and autosaves (default: none are kept)");
+  command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
+  command.add_option("--timeout", options->timeout_s, "seconds that each wait may take")
+      ->check(CLI::Range(1.0, 86400.0));
+  command.add_option("--marks", options->marks, "keeps the places of all widgets in this file");
+  return [options] { return play(*options); };
+}
+
+}  // namespace understudy::app

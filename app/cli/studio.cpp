@@ -1,0 +1,115 @@
+#include "app/cli/studio.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "app/cli/attempt.hpp"
+#include "app/cli/commands.hpp"
+#include "app/run/interrupt.hpp"
+#include "app/run/report.hpp"
+#include "app/run/samples.hpp"
+#include "app/studio/application.hpp"
+#include "app/studio/recorder.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/nn/networks.hpp"
+
+namespace understudy::app {
+
+StudioServices studio_services(const std::string& weights) {
+  StudioServices services;
+  services.networks = [weights](const Method& method) {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    options.engine = method.engine;
+    options.extractor = method.extractor;
+    options.offsets = method.offsets;
+    return nn::load_networks(options);
+  };
+  services.weights = [weights] {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return report_header(nn::weights_folder(options))["weights"].get<std::string>();
+  };
+  const std::string missing = failure_of([&] { services.samples = samples_folder(); });
+  if (!missing.empty()) log::warn(missing);
+  return services;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StudioOptions {
+  std::vector<std::string> paths;
+  std::string record, marks, weights, size;
+  bool software = false, gl_debug = false;
+};
+
+/// Folders for what is remembered; without them nothing is.
+void add_memory(StudioServices& services) {
+  const std::string problem = failure_of([&] {
+    fs::create_directories(config_folder());
+    fs::create_directories(state_folder());
+  });
+  if (!problem.empty()) return log::warn("settings are not remembered: " + problem);
+  services.settings_file = config_folder() + "/settings.json";
+  services.autosave_folder = state_folder();
+}
+
+render::WindowOptions window_options(const StudioOptions& options, const StudioServices& services) {
+  const Settings settings =
+      services.settings_file.empty() ? Settings{} : read_settings(services.settings_file);
+  render::WindowOptions window;
+  window.width = settings.window_width, window.height = settings.window_height;
+  window.software = options.software;
+  if (options.gl_debug) window.debug = render::gl::DebugMode::Log;
+  if (options.size.empty()) return window;
+  const size_t x = options.size.find('x');
+  US_CHECK(x != std::string::npos, "--size wants WIDTHxHEIGHT, not ", options.size);
+  window.width = std::atoi(options.size.c_str()), window.height = std::atoi(options.size.c_str() + x + 1);
+  US_CHECK(window.width >= 1 && window.height >= 1, "--size wants WIDTHxHEIGHT, not ", options.size);
+  return window;
+}
+
+int studio(const StudioOptions& options) {
+  StudioServices services = studio_services(options.weights);
+  add_memory(services);
+  auto surface = std::make_unique<WindowSurface>(window_options(options, services));
+  ApplicationOptions how;
+  how.marks_file = options.marks;
+  how.remember_size = options.size.empty();
+  Application application(std::move(services), std::move(surface), how);
+  std::unique_ptr<Recorder> recorder;
+  if (!options.record.empty()) recorder = std::make_unique<Recorder>(options.record, application);
+  application.observe(recorder.get());
+  if (!options.paths.empty()) {
+    Arguments paths;
+    for (const std::string& path : options.paths) paths.push_back(fs::absolute(path).string());
+    if (recorder) recorder->opened("open", paths);
+    application.studio().try_run("open", paths);
+  }
+  bool asked = false;
+  while (!application.session().quit) {
+    if (interrupted() && !asked) application.studio().try_run("app.quit");
+    asked = interrupted();
+    application.step();
+  }
+  return 0;
+}
+
+}  // namespace
+
+Action declare_studio(CLI::App& command) {
+  const auto options = std::make_shared<StudioOptions>();
+  command.add_option("PATHS", options->paths, "what to open: scans, a target, a document, a case folder");
+  command.add_option("--record", options->record, "writes what is done as a script for `understudy play`");
+  command.add_flag("--software", options->software, "draws without the graphics driver");
+  command.add_option("--size", options->size, "of the window, WIDTHxHEIGHT (default: as it was left)");
+  command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
+  command.add_option("--marks", options->marks, "keeps the places of all widgets in this file");
+  command.add_flag("--gl-debug", options->gl_debug, "tells what the graphics driver complains about");
+  return [options] { return studio(*options); };
+}
+
+}  // namespace understudy::app

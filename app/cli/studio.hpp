@@ -1,0 +1,14 @@
+// What the studio gets from the program, with a window or without one.
+#pragma once
+
+#include <string>
+
+#include "app/session/studio.hpp"
+
+namespace understudy::app {
+
+/// The trained networks, loaded when a frame is first made, and the bundled samples. weights: their folder;
+/// empty: beside the program.
+StudioServices studio_services(const std::string& weights);
+
+}  // namespace understudy::app

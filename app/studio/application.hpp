@@ -1,0 +1,104 @@
+// The studio with its face: session, interface and views on one surface.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/studio.hpp"
+#include "app/studio/previews.hpp"
+#include "app/studio/surface.hpp"
+#include "ui/gui/draw_pass.hpp"
+#include "ui/gui/gui.hpp"
+
+namespace understudy::ui {
+class Views;
+class Workspace;
+}  // namespace understudy::ui
+
+namespace understudy::app {
+
+struct ApplicationOptions {
+  std::string marks_file;      ///< written whenever it changes: places of widgets and facts; empty: none
+  bool remember_size = false;  ///< of the window, in the settings
+  bool echo_log = true;        ///< messages go to where they went before, too
+};
+
+/// What a recording wants to know.
+struct Observer {
+  virtual ~Observer() = default;
+  /// Before each frame: what happened since the last. Also called without events.
+  virtual void input(double dt, const std::vector<render::InputEvent>& events, const Session& session) = 0;
+  /// A command that the interface asked for.
+  virtual void command(const std::string& name, const Arguments& arguments) = 0;
+};
+
+/// One thread. While it lives the log goes to Session::log.
+class Application {
+ public:
+  Application(StudioServices services, std::unique_ptr<Surface> surface, ApplicationOptions options = {});
+  ~Application();
+  Application(const Application&) = delete;
+  Application& operator=(const Application&) = delete;
+
+  Studio& studio() { return *studio_; }
+  const Session& session() const { return studio_->session(); }
+  Surface& surface() { return *surface_; }
+  ui::Gui& gui() { return *gui_; }
+  ui::Workspace& workspace() { return *workspace_; }
+  /// Places that the pointer may go to: named widgets, and joints in the views (joint.PANE.NAME).
+  std::vector<ui::Mark> marks() const;
+  std::optional<ui::Mark> find(const std::string& name) const;
+  /// Whether the screen still misses something that is being made.
+  bool waiting() const;
+  void observe(Observer* observer) { observer_ = observer; }
+
+  /// Takes input, runs what it asks for, and draws, `dt` seconds after the last one.
+  void frame(double dt);
+  /// Sleeps until there is something to do or show, then does it. For windows.
+  void step();
+  /// Steps until the user quits.
+  void run();
+  /// Frames drawn so far.
+  int64_t drawn() const { return drawn_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct LogBox;
+  void take_log();
+  void draw(double dt, const std::vector<render::InputEvent>& events);
+  void handle(const render::InputEvent& event);
+  void draw_interface(double dt, const std::vector<render::InputEvent>& events);
+  void show_previews();
+  std::unique_ptr<ui::Workspace> make_workspace();
+  void run_queue();
+  void show_state();
+  void write_marks();
+  double patience_s() const;
+  bool due() const;
+  std::string fingerprint() const;
+
+  ApplicationOptions options_;
+  std::unique_ptr<Surface> surface_;
+  std::shared_ptr<LogBox> log_;
+  std::unique_ptr<Studio> studio_;
+  std::unique_ptr<ui::Gui> gui_;
+  std::unique_ptr<ui::DrawPass> pass_;
+  std::unique_ptr<ui::Views> views_;
+  std::unique_ptr<Previews> previews_;
+  std::unique_ptr<ui::Workspace> workspace_;
+  CommandQueue queue_;
+  Observer* observer_ = nullptr;
+  Clock::time_point ticked_at_, drawn_at_, input_at_;
+  size_t samples_ = 0;  ///< cards on the start screen
+  float frame_rate_ = 0;
+  std::string on_screen_;  ///< fingerprint of what was drawn last
+  std::string marks_;      ///< what the marks file holds
+  int frames_wanted_ = 3;  ///< until widgets have come to rest
+  int64_t drawn_ = 0;
+};
+
+}  // namespace understudy::app

@@ -1,0 +1,100 @@
+#include "app/studio/facts.hpp"
+
+#include <cstdlib>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy::app {
+namespace {
+
+std::string yes_no(bool yes) {
+  return yes ? "yes" : "no";
+}
+
+const char* layout_name(Layout layout) {
+  switch (layout) {
+    case Layout::SideBySide:
+      return "side-by-side";
+    case Layout::Single:
+      return "single";
+    case Layout::Overlay:
+      return "overlay";
+    default:
+      return "wipe";
+  }
+}
+
+const char* tool_name(Tool tool) {
+  constexpr const char* kNames[] = {"look", "joints", "bones", "target-joints", "paint", "crop"};
+  return kNames[static_cast<size_t>(tool)];
+}
+
+const char* question_name(const Session& session) {
+  if (!session.question) return "none";
+  switch (session.question->kind) {
+    case Question::Kind::UnsavedChanges:
+      return "unsaved";
+    case Question::Kind::Recover:
+      return "recover";
+    default:
+      return "missing";
+  }
+}
+
+size_t ready_takes(const Session& session) {
+  size_t ready = 0;
+  for (const TakeState& take : session.takes) ready += take.ready;
+  return ready;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
+  const auto count = [](size_t n) { return std::to_string(n); };
+  return {
+      {"frames", std::to_string(frame_count(session))},
+      {"frame", std::to_string(shown_frame(session))},
+      {"source_frames", count(session.source.frames.size())},
+      {"source", session.document.source.path},
+      {"takes", count(session.document.takes.size())},
+      {"ready_takes", count(ready_takes(session))},
+      {"playing", yes_no(session.playback.playing)},
+      {"rate", std::to_string(session.playback.rate)},
+      {"working", yes_no(session.working)},
+      {"changed", yes_no(session.changed)},
+      {"path", session.path},
+      {"undo_label", session.history.undo_label()},
+      {"redo_label", session.history.redo_label()},
+      {"skeleton_edits", count(session.document.skeleton_edits.size())},
+      {"layout", layout_name(session.view.layout)},
+      {"active_pane", std::to_string(session.view.active_pane)},
+      {"tool", tool_name(session.tool)},
+      {"joint", session.selected_joint < 0 ? "none" : kJointNames[session.selected_joint]},
+      {"selected_take", std::to_string(session.selected_take)},
+      {"theme", session.settings.dark ? "dark" : "light"},
+      {"errors", count(session.errors.size())},
+      {"error", session.errors.empty() ? "" : session.errors.front().text},
+      {"question", question_name(session)},
+      {"jobs", count(session.jobs.size())},
+      {"bad_frames", count(bad_frames(session).size())},
+  };
+}
+
+std::string fact(const Session& session, const std::string& key) {
+  std::string known;
+  for (const auto& [name, value] : facts(session)) {
+    if (name == key) return value;
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  throw Error("there is no fact " + key + " (there are " + known + ")");
+}
+
+bool holds(const std::string& value, const std::string& comparison, const std::string& wanted) {
+  if (comparison == "=" || comparison.empty()) return value == wanted;
+  if (comparison == "!=") return value != wanted;
+  US_CHECK(comparison == ">=" || comparison == "<=", comparison, " is no comparison: =, !=, >=, <=");
+  const double a = std::atof(value.c_str()), b = std::atof(wanted.c_str());
+  return comparison == ">=" ? a >= b : a <= b;
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,86 @@
+#include "app/studio/key_chord.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+namespace understudy::app {
+namespace {
+
+using render::InputEvent;
+using render::Key;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Names of keys as people write them.
+std::optional<Key> key_of(const std::string& name) {
+  static const std::pair<const char*, Key> kOthers[] = {
+      {"[", Key::LeftBracket}, {"]", Key::RightBracket}, {",", Key::Comma},      {".", Key::Period},
+      {"/", Key::Slash},       {"?", Key::Slash},        {";", Key::Semicolon},  {"'", Key::Apostrophe},
+      {"-", Key::Minus},       {"=", Key::Equal},        {"\\", Key::Backslash}, {"`", Key::Grave},
+      {"del", Key::Delete},    {"esc", Key::Escape},     {"return", Key::Enter}, {"pgup", Key::PageUp},
+      {"pgdn", Key::PageDown}, {"page up", Key::PageUp}, {"ins", Key::Insert},   {"page down", Key::PageDown},
+  };
+  for (const auto& [text, key] : kOthers)
+    if (lower(name) == text) return key;
+  return render::key_of_name(name);
+}
+
+bool set_modifier(render::Modifiers& modifiers, const std::string& name) {
+  if (name == "ctrl" || name == "control") return modifiers.control = true;
+  if (name == "shift") return modifiers.shift = true;
+  if (name == "alt") return modifiers.alt = true;
+  if (name == "super") return modifiers.super = true;
+  return false;
+}
+
+InputEvent key_event(Key key, bool pressed, render::Modifiers modifiers) {
+  InputEvent event;
+  event.kind = InputEvent::Kind::Key;
+  event.key = key, event.pressed = pressed, event.modifiers = modifiers;
+  return event;
+}
+
+}  // namespace
+
+std::optional<KeyChord> chord_of(const std::string& text) {
+  KeyChord chord;
+  size_t begin = 0;
+  while (true) {
+    const size_t plus = text.find('+', begin);
+    if (plus == std::string::npos || plus + 1 >= text.size()) break;
+    if (!set_modifier(chord.modifiers, lower(text.substr(begin, plus - begin)))) return std::nullopt;
+    begin = plus + 1;
+  }
+  const std::string name = text.substr(begin);
+  if (name.empty()) return std::nullopt;
+  if (name == "+") {
+    chord.key = Key::Equal, chord.modifiers.shift = true;
+    return chord;
+  }
+  const auto key = key_of(name);
+  if (!key) return std::nullopt;
+  chord.key = *key;
+  if (name == "?") chord.modifiers.shift = true;
+  return chord;
+}
+
+std::vector<InputEvent> key_events(const KeyChord& chord) {
+  std::vector<InputEvent> events;
+  const std::pair<bool, Key> held[] = {{chord.modifiers.control, Key::LeftControl},
+                                       {chord.modifiers.shift, Key::LeftShift},
+                                       {chord.modifiers.alt, Key::LeftAlt},
+                                       {chord.modifiers.super, Key::LeftSuper}};
+  for (const auto& [down, key] : held)
+    if (down) events.push_back(key_event(key, true, chord.modifiers));
+  events.push_back(key_event(chord.key, true, chord.modifiers));
+  events.push_back(key_event(chord.key, false, chord.modifiers));
+  for (const auto& [down, key] : held)
+    if (down) events.push_back(key_event(key, false, {}));
+  return events;
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,163 @@
+#include "app/studio/picture_commands.hpp"
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "app/session/frame_cache.hpp"
+#include "render/context/context.hpp"
+#include "render/image.hpp"
+#include "render/video_writer.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/editing/pose_edits.hpp"
+#include "ui/viewport/picture.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLargest = 16384;    // pixels a side
+constexpr int64_t kCacheMb = 128;  // of frames, for a job
+
+struct Saving {
+  std::string path;
+  ui::PictureOptions options;
+};
+
+/// Draws what a session shows apart from the window, on the thread of a job: with a context, a cache and a
+/// copy of the session of its own.
+class Stage {
+ public:
+  Stage(Session session, const Saving& saving)
+      : session_(std::move(session)),
+        options_(saving.options),
+        cache_(kCacheMb),
+        context_(render::make_offscreen_context()) {
+    SourceOptions source = session_.document.source;
+    source.quiet = true;
+    cache_.set_source(source, session_.document.scan_edits);
+    session_.playback.playing = session_.playback.live = false;
+  }
+  render::Image picture(int frame) {
+    session_.playback.frame = frame;
+    return maker_.picture(session_, cache_, options_);
+  }
+
+ private:
+  Session session_;
+  ui::PictureOptions options_;
+  FrameCache cache_;
+  std::unique_ptr<render::Context> context_;
+  ui::PictureMaker maker_;
+};
+
+std::optional<int> whole(const std::string& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// PATH [WIDTH HEIGHT] [transparent] [view|all].
+Saving saving_of(const Arguments& arguments, int active_pane) {
+  US_CHECK(!arguments.empty() && !arguments[0].empty(), "a path is missing");
+  Saving saving;
+  saving.path = fs::absolute(arguments[0]).lexically_normal().string();
+  for (size_t i = 1; i < arguments.size(); ++i) {
+    const auto width = whole(arguments[i]);
+    const auto height = i + 1 < arguments.size() ? whole(arguments[i + 1]) : std::nullopt;
+    if (width && height) {
+      saving.options.size = {*width, *height};
+      ++i;
+    } else if (arguments[i] == "transparent") {
+      saving.options.transparent = true;
+    } else {
+      US_CHECK(arguments[i] == "view" || arguments[i] == "all", arguments[i],
+               " is not understood: PATH [WIDTH HEIGHT] [transparent] [view|all]");
+      saving.options.pane = arguments[i] == "all" ? -1 : active_pane;
+    }
+  }
+  const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
+  US_CHECK(width >= 16 && height >= 16 && width <= kLargest && height <= kLargest, "a picture of ", width,
+           " x ", height, " pixels cannot be made: 16 to ", kLargest, " a side");
+  return saving;
+}
+
+std::string file_name(const std::string& path) {
+  return fs::path(path).filename().string();
+}
+
+/// What the job's thread may look at.
+std::shared_ptr<Session> copied(Studio& studio) {
+  auto session = std::make_shared<Session>(studio.session());
+  session->history.clear();
+  session->log.clear();
+  return session;
+}
+
+void save_picture(Studio& studio, const Arguments& arguments) {
+  const Saving saving = saving_of(arguments, studio.session().view.active_pane);
+  const int frame = shown_frame(studio.session());
+  US_CHECK(frame >= 0, "there is nothing to show yet");
+  studio.jobs().start(
+      "Saving " + file_name(saving.path),
+      [saving, frame, session = copied(studio)](JobControl&) {
+        Stage stage(std::move(*session), saving);
+        render::write_png(saving.path, stage.picture(frame));
+      },
+      [&studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+}
+
+/// The frames that play, without those left out, in order.
+std::vector<int> frames_of(const Session& session) {
+  const FrameRange range = play_range(session.playback, frame_count(session));
+  std::set<int> kept;
+  if (!session.document.takes.empty())
+    for (const int frame :
+         kept_frames(session.document.takes[static_cast<size_t>(session.selected_take)].pose_edits,
+                     frame_count(session)))
+      kept.insert(frame);
+  std::vector<int> frames;
+  for (int frame = range.first; frame <= range.last; ++frame)
+    if (session.document.takes.empty() || kept.count(frame)) frames.push_back(frame);
+  return frames;
+}
+
+void save_video(Studio& studio, const Arguments& arguments) {
+  const Saving saving = saving_of(arguments, studio.session().view.active_pane);
+  const std::vector<int> frames = frames_of(studio.session());
+  US_CHECK(!frames.empty(), "there is nothing to show yet");
+  const std::string suffix = fs::path(saving.path).extension().string();
+  US_CHECK(suffix.empty() || suffix == ".mp4", suffix, " is no video: .mp4, or a folder for pictures");
+  const double fps = studio.session().source.fps;
+  studio.jobs().start(
+      "Saving " + file_name(saving.path),
+      [saving, frames, fps, session = copied(studio)](JobControl& control) {
+        Stage stage(std::move(*session), saving);
+        const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
+        render::VideoWriter writer(saving.path, {width, height, fps});
+        for (size_t i = 0; i < frames.size(); ++i) {
+          control.check();
+          control.progress(static_cast<float>(i) / static_cast<float>(frames.size()));
+          writer.push(stage.picture(frames[i]));
+        }
+        control.check();
+        writer.finish();
+      },
+      [&studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+}
+
+}  // namespace
+
+void add_picture_commands(Commands& commands) {
+  commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]", "", false,
+                false, save_picture});
+  commands.add({"video.save", "Save video", "PATH.mp4 or FOLDER [WIDTH HEIGHT] [view|all]", "", false, false,
+                save_video});
+}
+
+}  // namespace understudy::app

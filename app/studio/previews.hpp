@@ -1,0 +1,78 @@
+// Small pictures of what is in files: for the file browser and the start screen.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render/gl/object.hpp"
+#include "render/renderer.hpp"
+#include "retarget/geometry/mesh.hpp"
+#include "ui/gui/draw_pass.hpp"
+
+namespace understudy::app {
+
+/// One picture, drawn once and kept.
+struct Preview {
+  ImTextureID texture = nullptr;  ///< null: there is no picture (yet)
+  int width = 0, height = 0;      ///< pixels
+  std::string text;               ///< "87 frames, 4,202 points"; or why there is no picture
+};
+
+/// Files are read by a thread of its own; the pictures are drawn in update(). Make, use and destroy it with
+/// one context current.
+class Previews {
+ public:
+  Previews();
+  ~Previews();  ///< waits for the one file that is being read
+  Previews(const Previews&) = delete;
+  Previews& operator=(const Previews&) = delete;
+
+  /// The picture of the scans, targets and documents in these paths beside each other. Empty while it is
+  /// being made. Never waits.
+  const Preview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark);
+  /// Draws what has been read, one picture at most. True when there is a new one.
+  bool update();
+  /// Whether something is still to be read or drawn.
+  bool busy() const;
+
+ private:
+  /// What a path holds, in metres or whatever its unit is.
+  struct Content {
+    Mesh mesh;
+    std::string text;
+  };
+  struct Reading {
+    std::string key;
+    render::PixelSize size;
+    bool dark = true;
+    std::vector<std::string> paths;
+    std::vector<Content> contents;
+  };
+  struct Picture {
+    Preview preview;
+    std::unique_ptr<render::gl::Texture> texture;
+    int64_t used = 0;
+  };
+  static Content read(const std::string& path);
+  void read_all();
+  void draw(const Reading& reading);
+  std::unique_ptr<render::gl::Texture> picture_of(const render::Scene& scene, render::PixelSize size);
+  void forget_oldest();
+
+  std::unique_ptr<render::Renderer> renderer_;
+  std::map<std::string, Picture> pictures_;
+  int64_t uses_ = 0;
+  mutable std::mutex mutex_;
+  std::condition_variable wanted_;
+  std::deque<Reading> to_read_, to_draw_;
+  bool reading_ = false, stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace understudy::app

@@ -1,0 +1,31 @@
+// Writes down what a user does as a script that can be played again.
+#pragma once
+
+#include <fstream>
+#include <string>
+
+#include "app/studio/application.hpp"
+
+namespace understudy::app {
+
+/// Input as `event` lines, the time between as `frames`, and `wait_frames` so that a slower machine has made
+/// as many frames before the input comes. The commands that came of it are comments.
+class Recorder final : public Observer {
+ public:
+  /// Begins with the window's size and look. Throws Error when the file cannot be written.
+  Recorder(const std::string& path, Application& application);
+  void input(double dt, const std::vector<render::InputEvent>& events, const Session& session) override;
+  void command(const std::string& name, const Arguments& arguments) override;
+  /// A command that no input asked for, such as opening what the command line names.
+  void opened(const std::string& name, const Arguments& arguments);
+
+ private:
+  void write(const std::string& line);
+  std::string path_;
+  std::ofstream file_;
+  double waited_s_ = 0;  ///< since the last line
+  int made_ = 0;         ///< frames, as written last
+  bool idle_ = true;
+};
+
+}  // namespace understudy::app

@@ -1,0 +1,94 @@
+// Scripts: named commands and a user's doings, line by line. Pictures, tests, recordings and bug reports are
+// all written in it.
+//
+// Every command of the registry by its name, and:
+//   wait [SECONDS]                until all is made and shown            wait_frames N   until N frames are
+//   made wait_value KEY [= != >= <=] VALUE    until a fact is so              frames N        draws N frames
+//   of 1/60 s screenshot FILE.png [WxH]     the whole window                       resize W H      log TEXT
+//   click NAME | X Y   double_click ...   right_click ...   hover ...    (options: ctrl shift alt)
+//   drag NAME DX DY | X Y X2 Y2   drag_to NAME NAME2   scroll NAME | X Y  NOTCHES     (the same options)
+//   type "text"   key Ctrl+Z   drop PATH...   close
+//   expect NAME   expect_no NAME   expect_text TEXT   expect_value KEY [= != >= <=] VALUE   expect_error TEXT
+//   event ...                     one recorded input event
+// Places are pixels from the top left. A NAME is a widget's mark; NAME@0.2,0.9 another place in it than its
+// middle. Paths: samples/... are the bundled samples, out/... the folder for results; other relative ones are
+// in the working folder, those of screenshot in the folder for results.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/studio/application.hpp"
+
+namespace understudy::app {
+
+struct ScriptOptions {
+  std::string name = "script";  ///< for complaints: "tour.us"
+  std::string out = ".";        ///< folder for results, made when needed
+  double timeout_s = 600;       ///< of each wait
+};
+
+/// Plays scripts on an application without a window. Throws Error "NAME:LINE: what is wrong".
+class Script {
+ public:
+  /// `surface` is the application's.
+  Script(Application& application, OffscreenSurface& surface, ScriptOptions options = {});
+
+  void play(const std::string& text);
+  /// One line; empty ones and comments do nothing.
+  void play_line(const std::string& line);
+  /// Throws Error when an error dialog is open: what a script ends with is asked for.
+  void check_no_error() const;
+
+ private:
+  using Words = Arguments;
+  struct Row {
+    const char* name;
+    size_t least, most;
+    void (Script::*play)(const Words&);
+  };
+  static const std::vector<Row>& rows();
+
+  void wait(const Words& words);
+  void wait_frames(const Words& words);
+  void wait_value(const Words& words);
+  void frames(const Words& words);
+  void screenshot(const Words& words);
+  void resize(const Words& words);
+  void log(const Words& words);
+  void click(const Words& words);
+  void double_click(const Words& words);
+  void right_click(const Words& words);
+  void hover(const Words& words);
+  void drag(const Words& words);
+  void drag_to(const Words& words);
+  void scroll(const Words& words);
+  void type(const Words& words);
+  void key(const Words& words);
+  void drop(const Words& words);
+  void close(const Words& words);
+  void expect(const Words& words);
+  void expect_no(const Words& words);
+  void expect_text(const Words& words);
+  void expect_value(const Words& words);
+  void expect_error(const Words& words);
+  void event(const Words& words);
+
+  struct Pointing;
+  Pointing pointing(Words words, size_t places) const;
+  ImVec2 place_of(const std::string& name);
+  void press(const Pointing& pointing, render::MouseButton button, int times);
+  void drag_between(ImVec2 from, ImVec2 to, render::Modifiers modifiers);
+  void send(std::vector<render::InputEvent> events);
+  void draw(int count = 1);
+  void settle();
+  void until(const std::function<bool()>& done, const std::string& what, double timeout_s);
+  std::string path_of(const std::string& argument) const;
+
+  Application& application_;
+  OffscreenSurface& surface_;
+  ScriptOptions options_;
+};
+
+}  // namespace understudy::app
