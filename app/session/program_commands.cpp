@@ -108,6 +108,17 @@ void add_settings(Commands& commands) {
          s.session().settings.autosave_s = std::clamp(number(a, 0, "time"), 1.0, 600.0);
          s.save_settings();
        }});
+  commands.add({"settings.mouse", "Mouse sensitivity", "FACTOR: 0.2 to 4", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  s.session().settings.mouse_sensitivity =
+                      std::clamp(static_cast<float>(number(a, 0, "factor")), 0.2f, 4.f);
+                  s.save_settings();
+                }});
+  commands.add({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000, from the next start", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  s.session().settings.undo_depth = std::clamp(whole_number(a, 0, "number"), 10, 1000);
+                  s.save_settings();
+                }});
   commands.add(
       {"panel.show", "Panel", "NAME on|off|toggle", "", false, false, [](Studio& s, const Arguments& a) {
          auto& panels = s.session().settings.panels;

@@ -54,6 +54,13 @@ TEST_F(Pictures, OfDialogs) {
   }
 }
 
+TEST_F(Pictures, OfMenusAndErrors) {
+  click("menu.view");
+  keep("menu");
+  session.errors.push_back({app::Notice::Kind::Error, "dance: no frames were found in this folder", "", 0});
+  keep("error");
+}
+
 TEST_F(Pictures, OfOtherSizes) {
   input.theme = ThemeKind::Light;
   keep("light");

@@ -69,6 +69,19 @@ TEST_F(Timeline, KnowsTheBadFramesAndWhy) {
   EXPECT_EQ(state.why(21), "too few points");
 }
 
+TEST_F(Timeline, WhileFramesComeTheyAreLookedAtNowAndThenAndAtTheEndAll) {
+  app::KeptSource bad = session.source.frames[20];
+  for (int i = 0; i < 1000; ++i) session.source.frames.push_back(session.source.frames[1]);
+  frame();
+  session.source.frames.push_back(bad);
+  frame();
+  EXPECT_EQ(state.confidence.size(), 1049u);
+  EXPECT_EQ(state.why(1048), "");
+  session.working = false;
+  frame();
+  EXPECT_EQ(state.why(1048), "no points");
+}
+
 TEST_F(Timeline, WithoutFramesNothingCanBePressed) {
   session = app::Session();
   frame(2);
@@ -131,10 +144,13 @@ TEST_F(PanelsTest, StartOpensSamplesRecentDocumentsAndDialogs) {
   input.size = {900, 800};
   session = app::Session();
   session.settings.recent = {"/home/ada/a dance.understudy"};
+  session.settings.recent_sources = {"/data/dance"}, session.settings.recent_targets = {"/data/adult.glb"};
   const std::vector<SampleCard> samples = {{"A walk", "scans", {"/s/scan", "/s/adult.glb"}, nullptr}};
   panel([&] { draw_start(session, context, samples); });
   expect_click("start.sample.0", {"open /s/scan /s/adult.glb"});
   expect_click("start.recent.0", {"document.open \"/home/ada/a dance.understudy\""});
+  expect_click("start.recent_scan.0", {"open /data/dance"});
+  expect_click("start.recent_target.0", {"open /data/adult.glb"});
   expect_click("start.open_scan", {"dialog.open open_scan"});
   expect_click("start.open_target", {"dialog.open open_target"});
   expect_click("start.open_document", {"dialog.open open_document"});

@@ -404,9 +404,17 @@ TEST_F(WorkspaceTest, SettingsAreAskedFor) {
   click("settings.scale");
   frame(2);
   click("settings.scale.5");
-  click("settings.close");
   EXPECT_EQ(take_log(), (Lines{"settings.theme light", "settings.samples 1", "settings.cache_mb 1024",
                                "settings.scale 2"}));
+  drag("settings.mouse", 0.4f, 0.5f);
+  const Lines moved = take_log();
+  ASSERT_FALSE(moved.empty());
+  EXPECT_EQ(moved.back().rfind("settings.mouse ", 0), 0u);
+  write_into("settings.undo_depth", "50");
+  key(Key::Enter);
+  click("settings.close");
+  EXPECT_EQ(take_log(), Lines{"settings.undo_depth 50"});
+  EXPECT_EQ(workspace.dialog(), "");
 }
 
 TEST_F(WorkspaceTest, NoticesComeOnce) {

@@ -126,7 +126,8 @@ void ask_or_open(const app::Session& session, PanelContext& context, const std::
 
 void ask_for_keys(const app::Session& session, PanelContext& context) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantTextInput || ImGui::GetTopMostPopupModal() != nullptr) return;
+  const bool any = std::find(std::begin(io.KeysDown), std::end(io.KeysDown), true) != std::end(io.KeysDown);
+  if (!any || io.WantTextInput || ImGui::GetTopMostPopupModal() != nullptr) return;
   for (const Binding& binding : bindings(context.commands)) {
     if (!pressed(binding.keys)) continue;
     return ask_or_open(session, context, binding.command, binding.arguments);

@@ -86,18 +86,22 @@ void draw_openers(PanelContext& context) {
   }
 }
 
-void draw_recent(const app::Session& session, PanelContext& context) {
-  const auto& recent = session.settings.recent;
-  if (recent.empty()) return;
-  heading(context.ui, "Recent");
-  for (size_t i = 0; i < recent.size(); ++i) {
+struct RecentList {
+  const char *title, *name, *command;
+  const std::vector<std::string>& paths;
+};
+
+void draw_recent(const RecentList& recent, PanelContext& context) {
+  if (recent.paths.empty()) return;
+  heading(context.ui, recent.title);
+  const IdScope list(recent.name);
+  for (size_t i = 0; i < recent.paths.size(); ++i) {
+    const std::string& path = recent.paths[i];
     ButtonOptions options;
-    options.look = ButtonLook::Quiet, options.tooltip = recent[i];
-    const std::string label =
-        cut_to(file_name(recent[i]), ImGui::GetContentRegionAvail().x - context.ui.px(16));
-    const IdScope id(static_cast<int>(i));
-    if (button(context.ui, "start.recent." + std::to_string(i), label, options))
-      context.ask("document.open", {recent[i]});
+    options.look = ButtonLook::Quiet, options.tooltip = path;
+    const std::string label = cut_to(file_name(path), ImGui::GetContentRegionAvail().x - context.ui.px(16));
+    if (button(context.ui, recent.name + ("." + std::to_string(i)), label, options))
+      context.ask(recent.command, {path});
   }
 }
 
@@ -122,7 +126,10 @@ void draw_start(const app::Session& session, PanelContext& context, const std::v
     heading(ui, "Samples");
     draw_samples(context, samples);
   }
-  draw_recent(session, context);
+  const app::Settings& settings = session.settings;
+  draw_recent({"Recent", "start.recent", "document.open", settings.recent}, context);
+  draw_recent({"Recent scans", "start.recent_scan", "open", settings.recent_sources}, context);
+  draw_recent({"Recent targets", "start.recent_target", "open", settings.recent_targets}, context);
   ImGui::EndChild();
 }
 

@@ -1,5 +1,6 @@
 // The start screen, where the views will be: samples, recent documents, what can be dropped.
-// Marks: start.sample.K, start.recent.K, start.open_scan, start.open_target, start.open_document.
+// Marks: start.sample.K, start.recent.K (documents), start.recent_scan.K, start.recent_target.K,
+// start.open_scan, start.open_target, start.open_document.
 #pragma once
 
 #include <string>

@@ -159,13 +159,21 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
 
 void TimelineState::follow(const app::Session& session) {
   const app::SourceState& source = session.source;
-  if (source.generation == generation && source.frames.size() == frames) return;
-  generation = source.generation, frames = source.frames.size();
+  const size_t now = source.frames.size();
+  if (source.generation != generation) {
+    generation = source.generation, looked = false;
+    confidence.clear();
+  }
+  confidence.resize(std::min(confidence.size(), now));
+  for (size_t i = confidence.size(); i < now; ++i) confidence.push_back(source.frames[i].confidence);
+  // Each look is at all frames: while they come, not at every one.
+  const bool grew_enough = now < frames || now >= frames + std::max<size_t>(1, frames / 100);
+  if (looked && now == frames) return;
+  if (looked && !grew_enough && session.working) return;
+  looked = true, frames = now;
   bad = app::bad_frames(session);
   bad_numbers.clear();
   for (const app::BadFrame& frame : bad) bad_numbers.push_back(frame.frame);
-  confidence.clear();
-  for (const app::KeptSource& frame : source.frames) confidence.push_back(frame.confidence);
 }
 
 std::string TimelineState::why(int frame) const {

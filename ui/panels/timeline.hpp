@@ -13,7 +13,8 @@ namespace understudy::ui {
 /// What takes time to find and changes rarely.
 struct TimelineState {
   int64_t generation = -1;  ///< of the source that the rest is about
-  size_t frames = 0;
+  bool looked = false;
+  size_t frames = 0;  ///< of the source when bad ones were looked for
   std::vector<app::BadFrame> bad;
   std::vector<int> bad_numbers;
   std::vector<float> confidence;  ///< of the source, a value a frame

@@ -1,6 +1,7 @@
 #include "panels_test.hpp"
 
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace understudy::ui {
@@ -103,8 +104,16 @@ void PanelsTest::panel(std::function<void()> draw) {
   queue.clear();
 }
 
+void PanelsTest::expect_known(const std::string& command) const {
+  static const std::set<std::string> kOfTheWindow = {"dialog.open", "help.keys", "picture.save",
+                                                     "video.save"};
+  EXPECT_TRUE(kOfTheWindow.count(command) > 0 || studio.commands().find(command) != nullptr)
+      << "there is no command " << command;
+}
+
 std::vector<std::string> PanelsTest::asked() {
   std::vector<std::string> lines;
+  for (const auto& [name, arguments] : queue) expect_known(name);
   for (const auto& [name, arguments] : queue) lines.push_back(app::join_line(name, arguments));
   queue.clear();
   return lines;
@@ -162,6 +171,7 @@ WorkspaceTest::WorkspaceTest()
 
 void WorkspaceTest::obey() {
   for (const auto& [name, arguments] : std::exchange(queue, {})) {
+    expect_known(name);
     log.push_back(app::join_line(name, arguments));
     if (name == "panel.show") session.settings.panels[arguments[0]] = arguments[1] == "on";
     if (name == "dialog.open") workspace.open_dialog(session, arguments[0]);

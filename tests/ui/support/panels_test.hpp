@@ -27,6 +27,8 @@ class PanelsTest : public UiTest {
 
   /// Shows one panel in a window that covers the display.
   void panel(std::function<void()> draw);
+  /// A failure unless there is such a command.
+  void expect_known(const std::string& command) const;
   /// What was asked for since the last call, as lines of a script.
   std::vector<std::string> asked();
   /// Clicks, and expects exactly these lines.
