@@ -1,11 +1,13 @@
 #include "app/session/session.hpp"
 
-#include <cstdio>
+#include <algorithm>
+#include <cmath>
 
 namespace understudy::app {
 namespace {
 
 constexpr float kLowConfidence = 0.5f, kWeakLimb = 0.3f, kLengthOff = 0.2f;
+constexpr float kLengthOffM = 0.05f;  // short bones are never seen to 20 %
 
 /// Why a frame of the source is not to be trusted; empty when it is.
 std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {
@@ -15,7 +17,7 @@ std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCou
     if (frame.confidence_of[j] < kWeakLimb) return std::string(kJointNames[j]) + " is lost";
   for (int j = 1; j < kJointCount; ++j) {
     const float length = (frame.raw.row(j) - frame.raw.row(kParents[j])).norm();
-    if (usual[j] > 0.05f && std::abs(length - usual[j]) > kLengthOff * usual[j])
+    if (usual[j] > 0.05f && std::abs(length - usual[j]) > std::max(kLengthOff * usual[j], kLengthOffM))
       return std::string("the bone to ") + kJointNames[j] + " has another length";
   }
   return "";

@@ -241,8 +241,7 @@ void Studio::tick(double seconds) {
   const PoseEdits& edits =
       takes ? session_.document.takes[static_cast<size_t>(session_.selected_take)].pose_edits : none;
   const int count = frame_count(session_);
-  if (session_.playback.live && session_.working && !session_.playback.playing)
-    session_.playback.frame = count - 1;
+  if (session_.playback.live && !session_.playback.playing) session_.playback.frame = count - 1;
   Playback trimmed = session_.playback;
   if (edits.trim && trimmed.in < 0) trimmed.in = edits.trim->first;
   if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
