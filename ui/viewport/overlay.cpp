@@ -160,8 +160,9 @@ void Writer::draw_categories() {
   if (!room) return;
   for (size_t i = 0; i < all.size(); ++i) {
     const float y = at.y + px(6) + step * static_cast<float>(i + 1), middle = y + line() / 2 - swatch / 2;
-    list_.AddRectFilled({at.x + px(8), middle}, {at.x + px(8) + swatch, middle + swatch},
-                        color_of(all[i].color), px(2));
+    const ImVec2 from(at.x + px(8), middle), to(from.x + swatch, from.y + swatch);
+    list_.AddRectFilled(from, to, color_of(all[i].color), px(2));
+    list_.AddRect(from, to, color(ui_.theme().text_dim, 0.6f), px(2));
     text({at.x + px(8) + swatch + px(6), y}, ui_.theme().text_dim, all[i].label);
   }
 }

@@ -32,8 +32,9 @@ app::FrameCache::Wanted wanted(const Session& session, int k, int frame) {
 }
 
 int frames_of(const Session& session, const PaneContent& pane) {
-  const app::TakeState* take = pane.source || pane.takes.empty() ? nullptr : take_of(session, pane.takes[0]);
-  return static_cast<int>(take != nullptr ? take->joints.size() : session.source.frames.size());
+  if (pane.source || pane.takes.empty()) return static_cast<int>(session.source.frames.size());
+  const app::TakeState* take = take_of(session, pane.takes[0]);
+  return take != nullptr ? static_cast<int>(take->joints.size()) : 0;
 }
 
 std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCache& cache,

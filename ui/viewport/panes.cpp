@@ -40,8 +40,9 @@ const app::TakeState* state_of_take(const Session& session, const PaneContent& p
 }
 
 int frames_of(const Session& session, const PaneContent& pane) {
-  const app::TakeState* take = pane.source ? nullptr : state_of_take(session, pane);
-  return static_cast<int>(take != nullptr ? take->joints.size() : session.source.frames.size());
+  if (pane.source) return static_cast<int>(session.source.frames.size());
+  const app::TakeState* take = state_of_take(session, pane);
+  return take != nullptr ? static_cast<int>(take->joints.size()) : 0;
 }
 
 /// The T-pose is seen where the person would be.

@@ -259,7 +259,7 @@ void Builder::add_crop_box() {
 void Builder::set_ground() {
   render::GroundView& ground = out_.scene.ground;
   ground.visible = layer(&app::Layers::ground);
-  if (in_.theme == ThemeKind::Dark) ground.line = Vec3(0.40f, 0.43f, 0.48f);
+  if (in_.theme == ThemeKind::Dark) ground.line = Vec3(0.42f, 0.45f, 0.50f), ground.shadow = 0.8f;
   if (!shows_rest(session_, in_.pane)) return;
   const Points& rest = take_of(session_, in_.pane.takes[0])->target->mesh.vertices;
   if (rest.rows() > 0) ground.height = rest.col(1).minCoeff();
@@ -347,8 +347,10 @@ Vec3 take_color(int k) {
 
 render::BackgroundView background_of(ThemeKind theme) {
   render::BackgroundView view;
-  if (theme == ThemeKind::Dark)
-    view.top = Vec3(0.235f, 0.255f, 0.285f), view.bottom = Vec3(0.155f, 0.165f, 0.185f);
+  if (theme == ThemeKind::Dark) {
+    view.top = Vec3(0.275f, 0.295f, 0.325f);
+    view.bottom = Vec3(0.205f, 0.215f, 0.235f);
+  }
   return view;
 }
 

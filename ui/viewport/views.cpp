@@ -1,5 +1,6 @@
 #include "ui/viewport/views.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>

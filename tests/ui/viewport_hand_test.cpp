@@ -1,0 +1,276 @@
+// What the mouse does in the views: real input, a null context, and the commands that come out.
+#include "render/context/context.hpp"
+#include "support/ui_test.hpp"
+#include "support/viewport_stage.hpp"
+#include "ui/viewport/panes.hpp"
+#include "ui/viewport/views.hpp"
+
+namespace understudy::ui {
+namespace {
+
+class ViewsTest : public UiTest {
+ protected:
+  ViewsTest() {
+    stage.add_take("adult");
+    stage.show_frame(10);
+    input.size = {1000, 500};
+    in_window([this](Ui& ui) {
+      const size_t before = queue.size();
+      views.draw(stage.session, *stage.cache, queue, ui);
+      for (size_t i = before; i < queue.size(); ++i) obey(queue[i].first, queue[i].second);
+    });
+    frame(2);
+    stage.cache->wait();
+    frame(2);
+    queue.clear();
+  }
+  ~ViewsTest() override = default;
+
+  /// The commands that input depends on within a test.
+  void obey(const std::string& name, const app::Arguments& words) {
+    app::View& view = stage.session.view;
+    if (name == "view.camera_state") {
+      app::CameraState& camera = view.cameras[0];
+      camera.target = {std::stof(words[1]), std::stof(words[2]), std::stof(words[3])};
+      camera.yaw = std::stof(words[4]), camera.pitch = std::stof(words[5]),
+      camera.distance = std::stof(words[6]);
+    } else if (name == "view.pane") {
+      view.active_pane = std::stoi(words[0]);
+    } else if (name == "select.joint") {
+      for (int j = 0; j < kJointCount; ++j)
+        if (words[0] == kJointNames[static_cast<size_t>(j)]) stage.session.selected_joint = j;
+    }
+  }
+  PaneView pane(int number) {
+    return {mark("view." + std::to_string(number)).rect, pane_camera(stage.session, pane_of(number))};
+  }
+  ImVec2 seen(int number, const Vec3& point) { return pane(number).project(point).value_or(ImVec2(-9, -9)); }
+  Vec3 source_joint(int joint) { return stage.session.source.frames[10].joints.row(joint); }
+  Vec3 take_joint(int joint) { return stage.session.takes[0].joints[10].row(joint); }
+  /// The last command of that name; a failure when there is none.
+  app::Arguments asked(const std::string& name) {
+    for (auto it = queue.rbegin(); it != queue.rend(); ++it)
+      if (it->first == name) return it->second;
+    ADD_FAILURE() << name << " was not asked for";
+    return app::Arguments(8, "0");
+  }
+  int count(const std::string& name) {
+    int n = 0;
+    for (const auto& command : queue) n += command.first == name ? 1 : 0;
+    return n;
+  }
+  static Vec3 vector_at(const app::Arguments& words, size_t first) {
+    return {std::stof(words.at(first)), std::stof(words.at(first + 1)), std::stof(words.at(first + 2))};
+  }
+
+  std::unique_ptr<render::Context> context = render::make_offscreen_context({render::ContextKind::Null});
+  Stage stage;
+  app::CommandQueue queue;
+  Views views;
+};
+
+TEST_F(ViewsTest, NothingIsDrawnTwice) {
+  frame(5);
+  const int64_t before = views.drawn();
+  frame(10);
+  EXPECT_EQ(views.drawn(), before);
+  stage.session.view.cameras[0].yaw += 0.1f;
+  frame();
+  EXPECT_EQ(views.drawn(), before + 2);  // two panes, one camera
+}
+
+TEST_F(ViewsTest, DraggingTurnsTheCamera) {
+  const float yaw = stage.session.view.cameras[0].yaw;
+  const ImVec2 from = mark("view.0").rect.at(0.1f, 0.9f);
+  drag(from, {from.x + 60, from.y});
+  EXPECT_LT(stage.session.view.cameras[0].yaw, yaw - 0.2f);
+  EXPECT_EQ(asked("view.camera_state")[0], "0");
+}
+
+TEST_F(ViewsTest, ShiftDraggingMovesTheTargetWithThePointer) {
+  const Vec3 target = stage.session.view.cameras[0].target;
+  const ImVec2 from = mark("view.0").rect.at(0.1f, 0.8f);
+  render::Modifiers shift;
+  shift.shift = true;
+  drag(from, {from.x, from.y - 50}, shift);
+  EXPECT_LT(stage.session.view.cameras[0].target.y(), target.y() - 0.1f);
+}
+
+TEST_F(ViewsTest, TheWheelZoomsToThePointer) {
+  stage.session.view.cameras[0].target = source_joint(LeftWrist) + Vec3(0.3f, 0.2f, 0);
+  frame();
+  // In the plane of the target the place under the pointer stays where it is.
+  const Mat3 axes = render::axes(pane(0).camera);
+  const Vec3 place = pane(0).camera.target + 0.4f * axes.col(0) - 0.3f * axes.col(1);
+  const ImVec2 at = seen(0, place);
+  render::InputEvent turn;
+  turn.kind = render::InputEvent::Kind::Scroll;
+  turn.dy = 2, turn.x = at.x, turn.y = at.y;
+  render::InputEvent move;
+  move.x = at.x, move.y = at.y;
+  play({move, turn});
+  EXPECT_LT(stage.session.view.cameras[0].distance, 3.5f);
+  EXPECT_NEAR(seen(0, place).x, at.x, 1.5f);
+  EXPECT_NEAR(seen(0, place).y, at.y, 1.5f);
+}
+
+TEST_F(ViewsTest, UnlinkedCamerasAreTheirPanesOwn) {
+  stage.session.view.linked = false;
+  stage.session.view.cameras.resize(2);
+  const ImVec2 from = mark("view.1").rect.at(0.1f, 0.9f);
+  drag(from, {from.x + 30, from.y});
+  EXPECT_EQ(asked("view.camera_state")[0], "1");
+  EXPECT_EQ(asked("view.pane")[0], "1");
+}
+
+TEST_F(ViewsTest, ADoubleClickOnTheBodyMakesItTheTarget) {
+  const ImVec2 at = seen(1, take_joint(Spine3));
+  click(at), click(at);
+  const Vec3 target = stage.session.view.cameras[0].target;
+  EXPECT_LT((target - take_joint(Spine3)).norm(), 0.2f);
+  EXPECT_GT((target - take_joint(Spine3)).norm(), 0.03f);  // on its surface
+}
+
+TEST_F(ViewsTest, DraggingAJointAsksForTheEditOnce) {
+  stage.session.tool = app::Tool::Joints, stage.session.drag_children = true, stage.session.falloff = 7;
+  const Vec3 elbow = source_joint(LeftElbow);
+  const ImVec2 from = seen(0, elbow);
+  const float metres = pane(0).metres_a_pixel(elbow);
+  drag(from, {from.x, from.y - 40});
+  EXPECT_EQ(count("edit.drag"), 1);
+  EXPECT_EQ(count("view.camera_state"), 0);
+  EXPECT_EQ(asked("select.joint")[0], "left_elbow");
+  const app::Arguments words = asked("edit.drag");
+  EXPECT_EQ(words[0], "10");
+  EXPECT_EQ(words[1], "left_elbow");
+  EXPECT_NEAR(vector_at(words, 2).norm(), 40 * metres, 4 * metres);
+  EXPECT_GT(vector_at(words, 2).y(), 0);
+  EXPECT_EQ(words[5], "7");
+  EXPECT_EQ(words[6], "children");
+}
+
+TEST_F(ViewsTest, AClickOnAJointChangesNothing) {
+  stage.session.tool = app::Tool::Joints;
+  click(seen(0, source_joint(LeftElbow)));
+  EXPECT_EQ(count("edit.drag"), 0);
+  EXPECT_EQ(stage.session.selected_joint, LeftElbow);
+}
+
+TEST_F(ViewsTest, AnArrowMovesAlongItsAxisOnly) {
+  stage.session.tool = app::Tool::Joints, stage.session.selected_joint = LeftWrist;
+  frame();
+  const Vec3 wrist = source_joint(LeftWrist);
+  const ImVec2 from = seen(0, wrist + Vec3(0, 0.2f, 0)), to = seen(0, wrist + Vec3(0, 0.35f, 0));
+  drag(from, to);
+  const Vec3 moved = vector_at(asked("edit.drag"), 2);
+  EXPECT_NEAR(moved.y(), 0.15f, 0.01f);
+  EXPECT_EQ(moved.x(), 0);
+  EXPECT_EQ(moved.z(), 0);
+}
+
+TEST_F(ViewsTest, EscapeDropsADrag) {
+  stage.session.tool = app::Tool::Joints;
+  const ImVec2 from = seen(0, source_joint(LeftElbow));
+  render::InputEvent press;
+  press.kind = render::InputEvent::Kind::MouseButton, press.pressed = true, press.x = from.x,
+  press.y = from.y;
+  render::InputEvent move;
+  move.x = from.x + 50, move.y = from.y;
+  play({press}), play({move});
+  key(render::Key::Escape);
+  press.pressed = false, press.x = move.x;
+  play({press});
+  EXPECT_EQ(count("edit.drag"), 0);
+}
+
+TEST_F(ViewsTest, ARingTurnsABoneInItsOwnFrame) {
+  stage.session.tool = app::Tool::Bones, stage.session.selected_joint = RightElbow;
+  stage.session.view.cameras[0].yaw = 0.f, stage.session.view.cameras[0].pitch = 0.f;
+  frame();
+  const Vec3 elbow = take_joint(RightElbow);
+  const PaneView view = pane(1);
+  const ImVec2 middle = seen(1, elbow);
+  const float reach =
+      0.13f * view.rect.height();  // the ring that faces the camera, in the frame of a turned arm
+  drag({middle.x + reach * std::cos(0.6f), middle.y - reach * std::sin(0.6f)},
+       {middle.x + reach * std::cos(1.2f), middle.y - reach * std::sin(1.2f)});
+  const app::Arguments words = asked("edit.rotate");
+  EXPECT_EQ(words[0], "0");
+  EXPECT_EQ(words[2], "right_elbow");
+  EXPECT_NEAR(vector_at(words, 3).norm(), 0.6f, 0.1f);
+  EXPECT_NEAR(std::abs(vector_at(words, 3).z()), vector_at(words, 3).norm(), 1e-4f);
+}
+
+TEST_F(ViewsTest, ATPoseJointGoesWhereItIsDragged) {
+  stage.session.tool = app::Tool::TargetJoints;
+  frame(3);
+  const Vec3 knee = stage.target->joints.row(LeftKnee);
+  const ImVec2 from = seen(1, knee);
+  drag(from, {from.x, from.y - 20});
+  const app::Arguments words = asked("edit.target_joint");
+  EXPECT_EQ(words[1], "left_knee");
+  EXPECT_NEAR(vector_at(words, 2).y(), knee.y() + 20 * pane(1).metres_a_pixel(knee), 0.01f);
+  EXPECT_EQ(words[5], "mirror");
+}
+
+TEST_F(ViewsTest, PaintingAsksForDabsOnTheTPose) {
+  stage.session.tool = app::Tool::Paint, stage.session.selected_joint = Spine2;
+  frame();
+  const ImVec2 from = seen(1, take_joint(Spine2)), to = seen(1, take_joint(Neck));
+  drag(from, to);
+  EXPECT_GE(count("edit.paint"), 2);
+  EXPECT_EQ(count("view.camera_state"), 0);
+  const Vec3 dab = vector_at(asked("edit.paint"), 1);
+  const Points& rest = stage.target->mesh.vertices;
+  EXPECT_LT((rest.rowwise() - dab.transpose()).rowwise().norm().minCoeff(), 0.03f);  // on the surface
+}
+
+TEST_F(ViewsTest, WithoutAJointNothingIsPainted) {
+  stage.session.tool = app::Tool::Paint;
+  const ImVec2 from = seen(1, take_joint(Spine2));
+  drag(from, {from.x, from.y - 40});
+  EXPECT_EQ(count("edit.paint"), 0);
+}
+
+TEST_F(ViewsTest, AHandleOfTheCropBoxMovesItsFace) {
+  stage.session.tool = app::Tool::Crop;
+  stage.session.document.scan_edits.crop = Box{Vec3(-1, 0, -0.5f), Vec3(1, 2, 1)};
+  stage.session.view.cameras[0].distance = 6;
+  frame();
+  drag(seen(0, Vec3(0, 2, 0.25f)), seen(0, Vec3(0, 1.8f, 0.25f)));
+  const app::Arguments words = asked("edit.crop");
+  EXPECT_NEAR((vector_at(words, 0) - Vec3(-1, 0, -0.5f)).norm(), 0, 1e-5f);
+  EXPECT_NEAR((vector_at(words, 3) - Vec3(1, 1.8f, 1)).norm(), 0, 0.01f);
+}
+
+TEST_F(ViewsTest, TheWipesLineIsDragged) {
+  stage.session.view.layout = app::Layout::Wipe;
+  frame(2);
+  const ImVec2 from = mark("view.wipe").rect.at(0.5f, 0.3f);
+  drag(from, {from.x + 100, from.y});
+  EXPECT_NEAR(std::stof(asked("view.wipe")[0]), 0.6f, 0.02f);
+  EXPECT_EQ(count("view.camera_state"), 0);
+}
+
+TEST_F(ViewsTest, ValuesAreToldUnderThePointer) {
+  stage.session.view.take.colouring = app::Colouring::Offsets;
+  frame(2), stage.cache->wait(), frame(2);
+  EXPECT_TRUE(shown("view.legend"));
+  const Rect rect = mark("view.1").rect;
+  const ImVec2 at = seen(1, take_joint(Spine3));
+  hover("view.1", (at.x - rect.min.x) / rect.width(), (at.y - rect.min.y) / rect.height());
+  EXPECT_TRUE(shown("view.tip"));
+}
+
+TEST_F(ViewsTest, AnEmptyStudioAndATinyWindowAreFine) {
+  stage.session = app::Session();
+  frame(3);
+  EXPECT_NE(gui.find("view.0"), nullptr);
+  for (const int side : std::vector<int>{40, 12, 1}) {
+    input.size.width = input.size.height = side;
+    frame(2);
+  }
+}
+
+}  // namespace
+}  // namespace understudy::ui

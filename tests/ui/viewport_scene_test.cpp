@@ -1,0 +1,244 @@
+// From the session to what is drawn, without GL.
+#include <gtest/gtest.h>
+
+#include "app/session/follow.hpp"
+#include "render/colors.hpp"
+#include "support/viewport_stage.hpp"
+#include "ui/viewport/pane_pictures.hpp"
+#include "ui/viewport/same_picture.hpp"
+#include "ui/viewport/scene_builder.hpp"
+
+namespace understudy::ui {
+namespace {
+
+struct SceneTest : testing::Test {
+  SceneTest() {
+    stage.add_take("adult");
+    stage.show_frame(10);
+  }
+  PanePictures pictures(int pane) {
+    const PaneContent content = pane_of(pane);
+    pictures_of(session, *stage.cache, content, pane_frame(session, content));
+    stage.cache->wait();
+    return pictures_of(session, *stage.cache, content, pane_frame(session, content)).value();
+  }
+  PaneScene scene(int pane, const Preview& preview = {}) {
+    last = pictures(pane);
+    return build_scene({session, pane_of(pane), last, {}, preview, ThemeKind::Dark}, &memory);
+  }
+  Stage stage;
+  app::Session& session = stage.session;
+  ColourMemory memory;
+  PanePictures last;
+};
+
+TEST_F(SceneTest, ScanIsACloudAndATakeAMesh) {
+  const render::Scene source = scene(0).scene, take = scene(1).scene;
+  ASSERT_EQ(source.clouds.size(), 1u);
+  EXPECT_EQ(source.clouds[0].positions->rows(), 4000);
+  EXPECT_TRUE(source.meshes.empty());
+  ASSERT_EQ(take.meshes.size(), 1u);
+  EXPECT_EQ(take.meshes[0].vertices->rows(), stage.mesh.vertices.rows());
+}
+
+TEST_F(SceneTest, EachLayerIsThereOnlyWhenItIsOn) {
+  app::Layers& layers = session.view.take;
+  EXPECT_EQ(scene(1).scene.skeletons.size(), 1u);
+  layers.skeleton = false;
+  EXPECT_TRUE(scene(1).scene.skeletons.empty());
+  layers.surface = false;
+  EXPECT_TRUE(scene(1).scene.meshes.empty());
+  EXPECT_TRUE(scene(1).scene.lines.empty());
+  layers.trails = true;
+  EXPECT_EQ(scene(1).scene.lines.size(), 4u);  // before and after, of two joints
+  EXPECT_TRUE(scene(1).scene.ground.visible);
+  layers.ground = false;
+  EXPECT_FALSE(scene(1).scene.ground.visible);
+}
+
+TEST_F(SceneTest, GhostsArePosesOfOtherFrames) {
+  session.view.take.ghosts = true, session.view.ghost_count = 2, session.view.ghost_step = 4;
+  pictures(1);
+  const render::Scene ghosts = scene(1).scene;
+  ASSERT_EQ(ghosts.meshes.size(), 5u);  // frames 2, 6, 14, 18 and this one
+  EXPECT_EQ(ghosts.meshes[0].opacity, 1);
+  EXPECT_LT(ghosts.meshes[1].opacity, 0.5f);
+  const float moved = (ghosts.meshes[1].vertices->row(0) - ghosts.meshes[0].vertices->row(0)).norm();
+  EXPECT_GT(moved, 0.05f);
+}
+
+TEST_F(SceneTest, OffsetsAreTheirLengthInMillimetres) {
+  session.view.take.colouring = app::Colouring::Offsets;
+  const PaneScene made = scene(1);
+  ASSERT_NE(made.values, nullptr);
+  EXPECT_NEAR(made.values->minCoeff(), 10, 1e-3);
+  EXPECT_NEAR(made.values->maxCoeff(), 10, 1e-3);
+  EXPECT_EQ(made.legend.unit, "mm");
+  const Vec3 wanted = render::viridis(10 / session.view.error_scale_mm);
+  EXPECT_LT((made.scene.meshes[0].colors->row(5).transpose() - wanted).norm(), 1e-5f);
+}
+
+TEST_F(SceneTest, ErrorIsTheDistanceToTheTruthOfThatFrame) {
+  auto truth = std::make_shared<app::Truth>();
+  truth->frames = 24, truth->vertex_count = stage.mesh.vertices.rows();
+  for (int f = 0; f < 24; ++f) {
+    Points there = stage.deformer->deform(stage_pose(f));
+    there.col(1).array() += 0.025f;
+    truth->vertices.insert(truth->vertices.end(), there.data(), there.data() + there.size());
+  }
+  session.truth = truth;
+  session.view.take.colouring = app::Colouring::Error;
+  const PaneScene made = scene(1);
+  ASSERT_NE(made.values, nullptr);
+  EXPECT_NEAR(made.values->mean(), 25, 1e-2);
+  EXPECT_EQ(made.legend.scale, Legend::Scale::Error);
+}
+
+TEST_F(SceneTest, ErrorWithoutTruthSaysSo) {
+  session.view.take.colouring = app::Colouring::Error;
+  const PaneScene made = scene(1);
+  EXPECT_EQ(made.values, nullptr);
+  EXPECT_FALSE(made.legend.missing.empty());
+  EXPECT_EQ(made.scene.meshes[0].colors->rows(), 0);
+}
+
+TEST_F(SceneTest, DifferenceIsAgainstTheFirstTake) {
+  stage.add_take("aside", 0.04f);
+  session.view.take.colouring = app::Colouring::Difference;
+  EXPECT_EQ(scene(1).values->maxCoeff(), 0);
+  EXPECT_NEAR(scene(2).values->mean(), 40, 1e-2);
+}
+
+TEST_F(SceneTest, OneJointsWeightsAreOnAScaleAllJointsAreCategories) {
+  session.view.take.colouring = app::Colouring::Weights;
+  session.view.weights_joint = LeftHip;
+  const PaneScene one = scene(1);
+  EXPECT_EQ(*one.values, Eigen::VectorXf(stage.weights->col(LeftHip)));
+  session.view.weights_joint = -1;
+  const PaneScene all = scene(1);
+  EXPECT_EQ(all.legend.categories.size(), 22u);
+  Eigen::Index joint = 0;
+  stage.weights->row(7).maxCoeff(&joint);
+  EXPECT_EQ(Vec3(all.scene.meshes[0].colors->row(7)), render::kCategories[static_cast<size_t>(joint)]);
+}
+
+TEST_F(SceneTest, ConfidenceIsOfTheNearestJoint) {
+  session.view.source.colouring = app::Colouring::Confidence;
+  session.source.frames[10].confidence_of[LeftWrist] = 0.2f;
+  const PaneScene made = scene(0);
+  const Joints& joints = session.source.frames[10].joints;
+  const Points& points = last.scan->mesh.vertices;
+  Eigen::Index near_wrist = 0;
+  (points.rowwise() - joints.row(LeftWrist)).rowwise().norm().minCoeff(&near_wrist);
+  EXPECT_FLOAT_EQ((*made.values)[near_wrist], 0.2f);
+  EXPECT_FLOAT_EQ(made.values->maxCoeff(), 0.9f);
+}
+
+TEST_F(SceneTest, NothingChangedIsTheSamePicture) {
+  session.view.take.colouring = app::Colouring::Weights;
+  session.view.take.trails = true;
+  const render::Scene first = scene(1).scene;
+  EXPECT_TRUE(same_picture(first, scene(1).scene));
+  session.playback.frame = 11;
+  EXPECT_FALSE(same_picture(first, scene(1).scene));
+}
+
+TEST_F(SceneTest, WhatIsNotThereYetIsLeftOut) {
+  const PanePictures nothing;
+  const PaneScene made = build_scene({session, pane_of(1), nothing, {}, {}, ThemeKind::Light});
+  EXPECT_TRUE(made.scene.meshes.empty());
+  const PanePictures null_inside{10, nullptr, {nullptr}, nullptr, {{2, nullptr, nullptr}}};
+  session.view.take.ghosts = true;
+  EXPECT_EQ(
+      build_scene({session, pane_of(1), null_inside, {nullptr}, {}, ThemeKind::Light}).scene.skeletons.size(),
+      1u);
+}
+
+TEST_F(SceneTest, TheLastPictureStaysUntilTheNextIsThere) {
+  PictureKeeper keeper;
+  TargetLooks looks;
+  const PaneContent pane = pane_of(1);
+  keeper.update(session, *stage.cache, looks, pane);
+  stage.cache->wait();
+  EXPECT_EQ(keeper.update(session, *stage.cache, looks, pane).frame, 10);
+  session.playback.frame = 20;
+  const int seen = keeper.update(session, *stage.cache, looks, pane).frame;
+  EXPECT_TRUE(seen == 10 || seen == 20);
+  EXPECT_EQ(keeper.waiting(), seen == 10);
+  stage.cache->wait();
+  EXPECT_EQ(keeper.update(session, *stage.cache, looks, pane).frame, 20);
+  EXPECT_FALSE(keeper.waiting());
+  session.takes.clear(), session.document.takes.clear();
+  EXPECT_EQ(keeper.update(session, *stage.cache, looks, pane).frame, -1);
+}
+
+TEST_F(SceneTest, TheCropToolShowsItsBoxWithSixHandles) {
+  session.tool = app::Tool::Crop;
+  session.document.scan_edits.crop = Box{Vec3(-1, 0, -1), Vec3(1, 2, 1)};
+  const render::Scene made = scene(0).scene;
+  EXPECT_EQ(made.clouds.back().positions->rows(), 6);
+  EXPECT_EQ(made.lines.size(), 1u);
+  EXPECT_EQ(face_centre(*session.document.scan_edits.crop, 3), Vec3(0, 2, 0));
+}
+
+TEST_F(SceneTest, APreviewStandsInForTheJoints) {
+  Preview preview;
+  preview.take_joints = Joints::Ones();
+  EXPECT_EQ(scene(1, preview).scene.skeletons[0].joints, Points(Joints::Ones()));
+}
+
+TEST_F(SceneTest, WithoutFramesATakeIsInTPose) {
+  session.takes[0].joints.clear(), session.takes[0].shown.poses.clear();
+  EXPECT_TRUE(shows_rest(session, pane_of(1)));
+  TargetLooks looks;
+  PictureKeeper keeper;
+  keeper.update(session, *stage.cache, looks, pane_of(1));
+  looks.wait();
+  EXPECT_EQ(keeper.update(session, *stage.cache, looks, pane_of(1)).takes[0]->vertices, stage.mesh.vertices);
+}
+
+TEST(Panes, FollowTheLayout) {
+  Stage stage;
+  stage.add_take("a"), stage.add_take("b");
+  app::View& view = stage.session.view;
+  EXPECT_EQ(panes_of(stage.session).size(), 3u);
+  view.layout = app::Layout::Wipe;
+  EXPECT_EQ(panes_of(stage.session), (std::vector<PaneContent>{pane_of(1), pane_of(2)}));
+  view.layout = app::Layout::Single, view.active_pane = 2;
+  EXPECT_EQ(panes_of(stage.session), std::vector<PaneContent>{pane_of(2)});
+  view.layout = app::Layout::Overlay, stage.session.selected_take = 1;
+  EXPECT_EQ(panes_of(stage.session)[0].takes, (std::vector<int>{1, 0}));
+}
+
+TEST(Panes, AFollowingCameraGoesWithThePerson) {
+  Stage stage;
+  stage.session.view.follow = true;
+  stage.show_frame(10);
+  const PaneContent pane = pane_of(0);
+  const render::Camera camera = pane_camera(stage.session, pane);
+  EXPECT_NEAR(camera.target.z(), 0.3f, 0.06f);
+  EXPECT_NEAR(camera.target.y(), 0.9f, 1e-5f);
+  const auto words = camera_arguments(stage.session, pane, camera);
+  EXPECT_NEAR(std::stof(words[3]), 0, 1e-4f);  // the command says it relative to the person
+}
+
+TEST(Panes, PixelsGoThereAndBack) {
+  PaneView view{{{100, 50}, {500, 450}}, render::Camera{}};
+  const auto at = view.project(Vec3(0.2f, 1.1f, 0.1f));
+  ASSERT_TRUE(at);
+  const render::Ray ray = view.ray(*at);
+  EXPECT_LT((Vec3(0.2f, 1.1f, 0.1f) - ray.origin).cross(ray.direction).norm(), 2e-3f);
+  Joints joints = render::make_joints();
+  EXPECT_EQ(joint_at(view, joints, *view.project(joints.row(LeftElbow)), 5), LeftElbow);
+  EXPECT_EQ(joint_at(view, joints, {101, 51}, 5), -1);
+}
+
+TEST(TargetLook, ATubeIsClosedAndAnOpenOneIsNot) {
+  Faces faces(4, 3);
+  faces << 0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0;
+  EXPECT_TRUE(is_closed(faces));
+  EXPECT_FALSE(is_closed(faces.topRows(3)));
+}
+
+}  // namespace
+}  // namespace understudy::ui
