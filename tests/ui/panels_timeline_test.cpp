@@ -174,7 +174,7 @@ TEST(PanelWords, AreShortAndPlain) {
   EXPECT_FALSE(parse_number("inf"));
 }
 
-TEST_F(PanelsTest, EveryKeyIsOneThat) {
+TEST_F(PanelsTest, EveryKeyDoesOneThing) {
   std::vector<std::string> seen;
   for (const Binding& binding : bindings(studio.commands())) {
     EXPECT_EQ(std::count(seen.begin(), seen.end(), binding.keys), 0) << binding.keys << " does two things";
@@ -183,6 +183,7 @@ TEST_F(PanelsTest, EveryKeyIsOneThat) {
   EXPECT_EQ(keys_of(studio.commands(), "view.preset", {"front"}), "1");
   EXPECT_EQ(keys_of(studio.commands(), "tool", {"look"}), "Q");
   EXPECT_EQ(keys_of(studio.commands(), "document.save_as"), "Ctrl+Shift+S");
+  EXPECT_EQ(keys_of(studio.commands(), "view.ortho", {"on"}), "5");
   EXPECT_EQ(keys_of(studio.commands(), "edit.swap"), "");
 }
 

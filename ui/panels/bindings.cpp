@@ -95,8 +95,11 @@ std::vector<Binding> bindings(const app::Commands& commands) {
 
 std::string keys_of(const app::Commands& commands, const std::string& command,
                     const app::Arguments& arguments) {
-  std::vector<std::string> names = {command};  // "view.preset front" is "view.preset_front", too
-  if (!arguments.empty()) names = {command + "_" + arguments.front(), command + "." + arguments.front()};
+  std::vector<std::string> names;
+  if (!arguments.empty())  // "view.preset front" is "view.preset_front", too
+    names = {command + "_" + arguments.front(), command + "." + arguments.front()};
+  if (arguments.empty() || arguments == app::Arguments{"on"} || arguments == app::Arguments{"off"})
+    names.push_back(command);  // a key without arguments turns a switch over
   for (const std::string& name : names) {
     const app::Command* found = commands.find(name);
     if (found != nullptr && !found->shortcut.empty()) return found->shortcut;
