@@ -70,34 +70,45 @@ void add_cameras(Commands& commands) {
        }});
 }
 
-/// The mean of what is shown at the frame, and how large it is.
-void fit(Studio& studio) {
-  Session& session = studio.session();
+/// Joints of everybody who is shown at the frame; of the targets in T-pose while there is none.
+std::vector<Joints> shown_joints(const Session& session) {
+  std::vector<Joints> all;
   const int frame = shown_frame(session);
-  Joints joints = Joints::Zero();
-  Vec3 followed = Vec3::Zero();  // what the camera adds by itself
-  bool any = false;
-  if (frame >= 0 && static_cast<size_t>(frame) < session.source.frames.size()) {
-    joints = session.source.frames[static_cast<size_t>(frame)].joints;
-    followed = follow_offset(session, 0, frame);
-    any = true;
+  const size_t f = static_cast<size_t>(std::max(frame, 0));
+  if (frame >= 0 && f < session.source.frames.size()) all.push_back(session.source.frames[f].joints);
+  for (const TakeState& take : session.takes) {
+    if (frame >= 0 && f < take.joints.size())
+      all.push_back(take.joints[f]);
+    else if (take.target)
+      all.push_back(take.target->joints);
   }
-  const size_t k = static_cast<size_t>(session.selected_take);
-  if (!any && k < session.takes.size() && session.takes[k].target) {
-    joints = session.takes[k].target->joints;
-    followed = {joints(Pelvis, 0), session.takes[k].target->mesh.vertices.col(1).minCoeff(), joints(Pelvis, 2)};
-    any = true;
-  }
+  return all;
+}
+
+/// Turns the camera to the middle of all who are shown and goes as far away as the narrow side of a view
+/// asks.
+void fit(Studio& studio) {
+  constexpr float kBody = 0.2f;          // metres of a body beyond its outermost joints
+  constexpr float kViewsAspect = 1.55f;  // of all views together in a usual window
+  Session& session = studio.session();
   CameraState& c = active_camera(studio);
-  if (!any) {
-    c.target = Vec3(0, 0.9f, 0);
-    c.distance = 4.2f;
+  const std::vector<Joints> people = shown_joints(session);
+  if (people.empty()) {
+    c.target = CameraState{}.target;
+    c.distance = CameraState{}.distance;
     return;
   }
-  const Vec3 low = joints.colwise().minCoeff().transpose(), high = joints.colwise().maxCoeff().transpose();
-  c.target = 0.5f * (low + high) - followed;
-  const float size = std::max(0.6f, (high - low).norm() + 0.35f);
-  c.distance = 0.5f * size / std::tan(0.5f * c.fov) * 1.12f;
+  Vec3 low = Vec3::Constant(1e9f), high = -low;
+  for (const Joints& joints : people) {
+    low = low.cwiseMin(joints.colwise().minCoeff().transpose());
+    high = high.cwiseMax(joints.colwise().maxCoeff().transpose());
+  }
+  c.target = 0.5f * (low + high);
+  const int panes = std::max(1, pane_count(session.view, static_cast<int>(session.takes.size())));
+  const float aspect = kViewsAspect / static_cast<float>(panes);
+  const float tall = 0.5f * (high.y() - low.y()) + kBody;
+  const float wide = 0.5f * std::hypot(high.x() - low.x(), high.z() - low.z()) + kBody;
+  c.distance = std::max(tall, wide / aspect) / std::tan(0.5f * c.fov) + 0.5f * wide;
 }
 
 void add_camera_motion(Commands& commands) {
