@@ -70,17 +70,18 @@ void add_cameras(Commands& commands) {
        }});
 }
 
-/// Joints of everybody who is shown at the frame; of the targets in T-pose while there is none.
+/// Joints of everybody who is shown at the frame, as their cameras see them; of the targets in T-pose while
+/// there is no frame.
 std::vector<Joints> shown_joints(const Session& session) {
   std::vector<Joints> all;
   const int frame = shown_frame(session);
-  const size_t f = static_cast<size_t>(std::max(frame, 0));
-  if (frame >= 0 && f < session.source.frames.size()) all.push_back(session.source.frames[f].joints);
-  for (const TakeState& take : session.takes) {
-    if (frame >= 0 && f < take.joints.size())
-      all.push_back(take.joints[f]);
-    else if (take.target)
-      all.push_back(take.target->joints);
+  for (int pane = 0; pane <= static_cast<int>(session.takes.size()); ++pane) {
+    const Joints* const joints = pane_joints(session, pane, frame);
+    const Vec3 offset = follow_offset(session, pane, frame);
+    if (joints)
+      all.push_back(joints->rowwise() - offset.transpose());
+    else if (pane > 0 && session.takes[static_cast<size_t>(pane - 1)].target)
+      all.push_back(session.takes[static_cast<size_t>(pane - 1)].target->joints);
   }
   return all;
 }
