@@ -66,6 +66,13 @@ TEST_F(Pictures, OfOtherSizes) {
   keep("light");
   input.size = {400, 300};
   keep("small");
+  for (const char* name : {"settings", "export", "picture", "keys", "open"}) {
+    workspace.open_dialog(session, name);
+    keep(std::string("small_") + name);
+    workspace.browser() = FileBrowser();
+    workspace.open_dialog(session, "none");
+    frame(2);
+  }
   session.settings.panels = {{"side_over", true}};
   keep("small_side");
   input.size = {2560, 1600}, input.scale = 2;

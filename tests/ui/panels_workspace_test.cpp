@@ -50,6 +50,23 @@ TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
   EXPECT_THROW(workspace.open_dialog(session, "nothing"), Error);
 }
 
+TEST_F(WorkspaceTest, EveryDialogCanBeClosedInASmallWindow) {
+  input.size = {400, 300};
+  const std::pair<const char*, const char*> closers[] = {
+      {"settings", "settings.close"}, {"export", "export.cancel"}, {"picture", "export.cancel"},
+      {"compare", "compare.cancel"},  {"about", "about.close"},    {"keys", "keys.close"},
+      {"open", "browser.cancel"}};
+  for (const auto& [name, closer] : closers) {
+    workspace.open_dialog(session, name);
+    frame(3);
+    gui.ui().reveal(closer);  // what is below is scrolled to
+    frame(3);
+    click(closer);
+    frame(2);
+    EXPECT_EQ(workspace.dialog(), "") << name;
+  }
+}
+
 TEST_F(WorkspaceTest, PartsNeitherOverlapNorLeaveTheWindow) {
   Parts parts;
   parts.log = true;
@@ -202,6 +219,13 @@ TEST_F(WorkspaceTest, WhatIsNotPossibleIsGrey) {
 
 TEST_F(WorkspaceTest, KeysAskUnlessSomethingIsWritten) {
   frame(2);
+  key(Key::Comma, {false, true});
+  EXPECT_EQ(take_log(), Lines{"dialog.open settings"});
+  key(Key::Escape);
+  key(Key::Slash, {true});
+  EXPECT_EQ(take_log(), Lines{"help.keys"});
+  frame(2);
+  click("keys.close");
   key(Key::Space);
   key(Key::Digit1);
   key(Key::Left, {true});

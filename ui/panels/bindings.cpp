@@ -16,12 +16,12 @@ const std::vector<Binding>& built_in() {
                                                 {"Ctrl+S", "document.save", {}, "Save"},
                                                 {"Ctrl+Shift+S", "document.save_as", {}, "Save as"},
                                                 {"Ctrl+E", "dialog.open", {"export"}, "Export"},
-                                                {"Ctrl+Comma", "dialog.open", {"settings"}, "Settings"},
+                                                {"Ctrl+,", "dialog.open", {"settings"}, "Settings"},
                                                 {"Ctrl+Y", "edit.redo", {}, "Redo"},
                                                 {"Shift+Left", "playback.step", {"-10"}, "Ten frames back"},
                                                 {"Shift+Right", "playback.step", {"10"}, "Ten frames on"},
                                                 {"H", "help.keys", {}, "All keys"},
-                                                {"Shift+Slash", "help.keys", {}, "All keys"}};
+                                                {"?", "help.keys", {}, "All keys"}};
   return kBuiltIn;
 }
 
