@@ -71,12 +71,22 @@ class ViewsTest : public UiTest {
 
 TEST_F(ViewsTest, NothingIsDrawnTwice) {
   frame(5);
+  EXPECT_FALSE(views.waiting());
   const int64_t before = views.drawn();
   frame(10);
   EXPECT_EQ(views.drawn(), before);
+}
+
+TEST_F(ViewsTest, WhatMovesIsDrawnQuicklyAndWellAfterwards) {
+  frame(5);
+  const int64_t before = views.drawn();
   stage.session.view.cameras[0].yaw += 0.1f;
   frame();
   EXPECT_EQ(views.drawn(), before + 2);  // two panes, one camera
+  EXPECT_TRUE(views.waiting());
+  frame();
+  EXPECT_EQ(views.drawn(), before + 4);
+  EXPECT_FALSE(views.waiting());
 }
 
 TEST_F(ViewsTest, DraggingTurnsTheCamera) {

@@ -48,14 +48,18 @@ std::string weight_words(const app::Session& session, const Pane& pane, int vert
 
 }  // namespace
 
-bool PaneCanvas::draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
-                      render::PixelSize size) {
-  const bool same_size = size.width == size_.width && size.height == size_.height;
-  if (drawn_ && same_size && same_picture(camera, camera_) && same_picture(scene, scene_)) return false;
-  if (!same_size) resize(size);
+bool PaneCanvas::shows(const render::Scene& scene, const render::Camera& camera,
+                       render::PixelSize size) const {
+  return drawn_ && size.width == size_.width && size.height == size_.height &&
+         same_picture(camera, camera_) && same_picture(scene, scene_);
+}
+
+void PaneCanvas::draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
+                      render::PixelSize size, bool fine) {
+  if (size.width != size_.width || size.height != size_.height) resize(size);
   renderer.draw(scene, camera, {framebuffer_.name(), size});
   scene_ = scene, camera_ = camera;
-  return drawn_ = true;
+  drawn_ = true, fine_ = fine;
 }
 
 void PaneCanvas::resize(render::PixelSize size) {

@@ -12,9 +12,12 @@ namespace understudy::ui {
 /// A picture that is drawn into and shown by ImGui.
 class PaneCanvas {
  public:
-  /// Draws unless scene, camera and size are those of the last time. True when it drew.
-  bool draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
-            render::PixelSize size);
+  /// Whether it shows this already, as good as it was asked for then.
+  bool shows(const render::Scene& scene, const render::Camera& camera, render::PixelSize size) const;
+  /// `fine`: as good as the settings say; else a sketch, for while things move.
+  void draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
+            render::PixelSize size, bool fine);
+  bool fine() const { return fine_; }
   /// Its name for ImGui::Image; upside down, as OpenGL has it.
   unsigned texture() const { return texture_.name(); }
   void forget() { drawn_ = false; }
@@ -27,7 +30,7 @@ class PaneCanvas {
   render::PixelSize size_;
   render::Scene scene_;  ///< kept whole: its arrays keep their addresses
   render::Camera camera_;
-  bool drawn_ = false;
+  bool drawn_ = false, fine_ = false;
 };
 
 struct Pane {

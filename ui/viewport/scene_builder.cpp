@@ -15,6 +15,7 @@ using app::Session;
 using render::SharedPoints;
 
 constexpr float kGhostOpacity = 0.16f, kOverlaidOpacity = 0.62f, kTrailSeconds = 1.2f;
+constexpr float kDisc = 1.15f;           // a scan's discs against its spacing: few holes, edges still sharp
 constexpr float kHandleRadius = 0.022f;  // metres, of the crop box's handles
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
@@ -124,7 +125,7 @@ void Builder::add_scan() {
       view.positions = part_of(scan, scan->mesh.vertices);
       view.normals = part_of(scan, scan->normals);
       view.colors = colors, view.color = kScanColor;
-      if (scan->spacing > 0) view.radius = scan->spacing;
+      if (scan->spacing > 0) view.radius = kDisc * scan->spacing;
       out_.scene.clouds.push_back(std::move(view));
     } else {
       render::MeshView view;

@@ -59,12 +59,14 @@ struct Views::Impl {
   void interact(const Frame& f, Pane& pane);
   void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
   void make_picture(const Frame& f, Pane& pane);
+  void draw_picture(const Frame& f, Pane& pane);
+  bool moving(const Session& session) const;
   void show(const Frame& f, Pane& pane, const Rect& part, bool right);
   void describe(const Session& session, const Pane& pane, Overlay& overlay) const;
   void draw_brush(const Frame& f, const Pane& pane);
   void keep_view_when_following_changes(const Frame& f);
 
-  std::optional<render::Renderer> renderer;
+  std::optional<render::Renderer> renderer, sketcher;  // as the settings say, and for while things move
   int samples = 0;
   std::vector<std::unique_ptr<Pane>> panes;
   TargetLooks looks;
@@ -86,7 +88,7 @@ void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQue
 
 bool Views::waiting() const {
   return std::any_of(impl_->panes.begin(), impl_->panes.end(),
-                     [](const auto& p) { return p->keeper.waiting(); });
+                     [](const auto& pane) { return pane->keeper.waiting() || !pane->canvas.fine(); });
 }
 
 int64_t Views::drawn() const {
@@ -116,6 +118,8 @@ void Views::Impl::prepare(const Frame& f, size_t count) {
   if (!renderer || samples != f.session.settings.samples) {
     samples = f.session.settings.samples;
     renderer.emplace(render::RendererOptions{samples, render::Quality::Interactive});
+    sketcher.reset();
+    if (samples > 1) sketcher.emplace(render::RendererOptions{1, render::Quality::Interactive});
     for (auto& pane : panes) pane->canvas.forget();
   }
   if (panes.size() != count) hand.let_go();
@@ -236,7 +240,23 @@ void Views::Impl::make_picture(const Frame& f, Pane& pane) {
                         : nullptr);
   const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.ui.theme().kind};
   pane.made = build_scene(input, &pane.colours);
-  drawn += pane.canvas.draw(*renderer, pane.made.scene, pane.view.camera, pane.view.size()) ? 1 : 0;
+  draw_picture(f, pane);
+}
+
+/// What has changed is drawn quickly first, and well as soon as nothing moves.
+void Views::Impl::draw_picture(const Frame& f, Pane& pane) {
+  const render::PixelSize size = pane.view.size();
+  const bool changed = !pane.canvas.shows(pane.made.scene, pane.view.camera, size);
+  const bool fine = samples <= 1 || (!changed && !moving(f.session));
+  if (!changed && (pane.canvas.fine() || !fine)) return;
+  pane.canvas.draw(fine ? *renderer : *sketcher, pane.made.scene, pane.view.camera, size, fine);
+  ++drawn;
+}
+
+bool Views::Impl::moving(const Session& session) const {
+  const bool live = session.working && !session.paused && session.playback.live;
+  const bool steering = under != nullptr && (pointer.held || pointer.turning || pointer.panning);
+  return session.playback.playing || live || steering || hand.busy() || session.view.turntable_deg_s != 0;
 }
 
 void Views::Impl::show(const Frame& f, Pane& pane, const Rect& part, bool right) {

@@ -24,7 +24,7 @@ class Views {
   /// context's complaints are fatal.
   void draw(const app::Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui);
 
-  /// Whether something that should be seen is still being made: draw again soon.
+  /// Whether something that should be seen is still being made, or was drawn quickly only: draw again soon.
   bool waiting() const;
   /// Pictures of panes drawn since the start; for tests and figures.
   int64_t drawn() const;
