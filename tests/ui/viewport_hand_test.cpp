@@ -1,8 +1,10 @@
 // What the mouse does in the views: real input, a null context, and the commands that come out.
 #include "render/context/context.hpp"
+#include "render/gizmo.hpp"
 #include "support/ui_test.hpp"
 #include "support/viewport_stage.hpp"
-#include "ui/viewport/panes.hpp"
+#include "ui/viewport/hand.hpp"
+#include "ui/viewport/pane_pictures.hpp"
 #include "ui/viewport/views.hpp"
 
 namespace understudy::ui {
@@ -209,6 +211,46 @@ TEST_F(ViewsTest, ARingTurnsABoneInItsOwnFrame) {
   EXPECT_EQ(words[2], "right_elbow");
   EXPECT_NEAR(vector_at(words, 3).norm(), 0.6f, 0.1f);
   EXPECT_NEAR(std::abs(vector_at(words, 3).z()), vector_at(words, 3).norm(), 1e-4f);
+}
+
+TEST_F(ViewsTest, ABoneIsSeenTurnedUntilTheEditShows) {
+  stage.session.tool = app::Tool::Bones, stage.session.selected_joint = RightElbow;
+  const PaneContent content = pane_of(1);
+  const PaneView view = pane(1);
+  const PanePictures pictures = pictures_of(stage.session, *stage.cache, content, 10).value();
+  const HandPlace place{stage.session, content, view, pictures};
+  Hand hand;
+  app::CommandQueue asked_of_hand;
+  // Somewhere on the circle of the gizmo a ring is met.
+  const ImVec2 middle = seen(1, take_joint(RightElbow));
+  const float reach = render::gizmo_reach(*hand.preview(place).gizmo, view.camera) /
+                      view.metres_a_pixel(take_joint(RightElbow));
+  Pointer pointer;
+  pointer.over = true;
+  for (int i = 0; i < 360 && !hand.busy(); ++i) {
+    const float angle = static_cast<float>(i) * kPi / 180;
+    pointer.at = {middle.x + reach * std::cos(angle), middle.y + reach * std::sin(angle)};
+    pointer.pressed = pointer.held = hand.work(place, pointer, asked_of_hand);
+    if (pointer.held) hand.work(place, pointer, asked_of_hand);
+  }
+  ASSERT_TRUE(hand.busy());
+  pointer.pressed = false;
+  pointer.at = {2 * middle.x - pointer.at.x + 5, pointer.at.y + 30};
+  hand.work(place, pointer, asked_of_hand);
+  const auto turned = hand.turned_picture(place);
+  ASSERT_NE(turned, nullptr);
+  const Points& before = pictures.takes[0]->vertices;
+  const Eigen::VectorXf moved = (turned->vertices - before).rowwise().norm();
+  for (Eigen::Index v = 0; v < moved.size(); ++v) {
+    if ((*stage.weights)(v, RightElbow) == 0) EXPECT_NEAR(moved[v], 0, 1e-4f);
+  }
+  EXPECT_GT(moved.maxCoeff(), 0.05f);
+  pointer.released = true, pointer.held = false;
+  hand.work(place, pointer, asked_of_hand);
+  EXPECT_EQ(asked_of_hand.back().first, "edit.rotate");
+  EXPECT_NE(hand.turned_picture(place), nullptr);
+  stage.session.time += 5;  // it never came
+  EXPECT_EQ(hand.turned_picture(place), nullptr);
 }
 
 TEST_F(ViewsTest, ATPoseJointGoesWhereItIsDragged) {

@@ -233,6 +233,21 @@ TEST(Panes, PixelsGoThereAndBack) {
   EXPECT_EQ(joint_at(view, joints, {101, 51}, 5), -1);
 }
 
+TEST(TargetLook, OtherJointsKeepTheLook) {
+  Stage stage(1, 500);
+  TargetLooks looks;
+  EXPECT_EQ(looks.of(stage.target), nullptr);
+  looks.wait();
+  const auto look = looks.of(stage.target);
+  ASSERT_NE(look, nullptr);
+  EXPECT_EQ(look->ambient->size(), stage.mesh.vertices.rows());
+  Target moved = *stage.target;
+  moved.joints.row(LeftKnee) *= 1.1f;
+  EXPECT_EQ(looks.of(std::make_shared<const Target>(moved)), look);
+  moved.mesh.vertices(0, 0) += 1;
+  EXPECT_EQ(looks.of(std::make_shared<const Target>(moved)), nullptr);
+}
+
 TEST(TargetLook, ATubeIsClosedAndAnOpenOneIsNot) {
   Faces faces(4, 3);
   faces << 0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0;

@@ -132,7 +132,7 @@ void Writer::draw_scale() {
     list_.AddRectFilledMultiColor({left + from * width, top}, {left + to * width, top + bar}, a, b, b, a);
   }
   const auto number_at = [&](float share, float value) {
-    const std::string words = figure(static_cast<double>(value), "");
+    const std::string words = argument(static_cast<double>(value));
     const float x = left + share * (width - ImGui::CalcTextSize(words.c_str()).x);
     text({x, top + bar + px(2)}, ui_.theme().text_dim, words);
   };

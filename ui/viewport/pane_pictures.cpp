@@ -119,8 +119,12 @@ void PictureKeeper::forget_others(const Session& session, const PaneContent& pan
   std::vector<std::shared_ptr<const Target>> targets;
   for (const int k : pane.takes)
     targets.push_back(take_of(session, k) != nullptr ? take_of(session, k)->target : nullptr);
-  if (targets == targets_ && source_ == session.document.source.path) return;
+  const bool same =
+      source_ == session.document.source.path &&
+      std::equal(targets.begin(), targets.end(), targets_.begin(), targets_.end(),
+                 [](const auto& a, const auto& b) { return a == b || same_surface(a.get(), b.get()); });
   targets_ = std::move(targets), source_ = session.document.source.path;
+  if (same) return;
   pictures_ = {}, asked_.clear();
 }
 

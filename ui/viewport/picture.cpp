@@ -167,8 +167,8 @@ void draw_legend(Image& image, const Legend& legend, float height, const Vec3& i
     fill(margin + x, top, 1, bar,
          scale_color(legend.scale, static_cast<float>(x) / static_cast<float>(width)));
   const float base = static_cast<float>(top + bar) + 1.1f * height;
-  const std::string high = figure(static_cast<double>(legend.high), "");
-  write(figure(static_cast<double>(legend.low), ""), left, base);
+  const std::string high = argument(static_cast<double>(legend.high));
+  write(argument(static_cast<double>(legend.low)), left, base);
   write(high, left + static_cast<float>(width) - font.width(high, height), base);
 }
 

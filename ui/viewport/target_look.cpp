@@ -60,15 +60,28 @@ TargetLook look_of(const Target& target) {
   return look;
 }
 
+bool same_surface(const Target* a, const Target* b) {
+  if (a == nullptr || b == nullptr) return a == b;
+  const Faces &f = a->mesh.faces, &g = b->mesh.faces;
+  return a->mesh.vertices.rows() == b->mesh.vertices.rows() && f.rows() == g.rows() &&
+         std::equal(f.data(), f.data() + f.size(), g.data());
+}
+
 std::shared_ptr<const TargetLook> TargetLooks::of(const std::shared_ptr<const Target>& target) {
   if (target == nullptr) return nullptr;
   auto found =
       std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.target == target; });
   if (found == entries_.end()) {
+    const auto alike = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) {
+      return e.look != nullptr && same_surface(e.target.get(), target.get()) &&
+             e.target->mesh.vertices == target->mesh.vertices;
+    });
+    const auto known = alike != entries_.end() ? alike->look : nullptr;
     entries_.emplace_front();
     found = entries_.begin();
-    found->target = target;
-    found->coming = std::async(std::launch::async, [target] { return guarded_look(*target); });
+    found->target = target, found->look = known;
+    if (known == nullptr)
+      found->coming = std::async(std::launch::async, [target] { return guarded_look(*target); });
     if (entries_.size() > kKept) entries_.pop_back();
   } else {
     entries_.splice(entries_.begin(), entries_, found);

@@ -22,10 +22,13 @@ bool is_closed(const Faces& faces);
 /// All of it; takes about a quarter of a second for 13,000 vertices.
 TargetLook look_of(const Target& target);
 
+/// Whether a picture of one can be shown as the other: vertices of one number and order, the same faces.
+bool same_surface(const Target* a, const Target* b);
+
 /// The looks of the targets shown, each made on a thread of its own. Use from one thread.
 class TargetLooks {
  public:
-  /// Null while it is being made.
+  /// Null while it is being made. A target of which only the joints are others has the look that it had.
   std::shared_ptr<const TargetLook> of(const std::shared_ptr<const Target>& target);
   /// Waits for all that were asked for.
   void wait();
