@@ -181,6 +181,15 @@ TEST_F(SceneTest, TheCropToolShowsItsBoxWithSixHandles) {
   EXPECT_EQ(face_centre(*session.document.scan_edits.crop, 3), Vec3(0, 2, 0));
 }
 
+TEST_F(SceneTest, ANewCropBoxHoldsThePersonInAllFrames) {
+  const Box box = crop_box(session, {});
+  for (int f = 0; f < 24; ++f) {
+    const Points person = stage.deformer->deform(stage_pose(f));
+    for (Eigen::Index v = 0; v < person.rows(); ++v) ASSERT_TRUE(box.contains(person.row(v))) << f;
+  }
+  EXPECT_LT(box.high.y(), 2.2f);
+}
+
 TEST_F(SceneTest, APreviewStandsInForTheJoints) {
   Preview preview;
   preview.take_joints = Joints::Ones();

@@ -16,6 +16,7 @@ using render::SharedPoints;
 
 constexpr float kGhostOpacity = 0.16f, kOverlaidOpacity = 0.62f, kTrailSeconds = 1.2f;
 constexpr float kDisc = 1.15f;           // a scan's discs against its spacing: few holes, edges still sharp
+constexpr float kAroundJoints = 0.3f;    // metres that a body reaches further than its joints, at most
 constexpr float kHandleRadius = 0.022f;  // metres, of the crop box's handles
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
@@ -42,9 +43,12 @@ SharedPoints scale_colors(const SurfaceValues& surface) {
   return render::viridis_colors(*surface.values, surface.legend.low, surface.legend.high);
 }
 
-Vec3 trail_color(int joint) {
-  if (kMirror[static_cast<size_t>(joint)] == joint) return {0.62f, 0.66f, 0.72f};
-  return kJointNames[static_cast<size_t>(joint)][0] == 'l' ? render::kLeftColor : render::kRightColor;
+Vec3 trail_color(int joint, ThemeKind theme) {
+  const size_t j = static_cast<size_t>(joint);
+  const Vec3 side = kMirror[j] == joint        ? Vec3(0.52f, 0.56f, 0.62f)
+                    : kJointNames[j][0] == 'l' ? render::kLeftColor
+                                               : render::kRightColor;
+  return theme == ThemeKind::Dark ? Vec3(0.65f * side + Vec3::Constant(0.35f)) : side;
 }
 
 class Builder {
@@ -224,7 +228,7 @@ void Builder::add_trails() {
 void Builder::add_trail(int person, int joint) {
   const int now = in_.pictures.frame,
             reach = static_cast<int>(std::lround(kTrailSeconds * session_.source.fps));
-  const Vec3 color = trail_color(joint);
+  const Vec3 color = trail_color(joint, in_.theme);
   for (const int step :
        {1, -1}) {  // what was comes up to now, what comes goes back to it: both fade outwards
     std::vector<Vec3> path;
@@ -326,11 +330,21 @@ PaneScene build_scene(const SceneInput& input, ColourMemory* memory) {
 Box crop_box(const Session& session, const PanePictures& pictures) {
   if (session.document.scan_edits.crop) return *session.document.scan_edits.crop;
   Box box;
-  box.low = Vec3(-1, -0.05f, -1), box.high = Vec3(1, 2.1f, 1);
-  if (pictures.scan == nullptr || pictures.scan->mesh.vertices.rows() == 0) return box;
-  const Points& points = pictures.scan->mesh.vertices;
-  box.low = points.colwise().minCoeff().transpose() - Vec3::Constant(0.05f);
-  box.high = points.colwise().maxCoeff().transpose() + Vec3::Constant(0.05f);
+  box.low = Vec3(-1, 0, -1), box.high = Vec3(1, 1.8f, 1);
+  bool any = false;
+  const auto take_in = [&](const Vec3& low, const Vec3& high) {
+    if (!low.allFinite() || !high.allFinite()) return;
+    box.low = any ? Vec3(box.low.cwiseMin(low)) : low;
+    box.high = any ? Vec3(box.high.cwiseMax(high)) : high;
+    any = true;
+  };
+  for (const app::KeptSource& frame : session.source.frames)  // a crop is of all frames
+    if (!frame.flagged) take_in(frame.joints.colwise().minCoeff(), frame.joints.colwise().maxCoeff());
+  if (!any && pictures.scan != nullptr && pictures.scan->mesh.vertices.rows() > 0)
+    take_in(pictures.scan->mesh.vertices.colwise().minCoeff(),
+            pictures.scan->mesh.vertices.colwise().maxCoeff());
+  box.low -= Vec3(kAroundJoints, 0.12f, kAroundJoints);
+  box.high += Vec3::Constant(kAroundJoints);
   return box;
 }
 

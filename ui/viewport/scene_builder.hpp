@@ -55,7 +55,7 @@ struct PaneScene {
 /// while that tool is active. What is not there yet is left out. memory: null to make all colours anew.
 PaneScene build_scene(const SceneInput& input, ColourMemory* memory = nullptr);
 
-/// The box that the crop tool shows: the document's, or one around the scan.
+/// The box that the crop tool shows: the document's, or one around the person in all frames so far.
 Box crop_box(const app::Session& session, const PanePictures& pictures);
 /// The middle of a face of a box, numbered as Preview::crop_face.
 Vec3 face_centre(const Box& box, int face);

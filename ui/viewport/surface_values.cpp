@@ -43,7 +43,7 @@ SurfaceValues weights(const Session& session, const app::TakeState& take) {
   const int joint = weights_joint(session);
   SurfaceValues out;
   if (joint >= 0 && joint < take.weights->cols()) {
-    out.legend = scale("Weight of the " + joint_label(joint), "", 1);
+    out.legend = scale("Weight, " + joint_label(joint), "", 1);
     out.values = std::make_shared<const Eigen::VectorXf>(take.weights->col(joint));
     return out;
   }
