@@ -17,10 +17,11 @@ us_module(app SOURCES
   PRIVATE understudy_results ${CMAKE_DL_LIBS})
 
 add_executable(understudy app/main.cpp app/cli/commands.cpp app/cli/bench.cpp app/cli/bench_ui.cpp app/cli/demo.cpp
-  app/cli/doctor.cpp app/cli/eval.cpp app/cli/play.cpp app/cli/retarget.cpp app/cli/sample.cpp app/cli/studio.cpp
+  app/cli/doctor.cpp app/cli/eval.cpp app/cli/export.cpp app/cli/import_worker.cpp app/cli/play.cpp app/cli/retarget.cpp app/cli/sample.cpp app/cli/studio.cpp
   app/cli/train.cpp)
 target_include_directories(understudy PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app understudy_studio understudy_builtin)
+target_link_libraries(understudy PRIVATE warnings CLI11::CLI11 understudy_app understudy_studio understudy_builtin
+  understudy_character understudy_assimp nlohmann_json::nlohmann_json)
 
 # The program and what it loads at run time.
 add_custom_target(understudy_all DEPENDS understudy networks_plugin)

@@ -3,6 +3,8 @@
 namespace understudy::app {
 
 Action declare_retarget(CLI::App& command);
+Action declare_export(CLI::App& command);
+Action declare_import_worker(CLI::App& command);
 Action declare_eval(CLI::App& command);
 Action declare_train(CLI::App& command);
 Action declare_sample(CLI::App& command);
@@ -17,12 +19,14 @@ const std::vector<Subcommand>& subcommands() {
       {"studio", "opens the window", declare_studio},
       {"play", "plays a script of the studio without a window", declare_play},
       {"retarget", "lets a target perform what a source does", declare_retarget},
+      {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
       {"eval", "judges the method on a folder of cases", declare_eval},
       {"train", "trains a network", declare_train},
       {"sample", "writes the bundled samples as files", declare_sample},
       {"doctor", "tells what this machine has: BLAS, threads, OpenGL, weights", declare_doctor},
       {"bench", "measures time, memory and work of a frame", declare_bench},
       {"demo", "the bundled scan onto the bundled targets", declare_demo},
+      {"import-worker", "reads a file in a process of its own", declare_import_worker},
   };
   return table;
 }

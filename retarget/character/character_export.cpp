@@ -1,0 +1,551 @@
+#include "retarget/character/character_export.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "retarget/base/error.hpp"
+#include "retarget/character/corrective_shapes.hpp"
+#include "retarget/character/gltf_character.hpp"
+#include "retarget/character/key_reduction.hpp"
+#include "retarget/formats/bytes.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr float kStill = 1e-5f;  // metres: a translation that moves less is none
+constexpr size_t kCompared = 60;
+
+Mat4 matrix_of(const Similarity& s) {
+  Mat4 M = Mat4::Identity();
+  M.topLeftCorner<3, 3>() = s.scale * s.R;
+  M.topRightCorner<3, 1>() = s.t;
+  return M;
+}
+
+Mat4 rigid(const Mat3& R, const Vec3& t) {
+  Mat4 M = Mat4::Identity();
+  M.topLeftCorner<3, 3>() = R;
+  M.topRightCorner<3, 1>() = t;
+  return M;
+}
+
+/// The linear part that carries each vertex of a part from the file to the T-pose, metres: [V] of 3 x 3.
+std::vector<Mat3> to_t_pose_maps(const PreparedCharacter& c, const CharacterPart& part, Eigen::Index first,
+                                 const std::vector<Mat4>& nodes) {
+  const Mat3 world = c.to_world.scale * c.to_world.R;
+  std::vector<Mat3> bones;
+  if (part.skin >= 0) {
+    const CharacterSkin& skin = c.character.skins[static_cast<size_t>(part.skin)];
+    for (size_t j = 0; j < skin.joints.size(); ++j)
+      bones.push_back(
+          (nodes[static_cast<size_t>(skin.joints[j])] * skin.inverse_bind[j]).topLeftCorner<3, 3>());
+  }
+  std::vector<Mat3> out;
+  for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
+    Mat3 bound = Mat3::Zero();
+    if (part.skin < 0) bound = nodes[static_cast<size_t>(part.node)].topLeftCorner<3, 3>();
+    for (Eigen::Index k = 0; k < part.joints.cols(); ++k)
+      if (part.weights(v, k) > 0) bound += part.weights(v, k) * bones[static_cast<size_t>(part.joints(v, k))];
+    const auto weights = c.pose_weights.row(c.surface.map[static_cast<size_t>(first + v)]);
+    Mat3 turned = Mat3::Zero();
+    for (int j = 0; j < kJointCount; ++j)
+      if (weights[j] > 0) turned += weights[j] * c.pose.to_rest[static_cast<size_t>(j)];
+    out.push_back(turned * world * bound);
+  }
+  return out;
+}
+
+std::string fresh_name(const std::string& name, const std::vector<CharacterAnimation>& taken) {
+  std::string out = name;
+  for (int i = 2; std::any_of(taken.begin(), taken.end(), [&](const auto& a) { return a.name == out; }); ++i)
+    out = name + " " + std::to_string(i);
+  return out;
+}
+
+/// Frames of one clip as local transforms of nodes.
+struct Sampled {
+  std::vector<int> nodes;                     // that move
+  std::vector<std::vector<Transform>> local;  // [frames][nodes]
+  std::vector<float> metres;                  // of a unit of each node's translation
+  std::vector<std::vector<float>> shapes;     // [frames][shapes]
+  std::vector<float> times;
+};
+
+CharacterTrack track_of(const Sampled& sampled, size_t at, TrackPath path) {
+  CharacterTrack track;
+  track.node = sampled.nodes[at];
+  track.path = path;
+  track.times = sampled.times;
+  Eigen::Vector4f before = Eigen::Vector4f::Zero();
+  for (const auto& frame : sampled.local) {
+    if (path == TrackPath::Translation) {
+      const Vec3& t = frame[at].translation;
+      track.values.insert(track.values.end(), t.data(), t.data() + 3);
+      continue;
+    }
+    Eigen::Vector4f q = frame[at].rotation.normalized().coeffs();
+    if (q.dot(before) < 0) q = -q;  // q and -q are one rotation; the nearer one keeps interpolation short
+    track.values.insert(track.values.end(), q.data(), q.data() + 4);
+    before = q;
+  }
+  return track;
+}
+
+/// How far a translation moves from where the node stands, metres.
+float travel(const Sampled& sampled, size_t at, const Transform& still) {
+  float furthest = 0;
+  for (const auto& frame : sampled.local)
+    furthest = std::max(furthest, (frame[at].translation - still.translation).norm());
+  return furthest * sampled.metres[at];
+}
+
+CharacterAnimation animation_of(const std::string& name, const Sampled& sampled, const Character& out) {
+  CharacterAnimation animation;
+  animation.name = name;
+  for (size_t at = 0; at < sampled.nodes.size(); ++at) {
+    const Transform& still = out.nodes[static_cast<size_t>(sampled.nodes[at])].local;
+    if (travel(sampled, at, still) > kStill)
+      animation.tracks.push_back(track_of(sampled, at, TrackPath::Translation));
+    animation.tracks.push_back(track_of(sampled, at, TrackPath::Rotation));
+  }
+  if (sampled.shapes.empty() || sampled.shapes[0].empty()) return animation;
+  for (size_t n = 0; n < out.nodes.size(); ++n) {
+    const size_t own = out.nodes[n].shape_weights.size(), added = sampled.shapes[0].size();
+    if (own < added) continue;  // a node without parts
+    CharacterTrack track;
+    track.node = static_cast<int>(n);
+    track.path = TrackPath::Shapes;
+    track.times = sampled.times;
+    for (const auto& weights : sampled.shapes) {
+      track.values.insert(track.values.end(), out.nodes[n].shape_weights.begin(),
+                          out.nodes[n].shape_weights.end() - static_cast<long>(added));
+      track.values.insert(track.values.end(), weights.begin(), weights.end());
+    }
+    animation.tracks.push_back(std::move(track));
+  }
+  return animation;
+}
+
+/// What both skeletons have in common: the character without animation, then clip by clip.
+class Animator {
+ public:
+  Animator(const PreparedCharacter& source, const Deformer& screen) : source_(source), screen_(screen) {}
+  virtual ~Animator() = default;
+  virtual Character still() = 0;
+  virtual Sampled sample(const CharacterClip& clip) const = 0;
+  /// Offsets in T-pose axes and metres as morph deltas of one part.
+  virtual Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const = 0;
+
+ protected:
+  const PreparedCharacter& source_;
+  const Deformer& screen_;
+};
+
+class TheirRig final : public Animator {
+ public:
+  using Animator::Animator;
+  Character still() override;
+  Sampled sample(const CharacterClip& clip) const override;
+  Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const override {
+    const std::vector<Mat3> maps = to_t_pose_maps(source_, part, first, source_.bind.nodes);
+    Points out(part.vertices.rows(), 3);
+    for (Eigen::Index v = 0; v < out.rows(); ++v) {
+      const Vec3 d = shape.row(source_.surface.map[static_cast<size_t>(first + v)]).transpose();
+      const Mat3& M = maps[static_cast<size_t>(v)];
+      out.row(v) =
+          (std::abs(M.determinant()) > 1e-30f ? Vec3(M.inverse() * d) : Vec3(Vec3::Zero())).transpose();
+    }
+    return out;
+  }
+
+ private:
+  std::vector<Mat4> bind_;   // in the world: metres
+  std::vector<int> driver_;  // of the nodes of the file that is written
+  std::vector<int> parent_;
+};
+
+/// One node above all: the file's world brought to metres, y up, facing +z.
+void add_root(Character& character, const Similarity& to_world) {
+  CharacterNode root;
+  root.name = "Understudy";
+  root.local.scale.setConstant(to_world.scale);
+  root.local.rotation = Eigen::Quaternionf(to_world.R).normalized();
+  root.local.translation = to_world.t;
+  for (auto& node : character.nodes) ++node.parent;  // -1 becomes the root, number 0
+  character.nodes.insert(character.nodes.begin(), root);
+  for (auto& part : character.parts) ++part.node;
+  for (auto& skin : character.skins)
+    for (int& joint : skin.joints) ++joint;
+  for (auto& animation : character.animations)
+    for (auto& track : animation.tracks) ++track.node;
+}
+
+/// A skinned mesh goes where its bones are, whatever its node says: at the top, plain, no program is misled.
+void lift_skinned_nodes(Character& character) {
+  std::vector<bool> has_children(character.nodes.size(), false);
+  for (const auto& node : character.nodes)
+    if (node.parent >= 0) has_children[static_cast<size_t>(node.parent)] = true;
+  for (const auto& part : character.parts) {
+    if (part.skin < 0 || has_children[static_cast<size_t>(part.node)]) continue;
+    CharacterNode& node = character.nodes[static_cast<size_t>(part.node)];
+    node.parent = -1;
+    node.local = Transform();
+  }
+}
+
+Character TheirRig::still() {
+  US_CHECK(source_.rigged, source_.character.name, ": has no skeleton that could be driven");
+  Character out = source_.character;
+  const Mat4 world = matrix_of(source_.to_world);
+  bind_.clear();
+  for (const Mat4& node : source_.bind.nodes) bind_.push_back(world * node);
+  driver_ = source_.driver;
+  // The bind pose becomes the pose that the file is opened in.
+  for (size_t n = 0; n < out.nodes.size(); ++n) {
+    const int p = out.nodes[n].parent;
+    const Mat4& above = p < 0 ? Mat4(Mat4::Identity()) : source_.bind.nodes[static_cast<size_t>(p)];
+    const Mat4 local = above.inverse() * source_.bind.nodes[n];
+    if (!local.isApprox(out.nodes[n].local.matrix(), 1e-6f)) out.nodes[n].local = Transform::from(local);
+  }
+  if (!world.isApprox(Mat4::Identity(), 1e-6f)) {
+    add_root(out, source_.to_world);
+    bind_.insert(bind_.begin(), world);
+    driver_.insert(driver_.begin(), -1);
+  } else {
+    bind_ = source_.bind.nodes;
+  }
+  lift_skinned_nodes(out);
+  parent_.clear();
+  for (const auto& node : out.nodes) parent_.push_back(node.parent);
+  // Later frames hang on what the file really says, not on matrices that it can only come near to.
+  bind_ = out.world();
+  return out;
+}
+
+Sampled TheirRig::sample(const CharacterClip& clip) const {
+  Sampled out;
+  for (size_t n = 0; n < driver_.size(); ++n) {
+    if (driver_[n] < 0) continue;
+    out.nodes.push_back(static_cast<int>(n));
+    const Mat3 above = parent_[n] < 0 ? Mat3(Mat3::Identity())
+                                      : Mat3(bind_[static_cast<size_t>(parent_[n])].topLeftCorner<3, 3>());
+    out.metres.push_back(std::cbrt(std::abs(above.determinant())));
+  }
+  std::vector<Mat4> world(bind_.size());
+  for (size_t i = 0; i < clip.poses.size(); ++i) {
+    const PosedSkeleton posed = forward_kinematics(source_.pose.rest, clip.poses[i]);
+    std::vector<Transform> frame;
+    for (size_t n = 0; n < bind_.size(); ++n) {
+      const int p = parent_[n], j = driver_[n];
+      const Mat4 above = p < 0 ? Mat4(Mat4::Identity()) : world[static_cast<size_t>(p)];
+      const Mat4 above_bind = p < 0 ? Mat4(Mat4::Identity()) : bind_[static_cast<size_t>(p)];
+      if (j < 0) {
+        world[n] = above * above_bind.inverse() * bind_[n];
+        continue;
+      }
+      const Mat3 R = posed.global[static_cast<size_t>(j)] * source_.pose.to_rest[static_cast<size_t>(j)];
+      const Vec3 t = posed.joints.row(j).transpose() - R * source_.pose.bind.row(j).transpose();
+      world[n] = rigid(R, t) * bind_[n];
+      frame.push_back(Transform::from(above.inverse() * world[n]));
+    }
+    out.local.push_back(std::move(frame));
+    out.times.push_back(static_cast<float>(static_cast<double>(i) / clip.fps));
+  }
+  return out;
+}
+
+class OurRig final : public Animator {
+ public:
+  OurRig(const PreparedCharacter& source, const Deformer& screen, int influences)
+      : Animator(source, screen), influences_(influences) {}
+  Character still() override;
+  Sampled sample(const CharacterClip& clip) const override;
+  Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const override {
+    Points out(part.vertices.rows(), 3);
+    for (Eigen::Index v = 0; v < out.rows(); ++v)
+      out.row(v) = shape.row(source_.surface.map[static_cast<size_t>(first + v)]);
+    return out;
+  }
+
+ private:
+  void to_t_pose(CharacterPart& part, Eigen::Index first) const;
+  void add_skin(CharacterPart& part, Eigen::Index first) const;
+  int influences_;
+};
+
+void OurRig::to_t_pose(CharacterPart& part, Eigen::Index first) const {
+  const std::vector<Mat3> maps = to_t_pose_maps(source_, part, first, source_.bind.nodes);
+  for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
+    const Mat3& M = maps[static_cast<size_t>(v)];
+    part.vertices.row(v) =
+        source_.target.mesh.vertices.row(source_.surface.map[static_cast<size_t>(first + v)]);
+    if (part.normals.rows() > 0) {
+      const Mat3 N = std::abs(M.determinant()) > 1e-30f ? Mat3(M.inverse().transpose()) : M;
+      part.normals.row(v) = (N * part.normals.row(v).transpose()).normalized().transpose();
+    }
+    if (part.tangents.rows() > 0)
+      part.tangents.row(v).head<3>() =
+          (M * part.tangents.row(v).head<3>().transpose()).normalized().transpose();
+    for (auto& shape : part.shapes) shape.row(v) = (M * shape.row(v).transpose()).transpose();
+  }
+  if (!maps.empty() && maps[0].determinant() < 0)  // seen in a mirror, faces turn over
+    part.faces.col(1).swap(part.faces.col(2));
+}
+
+void OurRig::add_skin(CharacterPart& part, Eigen::Index first) const {
+  const RowMatrix& weights = screen_.weights();
+  part.joints.setZero(part.vertices.rows(), influences_);
+  part.weights.setZero(part.vertices.rows(), influences_);
+  for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
+    const auto row = weights.row(source_.surface.map[static_cast<size_t>(first + v)]);
+    std::array<int, kJointCount> order;
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return row[a] > row[b]; });
+    for (int k = 0; k < influences_; ++k) {
+      const float w = std::max(0.0f, row[order[static_cast<size_t>(k)]]);
+      if (w < 1e-5f && k > 0) break;
+      part.joints(v, k) = order[static_cast<size_t>(k)];
+      part.weights(v, k) = w;
+    }
+    part.weights.row(v) /= part.weights.row(v).sum();
+  }
+  part.skin = 0;
+}
+
+Character OurRig::still() {
+  const Character& from = source_.character;
+  Character out;
+  out.name = from.name;
+  out.images = from.images;
+  out.materials = from.materials;
+  out.textures = from.textures;
+  out.samplers = from.samplers;
+  out.extensions = from.extensions;
+  CharacterSkin skin;
+  skin.name = "22 joints";
+  const Joints& rest = source_.target.joints;
+  const Pose back = source_.pose.back();
+  for (int j = 0; j < kJointCount; ++j) {
+    const int p = kParents[static_cast<size_t>(j)];
+    CharacterNode node;
+    node.name = kJointNames[static_cast<size_t>(j)];
+    node.parent = p;
+    node.local.translation =
+        p < 0 ? Vec3(rest.row(Pelvis).transpose()) : Vec3((rest.row(j) - rest.row(p)).transpose());
+    node.local.rotation = Eigen::Quaternionf(back.local[static_cast<size_t>(j)]).normalized();
+    out.nodes.push_back(node);
+    skin.joints.push_back(j);
+    skin.inverse_bind.push_back(rigid(Mat3::Identity(), -rest.row(j).transpose()));
+  }
+  out.skins = {skin};
+  std::map<int, int> node_of;
+  Eigen::Index first = 0;
+  for (CharacterPart part : from.parts) {
+    const auto [entry, is_new] = node_of.try_emplace(part.node, static_cast<int>(out.nodes.size()));
+    if (is_new) {
+      CharacterNode node;
+      node.name = from.nodes[static_cast<size_t>(part.node)].name;
+      node.shape_weights = from.nodes[static_cast<size_t>(part.node)].shape_weights;
+      out.nodes.push_back(node);
+    }
+    to_t_pose(part, first);
+    add_skin(part, first);
+    part.node = entry->second;
+    first += part.vertices.rows();
+    out.parts.push_back(std::move(part));
+  }
+  return out;
+}
+
+Sampled OurRig::sample(const CharacterClip& clip) const {
+  Sampled out;
+  const Joints& rest = source_.target.joints;
+  for (int j = 0; j < kJointCount; ++j) out.nodes.push_back(j);
+  out.metres.assign(kJointCount, 1.0f);
+  for (size_t i = 0; i < clip.poses.size(); ++i) {
+    std::vector<Transform> frame(kJointCount);
+    for (int j = 0; j < kJointCount; ++j) {
+      const int p = kParents[static_cast<size_t>(j)];
+      Transform& local = frame[static_cast<size_t>(j)];
+      local.translation = p < 0 ? clip.poses[i].root : Vec3((rest.row(j) - rest.row(p)).transpose());
+      local.rotation = Eigen::Quaternionf(clip.poses[i].local[static_cast<size_t>(j)]).normalized();
+    }
+    out.local.push_back(std::move(frame));
+    out.times.push_back(static_cast<float>(static_cast<double>(i) / clip.fps));
+  }
+  return out;
+}
+
+std::vector<CharacterClip> wanted_clips(const PreparedCharacter& character, std::vector<CharacterClip> clips,
+                                        const CharacterExportOptions& options) {
+  US_CHECK(!clips.empty(), character.character.name, ": there is no motion to export");
+  for (auto& clip : clips) {
+    US_CHECK(!clip.poses.empty() && clip.fps > 0, "the clip '", clip.name, "' is empty");
+    for (auto& pose : clip.poses) {
+      bool finite = pose.root.allFinite();
+      for (const Mat3& R : pose.local) finite = finite && R.allFinite();
+      US_CHECK(finite, "a pose of the clip '", clip.name, "' is not finite");
+      if (options.in_place)
+        pose.root =
+            Vec3(character.target.joints(Pelvis, 0), pose.root.y(), character.target.joints(Pelvis, 2));
+    }
+  }
+  if (!options.t_pose_clip) return clips;
+  CharacterClip rest{"T-pose", clips[0].fps, {Pose()}};
+  rest.poses[0].root = character.target.joints.row(Pelvis).transpose();
+  clips.insert(clips.begin(), rest);
+  return clips;
+}
+
+std::unique_ptr<Animator> animator_for(const PreparedCharacter& character, const Deformer& screen,
+                                       const CharacterExportOptions& options) {
+  US_CHECK(options.influences == 4 || options.influences == 8, "a vertex can have 4 or 8 influences, not ",
+           options.influences);
+  if (options.their_rig) return std::make_unique<TheirRig>(character, screen);
+  return std::make_unique<OurRig>(character, screen, options.influences);
+}
+
+CorrectiveShapes shapes_for(const Deformer& screen, const std::vector<CharacterClip>& clips, int count) {
+  if (count <= 0) return {};
+  std::vector<Pose> poses;
+  for (const auto& clip : clips) poses.insert(poses.end(), clip.poses.begin(), clip.poses.end());
+  return corrective_shapes(screen, poses, count);
+}
+
+void add_shapes(const CorrectiveShapes& shapes, const Animator& animator, const PreparedCharacter& source,
+                Character& out) {
+  Eigen::Index first = 0;
+  std::vector<bool> seen(out.nodes.size(), false);
+  for (size_t p = 0; p < out.parts.size(); ++p) {
+    CharacterPart& part = out.parts[p];
+    std::vector<float>& weights = out.nodes[static_cast<size_t>(part.node)].shape_weights;
+    if (!seen[static_cast<size_t>(part.node)]) weights.resize(weights.size() + shapes.shapes.size(), 0.0f);
+    seen[static_cast<size_t>(part.node)] = true;
+    part.shapes.resize(weights.size() - shapes.shapes.size(), Points::Zero(part.vertices.rows(), 3));
+    for (const Points& shape : shapes.shapes)
+      part.shapes.push_back(animator.shape_of_part(shape, source.character.parts[p], first));
+    first += part.vertices.rows();
+  }
+}
+
+/// The longest way from a node to a vertex that it could move, metres: the height of the character at most.
+float lever(const PreparedCharacter& character) {
+  const Points& v = character.target.mesh.vertices;
+  return 0.6f * (v.col(1).maxCoeff() - v.col(1).minCoeff());
+}
+
+void reduce_animation(const CharacterAnimation& full, float metres, float lever_m,
+                      const std::vector<float>& metres_of, CharacterAnimation& out) {
+  out.tracks.clear();
+  for (const auto& track : full.tracks) {
+    const float tolerance = track.path == TrackPath::Rotation ? metres / lever_m
+                            : track.path == TrackPath::Translation
+                                ? metres / metres_of[static_cast<size_t>(track.node)]
+                                : 0.002f;
+    out.tracks.push_back(reduced(track, tolerance));
+  }
+}
+
+/// Fewer keys until the vertices say stop: errors of the bones above add up, so the first guess is tried out.
+void reduce_keys(const PreparedCharacter& source, float limit_mm, Character& out) {
+  std::vector<float> metres_of;
+  for (const Mat4& M : out.world())
+    metres_of.push_back(std::cbrt(std::abs(M.topLeftCorner<3, 3>().determinant())));
+  for (size_t n = out.nodes.size(); n-- > 0;)
+    metres_of[n] = out.nodes[n].parent < 0 ? 1.0f : metres_of[static_cast<size_t>(out.nodes[n].parent)];
+  const Character full = out;
+  float tolerance = 0.5f * limit_mm / 1000;
+  for (int round = 0; round < 8; ++round) {
+    for (size_t a = 0; a < out.animations.size(); ++a)
+      reduce_animation(full.animations[a], tolerance, lever(source), metres_of, out.animations[a]);
+    float worst = 0;
+    for (size_t a = 0; a < out.animations.size(); ++a) {
+      const auto& times = full.animations[a].tracks[0].times;
+      const size_t step = std::max<size_t>(1, times.size() / kCompared);
+      for (size_t i = 0; i < times.size(); i += step) {
+        const Points difference = vertices_at(out, static_cast<int>(a), times[i]) -
+                                  vertices_at(full, static_cast<int>(a), times[i]);
+        worst = std::max(worst, 1000 * difference.rowwise().norm().maxCoeff());
+      }
+    }
+    if (worst <= limit_mm) return;
+    tolerance *= std::clamp(0.8f * limit_mm / worst, 0.1f, 0.7f);
+  }
+  out = full;
+}
+
+int64_t key_count(const Character& character) {
+  int64_t count = 0;
+  for (const auto& animation : character.animations)
+    for (const auto& track : animation.tracks) count += static_cast<int64_t>(track.times.size());
+  return count;
+}
+
+ExportCost measure(const Character& written, const PreparedCharacter& source, const Deformer& screen,
+                   const std::vector<CharacterClip>& clips) {
+  ExportCost cost;
+  double sum = 0, count = 0;
+  for (size_t a = 0; a < clips.size(); ++a) {
+    const auto& poses = clips[a].poses;
+    const size_t step = (poses.size() + kCompared - 1) / kCompared;
+    for (size_t i = 0; i < poses.size(); i += step, ++cost.frames) {
+      const Points shown = screen.deform(poses[i]);
+      const Points seen = vertices_at(written, static_cast<int>(a),
+                                      static_cast<float>(static_cast<double>(i) / clips[a].fps));
+      for (Eigen::Index v = 0; v < seen.rows(); ++v) {
+        const double mm =
+            1000.0 *
+            static_cast<double>((seen.row(v) - shown.row(source.surface.map[static_cast<size_t>(v)])).norm());
+        sum += mm;
+        ++count;
+        cost.largest_mm = std::max(cost.largest_mm, mm);
+      }
+    }
+  }
+  cost.mean_mm = sum / std::max(1.0, count);
+  cost.keys = key_count(written);
+  return cost;
+}
+
+}  // namespace
+
+Character animated_character(const PreparedCharacter& character, const Deformer& screen,
+                             const std::vector<CharacterClip>& asked, const CharacterExportOptions& options) {
+  const std::vector<CharacterClip> clips = wanted_clips(character, asked, options);
+  const auto animator = animator_for(character, screen, options);
+  Character out = animator->still();
+  const std::vector<CharacterAnimation> own = std::move(out.animations);
+  out.animations.clear();
+  const CorrectiveShapes shapes = shapes_for(screen, clips, options.shapes);
+  if (!shapes.shapes.empty()) add_shapes(shapes, *animator, character, out);
+  size_t at = 0;
+  for (const auto& clip : clips) {
+    Sampled sampled = animator->sample(clip);
+    if (!shapes.shapes.empty())
+      for (size_t i = 0; i < clip.poses.size(); ++i) sampled.shapes.push_back(shapes.weights[at++]);
+    out.animations.push_back(animation_of(fresh_name(clip.name, out.animations), sampled, out));
+  }
+  if (options.reduce_mm > 0) reduce_keys(character, options.reduce_mm, out);
+  if (options.keep_clips && options.their_rig)
+    for (CharacterAnimation animation : own) {
+      animation.name = fresh_name(animation.name, out.animations);
+      if (shapes.shapes.empty()) out.animations.push_back(std::move(animation));
+    }
+  return out;
+}
+
+ExportCost export_character(const std::string& path, const PreparedCharacter& character,
+                            const Deformer& screen, const std::vector<CharacterClip>& clips,
+                            const CharacterExportOptions& options) {
+  write_gltf_character(path, animated_character(character, screen, clips, options));
+  const Character written = parse_gltf_character(read_file(path), path);
+  const auto wanted = wanted_clips(character, clips, options);
+  ExportCost cost = measure(written, character, screen, wanted);
+  for (const auto& clip : wanted) cost.keys_before += static_cast<int64_t>(clip.poses.size());
+  cost.bytes = static_cast<int64_t>(std::filesystem::file_size(path));
+  return cost;
+}
+
+}  // namespace understudy

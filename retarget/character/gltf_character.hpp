@@ -1,0 +1,21 @@
+// Characters from and to glTF 2.0: text (.gltf) and binary (.glb).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "retarget/character/character.hpp"
+
+namespace understudy {
+
+/// Everything of the default scene that Character holds. Pictures and buffers outside must lie in the file's
+/// folder. A picture that is missing becomes a white one, with a warning. Throws Error naming `path`: cut
+/// off, accessors past their buffers, nodes in a circle or more than 1000 deep, data that are not base64,
+/// pictures that are none, ...
+Character parse_gltf_character(std::string_view bytes, const std::string& path);
+
+/// Writes it beside the path, then renames; the suffix .gltf makes text with everything inside, else binary.
+/// Throws Error naming the path, also where the file would pass 4 GB.
+void write_gltf_character(const std::string& path, const Character& character);
+
+}  // namespace understudy

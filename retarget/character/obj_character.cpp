@@ -1,0 +1,262 @@
+#include "retarget/character/obj_character.hpp"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/character/picture.hpp"
+#include "retarget/formats/bytes.hpp"
+
+namespace understudy {
+namespace {
+
+using nlohmann::json;
+
+/// What a path in the file stands for; none outside of its folder. Backslashes are how some programs write
+/// it.
+std::optional<std::string> beside(const std::string& path, std::string name) {
+  for (char& c : name)
+    if (c == '\\') c = '/';
+  const std::filesystem::path inside = std::filesystem::path(name).lexically_normal();
+  if (!inside.is_relative() || inside.empty() || *inside.begin() == ".." || name.find('\0') != name.npos)
+    return {};
+  return (std::filesystem::path(path).parent_path() / inside).string();
+}
+
+struct ObjMaterial {
+  Vec3 color = Vec3(0.8f, 0.8f, 0.8f);
+  float alpha = 1;
+  std::string picture;
+};
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view bytes, const std::string& path) : text_(bytes, path), path_(path) {}
+  Character read();
+
+ private:
+  using Corner = std::array<int64_t, 3>;  // position, texture, normal; -1: none
+  struct Group {
+    std::vector<Corner> corners;  // three a triangle
+  };
+
+  void line(std::string_view text);
+  void numbers(std::vector<float>& to, size_t least, size_t keep);
+  void face();
+  int64_t index(std::string_view text, size_t count) const;
+  void read_materials(const std::string& name);
+  void finish_group(const std::string& material, const Group& group, Character& out);
+  int material(const std::string& name, Character& out);
+  int texture(const std::string& name, Character& out);
+
+  TextCursor text_;
+  const std::string& path_;
+  int64_t number_ = 0;
+  std::vector<std::string_view> words_;
+  std::vector<float> positions_, colors_, uvs_, normals_;
+  std::map<std::string, Group> groups_;
+  std::map<std::string, ObjMaterial> materials_;
+  std::string current_;
+};
+
+void ObjReader::numbers(std::vector<float>& to, size_t least, size_t keep) {
+  US_CHECK(words_.size() > least, path_, ": line ", number_, ": has fewer than ", least, " numbers");
+  for (size_t i = 1; i <= keep; ++i) {
+    double value = 0;
+    US_CHECK(i >= words_.size() || parse_number(words_[i], value), path_, ": line ", number_, ": '",
+             excerpt(words_[i]), "' is no number");
+    to.push_back(narrow(value));
+  }
+}
+
+int64_t ObjReader::index(std::string_view text, size_t count) const {
+  if (text.empty()) return -1;
+  int64_t value = 0;
+  US_CHECK(parse_integer(text, value), path_, ": line ", number_, ": '", excerpt(text),
+           "' is no corner of a face");
+  const auto have = static_cast<int64_t>(count);
+  const int64_t at = value > 0 ? value - 1 : have + value;
+  US_CHECK(value != 0 && at >= 0 && at < have, path_, ": line ", number_, ": a face names number ", value,
+           " of ", have);
+  return at;
+}
+
+void ObjReader::face() {
+  std::vector<Corner> corners;
+  for (size_t i = 1; i < words_.size(); ++i) {
+    const std::string_view word = words_[i];
+    const size_t first = word.find('/'), second = first == word.npos ? first : word.find('/', first + 1);
+    Corner corner = {index(word.substr(0, first), positions_.size() / 3), -1, -1};
+    US_CHECK(corner[0] >= 0, path_, ": line ", number_, ": a corner of a face names no vertex");
+    if (first != word.npos)
+      corner[1] = index(word.substr(first + 1, second == word.npos ? word.npos : second - first - 1),
+                        uvs_.size() / 2);
+    if (second != word.npos) corner[2] = index(word.substr(second + 1), normals_.size() / 3);
+    corners.push_back(corner);
+  }
+  std::vector<Corner>& to = groups_[current_].corners;
+  for (size_t i = 2; i < corners.size(); ++i) to.insert(to.end(), {corners[0], corners[i - 1], corners[i]});
+}
+
+void ObjReader::line(std::string_view text) {
+  const size_t hash = text.find('#');
+  split_words(text.substr(0, hash), "", words_);
+  if (words_.empty()) return;
+  const std::string_view what = words_[0];
+  const auto rest = [&] {  // names may hold blanks
+    const std::string_view end = text.substr(static_cast<size_t>(words_[1].data() - text.data()));
+    return std::string(end.substr(0, end.find_last_not_of(" \t\r\n") + 1));
+  };
+  if (what == "v") {
+    numbers(positions_, 3, 3);
+    if (words_.size() >= 7) {
+      words_.erase(words_.begin() + 1, words_.end() - 3);
+      numbers(colors_, 3, 3);
+    }
+  } else if (what == "vt") {
+    numbers(uvs_, 1, 2);
+  } else if (what == "vn") {
+    numbers(normals_, 3, 3);
+  } else if (what == "f") {
+    face();
+  } else if (what == "usemtl" && words_.size() > 1) {
+    current_ = rest();
+  } else if (what == "mtllib" && words_.size() > 1) {
+    read_materials(rest());
+  }
+}
+
+void ObjReader::read_materials(const std::string& name) {
+  const auto file = beside(path_, name);
+  US_CHECK(file, path_, ": its materials are outside of its folder (", excerpt(name), ")");
+  if (!std::filesystem::exists(*file)) {
+    log::warn(path_ + ": its materials " + excerpt(name) + " are missing");
+    return;
+  }
+  const std::string bytes = read_file(*file);
+  TextCursor text(bytes, *file);
+  std::vector<std::string_view> words;
+  ObjMaterial* current = nullptr;
+  while (!text.at_end()) {
+    const std::string_view whole_line = text.line();
+    split_words(whole_line, "", words);
+    if (words.size() < 2) continue;
+    const std::string_view end = whole_line.substr(static_cast<size_t>(words[1].data() - whole_line.data()));
+    const std::string rest(end.substr(0, end.find_last_not_of(" \t\r\n") + 1));
+    double value = 0;
+    if (words[0] == "newmtl") current = &materials_[rest];
+    if (current == nullptr) continue;
+    if (words[0] == "Kd")
+      for (size_t i = 1; i < std::min<size_t>(4, words.size()); ++i)
+        if (parse_number(words[i], value))
+          current->color[static_cast<Eigen::Index>(i - 1)] = std::clamp(narrow(value), 0.0f, 1.0f);
+    if (words[0] == "d" && parse_number(words[1], value))
+      current->alpha = std::clamp(narrow(value), 0.0f, 1.0f);
+    if (words[0] == "map_Kd") current->picture = words[1][0] == '-' ? std::string(words.back()) : rest;
+  }
+}
+
+int ObjReader::texture(const std::string& name, Character& out) {
+  const auto file = beside(path_, name);
+  US_CHECK(file, path_, ": a picture is outside of its folder (", excerpt(name), ")");
+  CharacterImage image;
+  image.name = std::filesystem::path(*file).stem().string();
+  image.bytes = picture_or_white([&] { return read_file(*file); }, path_ + ": the picture " + excerpt(name));
+  image.mime = picture_type(image.bytes);
+  US_CHECK(!image.mime.empty(), *file, ": is no picture (PNG, JPEG, WebP or KTX2)");
+  out.images.push_back(std::move(image));
+  out.textures.push_back(json({{"source", out.images.size() - 1}}).dump());
+  return static_cast<int>(out.textures.size()) - 1;
+}
+
+int ObjReader::material(const std::string& name, Character& out) {
+  const ObjMaterial& from = materials_[name];
+  json object = {{"name", name.empty() ? "default" : name}, {"doubleSided", true}};
+  json pbr = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
+  if (from.picture.empty())
+    pbr["baseColorFactor"] = {from.color.x(), from.color.y(), from.color.z(), from.alpha};
+  else
+    pbr["baseColorTexture"] = {{"index", texture(from.picture, out)}};
+  if (from.alpha < 1) object["alphaMode"] = "BLEND";
+  object["pbrMetallicRoughness"] = pbr;
+  out.materials.push_back(object.dump(-1, ' ', false, json::error_handler_t::replace));
+  return static_cast<int>(out.materials.size()) - 1;
+}
+
+void ObjReader::finish_group(const std::string& name, const Group& group, Character& out) {
+  CharacterPart part;
+  part.name = name.empty() ? out.name : name;
+  part.node = 0;
+  part.material = material(name, out);
+  std::map<Corner, int> known;
+  std::vector<Corner> corners;
+  std::vector<int> faces;
+  bool has_uvs = true, has_normals = true;
+  for (const Corner& corner : group.corners) {
+    const auto [entry, is_new] = known.try_emplace(corner, static_cast<int>(corners.size()));
+    if (is_new) corners.push_back(corner);
+    faces.push_back(entry->second);
+    has_uvs = has_uvs && corner[1] >= 0;
+    has_normals = has_normals && corner[2] >= 0;
+  }
+  const auto count = static_cast<Eigen::Index>(corners.size());
+  part.vertices.resize(count, 3);
+  if (has_normals) part.normals.resize(count, 3);
+  if (has_uvs) part.uvs.emplace_back(count, 2);
+  const bool colored = colors_.size() == positions_.size();
+  if (colored) part.colors = RowMatrix::Ones(count, 4);
+  for (Eigen::Index v = 0; v < count; ++v) {
+    const Corner& c = corners[static_cast<size_t>(v)];
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      part.vertices(v, i) = positions_[static_cast<size_t>(3 * c[0] + i)];
+      if (has_normals) part.normals(v, i) = normals_[static_cast<size_t>(3 * c[2] + i)];
+      if (colored) part.colors(v, i) = colors_[static_cast<size_t>(3 * c[0] + i)];
+    }
+    if (has_uvs)  // OBJ counts v from below, glTF from above
+      part.uvs[0].row(v) << uvs_[static_cast<size_t>(2 * c[1])], 1 - uvs_[static_cast<size_t>(2 * c[1] + 1)];
+  }
+  part.faces = Eigen::Map<const Faces>(faces.data(), static_cast<Eigen::Index>(faces.size() / 3), 3);
+  out.parts.push_back(std::move(part));
+}
+
+Character ObjReader::read() {
+  std::string joined;  // lines that end in a backslash go on in the next
+  while (!text_.at_end()) {
+    ++number_;
+    joined += text_.line();
+    if (!joined.empty() && joined.back() == '\\') {
+      joined.back() = ' ';
+      continue;
+    }
+    line(joined);
+    joined.clear();
+  }
+  Character out;
+  out.name = std::filesystem::path(path_).stem().string();
+  CharacterNode node;
+  node.name = out.name;
+  out.nodes.push_back(node);
+  if (groups_.empty() && !positions_.empty()) {  // a cloud
+    Group cloud;
+    for (size_t v = 0; v < positions_.size() / 3; ++v)
+      cloud.corners.push_back({static_cast<int64_t>(v), -1, -1});
+    finish_group("", cloud, out);
+    out.parts.back().faces.resize(0, 3);
+  }
+  for (const auto& [name, group] : groups_) finish_group(name, group, out);
+  check_character(out, path_);
+  return out;
+}
+
+}  // namespace
+
+Character parse_obj_character(std::string_view bytes, const std::string& path) {
+  return ObjReader(bytes, path).read();
+}
+
+}  // namespace understudy

@@ -1,0 +1,317 @@
+#include "retarget/character/prepared_character.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/formats/import.hpp"
+#include "retarget/pipeline/human_rest.hpp"
+#include "retarget/skeleton/skinning.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr float kUsualHeight = 1.7f, kSmallestTurn = 8 * kPi / 180;
+
+std::string number(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", static_cast<double>(value));
+  return text;
+}
+
+/// Metres of one unit of the file. People are 0.5 to 2.6 m tall; a height that no unit explains is made
+/// usual.
+float metres_per_unit(float height, const std::string& units, std::string& note) {
+  static const std::map<std::string, float> kUnits = {
+      {"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"in", 0.0254f}};
+  if (!units.empty() && units != "auto") {
+    const auto found = kUnits.find(units);
+    US_CHECK(found != kUnits.end(), "units are auto, m, dm, cm, mm or in, not '", units, "'");
+    return found->second;
+  }
+  if (height >= 0.5f && height <= 2.6f) return 1;
+  if (height >= 84 && height <= 260) return 0.01f;
+  if (height >= 840 && height <= 2600) return 0.001f;
+  note = "its height of " + number(height) + " fits no unit: it is made " + number(kUsualHeight) + " m tall";
+  return kUsualHeight / height;
+}
+
+Mat3 axes_of(const std::string& up) {
+  static const std::map<std::string, Vec3> kUps = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},
+                                                   {"z", {0, 0, 1}},   {"-x", {-1, 0, 0}},
+                                                   {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
+  const auto found = kUps.find(up);
+  US_CHECK(found != kUps.end(), "up is auto, x, y, z, -x, -y or -z, not '", up, "'");
+  return rotation_between(found->second, Vec3::UnitY());
+}
+
+/// The axis that a rig's spine points along, where that is not y.
+std::string up_of_rig(const BoneMap& map, const BindPose& bind) {
+  const auto place = [&](int joint) -> Vec3 {
+    return bind.nodes[static_cast<size_t>(map.node[static_cast<size_t>(joint)])].topRightCorner<3, 1>();
+  };
+  const Vec3 up =
+      0.5f * (place(LeftShoulder) + place(RightShoulder)) - 0.5f * (place(LeftKnee) + place(RightKnee));
+  Eigen::Index axis = 1;
+  up.cwiseAbs().maxCoeff(&axis);
+  if (std::abs(up[axis]) < 0.8f * up.norm()) axis = 1;
+  return std::string(up[axis] < 0 ? "-" : "") + "xyz"[axis];
+}
+
+std::string guessed_up(const Mesh& mesh) {
+  const ImportDecision decision = decide_import(mesh, {});
+  return decision.up.empty() ? "y" : decision.up;
+}
+
+/// The joint that moves each node.
+std::vector<int> drivers(const PreparedCharacter& c) {
+  const auto& nodes = c.character.nodes;
+  std::vector<int> driver(nodes.size(), -1);
+  std::vector<bool> carries(nodes.size(), false);
+  for (size_t j = 0; j < kJointCount; ++j)
+    if (c.map.node[j] >= 0) driver[static_cast<size_t>(c.map.node[j])] = static_cast<int>(j);
+  for (const auto& part : c.character.parts) {
+    if (part.skin < 0) carries[static_cast<size_t>(part.node)] = true;
+    for (Eigen::Index i = 0; i < part.joints.size(); ++i)
+      if (part.weights.data()[i] > 0)
+        carries[static_cast<size_t>(c.character.skins[static_cast<size_t>(part.skin)]
+                                        .joints[static_cast<size_t>(part.joints.data()[i])])] = true;
+  }
+  std::vector<bool> moves(nodes.size(), false);
+  for (size_t n = 0; n < nodes.size(); ++n) {
+    const int p = nodes[n].parent;
+    // What bears on the body but hangs on no mapped bone goes with the pelvis.
+    if (driver[n] < 0 && carries[n] && (p < 0 || !moves[static_cast<size_t>(p)])) driver[n] = Pelvis;
+    moves[n] = driver[n] >= 0 || (p >= 0 && moves[static_cast<size_t>(p)]);
+  }
+  return driver;
+}
+
+/// The rig's weights gathered at the joints that move its bones.
+RowMatrix gathered_weights(const PreparedCharacter& c) {
+  std::vector<int> joint_of(c.character.nodes.size(), Pelvis);
+  for (size_t n = 0; n < joint_of.size(); ++n) {
+    const int p = c.character.nodes[n].parent;
+    joint_of[n] = c.driver[n] >= 0 ? c.driver[n]
+                  : p >= 0         ? joint_of[static_cast<size_t>(p)]
+                                   : static_cast<int>(Pelvis);
+  }
+  RowMatrix weights = RowMatrix::Zero(c.surface.mesh.vertices.rows(), kJointCount);
+  size_t at = 0;
+  for (const auto& part : c.character.parts)
+    for (Eigen::Index v = 0; v < part.vertices.rows(); ++v, ++at) {
+      auto row = weights.row(c.surface.map[at]);
+      row.setZero();
+      if (part.skin < 0) row[joint_of[static_cast<size_t>(part.node)]] = 1;
+      for (Eigen::Index k = 0; k < part.joints.cols(); ++k)
+        row[joint_of[static_cast<size_t>(c.character.skins[static_cast<size_t>(part.skin)]
+                                             .joints[static_cast<size_t>(part.joints(v, k))])]] +=
+            part.weights(v, k);
+      row /= row.sum();
+    }
+  return weights;
+}
+
+/// Joints that the rig lacks lie between those it has, as in a mean human.
+Joints complete_joints(const BoneMap& map, const Joints& known) {
+  const Joints& human = human_rest();
+  Joints out = known;
+  const float scale = leg_length(known) > 1e-4f && map.has(LeftAnkle) && map.has(RightAnkle)
+                          ? leg_length(known)
+                          : (known.row(LeftShoulder) - known.row(LeftHip)).norm() /
+                                (human.row(LeftShoulder) - human.row(LeftHip)).norm();
+  for (int j = 1; j < kJointCount; ++j) {
+    if (map.has(j)) continue;
+    const int p = kParents[static_cast<size_t>(j)];
+    const auto step = [&](int a, int b) { return (human.row(b) - human.row(a)).norm(); };
+    int next = -1;  // the nearest mapped joint below
+    for (int d = j + 1; d < kJointCount && next < 0; ++d) {
+      if (!map.has(d)) continue;
+      for (int a = d; a >= 0; a = kParents[static_cast<size_t>(a)])
+        if (a == j) next = d;
+    }
+    if (next >= 0) {
+      const float t = step(p, j) / (step(p, j) + step(j, next));
+      out.row(j) = (1 - t) * out.row(p) + t * known.row(next);
+    } else if (const int pp = kParents[static_cast<size_t>(p)]; j == LeftWrist || j == RightWrist) {
+      out.row(j) = out.row(p) + (out.row(p) - out.row(pp)) * step(p, j) / step(pp, p);
+    } else {
+      out.row(j) = out.row(p) + scale * (human.row(j) - human.row(p));
+    }
+  }
+  return out;
+}
+
+Joints rig_joints(const PreparedCharacter& c) {
+  Points places = Points::Zero(kJointCount, 3);
+  for (int j = 0; j < kJointCount; ++j)
+    if (c.map.has(j))
+      places.row(j) = c.bind.nodes[static_cast<size_t>(c.map.node[static_cast<size_t>(j)])]
+                          .topRightCorner<3, 1>()
+                          .transpose();
+  const Points moved = c.to_world.apply(places);
+  Joints known = moved;
+  if (!c.map.has(Pelvis)) known.row(Pelvis) = 0.5f * (known.row(LeftHip) + known.row(RightHip));
+  return complete_joints(c.map, known);
+}
+
+/// Turns everything so far about y.
+void turn(PreparedCharacter& c, float yaw) {
+  const Mat3 R = rotation_about_y(yaw);
+  c.to_world.R = R * c.to_world.R;
+  c.to_world.t = R * c.to_world.t;
+  c.surface.mesh.vertices = (c.surface.mesh.vertices * R.transpose()).eval();
+  c.notes.push_back("turned by " + std::to_string(std::lround(yaw * 180 / kPi)) + " degrees to face forward");
+}
+
+/// Quarter turns where it is nearly one: characters are modelled along the axes.
+float tidy(float yaw) {
+  const float quarter = std::round(yaw / (kPi / 2)) * kPi / 2;
+  return std::abs(std::remainder(yaw - quarter, 2 * kPi)) < 2 * kSmallestTurn ? quarter : yaw;
+}
+
+void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
+  const Points& file = c.bind.vertices;
+  const MergedSurface as_bound = merged_surface(c.character, file);
+  std::string up = options.up;
+  if (up.empty() || up == "auto") up = c.rigged ? up_of_rig(c.map, c.bind) : guessed_up(as_bound.mesh);
+  c.to_world.R = axes_of(up);
+  const Points upright = file * c.to_world.R.transpose();
+  const float low = upright.col(1).minCoeff(), height = upright.col(1).maxCoeff() - low;
+  US_CHECK(height > 1e-9f && std::isfinite(height), c.character.name, ": has no height");
+  std::string note;
+  c.to_world.scale = metres_per_unit(height, options.units, note);
+  if (!note.empty()) c.notes.push_back(note);
+  c.to_world.t = Vec3(0, -low * c.to_world.scale, 0);
+  c.surface = merged_surface(c.character, c.to_world.apply(file));
+}
+
+void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
+  const float yaw = options.yaw_deg ? -*options.yaw_deg * kPi / 180 : tidy(heading_of_joints(rig_joints(c)));
+  if (std::abs(std::remainder(yaw, 2 * kPi)) > 1e-3f) turn(c, -yaw);
+  c.driver = drivers(c);
+  c.weights = gathered_weights(c);
+  c.pose = to_t_pose(rig_joints(c));
+  c.pose_weights = c.weights;
+  Mesh mesh = c.surface.mesh;
+  mesh.vertices = in_t_pose(mesh.vertices, c.weights, c.pose);
+  c.target = prepare_target(mesh, c.pose.rest);
+}
+
+void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
+                   const CharacterOptions& options) {
+  if (options.yaw_deg) {
+    turn(c, *options.yaw_deg * kPi / 180);
+  } else {
+    const float yaw = tidy(heading_of_joints(any_pose.extract(c.surface.mesh).joints));
+    if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
+  }
+  Mesh mesh = c.surface.mesh;
+  Target found = prepare_target(mesh, any_pose);
+  c.pose = to_t_pose(found.joints);
+  c.pose_weights = geometric_weights(mesh, found.joints);
+  if (c.pose.largest_deg > 0) {
+    mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
+    c.notes.push_back("its limbs are brought to the T-pose by up to " +
+                      std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
+  }
+  c.target = prepare_target(mesh, t_pose != nullptr ? *t_pose : any_pose);
+}
+
+}  // namespace
+
+PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
+                                    SkeletonExtractor* t_pose, const CharacterOptions& options) {
+  PreparedCharacter c;
+  c.character = std::move(character);
+  c.bind = bind_pose(c.character);
+  US_CHECK(c.bind.vertices.allFinite(), c.character.name, ": its bind pose has numbers that are not finite");
+  if (options.use_rig) {
+    c.map = map_bones(c.character, c.bind.nodes, options.choices);
+    c.rigged = c.map.usable();
+  }
+  if (options.use_rig && !c.rigged && !c.character.skins.empty())
+    c.notes.push_back("its bones could not be mapped (" + std::to_string(c.map.count()) +
+                      " of 22): its own rig is not used");
+  place_in_world(c, options);
+  if (c.rigged) {
+    find_in_rig(c, options);
+    SkeletonExtractor* const network = t_pose != nullptr ? t_pose : any_pose;
+    if (!options.own_joints && network != nullptr) c.target = prepare_target(c.target.mesh, *network);
+  } else {
+    US_CHECK(any_pose != nullptr, c.character.name,
+             ": has no rig that is known, and no network may look at it");
+    find_in_shape(c, *any_pose, t_pose, options);
+  }
+  return c;
+}
+
+FoldingTransfer::FoldingTransfer(std::unique_ptr<MotionTransfer> inner, const BoneMap& map)
+    : inner_(std::move(inner)) {
+  for (int j = 0; j < kJointCount; ++j) mapped_[static_cast<size_t>(j)] = map.has(j);
+}
+
+Rotations FoldingTransfer::push(const Extraction& source, float dt) {
+  const Rotations local = inner_->push(source, dt);
+  Rotations wanted, folded;
+  for (size_t j = 0; j < kJointCount; ++j) {
+    const int p = kParents[j];
+    wanted[j] = p < 0 ? local[j] : Mat3(wanted[static_cast<size_t>(p)] * local[j]);
+    folded[j] = mapped_[j] || p < 0 ? wanted[j] : folded[static_cast<size_t>(p)];
+  }
+  return local_rotations(folded);
+}
+
+RigDeformer::RigDeformer(const PreparedCharacter& character, std::shared_ptr<Deformer> inner)
+    : inner_(std::move(inner)),
+      bind_vertices_(character.surface.mesh.vertices),
+      pose_(character.pose),
+      rest_joints_(character.pose.rest),
+      weights_(character.weights) {
+  US_CHECK(weights_.rows() == bind_vertices_.rows(), "the character has no rig to deform with");
+}
+
+void RigDeformer::bind(const Points& rest, const Joints& rest_joints) {
+  US_CHECK(rest.rows() == bind_vertices_.rows(), "the target has ", rest.rows(), " vertices, the character ",
+           bind_vertices_.rows());
+  rest_joints_ = rest_joints;
+  if (!inner_) return;
+  inner_->bind(rest, rest_joints);
+  inner_ = inner_->with_weights(weights_);
+}
+
+std::shared_ptr<Deformer> RigDeformer::with_weights(RowMatrix weights) const {
+  US_CHECK(weights.rows() == weights_.rows() && weights.cols() == kJointCount && weights.allFinite() &&
+               weights.minCoeff() >= 0 && weights.rowwise().sum().minCoeff() > 1e-6f,
+           "skin weights must fit the target and not be negative, and every vertex wants some");
+  auto other = std::make_shared<RigDeformer>(*this);
+  other->weights_ = weights.array().colwise() / weights.rowwise().sum().array();
+  if (inner_) other->inner_ = inner_->with_weights(other->weights_);
+  return other;
+}
+
+Points RigDeformer::deform(const Pose& pose) const {
+  const PosedSkeleton posed = forward_kinematics(rest_joints_, pose);
+  PosedSkeleton from_bind = posed;
+  for (size_t j = 0; j < kJointCount; ++j) from_bind.global[j] = posed.global[j] * pose_.to_rest[j];
+  Points out = linear_blend_skinning(bind_vertices_, weights_, pose_.bind, from_bind);
+  if (!inner_) return out;
+  // Offsets turn with the joints: skinned as points about joints that stay at the origin.
+  PosedSkeleton turned = posed;
+  turned.joints.setZero();
+  out += linear_blend_skinning(inner_->offsets(pose), weights_, Joints::Zero(), turned);
+  return out;
+}
+
+Points RigDeformer::offsets(const Pose& pose) const {
+  return inner_ ? inner_->offsets(pose) : Points(Points::Zero(bind_vertices_.rows(), 3));
+}
+
+Networks networks_for(Networks networks, const PreparedCharacter& character, bool their_rig) {
+  if (!character.rigged || !their_rig) return networks;
+  networks.transfer = std::make_unique<FoldingTransfer>(std::move(networks.transfer), character.map);
+  networks.deformer = std::make_shared<RigDeformer>(character, networks.deformer);
+  return networks;
+}
+
+}  // namespace understudy

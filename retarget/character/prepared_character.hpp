@@ -1,0 +1,83 @@
+// A character made ready for the pipeline: its size, heading, bones, T-pose and joints found.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "retarget/character/bone_map.hpp"
+#include "retarget/character/character.hpp"
+#include "retarget/character/rest_pose.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/pipeline/retargeter.hpp"
+
+namespace understudy {
+
+struct CharacterOptions {
+  BoneChoices choices;           ///< the user's corrections of the map
+  std::string units, up = "y";   ///< as in ImportOptions; empty: guessed
+  std::optional<float> yaw_deg;  ///< turns it about y; none: so that it faces +z
+  bool use_rig = true;           ///< false: as if it had no bones
+  bool own_joints = true;        ///< false: the T-pose joints are found by the network, not the bones
+};
+
+/// Everything in metres, y up, facing +z, the floor at 0.
+struct PreparedCharacter {
+  Character character;      ///< as it came
+  BindPose bind;            ///< in the file's world
+  Similarity to_world;      ///< from the file's world
+  BoneMap map;              ///< none mapped where there is no usable rig
+  bool rigged = false;      ///< the map is usable: `weights` and `driver` are filled
+  MergedSurface surface;    ///< as it was bound
+  RowMatrix weights;        ///< [V, 22] of its own skin, gathered at the joints; without a rig empty
+  RestPose pose;            ///< from the bind pose to the T-pose and back
+  RowMatrix pose_weights;   ///< [V, 22] that brought the surface to the T-pose: the rig's, or geometric ones
+  Target target;            ///< in T-pose
+  std::vector<int> driver;  ///< of each node the joint that moves it, -1: it keeps its place on its parent
+  std::vector<std::string> notes;  ///< what was decided, a sentence each
+};
+
+/// any_pose finds joints of bodies that are in no T-pose and look anywhere; in_t_pose, where given, those of
+/// the T-pose. Neither is asked for a rig that is mapped. Throws Error where no body can be found.
+PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
+                                    SkeletonExtractor* in_t_pose, const CharacterOptions& options = {});
+
+/// The joints that a rig lacks do not turn on their own: what they would have done is done by the joints
+/// after them. Global directions of mapped bones stay.
+class FoldingTransfer final : public MotionTransfer {
+ public:
+  FoldingTransfer(std::unique_ptr<MotionTransfer> inner, const BoneMap& map);
+  void reset(const Joints& rest_b) override { inner_->reset(rest_b); }
+  Rotations push(const Extraction& source, float dt) override;
+  std::string name() const override { return inner_->name(); }
+
+ private:
+  std::unique_ptr<MotionTransfer> inner_;
+  std::array<bool, kJointCount> mapped_;
+};
+
+/// Deforms as the character's own skin does: from its bind pose at once, not by way of the T-pose. `inner`,
+/// which may be null, gives the pose-corrective offsets.
+class RigDeformer final : public Deformer {
+ public:
+  RigDeformer(const PreparedCharacter& character, std::shared_ptr<Deformer> inner);
+  void bind(const Points& rest, const Joints& rest_joints) override;
+  const RowMatrix& weights() const override { return weights_; }
+  std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override;
+  Points deform(const Pose& pose) const override;
+  Points offsets(const Pose& pose) const override;
+  std::string name() const override { return "the rig's own skin"; }
+
+ private:
+  std::shared_ptr<Deformer> inner_;
+  Points bind_vertices_;
+  RestPose pose_;
+  Joints rest_joints_;
+  RowMatrix weights_;
+};
+
+/// The networks as a character wants them that performs on its own rig: folding, and its own skin.
+Networks networks_for(Networks networks, const PreparedCharacter& character, bool their_rig);
+
+}  // namespace understudy

@@ -1,0 +1,61 @@
+#include "retarget/character/read_character.hpp"
+
+#include <filesystem>
+
+#include "retarget/base/error.hpp"
+#include "retarget/character/gltf_character.hpp"
+#include "retarget/character/import_process.hpp"
+#include "retarget/character/obj_character.hpp"
+#include "retarget/formats/bytes.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+
+namespace understudy {
+namespace {
+
+bool needs_process(const std::string& path, std::string_view bytes) {
+  const std::string suffix = lower_case(std::filesystem::path(path).extension().string());
+  return suffix == ".fbx" || suffix == ".dae" || bytes.substr(0, 20) == "Kaydara FBX Binary  " ||
+         bytes.substr(0, 512).find("<COLLADA") != bytes.npos;
+}
+
+}  // namespace
+
+Character character_of_mesh(const Mesh& mesh, const std::string& name) {
+  Character out;
+  out.name = name;
+  CharacterNode node;
+  node.name = name;
+  out.nodes.push_back(node);
+  CharacterPart part;
+  part.name = name;
+  part.node = 0;
+  part.vertices = mesh.vertices;
+  part.faces = mesh.faces;
+  if (mesh.faces.rows() > 0) part.normals = vertex_normals(mesh.vertices, mesh.faces);
+  if (mesh.colors.rows() == mesh.vertices.rows() && mesh.colors.rows() > 0) {
+    part.colors = RowMatrix::Ones(mesh.vertices.rows(), 4);
+    part.colors.leftCols<3>() = mesh.colors;
+  }
+  out.materials.push_back(
+      R"({"name":"body","doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.76,0.72,1.0],)"
+      R"("metallicFactor":0.0,"roughnessFactor":0.8}})");
+  part.material = 0;
+  out.parts.push_back(std::move(part));
+  return out;
+}
+
+Character read_character(const std::string& path, const ReadCharacterOptions& options) {
+  const std::string bytes = read_file(path), stem = std::filesystem::path(path).stem().string();
+  US_CHECK(!bytes.empty(), path, ": is empty");
+  if (needs_process(path, bytes)) return read_in_process(path, options);
+  const auto content = format_of_content(bytes), suffix = format_of_suffix(path);
+  const auto format = content ? content : suffix;
+  if (format == MeshFormat::Gltf) return parse_gltf_character(bytes, path);
+  if (format == MeshFormat::Obj) return parse_obj_character(bytes, path);
+  const Mesh mesh = parse_mesh(bytes, path);
+  Character out = character_of_mesh(mesh, stem);
+  check_character(out, path);
+  return out;
+}
+
+}  // namespace understudy

@@ -1,0 +1,34 @@
+// From the pose a character stands in (A-pose, or anything upright) to the T-pose that the networks know, and
+// back.
+#pragma once
+
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+/// How the joints of a bind pose turn to the T-pose.
+struct RestPose {
+  Joints bind = Joints::Zero();              ///< as the character came, metres, y up, facing +z
+  Joints rest = Joints::Zero();              ///< in T-pose; the pelvis stays
+  Rotations to_rest = identity_rotations();  ///< world rotation of each joint from the one to the other
+  float largest_deg = 0;                     ///< of them
+  /// The pose, relative to the T-pose, in which the character came.
+  Pose back() const;
+};
+
+/// Arms go out sideways, legs down, feet and trunk stay as they are. Limbs that are within a few degrees are
+/// left alone. Bone lengths stay.
+RestPose to_t_pose(const Joints& bind);
+
+/// The surface in T-pose: linear blend skinning by `weights` [V, 22].
+Points in_t_pose(const Points& vertices, const RowMatrix& weights, const RestPose& pose);
+
+/// Skin weights from distances to the bones alone, smoothed along the surface: good enough to bring limbs to
+/// the T-pose where no rig and no network can say better. [V, 22], rows sum to 1.
+RowMatrix geometric_weights(const Mesh& mesh, const Joints& joints);
+
+/// Where joints face, radians about +y from +z towards +x: across hips and shoulders.
+float heading_of_joints(const Joints& joints);
+
+}  // namespace understudy
