@@ -126,6 +126,16 @@ TEST_F(ViewsTest, TheWheelZoomsToThePointer) {
   EXPECT_NEAR(seen(0, place).y, at.y, 1.5f);
 }
 
+TEST_F(ViewsTest, FollowingLeavesWhatIsSeenWhereItIs) {
+  const Vec3 before = pane(0).camera.target;
+  stage.session.view.follow = true;
+  frame();
+  EXPECT_LT((pane(0).camera.target - before).norm(), 1e-4f);
+  EXPECT_GT((stage.session.view.cameras[0].target - before).norm(), 0.1f);  // relative to the person now
+  stage.show_frame(20);
+  EXPECT_GT((pane(0).camera.target - before).norm(), 0.1f);
+}
+
 TEST_F(ViewsTest, UnlinkedCamerasAreTheirPanesOwn) {
   stage.session.view.linked = false;
   stage.session.view.cameras.resize(2);
