@@ -11,6 +11,8 @@
 #include "app/run/interrupt.hpp"
 #include "app/run/performer.hpp"
 #include "app/run/report.hpp"
+#include "render/contact_sheet.hpp"
+#include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/character/character_export.hpp"
@@ -104,7 +106,11 @@ void preview_file(const ExportOptions& options, const PreparedCharacter& prepare
         merged_surface(written, vertices_at(written, animation, static_cast<float>(moment.seconds))).mesh;
     moments.push_back(std::move(moment));
   }
-  write_preview(options.preview, std::move(moments), clip.name + " by " + clip_name(options.target));
+  render::SheetOptions sheet;
+  sheet.title = clip.name + " by " + clip_name(options.target);
+  sheet.source_caption = "T-pose";
+  sheet.target_caption = "Written file";
+  render::write_png(options.preview, render::contact_sheet(moments, sheet));
 }
 
 void report_cost(const ExportOptions& options, const PreparedCharacter& prepared, const ExportCost& cost) {

@@ -123,14 +123,23 @@ size_t add_joints(const CharacterPart& part, Eigen::Index first, BinaryChunk& ch
 
 void add_skin_attributes(const Character& character, const CharacterPart& part, BinaryChunk& chunk,
                          json& attributes) {
+  // The sums are one to the last bit, which validators want: the largest weight takes the rounding.
+  RowMatrix exact = part.weights;
+  for (Eigen::Index v = 0; v < exact.rows(); ++v) {
+    auto row = exact.row(v);
+    Eigen::Index largest = 0;
+    row.maxCoeff(&largest);
+    row[largest] = 0;
+    row[largest] = 1 - row.sum();
+  }
   const bool wide = character.skins[static_cast<size_t>(part.skin)].joints.size() > 256;
   for (Eigen::Index first = 0; first < part.joints.cols(); first += 4) {
     const std::string end = std::to_string(first / 4);
     attributes["JOINTS_" + end] =
         wide ? add_joints<uint16_t>(part, first, chunk) : add_joints<uint8_t>(part, first, chunk);
-    RowMatrix weights = RowMatrix::Zero(part.weights.rows(), 4);
-    const Eigen::Index count = std::min<Eigen::Index>(4, part.weights.cols() - first);
-    weights.leftCols(count) = part.weights.middleCols(first, count);
+    RowMatrix weights = RowMatrix::Zero(exact.rows(), 4);
+    const Eigen::Index count = std::min<Eigen::Index>(4, exact.cols() - first);
+    weights.leftCols(count) = exact.middleCols(first, count);
     attributes["WEIGHTS_" + end] = chunk.add(weights, VertexData);
   }
 }
