@@ -1,5 +1,6 @@
 #include "retarget/character/prepared_character.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -198,6 +199,48 @@ void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
   c.target = prepare_target(mesh, c.pose.rest);
 }
 
+/// The direction in which points with a weight over 0.8 reach furthest, on the side of `like`.
+Vec3 long_axis(const Points& points, const Eigen::VectorXf& weights, const Vec3& like) {
+  Vec3 mean = Vec3::Zero();
+  float count = 0;
+  for (Eigen::Index v = 0; v < points.rows(); ++v)
+    if (weights[v] > 0.8f) {
+      mean += points.row(v).transpose();
+      ++count;
+    }
+  if (count < 10) return like.normalized();
+  mean /= count;
+  Mat3 spread = Mat3::Zero();
+  for (Eigen::Index v = 0; v < points.rows(); ++v)
+    if (weights[v] > 0.8f) {
+      const Vec3 d = points.row(v).transpose() - mean;
+      spread += d * d.transpose();
+    }
+  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(2);
+  return axis.dot(like) < 0 ? Vec3(-axis) : axis;
+}
+
+/// Extracted shoulders of bodies unlike those the network knows are rough, forearms and hands stand free and
+/// can be measured. An arm that is nearly straight is taken as straight, and its shoulder put on its line.
+Joints with_straight_arms(const Mesh& mesh, const Joints& joints) {
+  constexpr float kLeast = 15 * kPi / 180, kMost = 60 * kPi / 180;
+  const RowMatrix weights = geometric_weights(mesh, joints);
+  Joints out = joints;
+  for (const int right : {0, 1}) {
+    const int shoulder = LeftShoulder + right, elbow = LeftElbow + right, wrist = LeftWrist + right;
+    const Vec3 axis = long_axis(mesh.vertices, weights.col(elbow) + weights.col(wrist),
+                                (joints.row(wrist) - joints.row(elbow)).transpose());
+    const Vec3 upper = (joints.row(elbow) - joints.row(shoulder)).transpose();
+    const float bend = std::atan2(upper.cross(axis).norm(), upper.dot(axis));
+    if (bend < kLeast || bend > kMost) continue;
+    // Relaxed elbows bend forward: seen from the front alone the arm is straight.
+    const Vec3 line = Vec3(axis.x(), axis.y(), upper.z() / upper.norm()).normalized();
+    out.row(shoulder) = joints.row(elbow) - upper.norm() * line.transpose();
+    out.row(wrist) = joints.row(elbow) + (joints.row(wrist) - joints.row(elbow)).norm() * axis.transpose();
+  }
+  return out;
+}
+
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
   if (options.yaw_deg) {
@@ -207,14 +250,13 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
   }
   Mesh mesh = c.surface.mesh;
-  Target found = prepare_target(mesh, any_pose);
-  c.pose = to_t_pose(found.joints);
-  c.pose_weights = geometric_weights(mesh, found.joints);
-  if (c.pose.largest_deg > 0) {
-    mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
+  const Joints found = with_straight_arms(mesh, prepare_target(mesh, any_pose).joints);
+  c.pose = to_t_pose(found);
+  c.pose_weights = geometric_weights(mesh, found);
+  if (c.pose.largest_deg > 0) mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
+  if (c.pose.largest_deg > 0)
     c.notes.push_back("its limbs are brought to the T-pose by up to " +
                       std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
-  }
   c.target = prepare_target(mesh, t_pose != nullptr ? *t_pose : any_pose);
 }
 
