@@ -162,7 +162,7 @@ void map_trunk(const Rig& rig, float confidence, BoneMap& map) {
   };
   const int pelvis = node_of(map, Pelvis), chest = rig.common(arm_start(0), arm_start(1));
   if (pelvis < 0 || chest < 0 || !rig.is_above(pelvis, chest)) return;
-  std::vector<int> spine = rig.path(pelvis, chest);  // the chest last
+  std::vector<int> spine = rig.path(pelvis, chest);      // the chest last
   if (chest == node_of(map, Neck)) map.node[Neck] = -1;  // arms hang on it: it is a chest, whatever its name
   if (!spine.empty()) {
     put(map, Spine3, spine.back(), confidence);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "retarget/base/error.hpp"
@@ -15,6 +16,8 @@ namespace understudy {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr int kMaxDepth = 1000;
 
 std::string text_of(const Json& object, const char* name) {
   const auto found = object.find(name);
@@ -34,6 +37,7 @@ class CharacterReader {
 
  private:
   void read_nodes();
+  void order_nodes(const std::vector<int64_t>& parents);
   void read_skins();
   void read_skin_joints(const Json& skin, CharacterSkin& out);
   void read_mesh(const Json& node, int to);
@@ -62,9 +66,9 @@ int CharacterReader::node_number(int64_t index) const {
   return node_of_[static_cast<size_t>(index)];
 }
 
-// Depth first with a mark on the way down, so that a circle is told from a second parent.
 void CharacterReader::read_nodes() {
   const auto count = static_cast<int64_t>(file_.list("nodes").size());
+  US_CHECK(count <= 100000, path_, ": has ", count, " nodes; 100000 are read at most");
   node_of_.assign(static_cast<size_t>(count), -1);
   std::vector<int64_t> parents(static_cast<size_t>(count), -1);
   for (int64_t n = 0; n < count; ++n) {
@@ -79,28 +83,47 @@ void CharacterReader::read_nodes() {
       parents[static_cast<size_t>(c)] = n;
     }
   }
-  std::vector<std::pair<int64_t, int>> open;  // and the depth
-  for (int64_t n = count - 1; n >= 0; --n)
-    if (parents[static_cast<size_t>(n)] < 0) open.emplace_back(n, 1);
-  while (!open.empty()) {
-    const auto [n, depth] = open.back();
-    open.pop_back();
-    US_CHECK(depth <= 1000, path_, ": its nodes are more than 1000 levels deep");
+  order_nodes(parents);
+  out_.nodes.resize(static_cast<size_t>(count));
+  for (int64_t n = 0; n < count; ++n) {
     const Json& object = file_.item("nodes", n);
-    CharacterNode node;
-    node.name = text_of(object, "name");
+    CharacterNode& node = out_.nodes[static_cast<size_t>(node_of_[static_cast<size_t>(n)])];
     const int64_t parent = parents[static_cast<size_t>(n)];
+    node.name = text_of(object, "name");
     node.parent = parent < 0 ? -1 : node_of_[static_cast<size_t>(parent)];
     node.local = Transform::from(gltf_local_transform(file_, object));
     if (const auto s = file_.numbers(object, "scale", 3); !s.empty())
       node.local.scale = Vec3(s[0], s[1], s[2]);
-    node_of_[static_cast<size_t>(n)] = static_cast<int>(out_.nodes.size());
-    out_.nodes.push_back(std::move(node));
-    if (const auto children = object.find("children"); children != object.end())
-      for (auto child = children->rbegin(); child != children->rend(); ++child)
-        open.emplace_back(whole(child->get<double>()), depth + 1);
   }
-  US_CHECK(static_cast<int64_t>(out_.nodes.size()) == count, path_, ": its nodes go round in a circle");
+}
+
+// Numbers for the nodes, parents first: the file's own where they are so already.
+void CharacterReader::order_nodes(const std::vector<int64_t>& parents) {
+  std::vector<int> depth(parents.size(), 0);
+  bool in_order = true;
+  for (size_t n = 0; n < parents.size(); ++n) {
+    int steps = 1;
+    for (int64_t p = parents[n]; p >= 0 && steps <= kMaxDepth; p = parents[static_cast<size_t>(p)]) ++steps;
+    depth[n] = steps;
+    in_order = in_order && parents[n] < static_cast<int64_t>(n);
+  }
+  for (size_t n = 0; n < parents.size(); ++n) {  // a way up without an end is a circle, or only long
+    int64_t slow = static_cast<int64_t>(n), fast = slow;
+    const auto up = [&](int64_t& at) { at = at < 0 ? at : parents[static_cast<size_t>(at)]; };
+    if (depth[n] <= kMaxDepth) continue;
+    do {
+      up(slow);
+      up(fast);
+      up(fast);
+    } while (fast >= 0 && slow != fast);
+    US_CHECK(fast < 0, path_, ": its nodes go round in a circle");
+    throw Error(path_ + ": its nodes are more than 1000 levels deep");
+  }
+  std::vector<size_t> order(parents.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  if (!in_order)
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return depth[a] < depth[b]; });
+  for (size_t i = 0; i < order.size(); ++i) node_of_[order[i]] = static_cast<int>(i);
 }
 
 void CharacterReader::read_skin_joints(const Json& skin, CharacterSkin& out) {
@@ -387,7 +410,10 @@ Character CharacterReader::read() {
   keep_texts("materials", out_.materials);
   const GltfSceneNodes scene = walk_gltf_scene(file_);
   int64_t budget = 16000000;
-  for (const int64_t index : scene.order) {
+  std::vector<int64_t> order = scene.order;  // parts in the order of their nodes here
+  std::sort(order.begin(), order.end(),
+            [&](int64_t a, int64_t b) { return node_number(a) < node_number(b); });
+  for (const int64_t index : order) {
     const Json& node = file_.item("nodes", index);
     if (!node.contains("mesh")) continue;
     read_mesh(node, node_number(index));

@@ -266,6 +266,9 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
                                     SkeletonExtractor* t_pose, const CharacterOptions& options) {
   PreparedCharacter c;
   c.character = std::move(character);
+  // Files are written node by node: the same order here keeps vertices in theirs.
+  std::stable_sort(c.character.parts.begin(), c.character.parts.end(),
+                   [](const auto& a, const auto& b) { return a.node < b.node; });
   c.bind = bind_pose(c.character);
   US_CHECK(c.bind.vertices.allFinite(), c.character.name, ": its bind pose has numbers that are not finite");
   if (options.use_rig) {
