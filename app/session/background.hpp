@@ -39,8 +39,6 @@ struct Studio::Background {
   std::shared_ptr<std::atomic<bool>> autosaving = std::make_shared<std::atomic<bool>>(false);
 };
 
-/// Equal texts: the engine has nothing to do.
-std::string plan_key(const Plan& plan);
 /// Equal texts: the result looks the same.
 std::string pose_key(const PoseEdits& edits);
 

@@ -132,6 +132,15 @@ std::string method_key(const Method& method) {
   return out.str();
 }
 
+std::string plan_key(const Plan& plan) {
+  std::string key = source_key(plan.source, plan.scan_edits) + '\n' + plan.extractor + '\n' +
+                    skeleton_key(plan.skeleton_edits);
+  for (const Plan::TakePlan& take : plan.takes)
+    key += '\n' + std::to_string(take.id) + ' ' + target_key(take.target) + ' ' + method_key(take.method) +
+           ' ' + joints_key(take.joints);
+  return key;
+}
+
 struct Engine::Impl {
   explicit Impl(NetworksOf source_of_networks) : networks_of(std::move(source_of_networks)) {
     thread = std::thread([this] { run(); });

@@ -32,6 +32,7 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids);
 std::string source_key(const SourceOptions& source, const ScanEdits& edits);
 std::string target_key(const TargetOptions& target);
 std::string method_key(const Method& method);
+std::string plan_key(const Plan& plan);
 
 // What the engine tells, in order.
 

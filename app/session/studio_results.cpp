@@ -50,23 +50,6 @@ void merge_series(std::vector<Series>& into, std::vector<Series> newer) {
 
 }  // namespace
 
-std::string plan_key(const Plan& plan) {
-  std::ostringstream out;
-  out << source_key(plan.source, plan.scan_edits) << '\n' << plan.extractor << '\n';
-  for (const SkeletonEdit& edit : plan.skeleton_edits)
-    if (const auto* drag = std::get_if<DragEdit>(&edit))
-      out << drag->frame << ' ' << drag->joint << ' ' << drag->offset.transpose() << ' ' << drag->falloff
-          << ' ' << drag->with_children << ';';
-    else if (const auto* swap = std::get_if<SwapEdit>(&edit))
-      out << "s " << swap->first << ' ' << swap->last << ' ' << static_cast<int>(swap->limbs) << ';';
-  for (const Plan::TakePlan& take : plan.takes) {
-    out << '\n' << take.id << ' ' << target_key(take.target) << ' ' << method_key(take.method);
-    for (const JointMove& move : take.joints)
-      out << ' ' << move.joint << ' ' << move.position.transpose() << ' ' << move.mirror;
-  }
-  return out.str();
-}
-
 std::string pose_key(const PoseEdits& edits) {
   std::ostringstream out;
   for (const RotateEdit& rotate : edits.rotate)
