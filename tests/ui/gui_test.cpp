@@ -43,6 +43,26 @@ TEST_F(UiTest, ADragInOneFrameEndsAtItsLastPlace) {
   EXPECT_NEAR(value, 0.8f, 0.05f);
 }
 
+TEST_F(UiTest, AModifierLetGoInTheSameFrameStillCounts) {
+  char text[32] = "old";
+  in_window([&](Ui& ui) {
+    ImGui::InputText("##text", text, sizeof text);
+    ui.mark("text");
+  });
+  click("text");
+  render::Modifiers control;
+  control.control = true;
+  std::vector<InputEvent> events(5);  // as a quick hand does it: Ctrl is up before the A
+  for (InputEvent& event : events) event.kind = InputEvent::Kind::Key;
+  events[0].key = Key::LeftControl, events[0].pressed = true, events[0].modifiers = control;
+  events[1].key = Key::A, events[1].pressed = true, events[1].modifiers = control;
+  events[2].key = Key::LeftControl;
+  events[3].key = Key::A;
+  events[4].kind = InputEvent::Kind::Char, events[4].codepoint = U'n';
+  play(events);
+  EXPECT_STREQ(text, "n");
+}
+
 TEST_F(UiTest, TypedTextArrivesInOrderAroundKeys) {
   char text[32] = "";
   in_window([&](Ui& ui) {

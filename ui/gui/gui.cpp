@@ -27,6 +27,8 @@ bool writes(Key key) {
 
 struct Gui::Changes {
   bool moved = false, scrolled = false, typed = false, commanded = false;
+  bool pressed = false;         // a key that is no modifier, or a button
+  render::Modifiers modifiers;  // that were held then
   std::bitset<static_cast<size_t>(render::MouseButton::Count)> buttons;
   std::bitset<kKeys> keys;
 };
@@ -144,6 +146,9 @@ void Gui::feed() {
 
 /// Whether a frame that has seen `changes` would still notice the event in its right place.
 bool Gui::fits(const InputEvent& event, const Changes& changes) const {
+  const bool modified = event.kind == Kind::Key || event.kind == Kind::MouseButton;
+  if (modified && changes.pressed && !(event.modifiers == changes.modifiers))
+    return false;  // Ctrl may be let go before the A of Ctrl+A was noticed
   switch (event.kind) {
     case Kind::MouseMove:
       return changes.buttons.none() && !changes.scrolled;
@@ -167,6 +172,8 @@ void Gui::apply(const InputEvent& event, Changes& changes) {
   if (event.kind == Kind::Key || event.kind == Kind::MouseButton) {
     to.KeyShift = event.modifiers.shift, to.KeyCtrl = event.modifiers.control;
     to.KeyAlt = event.modifiers.alt, to.KeySuper = event.modifiers.super;
+    changes.pressed |= event.kind == Kind::MouseButton || event.key < Key::LeftShift;
+    changes.modifiers = event.modifiers;
   }
   switch (event.kind) {
     case Kind::MouseMove:
