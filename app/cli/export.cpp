@@ -93,6 +93,11 @@ void preview_file(const ExportOptions& options, const PreparedCharacter& prepare
                   const CharacterClip& clip) {
   const Character written = parse_gltf_character(read_file(options.out), options.out);
   const int animation = options.file.t_pose_clip ? 1 : 0;
+  // The sheet looks from where the motion begins; the T-pose turns along.
+  const float heading = heading_of_joints(forward_kinematics(prepared.target.joints, clip.poses[0]).joints);
+  const Mat3 turn = rotation_about_y(heading);
+  Mesh rest = prepared.target.mesh;
+  rest.vertices = (rest.vertices * turn.transpose()).eval();
   std::vector<render::SheetMoment> moments;
   const size_t shown = std::min<size_t>(PreviewMoments::kShown, clip.poses.size());
   for (size_t i = 0; i < shown; ++i) {
@@ -100,14 +105,15 @@ void preview_file(const ExportOptions& options, const PreparedCharacter& prepare
     render::SheetMoment moment;
     moment.frame = static_cast<int>(at);
     moment.seconds = static_cast<double>(at) / clip.fps;
-    moment.source = prepared.target.mesh;
-    moment.source_joints = prepared.target.joints;
+    moment.source = rest;
+    moment.source_joints = Joints(prepared.target.joints * turn.transpose());
     moment.target =
         merged_surface(written, vertices_at(written, animation, static_cast<float>(moment.seconds))).mesh;
     moments.push_back(std::move(moment));
   }
   render::SheetOptions sheet;
   sheet.title = clip.name + " by " + clip_name(options.target);
+  sheet.heading = heading;
   sheet.source_caption = "T-pose";
   sheet.target_caption = "Written file";
   render::write_png(options.preview, render::contact_sheet(moments, sheet));

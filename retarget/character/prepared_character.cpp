@@ -13,6 +13,7 @@ namespace understudy {
 namespace {
 
 constexpr float kUsualHeight = 1.7f, kSmallestTurn = 8 * kPi / 180;
+constexpr float kRoughDeg = 4;  // joints that were seen, not given, are not better
 
 std::string number(float value) {
   char text[32];
@@ -251,7 +252,7 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
   }
   Mesh mesh = c.surface.mesh;
   const Joints found = with_straight_arms(mesh, prepare_target(mesh, any_pose).joints);
-  c.pose = to_t_pose(found);
+  c.pose = to_t_pose(found, kRoughDeg);
   c.pose_weights = geometric_weights(mesh, found);
   if (c.pose.largest_deg > 0) mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
   if (c.pose.largest_deg > 0)

@@ -13,9 +13,6 @@
 namespace understudy {
 namespace {
 
-// Limbs nearer to the T-pose than this stand in it: people's hips and shoulders differ as much.
-constexpr float kArmTolerance = 10 * kPi / 180, kLegTolerance = 8 * kPi / 180;
-
 Vec3 bone(const Joints& joints, int from, int to) {
   return (joints.row(to) - joints.row(from)).transpose();
 }
@@ -93,25 +90,25 @@ Pose RestPose::back() const {
   return pose;
 }
 
-RestPose to_t_pose(const Joints& bind) {
+RestPose to_t_pose(const Joints& bind, float tolerance_deg) {
   US_CHECK(bind.allFinite(), "a joint of the character is not finite");
   RestPose out;
   out.bind = bind;
   Rotations& Q = out.to_rest;
   const Joints& human = human_rest();
+  const float tolerance = tolerance_deg * kPi / 180;
   for (const int right : {0, 1}) {
     const Vec3 sideways = right == 1 ? Vec3(-1, 0, 0) : Vec3(1, 0, 0);
     const auto shoulder = static_cast<size_t>(LeftShoulder + right), elbow = shoulder + 2, wrist = elbow + 2;
     const auto hip = static_cast<size_t>(LeftHip + right), knee = hip + 3;
-    Q[shoulder] = brought(Mat3::Identity(), bone(bind, LeftShoulder + right, LeftElbow + right), sideways,
-                          kArmTolerance);
-    Q[elbow] =
-        brought(Q[shoulder], bone(bind, LeftElbow + right, LeftWrist + right), sideways, kArmTolerance);
+    Q[shoulder] =
+        brought(Mat3::Identity(), bone(bind, LeftShoulder + right, LeftElbow + right), sideways, tolerance);
+    Q[elbow] = brought(Q[shoulder], bone(bind, LeftElbow + right, LeftWrist + right), sideways, tolerance);
     Q[wrist] = Q[elbow];
     Q[hip] = brought(Mat3::Identity(), bone(bind, LeftHip + right, LeftKnee + right),
-                     bone(human, LeftHip + right, LeftKnee + right), kLegTolerance);
+                     bone(human, LeftHip + right, LeftKnee + right), tolerance);
     Q[knee] = brought(Q[hip], bone(bind, LeftKnee + right, LeftAnkle + right),
-                      bone(human, LeftKnee + right, LeftAnkle + right), kLegTolerance);
+                      bone(human, LeftKnee + right, LeftAnkle + right), tolerance);
   }
   out.rest.row(Pelvis) = bind.row(Pelvis);
   for (size_t j = 0; j < kJointCount; ++j) {

@@ -17,9 +17,10 @@ struct RestPose {
   Pose back() const;
 };
 
-/// Arms go out sideways, legs down, feet and trunk stay as they are. Limbs that are within a few degrees are
-/// left alone. Bone lengths stay.
-RestPose to_t_pose(const Joints& bind);
+/// Limbs get the directions of the mean human's T-pose, which motion transfer takes for granted: legs that
+/// stand a few degrees closer would cross. Feet and trunk stay as they are, and so do limbs within the
+/// tolerance. Bone lengths stay.
+RestPose to_t_pose(const Joints& bind, float tolerance_deg = 1);
 
 /// The surface in T-pose: linear blend skinning by `weights` [V, 22].
 Points in_t_pose(const Points& vertices, const RowMatrix& weights, const RestPose& pose);
