@@ -16,6 +16,7 @@
 
 #include "app/cli/machine.hpp"
 #include "app/cli/studio.hpp"
+#include "app/run/interrupt.hpp"
 #include "app/run/target_file.hpp"
 #include "app/studio/application.hpp"
 #include "retarget/base/error.hpp"
@@ -130,6 +131,7 @@ class BenchFiles {
       std::snprintf(file, sizeof file, "/frame_%05d.ply", i);
       write_scan(scan() + file, frame->mesh.vertices);
     }
+    fs::create_directory_symlink(scan(), scan_again());
     const Mesh adult = import_target({samples + "/target_adult.glb", {}, {}});
     write_obj(target(kVertices), with_vertices(adult, kVertices));
     write_obj(target(kManyVertices), with_vertices(adult, kManyVertices));
@@ -141,6 +143,8 @@ class BenchFiles {
   BenchFiles(const BenchFiles&) = delete;
   BenchFiles& operator=(const BenchFiles&) = delete;
   std::string scan() const { return folder_ + "/scan"; }
+  /// The same under another name: nothing is known of it yet.
+  std::string scan_again() const { return folder_ + "/scan_again"; }
   std::string target(int vertices) const { return folder_ + "/target_" + std::to_string(vertices) + ".obj"; }
 
  private:
@@ -218,7 +222,7 @@ class UiBench {
     open(files, kVertices);
     idle();
     play("playing kept frames", kVertices);
-    live();
+    live(files);
     scrub();
     memory();
     open(files, kManyVertices);
@@ -240,6 +244,10 @@ class UiBench {
       application_->studio().cache().wait();
     }
   }
+  void step() {
+    check_interrupt("while measuring");
+    application_->step();
+  }
   static std::string milliseconds(const std::vector<double>& times) {
     char text[96];
     std::snprintf(text, sizeof text, "%.1f ms median (%.0f frames/s), p95 %.1f ms",
@@ -255,7 +263,7 @@ class UiBench {
     line("start to the first frame", text);
     const std::string& samples = application_->studio().services().samples;
     command("open", {samples + "/scan", samples + "/target_adult.glb"});
-    while (frame_count(application_->session()) < 1 || !shown_whole()) application_->step();
+    while (frame_count(application_->session()) < 1 || !shown_whole()) step();
     application_->frame(0);
     std::snprintf(text, sizeof text, "%.2f s", seconds_since_start());
     line("start to the sample performed", text);
@@ -273,11 +281,16 @@ class UiBench {
     return true;
   }
 
-  void open(const BenchFiles& files, int vertices) {
-    const auto began = Clock::now();
+  void begin(const std::string& scan, const std::string& target) {
     command("document.new");
     if (application_->session().question) command("question.answer", {"discard"});
-    command("open", {files.scan(), files.target(vertices)});
+    while (!application_->studio().idle() || frame_count(application_->session()) > 0) step();
+    command("open", {scan, target});
+  }
+
+  void open(const BenchFiles& files, int vertices) {
+    const auto began = Clock::now();
+    begin(files.scan(), files.target(vertices));
     settle();
     char text[96];
     std::snprintf(text, sizeof text, "%.1f s for %d frames of %d points, %d vertices", seconds_since(began),
@@ -302,13 +315,13 @@ class UiBench {
     std::vector<double> times;
     command("playback.rate", {"4"});
     command("playback.play");
-    for (int i = 0; i < 30; ++i) application_->step();
+    for (int i = 0; i < 30; ++i) step();
     int advanced = 0, last = -1;
     const auto began = Clock::now();
     auto before = began;
     while (seconds_since(began) < seconds_) {
       const int64_t drawn = application_->drawn();
-      application_->step();
+      step();
       if (application_->drawn() == drawn) continue;
       times.push_back(seconds_since(before));
       before = Clock::now();
@@ -322,18 +335,17 @@ class UiBench {
   }
 
   /// The shown target advances while frames are made and the mouse moves.
-  void live() {
-    command("work.restart");
-    command("playback.follow_live");
+  void live(const BenchFiles& files) {
+    begin(files.scan_again(), files.target(kVertices));
     std::vector<double> delays;
     std::set<int> shown;
-    while (frame_count(application_->session()) > 1) application_->step();  // it has begun anew
+    while (frame_count(application_->session()) < 1) step();
     counter_.events = 0;
     Hand hand(*surface_);
     const auto began = Clock::now();
     do {
       const int64_t drawn = application_->drawn();
-      application_->step();
+      step();
       if (application_->drawn() == drawn) continue;
       for (const auto moved : hand.taken(std::exchange(counter_.events, 0)))
         delays.push_back(seconds_since(moved));
@@ -360,7 +372,7 @@ class UiBench {
       command("settings.cache_mb", {"64"});
       const auto start = Clock::now();
       command("playback.frame", {std::to_string(rng.below(count))});
-      do application_->step();
+      do step();
       while (!shown_whole());
       application_->frame(0);
       times.push_back(seconds_since(start));

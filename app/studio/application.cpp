@@ -45,13 +45,9 @@ std::vector<ui::SampleCard> sample_cards(const std::string& folder) {
     const char *title, *caption;
     std::vector<std::string> files;
   } kCards[] = {
-      {"A dance, a heavy man",
-       "87 scans of a woman who dances, and who is to dance it",
-       {"scan", "target_adult.glb"}},
-      {"A walk, a girl of six",
-       "45 scans of a man who walks, and who is to walk it",
-       {"walk", "target_child.glb"}},
-      {"The dance alone", "87 scans, for a character of your own", {"scan"}},
+      {"A dance, by a heavy man", "87 scans and a target", {"scan", "target_adult.glb"}},
+      {"A walk, by a girl of six", "45 scans and a target", {"walk", "target_child.glb"}},
+      {"The dance alone", "87 scans, for your own target", {"scan"}},
   };
   std::vector<ui::SampleCard> cards;
   for (const auto& one : kCards) {

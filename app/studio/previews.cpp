@@ -33,10 +33,40 @@ std::string described(const Mesh& mesh) {
              : grouped(mesh.vertices.rows()) + " vertices, " + grouped(mesh.faces.rows()) + " faces";
 }
 
+/// A value that a share of them lies below.
+float quantile(Eigen::VectorXf values, float share) {
+  const auto at = values.data() + static_cast<Eigen::Index>(share * static_cast<float>(values.size() - 1));
+  std::nth_element(values.data(), at, values.data() + values.size());
+  return *at;
+}
+
+/// Without the few points far from all others: a small picture is of what matters.
+Mesh without_outliers(Mesh mesh) {
+  if (!mesh.is_cloud() || mesh.vertices.rows() < 100) return mesh;
+  std::vector<Eigen::Index> kept;
+  Eigen::RowVector3f low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = quantile(mesh.vertices.col(axis), 0.02f),
+    high[axis] = quantile(mesh.vertices.col(axis), 0.98f);
+    const float room = 0.15f * (high[axis] - low[axis]);
+    low[axis] -= room, high[axis] += room;
+  }
+  for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
+    if ((mesh.vertices.row(i).array() >= low.array()).all() &&
+        (mesh.vertices.row(i).array() <= high.array()).all())
+      kept.push_back(i);
+  const Points points = mesh.vertices(kept, Eigen::all);
+  mesh.vertices = points;
+  mesh.colors.resize(0, 3);
+  return mesh;
+}
+
 /// On the floor, 1.7 high and round the y axis, whatever its units.
 Mesh normalized(Mesh mesh) {
-  mesh.vertices = finite_points(mesh.vertices);
+  if (mesh.is_cloud()) mesh.vertices = finite_points(mesh.vertices);
   if (mesh.vertices.rows() == 0) return mesh;
+  US_CHECK(mesh.vertices.allFinite(), "has vertices that are no numbers");
+  mesh = without_outliers(std::move(mesh));
   const Eigen::RowVector3f low = mesh.vertices.colwise().minCoeff(),
                            high = mesh.vertices.colwise().maxCoeff();
   const float size = (high - low).maxCoeff();

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/run/interrupt.hpp"
 #include "app/studio/event_text.hpp"
 #include "app/studio/facts.hpp"
 #include "app/studio/key_chord.hpp"
@@ -194,7 +195,10 @@ void Script::check_no_error() const {
 // Waiting and looking.
 
 void Script::draw(int count) {
-  for (int i = 0; i < count && !application_.session().quit; ++i) application_.frame(kFrame);
+  for (int i = 0; i < count && !application_.session().quit; ++i) {
+    US_CHECK(!interrupted(), "interrupted");
+    application_.frame(kFrame);
+  }
 }
 
 /// Draws until all that is on the screen is there, and widgets have come to rest.

@@ -160,8 +160,8 @@ TEST_F(StudioProgram, TheTourShowsEveryPart) {
   for (const std::string& name : names) {
     const render::Image image = render::read_png(scratch.path("tour/" + name));
     const bool small = name.find("scale_300") != std::string::npos;
-    EXPECT_EQ(image.width, small ? 960 : 1280) << name;
-    EXPECT_EQ(image.height, small ? 640 : 800) << name;
+    EXPECT_EQ(image.width, small ? 960 : 1080) << name;
+    EXPECT_EQ(image.height, small ? 640 : 675) << name;
     EXPECT_EQ(colours(image), 100u) << name;
     EXPECT_TRUE(fs::exists(std::string(US_SOURCE_DIR) + "/screenshots/" + name)) << name;
   }
