@@ -115,8 +115,7 @@ TEST_F(StudioProgram, RecoversTheWorkAfterItWasKilled) {
   EXPECT_EQ(clean.code, 0) << clean.err;
 }
 
-TEST_F(StudioProgram, ADamagedAutosaveIsSetAside) {
-  fs::create_directories(scratch.path("state"));
+TEST_F(StudioProgram, ARegularEndLeavesNoAutosave) {
   const Finished made =
       play(std::string(kWalk) + "frames 2\n", {"--context", "null", "--state", scratch.path("state")});
   EXPECT_EQ(made.code, 0) << made.err;
