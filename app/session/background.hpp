@@ -1,8 +1,8 @@
 // What works behind a Studio, and what it was last told.
 #pragma once
 
-#include <atomic>
 #include <map>
+#include <mutex>
 #include <set>
 
 #include "app/session/engine.hpp"
@@ -27,6 +27,14 @@ struct Studio::Background {
     int64_t measuring = 0;  // the job; 0: none
   };
 
+  /// Shared with the job that writes the copy for recovery.
+  struct Autosaving {
+    bool running = false;  // the UI thread's own
+    std::mutex writing;
+    int64_t version = 0;  // changed under the mutex, by the UI thread; of another one nothing is written
+    std::string problem;  // the job's, then the UI thread's: of the last one; empty: it was written
+  };
+
   Engine engine;
   Refiner refiner;
   Document followed;
@@ -35,8 +43,9 @@ struct Studio::Background {
   std::map<int64_t, Applied> applied;
   std::set<int64_t> dirty;  // takes whose result is to be refined
   std::string plan_key, source_key, truth_path;
+  std::string autosave_problem;  // that was told
   double since_autosave = 0;
-  std::shared_ptr<std::atomic<bool>> autosaving = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };
 
 /// Equal texts: the result looks the same.

@@ -55,7 +55,7 @@ void save_document(Studio& studio, const std::string& path) {
   session.path = whole;
   session.changed = false;
   remember(session.settings.recent, whole);
-  if (!studio.services().autosave_folder.empty()) remove_autosave(studio.services().autosave_folder);
+  studio.drop_autosave();
   studio.notify("Saved " + fs::path(whole).filename().string());
 }
 
@@ -76,6 +76,22 @@ void answer(Studio& studio, const std::string& how) {
   studio.run(name, words);
 }
 
+/// Several things at once: one that cannot be opened does not keep the others out. What fails is tried again
+/// after the rest: a motion may be named before the body that performs it.
+void open_all(Studio& studio, const Arguments& paths) {
+  word(paths, 0, "path");
+  if (paths.size() == 1) return studio.open(paths[0]);
+  Arguments later;
+  for (const std::string& path : paths) {
+    try {
+      studio.open(path);
+    } catch (const Error&) {
+      later.push_back(path);
+    }
+  }
+  for (const std::string& path : later) studio.try_run("open", {path});
+}
+
 void add_files(Commands& commands) {
   commands.add({"document.new", "New", "", "Ctrl+N", false, false, [](Studio& s, const Arguments&) {
                   if (nothing_unsaved(s, "document.new")) s.replace_document({}, "");
@@ -94,11 +110,7 @@ void add_files(Commands& commands) {
                   if (fs::path(path).extension() != ".understudy") path += ".understudy";
                   save_document(s, path);
                 }});
-  commands.add({"open", "Open", "PATH ...: a scan, target, document or case", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  word(a, 0, "path");
-                  for (const std::string& path : a) s.open(path);
-                }});
+  commands.add({"open", "Open", "PATH ...: a scan, target, document or case", "", false, false, open_all});
 }
 
 void add_recovery(Commands& commands) {

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <new>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -151,7 +153,7 @@ struct Engine::Impl {
   std::condition_variable wake;
   std::optional<Plan> next_plan;
   std::vector<EngineEvent> events;
-  bool paused = false, stop = false, busy = false;
+  bool paused = false, stop = false, busy = false, next_is_afresh = false;
 
   // The thread's own.
   NetworksOf networks_of;
@@ -167,6 +169,9 @@ struct Engine::Impl {
   std::thread thread;
 
   void run();
+  bool advance(std::optional<Plan> wanted, bool afresh);
+  void forget_all();
+  void give_up(const std::string& problem);
   void tell(EngineEvent event);
   bool step();
   void adopt(Plan wanted);
@@ -189,22 +194,53 @@ void Engine::Impl::tell(EngineEvent event) {
 void Engine::Impl::run() {
   while (true) {
     std::optional<Plan> wanted;
+    bool afresh = false;
     {
       std::unique_lock<std::mutex> lock(mutex);
       if (stop) return;
       wanted.swap(next_plan);
+      if (wanted) afresh = std::exchange(next_is_afresh, false);
       if (!wanted && paused) {
         wake.wait(lock);
         continue;
       }
     }
-    if (wanted) adopt(std::move(*wanted));
-    if (step()) continue;
+    if (advance(std::move(wanted), afresh)) continue;
     std::unique_lock<std::mutex> lock(mutex);
     if (next_plan || stop) continue;
     busy = false;
     wake.wait(lock, [this] { return stop || next_plan; });
   }
+}
+
+/// Adopts what is wanted and does a little. False: nothing is left. Never throws: what no step expected ends
+/// the work, not the program.
+bool Engine::Impl::advance(std::optional<Plan> wanted, bool afresh) {
+  try {
+    if (afresh) forget_all();
+    if (wanted) adopt(std::move(*wanted));
+    return step();
+  } catch (const std::bad_alloc&) {
+    give_up("there is not enough memory to go on");
+  } catch (const std::exception& error) {
+    give_up(error.what());
+  }
+  return false;
+}
+
+void Engine::Impl::forget_all() {
+  takes.clear();
+  close_source();
+  streams.clear();
+  plan = Plan{};
+  source_is.clear();
+  skeleton_is.clear();
+}
+
+void Engine::Impl::give_up(const std::string& problem) {
+  forget_all();
+  opened = ended = true;
+  tell(SourceFailed{problem});
 }
 
 /// Brings the thread's state in line with what is wanted; what still fits stays.
@@ -313,8 +349,9 @@ bool Engine::Impl::prepare(TakeWork& take) {
     const std::shared_ptr<const Deformer> deformer = networks.deformer;
     Target target = take.found;
     target.joints = understudy::apply(take.plan.joints, target.joints);
-    take.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(take.plan.method));
-    take.retargeter->set_target(target);
+    auto retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(take.plan.method));
+    retargeter->set_target(target);
+    take.retargeter = std::move(retargeter);  // only with a target: without one it can do nothing
     take.done = 0;
     tell(TakeReady{take.plan.id, std::make_shared<const Target>(std::move(target)), deformer});
   } catch (const std::exception& error) {
@@ -438,7 +475,7 @@ bool Engine::Impl::perform(TakeWork& take) {
         frame.usable
             ? take.retargeter->push(
                   understudy::apply(plan.skeleton_edits, frame.extraction, static_cast<int>(take.done)), dt)
-            : take.retargeter->push(Mesh{}, dt);
+            : take.retargeter->skip(frame.problem, dt);
     event.frames.push_back(kept(result));
     if (take.done < take.told_new) continue;
     take.told_new = take.done + 1;
@@ -460,9 +497,10 @@ Engine::~Engine() {
   impl_->thread.join();
 }
 
-void Engine::set_plan(Plan plan) {
+void Engine::set_plan(Plan plan, bool afresh) {
   {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->next_is_afresh = impl_->next_is_afresh || afresh;  // the plan before may not have been seen yet
     impl_->next_plan = std::move(plan);
     impl_->busy = true;
   }

@@ -78,7 +78,8 @@ class Engine {
   ~Engine();  ///< stops after the frame at hand
 
   /// From now on this is made. Never waits.
-  void set_plan(Plan plan);
+  /// `afresh`: nothing of what was made before is kept, not even what would fit.
+  void set_plan(Plan plan, bool afresh = false);
   void pause(bool paused);
   /// Everything that has happened since the last call.
   std::vector<EngineEvent> drain();

@@ -52,7 +52,7 @@ Studio::Studio(StudioServices services)
 
 Studio::~Studio() {
   try {
-    if (!services_.autosave_folder.empty()) remove_autosave(services_.autosave_folder);
+    drop_autosave();
     save_settings();
   } catch (const std::exception& error) {
     log::warn(error.what());
@@ -263,18 +263,39 @@ void Studio::autosave(double seconds) {
   Background& b = *background_;
   if (services_.autosave_folder.empty() || session_.question) return;
   b.since_autosave += seconds;
-  if (!session_.changed || b.since_autosave < session_.settings.autosave_s || *b.autosaving) return;
+  if (!session_.changed || b.since_autosave < session_.settings.autosave_s || b.autosaving->running) return;
   b.since_autosave = 0;
-  *b.autosaving = true;
-  const SavedDocument saved = saved_document();
-  jobs_.start("Autosave", [saved, folder = services_.autosave_folder, path = session_.path,
-                           writing = b.autosaving](JobControl&) {
-    struct Reset {
-      std::atomic<bool>& flag;
-      ~Reset() { flag = false; }
-    } reset{*writing};
-    write_autosave(folder, saved, path);
-  });
+  const auto state = b.autosaving;
+  const auto work = [saved = saved_document(), folder = services_.autosave_folder, path = session_.path,
+                     state, version = state->version](JobControl&) {
+    const std::lock_guard lock(state->writing);
+    try {
+      if (state->version == version) write_autosave(folder, saved, path);
+      state->problem.clear();
+    } catch (const std::exception& error) {
+      state->problem = error.what();
+    }
+  };
+  jobs_.start("Autosave", work, [this] { autosave_ended(); });
+  state->running = true;
+}
+
+/// A copy that cannot be written is told once, and in no dialog: nothing that the user made is lost yet.
+void Studio::autosave_ended() {
+  Background::Autosaving& state = *background_->autosaving;
+  state.running = false;
+  if (!state.problem.empty() && state.problem != background_->autosave_problem) {
+    log::warn(state.problem);
+    notify("The work cannot be kept for recovery: " + state.problem, true);
+  }
+  background_->autosave_problem = state.problem;
+}
+
+void Studio::drop_autosave() {
+  if (services_.autosave_folder.empty()) return;
+  const std::lock_guard lock(background_->autosaving->writing);
+  ++background_->autosaving->version;
+  remove_autosave(services_.autosave_folder);
 }
 
 SavedDocument Studio::saved_document() const {

@@ -59,6 +59,8 @@ class Studio {
   /// A new, an opened or a recovered document takes the place of the open one.
   void replace_document(SavedDocument saved, const std::string& path);
   void save_settings();
+  /// Nothing is unsaved any more: the copy kept for recovery goes, one that is being written too.
+  void drop_autosave();
   /// Which vertices of a take's target are joined; made on first use.
   const Neighbours& neighbours(size_t take);
   void pause_work(bool paused);
@@ -83,6 +85,7 @@ class Studio {
   void measure(size_t k);
   TakeState* take_of(int64_t id);
   void autosave(double seconds);
+  void autosave_ended();
 
   StudioServices services_;
   Session session_;

@@ -301,9 +301,8 @@ void Studio::pause_work(bool paused) {
 
 void Studio::restart_work() {
   Background& b = *background_;
-  b.engine.set_plan(Plan{});
-  b.plan_key.clear();
-  follow_document();
+  b.engine.set_plan(plan_of(session_.document, b.take_ids), /*afresh=*/true);
+  session_.working = true;
 }
 
 }  // namespace understudy::app

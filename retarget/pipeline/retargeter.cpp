@@ -82,15 +82,11 @@ RetargetedFrame Retargeter::push(const Mesh& scan, float dt) {
   Stopwatch watch;
   RetargetedFrame frame;
   const int points = finite_points(scan.vertices);
-  if (points < options_.min_points) {
-    waited_ += dt;
-    return repeat(std::move(frame), detail::join("the scan has ", points, " usable points"));
-  }
+  if (points < options_.min_points) return skip(detail::join("the scan has ", points, " usable points"), dt);
   try {
     frame.source_raw = networks_.extractor->extract(scan);
   } catch (const Error& error) {
-    waited_ += dt;
-    return repeat(std::move(frame), error.what());
+    return skip(error.what(), dt);
   }
   frame.source_raw.sole_height = sole_height(frame.source_raw.joints, scan.vertices);
   frame.ms.extract = watch.lap();
@@ -102,6 +98,12 @@ RetargetedFrame Retargeter::push(const Extraction& extraction, float dt) {
   RetargetedFrame frame;
   frame.source_raw = extraction;
   return transfer(std::move(frame), dt);
+}
+
+RetargetedFrame Retargeter::skip(const std::string& reason, float dt) {
+  US_CHECK(has_target_, "there is no target yet");
+  waited_ += dt;
+  return repeat(RetargetedFrame{}, reason);
 }
 
 RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt) {

@@ -79,6 +79,8 @@ class Retargeter {
   /// The same with what was extracted given: kept from before, corrected, an oracle, or an extractor of one's
   /// own.
   RetargetedFrame push(const Extraction& extraction, float dt);
+  /// A frame in which nothing of the source can be used: the last pose again, flagged. Wants no extractor.
+  RetargetedFrame skip(const std::string& reason, float dt);
   /// The target in a pose given, no transfer: for poses kept, and for an oracle.
   RetargetedFrame pose_target(const Pose& pose);
 

@@ -47,7 +47,7 @@ class CountingExtractor final : public SkeletonExtractor {
 };
 
 /// A vertex follows the nearest joint.
-class NearestDeformer final : public Deformer {
+class NearestDeformer : public Deformer {
  public:
   void bind(const Points& rest, const Joints& joints) override {
     rest_ = rest;

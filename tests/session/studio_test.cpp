@@ -201,6 +201,118 @@ TEST_F(StudioTest, ABrokenTargetIsToldAndTheScanGoesOn) {
   EXPECT_EQ(studio.session().source.frames.size(), static_cast<size_t>(kFrames));
 }
 
+TEST_F(StudioTest, AFrameThatCannotBeReadIsFlaggedAndTheRestPerformed) {
+  fs::create_directory(path("scans"));
+  const fixtures::PointBody body(human_rest());
+  for (int t = 0; t < 6; ++t) {
+    const Mesh scan = fixtures::scan_of(body, human_rest(), fixtures::dance(0.1f * static_cast<float>(t)));
+    std::ofstream file(path("scans/" + std::to_string(t) + ".xyz"));
+    for (Eigen::Index v = 0; t != 3 && v < scan.vertices.rows(); ++v) file << scan.vertices.row(v) << '\n';
+  }
+  Studio studio(services());
+  studio.run("open", {path("scans"), path("target.obj")});
+  studio.wait_idle(60);
+  const Session& session = studio.session();
+  ASSERT_TRUE(session.errors.empty()) << session.errors.front().text;
+  ASSERT_EQ(frame_count(session), 6);
+  for (size_t t = 0; t < 6; ++t) {
+    EXPECT_EQ(session.source.frames[t].flagged, t == 3) << t;
+    EXPECT_EQ(session.takes[0].shown.flags[t] != 0, t == 3) << t;
+  }
+  EXPECT_EQ(session.takes[0].shown.poses[3].local[LeftHip], session.takes[0].shown.poses[2].local[LeftHip]);
+}
+
+/// Has no place for any target.
+class RefusingDeformer : public NearestDeformer {
+ public:
+  void bind(const Points&, const Joints&) override { throw Error("the target cannot be bound"); }
+};
+
+TEST_F(StudioTest, ATargetThatNoNetworkTakesIsToldAndExchanged) {
+  auto refusing = std::make_shared<std::atomic<bool>>(true);
+  StudioServices own = services();
+  own.networks = [refusing, usual = own.networks](const Method& method) {
+    Networks networks = usual(method);
+    if (*refusing) networks.deformer = std::make_shared<RefusingDeformer>();
+    return networks;
+  };
+  Studio studio(own);
+  open_both(studio);
+  ASSERT_EQ(studio.session().errors.size(), 1u);
+  EXPECT_EQ(studio.session().errors.front().text, "the target cannot be bound");
+  studio.run("edit.swap", {"2", "4", "arms"});  // what is at work is brought in line with this
+  studio.wait_idle(60);
+  *refusing = false;
+  studio.run("method.engine", {"0", "paper"});
+  studio.wait_idle(60);
+  EXPECT_EQ(frame_count(studio.session()), kFrames);
+}
+
+TEST_F(StudioTest, RetargetingAgainMakesEveryFrameAnew) {
+  Studio studio(services());
+  open_both(studio);
+  const Motion before = studio.session().takes[0].shown;
+  for (int round = 2; round <= 4; ++round) {
+    studio.run("work.restart");
+    studio.wait_idle(60);
+    EXPECT_EQ(*extractions_, round * kFrames);
+  }
+  EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
+}
+
+TEST_F(StudioTest, OfSeveralThingsOpenedOneThatFailsKeepsNoOtherOut) {
+  Studio studio(services());
+  studio.run("open", {path("not_there.ply"), path("scan.npz"), path("target.obj")});
+  studio.wait_idle(60);
+  ASSERT_EQ(studio.session().errors.size(), 1u);
+  EXPECT_NE(studio.session().errors.front().text.find("not_there.ply"), std::string::npos);
+  EXPECT_EQ(frame_count(studio.session()), kFrames);
+}
+
+TEST_F(StudioTest, UndoGoesBackThroughManySteps) {
+  Studio studio(services());
+  open_both(studio);
+  const int steps = 190;
+  for (int i = 1; i <= steps; ++i) studio.run("edit.rotate", {"0", "5", "left_elbow", "0", "0.01", "0", "1"});
+  EXPECT_EQ(studio.session().document.takes[0].pose_edits.rotate.size(), static_cast<size_t>(steps));
+  for (int i = 1; i <= steps; ++i) studio.run("edit.undo");
+  EXPECT_TRUE(studio.session().document.takes[0].pose_edits.rotate.empty());
+  EXPECT_EQ(studio.session().document.takes.size(), 1u);
+  for (int i = 1; i <= steps; ++i) studio.run("edit.redo");
+  EXPECT_EQ(studio.session().document.takes[0].pose_edits.rotate.size(), static_cast<size_t>(steps));
+}
+
+TEST_F(StudioTest, WhatWasSavedOrClosedLeavesNoCopyForRecovery) {
+  for (int round = 0; round < 20; ++round) {
+    Studio studio(services());
+    studio.session().settings.autosave_s = 0;
+    studio.run("target.add", {path("target.obj")});
+    studio.tick(1);  // starts writing the copy
+    if (round % 2) studio.run("document.save_as", {path("saved.understudy")});
+    if (round % 2) {
+      while (studio.jobs().running()) studio.tick(0);
+      EXPECT_TRUE(fs::is_empty(path("state"))) << round;
+    }
+  }
+  EXPECT_TRUE(fs::is_empty(path("state")));
+}
+
+TEST_F(StudioTest, ACopyForRecoveryThatCannotBeWrittenIsToldOnceAndInNoDialog) {
+  std::ofstream(path("state")) << "a file where the folder should be";
+  Studio studio(services());
+  studio.session().settings.autosave_s = 0;
+  studio.run("target.add", {path("target.obj")});
+  int told = 0;
+  for (int i = 0; i < 5; ++i) {
+    studio.session().notices.clear();
+    studio.tick(1);
+    studio.wait_idle(60);
+    for (const Notice& notice : studio.session().notices) told += notice.kind == Notice::Kind::Warning;
+  }
+  EXPECT_TRUE(studio.session().errors.empty());
+  EXPECT_EQ(told, 1);
+}
+
 TEST_F(StudioTest, MissingFilesAreAskedForAndFound) {
   {
     Studio studio(services());
