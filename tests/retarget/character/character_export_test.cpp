@@ -304,6 +304,49 @@ TEST(CharacterExport, ItsFileOpensAgainAsTheSameCharacter) {
   EXPECT_LT((second.target.mesh.vertices - first.target.mesh.vertices).rowwise().norm().maxCoeff(), 1e-3f);
 }
 
+TEST(CharacterExport, ARobotOfHardPartsStaysHard) {
+  const TempFolder folder;
+  Character robot = make_character();
+  robot.skins.clear();
+  robot.parts.clear();
+  for (int j = 0; j < kJointCount; ++j) {
+    CharacterPart part;
+    part.name = "plate";
+    part.node = 1 + j;
+    part.vertices = 0.1f * test::four_points();
+    part.faces = Faces{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    robot.parts.push_back(part);
+  }
+  const PreparedCharacter character = prepare_character(robot, nullptr, nullptr);
+  ASSERT_TRUE(character.rigged);
+  const RigDeformer screen(character, nullptr);
+  const auto poses = made_motion(20, character.target.joints);
+  const Exported out = exported(folder, character, screen, poses);
+  EXPECT_LT(largest_mm(out, character, screen, poses), 0.1f);
+  const Points before = vertices_at(out.file, 0, 0), after = vertices_at(out.file, 0, 0.6f);
+  for (Eigen::Index v = 0; v < before.rows(); v += 4)
+    EXPECT_NEAR((before.row(v) - before.row(v + 1)).norm(), (after.row(v) - after.row(v + 1)).norm(), 1e-5f);
+}
+
+TEST(CharacterExport, ABarePointCloudIsSkinnedPoints) {
+  const TempFolder folder;
+  MadeCharacter made;
+  made.rigged = false;
+  const Character body = make_character(made);
+  Mesh cloud;
+  cloud.vertices = body.parts[0].vertices;
+  KnownExtractor known(made_joints(made));
+  const PreparedCharacter character = prepare_character(character_of_mesh(cloud, "cloud"), &known, &known);
+  BulgingDeformer screen;
+  screen.bind(character.target.mesh.vertices, character.target.joints);
+  CharacterExportOptions options;
+  options.their_rig = false;
+  const Exported out = exported(folder, character, screen, made_motion(5, character.target.joints), options);
+  EXPECT_EQ(out.file.parts[0].faces.rows(), 0);
+  EXPECT_EQ(out.file.parts[0].skin, 0);
+  EXPECT_LT(out.cost.mean_mm, 5);
+}
+
 TEST(CharacterExport, RefusesWhatItCannotDo) {
   const TempFolder folder;
   const PreparedCharacter character = prepared({});
