@@ -120,7 +120,8 @@ TEST(CharacterFile, DamagedBytesNeverCrash) {
   for (int round = 0; round < 200; ++round) {
     std::string bytes = whole;
     for (int i = 0; i < 6; ++i)
-      bytes[static_cast<size_t>(rng.uniform(0, 1) * 6000)] = static_cast<char>(rng.uniform(0, 255));
+      bytes[static_cast<size_t>(rng.uniform(0, 1) * 6000)] =
+          static_cast<char>(static_cast<unsigned char>(rng.uniform(0, 255)));
     error_of([&] { parse_gltf_character(bytes, path); });
   }
 }
