@@ -5,6 +5,7 @@
 #include "app/session/background.hpp"
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 
 namespace understudy::app {
 namespace {
@@ -34,6 +35,14 @@ void append_shown(TakeState& take, int first, double fps) {
     take.shown.flags[t] = take.performed[t].flagged;
     take.joints[t] = forward_kinematics(take.target->joints, take.shown.poses[t]).joints;
   }
+}
+
+/// Whether the user is being asked where a file is: a second dialog need not say that it is missing.
+bool asked_for(const Session& session, const std::string& problem) {
+  if (!session.question || session.question->kind != Question::Kind::MissingFiles) return false;
+  const auto& missing = session.question->missing;
+  return std::any_of(missing.begin(), missing.end(),
+                     [&](const std::string& path) { return problem.find(path) != std::string::npos; });
 }
 
 /// The series of both; where both have a key, the newer.
@@ -90,6 +99,7 @@ void Studio::take_in(SourceOpened& event) {
 
 template <>
 void Studio::take_in(SourceFailed& event) {
+  if (asked_for(session_, event.sentence)) return log::warn(event.sentence);
   fail(event.sentence, "source.open");
 }
 
@@ -118,6 +128,7 @@ void Studio::take_in(TakeFailed& event) {
   TakeState* const take = take_of(event.id);
   if (!take) return;
   take->problem = event.sentence;
+  if (asked_for(session_, event.sentence)) return log::warn(event.sentence);
   fail(event.sentence, "target.add");
 }
 

@@ -61,6 +61,55 @@ TEST_F(StudioTest, ADraggedJointIsPerformedWithoutExtractingAgainAndUndone) {
   EXPECT_EQ(*extractions_, extracted);
 }
 
+TEST_F(StudioTest, OneEditIsRemovedAndTheOthersStay) {
+  Studio studio(services());
+  open_both(studio);
+  for (const char* frame : {"5", "10", "15"})
+    studio.run("edit.drag", {frame, "left_wrist", "0", "0.2", "0", "2"});
+  studio.run("edit.remove", {"skeleton", "1"});
+  const auto& edits = studio.session().document.skeleton_edits;
+  ASSERT_EQ(edits.size(), 2u);
+  EXPECT_EQ(std::get<DragEdit>(edits[0]).frame, 5);
+  EXPECT_EQ(std::get<DragEdit>(edits[1]).frame, 15);
+  studio.run("edit.undo");
+  EXPECT_EQ(edits.size(), 3u);
+  studio.run("edit.rotate", {"0", "5", "left_elbow", "0", "0", "1"});
+  studio.run("edit.remove", {"rotation", "0", "0"});
+  EXPECT_TRUE(studio.session().document.takes[0].pose_edits.rotate.empty());
+  EXPECT_THROW(studio.run("edit.remove", {"skeleton", "3"}), Error);
+}
+
+TEST_F(StudioTest, ANewCropHoldsThePerson) {
+  Studio studio(services());
+  open_both(studio);
+  const auto person = person_box(studio.session());
+  ASSERT_TRUE(person);
+  for (const KeptSource& frame : studio.session().source.frames)
+    for (int j = 0; j < kJointCount; ++j) {
+      EXPECT_TRUE((frame.joints.row(j).transpose().array() > person->low.array()).all());
+      EXPECT_TRUE((frame.joints.row(j).transpose().array() < person->high.array()).all());
+    }
+  studio.run("edit.crop", {"on"});
+  ASSERT_TRUE(studio.session().document.scan_edits.crop);
+  EXPECT_EQ(studio.session().document.scan_edits.crop->low, person->low);
+}
+
+TEST_F(StudioTest, ANewTargetLeavesTheFrameAndItsJointsAreSeenWhole) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("playback.frame", {"12"});
+  studio.run("open", {path("target.obj")});
+  studio.tick(0.01);
+  studio.wait_idle(60);
+  studio.tick(0.01);
+  EXPECT_EQ(shown_frame(studio.session()), 12);
+  studio.run("view.fit");
+  studio.run("view.zoom", {"0.3"});
+  const float near = studio.session().view.cameras[0].distance;
+  studio.run("tool", {"target-joints"});
+  EXPECT_GT(studio.session().view.cameras[0].distance, 2 * near);
+}
+
 TEST_F(StudioTest, FramesBeforeAnEditStayAsTheyWere) {
   Studio studio(services());
   open_both(studio);
@@ -325,6 +374,9 @@ TEST_F(StudioTest, MissingFilesAreAskedForAndFound) {
   studio.run("document.open", {path("dance.understudy")});
   ASSERT_TRUE(studio.session().question);
   EXPECT_EQ(studio.session().question->missing, std::vector<std::string>{path("scan.npz")});
+  studio.wait_idle(60);
+  EXPECT_TRUE(studio.session().errors.empty()) << "told twice: " << studio.session().errors.front().text;
+  EXPECT_TRUE(studio.session().takes[0].ready);
   studio.run("document.relocate", {path("scan.npz"), path("elsewhere/scan.npz")});
   studio.wait_idle(60);
   EXPECT_FALSE(studio.session().question);
