@@ -40,6 +40,7 @@ class ScanFiles final : public Source {
 
   std::optional<ScanFrame> next() override {
     std::optional<ScanFrame> frame = scans_.next();
+    if (frame) undecided_ = std::max(undecided_, decision_ ? 0 : ++at_);
     if (!frame || !frame->usable) return frame;
     const Eigen::Index points = finite_count(frame->mesh.vertices);
     if (!decision_ && points < kFewestPoints) {
@@ -55,11 +56,14 @@ class ScanFiles final : public Source {
     return frame;
   }
 
+  /// What was read before decides, as if it was read in order; nothing behind the frame is looked at.
   void seek(int64_t frame) override {
-    scans_.seek(0);
-    while (!decision_ && next()) {
+    if (!decision_ && undecided_ < frame) {
+      scans_.seek(at_ = undecided_);
+      while (!decision_ && at_ < frame && next()) {
+      }
     }
-    scans_.seek(frame);
+    scans_.seek(at_ = frame);
   }
   std::string decision() const override { return decision_ ? decision_->sentence : ""; }
   std::optional<int64_t> count() const override { return scans_.count(); }
@@ -76,6 +80,7 @@ class ScanFiles final : public Source {
   ImportOptions import_;
   bool quiet_;
   std::optional<ImportDecision> decision_;
+  int64_t at_ = 0, undecided_ = 0;  // the next frame, and up to which none decides; while nothing is decided
 };
 
 /// The shape parameters in a motion's file, as many as the body takes; none when all are zero.

@@ -101,6 +101,38 @@ TEST_F(SourceFiles, AFrameOfThreePointsDecidesNothing) {
   EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 1.7f, 0.02);
 }
 
+TEST_F(SourceFiles, ASoughtFrameIsTheSameAsInOrder) {
+  std::ofstream(scratch.path("frame_00000.xyz")) << "0 0 0\n0 5000 0\n1 1 1\n";
+  std::ofstream(scratch.path("frame_00001.xyz")) << "nan nan nan\n";
+  write_frame(2, 100);
+  write_frame(3, 1);  // still centimetres: the frame before has decided
+  const auto source = open_source(here());
+  for (const int first : {1, 0, 3, 0, 2, 1}) {
+    source->seek(first);
+    for (int i = first; i < 4; ++i) {
+      const auto frame = source->next();
+      ASSERT_TRUE(frame);
+      EXPECT_EQ(frame->number, i);
+      if (i == 1) EXPECT_FALSE(frame->usable);
+      if (i > 1) EXPECT_NEAR(frame->mesh.vertices.col(1).maxCoeff(), i == 2 ? 1.7f : 0.017f, 0.02);
+      if (first == 0) break;
+    }
+  }
+}
+
+TEST_F(SourceFiles, SeekingLooksAtNothingBehindTheFrame) {
+  for (int i = 0; i < 3; ++i)
+    std::ofstream(scratch.path("frame_0000" + std::to_string(i) + ".xyz")) << "0 0 0\n0 1 0\n1 1 1\n";
+  write_frame(3, 1);
+  const auto source = open_source(here());
+  source->seek(0);
+  EXPECT_FALSE(source->next()->usable);
+  source->seek(2);
+  EXPECT_EQ(source->decision(), "");
+  EXPECT_FALSE(source->next()->usable);
+  EXPECT_TRUE(source->next()->usable);
+}
+
 NpyArray filled(std::vector<int64_t> shape, float value) {
   int64_t count = 1;
   for (const int64_t extent : shape) count *= extent;
