@@ -44,6 +44,8 @@ struct SkeletonView {
   Points joints{0, 3};       ///< [J, 3]
   std::vector<int> parents;  ///< [J], -1 for a root
   std::vector<Side> sides;   ///< [J]; empty: all middle
+  Vec3 tint = Vec3::Zero();  ///< mixed into the sides' colours,
+  float tint_share = 0;      ///< by so much
   float thickness = 1;       ///< of bones and balls, 1 fits an adult
   bool x_ray = true;         ///< seen through everything else
 };

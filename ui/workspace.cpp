@@ -80,7 +80,7 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   draw_side(session, context);
   close_menu_by_escape();
   draw_dialog(session, context);
-  draw_notices(session, context, notices_);
+  draw_notices(session, context, notices_, places_.views);
   ask_for_keys(session, context);
 }
 

@@ -21,11 +21,14 @@ int falloff_argument(const Session& session, const Arguments& a, size_t i) {
 }
 
 void add_scan_edits(Commands& commands) {
-  commands.add({"edit.crop", "Crop the scan", "LOW HIGH (six numbers, metres) | off", "", true, true,
-                [](Studio& s, const Arguments& a) {
+  commands.add({"edit.crop", "Crop the scan", "LOW HIGH (six numbers, metres) | on: around the person | off",
+                "", true, true, [](Studio& s, const Arguments& a) {
                   auto& crop = s.session().document.scan_edits.crop;
-                  crop.reset();
-                  if (word(a, 0, "box") == "off") return;
+                  if (word(a, 0, "box") == "off") return crop.reset();
+                  if (a[0] == "on") {
+                    if (!crop) crop = person_box(s.session()).value_or(Box{{-1, -0.1f, -1}, {1, 2.2f, 1}});
+                    return;
+                  }
                   const Box box{vector_argument(a, 0, "corner"), vector_argument(a, 3, "corner")};
                   US_CHECK((box.high - box.low).minCoeff() > 0, "the crop box has no inside");
                   crop = box;
@@ -108,6 +111,26 @@ void add_pose_edits(Commands& commands) {
                   auto& heading = pose_edits(s, a).heading;
                   heading.reset();
                   if (yaw != 0) heading = HeadingEdit{yaw};
+                }});
+}
+
+template <class Edit>
+void remove_at(std::vector<Edit>& edits, const Arguments& a, size_t i) {
+  const int index = whole_number(a, i, "edit");
+  US_CHECK(index >= 0 && static_cast<size_t>(index) < edits.size(), "there is no edit ", index, " among ",
+           edits.size());
+  edits.erase(edits.begin() + index);
+}
+
+void add_removal(Commands& commands) {
+  commands.add({"edit.remove", "Remove an edit", "skeleton INDEX | rotation TAKE INDEX | joint TAKE INDEX",
+                "", true, false, [](Studio& s, const Arguments& a) {
+                  Session& session = s.session();
+                  const size_t kind = choice(a, 0, "kind", {"skeleton", "rotation", "joint"});
+                  if (kind == 0) return remove_at(session.document.skeleton_edits, a, 1);
+                  Take& take = take_argument(session, a, 1);
+                  if (kind == 1) return remove_at(take.pose_edits.rotate, a, 2);
+                  remove_at(take.target_edits.joints, a, 2);
                 }});
 }
 
@@ -228,6 +251,7 @@ void add_edit_commands(Commands& commands) {
   add_skeleton_edits(commands);
   add_pose_edits(commands);
   add_pose_ranges(commands);
+  add_removal(commands);
   add_target_edits(commands);
   add_weight_tools(commands);
 }

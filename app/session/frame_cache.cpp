@@ -25,6 +25,17 @@ constexpr size_t kMostPrefetches = 8;
 constexpr size_t kFewestKept = 4;
 constexpr int kSource = -1;
 
+/// The points that are not in the box.
+Points outside(const Box& box, const Points& points) {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Vec3 p = points.row(i);
+    const bool in = (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
+    if (!in && p.allFinite()) rows.push_back(i);
+  }
+  return points(rows, Eigen::all);
+}
+
 /// What a picture is of: the source, or a take.
 struct Key {
   int take = kSource, frame = 0;
@@ -72,7 +83,7 @@ int64_t bytes_of(const Entry& entry) {
   int64_t bytes = sizeof(Entry);
   if (const auto& scan = entry.scan)
     bytes += bytes_of(scan->mesh.vertices) + bytes_of(scan->mesh.faces) + bytes_of(scan->mesh.colors) +
-             bytes_of(scan->normals);
+             bytes_of(scan->normals) + bytes_of(scan->cropped_away);
   if (const auto& posed = entry.posed)
     bytes += bytes_of(posed->vertices) + bytes_of(posed->normals) + bytes_of(posed->offsets);
   return bytes;
@@ -155,7 +166,7 @@ class ScanReader {
       picture.problem = error.what();
     }
     if (picture.problem.empty()) return picture;
-    picture = {{}, {}, 0, false, picture.problem};
+    picture = {{}, {}, {}, 0, false, picture.problem};
     return picture;
   }
 
@@ -189,6 +200,7 @@ class ScanReader {
       edits.crop = Box{Vec3::Constant(std::numeric_limits<float>::lowest()),
                        Vec3::Constant(std::numeric_limits<float>::max())};
     ScanPicture picture;
+    if (edits_.crop) picture.cropped_away = outside(*edits_.crop, scan.mesh.vertices);
     picture.mesh = edits.empty() ? std::move(scan.mesh) : apply(edits, scan.mesh);
     const Points& vertices = picture.mesh.vertices;
     US_CHECK(vertices.rows() > 0, "frame ", frame, ": the edits leave nothing of the scan");

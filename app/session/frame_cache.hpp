@@ -13,9 +13,10 @@ namespace understudy::app {
 
 /// A scan as it is drawn: edited, with normals.
 struct ScanPicture {
-  Mesh mesh;          ///< metres, y up, after the scan edits
-  Points normals;     ///< [V, 3], of the faces, or estimated
-  float spacing = 0;  ///< metres between neighbouring points
+  Mesh mesh;            ///< metres, y up, after the scan edits
+  Points normals;       ///< [V, 3], of the faces, or estimated
+  Points cropped_away;  ///< [N, 3], what the crop box took
+  float spacing = 0;    ///< metres between neighbouring points
   bool usable = true;
   std::string problem;
 };

@@ -108,6 +108,15 @@ const std::vector<Series>& known_series() {
   return kSeries;
 }
 
+const std::vector<Series>& known_totals() {
+  static const std::vector<Series> kTotals = {
+      {"pa_acc", "PA acceleration error", "m/frame\xC2\xB2", true, {}},
+      {"extraction_flip_rate", "Front-back flips", "", true, {}},
+      {"extraction_raw_mpjpe_mm", "Raw extraction error", "mm", true, {}},
+  };
+  return kTotals;
+}
+
 Series blank_series(const std::string& key, size_t count) {
   const Series* known = find(known_series(), key);
   US_CHECK(known, "there is no figure ", key);

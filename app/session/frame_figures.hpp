@@ -23,6 +23,8 @@ std::vector<Series> joint_figures(const FigureInput& input);
 
 /// The order, names and units of every series there is; values empty.
 const std::vector<Series>& known_series();
+/// Figures of a whole sequence that no frame has by itself; without values.
+const std::vector<Series>& known_totals();
 /// A series of `known_series` by key, with `count` values NaN.
 Series blank_series(const std::string& key, size_t count);
 

@@ -6,6 +6,17 @@
 namespace understudy::app {
 namespace {
 
+/// Goes as far back as the spread arms of a T-pose ask; never nearer.
+void see_whole(Studio& studio) {
+  Session& session = studio.session();
+  if (!session.view.linked) session.view.active_pane = session.selected_take + 1;
+  const size_t i = session.view.linked ? 0 : static_cast<size_t>(session.view.active_pane);
+  const View before = session.view;
+  studio.run("view.fit");
+  if (i < before.cameras.size() && session.view.cameras[i].distance <= before.cameras[i].distance)
+    session.view.cameras = before.cameras;
+}
+
 void add_tools(Commands& commands) {
   struct Row {
     const char *name, *label, *key;
@@ -18,8 +29,11 @@ void add_tools(Commands& commands) {
                   [&row](Studio& s, const Arguments&) { s.run("tool", {row.name}); }});
   commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop", "", false, false,
                 [](Studio& s, const Arguments& a) {
-                  s.session().tool = static_cast<Tool>(
+                  const auto tool = static_cast<Tool>(
                       choice(a, 0, "tool", {"look", "joints", "bones", "target-joints", "paint", "crop"}));
+                  const bool changes = s.session().tool != tool;
+                  s.session().tool = tool;
+                  if (changes && tool == Tool::TargetJoints) see_whole(s);
                 }});
   commands.add({"tool.falloff", "Falloff", "FRAMES", "", false, false, [](Studio& s, const Arguments& a) {
                   s.session().falloff = std::clamp(whole_number(a, 0, "falloff"), 0, 10000);
@@ -114,8 +128,8 @@ void add_settings(Commands& commands) {
                       std::clamp(static_cast<float>(number(a, 0, "factor")), 0.2f, 4.f);
                   s.save_settings();
                 }});
-  commands.add({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000, from the next start", "", false, false,
-                [](Studio& s, const Arguments& a) {
+  commands.add({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000, from the next start", "", false,
+                false, [](Studio& s, const Arguments& a) {
                   s.session().settings.undo_depth = std::clamp(whole_number(a, 0, "number"), 10, 1000);
                   s.save_settings();
                 }});

@@ -7,7 +7,9 @@ namespace understudy::app {
 namespace {
 
 constexpr float kLowConfidence = 0.5f, kWeakLimb = 0.3f, kLengthOff = 0.2f;
-constexpr float kLengthOffM = 0.05f;  // short bones are never seen to 20 %
+constexpr float kAroundJoints = 0.3f,
+                kBelowJoints = 0.12f;  // metres that a body reaches further than its joints, at most
+constexpr float kLengthOffM = 0.05f;   // short bones are never seen to 20 %
 
 /// Why a frame of the source is not to be trusted; empty when it is.
 std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {
@@ -46,6 +48,19 @@ int frame_count(const Session& session) {
 
 int shown_frame(const Session& session) {
   return shown_frame(session.playback, frame_count(session));
+}
+
+std::optional<Box> person_box(const Session& session) {
+  std::optional<Box> box;
+  for (const KeptSource& frame : session.source.frames) {
+    if (frame.flagged || !frame.joints.allFinite()) continue;
+    const Vec3 low = frame.joints.colwise().minCoeff(), high = frame.joints.colwise().maxCoeff();
+    box = box ? Box{box->low.cwiseMin(low), box->high.cwiseMax(high)} : Box{low, high};
+  }
+  if (!box) return box;
+  box->low -= Vec3(kAroundJoints, kBelowJoints, kAroundJoints);
+  box->high += Vec3::Constant(kAroundJoints);
+  return box;
 }
 
 std::vector<BadFrame> bad_frames(const Session& session) {

@@ -133,6 +133,8 @@ struct Session {
 int frame_count(const Session& session);
 /// The frame shown, -1 without one.
 int shown_frame(const Session& session);
+/// Around the person in all good frames of the source, metres; none before the first.
+std::optional<Box> person_box(const Session& session);
 /// Frames to mark as bad, with why ("frame 12: low confidence").
 struct BadFrame {
   int frame;

@@ -246,7 +246,9 @@ void Studio::tick(double seconds) {
   if (edits.trim && trimmed.in < 0) trimmed.in = edits.trim->first;
   if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
   advance(trimmed, seconds, session_.source.fps, count, edits.skip);
-  session_.playback.frame = std::clamp(trimmed.frame, 0.0, std::max(0.0, count - 1e-3));
+  // A new target starts without frames: the place is kept until it comes there.
+  const double comes = std::max(count, static_cast<int>(session_.source.frames.size()));
+  session_.playback.frame = std::clamp(trimmed.frame, 0.0, std::max(0.0, comes - 1e-3));
   session_.playback.playing = trimmed.playing;
   if (session_.view.turntable_deg_s != 0)
     for (CameraState& camera : session_.view.cameras)

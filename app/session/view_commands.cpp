@@ -70,6 +70,13 @@ void add_cameras(Commands& commands) {
        }});
 }
 
+/// The T-pose stands where the person would: on the floor, under the camera that follows.
+Joints rest_as_shown(const Target& target) {
+  const float floor = target.mesh.vertices.rows() > 0 ? target.mesh.vertices.col(1).minCoeff() : 0;
+  const Vec3 from(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
+  return target.joints.rowwise() - from.transpose();
+}
+
 /// Joints of everybody who is shown at the frame, as their cameras see them; of the targets in T-pose while
 /// there is no frame.
 std::vector<Joints> shown_joints(const Session& session) {
@@ -83,6 +90,9 @@ std::vector<Joints> shown_joints(const Session& session) {
     else if (pane > 0 && session.takes[static_cast<size_t>(pane - 1)].target)
       all.push_back(session.takes[static_cast<size_t>(pane - 1)].target->joints);
   }
+  const size_t selected = static_cast<size_t>(session.selected_take);
+  if (session.tool == Tool::TargetJoints && selected < session.takes.size() && session.takes[selected].target)
+    all.push_back(rest_as_shown(*session.takes[selected].target));
   return all;
 }
 
@@ -90,6 +100,7 @@ std::vector<Joints> shown_joints(const Session& session) {
 /// asks.
 void fit(Studio& studio) {
   constexpr float kBody = 0.2f;          // metres of a body beyond its outermost joints
+  constexpr float kTitle = 0.08f;        // of the height stays free above the heads, for words
   constexpr float kViewsAspect = 1.55f;  // of all views together in a usual window
   Session& session = studio.session();
   CameraState& c = active_camera(studio);
@@ -104,6 +115,7 @@ void fit(Studio& studio) {
     low = low.cwiseMin(joints.colwise().minCoeff().transpose());
     high = high.cwiseMax(joints.colwise().maxCoeff().transpose());
   }
+  high.y() += kTitle * (high.y() - low.y() + 2 * kBody);
   c.target = 0.5f * (low + high);
   const int panes = std::max(1, pane_count(session.view, static_cast<int>(session.takes.size())));
   const float aspect = kViewsAspect / static_cast<float>(panes);

@@ -30,7 +30,8 @@ void add_bone(Solids& solids, const Vec3& from, const Vec3& to, float thickness,
 
 Vec3 color_of(const SkeletonView& view, size_t joint) {
   const Side side = view.sides.empty() ? Side::Middle : view.sides[joint];
-  return side == Side::Left ? kLeftColor : side == Side::Right ? kRightColor : kMiddleColor;
+  const Vec3& own = side == Side::Left ? kLeftColor : side == Side::Right ? kRightColor : kMiddleColor;
+  return (1 - view.tint_share) * own + view.tint_share * view.tint;
 }
 
 void check(const SkeletonView& view) {

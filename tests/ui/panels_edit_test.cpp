@@ -27,7 +27,7 @@ TEST_F(EditPanel, OfTheScan) {
   expect_click("edit.cluster", {"edit.cluster on"});
   session.document.scan_edits = ScanEdits{};
   frame(2);
-  expect_click("edit.crop", {"edit.crop -1 -0.1 -1 1 2.2 1"});
+  expect_click("edit.crop", {"edit.crop on"});
   expect_click("edit.floor_removal", {"edit.floor_removal on"});
   EXPECT_FALSE(shown("edit.crop.low.x"));
 }
@@ -38,6 +38,7 @@ TEST_F(EditPanel, OfTheSkeleton) {
   expect_click("edit.children", {"tool.children on"});
   expect_click("edit.skeleton.0", {"playback.frame 4"});
   expect_click("edit.skeleton.1", {"playback.frame 10"});
+  expect_click("edit.skeleton.1.remove", {"edit.remove skeleton 1"});
   expect_click("edit.skeleton_clear", {"edit.skeleton_clear"});
 }
 
@@ -63,12 +64,14 @@ TEST_F(EditPanel, OfTheResult) {
   expect_click("edit.trim_off", {"edit.trim 0 off"});
   expect_click("edit.skip", {"edit.skip 0 20 on"});
   expect_click("edit.rotation.0", {"playback.frame 12"});
+  expect_click("edit.rotation.0.remove", {"edit.remove rotation 0 0"});
   expect_click("edit.poses_clear", {"edit.poses_clear 0"});
 }
 
 TEST_F(EditPanel, OfTheTarget) {
   expect_click("edit.target_tool", {"tool target-joints"});
   expect_click("edit.mirror", {"tool.mirror off"});
+  expect_click("edit.moved.0.remove", {"edit.remove joint 0 0"});
   expect_click("edit.target_joints_clear", {"edit.target_joints_clear 0"});
 }
 

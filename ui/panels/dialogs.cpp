@@ -142,7 +142,7 @@ QuestionAnswer draw_question(const app::Session& session, PanelContext& context)
   }
 }
 
-void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state) {
+void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state, const Rect& over) {
   double newest = state.newest;
   for (const app::Notice& notice : session.notices) {
     if (notice.until <= state.newest) continue;
@@ -152,7 +152,7 @@ void draw_notices(const app::Session& session, PanelContext& context, NoticesSta
     newest = std::max(newest, notice.until);
   }
   state.newest = newest;
-  state.shown.draw(context.ui);
+  state.shown.draw(context.ui, over);
 }
 
 bool draw_about(PanelContext& context, const std::string& about) {

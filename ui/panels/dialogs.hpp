@@ -28,7 +28,7 @@ struct NoticesState {
   double newest = 0;  ///< Notice::until of the newest that was taken over
 };
 /// Outside any window, last.
-void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state);
+void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state, const Rect& over);
 
 /// Program, versions, machine. False once it was closed.
 bool draw_about(PanelContext& context, const std::string& about);

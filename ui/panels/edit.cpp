@@ -49,7 +49,7 @@ void draw_crop(const app::Session& session, PanelContext& context) {
   if (const auto on =
           toggle_row(ui, {"edit.crop", "Crop", "Only what is inside a box is looked at"}, crop.has_value())) {
     if (*on)
-      ask_for_crop(context, {Vec3(-1, -0.1f, -1), Vec3(1, 2.2f, 1)});
+      context.ask("edit.crop", {"on"});
     else
       context.ask("edit.crop", {"off"});
   }
@@ -119,11 +119,18 @@ int frame_of(const SkeletonEdit& edit) {
   return drag != nullptr ? drag->frame : std::get<SwapEdit>(edit).first;
 }
 
-/// A line for each edit made; a click goes to its frame. The newest 50.
-void edit_line(PanelContext& context, const std::string& name, const std::string& words, int frame) {
+/// A line for each edit made; a click goes to its frame (-1: it has none). The newest 50.
+void edit_line(PanelContext& context, const std::string& name, const std::string& words, int frame,
+               const app::Arguments& removal) {
+  Ui& ui = context.ui;
+  const float side = ImGui::GetFrameHeight(), gap = ui.px(4);
   ButtonOptions options;
-  options.look = ButtonLook::Quiet, options.width = -1, options.tooltip = words + ". Click: go there";
-  if (button(context.ui, name, words, options)) context.ask("playback.frame", {std::to_string(frame)});
+  options.look = ButtonLook::Quiet, options.tooltip = words + (frame < 0 ? "" : ". Click: go there");
+  options.width = std::max(ui.px(40), ImGui::GetContentRegionAvail().x - side - gap) / ui.scale();
+  if (button(ui, name, words, options) && frame >= 0) context.ask("playback.frame", {std::to_string(frame)});
+  ImGui::SameLine(0, gap);
+  if (icon_button(ui, name + ".remove", Icon::Close, {"Remove this edit", "", false, false, 26}))
+    context.ask("edit.remove", removal);
 }
 
 void draw_swap(const app::Session& session, PanelContext& context, EditState& state) {
@@ -163,7 +170,8 @@ void draw_skeleton(const app::Session& session, PanelContext& context, EditState
   draw_swap(session, context, state);
   const auto& edits = session.document.skeleton_edits;
   for (size_t i = edits.size() > 50 ? edits.size() - 50 : 0; i < edits.size(); ++i)
-    edit_line(context, "edit.skeleton." + std::to_string(i), describe(edits[i]), frame_of(edits[i]));
+    edit_line(context, "edit.skeleton." + std::to_string(i), describe(edits[i]), frame_of(edits[i]),
+              {"skeleton", std::to_string(i)});
   clear_button(context, "edit.skeleton_clear", "edit.skeleton_clear", !edits.empty());
 }
 
@@ -237,7 +245,7 @@ void draw_result(const app::Session& session, PanelContext& context) {
     edit_line(context, "edit.rotation." + std::to_string(i),
               "Frame " + std::to_string(edit.frame) + ": " + joint_label(edit.joint) + ", " +
                   figure(edit.axis_angle.norm() * 180 / kPi, "\u00b0"),
-              edit.frame);
+              edit.frame, {"rotation", k, std::to_string(i)});
   }
   clear_button(context, "edit.poses_clear", "edit.poses_clear", !edits.empty(), {k});
 }
@@ -252,6 +260,10 @@ void draw_target(const app::Session& session, PanelContext& context) {
                                  session.mirror_joint))
     context.ask("tool.mirror", {on_off(*on)});
   const auto& moved = take->target_edits.joints;
+  for (size_t i = 0; i < moved.size(); ++i)
+    edit_line(context, "edit.moved." + std::to_string(i),
+              joint_label(moved[i].joint) + (moved[i].mirror ? ", both sides" : ""), -1,
+              {"joint", std::to_string(session.selected_take), std::to_string(i)});
   if (!moved.empty()) hint(ui, plural(moved.size(), "joint") + " moved by hand.");
   clear_button(context, "edit.target_joints_clear", "edit.target_joints_clear", !moved.empty(),
                {std::to_string(session.selected_take)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/session/frame_figures.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/lists.hpp"
 #include "ui/widgets/plot.hpp"
@@ -62,6 +63,14 @@ std::string figure_of(const app::Metrics& metrics, const std::string& key) {
   return "\u2013";
 }
 
+/// "PA-MPJPE, m" for "pa_mpjpe_m".
+std::string words_of(const std::string& key) {
+  const app::Series* known = app::find(app::known_series(), key);
+  if (known == nullptr) known = app::find(app::known_totals(), key);
+  if (known == nullptr) return key;
+  return known->unit.empty() ? known->label : known->label + ", " + known->unit;
+}
+
 void draw_figures(const app::Session& session, Ui& ui) {
   const std::vector<std::string> keys = figure_keys(session);
   if (keys.empty()) {
@@ -75,7 +84,7 @@ void draw_figures(const app::Session& session, Ui& ui) {
   if (!table.open()) return;
   for (const std::string& key : keys) {
     table.row(false, false);
-    table.cell(key);
+    table.cell(words_of(key));
     for (size_t k = 0; k + 1 < columns.size(); ++k) table.cell(figure_of(session.takes[k].metrics, key));
   }
 }

@@ -36,7 +36,7 @@ bool same(const render::PointsView& a, const render::PointsView& b) {
 
 bool same(const render::SkeletonView& a, const render::SkeletonView& b) {
   return equal(a.joints, b.joints) && a.parents == b.parents && a.sides == b.sides &&
-         a.thickness == b.thickness && a.x_ray == b.x_ray;
+         a.thickness == b.thickness && a.x_ray == b.x_ray && a.tint == b.tint && a.tint_share == b.tint_share;
 }
 
 bool same(const render::LinesView& a, const render::LinesView& b) {

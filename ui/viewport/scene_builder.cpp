@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "app/session/follow.hpp"
 #include "render/colors.hpp"
@@ -16,7 +17,7 @@ using render::SharedPoints;
 
 constexpr float kGhostOpacity = 0.16f, kOverlaidOpacity = 0.62f, kTrailSeconds = 1.2f;
 constexpr float kDisc = 1.15f;           // a scan's discs against its spacing: few holes, edges still sharp
-constexpr float kAroundJoints = 0.3f;    // metres that a body reaches further than its joints, at most
+constexpr float kAroundScan = 0.05f;     // metres, of a new crop box where nobody was found
 constexpr float kHandleRadius = 0.022f;  // metres, of the crop box's handles
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
@@ -68,11 +69,12 @@ class Builder {
     bool coloured = true;
   };
   void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, const Look& how);
-  void add_skeleton(const Joints& joints, const app::Layers& layers);
+  void add_skeleton(const Joints& joints, const app::Layers& layers, int person);
   void add_trails();
   void add_trail(int person, int joint);
   void add_ghosts();
   void add_crop_box();
+  void add_cropped_away();
   void set_ground();
   bool layer(bool app::Layers::*which) const {
     return (in_.pane.source && session_.view.source.*which) ||
@@ -140,9 +142,10 @@ void Builder::add_scan() {
     }
     tell(made, -1);
   }
+  add_cropped_away();
   const Joints* joints = pane_joints(session_, pane_of(0), in_.pictures.frame);
   if (in_.preview.source_joints) joints = &*in_.preview.source_joints;
-  if (joints != nullptr) add_skeleton(*joints, layers);
+  if (joints != nullptr) add_skeleton(*joints, layers, 0);
 }
 
 void Builder::add_take(size_t i) {
@@ -153,7 +156,7 @@ void Builder::add_take(size_t i) {
     add_target_surface(i, in_.pictures.takes[i], {over ? kOverlaidOpacity : 1});
   const Joints* joints = pane_joints(session_, pane_of(k + 1), in_.pictures.frame);
   if (i == 0 && in_.preview.take_joints) joints = &*in_.preview.take_joints;
-  if (joints != nullptr) add_skeleton(*joints, layers);
+  if (joints != nullptr) add_skeleton(*joints, layers, k + 1);
 }
 
 void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed,
@@ -189,9 +192,17 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
   out_.scene.meshes.push_back(std::move(view));
 }
 
-void Builder::add_skeleton(const Joints& joints, const app::Layers& layers) {
+/// Where several stand in one place, each has its own shade of the two sides' colours.
+void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int person) {
   if (!layers.skeleton) return;
   render::SkeletonView view = render::skeleton_view(joints);
+  if (in_.pane.takes.size() + (in_.pane.source ? 1 : 0) > 1) {
+    static const std::array<std::pair<Vec3, float>, 4> kShades = {{{Vec3(1, 1, 1), 0.55f},
+                                                                   {Vec3(1, 1, 1), 0},
+                                                                   {Vec3(0, 0, 0), 0.45f},
+                                                                   {Vec3(0.55f, 0.2f, 0.6f), 0.5f}}};
+    std::tie(view.tint, view.tint_share) = kShades[person == 0 ? 0 : 1 + static_cast<size_t>(person - 1) % 3];
+  }
   view.x_ray = layers.x_ray;
   out_.scene.skeletons.push_back(std::move(view));
 }
@@ -241,6 +252,18 @@ void Builder::add_trail(int person, int joint) {
     line.x_ray = true;
     out_.scene.lines.push_back(std::move(line));
   }
+}
+
+/// Faint, while the box is being set.
+void Builder::add_cropped_away() {
+  const auto& scan = in_.pictures.scan;
+  if (session_.tool != app::Tool::Crop || scan == nullptr || scan->cropped_away.rows() == 0) return;
+  const Vec3 air = (out_.scene.background.top + out_.scene.background.bottom) / 2;
+  render::PointsView view;
+  view.positions = part_of(scan, scan->cropped_away);
+  view.color = 0.72f * air + 0.28f * kScanColor;
+  if (scan->spacing > 0) view.radius = 0.6f * scan->spacing;
+  out_.scene.clouds.push_back(std::move(view));
 }
 
 void Builder::add_crop_box() {
@@ -329,23 +352,12 @@ PaneScene build_scene(const SceneInput& input, ColourMemory* memory) {
 
 Box crop_box(const Session& session, const PanePictures& pictures) {
   if (session.document.scan_edits.crop) return *session.document.scan_edits.crop;
-  Box box;
-  box.low = Vec3(-1, 0, -1), box.high = Vec3(1, 1.8f, 1);
-  bool any = false;
-  const auto take_in = [&](const Vec3& low, const Vec3& high) {
-    if (!low.allFinite() || !high.allFinite()) return;
-    box.low = any ? Vec3(box.low.cwiseMin(low)) : low;
-    box.high = any ? Vec3(box.high.cwiseMax(high)) : high;
-    any = true;
-  };
-  for (const app::KeptSource& frame : session.source.frames)  // a crop is of all frames
-    if (!frame.flagged) take_in(frame.joints.colwise().minCoeff(), frame.joints.colwise().maxCoeff());
-  if (!any && pictures.scan != nullptr && pictures.scan->mesh.vertices.rows() > 0)
-    take_in(pictures.scan->mesh.vertices.colwise().minCoeff(),
-            pictures.scan->mesh.vertices.colwise().maxCoeff());
-  box.low -= Vec3(kAroundJoints, 0.12f, kAroundJoints);
-  box.high += Vec3::Constant(kAroundJoints);
-  return box;
+  if (const auto person = app::person_box(session)) return *person;
+  if (pictures.scan == nullptr || pictures.scan->mesh.vertices.rows() == 0)
+    return {Vec3(-1, -0.1f, -1), Vec3(1, 2.1f, 1)};
+  const Points& points = pictures.scan->mesh.vertices;
+  const Vec3 around = Vec3::Constant(kAroundScan);
+  return {points.colwise().minCoeff().transpose() - around, points.colwise().maxCoeff().transpose() + around};
 }
 
 Vec3 face_centre(const Box& box, int face) {

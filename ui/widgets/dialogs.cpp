@@ -53,17 +53,19 @@ Answer draw_choices(Ui& ui, const std::vector<Choice>& choices) {
 
 void Notices::add(const std::string& sentence, NoticeKind kind, float seconds) {
   notices_.push_back({sentence, kind, seconds});
-  if (notices_.size() > 5) notices_.erase(notices_.begin());
+  if (notices_.size() > 3) notices_.erase(notices_.begin());
 }
 
-void Notices::draw(Ui& ui) {
+void Notices::draw(Ui& ui, const Rect& over) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
-  float bottom = display.y - ui.px(18);
+  const Rect area = over.empty() ? Rect{{0, 0}, display} : over;
+  const float room = std::max(ui.px(120), std::min(ui.px(420), area.width() - ui.px(20)));
+  float top = area.min.y + ui.px(10);
   for (size_t k = notices_.size(); k-- > 0;) {
     Notice& notice = notices_[k];
     const std::string name = "notice." + std::to_string(notices_.size() - 1 - k);
-    ImGui::SetNextWindowPos({display.x / 2, bottom}, ImGuiCond_Always, {0.5f, 1});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {std::min(ui.px(560), display.x - ui.px(16)), FLT_MAX});
+    ImGui::SetNextWindowPos({area.max.x - ui.px(10), top}, ImGuiCond_Always, {1, 0});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {room, FLT_MAX});
     const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::clamp(notice.seconds_left / 0.3f, 0.05f, 1.f));
     ImGui::Begin(("##" + name).c_str(), nullptr,
@@ -72,7 +74,7 @@ void Notices::draw(Ui& ui) {
                      ImGuiWindowFlags_NoSavedSettings);
     icon_label(ui, icon_of(notice.kind), color_of(ui.theme(), notice.kind));
     ImGui::SameLine();
-    ImGui::PushTextWrapPos(std::min(ui.px(540), display.x - ui.px(40)));
+    ImGui::PushTextWrapPos(room - ui.px(20));
     ImGui::TextUnformatted(notice.sentence.c_str());
     ImGui::PopTextWrapPos();
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
@@ -80,7 +82,7 @@ void Notices::draw(Ui& ui) {
     const bool hovered = ImGui::IsWindowHovered();
     if (!hovered) notice.seconds_left -= ImGui::GetIO().DeltaTime;
     if (hovered && ImGui::IsMouseClicked(0)) notice.seconds_left = 0;
-    bottom -= size.y + ui.px(8);
+    top += size.y + ui.px(8);
     ImGui::End();
     ImGui::PopStyleVar();
   }

@@ -10,14 +10,14 @@ namespace understudy::ui {
 
 enum class NoticeKind { Info, Good, Warning };
 
-/// Sentences that appear at the bottom for some seconds: "Saved walk.understudy". Plain data; the application
-/// keeps one and draws it last.
+/// Sentences that appear for some seconds, three at most: "Saved walk.understudy". Plain data; the
+/// application keeps one and draws it last.
 class Notices {
  public:
   void add(const std::string& sentence, NoticeKind kind = NoticeKind::Info, float seconds = 4);
   /// Call once a frame, outside any window. A notice stays while the pointer is on it; a click removes it.
-  /// The newest is marked notice.0.
-  void draw(Ui& ui);
+  /// The newest is on top, at the top right of `over` (empty: of the window), and marked notice.0.
+  void draw(Ui& ui, const Rect& over = {});
   bool empty() const { return notices_.empty(); }
 
  private:

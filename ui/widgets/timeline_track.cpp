@@ -42,7 +42,17 @@ void draw_ruler(Track& t) {
   }
 }
 
-void draw_body(Track& t) {
+/// Whether the curve is mostly in the upper half right of `x`: a label has more room below.
+bool runs_high(const Track& t, const Range& range, float x) {
+  int high = 0, low = 0;
+  for (int i = std::max(0, static_cast<int>(t.axis.frame(x)));
+       i < std::min(t.data.curve.size, t.data.processed); ++i)
+    if (const float value = t.data.curve.data[i]; std::isfinite(value) && t.axis.x(i) <= t.body.max.x)
+      (2 * (value - range.low) > range.high - range.low ? high : low)++;
+  return high > low;
+}
+
+void draw_body(Track& t, const std::string& name) {
   const Theme& theme = t.ui.theme();
   const float corner = t.ui.px(4);
   t.list.AddRectFilled(t.body.min, t.body.max, color(theme.backdrop), corner);
@@ -72,8 +82,12 @@ void draw_body(Track& t) {
   t.list.PopClipRect();
   const FontScope small(t.ui.fonts().small);
   if (!range.empty() && !t.data.curve_label.empty()) {
-    const float x = t.body.max.x - ImGui::CalcTextSize(t.data.curve_label.c_str()).x - t.ui.px(6);
-    t.list.AddText({x, t.body.min.y + t.ui.px(3)}, color(theme.text_dim), t.data.curve_label.c_str());
+    const ImVec2 size = ImGui::CalcTextSize(t.data.curve_label.c_str());
+    const float x = t.body.max.x - size.x - t.ui.px(6);
+    const bool below = runs_high(t, range, x);
+    const float y = below ? t.body.max.y - t.ui.px(7) - size.y : t.body.min.y + t.ui.px(3);
+    t.list.AddText({x, y}, color(theme.text_dim), t.data.curve_label.c_str());
+    t.ui.mark(name + (below ? ".label_below" : ".label_above"), {{x, y}, {x + size.x, y + size.y}});
   }
 }
 
@@ -218,7 +232,7 @@ TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& dat
   ui.mark(name + ".ruler", t.ruler);
 
   draw_ruler(t);
-  draw_body(t);
+  draw_body(t, name);
   draw_loop(t, name);
   draw_playhead(t, name);
   TrackAnswer answer;
