@@ -16,23 +16,22 @@ namespace {
 constexpr double kNoticeSeconds = 6;
 
 /// For each take of `now` the index of the take of `before` that it continues, -1 for a new one: the same
-/// target made the same way, else the same target, else the one in its place.
+/// target made the same way, else the same target.
 std::vector<int> matched_takes(const std::vector<Take>& before, const std::vector<Take>& now) {
   std::vector<int> match(now.size(), -1);
   std::vector<bool> used(before.size(), false);
   const auto pass = [&](const auto& alike) {
     for (size_t k = 0; k < now.size(); ++k)
       for (size_t i = 0; match[k] < 0 && i < before.size(); ++i)
-        if (!used[i] && alike(before[i], now[k], i == k)) match[k] = static_cast<int>(i), used[i] = true;
+        if (!used[i] && alike(before[i], now[k])) match[k] = static_cast<int>(i), used[i] = true;
   };
   const auto same_target = [](const Take& a, const Take& b) {
     return target_key(a.target) == target_key(b.target);
   };
-  pass([&](const Take& a, const Take& b, bool) {
+  pass([&](const Take& a, const Take& b) {
     return same_target(a, b) && method_key(a.method) == method_key(b.method) && a.name == b.name;
   });
-  pass([&](const Take& a, const Take& b, bool) { return same_target(a, b); });
-  pass([](const Take&, const Take&, bool in_place) { return in_place; });
+  pass([&](const Take& a, const Take& b) { return same_target(a, b); });
   return match;
 }
 
@@ -158,15 +157,9 @@ void Studio::follow_document() {
   session_.working = true;
 }
 
-/// A take whose target was replaced shows nothing of the old one.
+/// A take made in another way has other times, and what failed may work.
 void Studio::forget_outdated(TakeState& state, const Take& before, const Take& now) {
-  if (target_key(before.target) == target_key(now.target)) {
-    if (method_key(before.method) != method_key(now.method)) state.problem.clear(), state.latency = {};
-    return;
-  }
-  const int64_t generation = state.generation + 1;
-  state = TakeState{};
-  state.generation = generation;
+  if (method_key(before.method) != method_key(now.method)) state.problem.clear(), state.latency = {};
 }
 
 void Studio::follow_source() {
@@ -246,8 +239,11 @@ void Studio::tick(double seconds) {
   if (edits.trim && trimmed.in < 0) trimmed.in = edits.trim->first;
   if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
   advance(trimmed, seconds, session_.source.fps, count, edits.skip);
-  // A new target starts without frames: the place is kept until it comes there.
-  const double comes = std::max(count, static_cast<int>(session_.source.frames.size()));
+  // A new target, and a scan that is cropped, start without frames: the place is kept until it comes there.
+  const auto& source = session_.source;
+  const int64_t known =
+      std::max<int64_t>(source.count.value_or(0), static_cast<int64_t>(source.frames.size()));
+  const double comes = static_cast<double>(std::max<int64_t>(count, known));
   session_.playback.frame = std::clamp(trimmed.frame, 0.0, std::max(0.0, comes - 1e-3));
   session_.playback.playing = trimmed.playing;
   if (session_.view.turntable_deg_s != 0)

@@ -103,6 +103,9 @@ TEST_F(StudioTest, ANewTargetLeavesTheFrameAndItsJointsAreSeenWhole) {
   studio.wait_idle(60);
   studio.tick(0.01);
   EXPECT_EQ(shown_frame(studio.session()), 12);
+  studio.run("edit.crop", {"-9", "-9", "-9", "9", "9", "9"});
+  studio.wait_idle(60);
+  EXPECT_EQ(shown_frame(studio.session()), 12);
   studio.run("view.fit");
   studio.run("view.zoom", {"0.3"});
   const float near = studio.session().view.cameras[0].distance;
@@ -407,6 +410,19 @@ TEST_F(StudioTest, ACaseComesWithItsTruth) {
   EXPECT_NEAR(error->values[10], 120,
               30);  // the import lifts the scan onto the floor, the truth here does not
   EXPECT_NE(find(studio.session().takes[0].series, "pa_mpjpe_m"), nullptr);
+}
+
+TEST_F(StudioTest, ANewDocumentIsEmptyWhateverWasBeingMade) {
+  Studio studio(services());
+  for (int round = 0; round < 40; ++round) {
+    studio.run("source.open", {path("scan.npz")});
+    studio.run("target.add", {path("target.obj")});
+    for (int i = 0; i < round; ++i) studio.tick(0.001);
+    studio.replace_document({}, "");
+    studio.wait_idle(60);
+    ASSERT_TRUE(studio.session().source.frames.empty()) << round;
+    ASSERT_TRUE(studio.session().takes.empty());
+  }
 }
 
 TEST_F(StudioTest, NoCommandCrashesOnNonsense) {
