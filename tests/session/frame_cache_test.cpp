@@ -51,7 +51,7 @@ Mesh scan_mesh(int frame, int points) {
   Mesh mesh;
   mesh.vertices = Points::Zero(points, 3);
   for (int i = 0; i < points; ++i)
-    mesh.vertices.row(i) << 0.01f * i, static_cast<float>(frame), 0.01f * (i * i % 7);
+    mesh.vertices.row(i) << 0.01f * i, static_cast<float>(frame), 0.01f * (i % 7 * (i % 7) % 7);
   mesh.faces.resize(1, 3);
   mesh.faces << 0, 1, 2;
   return mesh;
