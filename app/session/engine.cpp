@@ -1,5 +1,6 @@
 #include "app/session/engine.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
@@ -154,8 +155,11 @@ struct Engine::Impl {
   std::optional<Plan> next_plan;
   std::vector<EngineEvent> events;
   bool paused = false, stop = false, busy = false, next_is_afresh = false;
+  std::string wanted_source;
+  int64_t epoch = 0;  // counts sources
 
   // The thread's own.
+  int64_t own_epoch = 0;  // of the plan at work
   NetworksOf networks_of;
   Plan plan;
   std::string source_is, skeleton_is;
@@ -173,6 +177,7 @@ struct Engine::Impl {
   void forget_all();
   void give_up(const std::string& problem);
   void tell(EngineEvent event);
+  void change_source(const std::string& key, bool afresh);
   bool step();
   void adopt(Plan wanted);
   void close_source();
@@ -186,9 +191,22 @@ struct Engine::Impl {
   bool perform(TakeWork& take);
 };
 
+/// Whether an event says something of the source's frames, which another source makes untrue.
+bool of_frames(const EngineEvent& event) {
+  return !std::holds_alternative<TakeReady>(event) && !std::holds_alternative<TakeFailed>(event);
+}
+
 void Engine::Impl::tell(EngineEvent event) {
   const std::lock_guard<std::mutex> lock(mutex);
-  events.push_back(std::move(event));
+  if (own_epoch == epoch || !of_frames(event)) events.push_back(std::move(event));
+}
+
+/// Under the mutex. What is still being made of another source will not be told.
+void Engine::Impl::change_source(const std::string& key, bool afresh) {
+  if (key == wanted_source && !afresh) return;
+  wanted_source = key;
+  ++epoch;
+  events.erase(std::remove_if(events.begin(), events.end(), of_frames), events.end());
 }
 
 void Engine::Impl::run() {
@@ -200,6 +218,7 @@ void Engine::Impl::run() {
       if (stop) return;
       wanted.swap(next_plan);
       if (wanted) afresh = std::exchange(next_is_afresh, false);
+      if (wanted) own_epoch = epoch;
       if (!wanted && paused) {
         wake.wait(lock);
         continue;
@@ -501,6 +520,7 @@ void Engine::set_plan(Plan plan, bool afresh) {
   {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->next_is_afresh = impl_->next_is_afresh || afresh;  // the plan before may not have been seen yet
+    impl_->change_source(source_key(plan.source, plan.scan_edits), afresh);
     impl_->next_plan = std::move(plan);
     impl_->busy = true;
   }
