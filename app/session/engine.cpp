@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/session/background_thread.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 
@@ -210,6 +211,7 @@ void Engine::Impl::change_source(const std::string& key, bool afresh) {
 }
 
 void Engine::Impl::run() {
+  yield_to_drawing();
   while (true) {
     std::optional<Plan> wanted;
     bool afresh = false;

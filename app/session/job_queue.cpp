@@ -8,6 +8,7 @@
 #include <system_error>
 #include <thread>
 
+#include "app/session/background_thread.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {
@@ -92,7 +93,10 @@ int64_t JobQueue::start(const std::string& name, Work work, Done done) {
   job->done = std::move(done);
   jobs_.reserve(jobs_.size() + 1);  // from the thread's start on nothing may throw
   try {
-    job->thread = std::thread([job = job.get(), work = std::move(work)] { job->run(work); });
+    job->thread = std::thread([job = job.get(), work = std::move(work)] {
+      yield_to_drawing();
+      job->run(work);
+    });
   } catch (const std::system_error&) {
     throw Error(name + ": the system allows no further thread");
   }

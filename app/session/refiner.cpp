@@ -5,6 +5,7 @@
 #include <mutex>
 #include <thread>
 
+#include "app/session/background_thread.hpp"
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/error.hpp"
 
@@ -40,6 +41,7 @@ struct Refiner::Impl {
   std::thread thread;
 
   void run() {
+    yield_to_drawing();
     std::unique_lock<std::mutex> lock(mutex);
     while (true) {
       wake.wait(lock, [this] { return stop || !waiting.empty(); });

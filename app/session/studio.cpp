@@ -259,7 +259,7 @@ void Studio::tick(double seconds) {
 
 void Studio::autosave(double seconds) {
   Background& b = *background_;
-  if (services_.autosave_folder.empty() || session_.question) return;
+  if (services_.autosave_folder.empty() || session_.question || seconds <= 0) return;
   b.since_autosave += seconds;
   if (!session_.changed || b.since_autosave < session_.settings.autosave_s || b.autosaving->running) return;
   b.since_autosave = 0;
