@@ -22,7 +22,7 @@ struct Method {
   std::string extractor = "dense";  ///< skeleton extraction: "dense" or "paper"
   bool offsets = true;              ///< pose-corrective offsets
   bool repair_swaps = true, smooth_joints = true, fix_lengths = true;  ///< of JointFilterOptions
-  bool lock_feet = true;  ///< feet that stand do not slide
+  bool lock_feet = true;                                               ///< feet that stand do not slide
   RootMode root = RootMode::Scaled;
 };
 

@@ -8,7 +8,7 @@
 namespace understudy {
 namespace {
 
-constexpr float kSoft = 0.012f;        // share of the leg's length in which it straightens softly
+constexpr float kSoft = 0.012f;       // share of the leg's length in which it straightens softly
 constexpr float kStraight = 0.9995f;  // share of its length that it is never straighter than
 
 /// How far the ankle may go from the hip: as wanted when the leg is bent or gets no longer than it was.
