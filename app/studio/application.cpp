@@ -27,6 +27,8 @@ using render::InputEvent;
 using Kind = InputEvent::Kind;
 
 constexpr double kFastest = 1.0 / 60;    // seconds between frames
+constexpr double kSharing = 1.0 / 24;    // the same while frames are being made
+constexpr double kBriefest = 0.001;      // of a look at what happens
 constexpr double kListening = 0.008;     // between looks at what works in the background
 constexpr double kTooltips = 1.0;        // after the last input things may still appear by themselves
 constexpr double kLookingAround = 0.05;  // between frames in that time
@@ -143,11 +145,17 @@ void Application::run() {
   while (!session().quit) step();
 }
 
+/// The shortest time between two frames that no input asks for. While frames are being made they get half of
+/// it at least.
+double Application::fastest_s() const {
+  return session().working ? std::max(kSharing, 2 * drawing_took_s_) : kFastest;
+}
+
 /// Whether the screen no longer shows what is.
 bool Application::due() const {
   const Clock::time_point now = Clock::now();
   const double since_drawn = seconds_between(drawn_at_, now);
-  if (since_drawn < kFastest) return false;
+  if (since_drawn < fastest_s()) return false;
   if (frames_wanted_ > 0 || gui_->pending()) return true;
   if (seconds_between(input_at_, now) < kTooltips && since_drawn > kLookingAround) return true;
   if (gui_->wants_text() && since_drawn > kBlink) return true;
@@ -160,7 +168,8 @@ double Application::patience_s() const {
   const Clock::time_point now = Clock::now();
   if (frames_wanted_ > 0 || gui_->pending()) return std::max(0.0, kFastest - seconds_between(drawn_at_, now));
   const Session& s = session();
-  if (s.playback.playing || s.view.turntable_deg_s != 0 || !studio_->idle()) return kListening;
+  if (s.playback.playing || s.view.turntable_deg_s != 0 || !studio_->idle())
+    return std::clamp(fastest_s() - seconds_between(drawn_at_, now), kBriefest, kListening);
   if (seconds_between(input_at_, now) < kTooltips) return kLookingAround;
   return gui_->wants_text() ? kBlink : kAsleep;
 }
@@ -217,6 +226,7 @@ void Application::handle(const InputEvent& event) {
 }
 
 void Application::draw(double dt, const std::vector<InputEvent>& events) {
+  drawn_at_ = Clock::now();  // when it began: what takes long must not be waited for on top
   if (observer_) observer_->input(dt, events, session());
   for (const InputEvent& event : events) handle(event);
   frames_wanted_ = events.empty() ? std::max(0, frames_wanted_ - 1) : kSettling;
@@ -224,7 +234,7 @@ void Application::draw(double dt, const std::vector<InputEvent>& events) {
   const render::Target target = surface_->target();
   if (target.size.width > 0 && target.size.height > 0) draw_interface(dt, events);
   on_screen_ = fingerprint();
-  drawn_at_ = Clock::now();
+  drawing_took_s_ = seconds_between(drawn_at_, Clock::now());
   run_queue();
   show_state();
 }

@@ -78,6 +78,7 @@ class Application {
   void show_state();
   void write_marks();
   double patience_s() const;
+  double fastest_s() const;
   bool due() const;
   std::string fingerprint() const;
 
@@ -93,7 +94,8 @@ class Application {
   CommandQueue queue_;
   Observer* observer_ = nullptr;
   Clock::time_point ticked_at_, drawn_at_, input_at_;
-  size_t samples_ = 0;  ///< cards on the start screen
+  double drawing_took_s_ = 0;  // the last frame
+  size_t samples_ = 0;         ///< cards on the start screen
   float frame_rate_ = 0;
   std::string on_screen_;  ///< fingerprint of what was drawn last
   std::string marks_;      ///< what the marks file holds
