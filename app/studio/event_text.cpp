@@ -8,6 +8,14 @@
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {
+float number_of(const std::string& text) {
+  float value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  US_CHECK(error == std::errc() && end == text.data() + text.size() && std::isfinite(value), text,
+           " is no number");
+  return value;
+}
+
 namespace {
 
 using render::InputEvent;
@@ -19,14 +27,6 @@ std::string text_of(float value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", static_cast<double>(value));
   return text;
-}
-
-float number_of(const std::string& text) {
-  float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  US_CHECK(error == std::errc() && end == text.data() + text.size() && std::isfinite(value), text,
-           " is no number");
-  return value;
 }
 
 void add_modifiers(Arguments& words, const render::Modifiers& modifiers) {

@@ -6,6 +6,9 @@
 
 namespace understudy::app {
 
+/// A finite number as scripts write it. Throws Error when the text is none.
+float number_of(const std::string& text);
+
 /// "move 12 30", "button left down 12 30 ctrl shift", "scroll 0 -1 12 30", "key Z down ctrl", "char 97",
 /// "focus off", "drop 12 30 /a/scan"; empty for sizes and closing, which are the recorder's.
 Arguments event_words(const render::InputEvent& event);

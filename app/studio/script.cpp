@@ -26,14 +26,6 @@ using Kind = InputEvent::Kind;
 
 constexpr double kFrame = 1.0 / 60;
 
-float number_of(const std::string& text) {
-  float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  US_CHECK(error == std::errc() && end == text.data() + text.size() && std::isfinite(value), text,
-           " is no number");
-  return value;
-}
-
 bool is_number(const std::string& text) {
   float value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
