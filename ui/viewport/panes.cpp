@@ -176,19 +176,6 @@ std::vector<std::string> camera_arguments(const Session& session, const PaneCont
   return words;
 }
 
-render::Camera fitted_camera(const Session& session, const PaneContent& pane, float aspect) {
-  render::Camera camera = pane_camera(session, pane);
-  const Joints* joints = shows_rest(session, pane) ? &state_of_take(session, pane)->target->joints
-                                                   : pane_joints(session, pane, pane_frame(session, pane));
-  if (joints == nullptr || !joints->allFinite()) return camera;
-  // A body reaches further than its joints: over the crown, below the soles, around the hands.
-  const float height = joints->col(1).maxCoeff() - joints->col(1).minCoeff(), more = 0.12f * height;
-  Points corners(2 * kJointCount, 3);
-  corners << joints->rowwise() + Eigen::RowVector3f(more, 1.2f * more, more),
-      joints->rowwise() - Eigen::RowVector3f(more, 0.4f * more, more);
-  return render::fitted(camera, corners, aspect, 0.06f);
-}
-
 render::Ray PaneView::ray(const ImVec2& at) const {
   return render::ray_through(camera, size(), Eigen::Vector2f(at.x - rect.min.x, at.y - rect.min.y));
 }

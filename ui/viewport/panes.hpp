@@ -55,8 +55,6 @@ render::Camera pane_camera(const app::Session& session, const PaneContent& pane)
 /// distance of a camera that a pane is to be drawn with.
 std::vector<std::string> camera_arguments(const app::Session& session, const PaneContent& pane,
                                           const render::Camera& camera);
-/// The camera that sees the pane's people in the frames up to now, from the side it looks from.
-render::Camera fitted_camera(const app::Session& session, const PaneContent& pane, float aspect);
 
 /// A pane's picture on the screen: where it is and what it is seen through.
 struct PaneView {
