@@ -4,7 +4,7 @@ find_package(CLI11 REQUIRED)
 us_module(run SOURCES
   app/run/case_folder.cpp app/run/interrupt.cpp app/run/judge.cpp app/run/latency.cpp app/run/performer.cpp
   app/run/report.cpp app/run/samples.cpp app/run/source.cpp app/run/target_file.cpp
-  PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline nlohmann_json::nlohmann_json
+  PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline understudy_character nlohmann_json::nlohmann_json
   PRIVATE understudy_npz understudy_body ZLIB::ZLIB)
 
 include(app/session/session.cmake)

@@ -39,6 +39,8 @@ std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
     Extraction known = *oracle;
     known.sole_height = sole_height(known.joints, scan->mesh.vertices);
     frame.result = retargeter_.push(known, dt);
+  } else if (scan->skeleton) {
+    frame.result = retargeter_.push(*scan->skeleton, dt);
   } else {
     frame.result = retargeter_.push(scan->mesh, dt);
   }

@@ -38,8 +38,10 @@ class ScanFiles final : public Source {
     log::info(options.path + ": " + in_words(fps()) + (options.fps > 0 ? "" : " assumed (--fps changes it)"));
   }
 
-  std::optional<ScanFrame> next() override {
-    std::optional<ScanFrame> frame = scans_.next();
+  std::optional<SourceFrame> next() override {
+    std::optional<ScanFrame> scan = scans_.next();
+    std::optional<SourceFrame> frame;
+    if (scan) frame.emplace(SourceFrame{std::move(*scan), std::nullopt});
     if (frame) undecided_ = std::max(undecided_, decision_ ? 0 : ++at_);
     if (!frame || !frame->usable) return frame;
     const Eigen::Index points = finite_count(frame->mesh.vertices);
@@ -118,9 +120,9 @@ class PerformingBody final : public Source {
       log::info(options.motion + ": " + in_words(fps()) + ", " + (turned ? "z up, turned to y up" : "y up"));
   }
 
-  std::optional<ScanFrame> next() override {
+  std::optional<SourceFrame> next() override {
     if (at_ >= motion_.poses.size()) return std::nullopt;
-    ScanFrame frame;
+    SourceFrame frame;
     frame.mesh = posed(at_);
     decision_.apply(frame.mesh);
     frame.number = static_cast<int64_t>(at_++);

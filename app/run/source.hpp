@@ -1,4 +1,5 @@
-// Where the frames come from: scans on disk, or an SMPL-format body that performs an AMASS-format motion.
+// Where the frames come from: scans on disk, an SMPL-format body that performs an AMASS-format motion, or a
+// skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF).
 #pragma once
 
 #include <memory>
@@ -6,20 +7,30 @@
 #include <string>
 #include <vector>
 
+#include "retarget/character/bone_map.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/scan_source.hpp"
+#include "retarget/pipeline/interfaces.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::app {
 
 struct SourceOptions {
-  std::string path;          ///< scans, or an SMPL-format body where `motion` is given
-  std::string motion;        ///< AMASS-format .npz; empty: `path` are scans
+  std::string path;          ///< scans, a skeletal motion, or an SMPL-format body where `motion` is given
+  std::string motion;        ///< AMASS-format .npz that the body performs; empty: there is no body
   std::vector<float> betas;  ///< of the performing body; empty: those in the motion's file
   double fps = 0;            ///< 0: the motion's own, or 30
   ImportOptions import;
-  bool follow = false;  ///< the folder is still being written
-  bool quiet = false;   ///< tell nothing: another source has told it all
+  bool follow = false;   ///< the folder is still being written
+  bool as_scan = false;  ///< a skeletal motion's surface is sampled and looked at as a scan
+  std::string clip;      ///< of a skeletal motion's animations, by name or number from 1; empty: the longest
+  BoneChoices bones;     ///< of a skeletal motion, as the user wants them
+  bool quiet = false;    ///< tell nothing: another source has told it all
+};
+
+/// A scan, or what a skeleton looks like, and then the skeleton itself.
+struct SourceFrame : ScanFrame {
+  std::optional<Extraction> skeleton;  ///< nothing is to be extracted from the scan
 };
 
 /// Hands out frames in metres, y up, floor at 0, one at a time and never a later one early.
@@ -27,7 +38,7 @@ class Source {
  public:
   virtual ~Source() = default;
   /// None at the end. usable = false: the frame is there but says nothing.
-  virtual std::optional<ScanFrame> next() = 0;
+  virtual std::optional<SourceFrame> next() = 0;
   /// next() goes on with this frame, 0 the first; units, axes and floor stay those of the first usable frame.
   /// Throws Error when there is no such frame.
   virtual void seek(int64_t frame) = 0;

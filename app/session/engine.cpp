@@ -187,7 +187,7 @@ struct Engine::Impl {
   bool prepare(TakeWork& take);
   Stream& stream_of(const std::string& extractor);
   bool read_frame();
-  Extracted extracted(Stream& stream, const ScanFrame& frame) const;
+  Extracted extracted(Stream& stream, const SourceFrame& frame) const;
   bool tell_source();
   bool perform(TakeWork& take);
 };
@@ -393,7 +393,7 @@ Stream& Engine::Impl::stream_of(const std::string& extractor) {
   return stream;
 }
 
-Extracted Engine::Impl::extracted(Stream& stream, const ScanFrame& frame) const {
+Extracted Engine::Impl::extracted(Stream& stream, const SourceFrame& frame) const {
   Extracted result;
   const auto began = Clock::now();
   result.points = static_cast<int>(frame.mesh.vertices.rows());
@@ -401,6 +401,10 @@ Extracted Engine::Impl::extracted(Stream& stream, const ScanFrame& frame) const 
   result.problem = frame.problem;
   if (!frame.usable) return result;
   try {
+    if (frame.skeleton) {
+      result.extraction = *frame.skeleton;
+      return result;
+    }
     result.extraction = stream.extractor->extract(frame.mesh);
     result.extraction.sole_height = sole_height(result.extraction.joints, frame.mesh.vertices);
   } catch (const Error& error) {

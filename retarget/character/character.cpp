@@ -243,7 +243,7 @@ void check_character(const Character& character, const std::string& path) {
       US_CHECK(matrix.allFinite(), path, ": a bind matrix of the skin '", skin.name, "' is not finite");
   }
   for (const auto& part : character.parts) check_part(character, part, path);
-  US_CHECK(character.vertex_count() > 0, path, ": holds no mesh");
+  US_CHECK(character.vertex_count() > 0 || !character.animations.empty(), path, ": holds no mesh");
   US_CHECK(character.vertex_count() <= 16000000, path, ": has more than 16 million vertices");
 }
 
@@ -259,7 +259,7 @@ Points posed_vertices(const Character& character, const std::vector<Mat4>& world
   return out;
 }
 
-Points vertices_at(const Character& character, int animation, float seconds) {
+PosedNodes nodes_at(const Character& character, int animation, float seconds) {
   Character posed;  // only its nodes
   posed.nodes = character.nodes;
   std::vector<std::vector<float>> shapes;
@@ -281,7 +281,12 @@ Points vertices_at(const Character& character, int animation, float seconds) {
       }
     }
   }
-  return posed_vertices(character, posed.world(), shapes);
+  return {posed.world(), std::move(shapes)};
+}
+
+Points vertices_at(const Character& character, int animation, float seconds) {
+  const PosedNodes posed = nodes_at(character, animation, seconds);
+  return posed_vertices(character, posed.world, posed.shape_weights);
 }
 
 BindPose bind_pose(const Character& character) {

@@ -91,13 +91,22 @@ struct Character {
   std::vector<Mat4> world() const;
 };
 
-/// Throws Error naming `path`: indices out of range, sizes that disagree, no vertex, numbers not finite.
+/// Throws Error naming `path`: indices out of range, sizes that disagree, neither a vertex nor an animation,
+/// numbers not finite.
 void check_character(const Character& character, const std::string& path);
 
 /// The vertices of all parts one after the other, [V, 3], in the world of these node transforms. weights: of
 /// the shapes of each node; empty: none is applied.
 Points posed_vertices(const Character& character, const std::vector<Mat4>& world,
                       const std::vector<std::vector<float>>& shape_weights = {});
+
+/// The nodes at a time of one of the animations.
+struct PosedNodes {
+  std::vector<Mat4> world;
+  std::vector<std::vector<float>> shape_weights;
+};
+/// animation -1: the nodes' own pose. Times outside take the first or last frame.
+PosedNodes nodes_at(const Character& character, int animation, float seconds);
 
 /// The same at a time of one of its animations (the nodes' own pose with animation -1), as every program that
 /// plays the file must see it. Times outside take the first or last frame.

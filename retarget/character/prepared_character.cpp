@@ -12,40 +12,8 @@
 namespace understudy {
 namespace {
 
-constexpr float kUsualHeight = 1.7f, kSmallestTurn = 8 * kPi / 180;
+constexpr float kSmallestTurn = 8 * kPi / 180;
 constexpr float kRoughDeg = 4;  // joints that were seen, not given, are not better
-
-std::string number(float value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", static_cast<double>(value));
-  return text;
-}
-
-/// Metres of one unit of the file. People are 0.5 to 2.6 m tall; a height that no unit explains is made
-/// usual.
-float metres_per_unit(float height, const std::string& units, std::string& note) {
-  static const std::map<std::string, float> kUnits = {
-      {"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"in", 0.0254f}};
-  if (!units.empty() && units != "auto") {
-    const auto found = kUnits.find(units);
-    US_CHECK(found != kUnits.end(), "units are auto, m, dm, cm, mm or in, not '", units, "'");
-    return found->second;
-  }
-  if (height >= 0.5f && height <= 2.6f) return 1;
-  if (height >= 84 && height <= 260) return 0.01f;
-  if (height >= 840 && height <= 2600) return 0.001f;
-  note = "its height of " + number(height) + " fits no unit: it is made " + number(kUsualHeight) + " m tall";
-  return kUsualHeight / height;
-}
-
-Mat3 axes_of(const std::string& up) {
-  static const std::map<std::string, Vec3> kUps = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},
-                                                   {"z", {0, 0, 1}},   {"-x", {-1, 0, 0}},
-                                                   {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
-  const auto found = kUps.find(up);
-  US_CHECK(found != kUps.end(), "up is auto, x, y, z, -x, -y or -z, not '", up, "'");
-  return rotation_between(found->second, Vec3::UnitY());
-}
 
 /// The axis that a rig's spine points along, where that is not y.
 std::string up_of_rig(const BoneMap& map, const BindPose& bind) {
@@ -58,11 +26,6 @@ std::string up_of_rig(const BoneMap& map, const BindPose& bind) {
   up.cwiseAbs().maxCoeff(&axis);
   if (std::abs(up[axis]) < 0.8f * up.norm()) axis = 1;
   return std::string(up[axis] < 0 ? "-" : "") + "xyz"[axis];
-}
-
-std::string guessed_up(const Mesh& mesh) {
-  const ImportDecision decision = decide_import(mesh, {});
-  return decision.up.empty() ? "y" : decision.up;
 }
 
 /// The joint that moves each node.
@@ -174,18 +137,19 @@ float tidy(float yaw) {
 
 void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   const Points& file = c.bind.vertices;
-  const MergedSurface as_bound = merged_surface(c.character, file);
-  std::string up = options.up;
-  if (up.empty() || up == "auto") up = c.rigged ? up_of_rig(c.map, c.bind) : guessed_up(as_bound.mesh);
-  c.to_world.R = axes_of(up);
-  const Points upright = file * c.to_world.R.transpose();
-  const float low = upright.col(1).minCoeff(), height = upright.col(1).maxCoeff() - low;
-  US_CHECK(height > 1e-9f && std::isfinite(height), c.character.name, ": has no height");
-  std::string note;
-  c.to_world.scale = metres_per_unit(height, options.units, note);
-  if (!note.empty()) c.notes.push_back(note);
-  c.to_world.t = Vec3(0, -low * c.to_world.scale, 0);
-  c.surface = merged_surface(c.character, c.to_world.apply(file));
+  ImportOptions import;
+  import.units = options.units;
+  import.up = options.up;
+  import.floor = options.floor;
+  if (c.rigged && (import.up.empty() || import.up == "auto")) import.up = up_of_rig(c.map, c.bind);
+  c.surface = merged_surface(c.character, file);
+  const ImportDecision decision = decide_import(c.surface.mesh, import);
+  US_CHECK(decision.height > 1e-9f && std::isfinite(decision.height), c.character.name, ": has no height");
+  c.to_world.scale = decision.scale;
+  c.to_world.R = decision.axes;
+  c.to_world.t = Vec3(0, -decision.floor, 0);
+  c.surface.mesh.vertices = c.to_world.apply(c.surface.mesh.vertices);
+  c.notes.push_back(decision.sentence);
 }
 
 void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
@@ -265,6 +229,7 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
 
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
                                     SkeletonExtractor* t_pose, const CharacterOptions& options) {
+  US_CHECK(character.vertex_count() > 0, character.name, ": holds no mesh");
   PreparedCharacter c;
   c.character = std::move(character);
   // Files are written node by node: the same order here keeps vertices in theirs.

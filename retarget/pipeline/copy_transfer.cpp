@@ -174,10 +174,14 @@ Rotations CopyTransfer::push(const Extraction& source, float dt) {
        {LeftShoulder, LeftElbow, LeftWrist, Vec3(0, -0.87f, 0.49f), 0.5f},
        {RightShoulder, RightElbow, RightWrist, Vec3(0, 0.87f, -0.49f), 0.5f}}};
   Frame frame{source, dt, identity_rotations()};
-  solve_trunk(frame);
-  for (const Limb& limb : limbs) solve_limb(frame, limb);
-  settle(frame, LeftFoot, frame.global[LeftAnkle]);
-  settle(frame, RightFoot, frame.global[RightAnkle]);
+  if (source.exact && source.global) {
+    frame.global = *source.global;
+  } else {
+    solve_trunk(frame);
+    for (const Limb& limb : limbs) solve_limb(frame, limb);
+    settle(frame, LeftFoot, frame.global[LeftAnkle]);
+    settle(frame, RightFoot, frame.global[RightAnkle]);
+  }
   last_ = local_rotations(frame.global);
   started_ = true;
   for (const Mat3& R : last_)

@@ -11,13 +11,14 @@
 
 namespace understudy {
 
-/// What one scan says about the body in it.
+/// What one frame says about the body in it.
 struct Extraction {
   Joints joints = Joints::Zero();  ///< world, metres
   Eigen::Array<float, kJointCount, 1> confidence =
       Eigen::Array<float, kJointCount, 1>::Ones();  ///< 0..1 a joint
   std::optional<Rotations> global;                  ///< world rotations seen on the surface, where known
   std::optional<float> sole_height;  ///< metres over the floor of the lowest points near the feet, where seen
+  bool exact = false;  ///< a skeleton's own, seen in no scan: nothing is to be repaired, smoothed or solved
 };
 
 /// Joints from a scan of any number of points, any order, any heading (paper 1, section 3.1). One thread at a

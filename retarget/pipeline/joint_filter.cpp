@@ -34,7 +34,6 @@ void JointFilter::reset() {
 }
 
 void JointFilter::repair_swaps(Extraction& frame) {
-  repaired_ = false;
   if (frames_ == 0) return;
   const Joints predicted = frames_ > 1 ? Joints(last_ + 0.5f * (last_ - before_last_)) : last_;
   for (const Group& group : swap_groups()) {
@@ -145,13 +144,14 @@ void JointFilter::fix_lengths(Extraction& frame) {
 
 Extraction JointFilter::push(const Extraction& raw, float dt) {
   Extraction frame = raw;
-  if (options_.repair_swaps) repair_swaps(frame);
+  repaired_ = false;
+  if (options_.repair_swaps && !raw.exact) repair_swaps(frame);
   const auto seen = bone_lengths(frame.joints);
   for (int j = 1; j < kJointCount; ++j) lengths_[j].push(seen[j]);
   before_last_ = last_;
   last_ = frame.joints;
-  if (options_.smooth) smooth(frame, dt);
-  if (options_.fix_lengths) fix_lengths(frame);
+  if (options_.smooth && !raw.exact) smooth(frame, dt);
+  if (options_.fix_lengths && !raw.exact) fix_lengths(frame);
   ++frames_;
   return frame;
 }

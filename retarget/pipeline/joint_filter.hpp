@@ -28,7 +28,8 @@ class JointFilter {
   explicit JointFilter(const JointFilterOptions& options = {});
   void reset();
   /// The frame's joints repaired, dt seconds after the one before. Confidence is passed on; seen rotations
-  /// are passed on unless a swap was repaired, since the sides of what was seen are then unknown.
+  /// are passed on unless a swap was repaired, since the sides of what was seen are then unknown. What is
+  /// exact stays as it is.
   Extraction push(const Extraction& raw, float dt);
   /// Whether the last push() exchanged sides.
   bool repaired() const { return repaired_; }
