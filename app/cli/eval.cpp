@@ -43,10 +43,23 @@ SourceOptions case_source(const Case& c) {
   return options;
 }
 
+/// Its target stands in T-pose as it is told, in the frame that the truth is in.
+TargetOptions case_target(const Case& c) {
+  TargetOptions options;
+  options.path = c.target;
+  options.import.units = "m";
+  options.import.up = "y";
+  options.import.floor = 0.0f;
+  options.forward = false;
+  options.rig = "ours";
+  return options;
+}
+
 /// Where the figures of a case go.
 struct Judging {
   Judge& judge;
   Verdict& verdict;
+  const Truth* truth;  // null: none
 };
 
 double ms_since(std::chrono::steady_clock::time_point began) {
@@ -87,10 +100,14 @@ void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) 
 }
 
 /// The whole way, frame by frame; with `oracle` the true skeleton takes the place of the extracted one.
-void judge_performance(const Case& c, const EvalOptions& options, const Mesh& target,
-                       const std::vector<Joints>* oracle, Judging& to) {
+void judge_performance(const Case& c, const EvalOptions& options, Networks networks,
+                       const PreparedCharacter& target, Judging& to) {
   const auto source = open_source(case_source(c));
-  Performer performer(*source, target, nn::load_networks(options.networks), options.retarget);
+  const std::vector<Joints>* const oracle =
+      options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
+  US_CHECK(options.oracle.empty() || (oracle && !oracle->empty()), c.truth,
+           ": --oracle skeleton wants source_joints");
+  Performer performer(*source, target.target, std::move(networks), options.retarget);
   for (size_t t = 0;; ++t) {
     check_interrupt("in case " + c.name);
     US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");
@@ -100,7 +117,8 @@ void judge_performance(const Case& c, const EvalOptions& options, const Mesh& ta
     const RetargetedFrame& result = frame->result;
     to.verdict.latency.add(frame->times);
     to.verdict.flagged += result.flagged;
-    to.judge.push({&result.vertices, &result.joints, &result.pose.local, &frame->source_joints,
+    const Points vertices = target.surface.in_file_order(result.vertices);
+    to.judge.push({&vertices, &result.joints, &result.pose.local, &frame->source_joints,
                    result.flagged ? &frame->source_joints : &result.source_raw.joints,
                    frame->scan.usable ? &frame->scan.mesh : nullptr});
   }
@@ -128,19 +146,24 @@ void judge_case(const Case& c, const EvalOptions& options, Verdict& verdict) {
   std::optional<Truth> truth;
   if (!c.truth.empty()) truth = read_truth(c.truth);
   US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle wants a truth");
-  std::optional<Mesh> target;
-  if (!c.target.empty()) target = read_mesh(c.target);
-  Judge judge(c.fps, truth ? &*truth : nullptr, target ? &*target : nullptr);
-  Judging to{judge, verdict};
-  if (!target) {
-    judge_extraction(c, *nn::load_networks(options.networks).extractor, to);
-  } else if (options.oracle == "pose") {
-    judge_deformation(*truth, *target, *nn::load_deformer(options.networks), to);
+  std::optional<Mesh> mesh;  // with the file's own vertices
+  std::shared_ptr<const PreparedCharacter> target;
+  Networks networks;
+  if (options.oracle == "pose" && !c.target.empty()) {
+    mesh = read_mesh(c.target);
   } else {
-    const bool oracle = options.oracle == "skeleton";
-    US_CHECK(!oracle || !truth->source_joints.empty(), c.truth, ": --oracle skeleton wants source_joints");
-    judge_performance(c, options, *target, oracle ? &truth->source_joints : nullptr, to);
+    networks = nn::load_networks(options.networks);
+    if (!c.target.empty()) target = open_target(case_target(c), networks);
+    if (target) mesh = target->target_in_file_order();
   }
+  Judge judge(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
+  Judging to{judge, verdict, truth ? &*truth : nullptr};
+  if (target)
+    judge_performance(c, options, std::move(networks), *target, to);
+  else if (mesh)
+    judge_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);
+  else
+    judge_extraction(c, *networks.extractor, to);
   verdict.frames = verdict.latency.frames();
   verdict.metrics = judge.metrics();
 }

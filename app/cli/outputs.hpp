@@ -17,7 +17,8 @@ class Output {
 };
 
 /// The format is the suffix's: .glb, or .npz. Throws Error naming the path.
-std::unique_ptr<Output> open_output(const std::string& path, const Retargeter& retargeter, double fps);
+std::unique_ptr<Output> open_output(const std::string& path, const PreparedCharacter& character,
+                                    const Retargeter& retargeter, double fps);
 /// Throws Error when the suffix is none of those; an empty path is fine.
 void check_output_format(const std::string& path);
 

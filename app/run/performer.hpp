@@ -20,7 +20,7 @@ struct PerformedFrame {
 /// Reads and performs one frame after the other, and takes their times.
 class Performer {
  public:
-  Performer(Source& source, const Mesh& target, Networks networks, const RetargetOptions& options = {});
+  Performer(Source& source, Target target, Networks networks, const RetargetOptions& options = {});
   /// None at the end of the source.
   std::optional<PerformedFrame> next();
   /// The same with the skeleton of the source known beforehand.

@@ -91,7 +91,8 @@ bool same(const std::vector<SkeletonEdit>& a, const std::vector<SkeletonEdit>& b
 }
 
 bool same(const TargetOptions& a, const TargetOptions& b) {
-  return a.path == b.path && a.betas == b.betas && equal(a.import, b.import);
+  return a.path == b.path && a.betas == b.betas && equal(a.import, b.import) && a.forward == b.forward &&
+         a.rig == b.rig && a.bones == b.bones;
 }
 
 bool same(const Method& a, const Method& b) {

@@ -171,7 +171,8 @@ Previews::Content Previews::read(const std::string& path) {
       if (fs::file_size(at) > kLargest) return {{}, "too large to be looked at here"};
     }
     if (!fs::is_directory(at) && at.extension() != ".npy") {
-      content.mesh = normalized(read_target(path, {}));
+      const Character character = read_target(path, {});
+      content.mesh = normalized(merged_surface(character, bind_pose(character).vertices).mesh);
       content.text = described(content.mesh);
       return content;
     }

@@ -307,6 +307,14 @@ BindPose bind_pose(const Character& character) {
   return out;
 }
 
+Points MergedSurface::in_file_order(const Points& rows) const {
+  US_CHECK(rows.rows() == mesh.vertices.rows(), "the surface has ", mesh.vertices.rows(), " vertices, not ",
+           rows.rows());
+  Points out(static_cast<Eigen::Index>(in_file.size()), 3);
+  for (size_t i = 0; i < in_file.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = rows.row(in_file[i]);
+  return out;
+}
+
 MergedSurface merged_surface(const Character& character, const Points& positions) {
   US_CHECK(positions.rows() == character.vertex_count(), "the surface has ", positions.rows(),
            " positions for ", character.vertex_count(), " vertices");
@@ -336,6 +344,14 @@ MergedSurface merged_surface(const Character& character, const Points& positions
     for (Eigen::Index f = 0; f < part.faces.size(); ++f)
       corners.push_back(out.map[static_cast<size_t>(at + part.faces.data()[f])]);
     at += part.vertices.rows();
+  }
+  out.in_file = out.map;
+  const auto& numbers = character.file_vertices;
+  if (!numbers.empty()) {
+    US_CHECK(numbers.size() == out.map.size(), character.name, ": has ", out.map.size(), " vertices, but ",
+             numbers.size(), " numbers of them");
+    out.in_file.assign(static_cast<size_t>(*std::max_element(numbers.begin(), numbers.end())) + 1, 0);
+    for (size_t i = 0; i < numbers.size(); ++i) out.in_file[static_cast<size_t>(numbers[i])] = out.map[i];
   }
   out.mesh.vertices.resize(static_cast<Eigen::Index>(first.size()), 3);
   for (size_t i = 0; i < first.size(); ++i)

@@ -43,11 +43,13 @@ class ObjReader {
   using Corner = std::array<int64_t, 3>;  // position, texture, normal; -1: none
   struct Group {
     std::vector<Corner> corners;  // three a triangle
+    std::vector<Corner> loose;    // of no face
   };
 
   void line(std::string_view text);
   void numbers(std::vector<float>& to, size_t least, size_t keep);
   void face();
+  void add_loose();
   int64_t index(std::string_view text, size_t count) const;
   void read_materials(const std::string& name);
   void finish_group(const std::string& material, const Group& group, Character& out);
@@ -204,6 +206,7 @@ void ObjReader::finish_group(const std::string& name, const Group& group, Charac
     has_uvs = has_uvs && corner[1] >= 0;
     has_normals = has_normals && corner[2] >= 0;
   }
+  corners.insert(corners.end(), group.loose.begin(), group.loose.end());
   const auto count = static_cast<Eigen::Index>(corners.size());
   part.vertices.resize(count, 3);
   if (has_normals) part.normals.resize(count, 3);
@@ -214,14 +217,28 @@ void ObjReader::finish_group(const std::string& name, const Group& group, Charac
     const Corner& c = corners[static_cast<size_t>(v)];
     for (Eigen::Index i = 0; i < 3; ++i) {
       part.vertices(v, i) = positions_[static_cast<size_t>(3 * c[0] + i)];
-      if (has_normals) part.normals(v, i) = normals_[static_cast<size_t>(3 * c[2] + i)];
+      if (has_normals) part.normals(v, i) = c[2] < 0 ? (i == 1) : normals_[static_cast<size_t>(3 * c[2] + i)];
       if (colored) part.colors(v, i) = colors_[static_cast<size_t>(3 * c[0] + i)];
     }
-    if (has_uvs)  // OBJ counts v from below, glTF from above
+    out.file_vertices.push_back(static_cast<int>(c[0]));
+    if (has_uvs && c[1] < 0) part.uvs[0].row(v).setZero();
+    if (has_uvs && c[1] >= 0)  // OBJ counts v from below, glTF from above
       part.uvs[0].row(v) << uvs_[static_cast<size_t>(2 * c[1])], 1 - uvs_[static_cast<size_t>(2 * c[1] + 1)];
   }
   part.faces = Eigen::Map<const Faces>(faces.data(), static_cast<Eigen::Index>(faces.size() / 3), 3);
   out.parts.push_back(std::move(part));
+}
+
+/// Vertices of no face go with the first part; all of them together are a cloud.
+void ObjReader::add_loose() {
+  std::vector<bool> used(positions_.size() / 3, false);
+  for (const auto& [name, group] : groups_)
+    for (const Corner& corner : group.corners) used[static_cast<size_t>(corner[0])] = true;
+  for (size_t v = 0; v < used.size(); ++v) {
+    if (used[v]) continue;
+    if (groups_.empty()) groups_[""];
+    groups_.begin()->second.loose.push_back({static_cast<int64_t>(v), -1, -1});
+  }
 }
 
 Character ObjReader::read() {
@@ -241,13 +258,7 @@ Character ObjReader::read() {
   CharacterNode node;
   node.name = out.name;
   out.nodes.push_back(node);
-  if (groups_.empty() && !positions_.empty()) {  // a cloud
-    Group cloud;
-    for (size_t v = 0; v < positions_.size() / 3; ++v)
-      cloud.corners.push_back({static_cast<int64_t>(v), -1, -1});
-    finish_group("", cloud, out);
-    out.parts.back().faces.resize(0, 3);
-  }
+  add_loose();
   for (const auto& [name, group] : groups_) finish_group(name, group, out);
   check_character(out, path_);
   return out;

@@ -54,13 +54,7 @@ std::vector<int> drivers(const PreparedCharacter& c) {
 
 /// The rig's weights gathered at the joints that move its bones.
 RowMatrix gathered_weights(const PreparedCharacter& c) {
-  std::vector<int> joint_of(c.character.nodes.size(), Pelvis);
-  for (size_t n = 0; n < joint_of.size(); ++n) {
-    const int p = c.character.nodes[n].parent;
-    joint_of[n] = c.driver[n] >= 0 ? c.driver[n]
-                  : p >= 0         ? joint_of[static_cast<size_t>(p)]
-                                   : static_cast<int>(Pelvis);
-  }
+  const std::vector<int> joint_of = joints_of_nodes(c);
   RowMatrix weights = RowMatrix::Zero(c.surface.mesh.vertices.rows(), kJointCount);
   size_t at = 0;
   for (const auto& part : c.character.parts)
@@ -227,6 +221,24 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
 
 }  // namespace
 
+Joints moved_bind_joints(const RestPose& pose, const Joints& rest) {
+  Joints out;
+  for (int j = 0; j < kJointCount; ++j)  // in the axes of the bind pose
+    out.row(j) = pose.bind.row(j) + (rest.row(j) - pose.rest.row(j)) * pose.to_rest[static_cast<size_t>(j)];
+  return out;
+}
+
+std::vector<int> joints_of_nodes(const PreparedCharacter& c) {
+  std::vector<int> joint_of(c.character.nodes.size(), Pelvis);
+  for (size_t n = 0; n < joint_of.size(); ++n) {
+    const int p = c.character.nodes[n].parent;
+    joint_of[n] = c.driver[n] >= 0 ? c.driver[n]
+                  : p >= 0         ? joint_of[static_cast<size_t>(p)]
+                                   : static_cast<int>(Pelvis);
+  }
+  return joint_of;
+}
+
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
                                     SkeletonExtractor* t_pose, const CharacterOptions& options) {
   US_CHECK(character.vertex_count() > 0, character.name, ": holds no mesh");
@@ -257,6 +269,17 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
   return c;
 }
 
+Mesh PreparedCharacter::target_in_file_order() const {
+  Mesh out;
+  out.vertices = surface.in_file_order(target.mesh.vertices);
+  std::vector<int> file_of(static_cast<size_t>(target.mesh.vertices.rows()), 0);
+  for (size_t i = surface.in_file.size(); i-- > 0;)
+    file_of[static_cast<size_t>(surface.in_file[i])] = static_cast<int>(i);
+  out.faces = target.mesh.faces.unaryExpr([&](int v) { return file_of[static_cast<size_t>(v)]; });
+  if (target.mesh.colors.rows() > 0) out.colors = surface.in_file_order(target.mesh.colors);
+  return out;
+}
+
 FoldingTransfer::FoldingTransfer(std::unique_ptr<MotionTransfer> inner, const BoneMap& map)
     : inner_(std::move(inner)) {
   for (int j = 0; j < kJointCount; ++j) mapped_[static_cast<size_t>(j)] = map.has(j);
@@ -278,6 +301,7 @@ RigDeformer::RigDeformer(const PreparedCharacter& character, std::shared_ptr<Def
       bind_vertices_(character.surface.mesh.vertices),
       pose_(character.pose),
       rest_joints_(character.pose.rest),
+      bind_joints_(character.pose.bind),
       weights_(character.weights) {
   US_CHECK(weights_.rows() == bind_vertices_.rows(), "the character has no rig to deform with");
 }
@@ -286,6 +310,7 @@ void RigDeformer::bind(const Points& rest, const Joints& rest_joints) {
   US_CHECK(rest.rows() == bind_vertices_.rows(), "the target has ", rest.rows(), " vertices, the character ",
            bind_vertices_.rows());
   rest_joints_ = rest_joints;
+  bind_joints_ = moved_bind_joints(pose_, rest_joints);
   if (!inner_) return;
   inner_->bind(rest, rest_joints);
   inner_ = inner_->with_weights(weights_);
@@ -305,7 +330,7 @@ Points RigDeformer::deform(const Pose& pose) const {
   const PosedSkeleton posed = forward_kinematics(rest_joints_, pose);
   PosedSkeleton from_bind = posed;
   for (size_t j = 0; j < kJointCount; ++j) from_bind.global[j] = posed.global[j] * pose_.to_rest[j];
-  Points out = linear_blend_skinning(bind_vertices_, weights_, pose_.bind, from_bind);
+  Points out = linear_blend_skinning(bind_vertices_, weights_, bind_joints_, from_bind);
   if (!inner_) return out;
   // Offsets turn with the joints: skinned as points about joints that stay at the origin.
   PosedSkeleton turned = posed;

@@ -143,7 +143,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [drag_frame, drag_joint, offset, drag_falloff, children] = DragEdit();
   [[maybe_unused]] const auto& [swap_first, swap_last, limbs] = SwapEdit();
   [[maybe_unused]] const auto& [name, target, method, target_edits, pose_edits] = Take();
-  [[maybe_unused]] const auto& [target_path, target_betas, target_import] = TargetOptions();
+  [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
+                                target_bones] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, offsets, swaps, smooth, lengths, feet, root] = Method();
   [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
