@@ -111,20 +111,34 @@ RowMatrix unit_rows(const Points& directions, const Vec3& otherwise) {
   return out;
 }
 
+/// A bone that is named twice for one vertex has both weights in one place, which the format asks for.
+RowMatrix weights_of_bones(const CharacterPart& part) {
+  RowMatrix out = part.weights;
+  for (Eigen::Index v = 0; v < out.rows(); ++v)
+    for (Eigen::Index k = 1; k < out.cols(); ++k)
+      for (Eigen::Index before = 0; before < k && out(v, k) > 0; ++before)
+        if (part.joints(v, before) == part.joints(v, k) && out(v, before) > 0) {
+          out(v, before) += out(v, k);
+          out(v, k) = 0;
+        }
+  return out;
+}
+
 template <class T>
-size_t add_joints(const CharacterPart& part, Eigen::Index first, BinaryChunk& chunk) {
+size_t add_joints(const CharacterPart& part, const RowMatrix& weights, Eigen::Index first,
+                  BinaryChunk& chunk) {
   std::vector<T> joints;
   for (Eigen::Index v = 0; v < part.joints.rows(); ++v)
     for (Eigen::Index k = first; k < first + 4; ++k)
-      joints.push_back(k < part.joints.cols() && part.weights(v, k) > 0 ? static_cast<T>(part.joints(v, k))
-                                                                        : T{0});
+      joints.push_back(k < part.joints.cols() && weights(v, k) > 0 ? static_cast<T>(part.joints(v, k))
+                                                                   : T{0});
   return chunk.add(joints, "VEC4", VertexData);
 }
 
 void add_skin_attributes(const Character& character, const CharacterPart& part, BinaryChunk& chunk,
                          json& attributes) {
   // The sums are one to the last bit, which validators want: the largest weight takes the rounding.
-  RowMatrix exact = part.weights;
+  RowMatrix exact = weights_of_bones(part);
   for (Eigen::Index v = 0; v < exact.rows(); ++v) {
     auto row = exact.row(v);
     Eigen::Index largest = 0;
@@ -135,8 +149,8 @@ void add_skin_attributes(const Character& character, const CharacterPart& part, 
   const bool wide = character.skins[static_cast<size_t>(part.skin)].joints.size() > 256;
   for (Eigen::Index first = 0; first < part.joints.cols(); first += 4) {
     const std::string end = std::to_string(first / 4);
-    attributes["JOINTS_" + end] =
-        wide ? add_joints<uint16_t>(part, first, chunk) : add_joints<uint8_t>(part, first, chunk);
+    attributes["JOINTS_" + end] = wide ? add_joints<uint16_t>(part, exact, first, chunk)
+                                       : add_joints<uint8_t>(part, exact, first, chunk);
     RowMatrix weights = RowMatrix::Zero(exact.rows(), 4);
     const Eigen::Index count = std::min<Eigen::Index>(4, exact.cols() - first);
     weights.leftCols(count) = exact.middleCols(first, count);
