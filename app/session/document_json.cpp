@@ -309,6 +309,9 @@ void fields(A& a, typename A::template Of<SourceOptions>& source) {
   a.number("fps", source.fps, Range<double>{0, 1e6});
   a("import", source.import);
   a("follow", source.follow);
+  a("as_scan", source.as_scan);
+  a("clip", source.clip);
+  a("bones", source.bones);
 }
 
 template <class A>
