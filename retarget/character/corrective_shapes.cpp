@@ -18,11 +18,18 @@ Eigen::Map<const Eigen::VectorXf> flat(const Points& points) {
 
 }  // namespace
 
-CorrectiveShapes corrective_shapes(const Deformer& deformer, const std::vector<Pose>& poses, int count) {
+CorrectiveShapes corrective_shapes(const Deformer& deformer, const std::vector<Pose>& poses, int count,
+                                   const std::function<void(float)>& progress) {
   US_CHECK(!poses.empty() && count > 0, "there is no pose to take shapes from");
   const size_t step = (poses.size() + kLookedAt - 1) / kLookedAt;
+  const size_t work = poses.size() + poses.size() / step;
+  size_t done = 0;
+  const auto offsets_of = [&](const Pose& pose) {
+    if (progress) progress(static_cast<float>(done++) / static_cast<float>(work));
+    return deformer.offsets(pose);
+  };
   std::vector<Points> seen;
-  for (size_t i = 0; i < poses.size(); i += step) seen.push_back(deformer.offsets(poses[i]));
+  for (size_t i = 0; i < poses.size(); i += step) seen.push_back(offsets_of(poses[i]));
   const auto n = static_cast<Eigen::Index>(seen.size());
   Eigen::MatrixXf gram(n, n);  // O O^T with the offsets as rows of O
   for (Eigen::Index a = 0; a < n; ++a)
@@ -39,7 +46,7 @@ CorrectiveShapes corrective_shapes(const Deformer& deformer, const std::vector<P
   }
   std::vector<float> largest(out.shapes.size(), 0.0f);
   for (const Pose& pose : poses) {
-    const Points offsets = deformer.offsets(pose);
+    const Points offsets = offsets_of(pose);
     std::vector<float> weights;
     for (const Points& shape : out.shapes) weights.push_back(flat(shape).dot(flat(offsets)));
     for (size_t k = 0; k < weights.size(); ++k) largest[k] = std::max(largest[k], std::abs(weights[k]));

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/formats/part_file.hpp"
 
 namespace understudy {
 namespace {
@@ -317,24 +316,6 @@ std::string base64(const std::vector<char>& bytes) {
   return out;
 }
 
-/// Writes beside the path, then renames: what was there stays whole until the new file is.
-void write_whole(const std::string& path, const std::string& bytes) {
-  const std::string part = path + ".part";
-  {
-    std::ofstream file(part, std::ios::binary);
-    US_CHECK(file, path, ": cannot be written");
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) {
-      std::remove(part.c_str());
-      US_CHECK(false, path, ": writing failed, the disk may be full");
-    }
-  }
-  if (std::rename(part.c_str(), path.c_str()) == 0) return;
-  std::remove(part.c_str());
-  US_CHECK(false, path, ": cannot be written");
-}
-
 void append_number(uint32_t value, std::string& out) {
   out.append(reinterpret_cast<const char*>(&value), 4);
 }
@@ -353,7 +334,7 @@ std::string as_glb(std::string text, const std::vector<char>& bytes) {
 
 }  // namespace
 
-void write_gltf_character(const std::string& path, const Character& character) {
+std::string gltf_bytes(const Character& character, const std::string& path) {
   check_character(character, path);
   BinaryChunk chunk;
   json gltf;
@@ -371,7 +352,14 @@ void write_gltf_character(const std::string& path, const Character& character) {
   if (is_text) buffer["uri"] = "data:application/octet-stream;base64," + base64(chunk.bytes());
   gltf["buffers"] = json::array({buffer});
   const std::string text = gltf.dump(is_text ? 1 : -1, ' ', false, json::error_handler_t::replace);
-  write_whole(path, is_text ? text : as_glb(text, chunk.bytes()));
+  return is_text ? text : as_glb(text, chunk.bytes());
+}
+
+void write_gltf_character(const std::string& path, const Character& character) {
+  const std::string bytes = gltf_bytes(character, path);
+  PartFile file(path);
+  file.write(bytes);
+  file.finish();
 }
 
 }  // namespace understudy

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/character/plausible_person.hpp"
+#include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "retarget/skeleton/skinning.hpp"
@@ -129,6 +131,17 @@ float tidy(float yaw) {
   return std::abs(std::remainder(yaw - quarter, 2 * kPi)) < 2 * kSmallestTurn ? quarter : yaw;
 }
 
+/// The up axis of a body that lies flat with y up.
+std::string up_of_lying(const PreparedCharacter& c, ImportOptions import) {
+  if (c.rigged) return up_of_rig(c.map, c.bind);
+  import.up.clear();
+  const ImportDecision decision = decide_import(c.surface.mesh, import);
+  Mesh upright = c.surface.mesh;
+  decision.apply(upright);
+  // Trunk, arms and head are more than the legs.
+  return (stance_of(upright).centre < 0.46f ? "-" : "") + decision.up;
+}
+
 void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   const Points& file = c.bind.vertices;
   ImportOptions import;
@@ -137,13 +150,25 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   import.floor = options.floor;
   if (c.rigged && (import.up.empty() || import.up == "auto")) import.up = up_of_rig(c.map, c.bind);
   c.surface = merged_surface(c.character, file);
+  if (import.up == "y" && lies_down(stance_of(c.surface.mesh))) {
+    if (options.turn_if_lying) import.up = up_of_lying(c, import);
+    c.notes.push_back(import.up == "y" ? "it lies down with y up"
+                                       : "it lies down with y up, so " + import.up + " is taken as up");
+  }
   const ImportDecision decision = decide_import(c.surface.mesh, import);
   US_CHECK(decision.height > 1e-9f && std::isfinite(decision.height), c.character.name, ": has no height");
   c.to_world.scale = decision.scale;
   c.to_world.R = decision.axes;
   c.to_world.t = Vec3(0, -decision.floor, 0);
   c.surface.mesh.vertices = c.to_world.apply(c.surface.mesh.vertices);
+  paint(c.surface, c.character);
   c.notes.push_back(decision.sentence);
+}
+
+void note_turns(PreparedCharacter& c) {
+  if (c.pose.largest_deg >= 0.5f)
+    c.notes.push_back("its limbs are brought to the T-pose by up to " +
+                      std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
 }
 
 void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
@@ -155,6 +180,7 @@ void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
   c.pose_weights = c.weights;
   Mesh mesh = c.surface.mesh;
   mesh.vertices = in_t_pose(mesh.vertices, c.weights, c.pose);
+  note_turns(c);
   c.target = prepare_target(mesh, c.pose.rest);
 }
 
@@ -213,9 +239,7 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
   c.pose = to_t_pose(found, kRoughDeg);
   c.pose_weights = geometric_weights(mesh, found);
   if (c.pose.largest_deg > 0) mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
-  if (c.pose.largest_deg > 0)
-    c.notes.push_back("its limbs are brought to the T-pose by up to " +
-                      std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
+  note_turns(c);
   c.target = prepare_target(mesh, t_pose != nullptr ? *t_pose : any_pose);
 }
 
@@ -264,7 +288,11 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
   } else {
     US_CHECK(any_pose != nullptr, c.character.name,
              ": has no rig that is known, and no network may look at it");
+    const Stance stance = stance_of(c.surface.mesh);
+    const std::string why_not = refusal(stance), why_doubt = doubt(stance);
+    US_CHECK(why_not.empty(), c.character.name, ": does not look like a person: ", why_not);
     find_in_shape(c, *any_pose, t_pose, options);
+    if (!why_doubt.empty()) c.target.warnings.push_back("the target may be no person: " + why_doubt);
   }
   return c;
 }

@@ -17,6 +17,7 @@ namespace understudy {
 struct CharacterOptions {
   BoneChoices choices;           ///< the user's corrections of the map
   std::string units, up = "y";   ///< as in ImportOptions; empty: guessed
+  bool turn_if_lying = true;     ///< a body that lies flat with y up is turned upright, with a note
   std::optional<float> floor;    ///< its height after scale and axes, metres; none: the lowest points
   std::optional<float> yaw_deg;  ///< turns it about y; none: so that it faces +z
   bool use_rig = true;           ///< false: as if it had no bones
