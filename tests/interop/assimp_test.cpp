@@ -126,6 +126,7 @@ TEST(Assimp, ReadsEveryExportAsWeDo) {
     std::vector<Points> theirs;
     for (const float seconds : exported.times) theirs.push_back(scene.at(exported.clip, seconds));
     const Agreement found = agreement(exported, theirs, 8);
+    RecordProperty(exported.name, std::to_string(found.ours_mm));
     EXPECT_LT(found.ours_mm, 0.1) << exported.name;
     EXPECT_LT(found.screen_mm, exported.cost_mm + 0.1) << exported.name;
   }

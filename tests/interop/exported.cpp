@@ -1,5 +1,6 @@
 #include "tests/interop/exported.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 
@@ -112,12 +113,27 @@ std::string path_for(const std::string& name) {
   return kept == nullptr ? scratch.path(name) : std::string(kept) + "/" + name;
 }
 
+/// The screen deforms with no more influences than the file can hold: what is left out is no matter here.
+std::shared_ptr<Deformer> with_largest(const Deformer& deformer, int count) {
+  RowMatrix weights = deformer.weights();
+  for (Eigen::Index v = 0; v < weights.rows(); ++v) {
+    std::vector<float> sorted(weights.row(v).data(), weights.row(v).data() + weights.cols());
+    std::nth_element(sorted.begin(), sorted.begin() + count, sorted.end(), std::greater<float>());
+    const float least = sorted[static_cast<size_t>(count)];
+    weights.row(v) = (weights.row(v).array() > least).select(weights.row(v), 0.0f).eval();
+    weights.row(v) /= weights.row(v).sum();
+  }
+  return deformer.with_weights(weights);
+}
+
 Exported export_it(const Plan& plan) {
   KnownExtractor before(made_joints(plan.made)), after(made_joints({}));
-  const PreparedCharacter character = prepare_character(character_for(plan), &before, &after);
+  const auto prepared =
+      std::make_shared<PreparedCharacter>(prepare_character(character_for(plan), &before, &after));
+  const PreparedCharacter& character = *prepared;
   auto bulging = std::make_shared<BulgingDeformer>(plan.options.shapes > 0 ? 0.02f : 0.0f);
   bulging->bind(character.target.mesh.vertices, character.target.joints);
-  std::shared_ptr<Deformer> screen = bulging;
+  std::shared_ptr<Deformer> screen = with_largest(*bulging, plan.options.influences);
   if (plan.options.their_rig) {
     screen = std::make_shared<RigDeformer>(character, plan.options.shapes > 0 ? bulging : nullptr);
     screen->bind(character.target.mesh.vertices, character.target.joints);
@@ -130,6 +146,8 @@ Exported export_it(const Plan& plan) {
     }
   Exported out;
   out.name = plan.name;
+  out.options = plan.options;
+  out.prepared = prepared;
   out.path = path_for(plan.name + plan.suffix);
   std::vector<CharacterClip> clips = {{"walk", out.fps, poses}};
   if (plan.options.t_pose_clip) clips.push_back({"walk back", 30, {poses.rbegin(), poses.rend()}});
@@ -139,6 +157,7 @@ Exported export_it(const Plan& plan) {
   for (size_t i = 0; i < kFramesShown; ++i) {
     const size_t frame = i * (kPoses - 1) / (kFramesShown - 1);
     out.times.push_back(static_cast<float>(static_cast<double>(frame) / out.fps));
+    out.poses.push_back(poses[frame]);
     out.screen.push_back(of_all_parts(screen->deform(poses[frame]), character.surface.map));
   }
   for (const double frame : {0.4, 17.7}) out.times.push_back(static_cast<float>(frame / out.fps));

@@ -1,6 +1,7 @@
 // Characters of many kinds that perform a motion, as exported files, for other programs to read back.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,10 @@ struct Exported {
   double fps = 25;
   std::vector<float> times;    ///< five frames, then two moments between frames
   std::vector<Points> screen;  ///< [five] of [V, 3]: every vertex of the parts as the screen shows it
+  std::vector<Pose> poses;     ///< [five]
   double cost_mm = 0;          ///< what the export says it costs at most
+  CharacterExportOptions options;
+  std::shared_ptr<const PreparedCharacter> prepared;  ///< as it was before it was written
   /// [V, 3] by our own reader; influences: an engine that knows no more of them a vertex.
   Points ours_at(float seconds, int influences = 8) const;
   PlayJob job(const std::string& program) const;

@@ -19,6 +19,7 @@ TEST(Three, PlaysAndDrawsEveryExportAsWeDo) {
     EXPECT_GT(said[i].value("covered", 0.0), 0.005) << exported.name << " is hardly to be seen";
     const auto theirs = read_positions(jobs[i], exported.file.vertex_count());
     const Agreement found = agreement(exported, theirs, 4);  // three.js knows four influences
+    RecordProperty(exported.name, std::to_string(found.ours_mm));
     EXPECT_LT(found.ours_mm, 0.1) << exported.name;
     if (!needs_eight(exported)) EXPECT_LT(found.screen_mm, exported.cost_mm + 0.1) << exported.name;
   }
