@@ -24,6 +24,7 @@ CharacterOptions character_options(const TargetOptions& options) {
   result.choices = options.bones;
   result.units = options.import.units;
   result.up = options.import.up.empty() ? "y" : options.import.up;
+  result.turn_if_lying = options.import.up.empty();
   result.floor = options.import.floor;
   if (!options.forward || options.import.yaw_deg != 0) result.yaw_deg = options.import.yaw_deg;
   result.own_joints = options.rig != "ours";
@@ -53,7 +54,8 @@ std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& option
       prepare_character(std::move(character), networks.extractor.get(), networks.rest_extractor.get(),
                         character_options(options)));
   US_CHECK(options.rig != "theirs" || prepared->rigged, options.path,
-           ": has no skeleton whose bones are known; --print-map shows them, --map names them");
+           ": has no skeleton of its own that can be driven, ", prepared->map.count(),
+           " of 22 joints have a bone");
   for (const std::string& note : prepared->notes) log::info(options.path + ": " + note);
   if (prepared->rigged)
     log::info(options.path + ": " + std::to_string(prepared->map.count()) + " of 22 joints are mapped " +

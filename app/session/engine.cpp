@@ -301,6 +301,7 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   const std::string target_wanted = target_key(wanted.target), method_wanted = method_key(wanted.method),
                     joints_wanted = joints_key(wanted.joints);
   if (target_wanted != take.target_is) take.character.reset();
+  if (target_wanted != take.target_is || method_wanted != take.method_is) take.told_new = 0;
   if (target_wanted != take.target_is || method_wanted != take.method_is ||
       joints_wanted != take.joints_are) {
     take.retargeter.reset();

@@ -48,7 +48,8 @@ struct SourceState {
 struct TakeState {
   bool ready = false;                                  ///< target, weights and joints below are there
   std::string problem;                                 ///< why it never will be, one sentence; empty: fine
-  std::shared_ptr<const PreparedCharacter> character;  ///< as it was read and brought to the T-pose
+  /// As it was read and brought to the T-pose; of the file as it was prepared before, until it is ready.
+  std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Target> target;                ///< T-pose mesh and joints (edited)
   std::shared_ptr<const RowMatrix> weights;            ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;            ///< bound to the target, with those weights

@@ -323,10 +323,8 @@ MergedSurface merged_surface(const Character& character, const Points& positions
   std::vector<Eigen::Index> first;  // of each merged vertex, the row it came from
   std::vector<int> corners;
   Eigen::Index at = 0;
-  bool coloured = true;
   for (size_t p = 0; p < character.parts.size(); ++p) {
     const CharacterPart& part = character.parts[p];
-    coloured = coloured && part.colors.rows() > 0;
     for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
       // Corners in one place that move together are one vertex; two parts that only touch stay two.
       std::string key(reinterpret_cast<const char*>(positions.row(at + v).data()), 3 * sizeof(float));
@@ -357,12 +355,6 @@ MergedSurface merged_surface(const Character& character, const Points& positions
   for (size_t i = 0; i < first.size(); ++i)
     out.mesh.vertices.row(static_cast<Eigen::Index>(i)) = positions.row(first[i]);
   out.mesh.faces = Eigen::Map<const Faces>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
-  if (!coloured) return out;
-  out.mesh.colors.resize(out.mesh.vertices.rows(), 3);
-  at = 0;
-  for (const auto& part : character.parts)
-    for (Eigen::Index v = 0; v < part.colors.rows(); ++v, ++at)
-      out.mesh.colors.row(out.map[static_cast<size_t>(at)]) = part.colors.row(v).head<3>();
   return out;
 }
 

@@ -125,7 +125,7 @@ BindPose bind_pose(const Character& character);
 
 /// All parts as one surface. Corners that differ in texture only are one vertex here.
 struct MergedSurface {
-  Mesh mesh;                 ///< colours where every part has some
+  Mesh mesh;                 ///< without colours: paint() gives them
   std::vector<int> map;      ///< of each vertex of the parts, one part after the other, the vertex in mesh
   std::vector<int> in_file;  ///< of each vertex of the file, the vertex in mesh
   /// Rows [V, 3] of the mesh's vertices as rows of the file's: its own count and order.
