@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/cli/outputs.hpp"
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
+#include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/judge.hpp"
 #include "app/run/report.hpp"
@@ -26,7 +26,7 @@ struct Running {
   std::unique_ptr<Source> source;
   std::shared_ptr<const PreparedCharacter> character;
   std::unique_ptr<Performer> performer;
-  std::unique_ptr<Output> output;  // null: no animation wanted
+  std::unique_ptr<MotionOutput> output;  // null: no animation wanted
   std::optional<PreviewMoments> moments, skeletons;
   std::optional<Judge> judge;
   Latency latency;
@@ -72,7 +72,7 @@ void take_frame(Running& job, const PerformedFrame& frame, bool live) {
     ++job.flagged;
     tell_flagged(frame);
   }
-  if (job.output) job.output->push(frame);
+  if (job.output) job.output->push({frame.result.pose, frame.source_joints, &frame.result.vertices});
   if (job.moments && job.moments->wanted(job.frames))
     job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.mesh.faces));
   if (job.skeletons && job.skeletons->wanted(job.frames))
@@ -111,13 +111,17 @@ Running start(const JobOptions& options) {
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.judge.emplace(job.source->fps(), nullptr, &target);
-  if (!options.out.empty())
-    job.output = open_output(options.out, *job.character, job.performer->retargeter(), job.source->fps());
+  if (!options.out.empty()) {
+    ExportBody body{job.character, job.performer->retargeter().networks().deformer, {}};
+    body.file.their_rig = on_their_rig(options.target, *job.character);
+    job.output = open_export(options.out, export_format("", options.out), body,
+                             file_name(options.source.path), job.source->fps());
+  }
   return job;
 }
 
 void finish(const JobOptions& options, Running& job) {
-  if (job.output) job.output->finish();
+  if (job.output) log::info(options.out + ": " + sentence(job.output->finish()));
   if (job.judge) write_json(options.report, report_of(options, job));
   const std::string title =
       file_name(options.source.path) + " performed by " + file_name(options.target.path);
@@ -132,7 +136,7 @@ void finish(const JobOptions& options, Running& job) {
 }  // namespace
 
 void run_job(const JobOptions& options) {
-  check_output_format(options.out);
+  if (!options.out.empty()) export_format("", options.out);
   for (const std::string& path : {options.out, options.report, options.preview, options.skeletons})
     check_writable(path);
   Running job = start(options);
