@@ -25,6 +25,8 @@ class Performer {
   std::optional<PerformedFrame> next();
   /// The same with the skeleton of the source known beforehand.
   std::optional<PerformedFrame> next(const Joints& oracle);
+  /// The method forgets the past: the next frame is as a source's first.
+  void restart() { retargeter_.restart(); }
   const Retargeter& retargeter() const { return retargeter_; }
 
  private:
