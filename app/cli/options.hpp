@@ -17,7 +17,7 @@ void add_source_options(CLI::App& command, SourceOptions& source);
 /// All that may be said of a target but --target itself.
 void add_target_options(CLI::App& command, TargetOptions& target);
 
-/// --engine, --extractor, --weights.
+/// --engine, --extractor, --weights, --engine-weights, --extractor-weights.
 void add_network_options(CLI::App& command, nn::NetworkOptions& networks);
 
 }  // namespace understudy::app

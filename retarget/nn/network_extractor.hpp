@@ -8,8 +8,8 @@
 
 namespace understudy::nn {
 
-/// Loads the extractor. form: "dense" or "paper" (see skeleton_form.hpp). Throws Error naming the weights
-/// file.
+/// Loads the extractor. form: "dense", "paper" or "pointnet" (see skeleton_form.hpp). Throws Error naming the
+/// weights file.
 std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form);
 
 }  // namespace understudy::nn
