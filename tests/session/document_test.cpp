@@ -53,6 +53,9 @@ const Changes& document_changes() {
       CHANGE(source.import.floor.reset()),
       CHANGE(source.import.floor = 0),
       CHANGE(source.follow = false),
+      CHANGE(source.as_scan = true),
+      CHANGE(source.clip += "x"),
+      CHANGE(source.bones.clear()),
       CHANGE(truth.clear()),
       CHANGE(scan_edits.crop.reset()),
       CHANGE(scan_edits.crop->low.x() -= 1),
@@ -138,7 +141,8 @@ const Changes& document_changes() {
 /// Does not compile once a member is added: then it belongs into same(), fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
-  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, quiet] = SourceOptions();
+  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, bones, quiet] =
+      SourceOptions();
   [[maybe_unused]] const auto& [units, up, yaw, floor] = ImportOptions();
   [[maybe_unused]] const auto& [crop, cut, cluster, gap] = ScanEdits();
   [[maybe_unused]] const auto& [low, high] = Box();

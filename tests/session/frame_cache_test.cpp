@@ -61,10 +61,10 @@ class FakeSource final : public Source {
  public:
   FakeSource(Probe& probe, int count, int points)
       : Source(30), probe_(probe), count_(count), points_(points) {}
-  std::optional<ScanFrame> next() override {
+  std::optional<SourceFrame> next() override {
     if (at_ >= count_) return {};
     probe_.make(at_);
-    ScanFrame frame;
+    SourceFrame frame;
     frame.number = at_;
     frame.mesh = scan_mesh(at_++, points_);
     return frame;
@@ -129,8 +129,8 @@ TEST(FrameCacheScans, CloudsGetEstimatedNormalsAndTheirSpacing) {
     class Plane final : public Source {
      public:
       Plane() : Source(30) {}
-      std::optional<ScanFrame> next() override {
-        ScanFrame frame;
+      std::optional<SourceFrame> next() override {
+        SourceFrame frame;
         frame.mesh.vertices.resize(400, 3);
         for (int i = 0; i < 400; ++i) frame.mesh.vertices.row(i) << 0.01f * (i % 20), 1, 0.01f * (i / 20);
         return frame;
