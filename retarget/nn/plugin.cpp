@@ -2,15 +2,18 @@
 #include <torch/torch.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/nn/leaf_refiner.hpp"
 #include "retarget/nn/network_deformer.hpp"
 #include "retarget/nn/network_extractor.hpp"
 #include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/plugin_api.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/training/deformation_trainer.hpp"
+#include "retarget/training/leaf_trainer.hpp"
 #include "retarget/training/motion_trainer.hpp"
 #include "retarget/training/skeleton_trainer.hpp"
 
@@ -21,6 +24,16 @@ std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, con
   if (options.engine == "copy") return std::make_unique<CopyTransfer>();
   US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy or paper");
   return load_paper_transfer(folder + "/motion.weights");
+}
+
+/// Null where the folder has none: weights of one's own need no second look.
+std::unique_ptr<LeafRefiner> load_leaves(const std::string& folder) {
+  const std::string path = folder + "/leaf.weights";
+  if (!std::filesystem::exists(path)) {
+    log::warn_once(path + ": is not there; hands, head and feet are seen from afar only");
+    return nullptr;
+  }
+  return load_leaf_refiner(path);
 }
 
 std::unique_ptr<Deformer> load_skin(const NetworkOptions& options, const std::string& folder) {
@@ -55,8 +68,9 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
     log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
   Networks networks;
   const bool paper = options.extractor == "paper";
-  networks.extractor = load_network_extractor(
-      folder + (paper ? "/skeleton_paper.weights" : "/skeleton.weights"), options.extractor);
+  networks.extractor =
+      load_network_extractor(folder + (paper ? "/skeleton_paper.weights" : "/skeleton.weights"),
+                             options.extractor, paper ? nullptr : load_leaves(folder));
   if (!paper) networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
   networks.transfer = load_transfer(options, folder);
   networks.deformer = load_skin(options, folder);
@@ -67,6 +81,7 @@ int train_network(const TrainOptions& options) {
   if (options.network == "skeleton") return training::train_skeleton(options);
   if (options.network == "motion") return training::train_motion(options);
   if (options.network == "deformation") return training::train_deformation(options);
+  if (options.network == "leaf") return training::train_leaf(options);
   throw Error("there is no network '" + options.network + "' to train: skeleton, motion or deformation");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 
 namespace understudy {
@@ -29,6 +30,7 @@ JointFilter::JointFilter(const JointFilterOptions& options) : options_(options) 
 void JointFilter::reset() {
   tracks_.fill(Track{});
   lengths_.fill(RunningMedian(static_cast<size_t>(std::max(1, options_.length_window))));
+  turning_ = false;
   frames_ = swaps_in_a_row_ = 0;
   repaired_ = false;
 }
@@ -60,36 +62,33 @@ void JointFilter::repair_swaps(Extraction& frame) {
   if (repaired_) frame.global.reset();
 }
 
-void JointFilter::predict(float dt) {
-  for (int j = 0; j < kJointCount; ++j) {
-    Track& t = tracks_[j];
-    const float a = j == Pelvis ? options_.root_acceleration : options_.acceleration;
-    const float q = a * a;
-    t.position += dt * t.velocity;
-    // Covariance of a constant velocity disturbed by a random acceleration held over dt.
-    t.pp += 2 * dt * t.pv + dt * dt * t.vv + 0.25f * dt * dt * dt * dt * q;
-    t.pv += dt * t.vv + 0.5f * dt * dt * dt * q;
-    t.vv += dt * dt * q;
-  }
+/// Covariance of a constant velocity disturbed by a random acceleration held over dt.
+void JointFilter::Spread::predict(float dt, float acceleration) {
+  const float q = acceleration * acceleration;
+  pp += 2 * dt * pv + dt * dt * vv + 0.25f * dt * dt * dt * dt * q;
+  pv += dt * vv + 0.5f * dt * dt * dt * q;
+  vv += dt * dt * q;
 }
 
-void JointFilter::correct(Track& t, const Vec3& measured, float noise) const {
-  const Vec3 surprise = measured - t.position;
+std::array<float, 2> JointFilter::Spread::correct(float surprise, float noise) {
   // A surprise beyond four deviations is a real jump that the model does not know: follow it, do not lag.
-  const float expected = 3 * (t.pp + noise * noise);
-  const float excess = surprise.squaredNorm() / (16 * expected);
+  const float expected = 3 * (pp + noise * noise);
+  const float excess = surprise / (16 * expected);
   if (excess > 1) {
-    t.pp *= excess;
-    t.vv *= excess;
-    t.pv *= excess;
+    pp *= excess;
+    vv *= excess;
+    pv *= excess;
   }
-  const float s = t.pp + noise * noise;
-  const float kp = t.pp / s, kv = t.pv / s;
-  t.position += kp * surprise;
-  t.velocity += kv * surprise;
-  t.vv -= kv * t.pv;
-  t.pv *= 1 - kp;
-  t.pp *= 1 - kp;
+  const float s = pp + noise * noise;
+  const float kp = pp / s, kv = pv / s;
+  vv -= kv * pv;
+  pv *= 1 - kp;
+  pp *= 1 - kp;
+  return {kp, kv};
+}
+
+float JointFilter::noise(float confidence, float sure, float weak) const {
+  return weak + std::clamp(confidence, 0.0f, 1.0f) * (sure - weak);
 }
 
 void JointFilter::smooth(Extraction& frame, float dt) {
@@ -98,24 +97,53 @@ void JointFilter::smooth(Extraction& frame, float dt) {
     return j == Pelvis ? joint : Vec3(joint - pelvis);
   };
   if (frames_ == 0) {
-    for (int j = 0; j < kJointCount; ++j) {
-      Track t;
-      t.position = measured(j);
-      t.pp = options_.noise_m * options_.noise_m;
-      t.vv = 1.0f;  // (m/s)^2
-      tracks_[j] = t;
-    }
+    const float pp = options_.noise_m * options_.noise_m;
+    for (int j = 0; j < kJointCount; ++j) tracks_[j] = {measured(j), Vec3::Zero(), {pp, 0, /*m/s*/ 1.0f}};
     return;
   }
-  predict(dt);
   for (int j = kJointCount - 1; j >= 0; --j) {  // the pelvis last: the others are measured from it
-    const float c = std::clamp(frame.confidence[j], 0.0f, 1.0f);
-    correct(tracks_[j], measured(j), options_.weak_noise_m + c * (options_.noise_m - options_.weak_noise_m));
+    Track& t = tracks_[j];
+    t.position += dt * t.velocity;
+    t.spread.predict(dt, j == Pelvis ? options_.root_acceleration : options_.acceleration);
+    const Vec3 surprise = measured(j) - t.position;
+    const auto [kp, kv] = t.spread.correct(
+        surprise.squaredNorm(), noise(frame.confidence[j], options_.noise_m, options_.weak_noise_m));
+    t.position += kp * surprise;
+    t.velocity += kv * surprise;
   }
   for (int j = 0; j < kJointCount; ++j) {
     const Vec3 base = j == Pelvis ? Vec3(Vec3::Zero()) : tracks_[Pelvis].position;
     frame.joints.row(j) = (base + tracks_[j].position).transpose();
   }
+}
+
+void JointFilter::smooth_turns(Extraction& frame, float dt) {
+  if (!frame.global) {
+    turning_ = false;
+    return;
+  }
+  for (size_t j = 0; j < kJointCount; ++j) {
+    Turn& t = turns_[j];
+    Mat3& seen = (*frame.global)[j];
+    if (!turning_) {
+      const float pp = options_.turn_noise * options_.turn_noise;
+      t = {seen, Vec3::Zero(), {pp, 0, /*(rad/s)^2*/ 4.0f}};
+      continue;
+    }
+    const Mat3 expected = rotation_from_axis_angle(dt * t.velocity) * t.rotation;
+    t.spread.predict(dt, options_.turn_acceleration);
+    const Vec3 surprise = rotation_to_axis_angle(seen * expected.transpose());
+    const float deviation =
+        noise(frame.confidence[static_cast<Eigen::Index>(j)], options_.turn_noise, options_.weak_turn_noise);
+    const auto [kp, kv] = t.spread.correct(surprise.squaredNorm(), deviation);
+    // Products of rotations drift from being one.
+    t.rotation = Eigen::Quaternionf(Mat3(rotation_from_axis_angle(kp * surprise) * expected))
+                     .normalized()
+                     .toRotationMatrix();
+    t.velocity += kv * surprise;
+    seen = t.rotation;
+  }
+  turning_ = true;
 }
 
 Eigen::Array<float, kJointCount, 1> JointFilter::lengths() const {
@@ -150,7 +178,10 @@ Extraction JointFilter::push(const Extraction& raw, float dt) {
   for (int j = 1; j < kJointCount; ++j) lengths_[j].push(seen[j]);
   before_last_ = last_;
   last_ = frame.joints;
-  if (options_.smooth && !raw.exact) smooth(frame, dt);
+  if (options_.smooth && !raw.exact) {
+    smooth(frame, dt);
+    smooth_turns(frame, dt);
+  }
   if (options_.fix_lengths && !raw.exact) fix_lengths(frame);
   ++frames_;
   return frame;

@@ -11,15 +11,18 @@ namespace understudy {
 struct JointFilterOptions {
   bool repair_swaps =
       true;  ///< exchange left and right where the last frames say so and the frame's evidence is weak
-  bool smooth = true;          ///< constant-velocity Kalman filter of each joint
+  bool smooth = true;          ///< constant-velocity Kalman filter of each joint and of each seen rotation
   bool fix_lengths = true;     ///< pull each bone to the running median of its length
   float noise_m = 0.012f;      ///< standard deviation of an extracted coordinate at confidence 1
   float weak_noise_m = 0.06f;  ///< the same at confidence 0
   float acceleration = 12.0f;  ///< m/s^2, how hard joints are expected to accelerate relative to the pelvis
-  float root_acceleration = 6.0f;  ///< m/s^2, the same of the pelvis
-  float swap_confidence = 0.75f;   ///< sides of limbs whose mean confidence is above this are believed
-  int swap_patience = 10;          ///< after this many repaired frames in a row the frame is believed
-  int length_window = 150;         ///< frames that the lengths' medians are over
+  float root_acceleration = 6.0f;   ///< m/s^2, the same of the pelvis
+  float turn_noise = 0.05f;         ///< standard deviation of a seen rotation at confidence 1, radians
+  float weak_turn_noise = 0.25f;    ///< the same at confidence 0
+  float turn_acceleration = 30.0f;  ///< rad/s^2, how hard bones are expected to begin to turn
+  float swap_confidence = 0.75f;    ///< sides of limbs whose mean confidence is above this are believed
+  int swap_patience = 10;           ///< after this many repaired frames in a row the frame is believed
+  int length_window = 150;          ///< frames that the lengths' medians are over
 };
 
 /// Frame by frame with state; looks only back. Memory is bounded.
@@ -37,18 +40,32 @@ class JointFilter {
   Eigen::Array<float, kJointCount, 1> lengths() const;
 
  private:
+  /// The covariance of a value and its speed, the same for x, y and z.
+  struct Spread {
+    float pp = 0, pv = 0, vv = 0;
+    void predict(float dt, float acceleration);
+    /// What share of a surprise (its squared length) goes into the value, and into its speed.
+    std::array<float, 2> correct(float surprise, float noise);
+  };
   struct Track {
     Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-    float pp = 0, pv = 0, vv = 0;  // covariance, the same for x, y, z
+    Spread spread;
   };
-  void predict(float dt);
-  void correct(Track& track, const Vec3& measured, float noise) const;
+  struct Turn {
+    Mat3 rotation = Mat3::Identity();
+    Vec3 velocity = Vec3::Zero();  // radians/s, world axes
+    Spread spread;
+  };
+  float noise(float confidence, float sure, float weak) const;
   void repair_swaps(Extraction& frame);
   void smooth(Extraction& frame, float dt);
+  void smooth_turns(Extraction& frame, float dt);
   void fix_lengths(Extraction& frame);
 
   JointFilterOptions options_;
   std::array<Track, kJointCount> tracks_;  // the pelvis in the world, the others relative to it
+  std::array<Turn, kJointCount> turns_;    // of what was seen, world
+  bool turning_ = false;                   // turns_ hold those of the frame before
   std::array<RunningMedian, kJointCount> lengths_;
   Joints last_ = Joints::Zero(), before_last_ = Joints::Zero();
   int frames_ = 0, swaps_in_a_row_ = 0;

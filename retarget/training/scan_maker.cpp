@@ -100,6 +100,10 @@ Pose ScanMaker::make_pose() {
       pose.local[j] =
           pose.local[j] * rotation_from_axis_angle(spread * std::abs(rng_.normal()) * random_direction(rng_));
   }
+  if (rng_.chance(options_.limp))
+    for (const int j : {LeftWrist, RightWrist, Head, LeftAnkle, RightAnkle})
+      pose.local[j] =
+          pose.local[j] * rotation_from_axis_angle(0.5f * std::abs(rng_.normal()) * random_direction(rng_));
   const float tilt = rng_.chance(options_.tilted) ? 1.2f * rng_.normal() : 0.05f * rng_.normal();
   pose.local[0] = rotation_from_axis_angle(tilt * random_direction(rng_)) * pose.local[0];
   return pose;
@@ -110,9 +114,10 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose) {
   MadeScan scan;
   scan.truth = forward_kinematics(body.joints, pose);
   const Eigen::VectorXf features = pose_features(pose.local);
-  Points rest(kRawPoints, 3);
-  RowMatrix weights = RowMatrix::Zero(kRawPoints, kJointCount);
-  for (int i = 0; i < kRawPoints; ++i) {
+  const int count = raw_points();
+  Points rest(count, 3);
+  RowMatrix weights = RowMatrix::Zero(count, kJointCount);
+  for (int i = 0; i < count; ++i) {
     const auto s = person.sampler.sample(rng_);
     rest.row(i).setZero();
     for (int k = 0; k < 3; ++k) {
@@ -124,8 +129,8 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose) {
     }
   }
   scan.points = linear_blend_skinning(rest, weights, body.joints, scan.truth);
-  scan.parts.resize(kRawPoints);
-  for (int i = 0; i < kRawPoints; ++i) weights.row(i).maxCoeff(&scan.parts[i]);
+  scan.parts.resize(static_cast<size_t>(count));
+  for (int i = 0; i < count; ++i) weights.row(i).maxCoeff(&scan.parts[i]);
   return scan;
 }
 
@@ -139,9 +144,9 @@ void ScanMaker::stretch(MadeScan& scan) {
 }
 
 void ScanMaker::add_clutter(MadeScan& scan, Eigen::Index count) {
-  const float size = scan.points.rows() / static_cast<float>(kRawPoints);
-  const int outliers = rng_.below(static_cast<int>(2 + size * kRawPoints / 150));
-  const int floor = rng_.chance(0.7f) ? rng_.below(static_cast<int>(2 + size * kRawPoints / 25)) : 0;
+  const Eigen::Index size = scan.points.rows();
+  const int outliers = rng_.below(static_cast<int>(2 + size / 150));
+  const int floor = rng_.chance(0.7f) ? rng_.below(static_cast<int>(2 + size / 25)) : 0;
   const float margin = rng_.uniform(0.05f, 0.3f);
   const Vec3 low = scan.points.colwise().minCoeff().transpose().array() - margin;
   const Vec3 high = scan.points.colwise().maxCoeff().transpose().array() + margin;
@@ -176,15 +181,41 @@ void ScanMaker::degrade(MadeScan& scan) {
   add_clutter(scan, scan.points.rows());
 }
 
-MadeScan ScanMaker::next() {
+int ScanMaker::raw_points() const {
+  return options_.points > 0 ? options_.points : kRawPoints;
+}
+
+void ScanMaker::finish(MadeScan& scan, bool captured) {
+  if (captured) degrade(scan);
+  if (options_.points == 0) thin(scan, rng_);
+}
+
+ScanMaker::Person& ScanMaker::draw_person() {
   Person& person = people_[rng_.below(kPoolSize)];
   if (--person.left < 0) person = make_person();
+  return person;
+}
+
+std::vector<MadeScan> ScanMaker::follow(const std::vector<Pose>& poses) {
+  const Person& person = draw_person();
+  const float scale = leg_length(person.body.joints) / data_.template_leg;
+  const bool captured = rng_.chance(options_.captured);
+  std::vector<MadeScan> scans;
+  for (Pose pose : poses) {
+    pose.root *= scale;  // clips' paths are the template's
+    scans.push_back(sample_posed(person, pose));
+    finish(scans.back(), captured);
+  }
+  return scans;
+}
+
+MadeScan ScanMaker::next() {
+  const Person& person = draw_person();
   Pose pose = make_pose();
   pose.local[0] = rotation_about_y(rng_.uniform(-options_.yaw, options_.yaw)) * pose.local[0];
   MadeScan scan = sample_posed(person, pose);
   if (options_.stretch > 0) stretch(scan);
-  if (rng_.chance(options_.captured)) degrade(scan);
-  thin(scan, rng_);
+  finish(scan, rng_.chance(options_.captured));
   return scan;
 }
 

@@ -44,6 +44,57 @@ TEST(JointFilter, LagsLessThanAFrameBehindTrueJoints) {
   EXPECT_LT(own, 0.35f * older);
 }
 
+Rotations turned(int i) {
+  return forward_kinematics(human_rest(), dance(static_cast<float>(i) / 30)).global;
+}
+
+float error(const Rotations& a, const Rotations& b) {
+  float sum = 0;
+  for (size_t j = 0; j < kJointCount; ++j) sum += geodesic_angle(a[j], b[j]) / kJointCount;
+  return sum;
+}
+
+Extraction seen_turned(int i) {
+  Extraction frame = seen(danced(i));
+  frame.global = turned(i);
+  return frame;
+}
+
+TEST(JointFilter, TakesNoiseOutOfSeenRotations) {
+  JointFilter filter;
+  Rng rng(1);
+  float before = 0, after = 0;
+  for (int i = 0; i < 120; ++i) {
+    Extraction noisy = seen_turned(i);
+    for (Mat3& R : *noisy.global)
+      R = rotation_from_axis_angle(0.06f * Vec3(rng.normal(), rng.normal(), rng.normal())) * R;
+    const Extraction smooth = filter.push(noisy, 1 / 30.0f);
+    if (i < 20) continue;
+    before += error(*noisy.global, turned(i));
+    after += error(*smooth.global, turned(i));
+  }
+  EXPECT_LT(after, 0.8f * before);
+}
+
+TEST(JointFilter, LagsLessThanAFrameBehindTrueRotations) {
+  JointFilter filter;
+  float own = 0, older = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Extraction out = filter.push(seen_turned(i), 1 / 30.0f);
+    if (i < 5) continue;
+    own += error(*out.global, turned(i));
+    older += error(*out.global, turned(i - 1));
+  }
+  EXPECT_LT(own, 0.35f * older);
+}
+
+TEST(JointFilter, RotationsBeginAnewAfterFramesWithoutThem) {
+  JointFilter filter;
+  for (int i = 0; i < 5; ++i) filter.push(seen_turned(i), 1 / 30.0f);
+  EXPECT_FALSE(filter.push(seen(danced(5)), 1 / 30.0f).global);
+  EXPECT_EQ(error(*filter.push(seen_turned(40), 1 / 30.0f).global, turned(40)), 0);
+}
+
 TEST(JointFilter, ExchangesSidesBackWhenTheEvidenceIsWeak) {
   JointFilter filter;
   for (int i = 0; i < 10; ++i) filter.push(seen(danced(i)), 1 / 30.0f);
