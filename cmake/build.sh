@@ -2,8 +2,9 @@
 
 # install_packages KIND...: installs the packages of those kinds that are missing; says so; nothing when all are there.
 install_packages() {
-  local kinds="$*" wanted=() missing=() installed kind name
-  while read -r kind name; do
+  local kinds="$*" wanted=() missing=() installed kind name program
+  while read -r kind name program; do
+    [ -n "$program" ] && command -v "$program" >/dev/null && continue
     case " $kinds " in *" $kind "*) wanted+=("$name") ;; esac
   done < <(grep -v '^#' cmake/packages.txt)
   installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${wanted[@]}" 2>/dev/null || true)
@@ -28,6 +29,28 @@ install_packages() {
     echo "apt-get could not install the packages; build/install.log has the whole story." >&2
     exit 1
   }
+}
+
+# install_node_packages: what tests/interop runs, in exactly the versions of its lock file, into build/interop. Where npm
+# cannot, it says why, there too, for the tests that need it; they fail then.
+install_node_packages() {
+  local from=tests/interop to=build/interop why
+  cmp -s "$from/package-lock.json" "$to/installed" && return 0
+  if [ "${NO_INSTALL:-0}" = 1 ]; then
+    echo "The npm packages of $from/package.json are missing and --no-install forbids installing them." >&2
+    exit 1
+  fi
+  mkdir -p "$to"
+  echo "Installing the npm packages of $from"
+  rm -f "$to/installed"
+  cp "$from/package.json" "$from/package-lock.json" "$to/"
+  if npm ci --prefix "$to" --ignore-scripts --no-audit --no-fund --fetch-retries=1 >build/npm.log 2>&1; then
+    cp "$from/package-lock.json" "$to/installed"
+    rm -f "$to/missing.txt"
+  else
+    why=$(sed -n 's/^npm \(error\|ERR!\) //p' build/npm.log | grep -vE '^(code|errno|syscall|network *$)' | head -1)
+    echo "npm could not install the packages of $from: ${why:-see build/npm.log}" | tee "$to/missing.txt" >&2
+  fi
 }
 
 # build [TARGET...]: configures the release preset when it never was, then builds. Quiet when nothing is to do.

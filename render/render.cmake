@@ -6,7 +6,7 @@ us_module(render SOURCES
   render/gl/functions.cpp render/gl/program.cpp render/gl/debug.cpp render/gl/store.cpp
   render/context/context.cpp render/context/egl.cpp render/context/osmesa.cpp render/context/null.cpp
   render/context/input_event.cpp render/context/glfw.cpp
-  render/camera.cpp render/colors.cpp render/image.cpp render/scene.cpp
+  render/camera.cpp render/plot.cpp render/colors.cpp render/image.cpp render/scene.cpp
   render/floor_shadow.cpp render/solids.cpp render/gizmo.cpp render/picking.cpp
   render/passes/frame.cpp render/passes/background_pass.cpp render/passes/mesh_pass.cpp
   render/passes/points_pass.cpp render/passes/skeleton_pass.cpp render/passes/ground_pass.cpp

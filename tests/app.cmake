@@ -3,6 +3,9 @@ us_test(app_test SOURCES
   tests/app/source_test.cpp tests/app/preview_test.cpp tests/app/report_test.cpp
   LIBS understudy_app understudy_npz LABELS fast)
 
+us_test(exports_test SOURCES tests/app/exports_test.cpp tests/retarget/character/characters.cpp
+  LIBS understudy_run understudy_npz LABELS fast)
+
 # These run the shipped program: each run loads LibTorch.
 us_test(commands_test SOURCES
   tests/app/commands_test.cpp tests/app/program.cpp tests/app/sample_files.cpp tests/support/training_folder.cpp
@@ -10,6 +13,11 @@ us_test(commands_test SOURCES
 us_test(bad_input_test SOURCES
   tests/app/bad_input_test.cpp tests/app/program.cpp tests/app/sample_files.cpp
   LIBS understudy_npz understudy_builtin LABELS torch gl TIMEOUT 600)
+us_test(target_command_test SOURCES
+  tests/app/target_command_test.cpp tests/app/program.cpp tests/app/sample_files.cpp
+  tests/retarget/character/characters.cpp
+  LIBS understudy_npz understudy_builtin understudy_character LABELS torch gl TIMEOUT 600)
+add_dependencies(target_command_test understudy_all)
 add_dependencies(commands_test understudy_all)
 add_dependencies(bad_input_test understudy_all)
 
@@ -24,3 +32,10 @@ add_test(NAME layers COMMAND ${PROJECT_SOURCE_DIR}/tests/check_layers.sh)
 add_test(NAME layers_are_enforced COMMAND ${PROJECT_SOURCE_DIR}/tests/check_layers_test.sh)
 add_test(NAME build_script COMMAND ${PROJECT_SOURCE_DIR}/tests/build_script_test.sh)
 set_tests_properties(layers layers_are_enforced build_script PROPERTIES LABELS fast)
+
+us_test(measure_commands_test SOURCES
+  tests/app/measure_commands_test.cpp tests/app/program.cpp tests/app/sample_files.cpp tests/support/training_folder.cpp
+  LIBS understudy_npz understudy_builtin understudy_body nlohmann_json::nlohmann_json LABELS torch gl TIMEOUT 600)
+add_dependencies(measure_commands_test understudy_all)
+us_test(measure_test SOURCES tests/render/plot_test.cpp tests/app/case_maker_test.cpp tests/app/program.cpp tests/support/training_folder.cpp
+  LIBS understudy_run understudy_render understudy_data_folder understudy_npz LABELS fast)

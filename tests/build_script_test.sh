@@ -11,6 +11,7 @@ for name in "${@:3}"; do [ "$name" = "${MISSING:-}" ] || echo "$name installed";
 EOF
 printf '#!/bin/bash\necho "$@" >>"%s/asked"\n' "$fake" >"$fake/apt-get"
 printf '#!/bin/bash\nexec "$@"\n' >"$fake/sudo"
+printf '#!/bin/bash\n' >"$fake/node"
 chmod +x "$fake"/*
 export PATH="$fake:$PATH"
 
@@ -27,3 +28,28 @@ grep -q 'missing.*clang' "$fake/said" || { echo "does not name the package"; exi
 MISSING=clang bash -c '. cmake/build.sh; take_options; install_packages build' | grep -q 'Installing 1 .*clang'
 grep -q 'install .* clang$' "$fake/asked" || { echo "does not install the package"; exit 1; }
 ! grep -q ninja-build "$fake/asked" || { echo "installs what is there"; exit 1; }
+
+rm "$fake/asked"
+MISSING=nodejs bash -c '. cmake/build.sh; take_options; install_packages build test'
+[ ! -e "$fake/asked" ] || { echo "installs a package although its program is there"; exit 1; }
+
+# The npm packages: a stand-in npm that fails leaves a sentence for the tests; one that works is asked once.
+copy=$(mktemp -d)
+trap 'rm -rf "$fake" "$copy"' EXIT
+cp -r --parents cmake/build.sh tests/interop/package.json tests/interop/package-lock.json "$copy"
+cd "$copy"
+printf '#!/bin/bash\necho npm error code ENOTFOUND >&2\necho npm error no such host >&2\nexit 1\n' >"$fake/npm"
+chmod +x "$fake/npm"
+bash -c '. cmake/build.sh; take_options; install_node_packages' >/dev/null 2>&1
+grep -q 'could not install.*no such host' build/interop/missing.txt || { echo "does not say why npm failed"; exit 1; }
+printf '#!/bin/bash\necho "$@" >>"%s/npm_asked"\n' "$fake" >"$fake/npm"
+for _ in 1 2; do bash -c '. cmake/build.sh; take_options; install_node_packages' >/dev/null; done
+[ "$(wc -l <"$fake/npm_asked")" = 1 ] || { echo "installs npm packages that are there"; exit 1; }
+[ ! -e build/interop/missing.txt ] || { echo "still says that npm packages are missing"; exit 1; }
+rm build/interop/installed
+bash -c '. cmake/build.sh; take_options --no-install; install_node_packages' 2>"$fake/said" && {
+  echo "goes on without npm packages"
+  exit 1
+}
+grep -q 'npm packages.*missing' "$fake/said" || { echo "does not name the npm packages"; exit 1; }
+! grep -qE 'resolved|https?:' tests/interop/package-lock.json || { echo "the lock file names addresses"; exit 1; }

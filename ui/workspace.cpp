@@ -183,7 +183,7 @@ void Workspace::open_dialog(const app::Session& session, const std::string& name
                  name == "picture" ? ExportKind::Picture
                  : name == "video" ? ExportKind::Video
                                    : ExportKind::Animation,
-                 name == "csv" ? 2 : 0);
+                 name == "csv" ? figures_format() : 0);
   if (name == "about" && services_.about) about_ = services_.about();
   const auto known = {"compare", "settings", "about", "keys", "none"};
   US_CHECK(exports || std::find(known.begin(), known.end(), name) != known.end(), "there is no dialog ",

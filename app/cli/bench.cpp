@@ -84,9 +84,11 @@ int bench(const BenchOptions& options) {
   from.path = options.source.empty() ? samples_folder() + "/scan" : options.source;
   TargetOptions onto;
   onto.path = options.target.empty() ? samples_folder() + "/target_adult.glb" : options.target;
-  const Mesh target = import_target(onto);
+  Networks networks = nn::load_networks(options.networks);
+  const auto character = open_target(onto, networks);
   Repeated source(from, options.frames);
-  Performer performer(source, target, nn::load_networks(options.networks), {});
+  networks = networks_for(std::move(networks), *character, on_their_rig(onto, *character));
+  Performer performer(source, character->target, std::move(networks), {});
   Latency latency;
   double first_s = 0, memory_1000 = 0;
   Progress progress("bench", options.frames);
@@ -106,7 +108,7 @@ int bench(const BenchOptions& options) {
   if (options.frames > 1000)
     std::printf("long run       %.0f MB at frame 1000, %.0f MB at frame %lld: x %.3f\n", memory_1000,
                 memory_end, static_cast<long long>(options.frames), memory_end / memory_1000);
-  print_work(latency, target.vertices.rows());
+  print_work(latency, character->target.mesh.vertices.rows());
   return 0;
 }
 

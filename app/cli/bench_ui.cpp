@@ -132,7 +132,8 @@ class BenchFiles {
       write_scan(scan() + file, frame->mesh.vertices);
     }
     fs::create_directory_symlink(scan(), scan_again());
-    const Mesh adult = import_target({samples + "/target_adult.glb", {}, {}});
+    const Character character = read_target(samples + "/target_adult.glb", {});
+    const Mesh adult = merged_surface(character, bind_pose(character).vertices).mesh;
     write_obj(target(kVertices), with_vertices(adult, kVertices));
     write_obj(target(kManyVertices), with_vertices(adult, kManyVertices));
   }

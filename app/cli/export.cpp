@@ -2,20 +2,22 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/options.hpp"
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
+#include "app/cli/studio.hpp"
+#include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
-#include "app/run/performer.hpp"
 #include "app/run/report.hpp"
+#include "app/session/take_export.hpp"
 #include "render/contact_sheet.hpp"
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/character/character_export.hpp"
+#include "retarget/character/bone_choices.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/bytes.hpp"
@@ -24,35 +26,24 @@ namespace understudy::app {
 namespace {
 
 struct ExportOptions {
+  std::string document;  // empty: --source and --target
+  int take = 1;
   std::vector<std::string> sources;
-  std::string target, out, map_file, preview, report;
+  std::string format, out, map_file, preview, report;
   SourceOptions source;  // what all sources share
-  CharacterOptions character;
+  TargetOptions target;
   CharacterExportOptions file;
   RetargetOptions retarget;
   nn::NetworkOptions networks;
-  std::string rig = "auto";
   bool print_map = false;
   int64_t frames = 0;
 };
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-/// {"left_wrist": "bone", ...}
-BoneChoices read_choices(const std::string& path) {
-  if (path.empty()) return {};
-  const std::string text = read_file(path);
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  US_CHECK(json.is_object(), path, R"(: is no map of bones; it looks like {"left_wrist": "Hand.L", ...})");
-  BoneChoices choices;
-  for (const auto& [joint, bone] : json.items()) {
-    US_CHECK(bone.is_string(), path, ": the bone of '", excerpt(joint), "' is no text");
-    choices[joint] = bone.get<std::string>();
-  }
-  return choices;
-}
+/// What is written, and who is told to have done it.
+struct Performance {
+  ExportInput input;
+  std::string target;  // for people
+};
 
 std::string clip_name(const std::string& source) {
   const std::filesystem::path normal = std::filesystem::path(source).lexically_normal();
@@ -60,21 +51,25 @@ std::string clip_name(const std::string& source) {
   return stem.empty() ? "motion" : stem;
 }
 
-/// One source to its end.
-CharacterClip perform(const ExportOptions& options, const std::string& path, const Target& target,
-                      Retargeter& retargeter) {
+/// One source to its end, after what was performed before.
+void perform(const ExportOptions& options, const std::string& path, Retargeter& retargeter,
+             ExportInput& input) {
   SourceOptions one = options.source;
   one.path = path;
   const auto source = open_source(one);
-  retargeter.set_target(target);
+  retargeter.restart();
   CharacterClip clip{clip_name(path), source->fps(), {}};
-  Progress progress(clip.name + " -> " + clip_name(options.target), source->count().value_or(0));
+  Progress progress(clip.name + " -> " + clip_name(options.target.path), source->count().value_or(0));
   int64_t flagged = 0;
   const auto dt = static_cast<float>(1 / source->fps());
+  Joints seen = Joints::Zero();
   while (auto scan = source->next()) {
-    const RetargetedFrame frame = retargeter.push(scan->mesh, dt);
+    const RetargetedFrame frame =
+        scan->skeleton ? retargeter.push(*scan->skeleton, dt) : retargeter.push(scan->mesh, dt);
     flagged += frame.flagged ? 1 : 0;
+    if (!frame.flagged) seen = frame.source.joints;
     clip.poses.push_back(frame.pose);
+    input.source_joints.push_back(seen);
     progress.step(static_cast<int64_t>(clip.poses.size()));
     check_interrupt("after frame " + std::to_string(scan->number));
     if (options.frames > 0 && static_cast<int64_t>(clip.poses.size()) >= options.frames) break;
@@ -85,16 +80,75 @@ CharacterClip perform(const ExportOptions& options, const std::string& path, con
   if (flagged > 0)
     log::warn(path + ": " + std::to_string(flagged) +
               " of its frames could not be used and repeat the last pose");
-  return clip;
+  input.clips.push_back(std::move(clip));
+}
+
+Performance perform_sources(const ExportOptions& options, const ExportFormatInfo& format) {
+  US_CHECK(!options.sources.empty(), "--source: a motion to perform is wanted");
+  US_CHECK(!options.target.path.empty(), "--target: a character that performs it is wanted");
+  US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
+           " holds one motion, these are ", options.sources.size());
+  Networks networks = nn::load_networks(options.networks);
+  const auto character = open_target(options.target, networks);
+  const bool theirs = on_their_rig(options.target, *character);
+  RetargetOptions quick = options.retarget;
+  quick.vertices = false;
+  Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
+  retargeter.set_target(character->target);
+  Performance out{{{character, retargeter.networks().deformer, options.file}, {}, {}}, options.target.path};
+  out.input.body.file.their_rig = theirs;
+  for (const std::string& path : options.sources) perform(options, path, retargeter, out.input);
+  return out;
+}
+
+/// What goes wrong in a studio that nobody looks at.
+void check_session(const Session& session) {
+  US_CHECK(!session.question || session.question->kind != Question::Kind::MissingFiles,
+           session.question->missing[0], ": is a file of the document and not there");
+  US_CHECK(session.errors.empty(), session.errors.front().text);
+}
+
+/// The document's take as the studio shows it: its edits, its corrections of joints and weights.
+Performance perform_document(const ExportOptions& options, const ExportFormatInfo& format) {
+  US_CHECK(options.sources.empty() && options.target.path.empty(), options.document,
+           ": a document has its own source and target");
+  StudioServices services;
+  services.networks = studio_services(options.networks.weights).networks;
+  Studio studio(std::move(services));
+  studio.run("document.open", {options.document});
+  const Session& session = studio.session();
+  const size_t count = session.document.takes.size(), take = static_cast<size_t>(options.take) - 1;
+  US_CHECK(!session.document.source.path.empty() && count > 0, options.document, ": has no ",
+           session.document.source.path.empty() ? "source" : "target");
+  US_CHECK(take < count, options.document, ": has no take ", options.take, ", only ", count);
+  const std::string name = session.document.takes[take].name;
+  Progress progress(clip_name(options.document) + " -> " + name, 0);
+  do {
+    studio.tick(0);
+    check_session(session);
+    progress.step(static_cast<int64_t>(session.takes[take].performed.size()));
+    check_interrupt("after " + std::to_string(session.takes[take].performed.size()) + " frames");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  } while (!studio.made());
+  studio.tick(0);
+  check_session(session);
+  progress.finish();
+  ExportChoice choice{format.format, options.file, options.target.rig != "ours"};
+  Performance out{export_input(session, take, choice), name};
+  US_CHECK(options.target.rig != "theirs" || out.input.body.file.their_rig, options.document, ": ", name,
+           " does not perform on bones of its own");
+  return out;
 }
 
 /// Six moments of the first clip as the file has them, and how it stands in the T-pose.
-void preview_file(const ExportOptions& options, const PreparedCharacter& prepared,
-                  const CharacterClip& clip) {
+void preview_file(const ExportOptions& options, const Performance& done) {
+  const PreparedCharacter& prepared = *done.input.body.character;
+  const CharacterClip& clip = done.input.clips[0];
+  const Joints joints = done.input.body.file.joints.value_or(prepared.target.joints);
   const Character written = parse_gltf_character(read_file(options.out), options.out);
   const int animation = options.file.t_pose_clip ? 1 : 0;
   // The sheet looks from where the motion begins; the T-pose turns along.
-  const float heading = heading_of_joints(forward_kinematics(prepared.target.joints, clip.poses[0]).joints);
+  const float heading = heading_of_joints(forward_kinematics(joints, clip.poses[0]).joints);
   const Mat3 turn = rotation_about_y(heading);
   Mesh rest = prepared.target.mesh;
   rest.vertices = (rest.vertices * turn.transpose()).eval();
@@ -106,90 +160,80 @@ void preview_file(const ExportOptions& options, const PreparedCharacter& prepare
     moment.frame = static_cast<int>(at);
     moment.seconds = static_cast<double>(at) / clip.fps;
     moment.source = rest;
-    moment.source_joints = Joints(prepared.target.joints * turn.transpose());
+    moment.source_joints = Joints(joints * turn.transpose());
     moment.target =
         merged_surface(written, vertices_at(written, animation, static_cast<float>(moment.seconds))).mesh;
     moments.push_back(std::move(moment));
   }
   render::SheetOptions sheet;
-  sheet.title = clip.name + " by " + clip_name(options.target);
+  sheet.title = clip.name + " by " + clip_name(done.target);
   sheet.heading = heading;
   sheet.source_caption = "T-pose";
   sheet.target_caption = "Written file";
   render::write_png(options.preview, render::contact_sheet(moments, sheet));
 }
 
-void report_cost(const ExportOptions& options, const PreparedCharacter& prepared, const ExportCost& cost) {
-  std::printf(
-      "%s %lld bytes, against the screen: mean %.3f mm, largest %.3f mm over %lld frames, %lld keys\n",
-      options.out.c_str(), static_cast<long long>(cost.bytes), cost.mean_mm, cost.largest_mm,
-      static_cast<long long>(cost.frames), static_cast<long long>(cost.keys));
+void report_cost(const ExportOptions& options, const Performance& done, const ExportCost& cost) {
+  const PreparedCharacter& prepared = *done.input.body.character;
+  if (cost.measured)
+    std::printf(
+        "%s %lld bytes, against the screen: mean %.3f mm, largest %.3f mm over %lld frames, %lld keys\n",
+        options.out.c_str(), static_cast<long long>(cost.bytes), cost.mean_mm, cost.largest_mm,
+        static_cast<long long>(cost.frames), static_cast<long long>(cost.keys));
+  else
+    std::printf("%s %lld bytes, %lld frames\n", options.out.c_str(), static_cast<long long>(cost.bytes),
+                static_cast<long long>(cost.frames));
   if (options.report.empty()) return;
   Json report = report_header(nn::weights_folder(options.networks));
-  report["target"] = options.target;
-  report["rig"] = options.file.their_rig ? "theirs" : "ours";
+  report["target"] = done.target;
+  report["rig"] = done.input.body.file.their_rig ? "theirs" : "ours";
   report["mapped"] = prepared.map.count();
   report["notes"] = prepared.notes;
-  report["cost"] = {{"mean_mm", cost.mean_mm},
-                    {"largest_mm", cost.largest_mm},
-                    {"frames", cost.frames},
-                    {"keys", cost.keys},
-                    {"bytes", cost.bytes}};
+  report["cost"] = {{"frames", cost.frames}, {"keys", cost.keys}, {"bytes", cost.bytes}};
+  if (cost.measured) {
+    report["cost"]["mean_mm"] = cost.mean_mm;
+    report["cost"]["largest_mm"] = cost.largest_mm;
+  }
   write_json(options.report, report);
 }
 
-void choose_rig(ExportOptions& options, const PreparedCharacter& prepared) {
-  US_CHECK(options.rig != "theirs" || prepared.rigged, options.target,
-           ": has no skeleton whose bones are known; --print-map shows them, --map names them");
-  options.file.their_rig = options.rig != "ours" && prepared.rigged;
-  for (const std::string& note : prepared.notes) log::info(options.target + ": " + note);
-  if (prepared.rigged)
-    log::info(options.target + ": " + std::to_string(prepared.map.count()) + " of 22 joints are mapped " +
-              prepared.map.how);
-}
-
 int print_map(const ExportOptions& options) {
-  const Character character = read_character(options.target);
-  const BoneMap map = map_bones(character, bind_pose(character).nodes, options.character.choices);
+  const Character character = read_character(options.target.path);
+  const BoneMap map = map_bones(character, bind_pose(character).nodes, options.target.bones);
   std::printf("%s", to_table(map, character).c_str());
-  US_CHECK(map.usable(), options.target, ": too few of its bones are known to drive it");
+  US_CHECK(map.usable(), options.target.path, ": too few of its bones are known to drive it");
   return 0;
 }
 
 int run_export(ExportOptions options) {
-  options.character.choices = read_choices(options.map_file);
+  if (!options.map_file.empty()) options.target.bones = read_bone_choices(options.map_file);
   if (options.print_map) return print_map(options);
-  US_CHECK(ends_with(options.out, ".glb") || ends_with(options.out, ".gltf"), options.out,
-           ": this output format is not known, use .glb or .gltf");
-  US_CHECK(!options.sources.empty(), "--source: a motion to perform is wanted");
-  for (const std::string& path : {options.out, options.preview, options.report}) check_writable(path);
-  options.character.own_joints = options.rig != "ours";
-  Character character = read_character(options.target);
-  Networks networks = nn::load_networks(options.networks);
-  const PreparedCharacter prepared = prepare_character(std::move(character), networks.extractor.get(),
-                                                       networks.rest_extractor.get(), options.character);
-  choose_rig(options, prepared);
-  Retargeter retargeter(networks_for(std::move(networks), prepared, options.file.their_rig), [&] {
-    RetargetOptions quick = options.retarget;
-    quick.vertices = false;
-    return quick;
-  }());
-  std::vector<CharacterClip> clips;
-  for (const std::string& path : options.sources)
-    clips.push_back(perform(options, path, prepared.target, retargeter));
+  US_CHECK(!options.out.empty(), "--out: a file to write is wanted");
+  const ExportFormatInfo& format = info_of(export_format(options.format, options.out));
+  US_CHECK(options.preview.empty() || format.is_character, options.preview,
+           ": only of a GLB or glTF file a picture can be made");
+  for (const std::string& path : {*format.suffix ? options.out : "", options.preview, options.report})
+    check_writable(path);
+  Performance done =
+      options.document.empty() ? perform_sources(options, format) : perform_document(options, format);
+  done.input.body.file.progress = [](float) { check_interrupt("while it was written"); };
   const auto began = std::chrono::steady_clock::now();
-  const ExportCost cost =
-      export_character(options.out, prepared, *retargeter.networks().deformer, clips, options.file);
+  const ExportCost cost = export_motion(options.out, format.format, done.input);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   std::fprintf(stderr, "written and measured in %.2f s\n", seconds);
-  report_cost(options, prepared, cost);
-  if (!options.preview.empty()) preview_file(options, prepared, clips[0]);
+  report_cost(options, done, cost);
+  if (!options.preview.empty()) preview_file(options, done);
   return 0;
 }
 
 void add_file_options(CLI::App& command, ExportOptions& options) {
+  std::string formats;
+  for (const ExportFormatInfo& info : export_formats())
+    formats += std::string(formats.empty() ? "" : ", ") + info.name;
+  command.add_option("--format", options.format,
+                     formats + " (default: by the suffix; ply and obj are folders)");
   command
-      .add_option("--rig", options.rig,
+      .add_option("--rig", options.target.rig,
                   "theirs: the character's own skeleton; ours: 22 joints (default: theirs, if any)")
       ->check(CLI::IsMember({"auto", "theirs", "ours"}));
   command.add_option("--influences", options.file.influences, "bones a vertex on our rig: 4 or 8")
@@ -209,28 +253,26 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
 
 Action declare_export(CLI::App& command) {
   const auto options = std::make_shared<ExportOptions>();
-  command.add_option("--source", options->sources, "scans to perform; several become several clips");
-  command.add_option("--target", options->target, "a character: GLB, glTF, FBX, DAE, OBJ, PLY, OFF, STL")
-      ->required();
-  command.add_option("--out", options->out, "the animated character: .glb or .gltf");
+  command.add_option("DOCUMENT", options->document,
+                     "a document of the studio: its take as it is shown there");
+  command.add_option("--take", options->take, "which one of the document's, from 1")
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--source", options->sources, "motions to perform; several become several clips");
+  command.add_option("--target", options->target.path,
+                     "a character: GLB, glTF, FBX, DAE, OBJ, PLY, OFF, STL");
+  command.add_option("--out", options->out, "the file, or the folder of a sequence");
   command.add_option("--map", options->map_file, R"(JSON that names bones: {"left_wrist": "Hand.L"})");
   command.add_flag("--print-map", options->print_map, "show which bone is which joint, and stop");
   command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");
   command.add_option("--report", options->report, "what it costs, as JSON");
-  command.add_option("--target-units", options->character.units,
-                     "the character's units: auto, m, dm, cm, mm, in");
-  command.add_option("--target-up", options->character.up,
-                     "the character's up axis: auto, y (default), z, ...");
-  command.add_option("--target-yaw", options->character.yaw_deg,
-                     "turns the character, degrees (default: to the front)");
-  command.add_option("--fps", options->source.fps, "frames per second of the sources")
-      ->check(CLI::Range(1.0, 1000.0));
+  ImportOptions& import = options->target.import;
+  command.add_option("--target-units", import.units, "the character's units: auto, m, dm, cm, mm, in");
+  command.add_option("--target-up", import.up, "the character's up axis: auto, y (default), z, ...");
+  command.add_option("--target-yaw", import.yaw_deg, "turns the character, degrees (default: to the front)");
+  add_source_options(command, options->source);
   add_file_options(command, *options);
   add_network_options(command, options->networks);
-  return [options] {
-    if (options->rig == "ours" && options->print_map) options->rig = "auto";
-    return run_export(*options);
-  };
+  return [options] { return run_export(*options); };
 }
 
 }  // namespace understudy::app

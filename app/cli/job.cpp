@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/cli/outputs.hpp"
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
+#include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/judge.hpp"
 #include "app/run/report.hpp"
@@ -24,8 +24,9 @@ std::string file_name(const std::string& path) {
 /// All that a job keeps between frames.
 struct Running {
   std::unique_ptr<Source> source;
+  std::shared_ptr<const PreparedCharacter> character;
   std::unique_ptr<Performer> performer;
-  std::unique_ptr<Output> output;  // null: no animation wanted
+  std::unique_ptr<MotionOutput> output;  // null: no animation wanted
   std::optional<PreviewMoments> moments, skeletons;
   std::optional<Judge> judge;
   Latency latency;
@@ -64,15 +65,16 @@ void tell_live(const PerformedFrame& frame) {
   std::fflush(stdout);
 }
 
-void take_frame(Running& job, const PerformedFrame& frame, const Mesh& target, bool live) {
+void take_frame(Running& job, const PerformedFrame& frame, bool live) {
+  const Target& target = job.performer->retargeter().target();
   job.latency.add(frame.times);
   if (frame.result.flagged) {
     ++job.flagged;
     tell_flagged(frame);
   }
-  if (job.output) job.output->push(frame);
+  if (job.output) job.output->push({frame.result.pose, frame.source_joints, &frame.result.vertices});
   if (job.moments && job.moments->wanted(job.frames))
-    job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.faces));
+    job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.mesh.faces));
   if (job.skeletons && job.skeletons->wanted(job.frames))
     job.skeletons->add(job.frames, source_moment(frame, job.frames, job.source->fps()));
   if (job.judge)
@@ -96,22 +98,30 @@ Json report_of(const JobOptions& options, const Running& job) {
   return report;
 }
 
-Running start(const JobOptions& options, const Mesh& target) {
+Running start(const JobOptions& options) {
   Running job;
-  job.source = open_source(options.source);
   Networks networks = nn::load_networks(options.networks);
+  job.character = open_target(options.target, networks);
+  networks = networks_for(std::move(networks), *job.character, on_their_rig(options.target, *job.character));
+  const Mesh& target = job.character->target.mesh;
+  job.source = open_source(options.source);
   log::info("inference threads: " + nn::runtime_report().threads_why);
-  job.performer = std::make_unique<Performer>(*job.source, target, std::move(networks), options.retarget);
+  job.performer =
+      std::make_unique<Performer>(*job.source, job.character->target, std::move(networks), options.retarget);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.judge.emplace(job.source->fps(), nullptr, &target);
-  if (!options.out.empty())
-    job.output = open_output(options.out, job.performer->retargeter(), job.source->fps());
+  if (!options.out.empty()) {
+    ExportBody body{job.character, job.performer->retargeter().networks().deformer, {}};
+    body.file.their_rig = on_their_rig(options.target, *job.character);
+    job.output = open_export(options.out, export_format("", options.out), body,
+                             file_name(options.source.path), job.source->fps());
+  }
   return job;
 }
 
 void finish(const JobOptions& options, Running& job) {
-  if (job.output) job.output->finish();
+  if (job.output) log::info(options.out + ": " + sentence(job.output->finish()));
   if (job.judge) write_json(options.report, report_of(options, job));
   const std::string title =
       file_name(options.source.path) + " performed by " + file_name(options.target.path);
@@ -126,15 +136,14 @@ void finish(const JobOptions& options, Running& job) {
 }  // namespace
 
 void run_job(const JobOptions& options) {
-  check_output_format(options.out);
+  if (!options.out.empty()) export_format("", options.out);
   for (const std::string& path : {options.out, options.report, options.preview, options.skeletons})
     check_writable(path);
-  const Mesh target = import_target(options.target);
-  Running job = start(options, target);
+  Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
                     job.source->count().value_or(0), options.progress_lines);
   while (const auto frame = job.performer->next()) {
-    take_frame(job, *frame, target, options.source.follow);
+    take_frame(job, *frame, options.source.follow);
     progress.step(job.frames);
     check_interrupt("after frame " + std::to_string(frame->scan.number));
   }

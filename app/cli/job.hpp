@@ -17,7 +17,7 @@ struct JobOptions {
   TargetOptions target;
   nn::NetworkOptions networks;
   RetargetOptions retarget;
-  std::string out;              ///< .glb, .gltf or .npz; empty: none
+  std::string out;              ///< its suffix is the format's; empty: none
   std::string report;           ///< .json; empty: none
   std::string preview;          ///< .png; empty: none
   std::string skeletons;        ///< .png of up to 60 frames with the extracted skeleton in each; empty: none

@@ -9,15 +9,14 @@
 namespace understudy::app {
 namespace {
 
-constexpr int64_t kSlowEvery = 10;  // frames between looks of the slow figures
-
 void put(Metrics& metrics, const char* key, double value) {
   if (std::isfinite(value)) metrics.emplace_back(key, value);
 }
 
 }  // namespace
 
-Judge::Judge(double fps, const Truth* truth, const Mesh* target) : fps_(fps), truth_(truth) {
+Judge::Judge(double fps, const Truth* truth, const Mesh* target, int slow_every)
+    : fps_(fps), slow_every_(slow_every), truth_(truth) {
   if (target && !target->is_cloud()) penetration_.emplace(target->vertices, target->faces);
 }
 
@@ -29,8 +28,9 @@ void Judge::push(const JudgedFrame& frame) {
   if (frame.rotations) rotations_.push_back(*frame.rotations);
   if (frame.source_joints) source_joints_.push_back(*frame.source_joints);
   if (frame.raw_joints) raw_joints_.push_back(*frame.raw_joints);
+  if (frame.confidence) confidence_.push_back(*frame.confidence);
   if (frame.vertices) push_surface(frame);
-  if (frame.scan && frame.source_joints && frames_ % kSlowEvery == 0)
+  if (frame.scan && frame.source_joints && frames_ % slow_every_ == 0)
     inside_.add(last_.inside = inside_share(*frame.scan, *frame.source_joints));
   ++frames_;
 }
@@ -46,7 +46,7 @@ void Judge::push_surface(const JudgedFrame& frame) {
   }
   floor_.add(last_.floor_mm = floor_penetration(p));
   last_.floor_mm *= 1000;
-  if (penetration_ && frames_ % kSlowEvery == 0)
+  if (penetration_ && frames_ % slow_every_ == 0)
     self_penetration_.add(last_.self_penetration = penetration_->share(p));
 }
 

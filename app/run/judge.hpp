@@ -16,6 +16,9 @@ namespace understudy::app {
 /// Key and value, in the order of the report. Figures that cannot be told for a sequence are left out.
 using Metrics = std::vector<std::pair<std::string, double>>;
 
+/// Of each joint, 0..1.
+using Confidence = Eigen::Array<float, kJointCount, 1>;
+
 /// One finished frame, as the judge sees it. What is not there is null.
 struct JudgedFrame {
   const Points* vertices = nullptr;       ///< of the target
@@ -24,6 +27,7 @@ struct JudgedFrame {
   const Joints* source_joints = nullptr;  ///< extracted, repaired and smoothed
   const Joints* raw_joints = nullptr;     ///< extracted, as the network says
   const Mesh* scan = nullptr;
+  const Confidence* confidence = nullptr;  ///< of the raw joints
 };
 
 /// Figures of one frame's surface; NaN where not told.
@@ -33,16 +37,23 @@ struct SurfaceFigures {
 };
 
 /// Collects a sequence. Surface figures are summed as the frames come; the slow ones (self_penetration,
-/// inside) look at every tenth frame.
+/// inside) look at every tenth frame, unless told otherwise.
 class Judge {
  public:
-  /// truth may be null; target (its T-pose) too.
-  Judge(double fps, const Truth* truth, const Mesh* target);
+  /// truth may be null; target (its T-pose) too. slow_every: frames between looks of the slow figures.
+  Judge(double fps, const Truth* truth, const Mesh* target, int slow_every = 10);
   void push(const JudgedFrame& frame);
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
   /// Of the frame pushed last.
   const SurfaceFigures& last() const { return last_; }
+
+  // What was pushed, in order; empty where it was null.
+  const JointSequence& joints() const { return joints_; }
+  const JointSequence& source_joints() const { return source_joints_; }
+  const JointSequence& raw_joints() const { return raw_joints_; }
+  const std::vector<Rotations>& rotations() const { return rotations_; }
+  const std::vector<Confidence>& confidence() const { return confidence_; }
 
  private:
   struct Mean {
@@ -55,11 +66,13 @@ class Judge {
   void add_extraction(Metrics& result) const;
 
   double fps_;
+  int slow_every_;
   const Truth* truth_;
   std::optional<SelfPenetration> penetration_;
   int64_t frames_ = 0;
   JointSequence joints_, source_joints_, raw_joints_;
   std::vector<Rotations> rotations_;
+  std::vector<Confidence> confidence_;
   SurfaceFigures last_;
   Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_;
 };

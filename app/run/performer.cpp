@@ -13,9 +13,9 @@ double ms_since(Clock::time_point began) {
 
 }  // namespace
 
-Performer::Performer(Source& source, const Mesh& target, Networks networks, const RetargetOptions& options)
+Performer::Performer(Source& source, Target target, Networks networks, const RetargetOptions& options)
     : source_(source), retargeter_(std::move(networks), options) {
-  retargeter_.set_target(target);
+  retargeter_.set_target(std::move(target));
 }
 
 std::optional<PerformedFrame> Performer::next() {

@@ -20,11 +20,13 @@ struct PerformedFrame {
 /// Reads and performs one frame after the other, and takes their times.
 class Performer {
  public:
-  Performer(Source& source, const Mesh& target, Networks networks, const RetargetOptions& options = {});
+  Performer(Source& source, Target target, Networks networks, const RetargetOptions& options = {});
   /// None at the end of the source.
   std::optional<PerformedFrame> next();
   /// The same with the skeleton of the source known beforehand.
   std::optional<PerformedFrame> next(const Joints& oracle);
+  /// The method forgets the past: the next frame is as a source's first.
+  void restart() { retargeter_.restart(); }
   const Retargeter& retargeter() const { return retargeter_; }
 
  private:

@@ -11,6 +11,10 @@
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/motion/clip.hpp"
+#include "retarget/motion/moving_surface.hpp"
+#include "retarget/motion/read_motion.hpp"
+#include "retarget/motion/skeletal_motion.hpp"
 
 namespace understudy::app {
 namespace {
@@ -158,6 +162,102 @@ class PerformingBody final : public Source {
   size_t at_ = 0;
 };
 
+/// Frames of an animation: it counts them.
+class AnimatedSource : public Source {
+ public:
+  AnimatedSource(double fps, int64_t frames) : Source(fps), count_(frames) {}
+  std::optional<SourceFrame> next() final {
+    if (at_ >= count_) return std::nullopt;
+    SourceFrame frame = frame_at(at_);
+    frame.number = at_++;
+    return frame;
+  }
+  void seek(int64_t frame) final {
+    US_CHECK(frame >= 0 && frame < count_, "there is no frame ", frame, " in a motion of ", count_);
+    at_ = frame;
+  }
+  std::optional<int64_t> count() const final { return count_; }
+
+ private:
+  virtual SourceFrame frame_at(int64_t frame) const = 0;
+
+  int64_t count_, at_ = 0;
+};
+
+/// A skeleton that moves.
+class MovingSkeleton final : public AnimatedSource {
+ public:
+  MovingSkeleton(SkeletalMotion motion, const SourceOptions& options)
+      : AnimatedSource(motion.fps(), motion.count()), motion_(std::move(motion)) {
+    for (const std::string& note : motion_.notes()) {
+      if (!options.quiet) log::info(options.path + ": " + note);
+      decision_ += (decision_.empty() ? "" : "; ") + note;
+    }
+  }
+  std::string decision() const override { return decision_; }
+
+ private:
+  SourceFrame frame_at(int64_t frame) const override {
+    SourceFrame out;
+    out.mesh = motion_.surface(frame);
+    out.skeleton = motion_.skeleton(frame);
+    return out;
+  }
+
+  SkeletalMotion motion_;
+  std::string decision_;
+};
+
+/// The surface of an animated character, sampled anew in each frame: a scan of it.
+class ScannedCharacter final : public AnimatedSource {
+ public:
+  ScannedCharacter(Character character, int clip, const ClipTimes& times, const SourceOptions& options)
+      : AnimatedSource(times.fps, times.count),
+        character_(std::move(character)),
+        clip_(clip),
+        times_(times),
+        surface_(character_),
+        decision_(decide_import(surface_.at(nodes_at(character_, clip_, times_.at(0))), options.import)) {
+    if (!options.quiet)
+      log::info(options.path + ": its surface is looked at as a scan, " + in_words(fps()) + ", " +
+                decision_.sentence);
+  }
+  std::string decision() const override { return decision_.sentence; }
+
+ private:
+  SourceFrame frame_at(int64_t frame) const override {
+    constexpr int kPoints = 8000;
+    Rng rng(static_cast<uint64_t>(frame) + 1);
+    SourceFrame out;
+    out.mesh.vertices = decision_.apply(
+        sample_points(surface_.at(nodes_at(character_, clip_, times_.at(frame))), kPoints, rng));
+    return out;
+  }
+
+  Character character_;
+  int clip_;
+  ClipTimes times_;
+  MovingSurface surface_;
+  ImportDecision decision_;
+};
+
+std::unique_ptr<Source> as_scan(Character character, const SourceOptions& options) {
+  US_CHECK(character.vertex_count() > 0, options.path,
+           ": holds no surface that could be looked at as a scan");
+  const int clip = chosen_clip(character, options.clip);
+  const ClipTimes times = clip_times(character.animations[static_cast<size_t>(clip)], options.fps);
+  return std::make_unique<ScannedCharacter>(std::move(character), clip, times, options);
+}
+
+std::unique_ptr<Source> as_skeleton(const Character& character, const SourceOptions& options) {
+  SkeletalMotionOptions how;
+  how.clip = options.clip;
+  how.bones = options.bones;
+  how.import = options.import;
+  how.fps = options.fps;
+  return std::make_unique<MovingSkeleton>(SkeletalMotion(character, how), options);
+}
+
 }  // namespace
 
 bool turn_upright(Motion& motion, const std::string& up) {
@@ -174,8 +274,11 @@ bool turn_upright(Motion& motion, const std::string& up) {
 }
 
 std::unique_ptr<Source> open_source(const SourceOptions& options) {
-  if (options.motion.empty()) return std::make_unique<ScanFiles>(options);
-  return std::make_unique<PerformingBody>(options, read_amass_motion(options.motion));
+  if (!options.motion.empty())
+    return std::make_unique<PerformingBody>(options, read_amass_motion(options.motion));
+  std::optional<Character> moving = read_motion(options.path);
+  if (!moving) return std::make_unique<ScanFiles>(options);
+  return options.as_scan ? as_scan(std::move(*moving), options) : as_skeleton(*moving, options);
 }
 
 }  // namespace understudy::app

@@ -1,9 +1,11 @@
 #include "app/run/target_file.hpp"
 
+#include <filesystem>
+
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/body/body.hpp"
-#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/character/read_character.hpp"
 #include "retarget/formats/npz.hpp"
 
 namespace understudy::app {
@@ -17,28 +19,52 @@ Eigen::VectorXf as_vector(const std::vector<float>& values) {
   return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-}  // namespace
-
-Mesh import_target(const TargetOptions& options) {
-  Mesh target = read_target(options.path, options.betas);
-  ImportOptions import = options.import;
-  if (import.up.empty()) import.up = "y";
-  const ImportDecision decision = decide_import(target, import);
-  decision.apply(target);
-  log::info(options.path + ": " + decision.sentence);
-  return target;
+CharacterOptions character_options(const TargetOptions& options) {
+  CharacterOptions result;
+  result.choices = options.bones;
+  result.units = options.import.units;
+  result.up = options.import.up.empty() ? "y" : options.import.up;
+  result.turn_if_lying = options.import.up.empty();
+  result.floor = options.import.floor;
+  if (!options.forward || options.import.yaw_deg != 0) result.yaw_deg = options.import.yaw_deg;
+  result.own_joints = options.rig != "ours";
+  return result;
 }
 
-Mesh read_target(const std::string& path, const std::vector<float>& betas) {
+}  // namespace
+
+Character read_target(const std::string& path, const std::vector<float>& betas) {
   if (is_npz(path)) {
     const Npz npz = read_npz(path);
     if (npz.count("v_template")) {
       const ShapedBody person = read_smpl_body(path).shaped(as_vector(betas));
-      return {person.vertices, person.faces};
+      return character_of_mesh({person.vertices, person.faces}, std::filesystem::path(path).stem().string());
     }
   }
   US_CHECK(betas.empty(), path, ": only an SMPL-format body takes --betas");
-  return read_mesh(path);
+  return read_character(path);
+}
+
+std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks) {
+  US_CHECK(options.rig == "auto" || options.rig == "theirs" || options.rig == "ours",
+           "a rig is auto, theirs or ours, not '", options.rig, "'");
+  Character character = read_target(options.path, options.betas);
+  US_CHECK(character.vertex_count() > 0, options.path, ": holds no mesh");
+  auto prepared = std::make_shared<PreparedCharacter>(
+      prepare_character(std::move(character), networks.extractor.get(), networks.rest_extractor.get(),
+                        character_options(options)));
+  US_CHECK(options.rig != "theirs" || prepared->rigged, options.path,
+           ": has no skeleton of its own that can be driven, ", prepared->map.count(),
+           " of 22 joints have a bone");
+  for (const std::string& note : prepared->notes) log::info(options.path + ": " + note);
+  if (prepared->rigged)
+    log::info(options.path + ": " + std::to_string(prepared->map.count()) + " of 22 joints are mapped " +
+              prepared->map.how);
+  return prepared;
+}
+
+bool on_their_rig(const TargetOptions& options, const PreparedCharacter& character) {
+  return options.rig != "ours" && character.rigged;
 }
 
 }  // namespace understudy::app

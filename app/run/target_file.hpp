@@ -1,11 +1,12 @@
-// A target from a file: read, brought to metres and y up.
+// A target from a file: any character, brought to metres, y up and the T-pose, its bones and joints found.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "retarget/character/prepared_character.hpp"
 #include "retarget/formats/import.hpp"
-#include "retarget/geometry/mesh.hpp"
 
 namespace understudy::app {
 
@@ -13,12 +14,21 @@ struct TargetOptions {
   std::string path;
   std::vector<float> betas;  ///< of an SMPL-format body
   ImportOptions import;      ///< up is y unless told otherwise
+  bool forward = true;       ///< without a yaw it is turned so that it faces +z; false: it stays as it is
+  std::string rig = "auto";  ///< theirs: its own bones and skin; ours: the 22 joints; auto: its own, if any
+  BoneChoices bones;         ///< the user's corrections of which bone is which joint
 };
 
-/// The target as the retargeter wants it: metres, y up. Says what it decided. Throws Error naming the file.
-Mesh import_target(const TargetOptions& options);
+/// The target as the retargeter wants it. The networks' extractors look at what has no rig; they are only
+/// used during the call. Says what it decided through the log. Throws Error naming the file: it cannot be
+/// read, no body is found in it, its own rig is wanted and its bones are not known.
+std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks);
 
-/// The T-pose of an SMPL-format body with these shape parameters, as a mesh; any other file as it is.
-Mesh read_target(const std::string& path, const std::vector<float>& betas);
+/// Whether the target performs on its own bones and skin.
+bool on_their_rig(const TargetOptions& options, const PreparedCharacter& character);
+
+/// The file as it is: an SMPL-format body in T-pose with these shape parameters, any other as read_character
+/// reads it. Throws Error naming the file.
+Character read_target(const std::string& path, const std::vector<float>& betas);
 
 }  // namespace understudy::app

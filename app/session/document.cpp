@@ -72,7 +72,8 @@ bool equal(const ImportOptions& a, const ImportOptions& b) {
 
 bool same(const SourceOptions& a, const SourceOptions& b) {
   return a.path == b.path && a.motion == b.motion && a.betas == b.betas && a.fps == b.fps &&
-         equal(a.import, b.import) && a.follow == b.follow;
+         equal(a.import, b.import) && a.follow == b.follow && a.as_scan == b.as_scan && a.clip == b.clip &&
+         a.bones == b.bones;
 }
 
 bool same(const ScanEdits& a, const ScanEdits& b) {
@@ -91,7 +92,8 @@ bool same(const std::vector<SkeletonEdit>& a, const std::vector<SkeletonEdit>& b
 }
 
 bool same(const TargetOptions& a, const TargetOptions& b) {
-  return a.path == b.path && a.betas == b.betas && equal(a.import, b.import);
+  return a.path == b.path && a.betas == b.betas && equal(a.import, b.import) && a.forward == b.forward &&
+         a.rig == b.rig && a.bones == b.bones;
 }
 
 bool same(const Method& a, const Method& b) {

@@ -4,8 +4,10 @@
 #include "app/run/case_folder.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/character/read_character.hpp"
+#include "retarget/formats/bytes.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/motion/read_motion.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -164,7 +166,15 @@ Kind kind_of_npz(const std::string& path) {
   return Kind::Scans;
 }
 
-Kind kind_of(const std::string& path) {
+/// Of what may be a character or a motion: who has a target and no source wants a motion.
+bool wanted_as_source(const Document& document, const std::string& path) {
+  if (fs::path(path).extension() == ".bvh") return true;
+  if (!document.source.path.empty() || document.takes.empty()) return false;
+  const std::string suffix = lower_case(fs::path(path).extension().string());
+  return is_motion_file(path) || ((suffix == ".glb" || suffix == ".gltf") && read_motion(path));
+}
+
+Kind kind_of(const Document& document, const std::string& path) {
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file or folder");
   if (fs::is_directory(path, failed))
@@ -173,8 +183,8 @@ Kind kind_of(const std::string& path) {
   if (suffix == ".understudy") return Kind::Document;
   if (fs::path(path).filename() == "case.json") return Kind::Case;
   if (suffix == ".npz") return kind_of_npz(path);
-  if (suffix == ".npy" || suffix == ".lst") return Kind::Scans;
-  US_CHECK(format_of_suffix(path), path, ": is neither a scan, a target, a motion nor a document");
+  if (suffix == ".npy" || suffix == ".lst" || wanted_as_source(document, path)) return Kind::Scans;
+  US_CHECK(is_character_file(path), path, ": is neither a scan, a target, a motion nor a document");
   return Kind::Mesh;
 }
 
@@ -189,6 +199,7 @@ void open_case(Studio& studio, std::string folder) {
     Take take;
     take.name = found.name;
     take.target.path = found.target;
+    take.target.forward = false;  // a case's target stands as its truth does
     fresh.document.takes.push_back(take);
   }
   studio.replace_document(fresh, "");
@@ -215,7 +226,7 @@ void Studio::replace_document(SavedDocument saved, const std::string& path) {
 
 void Studio::open(const std::string& path) {
   const std::string whole = fs::absolute(path).lexically_normal().string();
-  switch (kind_of(whole)) {
+  switch (kind_of(session_.document, whole)) {
     case Kind::Document:
       return run("document.open", {whole});
     case Kind::Case:
@@ -224,9 +235,10 @@ void Studio::open(const std::string& path) {
     case Kind::Scans:
       return run("source.open", {whole});
     case Kind::Motion:
-      US_CHECK(!session_.document.takes.empty() &&
-                   fs::path(session_.document.takes.back().target.path).extension() == ".npz",
-               whole, ": a motion wants a body that performs it: open the SMPL-format body first");
+      // A body that is there performs it; without one its skeleton is the source.
+      if (session_.document.takes.empty() ||
+          fs::path(session_.document.takes.back().target.path).extension() != ".npz")
+        return run("source.open", {whole});
       return run("source.motion", {session_.document.takes.back().target.path, whole});
     case Kind::Body:
     case Kind::Mesh:

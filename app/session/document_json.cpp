@@ -142,6 +142,14 @@ class Writer {
       put_struct(list.emplace_back(), values[i], indexed(where_ + name, i) + '.');
     json_[name] = std::move(list);
   }
+  void operator()(const char* name, const BoneChoices& choices) {
+    Json object = Json::object();
+    for (const auto& [joint, bone] : choices) {
+      US_CHECK(is_utf8(joint) && is_utf8(bone), where_, name, " has a name that is not UTF-8");
+      object[joint] = bone;
+    }
+    json_[name] = std::move(object);
+  }
   void weights(const char* name, const std::shared_ptr<const WeightRows>& value);
   void skeleton_edit(const SkeletonEdit& edit);
 
@@ -244,6 +252,16 @@ class Reader {
     for (const Json& one : *json)
       read_struct(one, values.emplace_back(), indexed(where_ + name, values.size() - 1) + '.');
   }
+  void operator()(const char* name, BoneChoices& choices) {
+    const Json* json = member(name);
+    if (!json) return;
+    US_CHECK(json->is_object(), where_, name, " must be an object");
+    choices.clear();
+    for (const auto& [joint, bone] : json->items()) {
+      US_CHECK(bone.is_string(), where_, name, " must name bones");
+      choices[joint] = bone.get<std::string>();
+    }
+  }
   void weights(const char* name, std::shared_ptr<const WeightRows>& value);
   void skeleton_edit(SkeletonEdit& edit);
 
@@ -291,6 +309,9 @@ void fields(A& a, typename A::template Of<SourceOptions>& source) {
   a.number("fps", source.fps, Range<double>{0, 1e6});
   a("import", source.import);
   a("follow", source.follow);
+  a("as_scan", source.as_scan);
+  a("clip", source.clip);
+  a("bones", source.bones);
 }
 
 template <class A>
@@ -348,6 +369,9 @@ void fields(A& a, typename A::template Of<TargetOptions>& target) {
   a.path("path", target.path);
   a("betas", target.betas);
   a("import", target.import);
+  a("forward", target.forward);
+  a("rig", target.rig);
+  a("bones", target.bones);
 }
 
 template <class A>

@@ -84,7 +84,7 @@ struct Stream {
 struct TakeWork {
   Plan::TakePlan plan;
   std::string target_is, method_is, joints_are;
-  Target found;  // the target before the user's moves of joints
+  std::shared_ptr<const PreparedCharacter> character;
   std::unique_ptr<Retargeter> retargeter;
   bool failed = false;
   size_t done = 0;      // frames performed with the present settings
@@ -108,7 +108,9 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
 
 std::string source_key(const SourceOptions& source, const ScanEdits& edits) {
   std::ostringstream out;
-  out << source.path << '|' << source.motion << '|' << source.fps << '|';
+  out << source.path << '|' << source.motion << '|' << source.fps << '|' << source.as_scan << '|' << source.clip
+      << '|';
+  for (const auto& [joint, bone] : source.bones) out << joint << '=' << bone.size() << ':' << bone << '|';
   write_import(out, source.import);
   for (const float beta : source.betas) out << beta << ' ';
   if (edits.crop) out << "|crop " << edits.crop->low.transpose() << ' ' << edits.crop->high.transpose();
@@ -123,8 +125,9 @@ std::string source_key(const SourceOptions& source, const ScanEdits& edits) {
 
 std::string target_key(const TargetOptions& target) {
   std::ostringstream out;
-  out << target.path << '|';
+  out << target.path << '|' << target.rig << '|' << target.forward << '|';
   write_import(out, target.import);
+  for (const auto& [joint, bone] : target.bones) out << joint << '=' << bone.size() << ':' << bone << '|';
   for (const float beta : target.betas) out << beta << ' ';
   return out.str();
 }
@@ -297,7 +300,8 @@ void Engine::Impl::adopt(Plan wanted) {
 void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   const std::string target_wanted = target_key(wanted.target), method_wanted = method_key(wanted.method),
                     joints_wanted = joints_key(wanted.joints);
-  if (target_wanted != take.target_is) take.found = Target{};
+  if (target_wanted != take.target_is) take.character.reset();
+  if (target_wanted != take.target_is || method_wanted != take.method_is) take.told_new = 0;
   if (target_wanted != take.target_is || method_wanted != take.method_is ||
       joints_wanted != take.joints_are) {
     take.retargeter.reset();
@@ -358,23 +362,22 @@ void Engine::Impl::open() {
 bool Engine::Impl::prepare(TakeWork& take) {
   try {
     Networks networks = networks_of(take.plan.method);
-    if (take.found.mesh.vertices.rows() == 0) {
-      const Mesh mesh = import_target(take.plan.target);
-      SkeletonExtractor& extractor = networks.rest_extractor ? *networks.rest_extractor : *networks.extractor;
-      take.found = prepare_target(mesh, extractor);
-    }
+    if (!take.character) take.character = open_target(take.plan.target, networks);
     Stream& stream = streams[take.plan.method.extractor];
     if (!stream.extractor) stream.extractor = std::move(networks.extractor);
     networks.extractor.reset();
     networks.rest_extractor.reset();
+    networks =
+        networks_for(std::move(networks), *take.character, on_their_rig(take.plan.target, *take.character));
     const std::shared_ptr<const Deformer> deformer = networks.deformer;
-    Target target = take.found;
+    Target target = take.character->target;
     target.joints = understudy::apply(take.plan.joints, target.joints);
     auto retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(take.plan.method));
     retargeter->set_target(target);
     take.retargeter = std::move(retargeter);  // only with a target: without one it can do nothing
     take.done = 0;
-    tell(TakeReady{take.plan.id, std::make_shared<const Target>(std::move(target)), deformer});
+    tell(
+        TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)), deformer});
   } catch (const std::exception& error) {
     take.failed = true;
     tell(TakeFailed{take.plan.id, error.what()});

@@ -55,6 +55,7 @@ struct SourceFrames {
 };
 struct TakeReady {
   int64_t id = 0;
+  std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Target> target;
   std::shared_ptr<const Deformer> deformer;  ///< bound, with the networks' weights
 };

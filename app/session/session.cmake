@@ -7,6 +7,6 @@ us_module(session SOURCES
   app/session/studio.cpp app/session/studio_results.cpp app/session/command_sets.cpp
   app/session/document_commands.cpp app/session/source_commands.cpp app/session/take_commands.cpp
   app/session/playback_commands.cpp app/session/view_commands.cpp app/session/edit_commands.cpp
-  app/session/export_commands.cpp app/session/program_commands.cpp
+  app/session/export_commands.cpp app/session/program_commands.cpp app/session/take_export.cpp
   PUBLIC understudy_run understudy_editing nlohmann_json::nlohmann_json
-  PRIVATE understudy_npz understudy_results Threads::Threads)
+  PRIVATE understudy_npz Threads::Threads)

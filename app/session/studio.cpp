@@ -16,7 +16,7 @@ namespace {
 constexpr double kNoticeSeconds = 6;
 
 /// For each take of `now` the index of the take of `before` that it continues, -1 for a new one: the same
-/// target made the same way, else the same target.
+/// target made the same way, else the same target, else the same file.
 std::vector<int> matched_takes(const std::vector<Take>& before, const std::vector<Take>& now) {
   std::vector<int> match(now.size(), -1);
   std::vector<bool> used(before.size(), false);
@@ -32,6 +32,7 @@ std::vector<int> matched_takes(const std::vector<Take>& before, const std::vecto
     return same_target(a, b) && method_key(a.method) == method_key(b.method) && a.name == b.name;
   });
   pass([&](const Take& a, const Take& b) { return same_target(a, b); });
+  pass([&](const Take& a, const Take& b) { return a.target.path == b.target.path; });
   return match;
 }
 
@@ -157,8 +158,16 @@ void Studio::follow_document() {
   session_.working = true;
 }
 
-/// A take made in another way has other times, and what failed may work.
+/// A take made in another way has other times, and what failed may work. Of a target prepared in another way
+/// only the file is the same.
 void Studio::forget_outdated(TakeState& state, const Take& before, const Take& now) {
+  if (target_key(before.target) != target_key(now.target)) {
+    TakeState fresh;
+    fresh.character = std::move(state.character);
+    fresh.generation = state.generation + 1;
+    state = std::move(fresh);
+    return;
+  }
   if (method_key(before.method) != method_key(now.method)) state.problem.clear(), state.latency = {};
 }
 
@@ -301,8 +310,11 @@ SavedDocument Studio::saved_document() const {
 }
 
 bool Studio::idle() const {
-  return !session_.working && !jobs_.running() && !background_->refiner.busy() &&
-         background_->dirty.empty() && !cache_.busy();
+  return made() && !jobs_.running() && !cache_.busy();
+}
+
+bool Studio::made() const {
+  return !session_.working && !background_->refiner.busy() && background_->dirty.empty();
 }
 
 void Studio::wait_idle(double timeout_s) {

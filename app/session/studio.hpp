@@ -50,6 +50,8 @@ class Studio {
   void open(const std::string& path);
   /// Whether nothing works in the background.
   bool idle() const;
+  /// Whether every frame is made and edited; figures may still be taken.
+  bool made() const;
   /// Shows a sentence in a dialog; details are for "copy details".
   void fail(const std::string& sentence, const std::string& details = "");
   /// Shows a sentence for some seconds.

@@ -117,6 +117,7 @@ void Studio::take_in(TakeReady& event) {
   if (!take) return;
   take->ready = true;
   take->problem.clear();
+  take->character = event.character;
   take->target = event.target;
   background_->applied[event.id].deformer = event.deformer;
   apply_weights(static_cast<size_t>(take - session_.takes.data()));
@@ -221,7 +222,7 @@ struct Measuring {
   ScanEdits edits;
   Motion shown;
   std::vector<Joints> joints, raw_joints, source_joints;
-  std::shared_ptr<const Target> target;
+  std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Deformer> deformer;
   std::shared_ptr<const Truth> truth;
   std::vector<Series> series;
@@ -237,8 +238,9 @@ void keep_figures(std::vector<Series>& series, size_t t, const SurfaceFigures& f
 void judge_all(Measuring& m, JobControl& control) {
   const size_t count = m.shown.poses.size();
   const bool comparable = m.truth && m.truth->frames == static_cast<int64_t>(count) &&
-                          m.truth->vertex_count == m.target->mesh.vertices.rows();
-  Judge judge(m.shown.fps, comparable ? m.truth.get() : nullptr, &m.target->mesh);
+                          m.truth->vertex_count == static_cast<int64_t>(m.character->surface.in_file.size());
+  const Mesh target = m.character->target_in_file_order();
+  Judge judge(m.shown.fps, comparable ? m.truth.get() : nullptr, &target);
   for (const char* key : {"mpvd_m", "pa_mpvd_m", "medl_mm", "floor_mm", "self_penetration", "inside"})
     m.series.push_back(blank_series(key, count));
   SourceOptions quiet = m.source;
@@ -249,7 +251,7 @@ void judge_all(Measuring& m, JobControl& control) {
     control.progress(static_cast<float>(t) / static_cast<float>(count));
     auto scan = source->next();
     if (scan && scan->usable) scan->mesh = understudy::apply(m.edits, scan->mesh);
-    const Points vertices = m.deformer->deform(m.shown.poses[t]);
+    const Points vertices = m.character->surface.in_file_order(m.deformer->deform(m.shown.poses[t]));
     judge.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.raw_joints[t],
                 scan && scan->usable ? &scan->mesh : nullptr});
     keep_figures(m.series, t, judge.last());
@@ -272,7 +274,7 @@ void Studio::measure(size_t k) {
     m->source_joints.push_back(frame.joints);
   }
   if (m->source_joints.size() < m->shown.poses.size()) return;
-  m->target = take.target;
+  m->character = take.character;
   m->deformer = take.deformer;
   m->truth = session_.truth;
   const int64_t generation = take.generation;

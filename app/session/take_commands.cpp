@@ -3,7 +3,7 @@
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/character/read_character.hpp"
 
 namespace understudy::app {
 namespace {
@@ -16,8 +16,8 @@ std::string target_file(const Arguments& arguments, size_t i) {
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file");
   US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
-  US_CHECK(format_of_suffix(path) || fs::path(path).extension() == ".npz", path,
-           ": is no mesh that is known");
+  US_CHECK(is_character_file(path) || fs::path(path).extension() == ".npz", path,
+           ": is no character or mesh that is known");
   return path;
 }
 
@@ -76,16 +76,51 @@ void add_target_import(Commands& commands) {
                   choice(a, 1, "axis", {"auto", "x", "y", "z", "-x", "-y", "-z"});
                   take_argument(s.session(), a, 0).target.import.up = a[1];
                 }});
-  commands.add({"target.yaw", "Turn the target", "TAKE DEGREES: it must face +z", "", true, true,
+  commands.add({"target.yaw", "Turn the target", "TAKE DEGREES|auto: so that it faces +z", "", true, true,
                 [](Studio& s, const Arguments& a) {
-                  take_argument(s.session(), a, 0).target.import.yaw_deg =
-                      static_cast<float>(number(a, 1, "angle"));
+                  TargetOptions& target = take_argument(s.session(), a, 0).target;
+                  target.forward = word(a, 1, "angle") == "auto";
+                  target.import.yaw_deg = target.forward ? 0 : static_cast<float>(number(a, 1, "angle"));
                 }});
   commands.add({"target.betas", "Shape of the target", "TAKE \"1.2,-0.5\"", "", true, true,
                 [](Studio& s, const Arguments& a) {
                   take_argument(s.session(), a, 0).target.betas =
                       betas(word(a, 1, "list of shape parameters"));
                 }});
+}
+
+/// The bones as the choices leave them, where the character is known: what is wrong is said at once.
+void check_bones(const Studio& studio, size_t k) {
+  const auto& character = studio.session().takes.at(k).character;
+  if (!character) return;
+  map_bones(character->character, character->bind.nodes, studio.session().document.takes[k].target.bones);
+}
+
+void add_rig(Commands& commands) {
+  commands.add({"target.rig", "Rig of the target", "TAKE auto|theirs|ours", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 1, "rig", {"auto", "theirs", "ours"});
+                  Take& take = take_argument(s.session(), a, 0);
+                  const auto& character =
+                      s.session().takes[static_cast<size_t>(whole_number(a, 0, "take"))].character;
+                  US_CHECK(a[1] != "theirs" || !character || character->rigged, take.name,
+                           " has no skeleton of its own whose bones are known");
+                  take.target.rig = a[1];
+                }});
+  commands.add({"target.bone", "Bone of a joint", "TAKE JOINT BONE|none|auto", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  BoneChoices& bones = take_argument(s.session(), a, 0).target.bones;
+                  const std::string joint = kJointNames[static_cast<size_t>(joint_argument(a, 1))];
+                  const std::string& bone = word(a, 2, "bone");
+                  if (bone == "auto")
+                    bones.erase(joint);
+                  else
+                    bones[joint] = bone == "none" ? "" : bone;
+                  check_bones(s, static_cast<size_t>(whole_number(a, 0, "take")));
+                }});
+  commands.add(
+      {"target.bones_clear", "Bones as they were found", "TAKE", "", true, false,
+       [](Studio& s, const Arguments& a) { take_argument(s.session(), a, 0).target.bones.clear(); }});
 }
 
 /// One setting of a method, "engine=paper".
@@ -159,6 +194,7 @@ void add_methods(Commands& commands) {
 void add_take_commands(Commands& commands) {
   add_targets(commands);
   add_target_import(commands);
+  add_rig(commands);
   add_methods(commands);
 }
 

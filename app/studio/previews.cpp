@@ -8,7 +8,8 @@
 #include "app/run/target_file.hpp"
 #include "app/session/document_file.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/character/read_character.hpp"
+#include "retarget/character/vertex_colors.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::app {
@@ -167,11 +168,14 @@ Previews::Content Previews::read(const std::string& path) {
       return content;
     }
     if (!fs::is_directory(at)) {
-      if (!format_of_suffix(path) && at.extension() != ".npz" && at.extension() != ".npy") return content;
+      if (!is_character_file(path) && at.extension() != ".npz" && at.extension() != ".npy") return content;
       if (fs::file_size(at) > kLargest) return {{}, "too large to be looked at here"};
     }
     if (!fs::is_directory(at) && at.extension() != ".npy") {
-      content.mesh = normalized(read_target(path, {}));
+      const Character character = read_target(path, {});
+      MergedSurface surface = merged_surface(character, bind_pose(character).vertices);
+      paint(surface, character);
+      content.mesh = normalized(std::move(surface.mesh));
       content.text = described(content.mesh);
       return content;
     }

@@ -307,6 +307,14 @@ BindPose bind_pose(const Character& character) {
   return out;
 }
 
+Points MergedSurface::in_file_order(const Points& rows) const {
+  US_CHECK(rows.rows() == mesh.vertices.rows(), "the surface has ", mesh.vertices.rows(), " vertices, not ",
+           rows.rows());
+  Points out(static_cast<Eigen::Index>(in_file.size()), 3);
+  for (size_t i = 0; i < in_file.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = rows.row(in_file[i]);
+  return out;
+}
+
 MergedSurface merged_surface(const Character& character, const Points& positions) {
   US_CHECK(positions.rows() == character.vertex_count(), "the surface has ", positions.rows(),
            " positions for ", character.vertex_count(), " vertices");
@@ -315,10 +323,8 @@ MergedSurface merged_surface(const Character& character, const Points& positions
   std::vector<Eigen::Index> first;  // of each merged vertex, the row it came from
   std::vector<int> corners;
   Eigen::Index at = 0;
-  bool coloured = true;
   for (size_t p = 0; p < character.parts.size(); ++p) {
     const CharacterPart& part = character.parts[p];
-    coloured = coloured && part.colors.rows() > 0;
     for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
       // Corners in one place that move together are one vertex; two parts that only touch stay two.
       std::string key(reinterpret_cast<const char*>(positions.row(at + v).data()), 3 * sizeof(float));
@@ -337,16 +343,18 @@ MergedSurface merged_surface(const Character& character, const Points& positions
       corners.push_back(out.map[static_cast<size_t>(at + part.faces.data()[f])]);
     at += part.vertices.rows();
   }
+  out.in_file = out.map;
+  const auto& numbers = character.file_vertices;
+  if (!numbers.empty()) {
+    US_CHECK(numbers.size() == out.map.size(), character.name, ": has ", out.map.size(), " vertices, but ",
+             numbers.size(), " numbers of them");
+    out.in_file.assign(static_cast<size_t>(*std::max_element(numbers.begin(), numbers.end())) + 1, 0);
+    for (size_t i = 0; i < numbers.size(); ++i) out.in_file[static_cast<size_t>(numbers[i])] = out.map[i];
+  }
   out.mesh.vertices.resize(static_cast<Eigen::Index>(first.size()), 3);
   for (size_t i = 0; i < first.size(); ++i)
     out.mesh.vertices.row(static_cast<Eigen::Index>(i)) = positions.row(first[i]);
   out.mesh.faces = Eigen::Map<const Faces>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
-  if (!coloured) return out;
-  out.mesh.colors.resize(out.mesh.vertices.rows(), 3);
-  at = 0;
-  for (const auto& part : character.parts)
-    for (Eigen::Index v = 0; v < part.colors.rows(); ++v, ++at)
-      out.mesh.colors.row(out.map[static_cast<size_t>(at)]) = part.colors.row(v).head<3>();
   return out;
 }
 

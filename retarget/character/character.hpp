@@ -85,6 +85,9 @@ struct Character {
   std::vector<std::string> materials, textures, samplers;
   std::vector<std::string> extensions;  ///< that materials and textures use
   std::vector<CharacterAnimation> animations;
+  /// Of each vertex of the parts, one part after the other, its number in the file, every number at least
+  /// once; empty: they are the file's in its order.
+  std::vector<int> file_vertices;
 
   Eigen::Index vertex_count() const;
   /// Transforms of the nodes to the world, from their own to the parents'.
@@ -122,8 +125,11 @@ BindPose bind_pose(const Character& character);
 
 /// All parts as one surface. Corners that differ in texture only are one vertex here.
 struct MergedSurface {
-  Mesh mesh;             ///< colours where every part has some
-  std::vector<int> map;  ///< of each vertex of the parts, one part after the other, the vertex in mesh
+  Mesh mesh;                 ///< without colours: paint() gives them
+  std::vector<int> map;      ///< of each vertex of the parts, one part after the other, the vertex in mesh
+  std::vector<int> in_file;  ///< of each vertex of the file, the vertex in mesh
+  /// Rows [V, 3] of the mesh's vertices as rows of the file's: its own count and order.
+  Points in_file_order(const Points& rows) const;
 };
 /// positions [V, 3]: of all the parts' vertices.
 MergedSurface merged_surface(const Character& character, const Points& positions);

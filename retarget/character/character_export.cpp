@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 
 #include "retarget/base/error.hpp"
 #include "retarget/character/corrective_shapes.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/key_reduction.hpp"
-#include "retarget/formats/bytes.hpp"
+#include "retarget/character/painted_skin.hpp"
+#include "retarget/formats/part_file.hpp"
 
 namespace understudy {
 namespace {
@@ -131,7 +131,8 @@ CharacterAnimation animation_of(const std::string& name, const Sampled& sampled,
 /// What both skeletons have in common: the character without animation, then clip by clip.
 class Animator {
  public:
-  Animator(const PreparedCharacter& source, const Deformer& screen) : source_(source), screen_(screen) {}
+  Animator(const PreparedCharacter& source, const Deformer& screen, const CharacterExportOptions& options)
+      : source_(source), screen_(screen), influences_(options.influences), moved_(options.joints) {}
   virtual ~Animator() = default;
   virtual Character still() = 0;
   virtual Sampled sample(const CharacterClip& clip) const = 0;
@@ -141,6 +142,8 @@ class Animator {
  protected:
   const PreparedCharacter& source_;
   const Deformer& screen_;
+  int influences_;
+  std::optional<Joints> moved_;  // T-pose joints, where they are not the character's
 };
 
 class TheirRig final : public Animator {
@@ -184,11 +187,13 @@ void add_root(Character& character, const Similarity& to_world) {
 
 /// A skinned mesh goes where its bones are, whatever its node says: at the top, plain, no program is misled.
 void lift_skinned_nodes(Character& character) {
-  std::vector<bool> has_children(character.nodes.size(), false);
+  std::vector<bool> is_needed(character.nodes.size(), false);
   for (const auto& node : character.nodes)
-    if (node.parent >= 0) has_children[static_cast<size_t>(node.parent)] = true;
+    if (node.parent >= 0) is_needed[static_cast<size_t>(node.parent)] = true;
+  for (const auto& skin : character.skins)
+    for (const int joint : skin.joints) is_needed[static_cast<size_t>(joint)] = true;
   for (const auto& part : character.parts) {
-    if (part.skin < 0 || has_children[static_cast<size_t>(part.node)]) continue;
+    if (part.skin < 0 || is_needed[static_cast<size_t>(part.node)]) continue;
     CharacterNode& node = character.nodes[static_cast<size_t>(part.node)];
     node.parent = -1;
     node.local = Transform();
@@ -198,6 +203,7 @@ void lift_skinned_nodes(Character& character) {
 Character TheirRig::still() {
   US_CHECK(source_.rigged, source_.character.name, ": has no skeleton that could be driven");
   Character out = source_.character;
+  apply_painted_weights(source_, screen_.weights(), influences_, out);
   const Mat4 world = matrix_of(source_.to_world);
   bind_.clear();
   for (const Mat4& node : source_.bind.nodes) bind_.push_back(world * node);
@@ -226,6 +232,8 @@ Character TheirRig::still() {
 
 Sampled TheirRig::sample(const CharacterClip& clip) const {
   Sampled out;
+  const Joints rest = moved_.value_or(source_.pose.rest);
+  const Joints about = moved_bind_joints(source_.pose, rest);
   for (size_t n = 0; n < driver_.size(); ++n) {
     if (driver_[n] < 0) continue;
     out.nodes.push_back(static_cast<int>(n));
@@ -235,7 +243,7 @@ Sampled TheirRig::sample(const CharacterClip& clip) const {
   }
   std::vector<Mat4> world(bind_.size());
   for (size_t i = 0; i < clip.poses.size(); ++i) {
-    const PosedSkeleton posed = forward_kinematics(source_.pose.rest, clip.poses[i]);
+    const PosedSkeleton posed = forward_kinematics(rest, clip.poses[i]);
     std::vector<Transform> frame;
     for (size_t n = 0; n < bind_.size(); ++n) {
       const int p = parent_[n], j = driver_[n];
@@ -246,7 +254,7 @@ Sampled TheirRig::sample(const CharacterClip& clip) const {
         continue;
       }
       const Mat3 R = posed.global[static_cast<size_t>(j)] * source_.pose.to_rest[static_cast<size_t>(j)];
-      const Vec3 t = posed.joints.row(j).transpose() - R * source_.pose.bind.row(j).transpose();
+      const Vec3 t = posed.joints.row(j).transpose() - R * about.row(j).transpose();
       world[n] = rigid(R, t) * bind_[n];
       frame.push_back(Transform::from(above.inverse() * world[n]));
     }
@@ -258,8 +266,7 @@ Sampled TheirRig::sample(const CharacterClip& clip) const {
 
 class OurRig final : public Animator {
  public:
-  OurRig(const PreparedCharacter& source, const Deformer& screen, int influences)
-      : Animator(source, screen), influences_(influences) {}
+  using Animator::Animator;
   Character still() override;
   Sampled sample(const CharacterClip& clip) const override;
   Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const override {
@@ -272,7 +279,6 @@ class OurRig final : public Animator {
  private:
   void to_t_pose(CharacterPart& part, Eigen::Index first) const;
   void add_skin(CharacterPart& part, Eigen::Index first) const;
-  int influences_;
 };
 
 void OurRig::to_t_pose(CharacterPart& part, Eigen::Index first) const {
@@ -325,7 +331,7 @@ Character OurRig::still() {
   out.extensions = from.extensions;
   CharacterSkin skin;
   skin.name = "22 joints";
-  const Joints& rest = source_.target.joints;
+  const Joints rest = moved_.value_or(source_.target.joints);
   const Pose back = source_.pose.back();
   for (int j = 0; j < kJointCount; ++j) {
     const int p = kParents[static_cast<size_t>(j)];
@@ -361,7 +367,7 @@ Character OurRig::still() {
 
 Sampled OurRig::sample(const CharacterClip& clip) const {
   Sampled out;
-  const Joints& rest = source_.target.joints;
+  const Joints rest = moved_.value_or(source_.target.joints);
   for (int j = 0; j < kJointCount; ++j) out.nodes.push_back(j);
   out.metres.assign(kJointCount, 1.0f);
   for (size_t i = 0; i < clip.poses.size(); ++i) {
@@ -381,20 +387,19 @@ Sampled OurRig::sample(const CharacterClip& clip) const {
 std::vector<CharacterClip> wanted_clips(const PreparedCharacter& character, std::vector<CharacterClip> clips,
                                         const CharacterExportOptions& options) {
   US_CHECK(!clips.empty(), character.character.name, ": there is no motion to export");
+  const Joints joints = options.joints.value_or(character.target.joints);
   for (auto& clip : clips) {
     US_CHECK(!clip.poses.empty() && clip.fps > 0, "the clip '", clip.name, "' is empty");
     for (auto& pose : clip.poses) {
       bool finite = pose.root.allFinite();
       for (const Mat3& R : pose.local) finite = finite && R.allFinite();
       US_CHECK(finite, "a pose of the clip '", clip.name, "' is not finite");
-      if (options.in_place)
-        pose.root =
-            Vec3(character.target.joints(Pelvis, 0), pose.root.y(), character.target.joints(Pelvis, 2));
+      if (options.in_place) pose.root = Vec3(joints(Pelvis, 0), pose.root.y(), joints(Pelvis, 2));
     }
   }
   if (!options.t_pose_clip) return clips;
   CharacterClip rest{"T-pose", clips[0].fps, {Pose()}};
-  rest.poses[0].root = character.target.joints.row(Pelvis).transpose();
+  rest.poses[0].root = joints.row(Pelvis).transpose();
   clips.insert(clips.begin(), rest);
   return clips;
 }
@@ -403,15 +408,22 @@ std::unique_ptr<Animator> animator_for(const PreparedCharacter& character, const
                                        const CharacterExportOptions& options) {
   US_CHECK(options.influences == 4 || options.influences == 8, "a vertex can have 4 or 8 influences, not ",
            options.influences);
-  if (options.their_rig) return std::make_unique<TheirRig>(character, screen);
-  return std::make_unique<OurRig>(character, screen, options.influences);
+  if (options.their_rig) return std::make_unique<TheirRig>(character, screen, options);
+  return std::make_unique<OurRig>(character, screen, options);
 }
 
-CorrectiveShapes shapes_for(const Deformer& screen, const std::vector<CharacterClip>& clips, int count) {
-  if (count <= 0) return {};
+/// Goes on from `from` to `to`.
+std::function<void(float)> part_of(const std::function<void(float)>& progress, float from, float to) {
+  if (!progress) return {};
+  return [&progress, from, to](float done) { progress(from + (to - from) * std::min(done, 1.0f)); };
+}
+
+CorrectiveShapes shapes_for(const Deformer& screen, const std::vector<CharacterClip>& clips,
+                            const CharacterExportOptions& options) {
+  if (options.shapes <= 0) return {};
   std::vector<Pose> poses;
   for (const auto& clip : clips) poses.insert(poses.end(), clip.poses.begin(), clip.poses.end());
-  return corrective_shapes(screen, poses, count);
+  return corrective_shapes(screen, poses, options.shapes, part_of(options.progress, 0, 0.6f));
 }
 
 void add_shapes(const CorrectiveShapes& shapes, const Animator& animator, const PreparedCharacter& source,
@@ -484,13 +496,17 @@ int64_t key_count(const Character& character) {
 }
 
 ExportCost measure(const Character& written, const PreparedCharacter& source, const Deformer& screen,
-                   const std::vector<CharacterClip>& clips) {
+                   const std::vector<CharacterClip>& clips, const std::function<void(float)>& progress) {
   ExportCost cost;
+  cost.measured = true;
   double sum = 0, count = 0;
   for (size_t a = 0; a < clips.size(); ++a) {
     const auto& poses = clips[a].poses;
     const size_t step = (poses.size() + kCompared - 1) / kCompared;
     for (size_t i = 0; i < poses.size(); i += step, ++cost.frames) {
+      if (progress)
+        progress((static_cast<float>(a) + static_cast<float>(i) / static_cast<float>(poses.size())) /
+                 static_cast<float>(clips.size()));
       const Points shown = screen.deform(poses[i]);
       const Points seen = vertices_at(written, static_cast<int>(a),
                                       static_cast<float>(static_cast<double>(i) / clips[a].fps));
@@ -518,7 +534,7 @@ Character animated_character(const PreparedCharacter& character, const Deformer&
   Character out = animator->still();
   const std::vector<CharacterAnimation> own = std::move(out.animations);
   out.animations.clear();
-  const CorrectiveShapes shapes = shapes_for(screen, clips, options.shapes);
+  const CorrectiveShapes shapes = shapes_for(screen, clips, options);
   if (!shapes.shapes.empty()) add_shapes(shapes, *animator, character, out);
   size_t at = 0;
   for (const auto& clip : clips) {
@@ -539,12 +555,16 @@ Character animated_character(const PreparedCharacter& character, const Deformer&
 ExportCost export_character(const std::string& path, const PreparedCharacter& character,
                             const Deformer& screen, const std::vector<CharacterClip>& clips,
                             const CharacterExportOptions& options) {
-  write_gltf_character(path, animated_character(character, screen, clips, options));
-  const Character written = parse_gltf_character(read_file(path), path);
+  const Character animated = animated_character(character, screen, clips, options);
+  const std::string bytes = gltf_bytes(animated, path);
+  const Character written = parse_gltf_character(bytes, path);
   const auto wanted = wanted_clips(character, clips, options);
-  ExportCost cost = measure(written, character, screen, wanted);
+  ExportCost cost = measure(written, character, screen, wanted, part_of(options.progress, 0.6f, 1));
   for (const auto& clip : wanted) cost.keys_before += static_cast<int64_t>(clip.poses.size());
-  cost.bytes = static_cast<int64_t>(std::filesystem::file_size(path));
+  cost.bytes = static_cast<int64_t>(bytes.size());
+  PartFile file(path);
+  file.write(bytes);
+  file.finish();
   return cost;
 }
 

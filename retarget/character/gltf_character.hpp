@@ -14,8 +14,10 @@ namespace understudy {
 /// pictures that are none, ...
 Character parse_gltf_character(std::string_view bytes, const std::string& path);
 
-/// Writes it beside the path, then renames; the suffix .gltf makes text with everything inside, else binary.
+/// The bytes of such a file; the suffix of `path` .gltf makes text with everything inside, else binary.
 /// Throws Error naming the path, also where the file would pass 4 GB.
+std::string gltf_bytes(const Character& character, const std::string& path);
+/// Writes them beside the path, then renames.
 void write_gltf_character(const std::string& path, const Character& character);
 
 }  // namespace understudy

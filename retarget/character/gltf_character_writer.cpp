@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/formats/part_file.hpp"
 
 namespace understudy {
 namespace {
@@ -111,20 +110,34 @@ RowMatrix unit_rows(const Points& directions, const Vec3& otherwise) {
   return out;
 }
 
+/// A bone that is named twice for one vertex has both weights in one place, which the format asks for.
+RowMatrix weights_of_bones(const CharacterPart& part) {
+  RowMatrix out = part.weights;
+  for (Eigen::Index v = 0; v < out.rows(); ++v)
+    for (Eigen::Index k = 1; k < out.cols(); ++k)
+      for (Eigen::Index before = 0; before < k && out(v, k) > 0; ++before)
+        if (part.joints(v, before) == part.joints(v, k) && out(v, before) > 0) {
+          out(v, before) += out(v, k);
+          out(v, k) = 0;
+        }
+  return out;
+}
+
 template <class T>
-size_t add_joints(const CharacterPart& part, Eigen::Index first, BinaryChunk& chunk) {
+size_t add_joints(const CharacterPart& part, const RowMatrix& weights, Eigen::Index first,
+                  BinaryChunk& chunk) {
   std::vector<T> joints;
   for (Eigen::Index v = 0; v < part.joints.rows(); ++v)
     for (Eigen::Index k = first; k < first + 4; ++k)
-      joints.push_back(k < part.joints.cols() && part.weights(v, k) > 0 ? static_cast<T>(part.joints(v, k))
-                                                                        : T{0});
+      joints.push_back(k < part.joints.cols() && weights(v, k) > 0 ? static_cast<T>(part.joints(v, k))
+                                                                   : T{0});
   return chunk.add(joints, "VEC4", VertexData);
 }
 
 void add_skin_attributes(const Character& character, const CharacterPart& part, BinaryChunk& chunk,
                          json& attributes) {
   // The sums are one to the last bit, which validators want: the largest weight takes the rounding.
-  RowMatrix exact = part.weights;
+  RowMatrix exact = weights_of_bones(part);
   for (Eigen::Index v = 0; v < exact.rows(); ++v) {
     auto row = exact.row(v);
     Eigen::Index largest = 0;
@@ -135,8 +148,8 @@ void add_skin_attributes(const Character& character, const CharacterPart& part, 
   const bool wide = character.skins[static_cast<size_t>(part.skin)].joints.size() > 256;
   for (Eigen::Index first = 0; first < part.joints.cols(); first += 4) {
     const std::string end = std::to_string(first / 4);
-    attributes["JOINTS_" + end] =
-        wide ? add_joints<uint16_t>(part, first, chunk) : add_joints<uint8_t>(part, first, chunk);
+    attributes["JOINTS_" + end] = wide ? add_joints<uint16_t>(part, exact, first, chunk)
+                                       : add_joints<uint8_t>(part, exact, first, chunk);
     RowMatrix weights = RowMatrix::Zero(exact.rows(), 4);
     const Eigen::Index count = std::min<Eigen::Index>(4, exact.cols() - first);
     weights.leftCols(count) = exact.middleCols(first, count);
@@ -303,24 +316,6 @@ std::string base64(const std::vector<char>& bytes) {
   return out;
 }
 
-/// Writes beside the path, then renames: what was there stays whole until the new file is.
-void write_whole(const std::string& path, const std::string& bytes) {
-  const std::string part = path + ".part";
-  {
-    std::ofstream file(part, std::ios::binary);
-    US_CHECK(file, path, ": cannot be written");
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) {
-      std::remove(part.c_str());
-      US_CHECK(false, path, ": writing failed, the disk may be full");
-    }
-  }
-  if (std::rename(part.c_str(), path.c_str()) == 0) return;
-  std::remove(part.c_str());
-  US_CHECK(false, path, ": cannot be written");
-}
-
 void append_number(uint32_t value, std::string& out) {
   out.append(reinterpret_cast<const char*>(&value), 4);
 }
@@ -339,7 +334,7 @@ std::string as_glb(std::string text, const std::vector<char>& bytes) {
 
 }  // namespace
 
-void write_gltf_character(const std::string& path, const Character& character) {
+std::string gltf_bytes(const Character& character, const std::string& path) {
   check_character(character, path);
   BinaryChunk chunk;
   json gltf;
@@ -357,7 +352,14 @@ void write_gltf_character(const std::string& path, const Character& character) {
   if (is_text) buffer["uri"] = "data:application/octet-stream;base64," + base64(chunk.bytes());
   gltf["buffers"] = json::array({buffer});
   const std::string text = gltf.dump(is_text ? 1 : -1, ' ', false, json::error_handler_t::replace);
-  write_whole(path, is_text ? text : as_glb(text, chunk.bytes()));
+  return is_text ? text : as_glb(text, chunk.bytes());
+}
+
+void write_gltf_character(const std::string& path, const Character& character) {
+  const std::string bytes = gltf_bytes(character, path);
+  PartFile file(path);
+  file.write(bytes);
+  file.finish();
 }
 
 }  // namespace understudy

@@ -14,7 +14,9 @@ float deviation(const CharacterTrack& track, size_t width, size_t a, size_t b, s
   const float *va = &track.values[a * width], *vb = &track.values[b * width], *vi = &track.values[i * width];
   if (track.path == TrackPath::Rotation) {
     const Eigen::Quaternionf qa(va), qb(vb), qi(vi);
-    return qa.slerp(u, qb).angularDistance(qi);
+    const float sign = qa.dot(qb) < 0 ? -1.0f : 1.0f;  // engines go along the arc, or along its chord
+    const Eigen::Quaternionf chord((1 - u) * qa.coeffs() + u * sign * qb.coeffs());
+    return std::max(qa.slerp(u, qb).angularDistance(qi), chord.normalized().angularDistance(qi));
   }
   float sum = 0;
   for (size_t k = 0; k < width; ++k) sum += std::pow((1 - u) * va[k] + u * vb[k] - vi[k], 2.0f);

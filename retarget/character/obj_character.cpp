@@ -1,15 +1,18 @@
 #include "retarget/character/obj_character.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/character/picture.hpp"
+#include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
 
 namespace understudy {
@@ -43,11 +46,13 @@ class ObjReader {
   using Corner = std::array<int64_t, 3>;  // position, texture, normal; -1: none
   struct Group {
     std::vector<Corner> corners;  // three a triangle
+    std::vector<Corner> loose;    // of no face
   };
 
   void line(std::string_view text);
   void numbers(std::vector<float>& to, size_t least, size_t keep);
   void face();
+  void add_loose();
   int64_t index(std::string_view text, size_t count) const;
   void read_materials(const std::string& name);
   void finish_group(const std::string& material, const Group& group, Character& out);
@@ -61,7 +66,9 @@ class ObjReader {
   std::vector<float> positions_, colors_, uvs_, normals_;
   std::map<std::string, Group> groups_;
   std::map<std::string, ObjMaterial> materials_;
-  std::string current_;
+  std::map<std::string, int> textures_;  // by file: pictures are kept once
+  std::set<std::string> libraries_;
+  Group* current_ = nullptr;  // where faces go; null: to the group without a name
 };
 
 void ObjReader::numbers(std::vector<float>& to, size_t least, size_t keep) {
@@ -99,7 +106,8 @@ void ObjReader::face() {
     if (second != word.npos) corner[2] = index(word.substr(second + 1), normals_.size() / 3);
     corners.push_back(corner);
   }
-  std::vector<Corner>& to = groups_[current_].corners;
+  if (current_ == nullptr) current_ = &groups_[""];
+  std::vector<Corner>& to = current_->corners;
   for (size_t i = 2; i < corners.size(); ++i) to.insert(to.end(), {corners[0], corners[i - 1], corners[i]});
 }
 
@@ -125,7 +133,7 @@ void ObjReader::line(std::string_view text) {
   } else if (what == "f") {
     face();
   } else if (what == "usemtl" && words_.size() > 1) {
-    current_ = rest();
+    current_ = &groups_[rest()];
   } else if (what == "mtllib" && words_.size() > 1) {
     read_materials(rest());
   }
@@ -134,6 +142,7 @@ void ObjReader::line(std::string_view text) {
 void ObjReader::read_materials(const std::string& name) {
   const auto file = beside(path_, name);
   US_CHECK(file, path_, ": its materials are outside of its folder (", excerpt(name), ")");
+  if (!libraries_.insert(*file).second) return;
   if (!std::filesystem::exists(*file)) {
     log::warn(path_ + ": its materials " + excerpt(name) + " are missing");
     return;
@@ -164,6 +173,8 @@ void ObjReader::read_materials(const std::string& name) {
 int ObjReader::texture(const std::string& name, Character& out) {
   const auto file = beside(path_, name);
   US_CHECK(file, path_, ": a picture is outside of its folder (", excerpt(name), ")");
+  const auto [entry, is_new] = textures_.try_emplace(*file, static_cast<int>(out.textures.size()));
+  if (!is_new) return entry->second;
   CharacterImage image;
   image.name = std::filesystem::path(*file).stem().string();
   image.bytes = picture_or_white([&] { return read_file(*file); }, path_ + ": the picture " + excerpt(name));
@@ -171,7 +182,7 @@ int ObjReader::texture(const std::string& name, Character& out) {
   US_CHECK(!image.mime.empty(), *file, ": is no picture (PNG, JPEG, WebP or KTX2)");
   out.images.push_back(std::move(image));
   out.textures.push_back(json({{"source", out.images.size() - 1}}).dump());
-  return static_cast<int>(out.textures.size()) - 1;
+  return entry->second;
 }
 
 int ObjReader::material(const std::string& name, Character& out) {
@@ -204,6 +215,7 @@ void ObjReader::finish_group(const std::string& name, const Group& group, Charac
     has_uvs = has_uvs && corner[1] >= 0;
     has_normals = has_normals && corner[2] >= 0;
   }
+  corners.insert(corners.end(), group.loose.begin(), group.loose.end());
   const auto count = static_cast<Eigen::Index>(corners.size());
   part.vertices.resize(count, 3);
   if (has_normals) part.normals.resize(count, 3);
@@ -214,14 +226,29 @@ void ObjReader::finish_group(const std::string& name, const Group& group, Charac
     const Corner& c = corners[static_cast<size_t>(v)];
     for (Eigen::Index i = 0; i < 3; ++i) {
       part.vertices(v, i) = positions_[static_cast<size_t>(3 * c[0] + i)];
-      if (has_normals) part.normals(v, i) = normals_[static_cast<size_t>(3 * c[2] + i)];
-      if (colored) part.colors(v, i) = colors_[static_cast<size_t>(3 * c[0] + i)];
+      if (has_normals) part.normals(v, i) = c[2] < 0 ? (i == 1) : normals_[static_cast<size_t>(3 * c[2] + i)];
+      if (colored) part.colors(v, i) = to_linear(colors_[static_cast<size_t>(3 * c[0] + i)]);
     }
-    if (has_uvs)  // OBJ counts v from below, glTF from above
+    out.file_vertices.push_back(static_cast<int>(c[0]));
+    if (has_uvs && c[1] < 0) part.uvs[0].row(v).setZero();
+    if (has_uvs && c[1] >= 0)  // OBJ counts v from below, glTF from above
       part.uvs[0].row(v) << uvs_[static_cast<size_t>(2 * c[1])], 1 - uvs_[static_cast<size_t>(2 * c[1] + 1)];
   }
   part.faces = Eigen::Map<const Faces>(faces.data(), static_cast<Eigen::Index>(faces.size() / 3), 3);
   out.parts.push_back(std::move(part));
+}
+
+/// Vertices of no face go with the first part; all of them together are a cloud.
+void ObjReader::add_loose() {
+  std::vector<bool> used(positions_.size() / 3, false);
+  for (const auto& [name, group] : groups_)
+    for (const Corner& corner : group.corners) used[static_cast<size_t>(corner[0])] = true;
+  if (groups_.empty()) groups_[""];
+  const auto has_faces = [](const auto& entry) { return !entry.second.corners.empty(); };
+  auto first = std::find_if(groups_.begin(), groups_.end(), has_faces);
+  if (first == groups_.end()) first = groups_.begin();
+  for (size_t v = 0; v < used.size(); ++v)
+    if (!used[v]) first->second.loose.push_back({static_cast<int64_t>(v), -1, -1});
 }
 
 Character ObjReader::read() {
@@ -241,14 +268,10 @@ Character ObjReader::read() {
   CharacterNode node;
   node.name = out.name;
   out.nodes.push_back(node);
-  if (groups_.empty() && !positions_.empty()) {  // a cloud
-    Group cloud;
-    for (size_t v = 0; v < positions_.size() / 3; ++v)
-      cloud.corners.push_back({static_cast<int64_t>(v), -1, -1});
-    finish_group("", cloud, out);
-    out.parts.back().faces.resize(0, 3);
-  }
-  for (const auto& [name, group] : groups_) finish_group(name, group, out);
+  add_loose();
+  for (const auto& [name, group] : groups_)
+    if (!group.corners.empty() || !group.loose.empty()) finish_group(name, group, out);
+  US_CHECK(out.parts.size() <= 10000, path_, ": has ", out.parts.size(), " parts; 10000 are read at most");
   check_character(out, path_);
   return out;
 }

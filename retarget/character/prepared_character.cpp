@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/character/plausible_person.hpp"
+#include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "retarget/skeleton/skinning.hpp"
@@ -54,13 +56,7 @@ std::vector<int> drivers(const PreparedCharacter& c) {
 
 /// The rig's weights gathered at the joints that move its bones.
 RowMatrix gathered_weights(const PreparedCharacter& c) {
-  std::vector<int> joint_of(c.character.nodes.size(), Pelvis);
-  for (size_t n = 0; n < joint_of.size(); ++n) {
-    const int p = c.character.nodes[n].parent;
-    joint_of[n] = c.driver[n] >= 0 ? c.driver[n]
-                  : p >= 0         ? joint_of[static_cast<size_t>(p)]
-                                   : static_cast<int>(Pelvis);
-  }
+  const std::vector<int> joint_of = joints_of_nodes(c);
   RowMatrix weights = RowMatrix::Zero(c.surface.mesh.vertices.rows(), kJointCount);
   size_t at = 0;
   for (const auto& part : c.character.parts)
@@ -135,6 +131,17 @@ float tidy(float yaw) {
   return std::abs(std::remainder(yaw - quarter, 2 * kPi)) < 2 * kSmallestTurn ? quarter : yaw;
 }
 
+/// The up axis of a body that lies flat with y up.
+std::string up_of_lying(const PreparedCharacter& c, ImportOptions import) {
+  if (c.rigged) return up_of_rig(c.map, c.bind);
+  import.up.clear();
+  const ImportDecision decision = decide_import(c.surface.mesh, import);
+  Mesh upright = c.surface.mesh;
+  decision.apply(upright);
+  // Trunk, arms and head are more than the legs.
+  return (stance_of(upright).centre < 0.46f ? "-" : "") + decision.up;
+}
+
 void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   const Points& file = c.bind.vertices;
   ImportOptions import;
@@ -143,13 +150,25 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   import.floor = options.floor;
   if (c.rigged && (import.up.empty() || import.up == "auto")) import.up = up_of_rig(c.map, c.bind);
   c.surface = merged_surface(c.character, file);
+  if (import.up == "y" && lies_down(stance_of(c.surface.mesh))) {
+    if (options.turn_if_lying) import.up = up_of_lying(c, import);
+    c.notes.push_back(import.up == "y" ? "it lies down with y up"
+                                       : "it lies down with y up, so " + import.up + " is taken as up");
+  }
   const ImportDecision decision = decide_import(c.surface.mesh, import);
   US_CHECK(decision.height > 1e-9f && std::isfinite(decision.height), c.character.name, ": has no height");
   c.to_world.scale = decision.scale;
   c.to_world.R = decision.axes;
   c.to_world.t = Vec3(0, -decision.floor, 0);
   c.surface.mesh.vertices = c.to_world.apply(c.surface.mesh.vertices);
+  paint(c.surface, c.character);
   c.notes.push_back(decision.sentence);
+}
+
+void note_turns(PreparedCharacter& c) {
+  if (c.pose.largest_deg >= 0.5f)
+    c.notes.push_back("its limbs are brought to the T-pose by up to " +
+                      std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
 }
 
 void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
@@ -161,6 +180,7 @@ void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
   c.pose_weights = c.weights;
   Mesh mesh = c.surface.mesh;
   mesh.vertices = in_t_pose(mesh.vertices, c.weights, c.pose);
+  note_turns(c);
   c.target = prepare_target(mesh, c.pose.rest);
 }
 
@@ -219,13 +239,29 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
   c.pose = to_t_pose(found, kRoughDeg);
   c.pose_weights = geometric_weights(mesh, found);
   if (c.pose.largest_deg > 0) mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
-  if (c.pose.largest_deg > 0)
-    c.notes.push_back("its limbs are brought to the T-pose by up to " +
-                      std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
+  note_turns(c);
   c.target = prepare_target(mesh, t_pose != nullptr ? *t_pose : any_pose);
 }
 
 }  // namespace
+
+Joints moved_bind_joints(const RestPose& pose, const Joints& rest) {
+  Joints out;
+  for (int j = 0; j < kJointCount; ++j)  // in the axes of the bind pose
+    out.row(j) = pose.bind.row(j) + (rest.row(j) - pose.rest.row(j)) * pose.to_rest[static_cast<size_t>(j)];
+  return out;
+}
+
+std::vector<int> joints_of_nodes(const PreparedCharacter& c) {
+  std::vector<int> joint_of(c.character.nodes.size(), Pelvis);
+  for (size_t n = 0; n < joint_of.size(); ++n) {
+    const int p = c.character.nodes[n].parent;
+    joint_of[n] = c.driver[n] >= 0 ? c.driver[n]
+                  : p >= 0         ? joint_of[static_cast<size_t>(p)]
+                                   : static_cast<int>(Pelvis);
+  }
+  return joint_of;
+}
 
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
                                     SkeletonExtractor* t_pose, const CharacterOptions& options) {
@@ -252,9 +288,24 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
   } else {
     US_CHECK(any_pose != nullptr, c.character.name,
              ": has no rig that is known, and no network may look at it");
+    const Stance stance = stance_of(c.surface.mesh);
+    const std::string why_not = refusal(stance), why_doubt = doubt(stance);
+    US_CHECK(why_not.empty(), c.character.name, ": does not look like a person: ", why_not);
     find_in_shape(c, *any_pose, t_pose, options);
+    if (!why_doubt.empty()) c.target.warnings.push_back("the target may be no person: " + why_doubt);
   }
   return c;
+}
+
+Mesh PreparedCharacter::target_in_file_order() const {
+  Mesh out;
+  out.vertices = surface.in_file_order(target.mesh.vertices);
+  std::vector<int> file_of(static_cast<size_t>(target.mesh.vertices.rows()), 0);
+  for (size_t i = surface.in_file.size(); i-- > 0;)
+    file_of[static_cast<size_t>(surface.in_file[i])] = static_cast<int>(i);
+  out.faces = target.mesh.faces.unaryExpr([&](int v) { return file_of[static_cast<size_t>(v)]; });
+  if (target.mesh.colors.rows() > 0) out.colors = surface.in_file_order(target.mesh.colors);
+  return out;
 }
 
 FoldingTransfer::FoldingTransfer(std::unique_ptr<MotionTransfer> inner, const BoneMap& map)
@@ -278,6 +329,7 @@ RigDeformer::RigDeformer(const PreparedCharacter& character, std::shared_ptr<Def
       bind_vertices_(character.surface.mesh.vertices),
       pose_(character.pose),
       rest_joints_(character.pose.rest),
+      bind_joints_(character.pose.bind),
       weights_(character.weights) {
   US_CHECK(weights_.rows() == bind_vertices_.rows(), "the character has no rig to deform with");
 }
@@ -286,6 +338,7 @@ void RigDeformer::bind(const Points& rest, const Joints& rest_joints) {
   US_CHECK(rest.rows() == bind_vertices_.rows(), "the target has ", rest.rows(), " vertices, the character ",
            bind_vertices_.rows());
   rest_joints_ = rest_joints;
+  bind_joints_ = moved_bind_joints(pose_, rest_joints);
   if (!inner_) return;
   inner_->bind(rest, rest_joints);
   inner_ = inner_->with_weights(weights_);
@@ -305,7 +358,7 @@ Points RigDeformer::deform(const Pose& pose) const {
   const PosedSkeleton posed = forward_kinematics(rest_joints_, pose);
   PosedSkeleton from_bind = posed;
   for (size_t j = 0; j < kJointCount; ++j) from_bind.global[j] = posed.global[j] * pose_.to_rest[j];
-  Points out = linear_blend_skinning(bind_vertices_, weights_, pose_.bind, from_bind);
+  Points out = linear_blend_skinning(bind_vertices_, weights_, bind_joints_, from_bind);
   if (!inner_) return out;
   // Offsets turn with the joints: skinned as points about joints that stay at the origin.
   PosedSkeleton turned = posed;

@@ -17,12 +17,15 @@ namespace understudy {
 struct CharacterOptions {
   BoneChoices choices;           ///< the user's corrections of the map
   std::string units, up = "y";   ///< as in ImportOptions; empty: guessed
+  bool turn_if_lying = true;     ///< a body that lies flat with y up is turned upright, with a note
+  std::optional<float> floor;    ///< its height after scale and axes, metres; none: the lowest points
   std::optional<float> yaw_deg;  ///< turns it about y; none: so that it faces +z
   bool use_rig = true;           ///< false: as if it had no bones
   bool own_joints = true;        ///< false: the T-pose joints are found by the network, not the bones
 };
 
-/// Everything in metres, y up, facing +z, the floor at 0.
+/// Everything in metres, y up, facing +z, the floor at 0. The vertices of surface, weights and target are the
+/// merged ones; in_file_order() gives them as the file has them.
 struct PreparedCharacter {
   Character character;      ///< as it came
   BindPose bind;            ///< in the file's world
@@ -36,12 +39,20 @@ struct PreparedCharacter {
   Target target;            ///< in T-pose
   std::vector<int> driver;  ///< of each node the joint that moves it, -1: it keeps its place on its parent
   std::vector<std::string> notes;  ///< what was decided, a sentence each
+  /// The target's T-pose with the file's own vertices, in its count and order.
+  Mesh target_in_file_order() const;
 };
 
 /// any_pose finds joints of bodies that are in no T-pose and look anywhere; in_t_pose, where given, those of
 /// the T-pose. Neither is asked for a rig that is mapped. Throws Error where no body can be found.
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
                                     SkeletonExtractor* in_t_pose, const CharacterOptions& options = {});
+
+/// Of each node of a rigged character the joint that it moves with.
+std::vector<int> joints_of_nodes(const PreparedCharacter& character);
+
+/// Joints of the bind pose, each moved as `rest` moved it in the T-pose.
+Joints moved_bind_joints(const RestPose& pose, const Joints& rest);
 
 /// The joints that a rig lacks do not turn on their own: what they would have done is done by the joints
 /// after them. Global directions of mapped bones stay.
@@ -58,7 +69,8 @@ class FoldingTransfer final : public MotionTransfer {
 };
 
 /// Deforms as the character's own skin does: from its bind pose at once, not by way of the T-pose. `inner`,
-/// which may be null, gives the pose-corrective offsets.
+/// which may be null, gives the pose-corrective offsets. Joints that are bound elsewhere than the rig has
+/// them move the points that its bones turn about.
 class RigDeformer final : public Deformer {
  public:
   RigDeformer(const PreparedCharacter& character, std::shared_ptr<Deformer> inner);
@@ -73,7 +85,7 @@ class RigDeformer final : public Deformer {
   std::shared_ptr<Deformer> inner_;
   Points bind_vertices_;
   RestPose pose_;
-  Joints rest_joints_;
+  Joints rest_joints_, bind_joints_;
   RowMatrix weights_;
 };
 

@@ -6,6 +6,7 @@
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/import_process.hpp"
 #include "retarget/character/obj_character.hpp"
+#include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 
@@ -34,14 +35,19 @@ Character character_of_mesh(const Mesh& mesh, const std::string& name) {
   if (mesh.faces.rows() > 0) part.normals = vertex_normals(mesh.vertices, mesh.faces);
   if (mesh.colors.rows() == mesh.vertices.rows() && mesh.colors.rows() > 0) {
     part.colors = RowMatrix::Ones(mesh.vertices.rows(), 4);
-    part.colors.leftCols<3>() = mesh.colors;
+    part.colors.leftCols<3>() = mesh.colors.unaryExpr(&to_linear);
   }
-  out.materials.push_back(
-      R"({"name":"body","doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.76,0.72,1.0],)"
-      R"("metallicFactor":0.0,"roughnessFactor":0.8}})");
+  const std::string color = part.colors.rows() > 0 ? "1.0,1.0,1.0,1.0" : "0.8,0.76,0.72,1.0";
+  out.materials.push_back(R"({"name":"body","doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[)" +
+                          color + R"(],"metallicFactor":0.0,"roughnessFactor":0.8}})");
   part.material = 0;
   out.parts.push_back(std::move(part));
   return out;
+}
+
+bool is_character_file(const std::string& path) {
+  const std::string suffix = lower_case(std::filesystem::path(path).extension().string());
+  return suffix == ".fbx" || suffix == ".dae" || format_of_suffix(path);
 }
 
 Character read_character(const std::string& path, const ReadCharacterOptions& options) {

@@ -153,6 +153,15 @@ using Zip = std::unique_ptr<zip_t, ZipCloser>;
 
 constexpr uint64_t kLargestArray = uint64_t{8} << 30;  // bytes of one array: above it the header lies
 
+Zip open_archive(const std::string& path) {
+  int code = 0;
+  Zip archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
+  if (archive) return archive;
+  std::ifstream probe(path);
+  US_CHECK(probe, path, ": cannot be opened");
+  throw Error(path + ": not an .npz archive");
+}
+
 std::string read_entry(zip_t* archive, zip_int64_t index, const std::string& source) {
   zip_stat_t stat;
   US_CHECK(zip_stat_index(archive, index, 0, &stat) == 0, source, ": the archive is damaged");
@@ -231,14 +240,20 @@ NpyArray read_npy(const std::string& path) {
   return parse_npy(read_whole(path), path);
 }
 
-Npz read_npz(const std::string& path) {
-  int code = 0;
-  const Zip archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
-  if (!archive) {
-    std::ifstream probe(path);
-    US_CHECK(probe, path, ": cannot be opened");
-    throw Error(path + ": not an .npz archive");
+std::vector<std::string> npz_names(const std::string& path) {
+  const Zip archive = open_archive(path);
+  std::vector<std::string> names;
+  const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
+  for (zip_int64_t i = 0; i < entries; ++i) {
+    const std::string name = zip_get_name(archive.get(), i, 0);
+    if (name.size() > 4 && name.compare(name.size() - 4, 4, ".npy") == 0)
+      names.push_back(name.substr(0, name.size() - 4));
   }
+  return names;
+}
+
+Npz read_npz(const std::string& path) {
+  const Zip archive = open_archive(path);
   Npz npz;
   const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
   for (zip_int64_t i = 0; i < entries; ++i) {

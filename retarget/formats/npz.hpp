@@ -29,6 +29,8 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source);
 NpyArray read_npy(const std::string& path);
 /// Reads every array of a .npz (zip, stored or deflated). Arrays of other kinds (objects) are left out.
 Npz read_npz(const std::string& path);
+/// Names of its arrays; nothing else is read.
+std::vector<std::string> npz_names(const std::string& path);
 /// The array `name` of `npz`, or an Error naming the file and the array.
 const NpyArray& require(const Npz& npz, const std::string& name, const std::string& source);
 /// Writes float32 arrays, beside the path first, then renamed.

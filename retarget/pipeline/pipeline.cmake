@@ -2,5 +2,3 @@ us_module(pipeline SOURCES
   pipeline/human_rest.cpp pipeline/copy_transfer.cpp pipeline/joint_filter.cpp pipeline/root_path.cpp
   pipeline/foot_lock.cpp pipeline/target.cpp pipeline/retargeter.cpp
   PUBLIC understudy_core)
-us_module(results SOURCES formats/glb_writer.cpp formats/result_writer.cpp
-  PUBLIC understudy_core PRIVATE PkgConfig::LIBZIP nlohmann_json::nlohmann_json)

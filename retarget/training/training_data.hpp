@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "retarget/base/rng.hpp"
-#include "retarget/body/body.hpp"
+#include "retarget/body/data_folder.hpp"
 
 namespace understudy::training {
 
@@ -28,9 +28,6 @@ struct TrainingData {
 
 /// Reads the split. Clips whose file is unreadable are an Error, clips without a good frame are left out.
 TrainingData load_training_data(const std::string& folder, Split split);
-
-/// A rigged, dressed T-pose mesh (.npz: vertices, faces, joints, weight_joint [V, 4], weight [V, 4]).
-ShapedBody read_dressed_body(const std::string& path);
 
 /// A shape between two people of the data, or one of them.
 Eigen::VectorXf random_shape(const TrainingData& data, Rng& rng);

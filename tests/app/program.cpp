@@ -41,7 +41,8 @@ bool drain(int& stream, std::string& into) {
 
 Program::Program(const std::vector<std::string>& arguments, ProgramOptions options)
     : options_(std::move(options)), began_s_(now_s()) {
-  std::vector<char*> argv{const_cast<char*>(US_PROGRAM)};
+  if (options_.program.empty()) options_.program = US_PROGRAM;
+  std::vector<char*> argv{options_.program.data()};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
   int out[2], err[2];
@@ -59,7 +60,7 @@ Program::Program(const std::vector<std::string>& arguments, ProgramOptions optio
     }
     if (options_.obey_permissions)  // fails for who is not root and has no such right anyway
       for (const int right : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH}) prctl(PR_CAPBSET_DROP, right);
-    execv(argv[0], argv.data());
+    execvp(argv[0], argv.data());
     _exit(127);
   }
   close(out[1]);

@@ -185,10 +185,10 @@ TEST_F(SourceFiles, ABodyPerformsAMotion) {
 
 TEST_F(SourceFiles, ATargetTakesShapeParameters) {
   write_npz(scratch.path("body.npz"), tiny_body());
-  const Mesh plain = read_target(scratch.path("body.npz"), {}),
-             tall = read_target(scratch.path("body.npz"), {1});
-  EXPECT_NEAR(plain.vertices.col(1).maxCoeff(), 0.08f * 21, 1e-5);
-  EXPECT_NEAR(tall.vertices.col(1).maxCoeff(), 0.12f * 21, 1e-5);
+  const Character plain = read_target(scratch.path("body.npz"), {}),
+                  tall = read_target(scratch.path("body.npz"), {1});
+  EXPECT_NEAR(plain.parts.at(0).vertices.col(1).maxCoeff(), 0.08f * 21, 1e-5);
+  EXPECT_NEAR(tall.parts.at(0).vertices.col(1).maxCoeff(), 0.12f * 21, 1e-5);
   write_frame(0, 1);
   EXPECT_THROW(read_target(scratch.path("frame_00000.xyz"), {1}), Error);
 }

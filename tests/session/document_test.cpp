@@ -82,6 +82,10 @@ const Changes& document_changes() {
       TAKE(target.path += "x"),
       TAKE(target.betas.clear()),
       TAKE(target.import.units = "m"),
+      TAKE(target.forward = true),
+      TAKE(target.rig = "theirs"),
+      TAKE(target.bones.erase("head")),
+      TAKE(target.bones["left_wrist"] = "hand.L"),
       TAKE(method.engine = "copy"),
       TAKE(method.extractor = "dense"),
       TAKE(method.offsets = true),
@@ -143,7 +147,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [drag_frame, drag_joint, offset, drag_falloff, children] = DragEdit();
   [[maybe_unused]] const auto& [swap_first, swap_last, limbs] = SwapEdit();
   [[maybe_unused]] const auto& [name, target, method, target_edits, pose_edits] = Take();
-  [[maybe_unused]] const auto& [target_path, target_betas, target_import] = TargetOptions();
+  [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
+                                target_bones] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, offsets, swaps, smooth, lengths, feet, root] = Method();
   [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();

@@ -41,7 +41,8 @@ PoseEdits pose_edits() {
 Take take(const std::string& folder) {
   Take take;
   take.name = "Gräfin \"Zwei\"";
-  take.target = {folder + "/targets/a b ü.obj", {0.5f, -1.25f}, {"cm", "-z", 12.5f, 0.01f}};
+  take.target = {folder + "/targets/a b ü.obj", {0.5f, -1.25f}, {"cm", "-z", 12.5f, 0.01f},
+                 false, "ours", {{"left_wrist", "Hand.L"}, {"head", ""}}};
   take.method = {"paper", "paper", false, false, false, false, false, RootMode::InPlace};
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();

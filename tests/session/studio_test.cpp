@@ -219,14 +219,55 @@ TEST_F(StudioTest, ExportsTheFramesThatTrimAndSkipLeave) {
   open_both(studio);
   studio.run("edit.trim", {"0", "4", "13"});
   studio.run("edit.skip", {"0", "7", "on"});
-  studio.run("export.npz", {"0", path("out.npz")});
-  studio.run("export.glb", {"0", path("out.glb")});
+  studio.run("export.run", {"0", path("out.npz")});
+  studio.run("export.run", {"0", path("out.glb"), "morphs=2", "t_pose=on"});
   studio.run("export.csv", {"0", path("out.csv")});
   studio.wait_idle(60);
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   EXPECT_EQ(read_npz(path("out.npz")).at("joints").shape[0], 9);
   EXPECT_GT(fs::file_size(path("out.glb")), 1000u);
   EXPECT_GT(fs::file_size(path("out.csv")), 100u);
+}
+
+TEST_F(StudioTest, AnExportSaysWhatItCostsAndWhatItCannotDo) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("export.run", {"0", path("out.bvh"), "in_place=on"});
+  studio.run("export.run", {"0", path("frames"), "format=obj"});
+  studio.wait_idle(60);
+  ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
+  EXPECT_TRUE(fs::exists(path("frames/frame_00024.obj")));
+  std::string told;
+  for (const Notice& notice : studio.session().notices) told += notice.text + "; ";
+  EXPECT_NE(told.find("Exported out.bvh: 24 frames"), std::string::npos) << told;
+  EXPECT_NE(told.find("mean 0.00 mm"), std::string::npos) << told;
+  const auto refused = [&](const Arguments& arguments) {
+    try {
+      studio.run("export.run", arguments);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused({"0", path("out.fbx")}).find("out.fbx"), std::string::npos);
+  EXPECT_NE(refused({"0", path("out.glb"), "bones=9"}).find("bones"), std::string::npos);
+  EXPECT_NE(refused({"0", path("out.glb"), "influences=5"}).find("4, 8"), std::string::npos);
+  EXPECT_NE(refused({"7", path("out.glb")}).find("no take 7"), std::string::npos);
+}
+
+TEST_F(StudioTest, ACancelledExportLeavesTheOldFile) {
+  std::ofstream(path("out.glb")) << "old";
+  Studio studio(services());
+  open_both(studio);
+  studio.run("export.run", {"0", path("out.glb"), "morphs=4"});
+  studio.jobs().cancel(studio.jobs().views().back().id);
+  studio.wait_idle(60);
+  std::ifstream file(path("out.glb"));
+  std::string text;
+  file >> text;
+  if (text != "old") EXPECT_EQ(text.substr(0, 4), "glTF");  // it was quicker
+  EXPECT_FALSE(fs::exists(path("out.glb.part")));
+  EXPECT_TRUE(studio.session().errors.empty());
 }
 
 TEST_F(StudioTest, AsksBeforeUnsavedWorkIsLost) {

@@ -108,7 +108,8 @@ void write_training_folder(const std::string& folder) {
   write_clip(root / "motion/b/two_poses.npz", 2);
   const auto split = [](const char* rows, const char* subject) {
     return std::string("{\"betas\": {\"file\": \"body/betas.npz\", \"rows\": ") + rows +
-           "}, \"clothed\": [\"body/dressed.npz\"], \"motion_subjects\": [\"" + subject + "\"]}";
+           "}, \"clothed\": [\"body/dressed.npz\"], \"motion_subjects\": [\"" + subject +
+           "\"], \"motions\": [{\"file\": \"motion/b/two_poses.npz\", \"start\": 4, \"tag\": \"sway\"}]}";
   };
   std::ofstream(root / "splits.json")
       << "{\"train\": " << split("[0, 6]", "motion/a") << ", \"dev\": " << split("[6, 8]", "motion/b") << "}";

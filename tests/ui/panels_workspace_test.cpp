@@ -354,15 +354,37 @@ class Exporting : public WorkspaceTest {
 TEST_F(Exporting, TheFormatDecidesTheCommandAndTheSuffix) {
   open("export");
   click("export.save");
-  EXPECT_EQ(take_log(), Lines{"export.glb 0 " + (folder / "adult.glb").string()});
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb"});
   EXPECT_EQ(workspace.dialog(), "");
   open("export");
-  click("export.format.1");
+  click("export.format");
+  frame(2);
+  click("export.format.4");
   click("export.save");
-  EXPECT_EQ(take_log(), Lines{"export.npz 0 " + (folder / "adult.npz").string()});
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.npz").string() + " format=npz"});
   open("csv");
   click("export.save");
   EXPECT_EQ(take_log(), Lines{"export.csv 0 " + (folder / "adult.csv").string()});
+}
+
+TEST_F(Exporting, SaysWhatTheAnimationIsToBe) {
+  open("export");
+  click("export.influences.1");
+  click("export.morphs.2");
+  write_into("export.reduce", "0.5");
+  key(Key::Enter);
+  click("export.in_place");
+  click("export.t_pose");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() +
+                              " format=glb in_place=on influences=8 morphs=8 reduce=0.5 t_pose=on"});
+  open("export");  // a format without bones has no such options
+  click("export.format");
+  frame(2);
+  click("export.format.5");
+  frame(2);
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult").string() + " format=ply in_place=on"});
 }
 
 TEST_F(Exporting, AFileThatIsThereIsAskedAbout) {
@@ -376,7 +398,7 @@ TEST_F(Exporting, AFileThatIsThereIsAskedAbout) {
   click("export.save");
   frame(3);
   click("export.overwrite.yes");
-  EXPECT_EQ(take_log(), Lines{"export.glb 0 " + (folder / "adult.glb").string()});
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb"});
 }
 
 TEST_F(Exporting, PicturesAndVideosHaveASize) {
@@ -405,7 +427,7 @@ TEST_F(Exporting, BrowsingComesBackWithThePath) {
   frame(3);
   EXPECT_EQ(workspace.dialog(), "export");
   click("export.save");
-  EXPECT_EQ(take_log(), Lines{"export.glb 0 " + (folder / "adult.glb").string()});
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb"});
 }
 
 TEST_F(WorkspaceTest, ComparingAddsATakeWithWhatDiffers) {

@@ -69,7 +69,7 @@ const char* dialog_for(const app::Session& session, const std::string& command) 
        {"source.motion", "open_motion"},
        {"target.add", "open_target"},
        {"target.replace", "replace_target"},
-       {"export.glb", "export"},
+       {"export.run", "export"},
        {"picture.save", "picture"},
        {"video.save", "video"},
        {"compare.add", "compare"}}};

@@ -13,14 +13,6 @@ namespace understudy::ui {
 namespace fs = std::filesystem;
 namespace {
 
-struct Format {
-  const char *label, *suffix, *command, *words;
-};
-constexpr std::array<Format, 3> kFormats = {
-    {{"GLB", ".glb", "export.glb", "The animated target, for any engine."},
-     {"NPZ", ".npz", "export.npz", "Vertices, joints and rotations as arrays."},
-     {"CSV", ".csv", "export.csv", "Every figure of every frame, as a table."}}};
-
 struct Size {
   const char* label;
   int width, height;
@@ -32,8 +24,11 @@ constexpr std::array<Size, 5> kSizes = {{{"1280 x 720", 1280, 720},
                                          {"1080 x 1920", 1080, 1920}}};
 constexpr int kLargest = 16384;
 
-const Format& format_of(const ExportState& state) {
-  return kFormats[static_cast<size_t>(std::clamp(state.format, 0, 2))];
+/// Null: the figures.
+const app::ExportFormatInfo* format_of(const ExportState& state) {
+  const auto& formats = app::export_formats();
+  const bool is_motion = state.format >= 0 && state.format < static_cast<int>(formats.size());
+  return is_motion ? &formats[static_cast<size_t>(state.format)] : nullptr;
 }
 
 /// A name that any file system takes.
@@ -44,19 +39,84 @@ std::string safe_name(std::string name) {
   return name.empty() ? "take" : name;
 }
 
-void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
-  Ui& ui = context.ui;
-  if (const auto i = choice_row(ui, {"export.format", "Format", ""}, {"GLB", "NPZ", "CSV"}, state.format)) {
+void draw_format(Ui& ui, ExportState& state) {
+  std::vector<std::string> labels;
+  for (const app::ExportFormatInfo& info : app::export_formats()) labels.push_back(info.label);
+  labels.push_back("Figures");
+  if (const auto i = choice_row(ui, {"export.format", "Format", ""}, labels, state.format)) {
     const bool own = !state.path.empty() && fs::path(state.path).extension() == suffix_of(state);
     state.format = *i;
     if (own) state.path = fs::path(state.path).replace_extension(suffix_of(state)).string();
   }
+}
+
+/// What only an animated character has.
+void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, ExportState& state) {
+  CharacterExportOptions& file = state.choice.file;
+  if (on_own_bones)
+    if (const auto i = choice_row(ui, {"export.rig", "Skeleton", "Which bones the file moves"},
+                                  {"Its own", "22 joints"}, state.choice.theirs ? 0 : 1))
+      state.choice.theirs = *i == 0;
+  if (const auto i = choice_row(ui, {"export.influences", "Bones a vertex", "Old engines read four only"},
+                                {"4", "8"}, file.influences == 8 ? 1 : 0))
+    file.influences = *i == 1 ? 8 : 4;
+  constexpr std::array<int, 4> kShapes = {0, 4, 8, 16};
+  const auto shapes = std::find(kShapes.begin(), kShapes.end(), file.shapes);
+  if (const auto i = choice_row(
+          ui, {"export.morphs", "Morph targets", "Bends and bulges that bones alone cannot do; larger files"},
+          {"None", "4", "8", "16"}, static_cast<int>(shapes - kShapes.begin())))
+    file.shapes = kShapes[static_cast<size_t>(*i)];
+  if (const auto mm = typed_number_row(
+          ui, {"export.reduce", "Leave out keys, mm", "While no vertex moves further than this; 0: all stay"},
+          static_cast<double>(file.reduce_mm), 1))
+    file.reduce_mm = static_cast<float>(std::clamp(*mm, 0.0, 1000.0));
+  if (const auto on =
+          toggle_row(ui, {"export.t_pose", "T-pose first", "As a clip of its own"}, file.t_pose_clip))
+    file.t_pose_clip = *on;
+  if (!on_own_bones || !take.character || take.character->character.animations.empty()) return;
+  if (const auto on = toggle_row(ui, {"export.keep_clips", "Its own clips", "Stay in the file, after ours"},
+                                 file.keep_clips))
+    file.keep_clips = *on;
+}
+
+void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
+  Ui& ui = context.ui;
+  draw_format(ui, state);
   std::vector<std::string> takes;
   for (const app::Take& take : session.document.takes) takes.push_back(take.name);
-  int take = session.selected_take;
+  int chosen = session.selected_take;
   row(ui, "Take");
-  if (dropdown(ui, "export.take", takes, take)) context.ask("target.select", {std::to_string(take)});
-  hint(ui, format_of(state).words);
+  if (dropdown(ui, "export.take", takes, chosen)) context.ask("target.select", {std::to_string(chosen)});
+  const app::ExportFormatInfo* const format = format_of(state);
+  const app::Take* const take = selected_take(session);
+  const app::TakeState* const made = selected_state(session);
+  if (format != nullptr && take != nullptr && made != nullptr) {
+    const bool own_bones = made->character && on_their_rig(take->target, *made->character);
+    if (format->is_character) draw_character_rows(ui, *made, own_bones, state);
+    if (const auto on = toggle_row(ui, {"export.in_place", "In place", "Without the path over the floor"},
+                                   state.choice.file.in_place))
+      state.choice.file.in_place = *on;
+    const auto frames = kept_frames(take->pose_edits, static_cast<int>(made->shown.poses.size())).size();
+    hint(ui, grouped(static_cast<int64_t>(frames)) + " frames, " +
+                 figure(frames_per_second(session), "frames/s"));
+  }
+  hint(ui, format != nullptr ? format->words : "Every figure of every frame, as a table.");
+}
+
+/// What is not as it would be anyway.
+app::Arguments export_words(const app::ExportFormatInfo& format, const app::ExportChoice& choice) {
+  app::Arguments words = {std::string("format=") + format.name};
+  const CharacterExportOptions& file = choice.file;
+  if (file.in_place) words.push_back("in_place=on");
+  if (!format.is_character) return words;
+  if (!choice.theirs) words.push_back("rig=ours");
+  if (file.influences == 8) words.push_back("influences=8");
+  if (file.shapes > 0) words.push_back("morphs=" + std::to_string(file.shapes));
+  if (file.reduce_mm > 0)
+    words.push_back("reduce=" + argument(std::round(static_cast<double>(file.reduce_mm) * 10) / 10));
+  if (file.t_pose_clip) words.push_back("t_pose=on");
+  if (file.keep_clips) words.push_back("keep_clips=on");
+  return words;
 }
 
 void draw_size_rows(Ui& ui, ExportState& state) {
@@ -126,10 +186,14 @@ const char* title_of(ExportKind kind) {
 
 bool file_is_there(const std::string& path) {
   std::error_code error;
-  return fs::is_regular_file(path, error);
+  return fs::is_regular_file(path, error) || (fs::is_directory(path, error) && !fs::is_empty(path, error));
 }
 
 }  // namespace
+
+int figures_format() {
+  return static_cast<int>(app::export_formats().size());
+}
 
 void begin_export(ExportState& state, ExportKind kind, int format) {
   state.kind = kind, state.format = format;
@@ -138,7 +202,10 @@ void begin_export(ExportState& state, ExportKind kind, int format) {
 }
 
 std::string suffix_of(const ExportState& state) {
-  if (state.kind == ExportKind::Animation) return format_of(state).suffix;
+  if (state.kind == ExportKind::Animation) {
+    const app::ExportFormatInfo* const format = format_of(state);
+    return format != nullptr ? format->suffix : ".csv";
+  }
   return state.kind == ExportKind::Picture ? ".png" : ".mp4";
 }
 
@@ -154,8 +221,13 @@ std::string proposed_path(const app::Session& session, const ExportState& state)
 }
 
 void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state) {
-  if (state.kind == ExportKind::Animation)
-    return context.ask(format_of(state).command, {std::to_string(session.selected_take), state.path});
+  if (state.kind == ExportKind::Animation) {
+    app::Arguments asked = {std::to_string(session.selected_take), state.path};
+    const app::ExportFormatInfo* const format = format_of(state);
+    if (format == nullptr) return context.ask("export.csv", asked);
+    for (std::string& word : export_words(*format, state.choice)) asked.push_back(std::move(word));
+    return context.ask("export.run", asked);
+  }
   app::Arguments arguments = {state.path, std::to_string(state.width), std::to_string(state.height)};
   if (state.kind == ExportKind::Picture && state.transparent) arguments.push_back("transparent");
   arguments.push_back(state.all ? "all" : "view");

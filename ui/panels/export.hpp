@@ -1,11 +1,13 @@
 // Saving what is not the document: animations, figures, pictures, video.
-// Marks: export.format(.0 to .2), export.take, export.path, export.browse, export.size, export.width,
+// Marks: export.format, export.take, export.rig, export.influences, export.morphs, export.reduce,
+// export.in_place, export.t_pose, export.keep_clips, export.path, export.browse, export.size, export.width,
 // export.height, export.all, export.transparent, export.save, export.cancel; export.overwrite.yes and
 // .cancel.
 #pragma once
 
 #include <string>
 
+#include "app/session/take_export.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -14,8 +16,9 @@ enum class ExportKind { Animation, Picture, Video };
 
 struct ExportState {
   ExportKind kind = ExportKind::Animation;
-  int format = 0;    ///< of an animation: GLB, NPZ, CSV
-  std::string path;  ///< empty: one is proposed
+  int format = 0;            ///< of an animation: one of app::export_formats(), or behind them the figures
+  app::ExportChoice choice;  ///< of an animation, kept for the next one; its format is not used
+  std::string path;          ///< empty: one is proposed
   int width = 1920, height = 1080;
   bool all = true;           ///< all views; false: the active one
   bool transparent = false;  ///< pictures
@@ -23,11 +26,14 @@ struct ExportState {
   std::string agreed;        ///< the path that may be written over, as the browser has asked
 };
 
+/// The format behind all of app::export_formats(): every figure of every frame as a table.
+int figures_format();
+
 /// Turns to another kind; the path is proposed anew.
 void begin_export(ExportState& state, ExportKind kind, int format = 0);
 /// "dance.glb" beside the document, or in the folder used last.
 std::string proposed_path(const app::Session& session, const ExportState& state);
-/// The suffix of what is written; "" for a video's folder of pictures.
+/// The suffix of what is written; "" for a folder.
 std::string suffix_of(const ExportState& state);
 /// Asks for the command that writes it.
 void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "ui/panels/rig.hpp"
 #include "ui/panels/rows.hpp"
 
 namespace understudy::ui {
@@ -231,6 +232,7 @@ void draw_inspector(const app::Session& session, PanelContext& context) {
   draw_source(session, context);
   draw_takes(session, context);
   draw_target(session, context);
+  draw_rig(session, context);
   draw_method(session, context);
 }
 

@@ -306,18 +306,7 @@ TEST(CharacterExport, ItsFileOpensAgainAsTheSameCharacter) {
 
 TEST(CharacterExport, ARobotOfHardPartsStaysHard) {
   const TempFolder folder;
-  Character robot = make_character();
-  robot.skins.clear();
-  robot.parts.clear();
-  for (int j = 0; j < kJointCount; ++j) {
-    CharacterPart part;
-    part.name = "plate";
-    part.node = 1 + j;
-    part.vertices = 0.1f * test::four_points();
-    part.faces = Faces{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    robot.parts.push_back(part);
-  }
-  const PreparedCharacter character = prepare_character(robot, nullptr, nullptr);
+  const PreparedCharacter character = prepare_character(make_robot(), nullptr, nullptr);
   ASSERT_TRUE(character.rigged);
   const RigDeformer screen(character, nullptr);
   const auto poses = made_motion(20, character.target.joints);

@@ -143,6 +143,30 @@ void add_bones(const MadeCharacter& options, const Joints& joints, Character& ou
   out.skins.push_back(skin);
 }
 
+/// Six more bones with 0.5 % each.
+void pull_more(int bones, CharacterPart& part) {
+  const Eigen::Index count = part.vertices.rows();
+  part.joints.conservativeResize(count, 8);
+  part.weights.conservativeResize(count, 8);
+  for (Eigen::Index v = 0; v < count; ++v) {
+    part.weights.row(v).head<2>() *= 0.97f;
+    for (int k = 2; k < 8; ++k) {
+      part.joints(v, k) = (part.joints(v, 0) + 3 * k) % bones;
+      part.weights(v, k) = 0.005f;
+    }
+  }
+}
+
+/// Everything below the armature in units of a hundredth, which the armature takes back.
+void nest_scales(Character& out) {
+  constexpr float kInner = 100;
+  out.nodes[0].local.scale /= kInner;
+  for (size_t n = 1; n < out.nodes.size(); ++n) out.nodes[n].local.translation *= kInner;
+  for (auto& skin : out.skins)
+    for (Mat4& matrix : skin.inverse_bind) matrix.topRightCorner<3, 1>() *= kInner;
+  for (auto& part : out.parts) part.vertices *= kInner;
+}
+
 }  // namespace
 
 std::string made_name(Naming naming, int joint) {
@@ -264,6 +288,12 @@ Character make_character(const MadeCharacter& options) {
     if (!options.rigged) {
       part.joints.resize(0, 0);
       part.weights.resize(0, 0);
+    } else if (options.influences == 8) {
+      pull_more(kJointCount, part);
+    }
+    if (options.rigged && options.separate_skins && !upper) {
+      out.skins.push_back(out.skins[0]);
+      part.skin = 1;
     }
     out.nodes.push_back(node);
     out.parts.push_back(std::move(part));
@@ -279,7 +309,23 @@ Character make_character(const MadeCharacter& options) {
   }
   out.materials.push_back(
       R"({"name":"trousers","pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.3,1.0]}})");
+  if (options.nested_scales) nest_scales(out);
   return out;
+}
+
+Character make_robot() {
+  Character robot = make_character();
+  robot.skins.clear();
+  robot.parts.clear();
+  for (int j = 0; j < kJointCount; ++j) {
+    CharacterPart part;
+    part.name = "plate";
+    part.node = 1 + j;
+    part.vertices = Points{{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0, 0, 0.1f}};
+    part.faces = Faces{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    robot.parts.push_back(part);
+  }
+  return robot;
 }
 
 Extraction KnownExtractor::extract(const Mesh&) {

@@ -20,6 +20,9 @@ struct MadeCharacter {
   bool fingers = true;       ///< a finger on each hand, which no joint stands for
   bool rigged = true;
   bool textured = true;
+  bool nested_scales = false;   ///< bones and vertices in centimetres under a node that is scaled by 0.01
+  bool separate_skins = false;  ///< each part has a skin of its own, with the same bones
+  int influences = 4;           ///< 8: six more bones pull a little at every vertex
 };
 
 /// About 1.7 m tall, two parts with two materials (one textured), normals, UVs, colours on one of them.
@@ -57,6 +60,9 @@ class BulgingDeformer final : public Deformer {
   Joints joints_;
   RowMatrix weights_;
 };
+
+/// Hard plates that hang on the nodes of a rig, each on its own; nothing is skinned.
+Character make_robot();
 
 /// Poses of someone who walks, bends knees and elbows and turns, `count` of them; root heights for `rest`.
 std::vector<Pose> made_motion(int count, const Joints& rest);

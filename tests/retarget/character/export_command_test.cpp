@@ -1,4 +1,5 @@
 // `understudy export` of the shipped program: good and bad runs, without a window.
+#include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -75,11 +76,84 @@ TEST_F(ExportCommand, ShowsTheMapAndTakesCorrections) {
   EXPECT_EQ(less.out.find("mixamorig:Head "), std::string::npos) << less.out;
 }
 
+TEST_F(ExportCommand, ADocumentGivesWhatTheStudioExports) {
+  const std::string document = scratch.path("dance.understudy");
+  write_text(scratch.path("make.us"), "open " + scans() + "\nopen " + character() +
+                                          "\nwait\nedit.target_joint 0 left_elbow 0.45 1.4 0\n"
+                                          "edit.weights_mirror 0 left\nedit.rotate 0 1 head 0 0.4 0 3\n"
+                                          "edit.trim 0 0 3\nedit.skip 0 2 on\nwait\n"
+                                          "export.run 0 " +
+                                          out("studio.glb") +
+                                          " morphs=3\n"
+                                          "export.run 0 " +
+                                          out("studio.npz") +
+                                          "\n"
+                                          "document.save_as " +
+                                          document + "\nwait\n");
+  const Finished made = run_program({"play", scratch.path("make.us"), "--context", "null"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Finished done = run_program({"export", document, "--out", out("cli.glb"), "--morphs", "3"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(run_program({"export", document, "--take", "1", "--out", out("cli.npz")}).code, 0);
+  EXPECT_EQ(read_bytes(out("cli.glb")), read_bytes(out("studio.glb")));
+  EXPECT_EQ(read_bytes(out("cli.npz")), read_bytes(out("studio.npz")));
+  EXPECT_EQ(read_character(out("cli.glb")).animations[0].tracks[0].times.size(), 3u);
+}
+
+TEST_F(ExportCommand, ADocumentThatCannotBeExportedIsASentence) {
+  const std::string document = scratch.path("dance.understudy");
+  write_text(scratch.path("make.us"),
+             "open " + scans() + "\nopen " + target() + "\nwait\ndocument.save_as " + document + "\n");
+  ASSERT_EQ(run_program({"play", scratch.path("make.us"), "--context", "null"}).code, 0);
+  expect_clean_failure(run_program({"export", document, "--take", "2", "--out", out("a.glb")}), "no take 2");
+  expect_clean_failure(run_program({"export", document, "--rig", "theirs", "--out", out("a.glb")}),
+                       "bones of its own");
+  expect_clean_failure(run_program({"export", document, "--target", target(), "--out", out("a.glb")}),
+                       "its own source and target");
+  std::string text = read_bytes(document);
+  text.replace(text.find("scans"), 5, "gone!");
+  write_text(scratch.path("moved.understudy"), text);
+  expect_clean_failure(run_program({"export", scratch.path("moved.understudy"), "--out", out("a.glb")}),
+                       "not there");
+}
+
+TEST_F(ExportCommand, CtrlCAndAFullDiskLeaveTheOldFile) {
+  std::ofstream(out("a.glb")) << "old";
+  ProgramOptions full;
+  full.file_size_limit = 20000;
+  const Finished stopped =
+      run_program({"export", "--source", scans(), "--target", target(), "--out", out("a.glb")}, full);
+  EXPECT_EQ(stopped.code, 1) << stopped.err;
+  EXPECT_NE(stopped.err.find("writing failed"), std::string::npos) << stopped.err;
+  EXPECT_EQ(read_bytes(out("a.glb")), "old");
+  Program program(
+      {"export", "--follow", "--source", scans(), "--target", target(), "--out", out("a.glb")});
+  program.wait_for("frame ");
+  program.send(SIGINT);
+  EXPECT_NE(program.finish().code, 0);
+  EXPECT_EQ(read_bytes(out("a.glb")), "old");
+  EXPECT_EQ(out_files().size(), 1u);
+}
+
+TEST_F(ExportCommand, EveryFormatIsWrittenWithoutAWindow) {
+  const std::string path = character();
+  for (const auto& [format, name] : std::vector<std::pair<std::string, std::string>>{{"bvh", "a.bvh"},
+                                                                                     {"amass", "amass.npz"},
+                                                                                     {"ply", "frames"},
+                                                                                     {"pc2", "a.pc2"},
+                                                                                     {"joints", "a.csv"}}) {
+    const Finished done = run(path, {"--format", format, "--out", out(name), "--frames", "2"});
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(done.out.find("bytes"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(out(name))) << name;
+  }
+}
+
 TEST_F(ExportCommand, SaysWhatIsWrong) {
   const std::string path = character();
   std::ofstream(scratch.path("twice.json")) << R"({"head": "mixamorig:Neck", "neck": "mixamorig:Neck"})";
   std::ofstream(scratch.path("list.json")) << "[1]";
-  expect_clean_failure(run(path, {"--out", out("a.fbx")}), "use .glb or .gltf");
+  expect_clean_failure(run(path, {"--out", out("a.fbx")}), "use .glb, .gltf, .bvh");
   expect_clean_failure(run(path, {"--out", out("a.glb"), "--map", scratch.path("twice.json")}), "to both");
   expect_clean_failure(run(path, {"--out", out("a.glb"), "--map", scratch.path("list.json")}),
                        "no map of bones");

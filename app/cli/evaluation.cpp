@@ -1,0 +1,245 @@
+#include "app/cli/evaluation.hpp"
+
+#include <chrono>
+
+#include "app/cli/attempt.hpp"
+#include "app/run/interrupt.hpp"
+#include "app/run/performer.hpp"
+#include "app/run/target_file.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/peers/body_fit.hpp"
+
+namespace understudy::app {
+
+SourceOptions case_source(const Case& c) {
+  SourceOptions options;
+  options.path = c.source;
+  options.fps = c.fps;
+  options.import.units = "m";
+  options.import.up = "y";
+  options.import.floor = 0.0f;
+  return options;
+}
+
+namespace {
+
+/// Its target stands in T-pose as it is told, in the frame that the truth is in.
+TargetOptions case_target(const Case& c) {
+  TargetOptions options;
+  options.path = c.target;
+  options.import.units = "m";
+  options.import.up = "y";
+  options.import.floor = 0.0f;
+  options.forward = false;
+  options.rig = "ours";
+  return options;
+}
+
+/// Where the figures of a case go.
+struct Judging {
+  Judge& judge;
+  Verdict& verdict;
+  const Truth* truth;  // null: none
+};
+
+double ms_since(std::chrono::steady_clock::time_point began) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
+}
+
+/// Only the skeletons of the scans: cases without a target. Repaired and smoothed as for a performance.
+void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) {
+  const auto source = open_source(case_source(c));
+  JointFilter filter;
+  std::optional<Extraction> raw;  // of the last good frame
+  std::optional<Joints> smooth;
+  float waited_s = 0;
+  while (true) {
+    check_interrupt("in case " + c.name);
+    FrameTimes times;
+    const auto began = std::chrono::steady_clock::now();
+    const auto frame = source->next();
+    if (!frame) break;
+    times.read = ms_since(began);
+    waited_s += static_cast<float>(1 / c.fps);
+    const std::string problem = failure_of([&] {
+      raw = extractor.extract(frame->mesh);
+      smooth = filter.push(*raw, waited_s).joints;
+      waited_s = 0;
+    });
+    US_CHECK(smooth, frame->path, ": ", problem);
+    times.total = ms_since(began);
+    times.extract = times.total - times.read;
+    to.verdict.latency.add(times);
+    to.verdict.flagged += !problem.empty();
+    JudgedFrame judged;
+    judged.source_joints = &*smooth;
+    judged.raw_joints = &raw->joints;
+    judged.confidence = &raw->confidence;
+    judged.scan = frame->usable ? &frame->mesh : nullptr;
+    to.judge.push(judged);
+  }
+}
+
+/// The whole way, frame by frame; with `oracle` the true skeleton takes the place of the extracted one.
+void judge_performance(const Case& c, const EvalOptions& options, Networks networks,
+                       const PreparedCharacter& target, Judging& to) {
+  const auto source = open_source(case_source(c));
+  const std::vector<Joints>* const oracle =
+      options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
+  US_CHECK(options.oracle.empty() || (oracle && !oracle->empty()), c.truth,
+           ": --oracle skeleton wants source_joints");
+  Performer performer(*source, target.target, std::move(networks), options.retarget);
+  for (size_t t = 0;; ++t) {
+    check_interrupt("in case " + c.name);
+    US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");
+    if (options.restart_every > 0 && t > 0 && t % static_cast<size_t>(options.restart_every) == 0)
+      performer.restart();
+    const bool known = oracle && t < oracle->size();
+    const auto frame = known ? performer.next((*oracle)[t]) : performer.next();
+    if (!frame) break;
+    const RetargetedFrame& result = frame->result;
+    to.verdict.latency.add(frame->times);
+    to.verdict.flagged += result.flagged;
+    const Points vertices = target.surface.in_file_order(result.vertices);
+    to.judge.push({&vertices, &result.joints, &result.pose.local, &frame->source_joints,
+                   result.flagged ? &frame->source_joints : &result.source_raw.joints,
+                   frame->scan.usable ? &frame->scan.mesh : nullptr, &result.source_raw.confidence});
+  }
+}
+
+/// True rotations, root and joints of the target: only weights and offsets are the method's.
+void judge_deformation(const Truth& truth, const Mesh& target, Deformer& deformer, Judging& to) {
+  US_CHECK(truth.target_joints && !truth.joints.empty() && !truth.rotations.empty(),
+           "--oracle pose wants target_joints, joints and rotations in the truth");
+  deformer.bind(target.vertices, *truth.target_joints);
+  for (int64_t t = 0; t < truth.frames; ++t) {
+    const size_t i = static_cast<size_t>(t);
+    const Pose pose{truth.rotations[i], truth.joints[i].row(Pelvis).transpose()};
+    FrameTimes times;
+    const auto began = std::chrono::steady_clock::now();
+    const Points vertices = deformer.deform(pose);
+    times.deform = times.total = ms_since(began);
+    to.verdict.latency.add(times);
+    const Joints joints = forward_kinematics(*truth.target_joints, pose).joints;
+    to.judge.push({&vertices, &joints, &pose.local, nullptr, nullptr, nullptr, nullptr});
+  }
+}
+
+/// What judges all cases alike.
+struct Bench {
+  const EvalOptions& options;
+  std::shared_ptr<const FitBody> fit;  // null: no peer
+};
+
+Networks networks_of(const Bench& bench) {
+  Networks networks = nn::load_networks(bench.options.networks);
+  if (!bench.fit) return networks;
+  if (!networks.rest_extractor) networks.rest_extractor = std::move(networks.extractor);
+  networks.extractor = std::make_unique<BodyFit>(bench.fit);
+  return networks;
+}
+
+void judge_case(const Bench& bench, const std::string& folder, const Case& c, Verdict& verdict,
+                Breakdown& breakdown) {
+  const EvalOptions& options = bench.options;
+  std::optional<Truth> truth;
+  if (!c.truth.empty()) truth = read_truth(c.truth);
+  US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle wants a truth");
+  std::optional<Mesh> mesh;  // with the file's own vertices
+  std::shared_ptr<const PreparedCharacter> target;
+  Networks networks;
+  if (options.oracle == "pose" && !c.target.empty()) {
+    mesh = read_mesh(c.target);
+  } else {
+    networks = networks_of(bench);
+    if (!c.target.empty()) target = open_target(case_target(c), networks);
+    if (target) mesh = target->target_in_file_order();
+  }
+  Judge judge(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
+  Judging to{judge, verdict, truth ? &*truth : nullptr};
+  if (target)
+    judge_performance(c, options, std::move(networks), *target, to);
+  else if (mesh)
+    judge_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);
+  else
+    judge_extraction(c, *networks.extractor, to);
+  verdict.frames = verdict.latency.frames();
+  verdict.metrics = judge.metrics();
+  if (truth) breakdown.add(folder, c, judge, *truth);
+}
+
+Json case_json(const Verdict& verdict) {
+  Json json = {{"name", verdict.name}, {"tags", verdict.tags}};
+  if (!verdict.error.empty()) {
+    json["error"] = verdict.error;
+    return json;
+  }
+  json["frames"] = verdict.frames;
+  json["flagged"] = verdict.flagged;
+  json["metrics"] = to_json(verdict.metrics);
+  json["ms"] = to_json(verdict.latency, 0.5);
+  json["ms_p95"] = to_json(verdict.latency, 0.95);
+  return json;
+}
+
+std::vector<std::string> chosen_cases(const EvalOptions& options) {
+  std::vector<std::string> chosen;
+  for (const std::string& folder : case_folders(options.cases)) {
+    if (options.limit > 0 && static_cast<int>(chosen.size()) >= options.limit) break;
+    if (folder.find(options.filter, folder.find_last_of('/') + 1) != std::string::npos)
+      chosen.push_back(folder);
+  }
+  US_CHECK(!chosen.empty(), options.cases, ": no case's name holds ", options.filter);
+  return chosen;
+}
+
+}  // namespace
+
+Evaluation evaluate(const EvalOptions& options, const std::function<void(const Verdict&)>& told) {
+  Bench bench{options, nullptr};
+  if (options.peer == "fit") {
+    US_CHECK(!options.body.empty(), "the peer \"fit\" wants --body, an SMPL-format body");
+    bench.fit = std::make_shared<const FitBody>(read_smpl_body(options.body));
+  }
+  Evaluation evaluation;
+  evaluation.breakdown = Breakdown(static_cast<size_t>(options.worst));
+  std::vector<Metrics> metrics;
+  for (const std::string& folder : chosen_cases(options)) {
+    Verdict verdict;
+    verdict.name = folder.substr(folder.find_last_of('/') + 1);
+    verdict.error = failure_of([&] {
+      const Case c = read_case(folder);
+      verdict.name = c.name;
+      verdict.tags = c.tags;
+      judge_case(bench, folder, c, verdict, evaluation.breakdown);
+    });
+    check_interrupt("in case " + verdict.name);
+    told(verdict);
+    if (verdict.error.empty()) {
+      metrics.push_back(verdict.metrics);
+      evaluation.latency.add(verdict.latency);
+    }
+    evaluation.failed |= !verdict.error.empty();
+    evaluation.verdicts.push_back(std::move(verdict));
+  }
+  evaluation.mean = mean_metrics(metrics);
+  return evaluation;
+}
+
+Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
+  Json report = report_header(nn::weights_folder(options.networks));
+  report["engine"] = options.networks.engine;
+  if (!options.oracle.empty()) report["oracle"] = options.oracle;
+  if (!options.peer.empty()) report["peer"] = options.peer;
+  if (options.restart_every > 0) report["restart_every"] = options.restart_every;
+  report["cases"] = Json::array();
+  for (const Verdict& verdict : evaluation.verdicts) report["cases"].push_back(case_json(verdict));
+  report["mean"] = to_json(evaluation.mean);
+  report["ms"] = to_json(evaluation.latency, 0.5);
+  report["ms_p95"] = to_json(evaluation.latency, 0.95);
+  report["breakdown"] = evaluation.breakdown.json();
+  return report;
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,54 @@
+// Judges the method on a folder of cases: what `eval` and `report` share.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/run/breakdown.hpp"
+#include "app/run/latency.hpp"
+#include "app/run/source.hpp"
+#include "retarget/nn/networks.hpp"
+#include "retarget/pipeline/retargeter.hpp"
+
+namespace understudy::app {
+
+struct EvalOptions {
+  std::string cases, oracle, filter;
+  int limit = 0;          ///< cases; 0: all
+  int restart_every = 0;  ///< frames after which the method forgets the past; 0: never
+  std::string peer;       ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
+  std::string body;       ///< SMPL-format, of the peer "fit"
+  int worst = 20;         ///< frames told as the worst
+  nn::NetworkOptions networks;
+  RetargetOptions retarget;
+};
+
+struct Verdict {
+  std::string name, error;
+  std::vector<std::string> tags;
+  int64_t frames = 0, flagged = 0;
+  Metrics metrics;
+  Latency latency;
+};
+
+struct Evaluation {
+  std::vector<Verdict> verdicts;
+  Breakdown breakdown;
+  Metrics mean;
+  Latency latency;
+  bool failed = false;  ///< some case
+};
+
+/// What is true of a case by the format's definition, so that nothing has to be guessed: metres, y up, the
+/// floor at 0.
+SourceOptions case_source(const Case& c);
+
+/// Judges every chosen case; `told` hears of each when it is done. A case that fails has its error told and
+/// the others go on. Throws Error when there is no case.
+Evaluation evaluate(const EvalOptions& options, const std::function<void(const Verdict&)>& told);
+
+/// report.json: see Breakdown::json for "breakdown".
+Json report_of(const EvalOptions& options, const Evaluation& evaluation);
+
+}  // namespace understudy::app

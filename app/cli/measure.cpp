@@ -1,0 +1,91 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "app/cli/attempt.hpp"
+#include "app/cli/commands.hpp"
+#include "app/cli/options.hpp"
+#include "app/run/interrupt.hpp"
+#include "app/run/judge.hpp"
+#include "app/run/report.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/pipeline/joint_filter.hpp"
+
+namespace understudy::app {
+namespace {
+
+struct MeasureOptions {
+  SourceOptions source;
+  nn::NetworkOptions networks;
+  std::string out;
+  int every = 1;  ///< frames between looks at what is inside
+};
+
+/// What can be said of the skeletons seen in scans without knowing the right ones: as extracted, and repaired
+/// and smoothed.
+struct Measured {
+  explicit Measured(double fps, int every)
+      : raw(fps, nullptr, nullptr, every), smooth(fps, nullptr, nullptr, every) {}
+  Judge raw, smooth;
+  int64_t frames = 0, flagged = 0;
+};
+
+void push(Judge& judge, const Joints& joints, const Mesh& scan) {
+  JudgedFrame frame;
+  frame.joints = frame.source_joints = &joints;
+  frame.scan = &scan;
+  judge.push(frame);
+}
+
+Measured measured(const MeasureOptions& options) {
+  const auto source = open_source(options.source);
+  const auto extractor = nn::load_networks(options.networks).extractor;
+  Measured result(source->fps(), options.every);
+  JointFilter filter;
+  float waited_s = 0;
+  while (const auto frame = source->next()) {
+    check_interrupt("after " + std::to_string(result.frames) + " frames");
+    ++result.frames;
+    waited_s += static_cast<float>(1 / source->fps());
+    const std::string problem = failure_of([&] {
+      const Extraction seen = frame->skeleton ? *frame->skeleton : extractor->extract(frame->mesh);
+      push(result.raw, seen.joints, frame->mesh);
+      push(result.smooth, filter.push(seen, waited_s).joints, frame->mesh);
+      waited_s = 0;
+    });
+    result.flagged += !problem.empty();
+    if (!problem.empty()) log::warn("frame " + std::to_string(frame->number) + ": " + problem);
+  }
+  US_CHECK(result.frames > result.flagged, options.source.path, ": no frame in it could be used");
+  return result;
+}
+
+int measure(const MeasureOptions& options) {
+  check_writable(options.out);
+  const Measured result = measured(options);
+  Json report = report_header(nn::weights_folder(options.networks));
+  report["source"] = options.source.path;
+  report["frames"] = result.frames;
+  report["flagged"] = result.flagged;
+  report["metrics"] = to_json(result.smooth.metrics());
+  report["raw"] = to_json(result.raw.metrics());
+  if (!options.out.empty()) write_json(options.out, report);
+  std::printf("extracted: %s\nsmoothed: %s\n", report["raw"].dump().c_str(),
+              report["metrics"].dump().c_str());
+  return 0;
+}
+
+}  // namespace
+
+Action declare_measure(CLI::App& command) {
+  const auto options = std::make_shared<MeasureOptions>();
+  command.add_option("source", options->source.path, "scans, or anything else that has motion")->required();
+  command.add_option("--out", options->out, "report as JSON");
+  command.add_option("--every", options->every, "look at what is inside only every so many frames")
+      ->check(CLI::Range(1, 1000000));
+  add_source_options(command, options->source);
+  add_network_options(command, options->networks);
+  return [options] { return measure(*options); };
+}
+
+}  // namespace understudy::app

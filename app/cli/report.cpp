@@ -1,0 +1,142 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "app/cli/attempt.hpp"
+#include "app/cli/commands.hpp"
+#include "app/cli/report_page.hpp"
+#include "app/cli/worst_frames.hpp"
+#include "app/run/interrupt.hpp"
+#include "retarget/base/error.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportOptions {
+  std::string cases, out, rows, weights, body;
+  std::vector<std::string> tables;
+  int limit = 0;       ///< cases a row; 0: as the rows say
+  bool again = false;  ///< judge also what was judged before
+};
+
+/// What a row is, for recognising its results of an earlier run.
+Json identity(const ReportRow& row) {
+  const EvalOptions& e = row.eval;
+  return {{"table", row.table},
+          {"name", row.name},
+          {"cases", e.cases},
+          {"engine", e.networks.engine},
+          {"extractor", e.networks.extractor},
+          {"weights", report_header(nn::weights_folder(e.networks))["weights"]},
+          {"files", {e.networks.engine_file, e.networks.extractor_file}},
+          {"offsets", e.networks.offsets},
+          {"foot_lock", e.retarget.lock_feet},
+          {"oracle", e.oracle},
+          {"peer", e.peer},
+          {"context", e.restart_every},
+          {"limit", e.limit}};
+}
+
+std::string file_of(const ReportOptions& options, const ReportRow& row) {
+  std::string name = row.table + "_" + row.name + "_" + row.suite;
+  if (row.eval.restart_every > 0) name += "_" + std::to_string(row.eval.restart_every);
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return options.out + "/rows/" + name + ".json";
+}
+
+Json read_json(const std::string& path) {
+  std::ifstream in(path);
+  return in ? Json::parse(in, nullptr, false) : Json();
+}
+
+ReportResult result_of(const ReportOptions& options, ReportRow row) {
+  ReportResult result{std::move(row), {}, ""};
+  const std::string file = file_of(options, result.row);
+  const Json known = identity(result.row), before = read_json(file);
+  if (!options.again && before.is_object() && before.value("row", Json()) == known) {
+    result.report = before;
+    return result;
+  }
+  result.lost = failure_of([&] {
+    const Evaluation evaluation = evaluate(result.row.eval, [](const Verdict&) {});
+    US_CHECK(evaluation.latency.frames() > 0, evaluation.verdicts.front().error);
+    result.report = report_of(result.row.eval, evaluation);
+    result.report["row"] = known;
+    write_json(file, result.report);
+    if (result.row.table == "peers" && result.row.name == "copy")
+      write_worst_frames(options.out + "/worst_" + result.row.suite, evaluation.breakdown.worst());
+  });
+  check_interrupt("in row " + result.row.name);
+  return result;
+}
+
+std::vector<ReportRow> chosen_rows(const ReportOptions& options) {
+  std::vector<ReportRow> rows = options.rows.empty() ? standard_rows() : read_report_rows(options.rows);
+  std::vector<ReportRow> chosen;
+  for (ReportRow& row : rows) {
+    const bool wanted = options.tables.empty() || std::find(options.tables.begin(), options.tables.end(),
+                                                            row.table) != options.tables.end();
+    if (!wanted) continue;
+    row.eval.cases = (fs::path(options.cases) / row.suite).string();
+    row.eval.body = options.body;
+    if (row.eval.networks.weights.empty()) row.eval.networks.weights = options.weights;
+    if (options.limit > 0)
+      row.eval.limit = row.eval.limit > 0 ? std::min(row.eval.limit, options.limit) : options.limit;
+    chosen.push_back(std::move(row));
+  }
+  US_CHECK(!chosen.empty(), "no row is of the tables wanted");
+  return chosen;
+}
+
+std::string command_of(const ReportOptions& options) {
+  std::string command = "understudy report --cases CASES --out OUT";
+  if (!options.rows.empty()) command += " --rows " + fs::path(options.rows).filename().string();
+  if (!options.body.empty()) command += " --body BODY.npz";
+  if (options.limit > 0) command += " --limit " + std::to_string(options.limit);
+  return command;
+}
+
+int report(const ReportOptions& options) {
+  US_CHECK(fs::is_directory(options.cases), options.cases, ": not a folder of suites");
+  const std::vector<ReportRow> rows = chosen_rows(options);
+  fs::create_directories(options.out + "/rows");
+  std::vector<ReportResult> results;
+  for (const ReportRow& row : rows) {
+    results.push_back(result_of(options, row));
+    std::printf("%s, %s, %s%s: %s\n", row.table.c_str(), row.suite.c_str(), row.name.c_str(),
+                row.eval.restart_every > 0 ? (" " + std::to_string(row.eval.restart_every)).c_str() : "",
+                results.back().lost.empty() ? "done" : results.back().lost.c_str());
+    std::fflush(stdout);
+    write_report_page(options.out, results, command_of(options));
+  }
+  std::printf("wrote %s/report.md\n", options.out.c_str());
+  return 0;
+}
+
+}  // namespace
+
+Action declare_report(CLI::App& command) {
+  const auto options = std::make_shared<ReportOptions>();
+  command.add_option("--cases", options->cases, "folder of suites: naked/, clothed/, captured/, extraction/")
+      ->required();
+  command.add_option("--out", options->out, "folder for report.md, its plots and the figures of each row")
+      ->required();
+  command.add_option("--rows", options->rows,
+                     "JSON that lists the rows (default: what the shipped weights can show)");
+  command
+      .add_option("--tables", options->tables, "only these: peers, contexts, rotation, extraction, offsets")
+      ->delimiter(',');
+  command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
+  command.add_option("--body", options->body, "the SMPL-format body that the peer fits");
+  command.add_option("--limit", options->limit, "at most so many cases a row")->check(CLI::NonNegativeNumber);
+  command.add_flag("--again", options->again, "judge also the rows whose figures are there");
+  return [options] { return report(*options); };
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,234 @@
+#include "app/cli/report_page.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+#include "render/plot.hpp"
+#include "retarget/base/error.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// A figure of a table: where it lies in a report, its unit and digits.
+struct Column {
+  const char *group, *key, *title;
+  double scale;
+  int digits;
+};
+
+struct Table {
+  const char *id, *title, *says;
+  std::vector<Column> columns;
+};
+
+const std::vector<Column> kPerformance = {{"mean", "mpjpe_m", "mpjpe_m", 1, 4},
+                                          {"mean", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4},
+                                          {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 4},
+                                          {"mean", "medl_mm", "medl_mm", 1, 3},
+                                          {"mean", "acc", "acc", 1, 4},
+                                          {"mean", "pa_acc", "pa_acc", 1, 4},
+                                          {"mean", "rot_deg", "rot_deg", 1, 1},
+                                          {"ms", "total", "s a frame", 0.001, 3}};
+
+const std::vector<Table>& tables() {
+  static const std::vector<Table> all = {
+      {"peers", "Against peers",
+       "`copy`, `paper` and `hybrid` are the program's engines. `fit`: a parametric body is fitted to each "
+       "scan by "
+       "optimisation from the scans alone, and its rotations are copied; where the people judged on are of "
+       "that very "
+       "body, as in suites made from one data folder, it knows them better than it would know strangers.",
+       kPerformance},
+      {"contexts",
+       "Contexts",
+       "The method forgets the past after so many frames. Places start anew with it, so only figures after "
+       "alignment "
+       "are compared.",
+       {{"mean", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4},
+        {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 4},
+        {"mean", "medl_mm", "medl_mm", 1, 3},
+        {"mean", "pa_acc", "pa_acc", 1, 4},
+        {"mean", "rot_deg", "rot_deg", 1, 1}}},
+      {"rotation", "What the network says of rotations, with and without a loss on them",
+       "All trained with the same budget, shorter than that of the shipped weights.", kPerformance},
+      {"extraction",
+       "Skeleton extraction",
+       "Of the source's 22 joints, repaired and smoothed; raw: as extracted.",
+       {{"mean", "extraction_mpjpe_mm", "mm", 1, 1},
+        {"mean", "extraction_raw_mpjpe_mm", "raw, mm", 1, 1},
+        {"mean", "extraction_swap_rate", "swapped, %", 100, 2},
+        {"mean", "extraction_flip_rate", "flipped, %", 100, 2},
+        {"mean", "inside", "inside, %", 100, 1},
+        {"ms", "extract", "ms a frame", 1, 1}}},
+      {"offsets",
+       "Pose-corrective offsets",
+       "With true poses weights and offsets alone are judged.",
+       {{"mean", "mpvd_m", "mpvd_m", 1, 5},
+        {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 5},
+        {"mean", "medl_mm", "medl_mm", 1, 3}}}};
+  return all;
+}
+
+std::string figure(const Json& report, const Column& column) {
+  if (!report.contains(column.group) || !report[column.group].contains(column.key)) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", column.digits,
+                column.scale * report[column.group][column.key].get<double>());
+  return text;
+}
+
+std::string name_of(const ReportRow& row) {
+  const int context = row.eval.restart_every;
+  return row.name + (context > 0 ? ", " + std::to_string(context) + " frames" : "");
+}
+
+void write_line(std::ofstream& page, const std::vector<std::string>& cells) {
+  for (const std::string& cell : cells) page << "| " << cell << ' ';
+  page << "|\n";
+}
+
+void write_head(std::ofstream& page, const std::vector<std::string>& cells) {
+  write_line(page, cells);
+  for (size_t i = 0; i < cells.size(); ++i) page << "|---";
+  page << "|\n";
+}
+
+void write_table(std::ofstream& page, const Table& table, const std::vector<ReportResult>& results) {
+  bool begun = false;
+  std::string lost;
+  for (const ReportResult& result : results) {
+    if (result.row.table != table.id) continue;
+    if (!result.lost.empty()) {
+      lost += "- left out: " + name_of(result.row) + ", " + result.row.suite + ": " + result.lost + "\n";
+      continue;
+    }
+    if (!begun) {
+      page << "\n## " << table.title << "\n\n" << table.says << "\n\n";
+      std::vector<std::string> head = {"suite", "row"};
+      for (const Column& column : table.columns) head.push_back(column.title);
+      head.insert(head.end(), {"cases", "trained with"});
+      write_head(page, head);
+      begun = true;
+    }
+    std::vector<std::string> cells = {result.row.suite, name_of(result.row)};
+    for (const Column& column : table.columns) cells.push_back(figure(result.report, column));
+    cells.push_back(std::to_string(result.report["cases"].size()));
+    cells.push_back(result.row.budget);
+    write_line(page, cells);
+  }
+  if (!begun && !lost.empty()) page << "\n## " << table.title << "\n";
+  if (!lost.empty()) page << '\n' << lost;
+}
+
+/// One curve an engine over the contexts, when there are two or more.
+void plot_contexts(std::ofstream& page, const std::string& folder, const std::vector<ReportResult>& results) {
+  std::map<std::string, render::Curve> curves;
+  for (const ReportResult& result : results)
+    if (result.row.table == "contexts" && result.lost.empty() &&
+        result.report["mean"].contains("pa_mpjpe_m")) {
+      render::Curve& curve = curves[result.row.name];
+      curve.name = result.row.name;
+      curve.x.push_back(result.row.eval.restart_every);
+      curve.y.push_back(1000 * result.report["mean"]["pa_mpjpe_m"].get<double>());
+    }
+  std::vector<render::Curve> all;
+  for (auto& [name, curve] : curves)
+    if (curve.x.size() > 1) all.push_back(std::move(curve));
+  if (all.empty()) return;
+  render::write_png(folder + "/contexts.png",
+                    render::plot(all, {"Error over the length of the context", "frames", "pa_mpjpe, mm"}));
+  page << "\n![Error over the length of the context](contexts.png)\n";
+}
+
+void write_confidence(std::ofstream& page, const std::string& folder, const std::string& suite,
+                      const Json& confidence) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "\nConfidence against error, rank correlation: %.2f over joints, %.2f over frames.\n\n",
+                confidence["rank_correlation"].is_number() ? confidence["rank_correlation"].get<double>()
+                                                           : std::nan(""),
+                confidence["frame_rank_correlation"].is_number()
+                    ? confidence["frame_rank_correlation"].get<double>()
+                    : std::nan(""));
+  page << text;
+  render::Curve mean{"mean error", {}, {}}, p90{"90 % stay below", {}, {}};
+  write_head(page, {"confidence", "mean error, mm", "90 % below, mm", "joints"});
+  for (const Json& bin : confidence["bins"]) {
+    mean.x.push_back(bin["confidence"]);
+    mean.y.push_back(bin["error_mm"]);
+    p90.x.push_back(bin["confidence"]);
+    p90.y.push_back(bin["p90_mm"]);
+    std::snprintf(text, sizeof text, "| %.3f | %.1f | %.1f | %lld |\n", bin["confidence"].get<double>(),
+                  bin["error_mm"].get<double>(), bin["p90_mm"].get<double>(), bin["count"].get<long long>());
+    page << text;
+  }
+  const std::string file = "confidence_" + suite + ".png";
+  render::write_png(
+      folder + "/" + file,
+      render::plot({mean, p90}, {"What the confidence says of the error: " + suite, "confidence", "mm"}));
+  page << "\n![What the confidence says of the error](" << file << ")\n";
+}
+
+/// Figures by name: joints, motions, bodies.
+void write_groups(std::ofstream& page, const char* what, const Json& groups,
+                  const std::vector<Column>& columns) {
+  if (groups.empty()) return;
+  std::vector<std::string> head = {what};
+  for (const Column& column : columns) head.push_back(column.title);
+  page << '\n';
+  write_head(page, head);
+  for (const auto& group : groups.items()) {
+    std::vector<std::string> cells = {group.key()};
+    for (const Column& column : columns) cells.push_back(figure({{"", group.value()}}, column));
+    write_line(page, cells);
+  }
+}
+
+void write_breakdown(std::ofstream& page, const std::string& folder, const ReportResult& result) {
+  const Json& breakdown = result.report["breakdown"];
+  page << "\n## " << result.row.suite << ", `" << result.row.name << "`: where the error lies\n";
+  write_groups(page, "joint", breakdown["joints"],
+               {{"", "extraction_mm", "extraction, mm", 1, 1},
+                {"", "pa_mpjpe_mm", "pa_mpjpe, mm", 1, 1},
+                {"", "rot_deg", "rot_deg", 1, 1}});
+  const std::vector<Column> grouped = {{"", "extraction_mpjpe_mm", "extraction, mm", 1, 1},
+                                       {"", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4},
+                                       {"", "rot_deg", "rot_deg", 1, 1},
+                                       {"", "acc", "acc", 1, 4}};
+  write_groups(page, "motion", breakdown["motions"], grouped);
+  write_groups(page, "body", breakdown["bodies"], grouped);
+  page << '\n';
+  write_head(page, {"failure", "frames", "share, %"});
+  for (const auto& failure : breakdown["failures"].items()) {
+    char text[96];
+    std::snprintf(text, sizeof text, "| %s | %lld | %.2f |\n", failure.key().c_str(),
+                  failure.value()["frames"].get<long long>(), 100 * failure.value()["share"].get<double>());
+    page << text;
+  }
+  if (breakdown.contains("confidence"))
+    write_confidence(page, folder, result.row.suite, breakdown["confidence"]);
+}
+
+}  // namespace
+
+void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
+                       const std::string& command) {
+  std::ofstream page(folder + "/report.md");
+  page << "# Comparison\n\nMade by `" << command
+       << "`.\nTruth copies rotations between bodies of one family, so figures of other protocols do not "
+          "compare.\n";
+  for (const Table& table : tables()) {
+    write_table(page, table, results);
+    if (std::string(table.id) == "contexts") plot_contexts(page, folder, results);
+  }
+  for (const ReportResult& result : results)
+    if (result.lost.empty() && result.report.contains("breakdown") && result.row.table == "peers" &&
+        result.row.name == "copy")
+      write_breakdown(page, folder, result);
+  page.close();
+  US_CHECK(page, folder, "/report.md: cannot be written");
+}
+
+}  // namespace understudy::app

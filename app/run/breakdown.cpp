@@ -1,0 +1,137 @@
+#include "app/run/breakdown.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/math/rotation.hpp"
+#include "retarget/metrics/confidence.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// BODY of a case BODY_MOTION.
+std::string body_of(const Case& c, const std::string& motion) {
+  const std::string end = "_" + motion;
+  const bool ends =
+      c.name.size() > end.size() && c.name.compare(c.name.size() - end.size(), end.size(), end) == 0;
+  return ends ? c.name.substr(0, c.name.size() - end.size()) : c.name;
+}
+
+Json names_of(const FrameFailures& failures) {
+  Json names = Json::array();
+  for (int f = 0; f < kFailureCount; ++f)
+    if (failures[f]) names.push_back(kFailureNames[f]);
+  return names;
+}
+
+Json groups(const std::map<std::string, std::vector<Metrics>>& by_name) {
+  Json json = Json::object();
+  for (const auto& [name, metrics] : by_name) json[name] = app::to_json(mean_metrics(metrics));
+  return json;
+}
+
+}  // namespace
+
+void Breakdown::put(Figures& figures, const std::string& key, double value) {
+  const auto known =
+      std::find_if(figures.begin(), figures.end(), [&](const auto& f) { return f.first == key; });
+  Mean& mean = known == figures.end() ? figures.emplace_back(key, Mean{}).second : known->second;
+  mean.sum += value;
+  ++mean.count;
+}
+
+Json Breakdown::to_json(const Figures& figures) {
+  Json json = Json::object();
+  for (const auto& [key, mean] : figures) json[key] = mean.sum / static_cast<double>(mean.count);
+  return json;
+}
+
+void Breakdown::add(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth) {
+  const std::string motion = c.tags.empty() ? c.name : c.tags.back();
+  motions_[motion].push_back(judge.metrics());
+  bodies_[body_of(c, motion)].push_back(judge.metrics());
+  add_joints(judge, truth);
+  add_confidence(judge, truth);
+  const auto failures = failures_of({judge.source_joints(), truth.source_joints, judge.joints(), truth.joints,
+                                     judge.rotations(), truth.rotations, c.fps});
+  for (size_t t = 0; t < failures.size(); ++t) {
+    ++frames_;
+    for (int f = 0; f < kFailureCount; ++f) {
+      failures_[f] += failures[t][f];
+      motion_failures_[motion][f] += failures[t][f];
+    }
+    if (judge.source_joints().empty() || truth.source_joints.empty()) continue;
+    const Joints &seen = judge.source_joints()[t], &known = truth.source_joints[t];
+    worst_.push_back({folder, c.name, static_cast<int64_t>(t), mean_joint_error({seen}, {known}), seen, known,
+                      failures[t]});
+  }
+  std::stable_sort(worst_.begin(), worst_.end(),
+                   [](const auto& a, const auto& b) { return a.error_m > b.error_m; });
+  if (worst_.size() > keep_) worst_.resize(keep_);
+}
+
+void Breakdown::add_joints(const Judge& judge, const Truth& truth) {
+  const auto distances = [this](const char* key, const JointSequence& p, const JointSequence& q) {
+    if (p.empty() || q.empty()) return;
+    for (size_t t = 0; t < p.size(); ++t)
+      for (int j = 0; j < kJointCount; ++j) put(joints_[j], key, 1000 * (p[t].row(j) - q[t].row(j)).norm());
+  };
+  distances("extraction_mm", judge.source_joints(), truth.source_joints);
+  distances("mpjpe_mm", judge.joints(), truth.joints);
+  if (!judge.joints().empty() && !truth.joints.empty())
+    distances("pa_mpjpe_mm", aligned_joints(judge.joints(), truth.joints), truth.joints);
+  if (judge.rotations().empty() || truth.rotations.empty()) return;
+  for (size_t t = 0; t < truth.rotations.size(); ++t) {
+    const Rotations p = global_rotations(judge.rotations()[t]), q = global_rotations(truth.rotations[t]);
+    for (int j = 0; j < kJointCount; ++j) put(joints_[j], "rot_deg", geodesic_angle(p[j], q[j]) * 180 / kPi);
+  }
+}
+
+void Breakdown::add_confidence(const Judge& judge, const Truth& truth) {
+  if (judge.confidence().empty() || judge.raw_joints().empty() || truth.source_joints.empty()) return;
+  for (size_t t = 0; t < judge.confidence().size(); ++t) {
+    const Joints &seen = judge.raw_joints()[t], &known = truth.source_joints[t];
+    for (int j = 0; j < kJointCount; ++j) {
+      confidence_.push_back(judge.confidence()[t][j]);
+      error_.push_back((seen.row(j) - known.row(j)).norm());
+    }
+    frame_confidence_.push_back(judge.confidence()[t].mean());
+    frame_error_.push_back(mean_joint_error({seen}, {known}));
+  }
+}
+
+/// Correlation of the confidence with nearness: 1 when the more confident is always the nearer.
+Json Breakdown::confidence_json() const {
+  Json json = {{"rank_correlation", -rank_correlation(confidence_, error_)},
+               {"frame_rank_correlation", -rank_correlation(frame_confidence_, frame_error_)}};
+  json["bins"] = Json::array();
+  for (const ReliabilityBin& bin : reliability(confidence_, error_))
+    json["bins"].push_back({{"confidence", bin.confidence},
+                            {"error_mm", 1000 * bin.error},
+                            {"p90_mm", 1000 * bin.p90},
+                            {"count", bin.count}});
+  return json;
+}
+
+Json Breakdown::json() const {
+  Json json = {{"joints", Json::object()}, {"motions", groups(motions_)}, {"bodies", groups(bodies_)}};
+  for (int j = 0; j < kJointCount; ++j)
+    if (!joints_[j].empty()) json["joints"][kJointNames[j]] = to_json(joints_[j]);
+  for (int f = 0; f < kFailureCount; ++f) {
+    Json& failure = json["failures"][kFailureNames[f]];
+    failure["frames"] = failures_[f];
+    failure["share"] = static_cast<double>(failures_[f]) / static_cast<double>(std::max<int64_t>(frames_, 1));
+    for (const auto& [motion, counts] : motion_failures_)
+      if (counts[f] > 0) failure["motions"][motion] = counts[f];
+  }
+  if (!confidence_.empty()) json["confidence"] = confidence_json();
+  json["worst"] = Json::array();
+  for (const WorstFrame& w : worst_)
+    json["worst"].push_back({{"case", w.case_name},
+                             {"frame", w.frame},
+                             {"error_mm", 1000 * w.error_m},
+                             {"failures", names_of(w.failures)}});
+  return json;
+}
+
+}  // namespace understudy::app

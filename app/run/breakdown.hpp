@@ -1,0 +1,62 @@
+// Where the error of an evaluation lies: by joint, motion and body, by kind of failure, by frame; and whether
+// the extractor's confidence says so.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/run/case_folder.hpp"
+#include "app/run/report.hpp"
+#include "retarget/metrics/failures.hpp"
+
+namespace understudy::app {
+
+/// A frame in which the source's skeleton was seen badly.
+struct WorstFrame {
+  std::string case_folder, case_name;
+  int64_t frame = 0;
+  double error_m = 0;  ///< mean over joints of what was seen
+  Joints seen, truth;
+  FrameFailures failures{};
+};
+
+/// Collects judged cases.
+class Breakdown {
+ public:
+  explicit Breakdown(size_t worst = 20) : keep_(worst) {}
+  /// A case with its truth, after all of its frames were judged. `folder` is the case's. Cases named
+  /// BODY_MOTION, the motion being the last tag, count for both.
+  void add(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth);
+  /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
+  /// {"jolt":
+  /// {"frames", "share"}}, "confidence": {"rank_correlation", "frame_rank_correlation", "bins": [...]},
+  /// "worst":
+  /// [...]}; without what nothing is known of.
+  Json json() const;
+  /// The worst first.
+  const std::vector<WorstFrame>& worst() const { return worst_; }
+
+ private:
+  struct Mean {
+    double sum = 0;
+    int64_t count = 0;
+  };
+  using Figures = std::vector<std::pair<std::string, Mean>>;
+  void add_joints(const Judge& judge, const Truth& truth);
+  void add_confidence(const Judge& judge, const Truth& truth);
+  Json confidence_json() const;
+  static void put(Figures& figures, const std::string& key, double value);
+  static Json to_json(const Figures& figures);
+
+  size_t keep_;
+  std::array<Figures, kJointCount> joints_;
+  std::map<std::string, std::vector<Metrics>> motions_, bodies_;
+  std::map<std::string, std::array<int64_t, kFailureCount>> motion_failures_;
+  std::array<int64_t, kFailureCount> failures_{};
+  int64_t frames_ = 0;
+  std::vector<double> confidence_, error_, frame_confidence_, frame_error_;
+  std::vector<WorstFrame> worst_;
+};
+
+}  // namespace understudy::app

@@ -1,0 +1,327 @@
+#include "app/run/case_maker.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <vector>
+
+#include "app/run/interrupt.hpp"
+#include "app/run/report.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/numpy_random.hpp"
+#include "retarget/body/data_folder.hpp"
+#include "retarget/body/exact_body.hpp"
+#include "retarget/formats/npz.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kExtractionCases = 40, kExtractionFrames = 12, kTargets = 4, kMotions = 4;
+
+/// Who shows what to whom.
+struct CasePlan {
+  std::string name;
+  JudgedMotion motion;
+  std::optional<Eigen::VectorXf> target;  // shape parameters,
+  std::string dressed_target;             // or a file
+  Eigen::VectorXf source;
+  std::string dressed_source;  // in place of the shape, where not empty
+};
+
+/// A whole suite's data.
+struct Workshop {
+  const SuiteOptions& options;
+  DataSplit split;
+  Body body;
+  ExactBody shapes;
+  double template_leg;
+  NumpyRandom random;
+
+  Workshop(const SuiteOptions& wanted, DataSplit read)
+      : options(wanted),
+        split(std::move(read)),
+        body(read_smpl_body(wanted.body.empty() ? split.body : wanted.body)),
+        shapes(body),
+        template_leg(shapes.shaped({}).leg()),
+        random(wanted.seed) {}
+};
+
+/// Volume over height cubed.
+double girth(const ExactPerson& person, double height) {
+  double volume = 0;
+  for (Eigen::Index f = 0; f < person.faces.rows(); ++f) {
+    const Vector3d a = person.vertices.row(person.faces(f, 0)), b = person.vertices.row(person.faces(f, 1)),
+                   c = person.vertices.row(person.faces(f, 2));
+    volume += a.cross(b).dot(c) / 6;
+  }
+  return volume / (height * height * height);
+}
+
+/// The tallest, shortest, heaviest and slimmest of the split, by their names.
+std::array<std::pair<std::string, Eigen::VectorXf>, kTargets> extremes(const Workshop& shop) {
+  std::vector<double> heights, girths;
+  for (const auto& betas : shop.split.betas) {
+    const ExactPerson person = shop.shapes.shaped(betas);
+    heights.push_back(person.vertices.col(1).maxCoeff() - person.vertices.col(1).minCoeff());
+    girths.push_back(girth(person, heights.back()));
+  }
+  const auto most = [&](const std::vector<double>& of) {
+    return shop.split.betas[static_cast<size_t>(std::max_element(of.begin(), of.end()) - of.begin())];
+  };
+  const auto least = [&](const std::vector<double>& of) {
+    return shop.split.betas[static_cast<size_t>(std::min_element(of.begin(), of.end()) - of.begin())];
+  };
+  return {
+      {{"tall", most(heights)}, {"short", least(heights)}, {"heavy", most(girths)}, {"slim", least(girths)}}};
+}
+
+std::vector<CasePlan> extraction_plans(const Workshop& shop) {
+  const auto& [betas, motions] = std::tie(shop.split.betas, shop.split.motions);
+  std::vector<CasePlan> plans;
+  for (size_t i = 0; i < kExtractionCases; ++i) {
+    char name[8];
+    std::snprintf(name, sizeof name, "b%02zu", i);
+    plans.push_back({name, motions[i % motions.size()], {}, "", betas[i % betas.size()], ""});
+  }
+  return plans;
+}
+
+std::vector<CasePlan> performance_plans(const Workshop& shop) {
+  const DataSplit& split = shop.split;
+  const bool captured = shop.options.suite == "captured";
+  std::vector<CasePlan> targets;
+  if (shop.options.suite == "clothed") {
+    for (size_t i = 0; i < split.clothed.size() && i < kTargets; ++i)
+      targets.push_back({fs::path(split.clothed[i]).stem().string(), {}, {}, split.clothed[i], {}, ""});
+  } else {
+    for (auto& [name, betas] : extremes(shop)) targets.push_back({name, {}, betas, "", {}, ""});
+  }
+  std::vector<CasePlan> plans;
+  for (size_t i = 0; i < targets.size(); ++i)
+    for (size_t k = 0; k < split.motions.size() && k < kMotions; ++k) {
+      CasePlan plan = targets[i];
+      plan.motion = split.motions[k];
+      plan.name += "_" + plan.motion.tag;
+      plan.source = split.betas[(7 * i + k) % split.betas.size()];
+      if (captured) plan.dressed_source = split.clothed[(5 * i + k) % split.clothed.size()];
+      plans.push_back(std::move(plan));
+    }
+  return plans;
+}
+
+/// Points drawn evenly on a surface.
+Points64 surface(NumpyRandom& random, const Points64& vertices, const Faces& faces, int64_t count) {
+  std::vector<double> share(static_cast<size_t>(faces.rows()));
+  double all = 0;
+  const auto corner = [&](int64_t f, int c) { return Vector3d(vertices.row(faces(f, c))); };
+  for (int64_t f = 0; f < faces.rows(); ++f)
+    share[static_cast<size_t>(f)] = all +=
+        (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm();
+  US_CHECK(all > 0, "a person without surface cannot be scanned");
+  for (double& s : share) s /= all;
+  std::vector<int64_t> drawn(static_cast<size_t>(count));
+  for (int64_t& f : drawn)
+    f = std::upper_bound(share.begin(), share.end() - 1, random.random()) - share.begin();
+  Eigen::VectorXd u(count), w(count);
+  for (double& x : u) x = std::sqrt(random.random());
+  for (double& x : w) x = random.random();
+  Points64 points(count, 3);
+  for (int64_t i = 0; i < count; ++i) {
+    const int64_t f = drawn[static_cast<size_t>(i)];
+    points.row(i) = (1 - u[i]) * corner(f, 0) + u[i] * (1 - w[i]) * corner(f, 1) + u[i] * w[i] * corner(f, 2);
+  }
+  return points;
+}
+
+Points64 rows_of(const Points64& points, const std::vector<int64_t>& rows) {
+  Points64 picked(static_cast<Eigen::Index>(rows.size()), 3);
+  for (size_t i = 0; i < rows.size(); ++i) picked.row(static_cast<Eigen::Index>(i)) = points.row(rows[i]);
+  return picked;
+}
+
+/// What a rig sees of the points: the side towards `view` densely, nothing in a few holes.
+Points64 seen(NumpyRandom& random, const Points64& points) {
+  Vector3d view;
+  for (double& x : view) x = random.normal();
+  view.normalize();
+  const Eigen::RowVector3d mean = points.colwise().mean();
+  std::vector<bool> keep(static_cast<size_t>(points.rows()));
+  for (int64_t i = 0; i < points.rows(); ++i)
+    keep[static_cast<size_t>(i)] =
+        random.random() < 0.35 + 0.65 / (1 + std::exp(-6 * (points.row(i) - mean).dot(view)));
+  for (int64_t hole = random.integers(1, 5); hole > 0; --hole) {
+    const Eigen::RowVector3d centre = points.row(random.integers(0, points.rows()));
+    const double radius = random.uniform(0.03, 0.10);
+    for (int64_t i = 0; i < points.rows(); ++i)
+      if ((points.row(i) - centre).norm() <= radius) keep[static_cast<size_t>(i)] = false;
+  }
+  std::vector<int64_t> rows;
+  for (size_t i = 0; i < keep.size(); ++i)
+    if (keep[i]) rows.push_back(static_cast<int64_t>(i));
+  return rows_of(points, rows);
+}
+
+/// Points as a multi-view rig gives them: density by view, holes, noise, outliers, a bit of floor.
+Points64 captured(NumpyRandom& random, const Points64& vertices, const Faces& faces, int64_t count) {
+  Points64 points = seen(random, surface(random, vertices, faces, 2 * count));
+  const auto most = static_cast<int64_t>(static_cast<double>(count) * random.uniform(0.6, 1.0));
+  points.conservativeResize(std::min<int64_t>(points.rows(), most), 3);
+  for (int64_t i = 0; i < points.size(); ++i) points.data()[i] += 0.004 * random.normal();
+  const Eigen::RowVector3d low = points.colwise().minCoeff().array() - 0.1,
+                           high = points.colwise().maxCoeff().array() + 0.1;
+  const auto scatter = [&](int64_t many) {
+    const int64_t before = points.rows();
+    points.conservativeResize(before + many, 3);
+    for (int64_t i = before; i < points.rows(); ++i)
+      for (int axis = 0; axis < 3; ++axis) points(i, axis) = random.uniform(low[axis], high[axis]);
+  };
+  scatter(std::max<int64_t>(1, points.rows() / 400));
+  const int64_t floor = points.rows() / 60;
+  scatter(floor);
+  for (int64_t i = points.rows() - floor; i < points.rows(); ++i) points(i, 1) = 0.003 * random.normal();
+  return points;
+}
+
+void write_points(const std::string& path, const Points& points) {
+  std::ofstream file(path, std::ios::binary);
+  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << points.rows()
+       << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  file.write(reinterpret_cast<const char*>(points.data()),
+             static_cast<std::streamsize>(points.size() * static_cast<int64_t>(sizeof(float))));
+  US_CHECK(file, path, ": cannot be written");
+}
+
+void write_target(const std::string& path, const ExactPerson& person) {
+  std::ofstream file(path);
+  char line[96];
+  for (Eigen::Index v = 0; v < person.vertices.rows(); ++v) {
+    std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", person.vertices(v, 0), person.vertices(v, 1),
+                  person.vertices(v, 2));
+    file << line;
+  }
+  for (Eigen::Index f = 0; f < person.faces.rows(); ++f)
+    file << "f " << person.faces(f, 0) + 1 << ' ' << person.faces(f, 1) + 1 << ' ' << person.faces(f, 2) + 1
+         << '\n';
+  US_CHECK(file, path, ": cannot be written");
+}
+
+template <class Frames>
+NpyArray frames_array(const Frames& frames, std::vector<int64_t> shape) {
+  NpyArray array;
+  array.shape = std::move(shape);
+  array.shape.insert(array.shape.begin(), static_cast<int64_t>(frames.size()));
+  for (const auto& frame : frames)
+    for (Eigen::Index i = 0; i < frame.size(); ++i)
+      array.values.push_back(static_cast<float>(frame.data()[i]));
+  return array;
+}
+
+NpyArray rotations_array(const std::vector<Rotations64>& frames) {
+  NpyArray array;
+  array.shape = {static_cast<int64_t>(frames.size()), kJointCount, 3, 3};
+  for (const Rotations64& frame : frames)
+    for (const Matrix3d& R : frame)
+      for (int k = 0; k < 9; ++k) array.values.push_back(static_cast<float>(R(k / 3, k % 3)));
+  return array;
+}
+
+/// The clip of the case, turned to a random heading.
+ExactMotion turned_motion(Workshop& shop, const CasePlan& plan) {
+  const int frames = shop.options.suite == "extraction" ? kExtractionFrames : shop.options.frames;
+  ExactMotion motion = read_exact_motion(plan.motion.path, plan.motion.start, frames);
+  const Matrix3d turn = exact_rotation({0, shop.random.uniform(-M_PI, M_PI), 0});
+  for (Rotations64& local : motion.local) local[Pelvis] = turn * local[Pelvis];
+  for (Vector3d& root : motion.root) root = turn * root;
+  return motion;
+}
+
+/// The target's file and truth: the source's path from where it starts, scaled by leg length.
+void add_target(const Workshop& shop, const CasePlan& plan, const Performance& shown, double source_leg,
+                ExactMotion motion, const fs::path& folder, Npz& truth) {
+  const ExactPerson target =
+      plan.target ? shop.shapes.shaped(*plan.target) : exact_person(read_dressed_body(plan.dressed_target));
+  const Vector3d start(shown.joints[0](Pelvis, 0), 0, shown.joints[0](Pelvis, 2));
+  const double scale = target.leg() / source_leg;
+  for (size_t t = 0; t < motion.root.size(); ++t)
+    motion.root[t] = (Vector3d(shown.joints[t].row(Pelvis)) - start) * scale + start;
+  const Performance performance = perform(target, motion, 1);
+  write_target((folder / "target.obj").string(), target);
+  truth["vertices"] = frames_array(performance.vertices, {target.vertices.rows(), 3});
+  truth["joints"] = frames_array(performance.joints, {kJointCount, 3});
+  truth["target_joints"] = frames_array(std::vector<Joints64>{target.joints}, {kJointCount, 3});
+  truth["target_joints"].shape = {kJointCount, 3};
+}
+
+void make_case(Workshop& shop, const CasePlan& plan) {
+  const fs::path folder = fs::path(shop.options.out) / plan.name;
+  fs::create_directories(folder / "source");
+  const ExactMotion motion = turned_motion(shop, plan);
+  const ExactPerson source = plan.dressed_source.empty()
+                                 ? shop.shapes.shaped(plan.source)
+                                 : exact_person(read_dressed_body(plan.dressed_source));
+  const Performance shown = perform(source, motion, source.leg() / shop.template_leg);
+  Npz truth{{"rotations", rotations_array(motion.local)},
+            {"source_joints", frames_array(shown.joints, {kJointCount, 3})}};
+  const bool performed = plan.target || !plan.dressed_target.empty();
+  if (performed) add_target(shop, plan, shown, source.leg(), motion, folder, truth);
+  for (size_t t = 0; t < shown.vertices.size(); ++t) {
+    const auto count = static_cast<int64_t>(shop.options.points * shop.random.uniform(0.8, 1.2));
+    const auto scan = shop.options.suite == "captured" ? captured : surface;
+    const Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%05zu.ply", t);
+    write_points((folder / "source" / name).string(),
+                 rows_of(points, shop.random.permutation(points.rows())).cast<float>());
+  }
+  write_npz((folder / "truth.npz").string(), truth);
+  Json json = {{"fps", 30}, {"source", "source"}};
+  if (performed) json["target"] = "target.obj";
+  json["truth"] = "truth.npz";
+  json["tags"] = {shop.options.suite, plan.motion.tag};
+  write_json((folder / "case.json").string(), json);
+}
+
+/// The split's motions; where it names none, the beginning of each clip of its subjects.
+std::vector<JudgedMotion> motions_of(const DataSplit& split) {
+  if (!split.motions.empty()) return split.motions;
+  std::vector<JudgedMotion> motions;
+  for (const std::string& folder : split.motion_folders)
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".npz")
+        motions.push_back({entry.path().string(), 0, entry.path().stem().string()});
+  std::sort(motions.begin(), motions.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+  return motions;
+}
+
+}  // namespace
+
+int make_suite(const SuiteOptions& options, const std::function<void(const std::string&)>& done) {
+  DataSplit split = read_split(options.data, options.split);
+  split.motions = motions_of(split);
+  US_CHECK(!split.motions.empty(), options.data, ": the split \"", options.split, "\" names no motion");
+  const bool dressed = options.suite == "clothed" || options.suite == "captured";
+  US_CHECK(!dressed || !split.clothed.empty(), options.data, ": the split \"", options.split,
+           "\" has nobody dressed, whom the suite ", options.suite, " wants");
+  Workshop shop(options, std::move(split));
+  std::vector<CasePlan> plans =
+      options.suite == "extraction" ? extraction_plans(shop) : performance_plans(shop);
+  if (options.cases > 0 && plans.size() > static_cast<size_t>(options.cases))
+    plans.resize(static_cast<size_t>(options.cases));
+  for (const CasePlan& plan : plans) {
+    check_interrupt("before case " + plan.name);
+    make_case(shop, plan);
+    done(plan.name);
+  }
+  return static_cast<int>(plans.size());
+}
+
+}  // namespace understudy::app

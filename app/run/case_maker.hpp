@@ -1,0 +1,35 @@
+// Makes suites of test cases from a folder of people and motions (see case_folder.hpp for what a case is).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace understudy::app {
+
+struct SuiteOptions {
+  std::string data;             ///< folder with splits.json, see retarget/body/data_folder.hpp
+  std::string out;              ///< folder; a case a folder is made in it
+  std::string suite = "naked";  ///< see make_suite
+  std::string split = "dev";
+  std::string body;   ///< SMPL-format; empty: the data folder's own
+  int frames = 90;    ///< of a case; those of "extraction" have 12
+  int points = 8000;  ///< about how many a scan has
+  int cases = 0;      ///< only the first so many; 0: all
+  uint32_t seed = 0;  ///< the same options give the same files
+};
+
+/// Writes the cases of a suite; tells the name of each as it is done. Gives their number. Truth is the same
+/// local rotations on the target, its path the source's from where it starts, scaled by leg length and put on
+/// the floor; every case is turned to a random heading. naked: 4 targets (the tallest, shortest, heaviest,
+/// slimmest of the split) x 4 motions, sources undressed, points
+///   drawn evenly on their surface
+/// clothed: the same with 4 dressed targets
+/// captured: the naked suite's targets; dressed sources as a rig of cameras would see them: uneven density,
+/// holes,
+///   noise, outliers, some floor
+/// extraction: 40 people and short clips, joints of the source only
+/// Throws Error naming what is missing.
+int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
+
+}  // namespace understudy::app

@@ -1,0 +1,308 @@
+#include "app/run/exports.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "retarget/base/error.hpp"
+#include "retarget/formats/amass_writer.hpp"
+#include "retarget/formats/bvh_writer.hpp"
+#include "retarget/formats/joint_table.hpp"
+#include "retarget/formats/result_writer.hpp"
+#include "retarget/formats/surface_writer.hpp"
+
+namespace understudy::app {
+namespace fs = std::filesystem;
+namespace {
+
+Joints joints_of(const ExportBody& body) {
+  return body.file.joints.value_or(body.character->target.joints);
+}
+
+int64_t bytes_at(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return static_cast<int64_t>(fs::file_size(path, error));
+  int64_t sum = 0;
+  for (const auto& entry : fs::directory_iterator(path, error))
+    sum += static_cast<int64_t>(entry.file_size(error));
+  return sum;
+}
+
+/// The surface as the target's file has it: its vertices in its order, its corners' texture coordinates.
+SurfaceTopology topology_of(const PreparedCharacter& c) {
+  SurfaceTopology out;
+  out.vertex_count = static_cast<int64_t>(c.surface.in_file.size());
+  Eigen::Index faces = 0, vertices = 0;
+  bool colored = true, textured = true;
+  for (const auto& part : c.character.parts) {
+    faces += part.faces.rows();
+    vertices += part.vertices.rows();
+    colored = colored && part.colors.rows() > 0;
+    textured = textured && !part.uvs.empty();
+  }
+  const auto& numbers = c.character.file_vertices;
+  const auto number = [&](Eigen::Index v) {
+    return numbers.empty() ? static_cast<int>(v) : numbers[static_cast<size_t>(v)];
+  };
+  out.faces.resize(faces, 3);
+  if (textured) out.uv_faces.resize(faces, 3), out.uvs.resize(vertices, 2);
+  if (colored) out.colors = Points::Zero(out.vertex_count, 3);
+  Eigen::Index face = 0, first = 0;
+  for (const auto& part : c.character.parts) {
+    for (Eigen::Index f = 0; f < part.faces.rows(); ++f, ++face)
+      for (int k = 0; k < 3; ++k) {
+        out.faces(face, k) = number(first + part.faces(f, k));
+        if (textured) out.uv_faces(face, k) = static_cast<int>(first) + part.faces(f, k);
+      }
+    for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
+      if (colored) out.colors.row(number(first + v)) = part.colors.row(v).head<3>();
+      if (textured) out.uvs.row(first + v) << part.uvs[0](v, 0), 1 - part.uvs[0](v, 1);  // v up
+    }
+    first += part.vertices.rows();
+  }
+  return out;
+}
+
+/// What all formats but glTF do with a pose before it is written.
+class FrameOutput : public MotionOutput {
+ public:
+  FrameOutput(std::string path, const ExportBody& body)
+      : path_(std::move(path)), body_(body), rest_(joints_of(body)) {}
+  void push(const ExportFrame& frame) final {
+    Pose pose = frame.pose;
+    const Points* vertices = frame.vertices;
+    if (body_.file.in_place) {
+      pose.root = Vec3(rest_(Pelvis, 0), pose.root.y(), rest_(Pelvis, 2));
+      vertices = nullptr;
+    }
+    write({pose, frame.source_joints, vertices});
+    ++frames_;
+  }
+  ExportCost finish() final {
+    US_CHECK(frames_ > 0, path_, ": there is no motion to export");
+    close();
+    ExportCost cost;
+    cost.measured = is_surface();
+    cost.frames = frames_;
+    cost.bytes = bytes_at(path_);
+    return cost;
+  }
+
+ protected:
+  virtual void write(const ExportFrame& frame) = 0;
+  virtual void close() = 0;
+  virtual bool is_surface() const { return false; }
+  Joints posed_joints(const Pose& pose) const { return forward_kinematics(rest_, pose).joints; }
+  /// In the file's order.
+  Points surface(const ExportFrame& frame) const {
+    const MergedSurface& merged = body_.character->surface;
+    return merged.in_file_order(frame.vertices ? *frame.vertices : body_.screen->deform(frame.pose));
+  }
+  const Joints& rest() const { return rest_; }
+
+ private:
+  std::string path_;
+  ExportBody body_;
+  Joints rest_;
+  int64_t frames_ = 0;
+};
+
+class BvhOutput final : public FrameOutput {
+ public:
+  BvhOutput(const std::string& path, const ExportBody& body, double fps)
+      : FrameOutput(path, body), writer_(path, rest(), fps) {}
+
+ private:
+  void write(const ExportFrame& frame) override { writer_.push(frame.pose); }
+  void close() override { writer_.finish(); }
+  BvhWriter writer_;
+};
+
+class AmassOutput final : public FrameOutput {
+ public:
+  AmassOutput(const std::string& path, const ExportBody& body, double fps)
+      : FrameOutput(path, body), writer_(path, fps) {}
+
+ private:
+  void write(const ExportFrame& frame) override { writer_.push(frame.pose); }
+  void close() override { writer_.finish(); }
+  AmassWriter writer_;
+};
+
+class JointsOutput final : public FrameOutput {
+ public:
+  JointsOutput(const std::string& path, const ExportBody& body, double fps)
+      : FrameOutput(path, body), table_(path, fps) {}
+
+ private:
+  void write(const ExportFrame& frame) override { table_.push(posed_joints(frame.pose)); }
+  void close() override { table_.finish(); }
+  JointTable table_;
+};
+
+/// All figures as arrays, for others to judge.
+class ResultOutput final : public FrameOutput {
+ public:
+  ResultOutput(const std::string& path, const ExportBody& body)
+      : FrameOutput(path, body),
+        writer_(path, static_cast<int64_t>(body.character->surface.in_file.size())) {}
+
+ private:
+  void write(const ExportFrame& frame) override {
+    writer_.push(surface(frame), posed_joints(frame.pose), frame.pose.local, frame.source_joints);
+  }
+  void close() override { writer_.finish(); }
+  bool is_surface() const override { return true; }
+  ResultWriter writer_;
+};
+
+class SequenceOutput final : public FrameOutput {
+ public:
+  SequenceOutput(const std::string& path, const ExportBody& body, SequenceFormat format)
+      : FrameOutput(path, body), writer_(path, format, topology_of(*body.character)) {}
+
+ private:
+  void write(const ExportFrame& frame) override { writer_.push(surface(frame)); }
+  void close() override { writer_.finish(); }
+  bool is_surface() const override { return true; }
+  SequenceWriter writer_;
+};
+
+class CacheOutput final : public FrameOutput {
+ public:
+  CacheOutput(const std::string& path, const ExportBody& body)
+      : FrameOutput(path, body),
+        writer_(path, topology_of(*body.character),
+                body.character->surface.in_file_order(body.character->target.mesh.vertices)) {}
+
+ private:
+  void write(const ExportFrame& frame) override { writer_.push(surface(frame)); }
+  void close() override { writer_.finish(); }
+  bool is_surface() const override { return true; }
+  PointCacheWriter writer_;
+};
+
+/// The animated character: poses are kept, under 1 kB a frame, and written at the end.
+class CharacterOutput final : public MotionOutput {
+ public:
+  CharacterOutput(std::string path, const ExportBody& body, const std::string& name, double fps)
+      : path_(std::move(path)), body_(body), clip_{name, fps, {}} {}
+  void push(const ExportFrame& frame) override { clip_.poses.push_back(frame.pose); }
+  ExportCost finish() override {
+    US_CHECK(!clip_.poses.empty(), path_, ": there is no motion to export");
+    return export_character(path_, *body_.character, *body_.screen, {clip_}, body_.file);
+  }
+
+ private:
+  std::string path_;
+  ExportBody body_;
+  CharacterClip clip_;
+};
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::string with_thousands(int64_t value) {
+  std::string text = std::to_string(value);
+  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<size_t>(at), ",");
+  return text;
+}
+
+}  // namespace
+
+const std::vector<ExportFormatInfo>& export_formats() {
+  static const std::vector<ExportFormatInfo> formats = {
+      {ExportFormat::Glb, "glb", ".glb", "GLB", "The animated character, for any engine.", true},
+      {ExportFormat::Gltf, "gltf", ".gltf", "glTF", "The same as text.", true},
+      {ExportFormat::Bvh, "bvh", ".bvh", "BVH", "The motion of 22 joints, in centimetres.", false},
+      {ExportFormat::Amass, "amass", ".npz", "AMASS", "The motion as SMPL's joints turn, z up.", false},
+      {ExportFormat::Npz, "npz", ".npz", "NPZ", "Vertices, joints and rotations as arrays.", false},
+      {ExportFormat::Ply, "ply", "", "PLY", "A folder with the surface of every frame.", false},
+      {ExportFormat::Obj, "obj", "", "OBJ", "The same as text, with texture coordinates.", false},
+      {ExportFormat::PointCache, "pc2", ".pc2", "PC2", "A vertex cache, and the mesh that it moves.", false},
+      {ExportFormat::Joints, "joints", ".csv", "CSV", "Where the 22 joints are, as a table.", false}};
+  return formats;
+}
+
+const ExportFormatInfo& info_of(ExportFormat format) {
+  return export_formats()[static_cast<size_t>(format)];
+}
+
+ExportFormat export_format(const std::string& name, const std::string& path) {
+  std::string names, suffixes;
+  for (const ExportFormatInfo& info : export_formats()) {
+    if (info.name == name) return info.format;
+    if (name.empty() && info.format != ExportFormat::Amass && *info.suffix && ends_with(path, info.suffix))
+      return info.format;
+    names += std::string(names.empty() ? "" : ", ") + info.name;
+    if (*info.suffix && info.format != ExportFormat::Amass)
+      suffixes += std::string(suffixes.empty() ? "" : ", ") + info.suffix;
+  }
+  US_CHECK(name.empty(), path, ": there is no format '", name, "', use one of ", names);
+  throw Error(path + ": this output format is not known by its name, use " + suffixes +
+              "; or name a format: " + names);
+}
+
+std::unique_ptr<MotionOutput> open_export(const std::string& path, ExportFormat format,
+                                          const ExportBody& body, const std::string& name, double fps) {
+  US_CHECK(info_of(format).is_character || !body.file.t_pose_clip, path, ": ", info_of(format).label,
+           " holds one motion, the T-pose cannot be another");
+  switch (format) {
+    case ExportFormat::Bvh:
+      return std::make_unique<BvhOutput>(path, body, fps);
+    case ExportFormat::Amass:
+      return std::make_unique<AmassOutput>(path, body, fps);
+    case ExportFormat::Npz:
+      return std::make_unique<ResultOutput>(path, body);
+    case ExportFormat::Ply:
+      return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Ply);
+    case ExportFormat::Obj:
+      return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Obj);
+    case ExportFormat::PointCache:
+      return std::make_unique<CacheOutput>(path, body);
+    case ExportFormat::Joints:
+      return std::make_unique<JointsOutput>(path, body, fps);
+    case ExportFormat::Glb:
+    case ExportFormat::Gltf:
+      break;
+  }
+  const char* suffix = info_of(format).suffix;
+  US_CHECK(ends_with(path, suffix), path, ": a ", info_of(format).label, " file is called something", suffix);
+  return std::make_unique<CharacterOutput>(path, body, name, fps);
+}
+
+ExportCost export_motion(const std::string& path, ExportFormat format, const ExportInput& input) {
+  US_CHECK(!input.clips.empty(), path, ": there is no motion to export");
+  if (info_of(format).is_character) {
+    open_export(path, format, input.body, "", 1);  // for its complaints
+    return export_character(path, *input.body.character, *input.body.screen, input.clips, input.body.file);
+  }
+  US_CHECK(input.clips.size() == 1, path, ": ", info_of(format).label, " holds one motion, these are ",
+           input.clips.size());
+  const CharacterClip& clip = input.clips[0];
+  const auto output = open_export(path, format, input.body, clip.name, clip.fps);
+  for (size_t t = 0; t < clip.poses.size(); ++t) {
+    if (input.body.file.progress)
+      input.body.file.progress(static_cast<float>(t) / static_cast<float>(clip.poses.size()));
+    ExportFrame frame{clip.poses[t]};
+    if (t < input.source_joints.size()) frame.source_joints = input.source_joints[t];
+    output->push(frame);
+  }
+  if (input.body.file.progress) input.body.file.progress(1);
+  return output->finish();
+}
+
+std::string sentence(const ExportCost& cost) {
+  char text[160];
+  const double megabytes = static_cast<double>(cost.bytes) / 1e6;
+  if (cost.measured)
+    std::snprintf(text, sizeof text, "mean %.2f mm, largest %.2f mm off the screen, %.1f MB", cost.mean_mm,
+                  cost.largest_mm, megabytes);
+  else
+    std::snprintf(text, sizeof text, "%s frames, %.1f MB", with_thousands(cost.frames).c_str(), megabytes);
+  return text;
+}
+
+}  // namespace understudy::app

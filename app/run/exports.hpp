@@ -1,0 +1,70 @@
+// A performed motion into a file of any format: what command line and studio share.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "retarget/character/character_export.hpp"
+
+namespace understudy::app {
+
+enum class ExportFormat { Glb, Gltf, Bvh, Amass, Npz, Ply, Obj, PointCache, Joints };
+
+struct ExportFormatInfo {
+  ExportFormat format;
+  const char* name;    ///< "bvh", as --format and commands say it
+  const char* suffix;  ///< ".bvh"; empty: a folder
+  const char* label;   ///< for menus
+  const char* words;   ///< what it is good for, one sentence
+  bool is_character;   ///< a rigged character: rig, influences, morphs, key reduction and several clips
+};
+
+/// All of them, in the order of the enum.
+const std::vector<ExportFormatInfo>& export_formats();
+const ExportFormatInfo& info_of(ExportFormat format);
+/// The format of that name; an empty name: what the path's suffix stands for. Throws Error naming the path.
+ExportFormat export_format(const std::string& name, const std::string& path);
+
+/// Who performs, as on screen.
+struct ExportBody {
+  std::shared_ptr<const PreparedCharacter> character;
+  std::shared_ptr<const Deformer> screen;  ///< bound to the target, with painted weights
+  CharacterExportOptions file;             ///< of other formats than glTF only in_place, joints and progress
+};
+
+/// One frame of a motion.
+struct ExportFrame {
+  const Pose& pose;
+  Joints source_joints = Joints::Zero();  ///< of the source, for formats that hold them
+  const Points* vertices = nullptr;       ///< where they are known already, in the target's order
+};
+
+/// Takes one motion, frame after frame. What was at the path stays until finish(); without it nothing is left
+/// behind.
+class MotionOutput {
+ public:
+  virtual ~MotionOutput() = default;
+  virtual void push(const ExportFrame& frame) = 0;
+  /// What the written file costs. Throws Error, also where there was no frame.
+  virtual ExportCost finish() = 0;
+};
+
+/// name: of the motion. Throws Error naming the path: it cannot be written, or the format cannot do what the
+/// options want.
+std::unique_ptr<MotionOutput> open_export(const std::string& path, ExportFormat format,
+                                          const ExportBody& body, const std::string& name, double fps);
+
+struct ExportInput {
+  ExportBody body;
+  std::vector<CharacterClip> clips;   ///< more than one only in glTF
+  std::vector<Joints> source_joints;  ///< beside the poses of the only clip; may be empty
+};
+
+/// All of it. body.file.progress is told 0..1; what it throws ends the export, and what was there stays.
+ExportCost export_motion(const std::string& path, ExportFormat format, const ExportInput& input);
+
+/// "mean 0.41 mm, largest 2.13 mm off the screen, 1.2 MB", for people.
+std::string sentence(const ExportCost& cost);
+
+}  // namespace understudy::app

@@ -1,0 +1,158 @@
+#include "retarget/body/exact_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/formats/npz.hpp"
+
+namespace understudy {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Eigen::VectorXd bent(const Rotations64& local) {
+  Eigen::VectorXd features(9 * (kJointCount - 1));
+  for (int j = 1; j < kJointCount; ++j)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) features[9 * (j - 1) + 3 * r + c] = local[j](r, c) - (r == c);
+  return features;
+}
+
+struct PosedPerson {
+  Points64 vertices;
+  Joints64 joints;
+};
+
+PosedPerson posed(const ExactPerson& person, const Rotations64& local, const Vector3d& root) {
+  Rotations64 global;
+  PosedPerson result;
+  Joints64 shift;  // of what follows a joint
+  for (int j = 0; j < kJointCount; ++j) {
+    const int up = kParents[j];
+    global[j] = up < 0 ? local[j] : Matrix3d(global[up] * local[j]);
+    if (up < 0)
+      result.joints.row(j) = root.transpose();
+    else
+      result.joints.row(j) =
+          result.joints.row(up) + (person.joints.row(j) - person.joints.row(up)) * global[up].transpose();
+    shift.row(j) = result.joints.row(j) - person.joints.row(j) * global[j].transpose();
+  }
+  Points64 rest = person.vertices;
+  if (person.pose_dirs)
+    Eigen::Map<Eigen::VectorXd>(rest.data(), rest.size()).noalias() += *person.pose_dirs * bent(local);
+  result.vertices = Points64::Zero(rest.rows(), 3);
+  for (Eigen::Index v = 0; v < rest.rows(); ++v)
+    for (int j = 0; j < kJointCount; ++j)
+      if (const double w = person.weights(v, j); w != 0)
+        result.vertices.row(v) += w * (rest.row(v) * global[j].transpose() + shift.row(j));
+  return result;
+}
+
+/// NumPy's percentile: linear between the sorted values.
+double percentile(std::vector<double> values, double percent) {
+  std::sort(values.begin(), values.end());
+  const double at = percent / 100 * static_cast<double>(values.size() - 1);
+  const size_t below = static_cast<size_t>(at), above = std::min(below + 1, values.size() - 1);
+  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+double frame_rate(const Npz& npz, const std::string& path) {
+  double fps = 30;
+  for (const char* key : {"mocap_framerate", "mocap_frame_rate"})
+    if (npz.count(key) && npz.at(key).size() == 1) fps = npz.at(key).values[0];
+  US_CHECK(fps > 0 && fps < 10000, path, ": the frame rate ", fps, " cannot be");
+  return fps;
+}
+
+void turn_y_up(ExactMotion& motion) {
+  const Vector3d up = motion.local[0][Pelvis].col(1);
+  if (std::abs(up.z()) <= std::abs(up.y())) return;
+  Matrix3d turn;
+  turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;  // z to y, y to -z
+  for (Rotations64& local : motion.local) local[Pelvis] = turn * local[Pelvis];
+  for (Vector3d& root : motion.root) root = turn * root;
+}
+
+}  // namespace
+
+double ExactPerson::leg() const {
+  const auto bone = [this](int a, int b) { return (joints.row(a) - joints.row(b)).norm(); };
+  return (bone(LeftKnee, LeftHip) + bone(LeftAnkle, LeftKnee) + bone(RightKnee, RightHip) +
+          bone(RightAnkle, RightKnee)) /
+         2;
+}
+
+ExactBody::ExactBody(const Body& body) : body_(body) {
+  if (body.pose_dirs) pose_dirs_ = std::make_shared<Eigen::MatrixXd>(body.pose_dirs->cast<double>());
+}
+
+ExactPerson ExactBody::shaped(const Eigen::VectorXf& betas) const {
+  US_CHECK(betas.size() <= body_.shape_dirs.cols(), betas.size(), " shape parameters for a body that has ",
+           body_.shape_dirs.cols());
+  ExactPerson person;
+  person.vertices = body_.template_vertices.cast<double>();
+  for (Eigen::Index k = 0; k < betas.size(); ++k)
+    Eigen::Map<Eigen::VectorXd>(person.vertices.data(), person.vertices.size()) +=
+        static_cast<double>(betas[k]) * body_.shape_dirs.col(k).cast<double>();
+  person.joints = body_.joint_regressor.cast<double>() * person.vertices;
+  person.faces = body_.faces;
+  person.weights = body_.weights;
+  person.pose_dirs = pose_dirs_;
+  return person;
+}
+
+ExactPerson exact_person(const ShapedBody& body) {
+  return {body.vertices.cast<double>(), body.joints.cast<double>(), body.faces, body.weights, nullptr};
+}
+
+Matrix3d exact_rotation(const Vector3d& axis_angle) {
+  const double angle = axis_angle.norm();
+  const Vector3d k = axis_angle / std::max(angle, 1e-9);
+  Matrix3d K;
+  K << 0, -k.z(), k.y(), k.z(), 0, -k.x(), -k.y(), k.x(), 0;
+  return Matrix3d::Identity() + std::sin(angle) * K + (1 - std::cos(angle)) * (K * K);
+}
+
+ExactMotion read_exact_motion(const std::string& path, int start, int frames) {
+  const Npz npz = read_npz(path);
+  const NpyArray& poses = require(npz, "poses", path);
+  US_CHECK(poses.shape.size() == 2 && poses.shape[1] >= 3 * kJointCount, path,
+           ": poses must be frames x at least ", 3 * kJointCount);
+  const RowMatrix angles = poses.matrix(poses.shape[1], path);
+  const RowMatrix trans = require(npz, "trans", path).matrix(3, path + ": trans");
+  US_CHECK(trans.rows() == angles.rows(), path, ": ", angles.rows(), " poses but ", trans.rows(),
+           " root positions");
+  const double step = std::max(1.0, frame_rate(npz, path) / 30);
+  ExactMotion motion;
+  for (int i = 0; i < frames; ++i) {
+    const auto t = static_cast<Eigen::Index>(std::lround((start + i) * step));
+    if (t >= angles.rows()) break;
+    Rotations64 local;
+    for (int j = 0; j < kJointCount; ++j)
+      local[j] = exact_rotation(angles.block<1, 3>(t, 3 * j).transpose().cast<double>());
+    motion.local.push_back(local);
+    motion.root.push_back(trans.row(t).transpose().cast<double>());
+  }
+  US_CHECK(!motion.local.empty(), path, ": is over before frame ", start);
+  turn_y_up(motion);
+  return motion;
+}
+
+Performance perform(const ExactPerson& person, const ExactMotion& motion, double path_scale) {
+  Performance performance;
+  std::vector<double> lowest;
+  for (size_t t = 0; t < motion.local.size(); ++t) {
+    PosedPerson frame = posed(person, motion.local[t], motion.root[t] * path_scale);
+    lowest.push_back(frame.vertices.col(1).minCoeff());
+    performance.vertices.push_back(std::move(frame.vertices));
+    performance.joints.push_back(frame.joints);
+  }
+  const double floor = percentile(lowest, 2);
+  for (Points64& vertices : performance.vertices) vertices.col(1).array() -= floor;
+  for (Joints64& joints : performance.joints) joints.col(1).array() -= floor;
+  return performance;
+}
+
+}  // namespace understudy

@@ -1,0 +1,206 @@
+#include "retarget/character/vertex_colors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 65536
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wshadow"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/character/picture.hpp"
+
+namespace understudy {
+namespace {
+
+using nlohmann::json;
+
+constexpr int64_t kMostPixels = 64ll << 20;
+
+/// A picture's pixels, three bytes each, the first row on top.
+class Pixels {
+ public:
+  explicit Pixels(const CharacterImage& image) {
+    const auto* const bytes = reinterpret_cast<const stbi_uc*>(image.bytes.data());
+    const auto size = static_cast<int>(image.bytes.size());
+    const std::string type = picture_type(image.bytes);
+    US_CHECK((type == "image/png" || type == "image/jpeg") && image.bytes.size() < (1ull << 31),
+             "it is neither PNG nor JPEG");
+    int channels = 0;
+    US_CHECK(stbi_info_from_memory(bytes, size, &width_, &height_, &channels) && width_ > 0 && height_ > 0,
+             "it cannot be decoded");
+    US_CHECK(static_cast<int64_t>(width_) * height_ <= kMostPixels, "it has ", width_, " x ", height_,
+             " pixels, over 64 megapixels");
+    rgb_ = {stbi_load_from_memory(bytes, size, &width_, &height_, &channels, 3), stbi_image_free};
+    US_CHECK(rgb_, "it cannot be decoded");
+  }
+
+  /// Linear light at texture coordinates, repeated beyond 0..1 or not.
+  Vec3 at(float u, float v, bool repeat_u, bool repeat_v) const {
+    const int x = pixel(u, width_, repeat_u), y = pixel(v, height_, repeat_v);
+    const stbi_uc* const p = rgb_.get() + 3 * (static_cast<int64_t>(y) * width_ + x);
+    return {kLinear()[p[0]], kLinear()[p[1]], kLinear()[p[2]]};
+  }
+
+ private:
+  static int pixel(float t, int count, bool repeat) {
+    if (!std::isfinite(t)) return 0;
+    t = repeat ? t - std::floor(t) : std::clamp(t, 0.0f, 1.0f);
+    return std::clamp(static_cast<int>(t * static_cast<float>(count)), 0, count - 1);
+  }
+  static const std::array<float, 256>& kLinear() {
+    static const std::array<float, 256> table = [] {
+      std::array<float, 256> t{};
+      for (size_t i = 0; i < t.size(); ++i) t[i] = to_linear(static_cast<float>(i) / 255);
+      return t;
+    }();
+    return table;
+  }
+
+  int width_ = 0, height_ = 0;
+  std::unique_ptr<stbi_uc, void (*)(void*)> rgb_{nullptr, stbi_image_free};
+};
+
+/// What is seen of a material.
+struct Look {
+  Vec3 factor = Vec3::Ones();  // linear
+  std::shared_ptr<const Pixels> picture;
+  size_t uv = 0;
+  bool repeat_u = true, repeat_v = true;
+};
+
+json member(const json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  return object.is_object() && found != object.end() ? *found : json();
+}
+
+std::optional<size_t> index_in(const json& object, const char* name, size_t count) {
+  const json value = member(object, name);
+  if (!value.is_number_unsigned() || value.get<uint64_t>() >= count) return {};
+  return value.get<size_t>();
+}
+
+json object_of(const std::string& text) {
+  return json::parse(text, nullptr, /*allow_exceptions=*/false);
+}
+
+/// Looks of materials; each picture is decoded once.
+class Looks {
+ public:
+  explicit Looks(const Character& character) : character_(character) {}
+
+  const Look& of(int material) {
+    const auto known = looks_.find(material);
+    return known != looks_.end() ? known->second : looks_[material] = made(material);
+  }
+
+ private:
+  Look made(int material) {
+    Look look;
+    if (material < 0) return look;
+    const json pbr =
+        member(object_of(character_.materials[static_cast<size_t>(material)]), "pbrMetallicRoughness");
+    const json factor = member(pbr, "baseColorFactor");
+    for (size_t i = 0; factor.is_array() && i < std::min<size_t>(3, factor.size()); ++i)
+      if (factor[i].is_number())
+        look.factor[static_cast<Eigen::Index>(i)] = std::clamp(factor[i].get<float>(), 0.0f, 1.0f);
+    add_texture(member(pbr, "baseColorTexture"), look);
+    return look;
+  }
+
+  void add_texture(const json& info, Look& look) {
+    const auto texture = index_in(info, "index", character_.textures.size());
+    if (!texture) return;
+    look.uv = index_in(info, "texCoord", 8).value_or(0);
+    const json object = object_of(character_.textures[*texture]);
+    if (const auto source = index_in(object, "source", character_.images.size()))
+      look.picture = picture(*source);
+    const auto sampler = index_in(object, "sampler", character_.samplers.size());
+    if (!sampler) return;
+    const json how = object_of(character_.samplers[*sampler]);
+    constexpr int kClampToEdge = 33071;
+    look.repeat_u = member(how, "wrapS") != kClampToEdge;
+    look.repeat_v = member(how, "wrapT") != kClampToEdge;
+  }
+
+  std::shared_ptr<const Pixels> picture(size_t index) {
+    const auto known = pictures_.find(index);
+    if (known != pictures_.end()) return known->second;
+    auto& made = pictures_[index];
+    const CharacterImage& image = character_.images[index];
+    try {
+      made = std::make_shared<const Pixels>(image);
+    } catch (const Error& error) {
+      log::warn(character_.name + ": the picture '" + image.name + "' is not shown: " + error.what());
+    }
+    return made;
+  }
+
+  const Character& character_;
+  std::map<int, Look> looks_;
+  std::map<size_t, std::shared_ptr<const Pixels>> pictures_;
+};
+
+Vec3 linear_color(const CharacterPart& part, const Look& look, Eigen::Index v) {
+  Vec3 color = look.factor;
+  if (look.picture && look.uv < part.uvs.size())
+    color = color.cwiseProduct(
+        look.picture->at(part.uvs[look.uv](v, 0), part.uvs[look.uv](v, 1), look.repeat_u, look.repeat_v));
+  if (part.colors.rows() > 0) color = color.cwiseProduct(Vec3(part.colors.row(v).head<3>().transpose()));
+  return color.cwiseMax(0.0f).cwiseMin(1.0f);
+}
+
+}  // namespace
+
+float to_linear(float shown) {
+  return shown <= 0.04045f ? shown / 12.92f : std::pow((shown + 0.055f) / 1.055f, 2.4f);
+}
+
+float to_shown(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+Points vertex_colors(const Character& character) {
+  Looks looks(character);
+  Points out(character.vertex_count(), 3);
+  Eigen::Index at = 0;
+  for (const auto& part : character.parts) {
+    const Look& look = looks.of(part.material);
+    for (Eigen::Index v = 0; v < part.vertices.rows(); ++v, ++at)
+      out.row(at) = linear_color(part, look, v).unaryExpr(&to_shown).transpose();
+  }
+  if (out.rows() == 0 || (out.rowwise() - Eigen::RowVector3f(out.row(0))).cwiseAbs().maxCoeff() < 0.004f)
+    return Points(0, 3);
+  return out;
+}
+
+void paint(MergedSurface& surface, const Character& character) {
+  surface.mesh.colors.resize(0, 3);
+  const Points colors = vertex_colors(character);
+  if (colors.rows() == 0) return;
+  US_CHECK(colors.rows() == static_cast<Eigen::Index>(surface.map.size()), character.name, ": has ",
+           colors.rows(), " vertices, its surface ", surface.map.size());
+  surface.mesh.colors = Points::Zero(surface.mesh.vertices.rows(), 3);
+  Eigen::VectorXf corners = Eigen::VectorXf::Zero(surface.mesh.vertices.rows());
+  for (size_t i = 0; i < surface.map.size(); ++i) {
+    surface.mesh.colors.row(surface.map[i]) += colors.row(static_cast<Eigen::Index>(i));
+    ++corners[surface.map[i]];
+  }
+  surface.mesh.colors.array().colwise() /= corners.array();
+}
+
+}  // namespace understudy

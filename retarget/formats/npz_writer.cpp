@@ -1,0 +1,139 @@
+#include "retarget/formats/npz_writer.hpp"
+
+#include <zip.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr size_t kHeaderBytes = 128;  // room for any shape; written again when the number of frames is known
+constexpr zip_int64_t kFixedDate = 315532800;  // the same result, the same bytes
+
+/// (3, 2), (3,) or ().
+std::string shape_text(const std::vector<int64_t>& shape) {
+  std::string text = "(";
+  for (size_t i = 0; i < shape.size(); ++i) text += (i > 0 ? ", " : "") + std::to_string(shape[i]);
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+std::string npy_header(const std::string& type, const std::vector<int64_t>& shape) {
+  std::string header("\x93NUMPY\x01\x00", 8);
+  header += static_cast<char>(kHeaderBytes - 10);
+  header += '\0';
+  header += "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
+  header.resize(kHeaderBytes - 1, ' ');
+  return header + '\n';
+}
+
+std::string frames_header(int64_t frames, std::vector<int64_t> shape) {
+  shape.insert(shape.begin(), frames);
+  return npy_header("<f4", shape);
+}
+
+/// An archive that is given up unless it is closed.
+struct Archive {
+  explicit Archive(const std::string& path) : part(path + ".part") {
+    int code = 0;
+    zip = zip_open(part.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
+    US_CHECK(zip, path, ": cannot be written");
+  }
+  ~Archive() {
+    if (!zip) return;
+    zip_discard(zip);
+    std::remove(part.c_str());
+  }
+  std::string part;
+  zip_t* zip = nullptr;
+};
+
+void add_entry(Archive& archive, const std::string& name, zip_source_t* source, const std::string& path) {
+  const zip_int64_t index = source ? zip_file_add(archive.zip, (name + ".npy").c_str(), source, 0) : -1;
+  if (index < 0 && source) zip_source_free(source);
+  US_CHECK(index >= 0, path, ": cannot be packed");
+  zip_set_file_compression(archive.zip, static_cast<zip_uint64_t>(index), ZIP_CM_STORE, 0);
+  zip_file_set_mtime(archive.zip, static_cast<zip_uint64_t>(index), kFixedDate, 0);
+}
+
+}  // namespace
+
+NpzWriter::~NpzWriter() {
+  remove_parts();
+}
+
+void NpzWriter::remove_parts() {
+  for (Array& array : arrays_) {
+    if (!array.bytes.empty()) continue;
+    array.file.close();
+    std::remove(part_path(array).c_str());
+  }
+  arrays_.clear();
+}
+
+std::string NpzWriter::part_path(const Array& array) const {
+  return path_ + "." + array.name + ".part";
+}
+
+size_t NpzWriter::add_frames(const std::string& name, const std::vector<int64_t>& frame_shape) {
+  Array array;
+  array.name = name;
+  array.frame_shape = frame_shape;
+  for (const int64_t n : frame_shape) array.frame_size *= n;
+  array.file.open(part_path(array), std::ios::binary);
+  US_CHECK(array.file, path_, ": cannot be written");
+  array.file << frames_header(0, frame_shape);
+  arrays_.push_back(std::move(array));
+  return arrays_.size() - 1;
+}
+
+void NpzWriter::push(size_t index, const float* values) {
+  Array& array = arrays_[index];
+  array.file.write(reinterpret_cast<const char*>(values),
+                   array.frame_size * static_cast<int64_t>(sizeof(float)));
+  US_CHECK(array.file, path_, ": writing failed, the disk may be full");
+  ++array.frames;
+}
+
+void NpzWriter::add(const std::string& name, const std::vector<int64_t>& shape,
+                    const std::vector<double>& values) {
+  Array array;
+  array.name = name;
+  array.bytes = npy_header("<f8", shape);
+  array.bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+  arrays_.push_back(std::move(array));
+}
+
+void NpzWriter::add(const std::string& name, const std::string& text) {
+  Array array;
+  array.name = name;
+  array.bytes = npy_header("<U" + std::to_string(text.size()), {});
+  for (const char c : text) array.bytes += {c, '\0', '\0', '\0'};  // UTF-32, of plain letters
+  arrays_.push_back(std::move(array));
+}
+
+void NpzWriter::finish() {
+  Archive archive(path_);
+  for (Array& array : arrays_) {
+    if (!array.bytes.empty()) {
+      add_entry(archive, array.name,
+                zip_source_buffer(archive.zip, array.bytes.data(), array.bytes.size(), 0), path_);
+      continue;
+    }
+    array.file.seekp(0);
+    array.file << frames_header(array.frames, array.frame_shape);
+    array.file.close();
+    US_CHECK(array.file, path_, ": writing failed, the disk may be full");
+    add_entry(archive, array.name, zip_source_file(archive.zip, part_path(array).c_str(), 0, -1), path_);
+  }
+  US_CHECK(zip_close(archive.zip) == 0, path_, ": writing failed (", zip_strerror(archive.zip), ")");
+  archive.zip = nullptr;
+  remove_parts();
+  if (std::rename(archive.part.c_str(), path_.c_str()) == 0) return;
+  std::remove(archive.part.c_str());
+  throw Error(path_ + ": cannot be written");
+}
+
+}  // namespace understudy

@@ -1,0 +1,54 @@
+#include "retarget/motion/read_motion.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "retarget/base/error.hpp"
+#include "retarget/formats/bytes.hpp"
+#include "retarget/formats/npz.hpp"
+#include "retarget/motion/amass_motion.hpp"
+#include "retarget/motion/bvh.hpp"
+
+namespace understudy {
+namespace {
+
+std::string suffix_of(const std::string& path) {
+  return lower_case(std::filesystem::path(path).extension().string());
+}
+
+bool is_amass_motion(const std::string& path) {
+  const std::vector<std::string> names = npz_names(path);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return has("poses") && has("trans") && !has("v_template");
+}
+
+}  // namespace
+
+bool is_motion_suffix(const std::string& path) {
+  const std::string suffix = suffix_of(path);
+  return suffix == ".bvh" || suffix == ".fbx" || suffix == ".dae";
+}
+
+std::optional<Character> read_motion(const std::string& path, const ReadCharacterOptions& options) {
+  std::error_code failed;
+  const std::string suffix = suffix_of(path);
+  if (std::filesystem::is_directory(path, failed)) return std::nullopt;
+  if (suffix == ".bvh") return read_bvh(path);
+  if (suffix == ".npz") {
+    if (!is_amass_motion(path)) return std::nullopt;
+    return read_amass_character(path);
+  }
+  const bool is_gltf = suffix == ".glb" || suffix == ".gltf";
+  if (!is_gltf && !is_motion_suffix(path)) return std::nullopt;
+  Character character = read_character(path, options);
+  auto& all = character.animations;
+  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& one) { return one.tracks.empty(); }),
+            all.end());
+  if (is_gltf && all.empty()) return std::nullopt;
+  US_CHECK(!all.empty(), path, ": has no animation");
+  return character;
+}
+
+}  // namespace understudy

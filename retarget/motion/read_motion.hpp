@@ -1,0 +1,20 @@
+// Skeletal motions from files of any known format.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "retarget/character/character.hpp"
+#include "retarget/character/read_character.hpp"
+
+namespace understudy {
+
+/// Whether a file of this name is a motion without a look inside: .bvh, .fbx, .dae.
+bool is_motion_suffix(const std::string& path);
+
+/// The animated character of a BVH, FBX, DAE, glTF or GLB file, or of an AMASS-format .npz; it may have no
+/// mesh. None when the file is of another kind or a glTF without an animation. Throws Error naming the file,
+/// also where an FBX or DAE has no animation.
+std::optional<Character> read_motion(const std::string& path, const ReadCharacterOptions& options = {});
+
+}  // namespace understudy

@@ -1,0 +1,254 @@
+#include "retarget/motion/skeletal_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "retarget/base/error.hpp"
+#include "retarget/character/prepared_character.hpp"
+#include "retarget/formats/bytes.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/motion/bone_shapes.hpp"
+#include "retarget/motion/clip.hpp"
+#include "retarget/motion/moving_surface.hpp"
+#include "retarget/pipeline/root_path.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr float kDoubtfulDeg = 75;   // no bind pose leaves the T-pose so far
+constexpr float kPosedCostDeg = 20;  // the nodes' own pose is the likelier bind pose
+constexpr float kNearFloor = 0.08f;  // of the legs
+constexpr int64_t kLookedAt = 500;   // frames that up and floor are read from
+
+/// The character with its nodes in the pose of an animation's first frame.
+Character in_first_frame(Character character, int clip, const ClipTimes& times) {
+  const std::vector<Mat4> world = nodes_at(character, clip, times.at(0)).world;
+  for (size_t n = 0; n < world.size(); ++n) {
+    const int p = character.nodes[n].parent;
+    character.nodes[n].local =
+        Transform::from(p < 0 ? world[n] : Mat4(world[static_cast<size_t>(p)].inverse() * world[n]));
+  }
+  return character;
+}
+
+PreparedCharacter prepared(Character character, const SkeletalMotionOptions& options) {
+  if (character.vertex_count() == 0) add_bone_shapes(character, options.bones);
+  const BoneMap map = map_bones(character, bind_pose(character).nodes, options.bones);
+  check_bones(map, character.name);
+  CharacterOptions how;
+  how.choices = options.bones;
+  how.units = options.import.units;
+  how.up = "auto";
+  return prepare_character(std::move(character), nullptr, nullptr, how);
+}
+
+/// A skin knows its bind pose. Bones alone stand in it, or take it in the first frame.
+PreparedCharacter in_bind_pose(const Character& character, int clip, const ClipTimes& times,
+                               const SkeletalMotionOptions& options) {
+  PreparedCharacter own = prepared(character, options);
+  if (!character.skins.empty()) return own;
+  PreparedCharacter first = prepared(in_first_frame(character, clip, times), options);
+  const bool is_first = first.pose.largest_deg + kPosedCostDeg < own.pose.largest_deg;
+  PreparedCharacter& better = is_first ? first : own;
+  if (is_first) better.notes.push_back("its first frame is taken for the T-pose");
+  if (better.pose.largest_deg > kDoubtfulDeg)
+    better.notes.push_back(
+        "neither its bones nor its first frame stand in a T- or A-pose: limbs may be turned");
+  return std::move(better);
+}
+
+Mat3 linear(const Mat4& matrix) {
+  return matrix.topLeftCorner<3, 3>();
+}
+
+Vec3 place(const Mat4& matrix) {
+  return matrix.topRightCorner<3, 1>();
+}
+
+std::string in_words(const char* format, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+Mat3 upright(const std::string& up) {
+  static const std::array<const char*, 6> names = {"x", "y", "z", "-x", "-y", "-z"};
+  const auto found = std::find(names.begin(), names.end(), up);
+  US_CHECK(found != names.end(), "up is auto, x, y, z, -x, -y or -z, not '", up, "'");
+  const auto i = static_cast<int>(found - names.begin());
+  return rotation_between(Vec3::Unit(i % 3) * (i < 3 ? 1.0f : -1.0f), Vec3::UnitY());
+}
+
+}  // namespace
+
+struct SkeletalMotion::Impl {
+  Impl(Character character, const SkeletalMotionOptions& options);
+
+  int clip;
+  ClipTimes times;
+  PreparedCharacter c;
+  MovingSurface surface;
+  SupportPoints support;
+  std::array<int, kJointCount> bearer;      // of each joint the node that moves it
+  std::array<Mat3, kJointCount> from_bind;  // of its node
+  Mat3 axes;                                // the motion's to y up
+  float floor = 0;                          // after axes and scale
+  bool has_skin;                            // no bones drawn
+
+  PosedNodes posed(int64_t frame) const { return nodes_at(c.character, clip, times.at(frame)); }
+  Points to_world(const Points& points) const {
+    return ((c.to_world.scale * points * axes.transpose()).rowwise() + Eigen::RowVector3f(0, -floor, 0))
+        .eval();
+  }
+  PosedSkeleton joints(const PosedNodes& nodes) const;
+  float lowest(const PosedSkeleton& skeleton) const {
+    return skeleton.joints(Pelvis, 1) + support.lowest(skeleton);
+  }
+  void bear_joints();
+  std::string up_of_motion() const;
+  void find_axes(const ImportOptions& import);
+  void find_floor(const ImportOptions& import);
+  void say();
+};
+
+SkeletalMotion::Impl::Impl(Character character, const SkeletalMotionOptions& options)
+    : clip(chosen_clip(character, options.clip)),
+      times(clip_times(character.animations[static_cast<size_t>(clip)], options.fps)),
+      c(in_bind_pose(character, clip, times, options)),
+      surface(c.character),
+      support(SupportPoints::from(c.target.mesh.vertices, c.target.joints)),
+      has_skin(character.vertex_count() > 0) {
+  bear_joints();
+  find_axes(options.import);
+  find_floor(options.import);
+  say();
+}
+
+void SkeletalMotion::Impl::bear_joints() {
+  for (int j = 0; j < kJointCount; ++j) {
+    int above = j;
+    while (above >= 0 && !c.map.has(above)) above = kParents[static_cast<size_t>(above)];
+    const int node = c.map.node[static_cast<size_t>(std::max(0, above))];
+    bearer[static_cast<size_t>(j)] = node;
+    from_bind[static_cast<size_t>(j)] = linear(c.bind.nodes[static_cast<size_t>(node)]).inverse();
+  }
+}
+
+/// The axis that heads point along: of a file of bones alone the offsets may be y up, the motion z up.
+std::string SkeletalMotion::Impl::up_of_motion() const {
+  Vec3 sum = Vec3::Zero();
+  const int64_t step = std::max<int64_t>(1, times.count / kLookedAt);
+  for (int64_t f = 0; f < times.count; f += step) {
+    const PosedNodes nodes = posed(f);
+    const auto at = [&](int j) {
+      return place(nodes.world[static_cast<size_t>(bearer[static_cast<size_t>(j)])]);
+    };
+    sum += (at(LeftShoulder) + at(RightShoulder) - at(LeftHip) - at(RightHip)).normalized();
+  }
+  Eigen::Index axis = 1;
+  const float most = sum.cwiseAbs().maxCoeff(&axis);
+  if (most < 0.8f * sum.norm()) return "";
+  return std::string(sum[axis] < 0 ? "-" : "") + "xyz"[axis];
+}
+
+void SkeletalMotion::Impl::find_axes(const ImportOptions& import) {
+  axes = c.to_world.R;
+  std::string up = import.up == "auto" ? "" : import.up;
+  if (up.empty() && !has_skin) up = up_of_motion();
+  // Where the bind pose has the same up, the heading that it was turned to counts, too.
+  if (!up.empty() && (axes * upright(up).transpose() * Vec3::UnitY()).y() < 0.9f) axes = upright(up);
+  axes = rotation_about_y(import.yaw_deg * kPi / 180) * axes;
+}
+
+/// The file's own zero, under the soles of the bind pose, where the soles come near to it, else where the
+/// soles are mostly at their lowest.
+void SkeletalMotion::Impl::find_floor(const ImportOptions& import) {
+  floor = import.floor.value_or(-c.to_world.t.y());
+  if (import.floor) return;
+  std::vector<float> soles;
+  const int64_t step = std::max<int64_t>(1, times.count / kLookedAt);
+  for (int64_t f = 0; f < times.count; f += step) soles.push_back(lowest(joints(posed(f))));
+  std::sort(soles.begin(), soles.end());
+  const float low = soles[soles.size() / 20];
+  US_CHECK(std::isfinite(low), c.character.name, ": its animation has numbers that are not finite");
+  if (!has_skin || std::abs(low) > kNearFloor * leg_length(c.target.joints)) floor += low;
+}
+
+PosedSkeleton SkeletalMotion::Impl::joints(const PosedNodes& nodes) const {
+  PosedSkeleton out;
+  Points places(kJointCount, 3);
+  std::array<Mat3, kJointCount> moved;  // from the bind pose in the program's world to now
+  for (size_t j = 0; j < kJointCount; ++j) {
+    const Mat4& node = nodes.world[static_cast<size_t>(bearer[j])];
+    moved[j] = axes * nearest_rotation(linear(node) * from_bind[j]) * c.to_world.R.transpose();
+    out.global[j] = moved[j] * c.pose.to_rest[j].transpose();
+    places.row(static_cast<Eigen::Index>(j)) = place(node).transpose();
+  }
+  out.joints = to_world(places);
+  for (int j = 1; j < kJointCount; ++j) {
+    const int p = kParents[static_cast<size_t>(j)];
+    if (!c.map.has(j))  // fixed to what is above it
+      out.joints.row(j) = out.joints.row(p) + (c.pose.bind.row(j) - c.pose.bind.row(p)) *
+                                                  moved[static_cast<size_t>(j)].transpose();
+  }
+  return out;
+}
+
+void SkeletalMotion::Impl::say() {
+  const auto& all = c.character.animations;
+  std::string text = "animation '" + excerpt(all[static_cast<size_t>(clip)].name) + "'";
+  if (all.size() > 1) text += " (" + std::to_string(clip + 1) + " of " + std::to_string(all.size()) + ")";
+  text += ", " + std::to_string(times.count) + " frames at " + in_words("%g frames/s", times.fps);
+  c.notes.insert(c.notes.begin(), text);
+  c.notes.push_back(std::to_string(c.map.count()) + " of 22 joints are mapped " + c.map.how);
+  if (std::abs(floor + c.to_world.t.y()) > 0.005f)
+    c.notes.push_back("the soles are lowest " +
+                      in_words("%.2f m", static_cast<double>(floor + c.to_world.t.y())) +
+                      " over its own floor: that is the floor");
+}
+
+SkeletalMotion::SkeletalMotion(Character character, const SkeletalMotionOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(character), options)) {}
+SkeletalMotion::~SkeletalMotion() = default;
+SkeletalMotion::SkeletalMotion(SkeletalMotion&&) noexcept = default;
+
+int64_t SkeletalMotion::count() const {
+  return impl_->times.count;
+}
+
+double SkeletalMotion::fps() const {
+  return impl_->times.fps;
+}
+
+Extraction SkeletalMotion::skeleton(int64_t frame) const {
+  const PosedSkeleton skeleton = impl_->joints(impl_->posed(frame));
+  Extraction out;
+  out.joints = skeleton.joints;
+  out.global = skeleton.global;
+  out.sole_height = impl_->lowest(skeleton);
+  out.exact = true;
+  for (int j = 0; j < kJointCount; ++j) out.confidence[j] = impl_->c.map.has(j) ? 1.0f : 0.5f;
+  return out;
+}
+
+Mesh SkeletalMotion::surface(int64_t frame) const {
+  Mesh mesh = impl_->surface.at(impl_->posed(frame));
+  mesh.vertices = impl_->to_world(mesh.vertices);
+  return mesh;
+}
+
+const BoneMap& SkeletalMotion::map() const {
+  return impl_->c.map;
+}
+
+const Character& SkeletalMotion::character() const {
+  return impl_->c.character;
+}
+
+const std::vector<std::string>& SkeletalMotion::notes() const {
+  return impl_->c.notes;
+}
+
+}  // namespace understudy

@@ -1,0 +1,198 @@
+// One motion in every format, what an export leaves behind when it ends badly, and what it says it costs.
+#include "app/run/exports.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "retarget/character/gltf_character.hpp"
+#include "retarget/character/read_character.hpp"
+#include "retarget/formats/bytes.hpp"
+#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/npz.hpp"
+#include "tests/retarget/character/characters.hpp"
+#include "tests/retarget/formats/support.hpp"
+#include "tests/support/full_disk.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+using test::contains;
+using test::error_of;
+using test::FullDisk;
+using test::TempFolder;
+
+constexpr int kFrames = 12;
+
+ExportInput input_of(std::shared_ptr<const PreparedCharacter> character) {
+  ExportInput input;
+  input.body.character = character;
+  input.body.screen = std::make_shared<RigDeformer>(*character, nullptr);
+  input.clips = {{"walk", 25, tests::made_motion(kFrames, character->target.joints)}};
+  return input;
+}
+
+ExportInput made_input() {
+  return input_of(
+      std::make_shared<PreparedCharacter>(prepare_character(tests::make_character(), nullptr, nullptr)));
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class EveryFormat : public testing::TestWithParam<ExportFormatInfo> {
+ protected:
+  TempFolder folder_;
+  std::string path_ = folder_.path(std::string("dance") + GetParam().suffix);
+  ExportInput input_ = made_input();
+
+  void export_it() { export_motion(path_, GetParam().format, input_); }
+  /// Of what is at the path: of a folder's first frame.
+  std::string content() const {
+    if (!fs::is_directory(path_)) return read_file(path_);
+    return read_file(path_ + "/" + names_in(path_)[0]);
+  }
+};
+
+TEST_P(EveryFormat, IsWrittenWholeAndTheSameTwice) {
+  const ExportCost cost = export_motion(path_, GetParam().format, input_);
+  EXPECT_EQ(cost.frames, kFrames);
+  EXPECT_GT(cost.bytes, 1000);
+  EXPECT_LT(cost.largest_mm, 0.1);
+  const std::string first = content();
+  const auto files = names_in(folder_.path());
+  export_it();
+  EXPECT_EQ(content(), first);
+  EXPECT_EQ(names_in(folder_.path()), files);
+}
+
+TEST_P(EveryFormat, AFullDiskLeavesTheOldFile) {
+  export_it();
+  const std::string before = content();
+  const auto files = names_in(folder_.path());
+  input_.clips[0].poses.resize(kFrames - 1);
+  std::string complaint;
+  {
+    const FullDisk full(700);
+    complaint = error_of([&] { export_it(); });
+  }
+  EXPECT_TRUE(contains(complaint, "dance")) << complaint;
+  EXPECT_TRUE(contains(complaint, "writing failed")) << complaint;
+  EXPECT_EQ(content(), before);
+  EXPECT_EQ(names_in(folder_.path()), files);
+}
+
+TEST_P(EveryFormat, WhoStopsItKeepsTheOldFile) {
+  export_it();
+  const std::string before = content();
+  const auto files = names_in(folder_.path());
+  input_.clips[0].poses.resize(kFrames - 1);
+  int asked = 0;
+  input_.body.file.progress = [&](float done) {
+    EXPECT_GE(done, 0);
+    EXPECT_LE(done, 1);
+    if (++asked == 4) throw Error("stopped");
+  };
+  EXPECT_EQ(error_of([&] { export_it(); }), "stopped");
+  EXPECT_EQ(content(), before);
+  EXPECT_EQ(names_in(folder_.path()), files);
+}
+
+TEST_P(EveryFormat, NamesAPathThatCannotBe) {
+  path_ = folder_.path(std::string("no/such/place") + GetParam().suffix);
+  if (*GetParam().suffix) EXPECT_TRUE(contains(error_of([&] { export_it(); }), "no/such/place"));
+  input_.clips.clear();
+  EXPECT_TRUE(contains(error_of([&] { export_it(); }), "no motion"));
+}
+
+TEST_P(EveryFormat, IsFoundByItsName) {
+  EXPECT_EQ(export_format(GetParam().name, "whatever"), GetParam().format);
+  const bool hidden = *GetParam().suffix == '\0' || GetParam().format == ExportFormat::Amass;
+  if (!hidden) EXPECT_EQ(export_format("", path_), GetParam().format);
+}
+
+TEST_P(EveryFormat, InPlaceStaysWhereTheTargetStands) {
+  if (GetParam().format != ExportFormat::Npz) return;  // the others take the same poses
+  for (Pose& pose : input_.clips[0].poses) pose.root.x() += 5;
+  input_.body.file.in_place = true;
+  export_it();
+  const NpyArray joints = read_npz(path_).at("joints");
+  for (int t = 0; t < kFrames; ++t)
+    EXPECT_NEAR(joints.values[static_cast<size_t>(t) * 66], input_.body.character->target.joints(0, 0),
+                1e-5f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Exports, EveryFormat, testing::ValuesIn(export_formats()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Exports, FormatsThatHoldOneMotionSaySo) {
+  const TempFolder folder;
+  ExportInput input = made_input();
+  input.clips.push_back(input.clips[0]);
+  EXPECT_TRUE(contains(error_of([&] { export_motion(folder.path("a.bvh"), ExportFormat::Bvh, input); }),
+                       "one motion"));
+  export_motion(folder.path("a.glb"), ExportFormat::Glb, input);
+  EXPECT_EQ(read_character(folder.path("a.glb")).animations.size(), 2u);
+}
+
+TEST(Exports, UnknownFormatsAreNamed) {
+  EXPECT_TRUE(contains(error_of([] { export_format("", "a.fbx"); }), "a.fbx"));
+  EXPECT_TRUE(contains(error_of([] { export_format("fbx", "a"); }), "glb, gltf, bvh"));
+}
+
+TEST(Exports, SurfacesAreThoseOfTheScreenInTheFilesOrder) {
+  const TempFolder folder;
+  const ExportInput input = made_input();
+  const PreparedCharacter& character = *input.body.character;
+  export_motion(folder.path("ply"), ExportFormat::Ply, input);
+  export_motion(folder.path("obj"), ExportFormat::Obj, input);
+  const Points want = character.surface.in_file_order(input.body.screen->deform(input.clips[0].poses[6]));
+  for (const char* name : {"ply/frame_00007.ply", "obj/frame_00007.obj"}) {
+    const Mesh mesh = read_mesh(folder.path(name));
+    EXPECT_EQ(mesh.vertices, want) << name;
+    EXPECT_EQ(mesh.faces.rows(), character.target.mesh.faces.rows());
+  }
+}
+
+TEST(Exports, ABarePointCloudIsPointsInEveryFormat) {
+  const TempFolder folder;
+  tests::MadeCharacter made;
+  made.rigged = false;
+  Mesh cloud;
+  cloud.vertices = tests::make_character(made).parts[0].vertices;
+  tests::KnownExtractor known(tests::made_joints(made));
+  auto character = std::make_shared<PreparedCharacter>(
+      prepare_character(character_of_mesh(cloud, "cloud"), &known, &known));
+  auto screen = std::make_shared<tests::BulgingDeformer>();
+  screen->bind(character->target.mesh.vertices, character->target.joints);
+  ExportInput input;
+  input.body = {character, screen, {}};
+  input.body.file.their_rig = false;
+  input.clips = {{"walk", 25, tests::made_motion(3, character->target.joints)}};
+  for (const ExportFormatInfo& info : export_formats())
+    export_motion(folder.path(std::string("cloud_") + info.name + info.suffix), info.format, input);
+  const Character glb = read_character(folder.path("cloud_glb.glb"));
+  EXPECT_EQ(glb.parts[0].faces.rows(), 0);
+  EXPECT_EQ(glb.parts[0].skin, 0);
+  EXPECT_TRUE(read_mesh(folder.path("cloud_ply/frame_00001.ply")).is_cloud());
+}
+
+TEST(Exports, SayWhatTheyCost) {
+  ExportCost cost;
+  cost.frames = 12345;
+  cost.bytes = 1240000;
+  EXPECT_EQ(sentence(cost), "12,345 frames, 1.2 MB");
+  cost.measured = true;
+  cost.mean_mm = 0.412;
+  cost.largest_mm = 2.1;
+  EXPECT_EQ(sentence(cost), "mean 0.41 mm, largest 2.10 mm off the screen, 1.2 MB");
+}
+
+}  // namespace
+}  // namespace understudy::app

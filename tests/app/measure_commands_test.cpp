@@ -1,0 +1,94 @@
+#include <nlohmann/json.hpp>
+
+#include "tests/app/cli_fixture.hpp"
+#include "tests/support/training_folder.hpp"
+
+namespace understudy::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+class Measuring : public ShippedProgram {
+ protected:
+  /// One case of the suite, of three frames.
+  void make_suite(const std::string& suite) {
+    test::write_training_folder(scratch.path("data"));
+    const Finished run =
+        run_program({"cases", scratch.path("data"), "--suite", suite, "--out", scratch.path("cases/" + suite),
+                     "--cases", "1", "--frames", "3", "--points", "2000"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_NE(run.out.find("1 cases"), std::string::npos) << run.out;
+  }
+};
+
+TEST_F(Measuring, EvalTellsWhereTheErrorLiesAndShowsTheWorstFrames) {
+  make_suite("captured");
+  const Finished run = run_program({"eval", scratch.path("cases/captured"), "--out", out("r.json"), "--worst",
+                                    "2", "--pictures", out("worst"), "--no-offsets", "--restart-every", "2"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json breakdown = Json::parse(read_bytes(out("r.json")))["breakdown"];
+  EXPECT_EQ(breakdown["joints"].size(), 22u);
+  EXPECT_GT(breakdown["joints"]["left_wrist"]["extraction_mm"], 0);
+  EXPECT_TRUE(breakdown["motions"]["sway"].contains("pa_mpjpe_m"));
+  EXPECT_TRUE(breakdown["bodies"]["tall"].contains("rot_deg"));
+  EXPECT_EQ(breakdown["failures"].size(), 6u);
+  EXPECT_EQ(breakdown["confidence"]["bins"].size(), 10u);
+  ASSERT_EQ(breakdown["worst"].size(), 2u);
+  EXPECT_GE(breakdown["worst"][0]["error_mm"], breakdown["worst"][1]["error_mm"]);
+  for (const char* picture : {"worst.png", "worst_01.png", "worst_02.png"})
+    EXPECT_TRUE(std::filesystem::exists(out("worst") + "/" + picture)) << picture;
+}
+
+TEST_F(Measuring, APeerIsJudgedInPlaceOfTheExtractor) {
+  make_suite("naked");
+  const std::string cases = scratch.path("cases/naked");
+  const Finished run = run_program({"eval", cases, "--out", out("r.json"), "--peer", "fit", "--body",
+                                    scratch.path("data/body/makehuman_smplformat.npz")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(read_bytes(out("r.json")));
+  EXPECT_EQ(report["peer"], "fit");
+  EXPECT_GT(report["mean"]["extraction_mpjpe_mm"], 0);
+  std::filesystem::remove_all(scratch.path("out"));
+  expect_clean_failure(run_program({"eval", cases, "--peer", "fit"}), "--body");
+}
+
+TEST_F(Measuring, ReportWritesAPageAndSaysWhatIsLeftOut) {
+  make_suite("extraction");
+  write_text(scratch.path("rows.json"),
+             R"({"rows": [{"table": "extraction", "name": "ours", "suite": "extraction", "budget": "an hour"},
+                          {"table": "extraction", "name": "lost", "suite": "extraction",
+                           "extractor_weights": "absent.weights"}]})");
+  const std::vector<std::string> command = {
+      "report", "--cases", scratch.path("cases"), "--rows", scratch.path("rows.json"), "--out", out("page")};
+  const Finished run = run_program(command);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::string page = read_bytes(out("page/report.md"));
+  EXPECT_NE(page.find("| extraction | ours |"), std::string::npos) << page;
+  EXPECT_NE(page.find("an hour"), std::string::npos) << page;
+  EXPECT_NE(page.find("left out: lost"), std::string::npos) << page;
+  EXPECT_NE(page.find("absent.weights"), std::string::npos) << page;
+}
+
+TEST_F(Measuring, ReportRefusesRowsThatItDoesNotKnow) {
+  std::filesystem::create_directories(scratch.path("cases"));
+  write_text(scratch.path("rows.json"),
+             R"({"rows": [{"table": "peers", "name": "a", "suite": "b", "colour": 1}]})");
+  expect_clean_failure(run_program({"report", "--cases", scratch.path("cases"), "--rows",
+                                    scratch.path("rows.json"), "--out", out("page")}),
+                       "colour");
+}
+
+TEST_F(Measuring, MeasureTellsOfAScanWithoutTruth) {
+  const Finished run = run_program({"measure", scans(), "--out", out("r.json")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(read_bytes(out("r.json")));
+  EXPECT_EQ(report["frames"], kFrames);
+  for (const char* key : {"inside", "bone_drift", "jerk"}) {
+    EXPECT_TRUE(report["metrics"].contains(key)) << key;
+    EXPECT_TRUE(report["raw"].contains(key)) << key;
+  }
+  EXPECT_GT(report["metrics"]["inside"], 0.5);
+}
+
+}  // namespace
+}  // namespace understudy::tests

@@ -1,0 +1,33 @@
+// Programs that are not ours, as the tests call them: node with the packages of tests/interop, browsers,
+// Blender.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy::tests {
+
+/// Runs a script of tests/interop with node; the first argument that it gets is where the packages are. Gives
+/// the JSON that it printed. Throws Error in a sentence: node or the packages are missing, or the script
+/// failed.
+nlohmann::json run_script(const std::string& script, const std::vector<std::string>& arguments);
+
+/// What Khronos' glTF-Validator says of each file: {"errors", "warnings", "messages": [...]}.
+nlohmann::json validated(const std::vector<std::string>& paths);
+
+/// One clip that another program plays.
+struct PlayJob {
+  std::string file, out;  ///< out: float32 [T, V, 3], written by that program
+  int clip = 0;
+  double fps = 25;
+  std::vector<float> times;  ///< seconds
+};
+/// As a JSON file beside the first output; its path.
+std::string write_jobs(const std::vector<PlayJob>& jobs);
+/// The positions that the program wrote, one a time. Throws Error where there is none, or of another size.
+std::vector<Points> read_positions(const PlayJob& job, Eigen::Index vertices);
+
+}  // namespace understudy::tests

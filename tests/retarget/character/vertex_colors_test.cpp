@@ -1,0 +1,121 @@
+#include "retarget/character/vertex_colors.hpp"
+
+#include <gtest/gtest.h>
+
+#include "retarget/base/log.hpp"
+#include "retarget/character/read_character.hpp"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace understudy {
+namespace {
+
+/// Two pixels: red on the left, green on the right.
+std::string red_and_green() {
+  const unsigned char pixels[] = {255, 0, 0, 0, 255, 0};
+  std::string bytes;
+  stbi_write_png_to_func(
+      [](void* to, void* data, int size) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<size_t>(size));
+      },
+      &bytes, 2, 1, 3, pixels, 6);
+  return bytes;
+}
+
+/// Three vertices with texture coordinates 0.25, 0.75 and 1.25, a picture on them.
+Character textured(const std::string& picture, const std::string& sampler = "{}") {
+  Mesh mesh;
+  mesh.vertices = Points::Random(3, 3);
+  mesh.faces = Faces(1, 3);
+  mesh.faces << 0, 1, 2;
+  Character out = character_of_mesh(mesh, "made");
+  out.images = {{"skin", "image/png", picture}};
+  out.samplers = {sampler};
+  out.textures = {R"({"source":0,"sampler":0})"};
+  out.materials = {R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"};
+  RowMatrix uv(3, 2);
+  uv << 0.25f, 0.5f, 0.75f, 0.5f, 1.25f, 0.5f;
+  out.parts[0].uvs = {uv};
+  return out;
+}
+
+/// What was warned of while it ran.
+template <class Part>
+std::string warnings(Part part) {
+  std::string all;
+  const auto sink = log::set_sink([&](log::Level level, const std::string& text) {
+    if (level == log::Level::Warning) all += text + "\n";
+  });
+  part();
+  log::set_sink(sink);
+  return all;
+}
+
+TEST(VertexColors, AreThoseOfTheTextureAtTheVertex) {
+  const Points colors = vertex_colors(textured(red_and_green()));
+  ASSERT_EQ(colors.rows(), 3);
+  EXPECT_TRUE(colors.row(0).isApprox(Eigen::RowVector3f(1, 0, 0), 0.01f)) << colors;
+  EXPECT_TRUE(colors.row(1).isApprox(Eigen::RowVector3f(0, 1, 0), 0.01f)) << colors;
+  EXPECT_TRUE(colors.row(2).isApprox(Eigen::RowVector3f(1, 0, 0), 0.01f)) << colors;  // it is repeated
+  const Points clamped = vertex_colors(textured(red_and_green(), R"({"wrapS":33071})"));
+  EXPECT_TRUE(clamped.row(2).isApprox(Eigen::RowVector3f(0, 1, 0), 0.01f)) << clamped;
+}
+
+TEST(VertexColors, AreDarkerByTheMaterialAndTheVertexInLinearLight) {
+  Character made = textured(red_and_green());
+  made.materials = {
+      R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"baseColorFactor":[0.5,0.5,0.5,1]}})"};
+  made.parts[0].colors = RowMatrix::Constant(3, 4, 0.5f);
+  const Points colors = vertex_colors(made);
+  EXPECT_NEAR(colors(0, 0), 0.537f, 0.003f);  // 0.25 of the light
+}
+
+TEST(VertexColors, TellPartsApartByTheirMaterials) {
+  Mesh mesh;
+  mesh.vertices = Points::Random(2, 3);
+  Character made = character_of_mesh(mesh, "made");
+  EXPECT_EQ(vertex_colors(made).rows(), 0);  // one colour says nothing
+  made.parts.push_back(made.parts[0]);
+  made.parts[1].material = 1;
+  made.materials.push_back(R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}})");
+  const Points colors = vertex_colors(made);
+  ASSERT_EQ(colors.rows(), 4);
+  EXPECT_EQ(colors.row(3), Eigen::RowVector3f(1, 0, 0));
+  EXPECT_GT(colors(0, 1), 0.8f);
+}
+
+TEST(VertexColors, OfAScanAreItsOwn) {
+  Mesh mesh;
+  mesh.vertices = Points::Random(50, 3);
+  mesh.colors = (Points::Random(50, 3).array() + 1) / 2;
+  const Character made = character_of_mesh(mesh, "made");
+  EXPECT_LT((vertex_colors(made) - mesh.colors).cwiseAbs().maxCoeff(), 1e-4f);
+  MergedSurface surface = merged_surface(made, mesh.vertices);
+  paint(surface, made);
+  EXPECT_LT((surface.mesh.colors - mesh.colors).cwiseAbs().maxCoeff(), 1e-4f);
+}
+
+TEST(VertexColors, LeaveOutPicturesThatAreNoneOrTooLarge) {
+  std::string large = red_and_green();
+  const unsigned char size[] = {0, 0, 0x40, 0, 0, 0, 0x40, 0};  // 16384 x 16384
+  large.replace(16, 8, reinterpret_cast<const char*>(size), 8);
+  for (const std::string& picture :
+       {large, red_and_green().substr(0, 40), std::string("no picture at all")}) {
+    Points colors;
+    const std::string said = warnings([&] { colors = vertex_colors(textured(picture)); });
+    EXPECT_NE(said.find("'skin' is not shown"), std::string::npos) << said;
+    EXPECT_EQ(colors.rows(), 0);
+  }
+  const std::string said = warnings([&] { vertex_colors(textured(large)); });
+  EXPECT_NE(said.find("64 megapixels"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace understudy

@@ -1,0 +1,148 @@
+// Targets with bones of their own in the studio.
+#include "retarget/character/gltf_character.hpp"
+#include "tests/retarget/character/characters.hpp"
+#include "tests/session/studio_fixture.hpp"
+
+namespace understudy::app {
+namespace {
+
+class StudioCharacter : public StudioTest {
+ protected:
+  void SetUp() override {
+    StudioTest::SetUp();
+    tests::MadeCharacter made;
+    made.arms_down_deg = 50;
+    made.heading_deg = 90;
+    write_gltf_character(path("made.glb"), tests::make_character(made));
+  }
+  void open(Studio& studio) {
+    studio.run("open", {path("scan.npz")});
+    studio.run("open", {path("made.glb")});
+    studio.wait_idle(60);
+  }
+  const TakeState& take(const Studio& studio) const { return studio.session().takes.at(0); }
+  /// What it says when it refuses; empty when it does not.
+  std::string refusal(Studio& studio, const std::string& name, const Arguments& arguments) {
+    try {
+      studio.run(name, arguments);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(StudioCharacter, PerformsOnItsOwnBonesFromAnyPoseAndHeading) {
+  Studio studio(services());
+  open(studio);
+  const TakeState& state = take(studio);
+  ASSERT_TRUE(state.ready) << state.problem;
+  EXPECT_TRUE(state.character->rigged);
+  EXPECT_EQ(state.deformer->name(), "the rig's own skin");
+  EXPECT_NEAR(state.character->pose.largest_deg, 50, 5);
+  EXPECT_EQ(state.performed.size(), static_cast<size_t>(kFrames));
+  const Joints& rest = state.target->joints;
+  EXPECT_GT(rest(LeftWrist, 0), rest(LeftShoulder, 0) + 0.3f);  // the arms are stretched out to its left
+  EXPECT_NEAR(rest(LeftWrist, 1), rest(LeftShoulder, 1), 0.06f);
+  EXPECT_FALSE(state.target->mesh.is_cloud());
+}
+
+TEST_F(StudioCharacter, TheRigIsChosenAndTheScanIsNotLookedAtAgain) {
+  Studio studio(services());
+  open(studio);
+  const int extracted = *extractions_;
+  studio.run("target.rig", {"0", "ours"});
+  studio.wait_idle(60);
+  EXPECT_EQ(take(studio).deformer->name(), "nearest");
+  EXPECT_EQ(take(studio).performed.size(), static_cast<size_t>(kFrames));
+  studio.run("edit.undo");
+  studio.wait_idle(60);
+  EXPECT_EQ(take(studio).deformer->name(), "the rig's own skin");
+  EXPECT_EQ(*extractions_, extracted);
+}
+
+TEST_F(StudioCharacter, ABoneIsTakenAwayGivenAndUndone) {
+  Studio studio(services());
+  open(studio);
+  studio.run("target.bone", {"0", "left_wrist", "none"});
+  studio.wait_idle(60);
+  EXPECT_FALSE(take(studio).character->map.has(LeftWrist));
+  EXPECT_TRUE(take(studio).character->rigged);
+  studio.run("edit.undo");
+  studio.wait_idle(60);
+  EXPECT_TRUE(take(studio).character->map.has(LeftWrist));
+  const std::string neck = tests::made_name(tests::Naming::Mixamo, Neck);
+  studio.run("target.bone", {"0", "head", neck});
+  studio.wait_idle(60);
+  const BoneMap& map = take(studio).character->map;
+  EXPECT_EQ(take(studio).character->character.nodes[static_cast<size_t>(map.node[Head])].name, neck);
+  EXPECT_FALSE(map.has(Neck));  // one bone for one joint
+  studio.run("target.bones_clear", {"0"});
+  EXPECT_TRUE(studio.session().document.takes[0].target.bones.empty());
+}
+
+TEST_F(StudioCharacter, WrongBonesAreRefusedInOneSentence) {
+  Studio studio(services());
+  open(studio);
+  const std::string neck = tests::made_name(tests::Naming::Mixamo, Neck);
+  studio.run("target.bone", {"0", "head", neck});
+  EXPECT_NE(refusal(studio, "target.bone", {"0", "neck", neck}).find("to both"), std::string::npos);
+  EXPECT_NE(refusal(studio, "target.bone", {"0", "neck", "Tail"}).find("'Tail'"), std::string::npos);
+  EXPECT_NE(refusal(studio, "target.bone", {"0", "tail", neck}), "");
+  EXPECT_NE(refusal(studio, "target.rig", {"0", "mine"}), "");
+  EXPECT_EQ(studio.session().document.takes[0].target.bones, (BoneChoices{{"head", neck}}));
+}
+
+TEST_F(StudioCharacter, AMeshWithoutBonesCannotPerformOnItsOwn) {
+  Studio studio(services());
+  open_both(studio);
+  EXPECT_NE(refusal(studio, "target.rig", {"0", "theirs"}).find("no skeleton"), std::string::npos);
+}
+
+TEST_F(StudioCharacter, ItsOwnSkinTakesMovedJointsAndPaintedWeights) {
+  Studio studio(services());
+  open(studio);
+  const Target before = *take(studio).target;
+  const Points pose_before = take(studio).deformer->deform(take(studio).shown.poses.back());
+  const Vec3 elbow = before.joints.row(LeftElbow).transpose() + Vec3(-0.06f, 0.02f, 0);
+  studio.run("edit.target_joint", {"0", "left_elbow", std::to_string(elbow.x()), std::to_string(elbow.y()),
+                                   std::to_string(elbow.z())});
+  studio.wait_idle(60);
+  const TakeState& state = take(studio);
+  EXPECT_NEAR((state.target->joints.row(LeftElbow).transpose() - elbow).norm(), 0, 1e-5f);
+  Pose rest;
+  rest.root = state.target->joints.row(Pelvis).transpose();
+  EXPECT_LT((state.deformer->deform(rest) - state.target->mesh.vertices).cwiseAbs().maxCoeff(), 1e-4f);
+  const Points pose_after = state.deformer->deform(state.shown.poses.back());
+  EXPECT_GT((pose_after - pose_before).cwiseAbs().maxCoeff(), 0.005f);
+
+  studio.run("select.joint", {"head"});
+  studio.run("edit.paint", {"0", std::to_string(elbow.x()), std::to_string(elbow.y()), "0.05"});
+  studio.wait_idle(60);
+  EXPECT_GT((state.deformer->deform(state.shown.poses.back()) - pose_after).cwiseAbs().maxCoeff(), 0.005f);
+  EXPECT_EQ(state.deformer->name(), "the rig's own skin");
+}
+
+TEST_F(StudioCharacter, RigAndBonesAreSaved) {
+  std::vector<KeptFrame> performed;
+  {
+    Studio studio(services());
+    open(studio);
+    studio.run("target.bone", {"0", "left_collar", "none"});
+    studio.run("target.rig", {"0", "theirs"});
+    studio.wait_idle(60);
+    performed = take(studio).performed;
+    studio.run("document.save_as", {path("made")});
+  }
+  Studio studio(services());
+  studio.run("open", {path("made.understudy")});
+  studio.wait_idle(60);
+  const TargetOptions& target = studio.session().document.takes.at(0).target;
+  EXPECT_EQ(target.rig, "theirs");
+  EXPECT_EQ(target.bones, (BoneChoices{{"left_collar", ""}}));
+  ASSERT_EQ(take(studio).performed.size(), performed.size());
+  EXPECT_EQ(take(studio).performed.back().pose.root, performed.back().pose.root);
+}
+
+}  // namespace
+}  // namespace understudy::app
