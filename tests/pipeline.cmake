@@ -1,11 +1,8 @@
-find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
 us_test(pipeline_test LABELS fast SOURCES
   tests/retarget/pipeline/copy_transfer_test.cpp
   tests/retarget/pipeline/joint_filter_test.cpp
   tests/retarget/pipeline/root_path_test.cpp
   tests/retarget/pipeline/retargeter_test.cpp
   LIBS understudy_pipeline)
-us_test(writers_test LABELS fast SOURCES tests/retarget/pipeline/writers_test.cpp
-  LIBS understudy_results understudy_pipeline understudy_npz ${TINYGLTF_LIBRARY})
 us_test(foot_lock_test LABELS fast SOURCES tests/retarget/pipeline/foot_lock_test.cpp
   LIBS understudy_pipeline understudy_builtin understudy_metrics)

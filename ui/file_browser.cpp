@@ -67,7 +67,8 @@ bool pressed(Key key) {
 
 FileFilter scan_filter() {
   return {"Scans",
-          {"ply", "obj", "off", "stl", "xyz", "pcd", "npy", "npz", "glb", "gltf", "fbx", "txt", "lst"},
+          {"ply", "obj", "off", "stl", "xyz", "pcd", "npy", "npz", "glb", "gltf", "fbx", "dae", "bvh", "txt",
+           "lst"},
           true};
 }
 FileFilter target_filter() {

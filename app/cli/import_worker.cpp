@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include "app/cli/commands.hpp"
 #include "retarget/character/assimp_import.hpp"
@@ -18,7 +19,10 @@ Action declare_import_worker(CLI::App& command) {
     try {
       write_gltf_character(*out, import_by_assimp(*in));
       return 0;
-    } catch (const std::exception& error) {  // std::bad_alloc, and assimp's own
+    } catch (const std::bad_alloc&) {
+      std::fprintf(stderr, "it wants more memory than its reader may take\n");
+      return 1;
+    } catch (const std::exception& error) {  // assimp's own too
       std::fprintf(stderr, "%s\n", error.what());
       return 1;
     }

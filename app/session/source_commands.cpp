@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <filesystem>
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/scan_source.hpp"
+#include "retarget/motion/read_motion.hpp"
 
 namespace understudy::app {
 namespace {
@@ -24,11 +26,13 @@ void set_source(Studio& studio, SourceOptions source) {
 }
 
 void add_opening(Commands& commands) {
-  commands.add({"source.open", "Open scan", "PATH: a folder, list or array of scans", "", true, false,
-                [](Studio& s, const Arguments& a) {
+  commands.add({"source.open", "Open scan",
+                "PATH: scans (folder, list, array) or a skeletal motion (BVH, AMASS .npz, FBX, DAE, GLB)", "",
+                true, false, [](Studio& s, const Arguments& a) {
                   SourceOptions source;
                   source.path = fs::absolute(word(a, 0, "path")).lexically_normal().string();
-                  ScanSource{source.path};  // throws at once when there is no frame
+                  if (!is_motion_file(source.path))
+                    ScanSource{source.path};  // throws at once when there is no frame
                   set_source(s, source);
                 }});
   commands.add({"source.motion", "Open motion", "BODY MOTION: SMPL-format body, AMASS-format motion", "",
@@ -73,10 +77,33 @@ void add_import(Commands& commands) {
                 }});
 }
 
+void add_skeletal(Commands& commands) {
+  commands.add({"source.clip", "Animation of the source", "NAME|NUMBER|longest", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  const std::string clip = word(a, 0, "animation");
+                  s.session().document.source.clip = clip == "longest" ? "" : clip;
+                }});
+  commands.add({"source.as_scan", "Look at an animated source as a scan", "on|off", "", true, false,
+                [](Studio& s, const Arguments& a) {
+                  choice(a, 0, "switch", {"on", "off"});
+                  s.session().document.source.as_scan = a[0] == "on";
+                }});
+  commands.add({"source.bone", "Bone of the source for a joint", "JOINT BONE; auto: as it is found; none", "",
+                true, false, [](Studio& s, const Arguments& a) {
+                  BoneChoices& bones = s.session().document.source.bones;
+                  const std::string joint = word(a, 0, "joint"), bone = word(a, 1, "bone");
+                  US_CHECK(std::find(kJointNames.begin(), kJointNames.end(), joint) != kJointNames.end(),
+                           "there is no joint '", joint, "'");
+                  bones[joint] = bone == "none" ? "" : bone;
+                  if (bone == "auto") bones.erase(joint);
+                }});
+}
+
 }  // namespace
 
 void add_source_commands(Commands& commands) {
   add_opening(commands);
+  add_skeletal(commands);
   add_import(commands);
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -39,6 +40,7 @@ class AssimpConverter {
   void add_part(const aiMesh& mesh, int node);
   void add_skin(const aiMesh& mesh, CharacterPart& part);
   void add_material(const aiMaterial& material);
+  void add_animation(const aiAnimation& animation);
   int add_texture(const std::string& name);
   std::string texture_bytes(const std::string& name) const;
 
@@ -188,14 +190,56 @@ void AssimpConverter::add_material(const aiMaterial& material) {
   out_.materials.push_back(object.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
+/// The keys of one value of a node. Those at the same time as the one before, which some exporters write, go.
+template <class Key, class Append>
+void add_track(const Key* keys, unsigned count, CharacterTrack track, double ticks_per_second,
+               CharacterAnimation& out, Append append) {
+  for (unsigned k = 0; k < count; ++k) {
+    const auto seconds = static_cast<float>(keys[k].mTime / ticks_per_second);
+    if (!std::isfinite(seconds) || (!track.times.empty() && seconds <= track.times.back())) continue;
+    track.times.push_back(seconds);
+    append(keys[k].mValue, track.values);
+  }
+  if (!track.times.empty()) out.tracks.push_back(std::move(track));
+}
+
+void AssimpConverter::add_animation(const aiAnimation& animation) {
+  CharacterAnimation out;
+  out.name = animation.mName.C_Str();
+  const double ticks =
+      animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 25;  // assimp's own default
+  const auto place = [](const aiVector3D& v, std::vector<float>& to) {
+    to.insert(to.end(), {v.x, v.y, v.z});
+  };
+  const auto turn = [](const aiQuaternion& q, std::vector<float>& to) {
+    to.insert(to.end(), {q.x, q.y, q.z, q.w});
+  };
+  for (unsigned c = 0; c < animation.mNumChannels; ++c) {
+    const aiNodeAnim& channel = *animation.mChannels[c];
+    const auto node = node_by_name_.find(channel.mNodeName.C_Str());
+    if (node == node_by_name_.end()) continue;
+    CharacterTrack track;
+    track.node = node->second;
+    track.path = TrackPath::Translation;
+    add_track(channel.mPositionKeys, channel.mNumPositionKeys, track, ticks, out, place);
+    track.path = TrackPath::Rotation;
+    add_track(channel.mRotationKeys, channel.mNumRotationKeys, track, ticks, out, turn);
+    track.path = TrackPath::Scale;
+    add_track(channel.mScalingKeys, channel.mNumScalingKeys, track, ticks, out, place);
+  }
+  if (!out.tracks.empty()) out_.animations.push_back(std::move(out));
+}
+
 Character AssimpConverter::convert() {
-  US_CHECK(scene_.mRootNode != nullptr && scene_.mNumMeshes > 0, "it holds no mesh");
+  US_CHECK(scene_.mRootNode != nullptr && (scene_.mNumMeshes > 0 || scene_.mNumAnimations > 0),
+           "it holds neither a mesh nor an animation");
   out_.name = std::filesystem::path(path_).stem().string();
   for (unsigned m = 0; m < scene_.mNumMaterials; ++m) add_material(*scene_.mMaterials[m]);
   add_nodes();
   for (size_t n = 0; n < nodes_.size(); ++n)
     for (unsigned m = 0; m < nodes_[n]->mNumMeshes; ++m)
       add_part(*scene_.mMeshes[nodes_[n]->mMeshes[m]], static_cast<int>(n));
+  for (unsigned a = 0; a < scene_.mNumAnimations; ++a) add_animation(*scene_.mAnimations[a]);
   // A node has one skin: meshes without bones beside others with bones follow the first.
   for (auto& part : out_.parts) {
     const auto skin = skin_of_node_.find(part.node);

@@ -7,7 +7,7 @@
 
 namespace understudy {
 
-/// Parts, materials, pictures, nodes, skins and shapes; no animations. Throws Error.
+/// Parts, materials, pictures, nodes, skins, shapes, and animations of nodes. Throws Error.
 Character import_by_assimp(const std::string& path);
 
 }  // namespace understudy

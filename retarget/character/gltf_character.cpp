@@ -17,7 +17,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kMaxDepth = 1000;
+constexpr int kMaxDepth = 1000, kMostParts = 10000;
+constexpr int64_t kMostPrimitives = 1000000;
 
 std::string text_of(const Json& object, const char* name) {
   const auto found = object.find(name);
@@ -57,7 +58,8 @@ class CharacterReader {
   GltfFile file_;
   const std::string& path_;
   Character out_;
-  std::vector<int> node_of_;  // of each node of the file, its number here; -1: not in the scene
+  int64_t primitives_ = 0, vertices_ = 0;  // so far
+  std::vector<int> node_of_;               // of each node of the file, its number here; -1: not in the scene
 };
 
 int CharacterReader::node_number(int64_t index) const {
@@ -136,7 +138,9 @@ void CharacterReader::read_skin_joints(const Json& skin, CharacterSkin& out) {
 }
 
 void CharacterReader::read_skins() {
-  for (int64_t s = 0; s < static_cast<int64_t>(file_.list("skins").size()); ++s) {
+  const auto count = static_cast<int64_t>(file_.list("skins").size());
+  US_CHECK(count <= kMostParts, path_, ": has ", count, " skins; ", kMostParts, " are read at most");
+  for (int64_t s = 0; s < count; ++s) {
     const Json& object = file_.item("skins", s);
     CharacterSkin skin;
     skin.name = text_of(object, "name");
@@ -250,7 +254,8 @@ void CharacterReader::read_shapes(const Json& primitive, CharacterPart& part) {
 }
 
 void CharacterReader::read_primitive(const Json& primitive, CharacterPart part) {
-  US_CHECK(primitive.is_object(), path_, ": a primitive is no object");
+  US_CHECK(primitive.is_object() && ++primitives_ <= kMostPrimitives, path_,
+           ": a primitive is no object, or there are too many");
   const int64_t mode = file_.integer(primitive, "mode", 4);
   const Json& attributes = object_in(primitive, "attributes");
   if ((mode != 0 && mode < 4) || mode > 6 || !attributes.contains("POSITION")) return;  // lines, or nothing
@@ -259,6 +264,9 @@ void CharacterReader::read_primitive(const Json& primitive, CharacterPart part) 
   if (part.skin >= 0) read_influences(attributes, part);
   if (mode != 0) read_faces(primitive, mode, part);
   read_shapes(primitive, part);
+  vertices_ += part.vertices.rows();
+  US_CHECK(vertices_ <= 16000000, path_, ": has more than 16 million vertices");
+  US_CHECK(out_.parts.size() < kMostParts, path_, ": has more than ", kMostParts, " parts");
   out_.parts.push_back(std::move(part));
 }
 
@@ -292,7 +300,9 @@ void CharacterReader::read_images() {
     image.name = text_of(object, "name");
     const std::string what = "picture " + std::to_string(i), uri = text_of(object, "uri");
     if (object.contains("bufferView")) {
-      image.bytes = std::string(file_.view_bytes(file_.integer(object, "bufferView", -1)));
+      const std::string_view bytes = file_.view_bytes(file_.integer(object, "bufferView", -1));
+      file_.spend(bytes.size());
+      image.bytes = std::string(bytes);
     } else {
       const bool is_data = uri.rfind("data:", 0) == 0;
       if (image.name.empty() && !is_data) image.name = std::filesystem::path(uri).stem().string();
@@ -409,7 +419,6 @@ Character CharacterReader::read() {
   keep_texts("textures", out_.textures);
   keep_texts("materials", out_.materials);
   const GltfSceneNodes scene = walk_gltf_scene(file_);
-  int64_t budget = 16000000;
   std::vector<int64_t> order = scene.order;  // parts in the order of their nodes here
   std::sort(order.begin(), order.end(),
             [&](int64_t a, int64_t b) { return node_number(a) < node_number(b); });
@@ -417,8 +426,6 @@ Character CharacterReader::read() {
     const Json& node = file_.item("nodes", index);
     if (!node.contains("mesh")) continue;
     read_mesh(node, node_number(index));
-    budget -= out_.parts.empty() ? 0 : out_.parts.back().vertices.rows();
-    US_CHECK(budget >= 0, path_, ": has more than 16 million vertices");
   }
   read_animations();
   check_character(out_, path_);

@@ -15,7 +15,8 @@ namespace understudy {
 namespace {
 
 constexpr float kSmallestTurn = 8 * kPi / 180;
-constexpr float kRoughDeg = 4;  // joints that were seen, not given, are not better
+constexpr float kBallHeight = 0.25f;  // of the ankle's over the floor
+constexpr float kRoughDeg = 4;        // joints that were seen, not given, are not better
 
 /// The axis that a rig's spine points along, where that is not y.
 std::string up_of_rig(const BoneMap& map, const BindPose& bind) {
@@ -113,7 +114,11 @@ Joints rig_joints(const PreparedCharacter& c) {
   const Points moved = c.to_world.apply(places);
   Joints known = moved;
   if (!c.map.has(Pelvis)) known.row(Pelvis) = 0.5f * (known.row(LeftHip) + known.row(RightHip));
-  return complete_joints(c.map, known);
+  Joints joints = complete_joints(c.map, known);
+  // Soles may be thinner than a human's: a ball that the rig lacks stays over them.
+  for (const int foot : {LeftFoot, RightFoot})
+    if (!c.map.has(foot)) joints(foot, 1) = std::max(joints(foot, 1), kBallHeight * joints(foot - 3, 1));
+  return joints;
 }
 
 /// Turns everything so far about y.

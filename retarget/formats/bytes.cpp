@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -11,6 +12,8 @@
 
 namespace understudy {
 namespace {
+
+constexpr off_t kLargestFile = off_t{4} << 30;
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
@@ -32,6 +35,7 @@ std::string read_file(const std::string& path) {
   US_CHECK(::fstat(file.fd, &about) == 0, path, ": cannot be read (", std::strerror(errno), ")");
   US_CHECK(!S_ISDIR(about.st_mode), path, ": is a folder, not a file");
   US_CHECK(S_ISREG(about.st_mode), path, ": is not an ordinary file");
+  US_CHECK(about.st_size <= kLargestFile, path, ": is larger than 4 GiB");
 
   std::string bytes(static_cast<size_t>(about.st_size), '\0');
   size_t have = 0;
@@ -185,6 +189,25 @@ std::string lower_case(std::string_view text) {
   for (char& c : out)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   return out;
+}
+
+int json_depth(std::string_view text) {
+  int depth = 0, deepest = 0;
+  bool quoted = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      if (c == '"') quoted = false;
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return deepest;
 }
 
 std::string excerpt(std::string_view text) {

@@ -12,7 +12,8 @@
 
 namespace understudy {
 
-/// The whole file. Throws Error with the system's reason (no such file, no permission, a folder, ...).
+/// The whole file, 4 GiB at most. Throws Error with the system's reason (no such file, no permission, a
+/// folder, ...).
 std::string read_file(const std::string& path);
 
 enum class NumberType { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
@@ -75,6 +76,8 @@ class TextCursor {
 /// The words of one line; blanks, and the extra separators given, part them.
 void split_words(std::string_view line, std::string_view separators, std::vector<std::string_view>& words);
 std::string lower_case(std::string_view text);
+/// How deep the brackets of a JSON text are nested, those in its strings left out.
+int json_depth(std::string_view text);
 /// The beginning of a text for use in a message: at most 40 printable characters.
 std::string excerpt(std::string_view text);
 

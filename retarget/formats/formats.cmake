@@ -4,6 +4,6 @@ us_module(formats SOURCES
   formats/scan_source.cpp formats/scan_follow.cpp formats/scan_array.cpp formats/import.cpp
   PUBLIC understudy_core PRIVATE PkgConfig::LIBZIP nlohmann_json::nlohmann_json Threads::Threads)
 us_module(results SOURCES
-  formats/amass_writer.cpp formats/bvh_writer.cpp formats/glb_writer.cpp formats/joint_table.cpp formats/npz_writer.cpp
+  formats/amass_writer.cpp formats/bvh_writer.cpp formats/joint_table.cpp formats/npz_writer.cpp
   formats/result_writer.cpp formats/surface_writer.cpp
   PUBLIC understudy_core understudy_formats PRIVATE PkgConfig::LIBZIP nlohmann_json::nlohmann_json)

@@ -12,6 +12,8 @@ namespace {
 using Json = nlohmann::json;
 using Mat4 = Eigen::Matrix4f;
 
+constexpr int kDeepestJson = 200;  // what works on it calls itself
+constexpr uint64_t kMostDecoded = uint64_t{2} << 30;
 constexpr uint32_t kGlbJson = 0x4E4F534A, kGlbBinary = 0x004E4942;
 
 int sextet(char c) {
@@ -111,6 +113,8 @@ float normalizer(NumberType type) {
 GltfFile::GltfFile(std::string_view bytes, const std::string& path) : path_(path) {
   std::string_view text = bytes;
   if (bytes.substr(0, 4) == "glTF") text = split_glb(bytes);
+  US_CHECK(json_depth(text) <= kDeepestJson, path_, ": its JSON is nested more than ", kDeepestJson,
+           " levels deep");
   root_ = Json::parse(text.begin(), text.end(), nullptr, false);
   US_CHECK(root_.is_object(), path_, ": its JSON is broken or cut off");
   US_CHECK(root_.contains("asset"), path_, ": is JSON, but no glTF");
@@ -119,6 +123,11 @@ GltfFile::GltfFile(std::string_view bytes, const std::string& path) : path_(path
     US_CHECK(extension != "KHR_draco_mesh_compression" && extension != "EXT_meshopt_compression", path_,
              ": is compressed with ", extension, ", which is not read; export it without");
   }
+}
+
+void GltfFile::spend(uint64_t bytes) {
+  US_CHECK(bytes <= kMostDecoded - spent_, path_, ": is more than 2 GiB when it is unpacked");
+  spent_ += bytes;
 }
 
 const GltfFile::Json& GltfFile::list(const char* name) const {
@@ -186,7 +195,7 @@ std::string_view GltfFile::buffer(int64_t index) {
   return entry->second = uri_bytes(uri->get_ref<const std::string&>(), "buffer " + std::to_string(index));
 }
 
-std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what) const {
+std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what) {
   if (uri.rfind("data:", 0) == 0) {
     const size_t comma = uri.find(',');
     US_CHECK(comma != uri.npos && uri.find(";base64") < comma, path_, ": the data of ", what,
@@ -194,6 +203,7 @@ std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what)
     const std::string_view text = std::string_view(uri).substr(comma + 1);
     US_CHECK(std::all_of(text.begin(), text.end(), is_base64), path_, ": the data of ", what,
              " are not base64");
+    spend(text.size() / 4 * 3);
     return decode_base64(text);
   }
   const std::string name = decode_percent(uri);
@@ -203,7 +213,9 @@ std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what)
   const std::filesystem::path inside = std::filesystem::path(name).lexically_normal();
   US_CHECK(inside.is_relative() && !inside.empty() && *inside.begin() != ".." && name.find('\0') == name.npos,
            path_, ": ", what, " is outside of the file's folder (", excerpt(name), ")");
-  return read_file((std::filesystem::path(path_).parent_path() / inside).string());
+  std::string bytes = read_file((std::filesystem::path(path_).parent_path() / inside).string());
+  spend(bytes.size());
+  return bytes;
 }
 
 GltfFile::Stretch GltfFile::view(int64_t index) {
@@ -221,13 +233,14 @@ GltfFile::Stretch GltfFile::view(int64_t index) {
 // Fills out.values from bytes. Indices above 2^24 do not fit a float, so U32 is checked there by the callers'
 // counts.
 void GltfFile::read(const Stretch& from, uint64_t offset, NumberType type, bool normalized,
-                    GltfAccessor& out) const {
+                    GltfAccessor& out) {
   const uint64_t width = size_of(type) * static_cast<uint64_t>(out.parts);
   const uint64_t stride = from.stride == 0 ? width : from.stride, size = from.bytes.size();
   const auto count = static_cast<uint64_t>(out.count);
   US_CHECK(count == 0 ||
                (offset <= size && width <= size - offset && (count - 1) <= (size - offset - width) / stride),
            path_, ": an accessor of ", count, " elements reaches behind its buffer view");
+  spend(count * static_cast<uint64_t>(out.parts) * sizeof(float));
   out.values.resize(count * static_cast<uint64_t>(out.parts));
   const float scale = normalized ? normalizer(type) : 1.0f;
   float* to = out.values.data();
@@ -254,6 +267,7 @@ GltfAccessor GltfFile::accessor(int64_t index) {
   } else {
     // Zeros need no bytes in the file, so nothing bounds their count but sense.
     US_CHECK(sparse != object.end() && out.count <= 10000000, path_, ": accessor ", index, " has no data");
+    spend(static_cast<uint64_t>(out.count) * static_cast<uint64_t>(out.parts) * sizeof(float));
     out.values.assign(static_cast<size_t>(out.count) * static_cast<size_t>(out.parts), 0.0f);
   }
   if (sparse != object.end()) apply_sparse(*sparse, type, normalized, out);

@@ -40,7 +40,10 @@ class GltfFile {
   /// The bytes of a buffer view; they live as long as this.
   std::string_view view_bytes(int64_t index) { return view(index).bytes; }
   /// What a uri stands for: data in it, or a file in the folder. `what` names it in complaints.
-  std::string uri_bytes(const std::string& uri, const std::string& what) const;
+  std::string uri_bytes(const std::string& uri, const std::string& what);
+  /// Counts what is made of the file. A small file may name its bytes again and again: throws Error when all
+  /// together passes 2 GiB.
+  void spend(uint64_t bytes);
   const std::string& path() const { return path_; }
   const Json& root() const { return root_; }
 
@@ -54,12 +57,13 @@ class GltfFile {
   std::string_view buffer(int64_t index);
   Stretch view(int64_t index);
   void apply_sparse(const Json& sparse, NumberType type, bool normalized, GltfAccessor& out);
-  void read(const Stretch& from, uint64_t offset, NumberType type, bool normalized, GltfAccessor& out) const;
+  void read(const Stretch& from, uint64_t offset, NumberType type, bool normalized, GltfAccessor& out);
 
   const std::string& path_;
   Json root_;
   std::string_view binary_;
   std::map<int64_t, std::string> loaded_;
+  uint64_t spent_ = 0;
 };
 
 /// A node's transform to its parent.

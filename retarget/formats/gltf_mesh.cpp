@@ -34,15 +34,16 @@ Mat4 bind_transform(GltfFile& file, const Json& skin, const GltfSceneNodes& node
   const auto joints = skin.find("joints");
   US_CHECK(joints != skin.end() && joints->is_array() && !joints->empty(), file.path(),
            ": a skin has no joints");
-  size_t best = joints->size(), best_rank = nodes.order.size() + 1;
+  std::vector<size_t> ranks(nodes.world.size(), nodes.order.size());
+  for (size_t i = 0; i < nodes.order.size(); ++i) ranks[static_cast<size_t>(nodes.order[i])] = i;
+  size_t best = joints->size(), best_rank = nodes.order.size();
   for (size_t j = 0; j < joints->size(); ++j) {
     US_CHECK((*joints)[j].is_number_unsigned(), file.path(), ": a joint of a skin is no number");
-    const auto at = std::find(nodes.order.begin(), nodes.order.end(), whole((*joints)[j].get<double>()));
-    const auto rank = static_cast<size_t>(at - nodes.order.begin());
-    if (at != nodes.order.end() && rank < best_rank) {
-      best = j;
-      best_rank = rank;
-    }
+    const int64_t node = whole((*joints)[j].get<double>());
+    if (node < 0 || node >= static_cast<int64_t>(ranks.size())) continue;
+    if (ranks[static_cast<size_t>(node)] >= best_rank) continue;
+    best = j;
+    best_rank = ranks[static_cast<size_t>(node)];
   }
   if (best == joints->size()) return Mat4::Identity();  // a skeleton outside of the scene
   Mat4 inverse_bind = Mat4::Identity();
@@ -89,6 +90,7 @@ class MeshCollector {
 
  private:
   void add_primitive(const Json& primitive, const Mat4& transform) {
+    US_CHECK(++primitives_ <= 1000000, file_.path(), ": has more than a million primitives");
     const int64_t mode = file_.integer(primitive, "mode", 4);
     const auto attributes = primitive.find("attributes");
     if ((mode != 0 && mode < 4) || mode > 6 || attributes == primitive.end() || !attributes->is_object() ||
@@ -155,6 +157,7 @@ class MeshCollector {
   }
 
   GltfFile& file_;
+  int64_t primitives_ = 0;
   std::map<int64_t, int64_t> first_vertex_;  // of each accessor of positions in this mesh
   std::vector<float> positions_, colours_;
   FaceList faces_;
@@ -166,13 +169,18 @@ Mesh parse_gltf(std::string_view bytes, const std::string& path) {
   GltfFile file(bytes, path);
   const GltfSceneNodes nodes = walk_gltf_scene(file);
   MeshCollector collector(file);
+  std::map<int64_t, Mat4> bound;  // of each skin: many meshes may share one
   for (const int64_t index : nodes.order) {
     const Json& node = file.item("nodes", index);
     if (!node.contains("mesh")) continue;
     const Json& mesh = file.item("meshes", file.integer(node, "mesh", -1));
     Mat4 transform = nodes.world[static_cast<size_t>(index)];
-    if (node.contains("skin"))
-      transform = bind_transform(file, file.item("skins", file.integer(node, "skin", -1)), nodes);
+    if (node.contains("skin")) {
+      const int64_t skin = file.integer(node, "skin", -1);
+      const auto [known, is_new] = bound.try_emplace(skin);
+      if (is_new) known->second = bind_transform(file, file.item("skins", skin), nodes);
+      transform = known->second;
+    }
     collector.add_mesh(mesh, transform);
   }
   const Mesh mesh = collector.finish();

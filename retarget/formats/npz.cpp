@@ -3,8 +3,11 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -14,6 +17,9 @@
 
 namespace understudy {
 namespace {
+
+constexpr char kNoNumber = '?';           // objects, dates, records: their kind
+constexpr int kLongestElement = 1 << 24;  // bytes, or characters of a text
 
 struct Header {
   char kind = 'f';  // f, i, u, b, U
@@ -45,6 +51,7 @@ std::vector<int64_t> shape_of(const std::string& dict, const std::string& source
              ": bad extent in the array's shape");
     shape.push_back(extent);
   }
+  US_CHECK(shape.size() <= 64, source, ": the array has ", shape.size(), " dimensions");
   return shape;
 }
 
@@ -64,11 +71,17 @@ Header parse_header(const std::string& bytes, const std::string& source) {
   US_CHECK(start + length <= bytes.size(), source, ": the array header is cut off");
   const std::string dict = bytes.substr(start, length);
   const std::string descr = quoted_value(dict, "descr");
-  US_CHECK(descr.size() >= 3, source, ": the array has no simple number type");
   Header header;
-  header.big_endian = descr[0] == '>';
-  header.kind = descr[1];
-  header.bytes = std::atoi(descr.c_str() + 2) * (header.kind == 'U' ? 4 : 1);
+  header.kind = kNoNumber;
+  header.bytes = 0;
+  if (descr.size() >= 3) {
+    const char* const end = descr.data() + descr.size();
+    const auto [stop, problem] = std::from_chars(descr.data() + 2, end, header.bytes);
+    if (problem == std::errc() && stop == end && header.bytes >= 0 && header.bytes <= kLongestElement)
+      header.kind = descr[1];
+    header.big_endian = descr[0] == '>';
+  }
+  if (header.kind == 'U') header.bytes *= 4;
   header.fortran = dict.find("'fortran_order': True") != std::string::npos;
   header.shape = shape_of(dict, source);
   header.data_offset = start + length;
@@ -162,11 +175,12 @@ Zip open_archive(const std::string& path) {
   throw Error(path + ": not an .npz archive");
 }
 
-std::string read_entry(zip_t* archive, zip_int64_t index, const std::string& source) {
+std::string read_entry(zip_t* archive, zip_int64_t index, uint64_t archive_size, const std::string& source) {
   zip_stat_t stat;
   US_CHECK(zip_stat_index(archive, index, 0, &stat) == 0, source, ": the archive is damaged");
   // Deflate cannot expand more than 1032 times: a claim beyond that is a lie, found before memory is taken.
-  US_CHECK(stat.size <= kLargestArray && stat.size <= stat.comp_size * 1040 + 1024, source,
+  const uint64_t packed = std::min<uint64_t>(stat.comp_size, archive_size);
+  US_CHECK(stat.size <= kLargestArray && stat.size <= packed * 1040 + 1024, source,
            ": the archive's sizes are impossible");
   std::string bytes(stat.size, '\0');
   zip_file_t* file = zip_fopen_index(archive, index, 0);
@@ -254,14 +268,17 @@ std::vector<std::string> npz_names(const std::string& path) {
 
 Npz read_npz(const std::string& path) {
   const Zip archive = open_archive(path);
+  std::error_code ignored;
+  const uint64_t archive_size = std::filesystem::file_size(path, ignored);
   Npz npz;
   const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
   for (zip_int64_t i = 0; i < entries; ++i) {
-    std::string name = zip_get_name(archive.get(), i, 0);
+    const char* const entry_name = zip_get_name(archive.get(), i, 0);
+    std::string name = entry_name != nullptr ? entry_name : "";
     if (name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0) continue;
     name.resize(name.size() - 4);
     const std::string source = path + ": " + name;
-    const std::string bytes = read_entry(archive.get(), i, source);
+    const std::string bytes = read_entry(archive.get(), i, archive_size, source);
     const Header header = parse_header(bytes, source);
     if (header.kind == 'U' || converter(header.kind, header.bytes)) npz[name] = parse_npy(bytes, source);
   }

@@ -49,15 +49,22 @@ struct CloseZip {
   void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
 
+struct Archive {
+  std::shared_ptr<zip_t> zip;
+  uint64_t size = 0;  // of the file: what its directory says of packed sizes may be a lie
+};
+
 class ZipStream : public ByteStream {
  public:
-  ZipStream(std::shared_ptr<zip_t> zip, zip_uint64_t index)
-      : zip_(std::move(zip)), index_(index), file_(zip_fopen_index(zip_.get(), index, 0)) {
+  ZipStream(const Archive& archive, zip_uint64_t index)
+      : zip_(archive.zip), index_(index), file_(zip_fopen_index(zip_.get(), index, 0)) {
     zip_stat_t about;
     zip_stat_init(&about);
     if (zip_stat_index(zip_.get(), index, 0, &about) != 0 || !(about.valid & ZIP_STAT_SIZE)) return;
     size = about.size;  // deflate makes at most 1032 bytes of one: what promises more is a lie
-    if (about.valid & ZIP_STAT_COMP_SIZE) size = std::min<uint64_t>(size, (about.comp_size + 1) * 1032);
+    uint64_t packed = archive.size;
+    if (about.valid & ZIP_STAT_COMP_SIZE) packed = std::min<uint64_t>(packed, about.comp_size);
+    size = std::min<uint64_t>(size, (packed + 1) * 1032);
   }
   size_t read(char* to, size_t count) override {
     size_t have = 0;
@@ -224,29 +231,29 @@ std::string entry_name(zip_t* zip, zip_int64_t index) {
 }
 
 // `points`, then `vertices`, then the first array of the shape of a sequence; -1: none.
-zip_int64_t find_array(const std::shared_ptr<zip_t>& zip, const std::string& path) {
+zip_int64_t find_array(const Archive& archive, const std::string& path) {
   for (const char* const name : {"points.npy", "vertices.npy"}) {
-    const zip_int64_t index = zip_name_locate(zip.get(), name, 0);
+    const zip_int64_t index = zip_name_locate(archive.zip.get(), name, 0);
     if (index < 0) continue;
-    ZipStream stream(zip, static_cast<zip_uint64_t>(index));
+    ZipStream stream(archive, static_cast<zip_uint64_t>(index));
     const auto shape = read_header(stream, path + " (" + name + ")").shape;
     if (is_sequence(shape) || is_frame(shape)) return index;
   }
-  const zip_int64_t count = zip_get_num_entries(zip.get(), 0);
+  const zip_int64_t count = zip_get_num_entries(archive.zip.get(), 0);
   for (zip_int64_t i = 0; i < count; ++i) {
-    const std::string name = entry_name(zip.get(), i);
+    const std::string name = entry_name(archive.zip.get(), i);
     if (name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0) continue;
-    ZipStream stream(zip, static_cast<zip_uint64_t>(i));
+    ZipStream stream(archive, static_cast<zip_uint64_t>(i));
     if (is_sequence(read_header(stream, path + " (" + name + ")").shape)) return i;
   }
   return -1;
 }
 
 // Faces beside the points, where they fit.
-Faces read_faces(const std::shared_ptr<zip_t>& zip, int64_t points, const std::string& path) {
-  const zip_int64_t index = zip_name_locate(zip.get(), "faces.npy", 0);
+Faces read_faces(const Archive& archive, int64_t points, const std::string& path) {
+  const zip_int64_t index = zip_name_locate(archive.zip.get(), "faces.npy", 0);
   if (index < 0) return Faces(0, 3);
-  ZipStream stream(zip, static_cast<zip_uint64_t>(index));
+  ZipStream stream(archive, static_cast<zip_uint64_t>(index));
   const NpyHeader header = read_header(stream, path + " (faces)");
   const uint64_t width = 3 * size_of(header.type);
   if (!header.readable || !is_frame(header.shape) ||
@@ -267,18 +274,19 @@ Faces read_faces(const std::shared_ptr<zip_t>& zip, int64_t points, const std::s
 std::unique_ptr<ScanSource::Frames> open_npz(const std::string& path) {
   const FileStream readable(path);  // says why, when it cannot be read
   int code = 0;
-  std::shared_ptr<zip_t> zip(zip_open(path.c_str(), ZIP_RDONLY, &code), [](zip_t* z) {
+  const std::shared_ptr<zip_t> zip(zip_open(path.c_str(), ZIP_RDONLY, &code), [](zip_t* z) {
     if (z) zip_discard(z);
   });
+  const Archive archive{zip, readable.size};
   US_CHECK(zip, path, ": is not a .npz file, or is cut off");
-  const zip_int64_t index = find_array(zip, path);
+  const zip_int64_t index = find_array(archive, path);
   US_CHECK(index >= 0, path, ": holds no array of frames x points x 3");
-  auto stream = std::make_unique<ZipStream>(zip, static_cast<zip_uint64_t>(index));
+  auto stream = std::make_unique<ZipStream>(archive, static_cast<zip_uint64_t>(index));
   const NpyHeader header = read_header(*stream, path);
   US_CHECK(header.readable, path,
            ": its numbers are not in C order or of a type that is read; save it as float32");
   auto frames = std::make_unique<ArrayFrames>(path, std::move(stream), header);
-  frames->faces = read_faces(zip, frames->points(), path);
+  frames->faces = read_faces(archive, frames->points(), path);
   return frames;
 }
 

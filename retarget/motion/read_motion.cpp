@@ -26,22 +26,21 @@ bool is_amass_motion(const std::string& path) {
 
 }  // namespace
 
-bool is_motion_suffix(const std::string& path) {
+bool is_motion_file(const std::string& path) {
   const std::string suffix = suffix_of(path);
-  return suffix == ".bvh" || suffix == ".fbx" || suffix == ".dae";
+  if (suffix != ".npz" && suffix != ".bvh" && suffix != ".fbx" && suffix != ".dae") return false;
+  US_CHECK(std::filesystem::exists(path), path, ": there is no such file");
+  if (std::filesystem::is_directory(path)) return false;
+  return suffix != ".npz" || is_amass_motion(path);
 }
 
 std::optional<Character> read_motion(const std::string& path, const ReadCharacterOptions& options) {
   std::error_code failed;
   const std::string suffix = suffix_of(path);
-  if (std::filesystem::is_directory(path, failed)) return std::nullopt;
-  if (suffix == ".bvh") return read_bvh(path);
-  if (suffix == ".npz") {
-    if (!is_amass_motion(path)) return std::nullopt;
-    return read_amass_character(path);
-  }
   const bool is_gltf = suffix == ".glb" || suffix == ".gltf";
-  if (!is_gltf && !is_motion_suffix(path)) return std::nullopt;
+  if (std::filesystem::is_directory(path, failed) || (!is_gltf && !is_motion_file(path))) return std::nullopt;
+  if (suffix == ".bvh") return read_bvh(path);
+  if (suffix == ".npz") return read_amass_character(path);
   Character character = read_character(path, options);
   auto& all = character.animations;
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& one) { return one.tracks.empty(); }),

@@ -9,8 +9,10 @@
 
 namespace understudy {
 
-/// Whether a file of this name is a motion without a look inside: .bvh, .fbx, .dae.
-bool is_motion_suffix(const std::string& path);
+/// Whether a file holds a skeletal motion, told quickly: .bvh, .fbx and .dae by their names, .npz by the
+/// names of its arrays. A glTF may be one, too: that only reading it tells. Throws Error when there is no
+/// such file.
+bool is_motion_file(const std::string& path);
 
 /// The animated character of a BVH, FBX, DAE, glTF or GLB file, or of an AMASS-format .npz; it may have no
 /// mesh. None when the file is of another kind or a glTF without an animation. Throws Error naming the file,

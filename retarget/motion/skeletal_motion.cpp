@@ -19,7 +19,7 @@ namespace {
 
 constexpr float kDoubtfulDeg = 75;   // no bind pose leaves the T-pose so far
 constexpr float kPosedCostDeg = 20;  // the nodes' own pose is the likelier bind pose
-constexpr float kNearFloor = 0.08f;  // of the legs
+constexpr float kNearFloor = 0.04f;  // of the legs
 constexpr int64_t kLookedAt = 500;   // frames that up and floor are read from
 
 /// The character with its nodes in the pose of an animation's first frame.
@@ -162,8 +162,8 @@ void SkeletalMotion::Impl::find_axes(const ImportOptions& import) {
   axes = rotation_about_y(import.yaw_deg * kPi / 180) * axes;
 }
 
-/// The file's own zero, under the soles of the bind pose, where the soles come near to it, else where the
-/// soles are mostly at their lowest.
+/// Of a skin the floor under its bind pose or the file's zero, where the soles come near to one of them; else
+/// where the soles are mostly at their lowest.
 void SkeletalMotion::Impl::find_floor(const ImportOptions& import) {
   floor = import.floor.value_or(-c.to_world.t.y());
   if (import.floor) return;
@@ -173,7 +173,11 @@ void SkeletalMotion::Impl::find_floor(const ImportOptions& import) {
   std::sort(soles.begin(), soles.end());
   const float low = soles[soles.size() / 20];
   US_CHECK(std::isfinite(low), c.character.name, ": its animation has numbers that are not finite");
-  if (!has_skin || std::abs(low) > kNearFloor * leg_length(c.target.joints)) floor += low;
+  const float near = kNearFloor * leg_length(c.target.joints), over_zero = low + floor;
+  if (has_skin && std::abs(over_zero) < std::min(near, std::abs(low)))
+    floor = 0;
+  else if (!has_skin || std::abs(low) > near)
+    floor += low;
 }
 
 PosedSkeleton SkeletalMotion::Impl::joints(const PosedNodes& nodes) const {
@@ -201,12 +205,17 @@ void SkeletalMotion::Impl::say() {
   std::string text = "animation '" + excerpt(all[static_cast<size_t>(clip)].name) + "'";
   if (all.size() > 1) text += " (" + std::to_string(clip + 1) + " of " + std::to_string(all.size()) + ")";
   text += ", " + std::to_string(times.count) + " frames at " + in_words("%g frames/s", times.fps);
+  // What was decided of the bind pose gives way to what is so of the motion.
+  const auto of_bind = [](const std::string& note) { return note.rfind("units: ", 0) == 0; };
+  c.notes.erase(std::remove_if(c.notes.begin(), c.notes.end(), of_bind), c.notes.end());
   c.notes.insert(c.notes.begin(), text);
+  Eigen::Index up = 1;
+  const Vec3 direction = axes.transpose() * Vec3::UnitY();
+  direction.cwiseAbs().maxCoeff(&up);
+  c.notes.push_back("a unit is " + in_words("%g m", static_cast<double>(c.to_world.scale)) +
+                    ", up: " + (direction[up] < 0 ? "-" : "") + "xyz"[up] + ", floor at " +
+                    in_words("%.2f m", static_cast<double>(floor)));
   c.notes.push_back(std::to_string(c.map.count()) + " of 22 joints are mapped " + c.map.how);
-  if (std::abs(floor + c.to_world.t.y()) > 0.005f)
-    c.notes.push_back("the soles are lowest " +
-                      in_words("%.2f m", static_cast<double>(floor + c.to_world.t.y())) +
-                      " over its own floor: that is the floor");
 }
 
 SkeletalMotion::SkeletalMotion(Character character, const SkeletalMotionOptions& options)

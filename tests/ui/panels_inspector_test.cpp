@@ -46,6 +46,13 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_typed("take.name", "the adult", {"take.rename 0 \"the adult\""});
 }
 
+TEST_F(Inspector, AFileThatMayMoveHasAnimationsToChoose) {
+  session.document.source.path = "/scans/walk.bvh";
+  frame(2);
+  expect_typed("source.clip", "2", {"source.clip 2"});
+  expect_click("source.as_scan", {"source.as_scan on"});
+}
+
 TEST_F(Inspector, WhatIsLeftWithoutEnterIsAskedForToo) {
   write_into("source.yaw", "15");
   EXPECT_EQ(asked(), Lines());

@@ -1,6 +1,7 @@
 #include "ui/panels/inspector.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "ui/panels/rig.hpp"
@@ -60,12 +61,30 @@ void draw_source_facts(const app::Session& session, Ui& ui) {
   if (!source.decision.empty()) hint(ui, source.decision);
 }
 
+/// Whether a file of this name may hold a skeleton that moves.
+bool may_move(const app::SourceOptions& source) {
+  static const std::vector<std::string> suffixes = {".bvh", ".fbx", ".dae", ".glb", ".gltf", ".npz"};
+  const std::string suffix = std::filesystem::path(source.path).extension().string();
+  return source.motion.empty() && std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
+}
+
+void draw_animation_fields(const app::SourceOptions& source, PanelContext& context) {
+  Ui& ui = context.ui;
+  const std::string clip = source.clip.empty() ? "longest" : source.clip;
+  if (const auto text = text_row(ui, {"source.clip", "Animation", "Its name or number, or longest"}, clip))
+    context.ask("source.clip", {text->empty() ? "longest" : *text});
+  if (const auto on = toggle_row(
+          ui, {"source.as_scan", "As a scan", "Its surface is looked at, not its skeleton"}, source.as_scan))
+    context.ask("source.as_scan", {*on ? "on" : "off"});
+}
+
 void draw_source_fields(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::SourceOptions& source = session.document.source;
   const std::string fps = source.fps > 0 ? argument(source.fps) : "auto";
   if (const auto text = text_row(ui, {"source.fps", "Frames/s", "auto: as the file says, or 30"}, fps))
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
+  if (may_move(source)) draw_animation_fields(source, context);
   draw_import(context, "source", source.import, {});
   const std::string floor = source.import.floor ? argument(*source.import.floor) : "auto";
   if (const auto text = text_row(ui, {"source.floor", "Floor", "Its height in metres, or auto"}, floor)) {
@@ -83,7 +102,7 @@ void draw_source(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "inspector.source", "Source")) return;
   if (session.document.source.path.empty()) {
-    hint(ui, "No scan is open. Drop a folder of scans anywhere, or choose one.");
+    hint(ui, "No source is open. Drop a folder of scans or a motion anywhere, or choose one.");
   } else {
     draw_source_facts(session, ui);
     draw_source_fields(session, context);

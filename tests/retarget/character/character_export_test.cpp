@@ -291,6 +291,22 @@ TEST(CharacterExport, InPlaceStaysAndTheTPoseComesFirst) {
   EXPECT_GT(rest.col(0).maxCoeff() - rest.col(0).minCoeff(), 1.3f);
 }
 
+TEST(CharacterExport, RotationsTurnTheShortWay) {
+  const PreparedCharacter character = prepared({});
+  const RigDeformer screen(character, nullptr);
+  CharacterClip spin{"spin", 25, std::vector<Pose>(60)};
+  for (size_t i = 0; i < spin.poses.size(); ++i)
+    spin.poses[i].local[Pelvis] = rotation_about_y(0.2f * static_cast<float>(i));
+  const Character out = animated_character(character, screen, {spin}, {});
+  for (const auto& track : out.animations[0].tracks) {
+    if (track.path != TrackPath::Rotation) continue;
+    for (size_t i = 4; i < track.values.size(); i += 4)
+      EXPECT_GT(Eigen::Map<const Eigen::Vector4f>(&track.values[i])
+                    .dot(Eigen::Map<const Eigen::Vector4f>(&track.values[i - 4])),
+                0);
+  }
+}
+
 TEST(CharacterExport, ItsFileOpensAgainAsTheSameCharacter) {
   const TempFolder folder;
   MadeCharacter made;

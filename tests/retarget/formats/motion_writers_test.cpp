@@ -120,6 +120,40 @@ TEST(AmassWriter, IsReadBackAsTheMotionItWasWithZUp) {
   EXPECT_EQ(files_in(folder), 1);
 }
 
+TEST(ResultWriter, WritesWhatWasPushed) {
+  const TempFolder folder;
+  const Points vertices = fixtures::PointBody(human_rest()).mesh.vertices;
+  {
+    ResultWriter writer(folder.path("r.npz"), vertices.rows());
+    for (int i = 0; i < 5; ++i) {
+      const Pose pose = dance(static_cast<float>(i));
+      writer.push(vertices * static_cast<float>(i), forward_kinematics(human_rest(), pose).joints, pose.local,
+                  human_rest());
+    }
+    writer.finish();
+  }
+  const Npz npz = read_npz(folder.path("r.npz"));
+  const NpyArray& v = require(npz, "vertices", "r.npz");
+  EXPECT_EQ(v.shape, (std::vector<int64_t>{5, vertices.rows(), 3}));
+  EXPECT_FLOAT_EQ(v.values.back(), 4 * vertices(vertices.rows() - 1, 2));
+  const NpyArray& R = require(npz, "rotations", "r.npz");
+  EXPECT_EQ(R.shape, (std::vector<int64_t>{5, 22, 3, 3}));
+  EXPECT_FLOAT_EQ(R.values[22 * 9 + 1], dance(1).local[0](0, 1));
+  EXPECT_EQ(files_in(folder), 1);
+}
+
+TEST(ResultWriter, LeavesNothingBehindWhenNotFinished) {
+  const TempFolder folder;
+  { ResultWriter writer(folder.path("r.npz"), 10); }
+  EXPECT_EQ(files_in(folder), 0);
+}
+
+TEST(ResultWriter, RefusesAFrameOfAnotherSize) {
+  const TempFolder folder;
+  ResultWriter writer(folder.path("r.npz"), 10);
+  EXPECT_THROW(writer.push(Points::Zero(9, 3), human_rest(), identity_rotations(), human_rest()), Error);
+}
+
 TEST(JointTable, HasALineAFrameAndAColumnACoordinate) {
   const TempFolder folder;
   JointTable table(folder.path("a.csv"), kFps);

@@ -1,0 +1,32 @@
+// Whether a shape stands like a person: what lies down is turned, what is no person is refused.
+#pragma once
+
+#include <string>
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy {
+
+/// How a body stands, y up; all but the height are shares of the height. The one point in 250 that is
+/// furthest out on each side does not count.
+struct Stance {
+  float height = 0;  ///< in the units of the mesh
+  float length = 0;  ///< along the floor, where it is longest: the arms of a person, head to tail of a cat
+  float width = 0;   ///< along the floor, across that
+  float feet = 0;    ///< how far apart along `length` it touches the floor
+  float centre = 0;  ///< height of the mean of the surface
+};
+/// Throws Error when there is no finite point.
+Stance stance_of(const Mesh& mesh);
+
+/// Flat on the floor, as a person who lies or whose file has another axis up.
+bool lies_down(const Stance& stance);
+
+/// Why this is no person, to follow "does not look like a person: "; empty: it may be one. Only what no
+/// person, child, puppet or robot with two legs can be: T-poses have length 0.7 to 1.1, width 0.15 to 0.25
+/// and feet 0.15 to 0.3.
+std::string refusal(const Stance& stance);
+/// Why this may be no person; empty: no doubt.
+std::string doubt(const Stance& stance);
+
+}  // namespace understudy
