@@ -51,7 +51,7 @@ Action declare_eval(CLI::App& command) {
                   "skeleton: true source joints; pose: true rotations, root, target joints")
       ->check(CLI::IsMember({"skeleton", "pose"}));
   command.add_option("--filter", options->filter, "only cases whose name holds this");
-  command.add_option("--limit", options->limit, "at most so many cases")->check(CLI::NonNegativeNumber);
+  command.add_option("--limit", options->limit, "at most so many cases, evenly spread")->check(CLI::NonNegativeNumber);
   command.add_flag("!--no-foot-lock", options->retarget.lock_feet, "standing feet may slide");
   command.add_flag("!--no-offsets", options->networks.offsets, "no pose-corrective offsets");
   command
@@ -59,8 +59,11 @@ Action declare_eval(CLI::App& command) {
                   "forget the past after so many frames: contexts of this length")
       ->check(CLI::NonNegativeNumber);
   command
-      .add_option("--peer", options->peer, "fit: fit a body to each scan instead of extracting a skeleton")
-      ->check(CLI::IsMember({"fit"}));
+      .add_option(
+          "--peer", options->peer,
+          "fit: fit a body to each scan instead of extracting a skeleton; npt: pose transfer without a "
+          "skeleton (weights: --engine-weights)")
+      ->check(CLI::IsMember({"fit", "npt"}));
   command.add_option("--body", options->body, "the SMPL-format body that the peer fits");
   command.add_option("--worst", options->worst, "how many of the worst frames are told (default: 20)")
       ->check(CLI::Range(0, 10000));

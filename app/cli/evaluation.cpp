@@ -9,6 +9,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/peers/body_fit.hpp"
+#include "retarget/peers/surface_joints.hpp"
 
 namespace understudy::app {
 
@@ -19,6 +20,7 @@ SourceOptions case_source(const Case& c) {
   options.import.units = "m";
   options.import.up = "y";
   options.import.floor = 0.0f;
+  options.quiet = true;  // nothing was decided
   return options;
 }
 
@@ -102,9 +104,42 @@ void judge_performance(const Case& c, const EvalOptions& options, Networks netwo
     to.verdict.latency.add(frame->times);
     to.verdict.flagged += result.flagged;
     const Points vertices = target.surface.in_file_order(result.vertices);
+    const Confidence confidence =
+        result.flagged ? Confidence(Confidence::Zero()) : result.source_raw.confidence;
     to.judge.push({&vertices, &result.joints, &result.pose.local, &frame->source_joints,
                    result.flagged ? &frame->source_joints : &result.source_raw.joints,
-                   frame->scan.usable ? &frame->scan.mesh : nullptr, &result.source_raw.confidence});
+                   frame->scan.usable ? &frame->scan.mesh : nullptr, &confidence});
+  }
+}
+
+/// The peer without a skeleton: its surface, and joints read off it. A frame that it cannot use stays as the
+/// last.
+void judge_surface(const Case& c, const EvalOptions& options, Networks networks,
+                   const PreparedCharacter& target, Judging& to) {
+  const auto source = open_source(case_source(c));
+  const auto peer = nn::load_pose_transfer(options.networks);
+  const Points& rest = target.target.mesh.vertices;
+  networks.deformer->bind(rest, target.target.joints);
+  const SurfaceJoints joints_of(rest, networks.deformer->weights(), target.target.joints);
+  peer->reset(rest);
+  Points posed = rest;
+  while (true) {
+    check_interrupt("in case " + c.name);
+    FrameTimes times;
+    const auto began = std::chrono::steady_clock::now();
+    const auto frame = source->next();
+    if (!frame) break;
+    times.read = ms_since(began);
+    to.verdict.flagged += !failure_of([&] { posed = peer->push(frame->mesh); }).empty();
+    times.total = ms_since(began);
+    times.deform = times.total - times.read;
+    to.verdict.latency.add(times);
+    const Points vertices = target.surface.in_file_order(posed);
+    const Joints joints = joints_of.of(posed);
+    JudgedFrame judged;
+    judged.vertices = &vertices;
+    judged.joints = &joints;
+    to.judge.push(judged);
   }
 }
 
@@ -158,7 +193,9 @@ void judge_case(const Bench& bench, const std::string& folder, const Case& c, Ve
   }
   Judge judge(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
   Judging to{judge, verdict, truth ? &*truth : nullptr};
-  if (target)
+  if (target && options.peer == "npt")
+    judge_surface(c, options, std::move(networks), *target, to);
+  else if (target)
     judge_performance(c, options, std::move(networks), *target, to);
   else if (mesh)
     judge_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);
@@ -183,14 +220,19 @@ Json case_json(const Verdict& verdict) {
   return json;
 }
 
+/// Those whose name fits; with a limit, so many from the first to the last, evenly spread: of bodies x
+/// motions every body and every motion.
 std::vector<std::string> chosen_cases(const EvalOptions& options) {
-  std::vector<std::string> chosen;
-  for (const std::string& folder : case_folders(options.cases)) {
-    if (options.limit > 0 && static_cast<int>(chosen.size()) >= options.limit) break;
+  std::vector<std::string> fitting;
+  for (const std::string& folder : case_folders(options.cases))
     if (folder.find(options.filter, folder.find_last_of('/') + 1) != std::string::npos)
-      chosen.push_back(folder);
-  }
-  US_CHECK(!chosen.empty(), options.cases, ": no case's name holds ", options.filter);
+      fitting.push_back(folder);
+  US_CHECK(!fitting.empty(), options.cases, ": no case's name holds ", options.filter);
+  const auto limit = static_cast<size_t>(options.limit);
+  if (limit == 0 || limit >= fitting.size()) return fitting;
+  std::vector<std::string> chosen;
+  for (size_t i = 0; i < limit; ++i)
+    chosen.push_back(fitting[limit == 1 ? 0 : i * (fitting.size() - 1) / (limit - 1)]);
   return chosen;
 }
 
@@ -232,6 +274,7 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   report["engine"] = options.networks.engine;
   if (!options.oracle.empty()) report["oracle"] = options.oracle;
   if (!options.peer.empty()) report["peer"] = options.peer;
+  if (!options.networks.offsets) report["offsets"] = false;
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
   for (const Verdict& verdict : evaluation.verdicts) report["cases"].push_back(case_json(verdict));

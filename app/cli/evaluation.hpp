@@ -17,9 +17,11 @@ struct EvalOptions {
   std::string cases, oracle, filter;
   int limit = 0;          ///< cases; 0: all
   int restart_every = 0;  ///< frames after which the method forgets the past; 0: never
-  std::string peer;       ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
-  std::string body;       ///< SMPL-format, of the peer "fit"
-  int worst = 20;         ///< frames told as the worst
+  /// "fit": a body is fitted to each scan in place of the extractor; "npt": pose transfer without a skeleton,
+  /// its weights those of --engine-weights; empty: none
+  std::string peer;
+  std::string body;  ///< SMPL-format, of the peer "fit"
+  int worst = 20;    ///< frames told as the worst
   nn::NetworkOptions networks;
   RetargetOptions retarget;
 };

@@ -1,6 +1,8 @@
 // Options that several subcommands take.
 #pragma once
 
+#include "app/run/source.hpp"
+#include "app/run/target_file.hpp"
 #include "retarget/nn/networks.hpp"
 
 namespace CLI {
@@ -9,7 +11,13 @@ class App;
 
 namespace understudy::app {
 
-/// --engine, --extractor, --weights.
+/// All that may be said of a source but --source itself.
+void add_source_options(CLI::App& command, SourceOptions& source);
+
+/// All that may be said of a target but --target itself.
+void add_target_options(CLI::App& command, TargetOptions& target);
+
+/// --engine, --extractor, --weights, --engine-weights, --extractor-weights.
 void add_network_options(CLI::App& command, nn::NetworkOptions& networks);
 
 }  // namespace understudy::app

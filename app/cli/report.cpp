@@ -69,7 +69,7 @@ ReportResult result_of(const ReportOptions& options, ReportRow row) {
     result.report = report_of(result.row.eval, evaluation);
     result.report["row"] = known;
     write_json(file, result.report);
-    if (result.row.table == "peers" && result.row.name == "copy")
+    if (result.row.breakdown)
       write_worst_frames(options.out + "/worst_" + result.row.suite, evaluation.breakdown.worst());
   });
   check_interrupt("in row " + result.row.name);
@@ -77,9 +77,12 @@ ReportResult result_of(const ReportOptions& options, ReportRow row) {
 }
 
 std::vector<ReportRow> chosen_rows(const ReportOptions& options) {
-  std::vector<ReportRow> rows = options.rows.empty() ? standard_rows() : read_report_rows(options.rows);
+  nn::NetworkOptions weights;
+  weights.weights = options.weights;
+  const std::string path =
+      options.rows.empty() ? nn::weights_folder(weights) + "/comparison.json" : options.rows;
   std::vector<ReportRow> chosen;
-  for (ReportRow& row : rows) {
+  for (ReportRow& row : read_report_rows(path)) {
     const bool wanted = options.tables.empty() || std::find(options.tables.begin(), options.tables.end(),
                                                             row.table) != options.tables.end();
     if (!wanted) continue;
@@ -128,7 +131,7 @@ Action declare_report(CLI::App& command) {
   command.add_option("--out", options->out, "folder for report.md, its plots and the figures of each row")
       ->required();
   command.add_option("--rows", options->rows,
-                     "JSON that lists the rows (default: what the shipped weights can show)");
+                     "JSON that lists the rows (default: comparison.json beside the weights)");
   command
       .add_option("--tables", options->tables, "only these: peers, contexts, rotation, extraction, offsets")
       ->delimiter(',');

@@ -224,9 +224,7 @@ void write_report_page(const std::string& folder, const std::vector<ReportResult
     if (std::string(table.id) == "contexts") plot_contexts(page, folder, results);
   }
   for (const ReportResult& result : results)
-    if (result.lost.empty() && result.report.contains("breakdown") && result.row.table == "peers" &&
-        result.row.name == "copy")
-      write_breakdown(page, folder, result);
+    if (result.lost.empty() && result.row.breakdown) write_breakdown(page, folder, result);
   page.close();
   US_CHECK(page, folder, "/report.md: cannot be written");
 }

@@ -13,11 +13,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kTables[] = {"peers", "contexts", "rotation", "extraction", "offsets"};
-constexpr const char* kKeys[] = {"table",   "name",           "suite",
-                                 "budget",  "engine",         "extractor",
-                                 "weights", "engine_weights", "extractor_weights",
-                                 "offsets", "foot_lock",      "oracle",
-                                 "peer",    "context",        "limit"};
+constexpr const char* kKeys[] = {"table",    "name",           "suite",
+                                 "budget",   "engine",         "extractor",
+                                 "weights",  "engine_weights", "extractor_weights",
+                                 "offsets",  "foot_lock",      "oracle",
+                                 "peer",     "context",        "limit",
+                                 "breakdown"};
 
 ReportRow row_from(const Json& json, const fs::path& folder) {
   for (const auto& item : json.items())
@@ -34,6 +35,7 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
   US_CHECK(std::find(std::begin(kTables), std::end(kTables), row.table) != std::end(kTables),
            "there is no table \"", row.table, "\"");
   row.budget = json.value("budget", "");
+  row.breakdown = json.value("breakdown", false);
   row.eval.networks.engine = json.value("engine", "copy");
   row.eval.networks.extractor = json.value("extractor", "dense");
   row.eval.networks.weights = file("weights");
@@ -46,14 +48,6 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
   row.eval.restart_every = json.value("context", 0);
   row.eval.limit = json.value("limit", 0);
   return row;
-}
-
-ReportRow row(const std::string& table, const std::string& name, const std::string& suite) {
-  ReportRow made;
-  made.table = table;
-  made.name = name;
-  made.suite = suite;
-  return made;
 }
 
 }  // namespace
@@ -71,36 +65,6 @@ std::vector<ReportRow> read_report_rows(const std::string& path) {
     throw Error(path + ": " + wrong.what());
   }
   US_CHECK(!rows.empty(), path, ": holds no row");
-  return rows;
-}
-
-std::vector<ReportRow> standard_rows() {
-  std::vector<ReportRow> rows;
-  for (const char* suite : {"naked", "clothed", "captured"}) {
-    for (const char* engine : {"copy", "paper", "hybrid"}) {
-      rows.push_back(row("peers", engine, suite));
-      rows.back().eval.networks.engine = engine;
-    }
-    rows.push_back(row("peers", "fit", suite));
-    rows.back().eval.peer = "fit";
-    rows.back().eval.limit = 2;
-  }
-  for (const char* engine : {"copy", "paper"})
-    for (const int context : {5, 10, 15, 20, 30, 60}) {
-      rows.push_back(row("contexts", engine, "naked"));
-      rows.back().eval.networks.engine = engine;
-      rows.back().eval.restart_every = context;
-    }
-  for (const char* suite : {"extraction", "captured"})
-    for (const char* extractor : {"dense", "paper", "pointnet"}) {
-      rows.push_back(row("extraction", extractor, suite));
-      rows.back().eval.networks.extractor = extractor;
-    }
-  for (const bool offsets : {true, false}) {
-    rows.push_back(row("offsets", offsets ? "on, true poses" : "off, true poses", "naked"));
-    rows.back().eval.networks.offsets = offsets;
-    rows.back().eval.oracle = "pose";
-  }
   return rows;
 }
 

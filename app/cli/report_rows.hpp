@@ -9,20 +9,18 @@
 namespace understudy::app {
 
 struct ReportRow {
-  std::string table;   ///< contexts, peers, rotation, extraction or offsets
-  std::string name;    ///< of the row
-  std::string suite;   ///< folder of cases
-  std::string budget;  ///< what its networks were trained with, in words
-  EvalOptions eval;    ///< its cases are not named yet
+  std::string table;       ///< contexts, peers, rotation, extraction or offsets
+  std::string name;        ///< of the row
+  std::string suite;       ///< folder of cases
+  std::string budget;      ///< what its networks were trained with, in words
+  bool breakdown = false;  ///< the page also tells where its error lies and shows its worst frames
+  EvalOptions eval;        ///< its cases are not named yet
 };
 
 /// {"rows": [{"table", "name", "suite", "budget", "engine", "extractor", "weights", "engine_weights",
-/// "extractor_weights", "offsets", "foot_lock", "oracle", "peer", "context", "limit"}]}; all but the first
-/// three may be missing. "context": frames after which the past is forgotten. Paths are from the file's
-/// folder. Throws Error naming the file and what it does not know.
+/// "extractor_weights", "offsets", "foot_lock", "oracle", "peer", "context", "limit", "breakdown"}]}; all but
+/// the first three may be missing. "context": frames after which the past is forgotten. Paths are from the
+/// file's folder. Throws Error naming the file and what it does not know.
 std::vector<ReportRow> read_report_rows(const std::string& path);
-
-/// What the shipped weights can show.
-std::vector<ReportRow> standard_rows();
 
 }  // namespace understudy::app

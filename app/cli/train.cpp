@@ -9,9 +9,9 @@ namespace understudy::app {
 
 Action declare_train(CLI::App& command) {
   const auto options = std::make_shared<nn::TrainOptions>();
-  command.add_option("network", options->network, "skeleton, leaf, motion or deformation")
+  command.add_option("network", options->network, "skeleton, leaf, motion, hybrid, deformation or pose-transfer")
       ->required()
-      ->check(CLI::IsMember({"skeleton", "leaf", "motion", "deformation"}));
+      ->check(CLI::IsMember({"skeleton", "leaf", "motion", "hybrid", "deformation", "pose-transfer"}));
   command.add_option("--data", options->data, "folder with body/, motion/ and splits.json")->required();
   command.add_option("--out", options->out, "the weights file; its checkpoint lies beside it and is resumed")
       ->required();
@@ -23,12 +23,26 @@ Action declare_train(CLI::App& command) {
   command.add_option("--batch", options->batch, "samples a step; 0: the network's own")
       ->check(CLI::Range(0, 65536));
   command.add_option("--seed", options->seed, "of the data and the first weights");
-  command.add_option("--form", options->form, "of the skeleton network: dense, or the paper's")
-      ->check(CLI::IsMember({"dense", "paper"}));
+  command.add_option("--form", options->form, "of the skeleton network: dense, the paper's, or pointnet")
+      ->check(CLI::IsMember({"dense", "paper", "pointnet"}));
   command
       .add_option("--poses", options->poses,
                   "of the skeleton network: all, or rest (T-poses, for the joints of targets)")
       ->check(CLI::IsMember({"all", "rest"}));
+  command
+      .add_option("--rotation", options->rotation,
+                  "what the motion network says of rotations: 6d or quaternion")
+      ->check(CLI::IsMember({"6d", "quaternion"}));
+  command.add_flag("!--no-rotation-loss", options->rotation_loss, "the motion network without its L_rot");
+  command.add_option("--context", options->context, "frames of the motion network's sequences (default: 30)")
+      ->check(CLI::Range(3, 600));
+  command.add_option("--cache", options->cache,
+                     "of the hybrid network: file of what the extractor saw, made where it is missing");
+  command
+      .add_option("--windows", options->windows, "of the hybrid network: windows of 60 frames in the cache")
+      ->check(CLI::Range(1, 1000000));
+  command.add_option("--weights", options->weights,
+                     "folder of the trained extractor (default: beside the program)");
   command.add_option("--device", options->device, "cpu, or cuda where LibTorch has it")
       ->check(CLI::IsMember({"cpu", "cuda"}));
   command.add_option("--init", options->init, "weights to start from");

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "retarget/math/rotation.hpp"
 #include "retarget/metrics/confidence.hpp"
 
 namespace understudy::app {
 namespace {
+
+constexpr int64_t kApart = 10;  // frames between two of the worst
 
 /// BODY of a case BODY_MOTION.
 std::string body_of(const Case& c, const std::string& motion) {
@@ -54,19 +57,35 @@ void Breakdown::add(const std::string& folder, const Case& c, const Judge& judge
   add_confidence(judge, truth);
   const auto failures = failures_of({judge.source_joints(), truth.source_joints, judge.joints(), truth.joints,
                                      judge.rotations(), truth.rotations, c.fps});
-  for (size_t t = 0; t < failures.size(); ++t) {
+  for (const FrameFailures& frame : failures) {
     ++frames_;
     for (int f = 0; f < kFailureCount; ++f) {
-      failures_[f] += failures[t][f];
-      motion_failures_[motion][f] += failures[t][f];
+      failures_[f] += frame[f];
+      motion_failures_[motion][f] += frame[f];
     }
-    if (judge.source_joints().empty() || truth.source_joints.empty()) continue;
+  }
+  if (!judge.source_joints().empty() && !truth.source_joints.empty())
+    add_worst(folder, c, judge, truth, failures);
+}
+
+void Breakdown::add_worst(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth,
+                          const std::vector<FrameFailures>& failures) {
+  const auto worse = [](const WorstFrame& a, const WorstFrame& b) { return a.error_m > b.error_m; };
+  std::vector<WorstFrame> frames;
+  for (size_t t = 0; t < failures.size(); ++t) {
     const Joints &seen = judge.source_joints()[t], &known = truth.source_joints[t];
-    worst_.push_back({folder, c.name, static_cast<int64_t>(t), mean_joint_error({seen}, {known}), seen, known,
+    frames.push_back({folder, c.name, static_cast<int64_t>(t), mean_joint_error({seen}, {known}), seen, known,
                       failures[t]});
   }
-  std::stable_sort(worst_.begin(), worst_.end(),
-                   [](const auto& a, const auto& b) { return a.error_m > b.error_m; });
+  std::stable_sort(frames.begin(), frames.end(), worse);
+  std::vector<WorstFrame> told;  // of this case, far enough apart
+  for (const WorstFrame& frame : frames) {
+    if (told.size() >= keep_) break;
+    const auto near = [&](const WorstFrame& other) { return std::abs(other.frame - frame.frame) < kApart; };
+    if (std::none_of(told.begin(), told.end(), near)) told.push_back(frame);
+  }
+  worst_.insert(worst_.end(), told.begin(), told.end());
+  std::stable_sort(worst_.begin(), worst_.end(), worse);
   if (worst_.size() > keep_) worst_.resize(keep_);
 }
 

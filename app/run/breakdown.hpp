@@ -34,7 +34,7 @@ class Breakdown {
   /// "worst":
   /// [...]}; without what nothing is known of.
   Json json() const;
-  /// The worst first.
+  /// The worst first; those of one case are at least ten frames apart.
   const std::vector<WorstFrame>& worst() const { return worst_; }
 
  private:
@@ -43,6 +43,8 @@ class Breakdown {
     int64_t count = 0;
   };
   using Figures = std::vector<std::pair<std::string, Mean>>;
+  void add_worst(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth,
+                 const std::vector<FrameFailures>& failures);
   void add_joints(const Judge& judge, const Truth& truth);
   void add_confidence(const Judge& judge, const Truth& truth);
   Json confidence_json() const;

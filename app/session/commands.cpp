@@ -51,7 +51,7 @@ std::string join_line(const std::string& name, const Arguments& arguments) {
   std::string line = name;
   for (const std::string& argument : arguments) {
     line += ' ';
-    if (!argument.empty() && argument.find_first_of(" \t\"#\\") == std::string::npos) {
+    if (!argument.empty() && argument.find_first_of(" \t\r\"#\\") == std::string::npos) {
       line += argument;
       continue;
     }

@@ -320,6 +320,8 @@ MergedSurface merged_surface(const Character& character, const Points& positions
            " positions for ", character.vertex_count(), " vertices");
   MergedSurface out;
   std::unordered_map<std::string, int> known;
+  known.reserve(static_cast<size_t>(positions.rows()));
+  out.map.reserve(static_cast<size_t>(positions.rows()));
   std::vector<Eigen::Index> first;  // of each merged vertex, the row it came from
   std::vector<int> corners;
   Eigen::Index at = 0;

@@ -35,7 +35,7 @@ Points evenly(const Mesh& mesh) {
   }
 }
 
-std::string metres_of(float share, float height) {
+std::string centimetres(float share, float height) {
   return std::to_string(static_cast<int>(std::lround(100 * share * height))) + " cm";
 }
 
@@ -69,21 +69,20 @@ bool lies_down(const Stance& stance) {
 }
 
 std::string refusal(const Stance& s) {
-  if (s.feet > 0.75f && s.length > 1.1f)
-    return "it is " + metres_of(1, s.height) + " tall and its feet are " + metres_of(s.feet, s.height) +
+  const std::string tall = "it is " + centimetres(1, s.height) + " tall and ";
+  if (lies_down(s)) return "it lies down: " + tall + centimetres(s.length, s.height) + " long";
+  if (s.feet > 0.8f && s.length > 1.1f)
+    return tall + "its feet are " + centimetres(s.feet, s.height) +
            " apart, as those of an animal or a table";
-  if (s.length > 1.8f)
-    return std::string(lies_down(s) ? "it lies down: " : "") + "it is " + metres_of(1, s.height) +
-           " tall and " + metres_of(s.length, s.height) + " long";
-  return {};
+  return s.length > 1.8f ? tall + centimetres(s.length, s.height) + " long" : "";
 }
 
 std::string doubt(const Stance& s) {
   if (!refusal(s).empty()) return refusal(s);
-  if (s.feet > 0.6f) return "its feet are " + metres_of(s.feet, s.height) + " apart";
+  if (s.feet > 0.75f) return "its feet are " + centimetres(s.feet, s.height) + " apart";
   if (s.length > 1.35f || s.width > 0.7f)
-    return "it is " + metres_of(1, s.height) + " tall, " + metres_of(s.length, s.height) + " wide and " +
-           metres_of(s.width, s.height) + " deep";
+    return "it is " + centimetres(1, s.height) + " tall, " + centimetres(s.length, s.height) + " wide and " +
+           centimetres(s.width, s.height) + " deep";
   return {};
 }
 

@@ -13,7 +13,9 @@ using Json = nlohmann::json;
 using Mat4 = Eigen::Matrix4f;
 
 constexpr int kDeepestJson = 200;  // what works on it calls itself
-constexpr uint64_t kMostDecoded = uint64_t{2} << 30;
+// What may be made of a file: shared accessors and small numbers that become floats grow, but not without
+// end.
+constexpr uint64_t kMostDecoded = uint64_t{2} << 30, kSmall = uint64_t{256} << 20, kGrowth = 64;
 constexpr uint32_t kGlbJson = 0x4E4F534A, kGlbBinary = 0x004E4942;
 
 int sextet(char c) {
@@ -110,7 +112,7 @@ float normalizer(NumberType type) {
 
 }  // namespace
 
-GltfFile::GltfFile(std::string_view bytes, const std::string& path) : path_(path) {
+GltfFile::GltfFile(std::string_view bytes, const std::string& path) : path_(path), size_(bytes.size()) {
   std::string_view text = bytes;
   if (bytes.substr(0, 4) == "glTF") text = split_glb(bytes);
   US_CHECK(json_depth(text) <= kDeepestJson, path_, ": its JSON is nested more than ", kDeepestJson,
@@ -126,7 +128,9 @@ GltfFile::GltfFile(std::string_view bytes, const std::string& path) : path_(path
 }
 
 void GltfFile::spend(uint64_t bytes) {
-  US_CHECK(bytes <= kMostDecoded - spent_, path_, ": is more than 2 GiB when it is unpacked");
+  const uint64_t most = std::min(kMostDecoded, kSmall + kGrowth * size_);
+  US_CHECK(spent_ <= most && bytes <= most - spent_, path_, ": unpacks to more than ", most >> 20,
+           " MiB, which a file of its size may not");
   spent_ += bytes;
 }
 
@@ -214,6 +218,7 @@ std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what)
   US_CHECK(inside.is_relative() && !inside.empty() && *inside.begin() != ".." && name.find('\0') == name.npos,
            path_, ": ", what, " is outside of the file's folder (", excerpt(name), ")");
   std::string bytes = read_file((std::filesystem::path(path_).parent_path() / inside).string());
+  size_ += bytes.size();
   spend(bytes.size());
   return bytes;
 }

@@ -41,8 +41,8 @@ class GltfFile {
   std::string_view view_bytes(int64_t index) { return view(index).bytes; }
   /// What a uri stands for: data in it, or a file in the folder. `what` names it in complaints.
   std::string uri_bytes(const std::string& uri, const std::string& what);
-  /// Counts what is made of the file. A small file may name its bytes again and again: throws Error when all
-  /// together passes 2 GiB.
+  /// Counts what is made of the file, which may name its bytes again and again. Throws Error when all
+  /// together passes 2 GiB, or 256 MiB and 64 times the file's size.
   void spend(uint64_t bytes);
   const std::string& path() const { return path_; }
   const Json& root() const { return root_; }
@@ -63,7 +63,7 @@ class GltfFile {
   Json root_;
   std::string_view binary_;
   std::map<int64_t, std::string> loaded_;
-  uint64_t spent_ = 0;
+  uint64_t size_, spent_ = 0;  // of the file and of files beside it; of what was made of them
 };
 
 /// A node's transform to its parent.

@@ -5,24 +5,12 @@
 #include <algorithm>
 
 #include "retarget/base/error.hpp"
+#include "retarget/nn/modules/joint_tensors.hpp"
 #include "retarget/nn/modules/motion_gru.hpp"
 #include "retarget/nn/weights_file.hpp"
 
 namespace understudy::nn {
 namespace {
-
-torch::Tensor to_tensor(const Joints& joints) {
-  return torch::from_blob(const_cast<float*>(joints.data()), {kJointCount, 3}, torch::kFloat32).clone();
-}
-
-Rotations to_rotations(const torch::Tensor& local) {
-  const auto flat = local.contiguous();
-  Rotations rotations;
-  for (int j = 0; j < kJointCount; ++j)
-    rotations[j] =
-        Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(flat.data_ptr<float>() + 9 * j);
-  return rotations;
-}
 
 class PaperTransfer : public MotionTransfer {
  public:
@@ -66,6 +54,8 @@ class PaperTransfer : public MotionTransfer {
       options.hidden = static_cast<int64_t>(it->second);
     if (const auto it = numbers.find("layers"); it != numbers.end())
       options.layers = static_cast<int64_t>(it->second);
+    if (const auto it = numbers.find("quaternions"); it != numbers.end())
+      options.quaternions = it->second != 0;
     US_CHECK(options.hidden > 0 && options.hidden <= 4096 && options.layers > 0 && options.layers <= 16, path,
              ": the motion network's size cannot be");
     return options;

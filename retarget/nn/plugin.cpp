@@ -6,15 +6,19 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/nn/hybrid_transfer.hpp"
 #include "retarget/nn/leaf_refiner.hpp"
 #include "retarget/nn/network_deformer.hpp"
 #include "retarget/nn/network_extractor.hpp"
 #include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/plugin_api.hpp"
+#include "retarget/nn/pose_transfer.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/training/deformation_trainer.hpp"
+#include "retarget/training/hybrid_trainer.hpp"
 #include "retarget/training/leaf_trainer.hpp"
 #include "retarget/training/motion_trainer.hpp"
+#include "retarget/training/pose_transfer_trainer.hpp"
 #include "retarget/training/skeleton_trainer.hpp"
 
 namespace understudy::nn {
@@ -22,8 +26,12 @@ namespace {
 
 std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, const std::string& folder) {
   if (options.engine == "copy") return std::make_unique<CopyTransfer>();
-  US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy or paper");
-  return load_paper_transfer(folder + "/motion.weights");
+  const auto file = [&](const char* name) {
+    return options.engine_file.empty() ? folder + name : options.engine_file;
+  };
+  if (options.engine == "hybrid") return load_hybrid_transfer(file("/hybrid.weights"));
+  US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy, paper or hybrid");
+  return load_paper_transfer(file("/motion.weights"));
 }
 
 /// Null where the folder has none: weights of one's own need no second look.
@@ -67,11 +75,13 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
   if (report().slow_blas)
     log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
   Networks networks;
-  const bool paper = options.extractor == "paper";
-  networks.extractor =
-      load_network_extractor(folder + (paper ? "/skeleton_paper.weights" : "/skeleton.weights"),
-                             options.extractor, paper ? nullptr : load_leaves(folder));
-  if (!paper) networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
+  const bool dense = options.extractor == "dense";
+  const std::string file =
+      folder + (dense ? "/skeleton.weights" : "/skeleton_" + options.extractor + ".weights");
+  networks.extractor = load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
+                                              options.extractor, dense ? load_leaves(folder) : nullptr);
+  if (dense && options.extractor_file.empty())
+    networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
   networks.transfer = load_transfer(options, folder);
   networks.deformer = load_skin(options, folder);
   return networks;
@@ -80,9 +90,12 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
 int train_network(const TrainOptions& options) {
   if (options.network == "skeleton") return training::train_skeleton(options);
   if (options.network == "motion") return training::train_motion(options);
+  if (options.network == "hybrid") return training::train_hybrid(options);
+  if (options.network == "pose-transfer") return training::train_pose_transfer(options);
   if (options.network == "deformation") return training::train_deformation(options);
   if (options.network == "leaf") return training::train_leaf(options);
-  throw Error("there is no network '" + options.network + "' to train: skeleton, motion or deformation");
+  throw Error("there is no network '" + options.network +
+              "' to train: skeleton, leaf, motion, hybrid, deformation or pose-transfer");
 }
 
 }  // namespace
@@ -90,6 +103,6 @@ int train_network(const TrainOptions& options) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion, load, load_skin, report, train_network};
+  static const PluginApi api{kPluginVersion, load, load_skin, load_pose_transfer, report, train_network};
   return &api;
 }

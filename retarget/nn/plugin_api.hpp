@@ -5,12 +5,13 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 1;
+constexpr int kPluginVersion = 3;
 
 struct PluginApi {
   int version;
   Networks (*load)(const NetworkOptions& options, const std::string& folder);
   std::unique_ptr<Deformer> (*load_deformer)(const NetworkOptions& options, const std::string& folder);
+  std::unique_ptr<SurfaceTransfer> (*load_pose_transfer)(const std::string& file);
   RuntimeReport (*report)();
   int (*train)(const TrainOptions& options);
 };

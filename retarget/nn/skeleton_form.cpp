@@ -1,6 +1,7 @@
 #include "retarget/nn/skeleton_form.hpp"
 
 #include "retarget/base/error.hpp"
+#include "retarget/nn/modules/point_net.hpp"
 #include "retarget/nn/modules/point_transformer.hpp"
 #include "retarget/nn/weights_file.hpp"
 
@@ -17,9 +18,10 @@ class DenseForm : public SkeletonForm {
 };
 
 /// Joints alone: no parts, votes, rotations or confidence.
-class PaperForm : public SkeletonForm {
+template <class Net>
+class JointsForm : public SkeletonForm {
  public:
-  PaperForm() { net_ = register_module("net", PointTransformer()); }
+  JointsForm() { net_ = register_module("net", Net()); }
   ExtractorOutput forward(const ExtractorInput& input) override {
     ExtractorOutput out;
     out.joints = net_->forward(input.points);
@@ -27,14 +29,15 @@ class PaperForm : public SkeletonForm {
   }
 
  private:
-  PointTransformer net_{nullptr};
+  Net net_{nullptr};
 };
 
 }  // namespace
 
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name) {
-  if (name == "paper") return std::make_shared<PaperForm>();
-  US_CHECK(name == "dense", "there is no extraction network '", name, "': dense or paper");
+  if (name == "paper") return std::make_shared<JointsForm<PointTransformer>>();
+  if (name == "pointnet") return std::make_shared<JointsForm<PointNet>>();
+  US_CHECK(name == "dense", "there is no extraction network '", name, "': dense, paper or pointnet");
   return std::make_shared<DenseForm>();
 }
 

@@ -1,4 +1,5 @@
-// The forms of the extraction network behind one interface: "dense" (shipped) and "paper" (the ablation).
+// The forms of the extraction network behind one interface: "dense" (shipped), and the ablations "paper" and
+// "pointnet".
 #pragma once
 
 #include <memory>
@@ -15,7 +16,7 @@ class SkeletonForm : public torch::nn::Module {
   virtual ExtractorOutput forward(const ExtractorInput& input) = 0;
 };
 
-/// "dense" or "paper"; anything else is an Error.
+/// "dense", "paper" or "pointnet"; anything else is an Error.
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name);
 void save_skeleton_form(const std::string& path, const std::string& name, const SkeletonForm& form,
                         int64_t samples);

@@ -12,6 +12,7 @@ namespace understudy {
 namespace {
 
 constexpr int kTurns = 3 * kJointCount;       // parameters: place, world turn of each joint, shape
+constexpr float kMostTurn = 0.5f;             // radians a joint turns in one step
 constexpr float kSliding = 0.1f;              // weight of what lies along the surface, against across it
 constexpr float kFar = 0.30f, kNear = 0.05f;  // metres: reach of the robust weight, first and last step
 constexpr float kToLast = 0.008f, kToRest = 0.003f, kToMeanShape = 0.002f;  // weights of the priors
@@ -147,8 +148,14 @@ float distance_of(const Points& body, const Points& scan) {
 
 }  // namespace
 
-void BodyFit::step(State& state, const Task& task, float reach) const {
-  const Posed p = posed(state);
+/// The normal equations of a step: place, world turn of each joint, shape.
+struct BodyFit::Equations {
+  Eigen::MatrixXf H;
+  Eigen::VectorXf g;
+};
+
+BodyFit::Equations BodyFit::data_equations(const State& state, const Posed& p, const Task& task,
+                                           float reach) const {
   const int shapes = task.shape ? static_cast<int>(state.betas.size()) : 0, size = 3 + kTurns + shapes;
   // How each joint's turn moves each vertex: omega x lever, lever [N, 3].
   std::vector<Points> lever(p.by_bone, p.by_bone + kJointCount);
@@ -159,8 +166,7 @@ void BodyFit::step(State& state, const Task& task, float reach) const {
   }
   for (int j = 0; j < kJointCount; ++j)
     lever[static_cast<size_t>(j)] -= carried.col(j) * p.skeleton.joints.row(j);
-  // How each shape parameter moves each vertex.
-  std::vector<Points> swelling;
+  std::vector<Points> swelling;  // how each shape parameter moves each vertex
   for (int b = 0; b < shapes; ++b) {
     State more = state;
     more.betas[b] += 0.1f;
@@ -184,37 +190,42 @@ void BodyFit::step(State& state, const Task& task, float reach) const {
       for (int b = 0; b < shapes; ++b)
         J(row, 3 + kTurns + b) = swelling[static_cast<size_t>(b)].row(v).dot(axis);
     }
-  Eigen::MatrixXf H = J.transpose() * J;
-  Eigen::VectorXf g = J.transpose() * r;
+  return {J.transpose() * J, J.transpose() * r};
+}
 
-  // Priors: near the frame before and the T-pose, near the mean shape. A world turn w is R^T w in a joint's
-  // own axes.
+/// Near the frame before and the T-pose, near the mean shape. A world turn w is R^T w in a joint's own axes.
+void BodyFit::add_priors(Equations& to, const State& state, const Posed& p, const Task& task) const {
   for (int j = 0; j < kJointCount; ++j) {
-    const auto pull = [&](const Mat3& to, float weight) {
-      const Vec3 off = rotation_to_axis_angle(to.transpose() * state.pose.local[j]);
-      H.block<3, 3>(3 + 3 * j, 3 + 3 * j).diagonal().array() += weight * weight;
-      g.segment<3>(3 + 3 * j) -= weight * weight * (p.skeleton.global[j] * off);
+    const auto pull = [&](const Mat3& toward, float weight) {
+      const Vec3 off = rotation_to_axis_angle(toward.transpose() * state.pose.local[j]);
+      to.H.block<3, 3>(3 + 3 * j, 3 + 3 * j).diagonal().array() += weight * weight;
+      to.g.segment<3>(3 + 3 * j) -= weight * weight * (p.skeleton.global[j] * off);
     };
     if (task.last) pull(task.last->local[j], kToLast);
     if (j != Pelvis) pull(Mat3::Identity(), kToRest);
   }
-  for (int b = 0; b < shapes; ++b) {
-    H(3 + kTurns + b, 3 + kTurns + b) += kToMeanShape * kToMeanShape;
-    g[3 + kTurns + b] -= kToMeanShape * kToMeanShape * state.betas[b];
+  for (Eigen::Index b = 0; 3 + kTurns + b < to.g.size(); ++b) {
+    to.H(3 + kTurns + b, 3 + kTurns + b) += kToMeanShape * kToMeanShape;
+    to.g[3 + kTurns + b] -= kToMeanShape * kToMeanShape * state.betas[b];
   }
-  H.diagonal().array() += 1e-6f;
-  const Eigen::VectorXf x = H.ldlt().solve(g);
-  if (!x.allFinite()) return;
+  to.H.diagonal().array() += 1e-6f;
+}
 
+void BodyFit::step(State& state, const Task& task, float reach) const {
+  const Posed p = posed(state);
+  Equations equations = data_equations(state, p, task, reach);
+  add_priors(equations, state, p, task);
+  const Eigen::VectorXf x = equations.H.ldlt().solve(equations.g);
+  if (!x.allFinite()) return;
   state.pose.root += x.head<3>();
   for (int j = 0; j < kJointCount; ++j) {
     Vec3 turn = x.segment<3>(3 + 3 * j);
-    if (turn.norm() > 0.5f) turn *= 0.5f / turn.norm();
+    if (turn.norm() > kMostTurn) turn *= kMostTurn / turn.norm();
     const Mat3 up = j == Pelvis ? Mat3(Mat3::Identity()) : p.skeleton.global[kParents[j]];
     state.pose.local[j] =
         nearest_rotation(up.transpose() * rotation_from_axis_angle(turn) * up * state.pose.local[j]);
   }
-  for (int b = 0; b < shapes; ++b) state.betas[b] += x[3 + kTurns + b];
+  state.betas.head(x.size() - 3 - kTurns) += x.tail(x.size() - 3 - kTurns);
 }
 
 float BodyFit::improve(State& state, const Task& task, int iterations) const {

@@ -49,9 +49,12 @@ class BodyFit final : public SkeletonExtractor {
   };
   struct Posed;
   struct Task;
+  struct Equations;
   Posed posed(const State& state) const;
   /// Takes the steps; gives the robust mean distance of the surfaces at the end, metres.
   float improve(State& state, const Task& task, int iterations) const;
+  Equations data_equations(const State& state, const Posed& posed, const Task& task, float reach) const;
+  void add_priors(Equations& to, const State& state, const Posed& posed, const Task& task) const;
   void step(State& state, const Task& task, float reach) const;
   State start(const Points& scan) const;
 

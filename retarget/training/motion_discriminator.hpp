@@ -10,7 +10,7 @@ class MotionDiscriminatorImpl : public torch::nn::Module {
  public:
   explicit MotionDiscriminatorImpl(int64_t width = 96);
 
-  /// Scores [B], about 1 for a captured motion and 0 for a made one. joints [B, T, 22, 3] metres, T >= 16;
+  /// Scores [B], about 1 for a captured motion and 0 for a made one. joints [B, T, 22, 3] metres, T >= 2;
   /// the body's T-pose joints [B, 22, 3]; dt [B, T] seconds since the frame before.
   torch::Tensor forward(const torch::Tensor& joints, const torch::Tensor& rest, const torch::Tensor& dt);
 

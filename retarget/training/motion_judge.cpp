@@ -48,6 +48,23 @@ double aligned_error_mm(const torch::Tensor& made, const torch::Tensor& truth) {
 
 }  // namespace
 
+MotionFigures motion_figures(const torch::Tensor& rest, const torch::Tensor& local,
+                             const torch::Tensor& true_local) {
+  const auto made = nn::forward_kinematics(rest, local);
+  const auto truth = nn::forward_kinematics(rest, true_local);
+  const auto between = torch::matmul(made.global.transpose(-1, -2), truth.global);
+  const auto trace = between.diagonal(0, -2, -1).sum(-1);
+  const auto error = made.joints - truth.joints;
+  const auto T = error.size(1);
+  const auto bent = error.slice(1, 2) - 2 * error.slice(1, 1, T - 1) + error.slice(1, 0, T - 2);
+  MotionFigures figures;
+  figures.mpjpe_mm = 1000 * error.norm(2, -1).mean().item<double>();
+  figures.pa_mpjpe_mm = aligned_error_mm(made.joints, truth.joints);
+  figures.rot_deg = 180 / kPi * ((trace - 1) / 2).clamp(-1, 1).acos().mean().item<double>();
+  figures.acc_mm = 1000 * bent.norm(2, -1).mean().item<double>();
+  return figures;
+}
+
 MotionJudge::MotionJudge(const TrainingData& dev, float noise, int most_frames) {
   int frames = 0;
   for (const Clip& clip : dev.clips)
@@ -96,15 +113,7 @@ MotionFigures MotionJudge::judge(nn::MotionGru& net) const {
   const nn::MotionInput input{input_.joints.to(device), input_.leg.to(device), input_.dt.to(device),
                               input_.rest.to(device)};
   const auto local = net->forward(input, state).cpu();
-  const auto made = nn::forward_kinematics(input_.rest, local);
-  const auto truth = nn::forward_kinematics(input_.rest, rotations_);
-  const auto between = torch::matmul(made.global.transpose(-1, -2), truth.global);
-  const auto trace = between.diagonal(0, -2, -1).sum(-1);
-  MotionFigures figures;
-  figures.mpjpe_mm = 1000 * (made.joints - truth.joints).norm(2, -1).mean().item<double>();
-  figures.pa_mpjpe_mm = aligned_error_mm(made.joints, truth.joints);
-  figures.rot_deg = 180 / kPi * ((trace - 1) / 2).clamp(-1, 1).acos().mean().item<double>();
-  return figures;
+  return motion_figures(input_.rest, local, rotations_);
 }
 
 }  // namespace understudy::training

@@ -10,7 +10,13 @@ namespace understudy::training {
 /// rotations.
 struct MotionFigures {
   double mpjpe_mm = 0, pa_mpjpe_mm = 0, rot_deg = 0;
+  double acc_mm = 0;  ///< per frame squared
 };
+
+/// Of bodies with T-pose joints `rest` [B, 22, 3] in local rotations [B, T, 22, 3, 3], T >= 3, and what was
+/// true.
+MotionFigures motion_figures(const torch::Tensor& rest, const torch::Tensor& local,
+                             const torch::Tensor& truth);
 
 /// Sources with and without extractor-like errors, each for a target body. It judges only; nothing learns
 /// from it.

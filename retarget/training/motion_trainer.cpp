@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "retarget/base/error.hpp"
 #include "retarget/nn/modules/forward_kinematics.hpp"
+#include "retarget/training/checkpoint_archive.hpp"
 #include "retarget/training/losses/motion_losses.hpp"
 
 namespace understudy::training {
@@ -22,30 +22,6 @@ MotionBatch on_device(MotionBatch batch, const std::string& device) {
                        &batch.rest_b, &batch.seen_b, &batch.real})
     *tensor = tensor->to(torch::Device(device));
   return batch;
-}
-
-template <class Part>
-void put(torch::serialize::OutputArchive& archive, const char* key, const Part& part) {
-  torch::serialize::OutputArchive inner;
-  part.save(inner);
-  archive.write(key, inner);
-}
-
-template <class Part>
-void take(torch::serialize::InputArchive& archive, const char* key, Part& part) {
-  torch::serialize::InputArchive inner;
-  archive.read(key, inner);
-  part.load(inner);
-}
-
-torch::Tensor number(double value) {
-  return torch::full({1}, value, torch::kFloat64);
-}
-
-torch::Tensor number_from(torch::serialize::InputArchive& archive, const char* key) {
-  torch::Tensor value;
-  archive.read(key, value);
-  return value;
 }
 
 }  // namespace
@@ -132,13 +108,7 @@ void MotionTrainer::save_checkpoint(const std::string& path) {
   archive.write("samples", torch::full({1}, samples, torch::kInt64));
   archive.write("rng", torch::full({1}, static_cast<int64_t>(rng_.state()), torch::kInt64));
   archive.write("minutes", number(minutes));
-  const std::string part = path + ".part";
-  try {
-    archive.save_to(part);
-  } catch (const c10::Error&) {
-    throw Error(path + ": the checkpoint cannot be written");
-  }
-  US_CHECK(std::rename(part.c_str(), path.c_str()) == 0, path, ": the checkpoint cannot be written");
+  save_archive(archive, path);
 }
 
 void MotionTrainer::load_checkpoint(const std::string& path) {

@@ -45,6 +45,8 @@ class MotionTrainer {
   /// Goes on from a checkpoint. Throws Error when the file is none of this trainer's.
   void load_checkpoint(const std::string& path);
 
+  const nn::MotionGruOptions& form() const { return options_.net; }
+
   nn::MotionGru net{nullptr};
   MotionDiscriminator discriminator{nullptr};
   int64_t samples = 0;  ///< sequences seen

@@ -87,15 +87,16 @@ std::string figures_line(const MotionFigures& clean, const MotionFigures& noisy)
 /// Judges, then writes the curve's next line, the weights and the checkpoint.
 void keep(MotionTrainer& trainer, const Judges& judges, const MotionStep& losses,
           const nn::TrainOptions& options) {
+  const nn::MotionGruOptions form = trainer.form();
   const MotionFigures clean = judges.clean.judge(trainer.net), noisy = judges.noisy.judge(trainer.net);
   log::info(figures_line(clean, noisy));
   append_curve(options.curve.empty() ? options.out + ".csv" : options.curve, trainer, losses, clean, noisy);
-  const nn::MotionGruOptions form;
   nn::save_weights(options.out,
                    {"motion",
                     nn::kMotionGruVersion,
                     {{"hidden", static_cast<double>(form.hidden)},
                      {"layers", static_cast<double>(form.layers)},
+                     {"quaternions", form.quaternions ? 1.0 : 0.0},
                      {"samples", static_cast<double>(trainer.samples)},
                      {"minutes", trainer.minutes},
                      {"dev_mpjpe_mm", clean.mpjpe_mm},
@@ -120,6 +121,9 @@ MotionTrainerOptions trainer_options(const nn::TrainOptions& options) {
            " device");
   MotionTrainerOptions made;
   if (options.batch > 0) made.batch.size = options.batch;
+  if (options.context > 0) made.batch.frames = options.context;
+  made.net.quaternions = options.rotation == "quaternion";
+  if (!options.rotation_loss) made.rotation_weight = 0;
   made.seed = options.seed;
   made.device = options.device;
   return made;

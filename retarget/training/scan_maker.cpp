@@ -109,26 +109,26 @@ Pose ScanMaker::make_pose() {
   return pose;
 }
 
-MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose) {
+/// `rest`, where given, are the same places in T-pose.
+MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose, int count, Points* rest_places) {
   const ShapedBody& body = person.body;
   MadeScan scan;
   scan.truth = forward_kinematics(body.joints, pose);
   const Eigen::VectorXf features = pose_features(pose.local);
-  const int count = raw_points();
-  Points rest(count, 3);
+  Points rest = Points::Zero(count, 3), offset = Points::Zero(count, 3);
   RowMatrix weights = RowMatrix::Zero(count, kJointCount);
   for (int i = 0; i < count; ++i) {
     const auto s = person.sampler.sample(rng_);
-    rest.row(i).setZero();
     for (int k = 0; k < 3; ++k) {
       const int v = body.faces(s.face, k);
       const float b = s.barycentric[k];
       rest.row(i) += b * body.vertices.row(v);
       weights.row(i) += b * body.weights.row(v);
-      if (body.pose_dirs) rest.row(i) += b * (body.pose_dirs->middleRows(3 * v, 3) * features).transpose();
+      if (body.pose_dirs) offset.row(i) += b * (body.pose_dirs->middleRows(3 * v, 3) * features).transpose();
     }
   }
-  scan.points = linear_blend_skinning(rest, weights, body.joints, scan.truth);
+  scan.points = linear_blend_skinning(rest + offset, weights, body.joints, scan.truth);
+  if (rest_places) *rest_places = std::move(rest);
   scan.parts.resize(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i) weights.row(i).maxCoeff(&scan.parts[i]);
   return scan;
@@ -203,20 +203,36 @@ std::vector<MadeScan> ScanMaker::follow(const std::vector<Pose>& poses) {
   std::vector<MadeScan> scans;
   for (Pose pose : poses) {
     pose.root *= scale;  // clips' paths are the template's
-    scans.push_back(sample_posed(person, pose));
+    scans.push_back(sample_posed(person, pose, raw_points()));
     finish(scans.back(), captured);
   }
   return scans;
 }
 
-MadeScan ScanMaker::next() {
-  const Person& person = draw_person();
+Pose ScanMaker::turned_pose() {
   Pose pose = make_pose();
   pose.local[0] = rotation_about_y(rng_.uniform(-options_.yaw, options_.yaw)) * pose.local[0];
-  MadeScan scan = sample_posed(person, pose);
+  return pose;
+}
+
+MadeScan ScanMaker::scan_of(const Person& person, const Pose& pose) {
+  MadeScan scan = sample_posed(person, pose, raw_points());
   if (options_.stretch > 0) stretch(scan);
   finish(scan, rng_.chance(options_.captured));
   return scan;
+}
+
+MadeScan ScanMaker::next() {
+  const Person& person = draw_person();
+  return scan_of(person, turned_pose());
+}
+
+PosedPair ScanMaker::pair() {
+  const Pose pose = turned_pose();
+  PosedPair pair;
+  pair.source = scan_of(draw_person(), pose).points;
+  pair.posed = sample_posed(draw_person(), pose, nn::kScanPoints, &pair.rest).points;
+  return pair;
 }
 
 }  // namespace understudy::training

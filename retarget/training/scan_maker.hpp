@@ -32,6 +32,12 @@ struct MadeScan {
   PosedSkeleton truth;
 };
 
+/// One posture on two people, metres: a scan of the first, and as many places on the second.
+struct PosedPair {
+  Points source;       ///< [kScanPoints, 3] of the first, in the posture
+  Points rest, posed;  ///< [kScanPoints, 3] of the second, in T-pose and in the posture
+};
+
 /// Keeps a pool of shaped bodies that is renewed slowly: shaping costs more than posing the sampled points.
 /// One thread each; the same seed gives the same scans.
 class ScanMaker {
@@ -40,6 +46,7 @@ class ScanMaker {
   MadeScan next();
   /// One person in these poses one after the other, all of them degraded or none.
   std::vector<MadeScan> follow(const std::vector<Pose>& poses);
+  PosedPair pair();
 
  private:
   struct Person {
@@ -50,7 +57,9 @@ class ScanMaker {
   Person make_person();
   Person& draw_person();
   Pose make_pose();
-  MadeScan sample_posed(const Person& person, const Pose& pose);
+  Pose turned_pose();
+  MadeScan scan_of(const Person& person, const Pose& pose);
+  MadeScan sample_posed(const Person& person, const Pose& pose, int count, Points* rest = nullptr);
   void stretch(MadeScan& scan);
   void degrade(MadeScan& scan);
   void finish(MadeScan& scan, bool captured);

@@ -25,6 +25,18 @@ torch::Tensor rotations_to_6d(const torch::Tensor& rotations) {
   return torch::cat({rotations.select(-1, 0), rotations.select(-1, 1)}, -1);
 }
 
+torch::Tensor rotations_from_quaternions(const torch::Tensor& quaternions) {
+  const auto q = unit(quaternions);
+  const auto w = q.select(-1, 0), x = q.select(-1, 1), y = q.select(-1, 2), z = q.select(-1, 3);
+  const auto row = [](const torch::Tensor& a, const torch::Tensor& b, const torch::Tensor& c) {
+    return torch::stack({a, b, c}, -1);
+  };
+  return torch::stack({row(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+                       row(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+                       row(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))},
+                      -2);
+}
+
 PosedBodies forward_kinematics(const torch::Tensor& rest, const torch::Tensor& local) {
   const int64_t batch = local.size(0);
   std::array<torch::Tensor, kJointCount> joint, global;

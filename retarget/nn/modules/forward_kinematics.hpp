@@ -1,4 +1,4 @@
-// Forward kinematics as a differentiable layer, and 6D rotations of tensors.
+// Forward kinematics as a differentiable layer, and rotations of tensors from 6D forms and quaternions.
 #pragma once
 
 #include <torch/torch.h>
@@ -10,6 +10,8 @@ namespace understudy::nn {
 torch::Tensor rotations_from_6d(const torch::Tensor& r6);
 /// The first two columns, one after the other. [..., 3, 3] -> [..., 6].
 torch::Tensor rotations_to_6d(const torch::Tensor& rotations);
+/// Rotation matrices from quaternions w, x, y, z of any length but zero. [..., 4] -> [..., 3, 3].
+torch::Tensor rotations_from_quaternions(const torch::Tensor& quaternions);
 
 /// Bodies in poses.
 struct PosedBodies {

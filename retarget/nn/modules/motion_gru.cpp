@@ -51,7 +51,7 @@ torch::Tensor headings(const torch::Tensor& joints) {
       .view({joints.size(0), joints.size(1), 3, 3});
 }
 
-MotionGruImpl::MotionGruImpl(const MotionGruOptions& options) {
+MotionGruImpl::MotionGruImpl(const MotionGruOptions& options) : quaternions_(options.quaternions) {
   const int64_t h = options.hidden;
   const auto gru = [&](int64_t inputs) {
     return torch::nn::GRU(torch::nn::GRUOptions(inputs, h).num_layers(options.layers).batch_first(true));
@@ -63,7 +63,7 @@ MotionGruImpl::MotionGruImpl(const MotionGruOptions& options) {
   head = register_module("head",
                          torch::nn::Sequential(torch::nn::Linear(3 * h + kRestWidth, 256), torch::nn::ELU(),
                                                torch::nn::Linear(256, 256), torch::nn::ELU(),
-                                               torch::nn::Linear(256, 6 * kJointCount)));
+                                               torch::nn::Linear(256, (quaternions_ ? 4 : 6) * kJointCount)));
 }
 
 torch::Tensor MotionGruImpl::source_features(const MotionInput& input, const MotionState& state,
@@ -82,6 +82,13 @@ torch::Tensor MotionGruImpl::source_features(const MotionInput& input, const Mot
   return torch::cat({shape_features(now), velocity, turned, interval.clamp(0.5, 1.5)}, -1);
 }
 
+/// Zero output is the T-pose.
+torch::Tensor MotionGruImpl::rotations(const torch::Tensor& said) const {
+  if (quaternions_)
+    return rotations_from_quaternions(said + torch::tensor({1.f, 0.f, 0.f, 0.f}, said.options()));
+  return rotations_from_6d(said + torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f}, said.options()));
+}
+
 torch::Tensor MotionGruImpl::forward(const MotionInput& input, MotionState& state) {
   const int64_t batch = input.joints.size(0), frames = input.joints.size(1);
   const auto heading = headings(input.joints);                                      // [B, T, 3, 3]
@@ -95,10 +102,8 @@ torch::Tensor MotionGruImpl::forward(const MotionInput& input, MotionState& stat
 
   const auto locomotion = torch::cat({h, x}, -1);                                        // [B, T, 2H]
   std::tie(d, state.decoder) = decoder(torch::cat({locomotion, b}, -1), state.decoder);  // [B, T, H]
-  const auto bend = head->forward(torch::cat({d, locomotion, b}, -1)).view({batch, frames, kJointCount, 6});
-  const auto upright =
-      torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f}, bend.options());  // zero output is the T-pose
-  const auto local = rotations_from_6d(bend + upright);               // [B, T, 22, 3, 3]
+  const auto bend = head->forward(torch::cat({d, locomotion, b}, -1)).view({batch, frames, kJointCount, -1});
+  const auto local = rotations(bend);  // [B, T, 22, 3, 3]
   state.joints = input.joints.slice(1, frames - 1).detach();
   const auto root = torch::matmul(heading, local.select(2, 0)).unsqueeze(2);
   return torch::cat({root, local.slice(2, 1)}, 2);

@@ -12,8 +12,9 @@ namespace understudy::nn {
 constexpr int kMotionGruVersion = 1;
 
 struct MotionGruOptions {
-  int64_t hidden = 192;  ///< width of the recurrent layers
-  int64_t layers = 2;    ///< of each recurrent network
+  int64_t hidden = 192;      ///< width of the recurrent layers
+  int64_t layers = 2;        ///< of each recurrent network
+  bool quaternions = false;  ///< rotations are said as quaternions: the ablation of 6D
 };
 
 /// What the network sees of B sequences of T frames.
@@ -49,7 +50,9 @@ class MotionGruImpl : public torch::nn::Module {
  private:
   torch::Tensor source_features(const MotionInput& input, const MotionState& state,
                                 const torch::Tensor& heading) const;
+  torch::Tensor rotations(const torch::Tensor& said) const;
 
+  bool quaternions_;
   torch::nn::Linear embed_source{nullptr}, embed_rest{nullptr};
   torch::nn::GRU encoder{nullptr}, decoder{nullptr};
   torch::nn::Sequential head{nullptr};

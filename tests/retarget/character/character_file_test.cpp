@@ -156,6 +156,29 @@ TEST(CharacterFile, TenThousandLevelsAreRefused) {
   EXPECT_TRUE(contains(complaint_about(gltf), "1000 levels"));
 }
 
+TEST(CharacterFile, JsonNestedWithoutEndIsRefused) {
+  const std::string path = "deep.gltf";
+  for (const size_t depth : {300u, 200000u}) {
+    const std::string text =
+        R"({"asset":{},"materials":[{"extras":)" + std::string(depth, '[') + std::string(depth, ']') + "}]}";
+    EXPECT_TRUE(contains(error_of([&] { parse_gltf_character(text, path); }), "nested more than 200 levels"));
+  }
+}
+
+TEST(CharacterFile, BytesNamedAgainAndAgainAreRefused) {
+  json gltf = broken_base();
+  gltf["accessors"].push_back(
+      json::parse(R"({"componentType":5126,"count":2000000,"type":"MAT4","sparse":{"count":0,)"
+                  R"("indices":{"bufferView":0,"componentType":5123},"values":{"bufferView":0}}})"));
+  for (auto& skin : gltf["skins"]) skin["inverseBindMatrices"] = gltf["accessors"].size() - 1;
+  const json first = gltf["skins"][0];
+  for (int i = 0; i < 5; ++i) gltf["skins"].push_back(first);
+  EXPECT_TRUE(contains(complaint_about(gltf), "broken.gltf: unpacks to more than"));
+  json pictures = broken_base();
+  for (int i = 0; i < 300; ++i) pictures["images"].push_back(pictures["images"][0]);
+  EXPECT_EQ(complaint_about(pictures), "");  // small things may be named often
+}
+
 TEST(CharacterFile, UrisOutsideOfTheFolderAreRefused) {
   for (const char* uri : {"../../etc/passwd", "/etc/passwd", "a/../../b.bin", "%2e%2e/b.bin"}) {
     json gltf = broken_base();
@@ -283,6 +306,17 @@ TEST(ImportProcess, CrashesHangsAndMissingProgramsAreOneSentence) {
   ReadCharacterOptions missing;
   missing.worker = folder.path("nobody");
   EXPECT_TRUE(contains(error_of([&] { read_character(file, missing); }), "cannot be started"));
+}
+
+TEST(ImportProcess, HungerForMemoryIsOneSentence) {
+  const TempFolder folder;
+  ReadCharacterOptions options;
+  options.worker = folder.write("worker.sh", "#!/bin/sh\nLC_ALL=C exec tail /dev/zero\n");
+  options.memory_bytes = 200 << 20;
+  std::filesystem::permissions(options.worker, std::filesystem::perms::owner_all);
+  const std::string file = folder.write("a.fbx", "Kaydara FBX Binary  ");
+  const std::string complaint = error_of([&] { read_character(file, options); });
+  EXPECT_TRUE(contains(complaint, "a.fbx: ") && contains(complaint, "memory")) << complaint;
 }
 
 }  // namespace

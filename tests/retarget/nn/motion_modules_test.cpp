@@ -61,6 +61,23 @@ TEST(RotationsFrom6d, GradientIsThatOfFiniteDifferences) {
   EXPECT_LT(gradient_error(value, torch::randn({4, 6}, torch::kFloat64)), 1e-6);
 }
 
+TEST(RotationsFromQuaternions, AreThoseOfEigenAtAnyLength) {
+  torch::manual_seed(5);
+  const auto q = torch::randn({20, 4});
+  const auto R = nn::rotations_from_quaternions(q);
+  for (int64_t i = 0; i < 20; ++i) {
+    const float* p = q[i].data_ptr<float>();
+    const Mat3 truth = Eigen::Quaternionf(p[0], p[1], p[2], p[3]).normalized().toRotationMatrix();
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(R[i][r][c].item<float>(), truth(r, c), 1e-5f);
+  }
+  const auto weight = torch::randn({4, 3, 3}, torch::kFloat64);
+  const auto value = [&](const torch::Tensor& x) {
+    return (nn::rotations_from_quaternions(x) * weight).sum();
+  };
+  EXPECT_LT(gradient_error(value, torch::randn({4, 4}, torch::kFloat64)), 1e-6);
+}
+
 nn::MotionGru network(uint64_t seed) {
   torch::manual_seed(seed);
   nn::MotionGru net(nn::MotionGruOptions{/*hidden=*/32, /*layers=*/2});

@@ -7,6 +7,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/modules/forward_kinematics.hpp"
+#include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/motion_judge.hpp"
 #include "retarget/training/motion_trainer.hpp"
@@ -148,6 +149,22 @@ TEST_F(MotionTraining, TheCommandTrainsStopsWhenAskedAndGoesOn) {
   while (std::getline(curve, line)) ++lines;
   EXPECT_EQ(lines, 3);  // the header and one for each run
   EXPECT_FALSE(std::filesystem::exists(options.out + ".part"));
+}
+
+TEST_F(MotionTraining, TheAblationsTrainAndTheirWeightsAreRead) {
+  nn::TrainOptions options;
+  options.network = "motion";
+  options.data = folder_.path();
+  options.out = file("quaternion.weights");
+  options.batch = 2;
+  options.threads = 1;
+  options.samples = 4;
+  options.rotation = "quaternion";
+  options.rotation_loss = false;
+  options.context = 5;
+  EXPECT_EQ(train_motion(options), 0);
+  EXPECT_EQ(nn::read_weights_header(options.out).numbers.at("quaternions"), 1);
+  EXPECT_NO_THROW(nn::load_paper_transfer(options.out));
 }
 
 }  // namespace

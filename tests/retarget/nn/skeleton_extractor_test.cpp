@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "retarget/nn/skeleton_form.hpp"
+#include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -33,18 +34,21 @@ TEST(SkeletonExtractor, TreatsEachScanOfABatchAlone) {
   EXPECT_TRUE(torch::allclose(net(in).joints[1], net(second).joints[0], 0, 1e-4));
 }
 
-TEST(PointTransformer, IgnoresTheOrderOfPoints) {
-  torch::manual_seed(3);
-  const torch::NoGradGuard no_grad;
-  const auto form = make_skeleton_form("paper");
-  auto in = random_input(1);
-  const auto joints = form->forward(in).joints;
-  in.points = in.points.index_select(1, torch::randperm(256));
-  EXPECT_TRUE(torch::allclose(joints, form->forward(in).joints, 0, 1e-4));
+TEST(SkeletonForm, TheAblationsIgnoreTheOrderOfPoints) {
+  for (const char* name : {"paper", "pointnet"}) {
+    torch::manual_seed(3);
+    const torch::NoGradGuard no_grad;
+    const auto form = make_skeleton_form(name);
+    auto in = random_input(1);
+    const auto joints = form->forward(in).joints;
+    EXPECT_EQ(joints.sizes(), (std::vector<int64_t>{1, kJointCount, 3}));
+    in.points = in.points.index_select(1, torch::randperm(256));
+    EXPECT_TRUE(torch::allclose(joints, form->forward(in).joints, 0, 1e-4)) << name;
+  }
 }
 
 TEST(SkeletonForm, RefusesAnUnknownName) {
-  EXPECT_ANY_THROW(make_skeleton_form("pointnet"));
+  EXPECT_ANY_THROW(make_skeleton_form("sparse"));
 }
 
 }  // namespace

@@ -1,0 +1,86 @@
+#include "retarget/nn/pose_transfer.hpp"
+
+#include <torch/torch.h>
+
+#include <optional>
+
+#include "retarget/base/error.hpp"
+#include "retarget/nn/modules/pose_transfer_net.hpp"
+#include "retarget/nn/scan_patches.hpp"
+#include "retarget/nn/weights_file.hpp"
+
+namespace understudy::nn {
+namespace {
+
+constexpr uint64_t kThinningSeed = 20240318;
+
+struct Centred {
+  Eigen::RowVector3f mean;
+  float size;
+  torch::Tensor points;  // [1, N, 3]
+};
+
+Centred centred(const Points& points) {
+  const Eigen::RowVector3f mean = points.colwise().mean();
+  Points around = points.rowwise() - mean;
+  const float size = around.rowwise().norm().mean();
+  US_CHECK(size > 1e-6f, "all points coincide");
+  around /= size;
+  return {mean, size, torch::from_blob(around.data(), {1, around.rows(), 3}, torch::kFloat32).clone()};
+}
+
+class PoseTransfer : public SurfaceTransfer {
+ public:
+  explicit PoseTransfer(const std::string& path) {
+    load_weights(path, "pose-transfer", kPoseTransferVersion, *net_);
+    net_->eval();
+  }
+
+  void reset(const Points& rest) override {
+    US_CHECK(rest.rows() > 3 && rest.allFinite(), "pose transfer: the target has no usable points");
+    rest_ = centred(rest);
+    first_.reset();
+    sum_ = 0;
+    frames_ = 0;
+  }
+
+  Points push(const Mesh& scan) override {
+    US_CHECK(rest_, "pose transfer: no target was set");
+    const torch::NoGradGuard no_grad;
+    const Points thinned = thin_scan(scan, kThinningSeed);
+    const Centred source = centred(thinned);
+    const auto made = net_->forward(source.points, rest_->points).contiguous();
+    US_CHECK(torch::isfinite(made).all().item<bool>(), "the pose transfer network gave no finite point");
+    Points posed = rest_->size * Eigen::Map<const Points>(made.data_ptr<float>(), made.size(1), 3);
+    // Where it stands is no business of the network: over the scan's path, scaled, and as high over the
+    // floor.
+    if (!first_) first_ = source.mean;
+    follow(rest_->size / source.size);
+    posed.rowwise() +=
+        *first_ + scale_ * (source.mean - *first_) - Eigen::RowVector3f(posed.colwise().mean());
+    posed.col(1).array() += scale_ * thinned.col(1).minCoeff() - posed.col(1).minCoeff();
+    return posed;
+  }
+
+ private:
+  /// Mean over the frames so far of how much larger the target is.
+  void follow(float now) {
+    sum_ += now;
+    scale_ = static_cast<float>(sum_ / static_cast<double>(++frames_));
+  }
+
+  PoseTransferNet net_;
+  std::optional<Centred> rest_;
+  std::optional<Eigen::RowVector3f> first_;
+  float scale_ = 1;
+  double sum_ = 0;
+  int64_t frames_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<SurfaceTransfer> load_pose_transfer(const std::string& path) {
+  return std::make_unique<PoseTransfer>(path);
+}
+
+}  // namespace understudy::nn

@@ -1,0 +1,19 @@
+// Retargeting that moves a surface without any skeleton: peers to compare with.
+#pragma once
+
+#include "retarget/geometry/mesh.hpp"
+
+namespace understudy {
+
+/// A target's vertices in a source's pose, frame by frame. One thread at a time.
+class SurfaceTransfer {
+ public:
+  virtual ~SurfaceTransfer() = default;
+  /// Starts anew with a target: its vertices in T-pose, [V, 3] metres. Throws Error when they are unusable.
+  virtual void reset(const Points& rest) = 0;
+  /// The target's vertices, [V, 3] metres, in its order, for one scan. Throws Error when the scan cannot be
+  /// used or no target was set.
+  virtual Points push(const Mesh& scan) = 0;
+};
+
+}  // namespace understudy
