@@ -20,8 +20,8 @@ constexpr float kHalfConfidence =
 
 class NetworkExtractor : public SkeletonExtractor {
  public:
-  NetworkExtractor(const std::string& path, const std::string& form)
-      : form_(form), net_(make_skeleton_form(form)) {
+  NetworkExtractor(const std::string& path, const std::string& form, std::unique_ptr<LeafRefiner> leaves)
+      : form_(form), leaves_(std::move(leaves)), net_(make_skeleton_form(form)) {
     load_skeleton_form(path, form, *net_);
     net_->eval();
   }
@@ -36,7 +36,9 @@ class NetworkExtractor : public SkeletonExtractor {
     const auto out =
         net_->forward({view(patches.points, {1, kScanPoints, 3}), view(patches.centres, {1, kPatches, 3}),
                        view(patches.offsets, {1, kPatches, kPatchPoints, 3})});
-    return to_world(out, patches);
+    Extraction seen = to_world(out, patches);
+    if (leaves_) leaves_->refine(scan, seen);
+    return seen;
   }
 
   std::string name() const override { return form_; }
@@ -45,6 +47,7 @@ class NetworkExtractor : public SkeletonExtractor {
   static Extraction to_world(const ExtractorOutput& out, const ScanPatches& patches);
 
   std::string form_;
+  std::unique_ptr<LeafRefiner> leaves_;
   std::shared_ptr<SkeletonForm> net_;
 };
 
@@ -69,8 +72,9 @@ Extraction NetworkExtractor::to_world(const ExtractorOutput& out, const ScanPatc
 
 }  // namespace
 
-std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form) {
-  return std::make_unique<NetworkExtractor>(path, form);
+std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form,
+                                                          std::unique_ptr<LeafRefiner> leaves) {
+  return std::make_unique<NetworkExtractor>(path, form, std::move(leaves));
 }
 
 }  // namespace understudy::nn

@@ -2,10 +2,12 @@
 #include <torch/torch.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/hybrid_transfer.hpp"
+#include "retarget/nn/leaf_refiner.hpp"
 #include "retarget/nn/network_deformer.hpp"
 #include "retarget/nn/network_extractor.hpp"
 #include "retarget/nn/paper_transfer.hpp"
@@ -14,6 +16,7 @@
 #include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/training/deformation_trainer.hpp"
 #include "retarget/training/hybrid_trainer.hpp"
+#include "retarget/training/leaf_trainer.hpp"
 #include "retarget/training/motion_trainer.hpp"
 #include "retarget/training/pose_transfer_trainer.hpp"
 #include "retarget/training/skeleton_trainer.hpp"
@@ -29,6 +32,16 @@ std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, con
   if (options.engine == "hybrid") return load_hybrid_transfer(file("/hybrid.weights"));
   US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy, paper or hybrid");
   return load_paper_transfer(file("/motion.weights"));
+}
+
+/// Null where the folder has none: weights of one's own need no second look.
+std::unique_ptr<LeafRefiner> load_leaves(const std::string& folder) {
+  const std::string path = folder + "/leaf.weights";
+  if (!std::filesystem::exists(path)) {
+    log::warn_once(path + ": is not there; hands, head and feet are seen from afar only");
+    return nullptr;
+  }
+  return load_leaf_refiner(path);
 }
 
 std::unique_ptr<Deformer> load_skin(const NetworkOptions& options, const std::string& folder) {
@@ -66,7 +79,7 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
   const std::string file =
       folder + (dense ? "/skeleton.weights" : "/skeleton_" + options.extractor + ".weights");
   networks.extractor = load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
-                                              options.extractor);
+                                              options.extractor, dense ? load_leaves(folder) : nullptr);
   if (dense && options.extractor_file.empty())
     networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
   networks.transfer = load_transfer(options, folder);
@@ -80,8 +93,9 @@ int train_network(const TrainOptions& options) {
   if (options.network == "hybrid") return training::train_hybrid(options);
   if (options.network == "pose-transfer") return training::train_pose_transfer(options);
   if (options.network == "deformation") return training::train_deformation(options);
+  if (options.network == "leaf") return training::train_leaf(options);
   throw Error("there is no network '" + options.network +
-              "' to train: skeleton, motion, hybrid, deformation or pose-transfer");
+              "' to train: skeleton, leaf, motion, hybrid, deformation or pose-transfer");
 }
 
 }  // namespace

@@ -100,6 +100,10 @@ Pose ScanMaker::make_pose() {
       pose.local[j] =
           pose.local[j] * rotation_from_axis_angle(spread * std::abs(rng_.normal()) * random_direction(rng_));
   }
+  if (rng_.chance(options_.limp))
+    for (const int j : {LeftWrist, RightWrist, Head, LeftAnkle, RightAnkle})
+      pose.local[j] =
+          pose.local[j] * rotation_from_axis_angle(0.5f * std::abs(rng_.normal()) * random_direction(rng_));
   const float tilt = rng_.chance(options_.tilted) ? 1.2f * rng_.normal() : 0.05f * rng_.normal();
   pose.local[0] = rotation_from_axis_angle(tilt * random_direction(rng_)) * pose.local[0];
   return pose;
@@ -125,7 +129,7 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose, int cou
   }
   scan.points = linear_blend_skinning(rest + offset, weights, body.joints, scan.truth);
   if (rest_places) *rest_places = std::move(rest);
-  scan.parts.resize(count);
+  scan.parts.resize(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i) weights.row(i).maxCoeff(&scan.parts[i]);
   return scan;
 }
@@ -140,9 +144,9 @@ void ScanMaker::stretch(MadeScan& scan) {
 }
 
 void ScanMaker::add_clutter(MadeScan& scan, Eigen::Index count) {
-  const float size = scan.points.rows() / static_cast<float>(kRawPoints);
-  const int outliers = rng_.below(static_cast<int>(2 + size * kRawPoints / 150));
-  const int floor = rng_.chance(0.7f) ? rng_.below(static_cast<int>(2 + size * kRawPoints / 25)) : 0;
+  const Eigen::Index size = scan.points.rows();
+  const int outliers = rng_.below(static_cast<int>(2 + size / 150));
+  const int floor = rng_.chance(0.7f) ? rng_.below(static_cast<int>(2 + size / 25)) : 0;
   const float margin = rng_.uniform(0.05f, 0.3f);
   const Vec3 low = scan.points.colwise().minCoeff().transpose().array() - margin;
   const Vec3 high = scan.points.colwise().maxCoeff().transpose().array() + margin;
@@ -177,6 +181,15 @@ void ScanMaker::degrade(MadeScan& scan) {
   add_clutter(scan, scan.points.rows());
 }
 
+int ScanMaker::raw_points() const {
+  return options_.points > 0 ? options_.points : kRawPoints;
+}
+
+void ScanMaker::finish(MadeScan& scan, bool captured) {
+  if (captured) degrade(scan);
+  if (options_.points == 0) thin(scan, rng_);
+}
+
 ScanMaker::Person& ScanMaker::draw_person() {
   Person& person = people_[rng_.below(kPoolSize)];
   if (--person.left < 0) person = make_person();
@@ -190,9 +203,8 @@ std::vector<MadeScan> ScanMaker::follow(const std::vector<Pose>& poses) {
   std::vector<MadeScan> scans;
   for (Pose pose : poses) {
     pose.root *= scale;  // clips' paths are the template's
-    scans.push_back(sample_posed(person, pose, kRawPoints));
-    if (captured) degrade(scans.back());
-    thin(scans.back(), rng_);
+    scans.push_back(sample_posed(person, pose, raw_points()));
+    finish(scans.back(), captured);
   }
   return scans;
 }
@@ -204,10 +216,9 @@ Pose ScanMaker::turned_pose() {
 }
 
 MadeScan ScanMaker::scan_of(const Person& person, const Pose& pose) {
-  MadeScan scan = sample_posed(person, pose, kRawPoints);
+  MadeScan scan = sample_posed(person, pose, raw_points());
   if (options_.stretch > 0) stretch(scan);
-  if (rng_.chance(options_.captured)) degrade(scan);
-  thin(scan, rng_);
+  finish(scan, rng_.chance(options_.captured));
   return scan;
 }
 

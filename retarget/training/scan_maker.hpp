@@ -12,11 +12,14 @@ struct ScanMakerOptions {
   float dressed = 0.35f;  ///< share of dressed people
   float mixed = 0.25f;    ///< share with upper and lower body from different postures
   float jittered = 0.5f;  ///< share with every joint turned a little
+  float limp = 0;         ///< share with hands, head and feet turned much, as no clip has them
   float t_pose = 0.06f;   ///< share in (nearly) the T-pose: targets
   float tilted = 0.06f;   ///< share of bodies far from upright
   bool mirror = true;     ///< mirror half of the postures
   float yaw = kPi;        ///< headings, +- radians
   float stretch = 0;  ///< people made wider, taller, deeper by up to this share: characters beyond the data
+
+  int points = 0;  ///< of a scan before holes, all of them kept; 0: kScanPoints, thinned from more
 
   /// People near the T-pose, facing about +z: targets.
   static ScanMakerOptions rest();
@@ -24,8 +27,8 @@ struct ScanMakerOptions {
 
 /// One scan and its truth, world metres.
 struct MadeScan {
-  Points points;           ///< [kScanPoints, 3]
-  std::vector<int> parts;  ///< [kScanPoints] joint with the largest skin weight, 22: not the body
+  Points points;           ///< [kScanPoints, 3], or as many as the options say
+  std::vector<int> parts;  ///< of each point the joint with the largest skin weight, 22: not the body
   PosedSkeleton truth;
 };
 
@@ -59,6 +62,8 @@ class ScanMaker {
   MadeScan sample_posed(const Person& person, const Pose& pose, int count, Points* rest = nullptr);
   void stretch(MadeScan& scan);
   void degrade(MadeScan& scan);
+  void finish(MadeScan& scan, bool captured);
+  int raw_points() const;
   void add_clutter(MadeScan& scan, Eigen::Index kept);
 
   const TrainingData& data_;

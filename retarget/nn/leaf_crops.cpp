@@ -1,0 +1,82 @@
+#include "retarget/nn/leaf_crops.hpp"
+
+#include <vector>
+
+#include "retarget/math/rotation.hpp"
+
+namespace understudy::nn {
+namespace {
+
+constexpr int kFewest = 16;
+
+/// Where the middle of a hand, head or foot is from its joint, T-pose axes of a left one, and how far it
+/// reaches with some room for errors of the joint; in leg lengths.
+struct Reach {
+  Vec3 middle;
+  float radius;
+};
+const Reach& reach_of(LeafKind kind) {
+  static const std::array<Reach, kLeafKinds> reaches = {{{Vec3(0.085f, 0, 0), 0.18f},
+                                                         {Vec3(0, 0.11f, 0.03f), 0.23f},
+                                                         {Vec3(0, -0.035f, 0.07f), 0.20f},
+                                                         {Vec3(0, 0, 0), 0.28f}}};
+  return reaches[static_cast<size_t>(kind)];
+}
+
+/// x to -x and back.
+Mat3 mirrored(const Mat3& R) {
+  const Vec3 flip(-1, 1, 1);
+  return flip.asDiagonal() * R * flip.asDiagonal();
+}
+
+const Mat3& frame_of(const Extraction& seen, const Leaf& leaf) {
+  return (*seen.global)[static_cast<size_t>(leaf.joint)];
+}
+
+std::vector<int> points_within(const Points& scan, const Vec3& middle, float radius) {
+  std::vector<int> near;
+  for (Eigen::Index i = 0; i < scan.rows(); ++i)
+    if ((scan.row(i).transpose() - middle).squaredNorm() < radius * radius)
+      near.push_back(static_cast<int>(i));
+  return near;
+}
+
+}  // namespace
+
+Mat3 into_leaf(const Mat3& world, const Extraction& seen, const Leaf& leaf) {
+  const Mat3 local = frame_of(seen, leaf).transpose() * world;
+  return leaf.mirrored ? mirrored(local) : local;
+}
+
+Mat3 from_leaf(const Mat3& local, const Extraction& seen, const Leaf& leaf) {
+  return frame_of(seen, leaf) * (leaf.mirrored ? mirrored(local) : local);
+}
+
+std::optional<LeafCrop> cut_leaf(const Points& scan, const Extraction& seen, const Leaf& leaf,
+                                 uint32_t first) {
+  const float size = leg_length(seen.joints);
+  const Mat3& R = frame_of(seen, leaf);
+  const Vec3 joint = seen.joints.row(leaf.joint).transpose(), side(leaf.mirrored ? -1.0f : 1.0f, 1, 1);
+  const Reach& reach = reach_of(leaf.kind);
+  const Vec3 middle = joint + size * (R * side.cwiseProduct(reach.middle));
+  const std::vector<int> near = points_within(scan, middle, size * reach.radius);
+  if (static_cast<int>(near.size()) < kFewest || !(size > 1e-4f)) return std::nullopt;
+  LeafCrop crop;
+  crop.points.resize(kLeafPoints, 3);
+  const size_t count = near.size();
+  for (size_t i = 0; i < kLeafPoints; ++i) {
+    // Spread over all of them: scans are often sorted along the body.
+    const size_t at = count > kLeafPoints ? (i * count / kLeafPoints + first) % count : i % count;
+    const Vec3 x = R.transpose() * (scan.row(near[at]).transpose() - joint) / size;
+    crop.points.row(static_cast<Eigen::Index>(i)) = x.cwiseProduct(side).transpose();
+  }
+  const int parent = kParents[static_cast<size_t>(leaf.joint)];
+  const Vec3 bone = R.transpose() * (seen.joints.row(parent).transpose() - joint) / size;
+  crop.context.head<3>() = bone.cwiseProduct(side);
+  crop.context.segment<6>(3) =
+      rotation_to_6d(into_leaf((*seen.global)[static_cast<size_t>(parent)], seen, leaf));
+  crop.context[9] = std::min(1.0f, static_cast<float>(count) / kLeafPoints);
+  return crop;
+}
+
+}  // namespace understudy::nn

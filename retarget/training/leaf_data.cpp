@@ -1,0 +1,101 @@
+#include "retarget/training/leaf_data.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "retarget/math/rotation.hpp"
+
+namespace understudy::training {
+namespace {
+
+constexpr float kRadians = kPi / 180;
+
+struct Crops {
+  std::vector<nn::LeafCrop> crops;
+  std::vector<std::array<Vec6, nn::kLeafTurns>> truth, before;
+};
+
+ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
+  ScanMakerOptions options;
+  options.points = points;
+  options.limp = 0.4f;
+  return ScanMaker(data, options, seed);
+}
+
+torch::Tensor tensor_of(const std::vector<std::array<Vec6, nn::kLeafTurns>>& rows) {
+  auto tensor = torch::empty({static_cast<int64_t>(rows.size()), nn::kLeafTurns, 6});
+  float* out = tensor.data_ptr<float>();
+  for (const auto& row : rows)
+    for (const Vec6& six : row) out = std::copy(six.data(), six.data() + 6, out);
+  return tensor;
+}
+
+LeafBatch batch_of(const Crops& made) {
+  const auto B = static_cast<int64_t>(made.crops.size());
+  LeafBatch batch{torch::empty({B, nn::kLeafPoints, 3}), torch::empty({B, nn::kLeafContext}),
+                  tensor_of(made.truth), tensor_of(made.before)};
+  for (int64_t b = 0; b < B; ++b) {
+    const nn::LeafCrop& crop = made.crops[static_cast<size_t>(b)];
+    std::copy(crop.points.data(), crop.points.data() + crop.points.size(),
+              batch.points.data_ptr<float>() + b * crop.points.size());
+    std::copy(crop.context.data(), crop.context.data() + nn::kLeafContext,
+              batch.context.data_ptr<float>() + b * nn::kLeafContext);
+  }
+  return batch;
+}
+
+}  // namespace
+
+LeafSampler::LeafSampler(const TrainingData& data, uint64_t seed)
+    : makers_{maker(data, 2500, seed), maker(data, 5000, seed + 1), maker(data, 9000, seed + 2)},
+      rng_(seed + 3) {}
+
+Extraction LeafSampler::pretend(const PosedSkeleton& truth) {
+  Extraction seen;
+  const auto turned = [this](float degrees) {
+    const Vec3 axis = Vec3(rng_.normal(), rng_.normal(), rng_.normal()).normalized();
+    return rotation_from_axis_angle(degrees * kRadians * std::abs(rng_.normal()) * axis);
+  };
+  const float spread = rng_.chance(0.2f) ? 0.03f : rng_.uniform(0.004f, 0.015f);
+  seen.global.emplace();
+  for (size_t j = 0; j < kJointCount; ++j) {
+    for (int axis = 0; axis < 3; ++axis)
+      seen.joints(static_cast<Eigen::Index>(j), axis) =
+          truth.joints(static_cast<Eigen::Index>(j), axis) + spread * rng_.normal();
+    const int p = kParents[j];
+    const Eigen::Quaternionf own(truth.global[j]);
+    // What the limb suggests of the leaf on it: no bend.
+    const Eigen::Quaternionf parent(truth.global[static_cast<size_t>(p < 0 ? 0 : p)]);
+    const float drawn = rng_.chance(0.6f) ? rng_.uniform() : 0.0f;
+    (*seen.global)[j] = turned(10) * own.slerp(drawn, parent).toRotationMatrix();
+  }
+  return seen;
+}
+
+LeafBatches LeafSampler::next(int scans) {
+  std::array<Crops, nn::kLeafKinds> made;
+  for (int n = 0; n < scans; ++n) {
+    const MadeScan scan = makers_[static_cast<size_t>(rng_.below(3))].next();
+    const Extraction seen = pretend(scan.truth);
+    for (const nn::Leaf& leaf : nn::kLeaves) {
+      const auto crop = nn::cut_leaf(scan.points, seen, leaf);
+      if (!crop) continue;
+      Crops& to = made[static_cast<size_t>(leaf.kind)];
+      std::array<Vec6, nn::kLeafTurns> truth, before;
+      truth.fill(rotation_to_6d(Mat3::Identity()));
+      before = truth;
+      for (size_t k = 0; k < nn::kLeafTurns; ++k) {
+        if (leaf.corrects[k] < 0) continue;
+        const auto j = static_cast<size_t>(leaf.corrects[k]);
+        truth[k] = rotation_to_6d(nn::into_leaf(scan.truth.global[j], seen, leaf));
+        before[k] = rotation_to_6d(nn::into_leaf((*seen.global)[j], seen, leaf));
+      }
+      to.crops.push_back(*crop);
+      to.truth.push_back(truth);
+      to.before.push_back(before);
+    }
+  }
+  return {batch_of(made[0]), batch_of(made[1]), batch_of(made[2]), batch_of(made[3])};
+}
+
+}  // namespace understudy::training

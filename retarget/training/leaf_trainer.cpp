@@ -1,0 +1,222 @@
+#include "retarget/training/leaf_trainer.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <future>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/nn/modules/leaf_refiner.hpp"
+#include "retarget/nn/weights_file.hpp"
+#include "retarget/training/leaf_data.hpp"
+
+namespace understudy::training {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kLearningRate = 1e-3;
+constexpr int kWarmUpSteps = 200, kScansAStep = 24, kDevScans = 300;
+constexpr double kAverageDecay = 0.998, kSecondsPerCheckpoint = 120, kSecondsPerReport = 120;
+
+/// Mean angle in degrees between rotations in 6D form, [B, K, 6] each, of the first.
+double mean_angle(const torch::Tensor& said, const torch::Tensor& truth) {
+  const auto a = said.contiguous(), b = truth.contiguous();
+  double sum = 0;
+  for (int64_t i = 0; i < a.size(0); ++i) {
+    const int64_t at = i * nn::kLeafTurns * 6;
+    sum += geodesic_angle(rotation_from_6d(Eigen::Map<const Vec6>(a.data_ptr<float>() + at)),
+                          rotation_from_6d(Eigen::Map<const Vec6>(b.data_ptr<float>() + at)));
+  }
+  return sum / static_cast<double>(std::max<int64_t>(1, a.size(0))) * 180 / kPi;
+}
+
+class LeafTrainer {
+ public:
+  explicit LeafTrainer(const nn::TrainOptions& options);
+  int run();
+
+ private:
+  void resume();
+  void save_checkpoint();
+  void train_step(const LeafBatches& batches);
+  void report();
+  double done_share() const;
+  double learning_rate() const;
+  std::string checkpoint() const { return options_.out + ".checkpoint"; }
+
+  nn::TrainOptions options_;
+  TrainingData train_, dev_;
+  std::unique_ptr<LeafSampler> sampler_;
+  LeafBatches dev_batches_;
+  nn::LeafRefinerNet net_, average_;
+  std::unique_ptr<torch::optim::AdamW> optimizer_;
+  int64_t step_ = 0, samples_ = 0;
+  double seconds_ = 0, seconds_before_ = 0, loss_sum_ = 0;
+  int loss_count_ = 0;
+  Clock::time_point started_ = Clock::now();
+};
+
+LeafTrainer::LeafTrainer(const nn::TrainOptions& options)
+    : options_(options),
+      train_(load_training_data(options.data, Split::Train)),
+      dev_(load_training_data(options.data, Split::Dev)),
+      sampler_(std::make_unique<LeafSampler>(train_, options.seed)),
+      dev_batches_(LeafSampler(dev_, 12345).next(kDevScans)) {
+  US_CHECK(options_.minutes > 0 || options_.samples > 0, "training wants --minutes or --samples");
+  at::set_num_threads(1);
+  torch::manual_seed(options_.seed);
+  net_ = nn::LeafRefinerNet();
+  average_ = nn::LeafRefinerNet();
+  if (!options_.init.empty()) nn::load_weights(options_.init, "leaf", nn::kLeafVersion, *net_);
+  const torch::NoGradGuard no_grad;
+  for (size_t i = 0; i < net_->parameters().size(); ++i)
+    average_->parameters()[i].copy_(net_->parameters()[i]);
+  optimizer_ = std::make_unique<torch::optim::AdamW>(
+      net_->parameters(), torch::optim::AdamWOptions(kLearningRate).weight_decay(1e-4));
+  resume();
+}
+
+void LeafTrainer::resume() {
+  if (!fs::exists(checkpoint())) return;
+  torch::serialize::InputArchive archive, net, average, optimizer;
+  archive.load_from(checkpoint());
+  archive.read("net", net);
+  archive.read("average", average);
+  archive.read("optimizer", optimizer);
+  net_->load(net);
+  average_->load(average);
+  optimizer_->load(optimizer);
+  torch::Tensor numbers;
+  archive.read("progress", numbers);
+  const auto* n = numbers.data_ptr<double>();
+  step_ = static_cast<int64_t>(n[0]);
+  samples_ = static_cast<int64_t>(n[1]);
+  seconds_before_ = seconds_ = n[2];
+  // Other scans than those that were seen before.
+  sampler_ = std::make_unique<LeafSampler>(train_, options_.seed + static_cast<uint64_t>(step_) * 7919);
+  log::info("resumed " + checkpoint() + " at step " + std::to_string(step_));
+}
+
+void LeafTrainer::save_checkpoint() {
+  torch::serialize::OutputArchive archive, net, average, optimizer;
+  net_->save(net);
+  average_->save(average);
+  optimizer_->save(optimizer);
+  archive.write("net", net);
+  archive.write("average", average);
+  archive.write("optimizer", optimizer);
+  archive.write(
+      "progress",
+      torch::tensor({static_cast<double>(step_), static_cast<double>(samples_), seconds_}, torch::kFloat64));
+  archive.save_to(checkpoint() + ".part");
+  fs::rename(checkpoint() + ".part", checkpoint());
+  nn::save_weights(
+      options_.out,
+      {"leaf", nn::kLeafVersion, {{"samples", samples_}, {"steps", step_}, {"seconds", seconds_}}},
+      *average_);
+}
+
+double LeafTrainer::done_share() const {
+  const double by_time = options_.minutes > 0 ? seconds_ / (60 * options_.minutes) : 0;
+  const double by_samples =
+      options_.samples > 0 ? static_cast<double>(samples_) / static_cast<double>(options_.samples) : 0;
+  return std::max(by_time, by_samples);
+}
+
+double LeafTrainer::learning_rate() const {
+  const double warm = std::min(1.0, static_cast<double>(step_ + 1) / kWarmUpSteps);
+  return kLearningRate * warm * (0.01 + 0.99 * 0.5 * (1 + std::cos(kPi * std::min(1.0, done_share()))));
+}
+
+void LeafTrainer::train_step(const LeafBatches& batches) {
+  optimizer_->zero_grad();
+  auto loss = torch::zeros({});
+  for (int kind = 0; kind < nn::kLeafKinds; ++kind) {
+    const LeafBatch& batch = batches[static_cast<size_t>(kind)];
+    if (batch.points.size(0) == 0) continue;
+    const auto said = net_->of(static_cast<nn::LeafKind>(kind))->forward(batch.points, batch.context);
+    loss = loss + (said - batch.truth).abs().mean();
+  }
+  loss.backward();
+  for (auto& group : optimizer_->param_groups())
+    static_cast<torch::optim::AdamWOptions&>(group.options()).lr(learning_rate());
+  const double norm = torch::nn::utils::clip_grad_norm_(net_->parameters(), /*max_norm=*/1.0);
+  if (std::isfinite(norm)) optimizer_->step();
+  const torch::NoGradGuard no_grad;
+  const double decay =
+      std::min(kAverageDecay, static_cast<double>(1 + step_) / static_cast<double>(10 + step_));
+  auto averaged = average_->parameters();
+  const auto now = net_->parameters();
+  for (size_t i = 0; i < averaged.size(); ++i) averaged[i].lerp_(now[i], 1 - decay);
+  ++step_;
+  loss_sum_ += loss.item<double>();
+  ++loss_count_;
+  seconds_ = seconds_before_ + std::chrono::duration<double>(Clock::now() - started_).count();
+}
+
+void LeafTrainer::report() {
+  const torch::NoGradGuard no_grad;
+  std::array<double, nn::kLeafKinds> dev, before;
+  for (size_t kind = 0; kind < nn::kLeafKinds; ++kind) {
+    const LeafBatch& batch = dev_batches_[kind];
+    before[kind] = mean_angle(batch.before, batch.truth);
+    dev[kind] = mean_angle(
+        average_->of(static_cast<nn::LeafKind>(kind))->forward(batch.points, batch.context), batch.truth);
+  }
+  char line[240];
+  std::snprintf(line, sizeof line, "%.1f,%lld,%lld,%.6f,%.4f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f",
+                seconds_ / 60, static_cast<long long>(step_), static_cast<long long>(samples_),
+                learning_rate(), loss_sum_ / std::max(1, loss_count_), dev[0], dev[1], dev[2], dev[3],
+                before[0], before[1], before[2], before[3]);
+  loss_sum_ = loss_count_ = 0;
+  const std::string curve = options_.curve.empty() ? options_.out + ".csv" : options_.curve;
+  const bool fresh = !fs::exists(curve);
+  std::ofstream out(curve, std::ios::app);
+  if (fresh)
+    out << "minutes,step,samples,rate,loss,dev_hand_deg,dev_head_deg,dev_foot_deg,dev_arm_deg,before_hand_"
+           "deg,before_"
+           "head_"
+           "deg,before_foot_deg,before_arm_deg\n";
+  out << line << "\n";
+  log::info(std::string("leaf ") + line);
+}
+
+int LeafTrainer::run() {
+  double last_checkpoint = seconds_, last_report = seconds_;
+  const int scans = options_.batch > 0 ? options_.batch : kScansAStep;
+  const auto make = [&] { return sampler_->next(scans); };
+  // The next scans are made while the network learns from these.
+  auto coming = std::async(std::launch::async, make);
+  while (done_share() < 1 && !(options_.cancelled && options_.cancelled())) {
+    const LeafBatches batches = coming.get();
+    coming = std::async(std::launch::async, make);
+    train_step(batches);
+    samples_ += scans;
+    if (step_ == 20 || seconds_ - last_report >= kSecondsPerReport) {
+      report();
+      last_report = seconds_;
+    }
+    if (seconds_ - last_checkpoint >= kSecondsPerCheckpoint) {
+      save_checkpoint();
+      last_checkpoint = seconds_;
+    }
+  }
+  coming.wait();
+  save_checkpoint();
+  report();
+  return 0;
+}
+
+}  // namespace
+
+int train_leaf(const nn::TrainOptions& options) {
+  return LeafTrainer(options).run();
+}
+
+}  // namespace understudy::training

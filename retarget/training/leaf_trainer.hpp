@@ -1,0 +1,13 @@
+// Trains the network that sees hands, head and feet from near.
+#pragma once
+
+#include "retarget/nn/networks.hpp"
+
+namespace understudy::training {
+
+/// Trains until the time or the samples (scans) of the options are used up; resumes from `out +
+/// ".checkpoint"` when it is there. Writes weights (running average) to `out`, the learning curve to `curve`.
+/// Returns 0; throws Error.
+int train_leaf(const nn::TrainOptions& options);
+
+}  // namespace understudy::training

@@ -1,0 +1,95 @@
+#include "retarget/nn/leaf_crops.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/retarget/pipeline/fixtures.hpp"
+
+namespace understudy::nn {
+namespace {
+
+constexpr const Leaf& kLeftHand = kLeaves[2];
+constexpr const Leaf& kRightHand = kLeaves[3];
+
+/// A dancer with a cloud about every joint.
+struct Scene {
+  Points points;
+  Extraction seen;
+};
+
+Scene scene(float t) {
+  const PosedSkeleton posed = forward_kinematics(human_rest(), fixtures::dance(t));
+  Scene made;
+  made.seen.joints = posed.joints;
+  made.seen.global = posed.global;
+  Rng rng(5);
+  made.points.resize(kJointCount * 60, 3);
+  for (Eigen::Index i = 0; i < made.points.rows(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      made.points(i, axis) = posed.joints(i / 60, axis) + 0.04f * rng.normal();
+  return made;
+}
+
+TEST(LeafCrops, HoldThePointsNearTheJointInItsFrame) {
+  const Scene s = scene(1);
+  const auto crop = cut_leaf(s.points, s.seen, kLeftHand);
+  ASSERT_TRUE(crop);
+  EXPECT_EQ(crop->points.rows(), kLeafPoints);
+  EXPECT_LT(crop->points.rowwise().norm().maxCoeff(), 0.18f + 0.085f + 1e-4f);
+  // The elbow lies at the other side of a left wrist than +x.
+  EXPECT_LT(crop->context[0], -0.1f);
+}
+
+TEST(LeafCrops, StayTheSameWhenTheWorldTurnsAndGrows) {
+  const Scene s = scene(1);
+  const Mat3 R = rotation_from_axis_angle(Vec3(0.4f, -1, 0.2f));
+  Scene turned = s;
+  turned.points = (2 * s.points * R.transpose()).rowwise() + Vec3(1, 2, 3).transpose();
+  turned.seen.joints = (2 * s.seen.joints * R.transpose()).rowwise() + Vec3(1, 2, 3).transpose();
+  for (Mat3& G : *turned.seen.global) G = R * G;
+  for (const Leaf& leaf : kLeaves) {
+    const auto a = cut_leaf(s.points, s.seen, leaf), b = cut_leaf(turned.points, turned.seen, leaf);
+    ASSERT_TRUE(a && b);
+    EXPECT_LT((a->points - b->points).cwiseAbs().maxCoeff(), 1e-4f);
+    EXPECT_LT((a->context - b->context).cwiseAbs().maxCoeff(), 1e-4f);
+  }
+}
+
+TEST(LeafCrops, ARightOneInAMirrorIsALeftOne) {
+  const Scene s = scene(1);
+  Scene mirror = s;
+  const Vec3 flip(-1, 1, 1);
+  mirror.points.col(0) *= -1;
+  for (size_t j = 0; j < kJointCount; ++j) {
+    const auto m = static_cast<size_t>(kMirror[j]);
+    mirror.seen.joints.row(static_cast<Eigen::Index>(j)) =
+        s.seen.joints.row(static_cast<Eigen::Index>(m)).cwiseProduct(flip.transpose());
+    (*mirror.seen.global)[j] = flip.asDiagonal() * (*s.seen.global)[m] * flip.asDiagonal();
+  }
+  const auto right = cut_leaf(s.points, s.seen, kRightHand),
+             left = cut_leaf(mirror.points, mirror.seen, kLeftHand);
+  ASSERT_TRUE(right && left);
+  EXPECT_LT((right->points - left->points).cwiseAbs().maxCoeff(), 1e-5f);
+  EXPECT_LT((right->context - left->context).cwiseAbs().maxCoeff(), 1e-5f);
+}
+
+TEST(LeafCrops, TurnsGoInAndComeBack) {
+  const Scene s = scene(2);
+  const Mat3 world = rotation_from_axis_angle(Vec3(0.3f, 0.5f, -1));
+  for (const Leaf& leaf : kLeaves) {
+    EXPECT_LT((from_leaf(into_leaf(world, s.seen, leaf), s.seen, leaf) - world).norm(), 1e-5f);
+    const Mat3& own = (*s.seen.global)[static_cast<size_t>(leaf.joint)];
+    EXPECT_LT((into_leaf(own, s.seen, leaf) - Mat3::Identity()).norm(), 1e-5f);
+  }
+}
+
+TEST(LeafCrops, AreNotCutWhereTheScanHasAHole) {
+  Scene s = scene(1);
+  const Vec3 wrist = s.seen.joints.row(LeftWrist).transpose();
+  for (Eigen::Index i = 0; i < s.points.rows(); ++i)
+    if ((s.points.row(i).transpose() - wrist).norm() < 0.4f) s.points.row(i).setConstant(std::nanf(""));
+  EXPECT_FALSE(cut_leaf(s.points, s.seen, kLeftHand));
+  EXPECT_TRUE(cut_leaf(s.points, s.seen, kRightHand));
+}
+
+}  // namespace
+}  // namespace understudy::nn

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "retarget/nn/modules/leaf_refiner.hpp"
+#include "retarget/nn/weights_file.hpp"
+#include "retarget/training/leaf_data.hpp"
+#include "retarget/training/leaf_trainer.hpp"
+#include "tests/support/training_folder.hpp"
+
+namespace understudy::training {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LeafTraining : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("understudy_leaf_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    test::write_training_folder(folder_.string());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  nn::TrainOptions options(int64_t samples) const {
+    nn::TrainOptions options;
+    options.network = "leaf";
+    options.data = folder_.string();
+    options.out = (folder_ / "leaf.weights").string();
+    options.samples = samples;
+    options.batch = 4;
+    return options;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(LeafTraining, CropsComeWithRotationsInTheirFrame) {
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  LeafSampler a(data, 7), b(data, 7);
+  const LeafBatches batches = a.next(6), again = b.next(6);
+  int64_t crops = 0;
+  for (size_t kind = 0; kind < nn::kLeafKinds; ++kind) {
+    const LeafBatch& batch = batches[kind];
+    crops += batch.points.size(0);
+    EXPECT_TRUE(torch::equal(batch.points, again[kind].points));
+    if (batch.points.size(0) == 0) continue;
+    EXPECT_TRUE(torch::isfinite(batch.truth).all().item<bool>());
+    // Columns of a rotation have length 1.
+    EXPECT_NEAR(batch.truth.narrow(2, 0, 3).square().sum(2).min().item<double>(), 1, 1e-4);
+    // The frame is the first corrected joint's own: what was seen of it is no turn.
+    const auto none = torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f});
+    EXPECT_LT((batch.before.select(1, 0) - none).abs().max().item<double>(), 1e-4);
+  }
+  EXPECT_GT(crops, 0);
+}
+
+TEST_F(LeafTraining, WritesWeightsAndGoesOnFromItsCheckpoint) {
+  EXPECT_EQ(train_leaf(options(16)), 0);
+  const nn::WeightsHeader first = nn::read_weights_header(options(0).out);
+  EXPECT_EQ(first.kind, "leaf");
+  EXPECT_EQ(first.numbers.at("samples"), 16);
+  EXPECT_EQ(train_leaf(options(32)), 0);
+  EXPECT_EQ(nn::read_weights_header(options(0).out).numbers.at("steps"), 8);
+  nn::LeafRefinerNet net;
+  nn::load_weights(options(0).out, "leaf", nn::kLeafVersion, *net);
+  for (const auto& p : net->parameters()) EXPECT_TRUE(torch::isfinite(p).all().item<bool>());
+}
+
+TEST_F(LeafTraining, RefusesToTrainWithoutAnEnd) {
+  EXPECT_ANY_THROW(train_leaf(options(0)));
+}
+
+}  // namespace
+}  // namespace understudy::training
