@@ -29,7 +29,7 @@ class Repeated final : public Source {
         options_(options),
         left_(frames),
         inner_(open_source(options)) {}
-  std::optional<ScanFrame> next() override {
+  std::optional<SourceFrame> next() override {
     if (left_-- <= 0) return std::nullopt;
     auto frame = inner_->next();
     if (frame) return frame;

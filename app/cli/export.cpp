@@ -133,11 +133,9 @@ Performance perform_document(const ExportOptions& options, const ExportFormatInf
   studio.tick(0);
   check_session(session);
   progress.finish();
-  ExportChoice choice{format.format, options.file, options.target.rig != "ours"};
-  Performance out{export_input(session, take, choice), name};
-  US_CHECK(options.target.rig != "theirs" || out.input.body.file.their_rig, options.document, ": ", name,
-           " does not perform on bones of its own");
-  return out;
+  ExportChoice choice{format.format, options.file, {}};
+  if (options.target.rig != "auto") choice.theirs = options.target.rig == "theirs";
+  return {export_input(session, take, choice), name};
 }
 
 /// Six moments of the first clip as the file has them, and how it stands in the T-pose.
@@ -212,8 +210,8 @@ int run_export(ExportOptions options) {
   const ExportFormatInfo& format = info_of(export_format(options.format, options.out));
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
            ": only of a GLB or glTF file a picture can be made");
-  for (const std::string& path : {*format.suffix ? options.out : "", options.preview, options.report})
-    check_writable(path);
+  check_export(options.out, format.format);
+  for (const std::string& path : {options.preview, options.report}) check_writable(path);
   Performance done =
       options.document.empty() ? perform_sources(options, format) : perform_document(options, format);
   done.input.body.file.progress = [](float) { check_interrupt("while it was written"); };

@@ -45,9 +45,9 @@ render::SheetMoment source_moment(const PerformedFrame& frame, int64_t index, do
   return moment;
 }
 
-render::SheetMoment moment_of(const PerformedFrame& frame, int64_t index, double fps, const Faces& faces) {
+render::SheetMoment moment_of(const PerformedFrame& frame, int64_t index, double fps, const Mesh& rest) {
   render::SheetMoment moment = source_moment(frame, index, fps);
-  moment.target = Mesh{frame.result.vertices, faces};
+  moment.target = Mesh{frame.result.vertices, rest.faces, rest.colors};
   moment.target_joints = frame.result.joints;
   return moment;
 }
@@ -74,7 +74,7 @@ void take_frame(Running& job, const PerformedFrame& frame, bool live) {
   }
   if (job.output) job.output->push({frame.result.pose, frame.source_joints, &frame.result.vertices});
   if (job.moments && job.moments->wanted(job.frames))
-    job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.mesh.faces));
+    job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.mesh));
   if (job.skeletons && job.skeletons->wanted(job.frames))
     job.skeletons->add(job.frames, source_moment(frame, job.frames, job.source->fps()));
   if (job.judge)
@@ -136,9 +136,8 @@ void finish(const JobOptions& options, Running& job) {
 }  // namespace
 
 void run_job(const JobOptions& options) {
-  if (!options.out.empty()) export_format("", options.out);
-  for (const std::string& path : {options.out, options.report, options.preview, options.skeletons})
-    check_writable(path);
+  if (!options.out.empty()) check_export(options.out, export_format("", options.out));
+  for (const std::string& path : {options.report, options.preview, options.skeletons}) check_writable(path);
   Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
                     job.source->count().value_or(0), options.progress_lines);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/amass_writer.hpp"
 #include "retarget/formats/bvh_writer.hpp"
@@ -245,6 +246,14 @@ ExportFormat export_format(const std::string& name, const std::string& path) {
               "; or name a format: " + names);
 }
 
+void check_export(const std::string& path, ExportFormat format) {
+  const ExportFormatInfo& info = info_of(format);
+  US_CHECK(!info.is_character || ends_with(path, info.suffix), path, ": a ", info.label,
+           " file is called something", info.suffix);
+  if (*info.suffix) return check_writable(path);
+  const PartFolder made_and_removed(path);
+}
+
 std::unique_ptr<MotionOutput> open_export(const std::string& path, ExportFormat format,
                                           const ExportBody& body, const std::string& name, double fps) {
   US_CHECK(info_of(format).is_character || !body.file.t_pose_clip, path, ": ", info_of(format).label,
@@ -268,15 +277,13 @@ std::unique_ptr<MotionOutput> open_export(const std::string& path, ExportFormat 
     case ExportFormat::Gltf:
       break;
   }
-  const char* suffix = info_of(format).suffix;
-  US_CHECK(ends_with(path, suffix), path, ": a ", info_of(format).label, " file is called something", suffix);
   return std::make_unique<CharacterOutput>(path, body, name, fps);
 }
 
 ExportCost export_motion(const std::string& path, ExportFormat format, const ExportInput& input) {
   US_CHECK(!input.clips.empty(), path, ": there is no motion to export");
   if (info_of(format).is_character) {
-    open_export(path, format, input.body, "", 1);  // for its complaints
+    check_export(path, format);
     return export_character(path, *input.body.character, *input.body.screen, input.clips, input.body.file);
   }
   US_CHECK(input.clips.size() == 1, path, ": ", info_of(format).label, " holds one motion, these are ",

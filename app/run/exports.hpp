@@ -26,6 +26,9 @@ const ExportFormatInfo& info_of(ExportFormat format);
 /// The format of that name; an empty name: what the path's suffix stands for. Throws Error naming the path.
 ExportFormat export_format(const std::string& name, const std::string& path);
 
+/// Throws Error at once when nothing could be written there, before hours of work are done for it.
+void check_export(const std::string& path, ExportFormat format);
+
 /// Who performs, as on screen.
 struct ExportBody {
   std::shared_ptr<const PreparedCharacter> character;

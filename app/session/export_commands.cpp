@@ -1,6 +1,5 @@
 #include <filesystem>
 
-#include "app/run/report.hpp"
 #include "app/session/command_sets.hpp"
 #include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
@@ -24,7 +23,7 @@ void run_export(Studio& studio, const Arguments& a) {
   const std::string path = whole_path(a);
   const ExportChoice choice = export_choice(path, {a.begin() + 2, a.end()});
   const auto input = std::make_shared<ExportInput>(export_input(studio.session(), take, choice));
-  if (*info_of(choice.format).suffix) check_writable(path);
+  check_export(path, choice.format);
   const std::string name = fs::path(path).filename().string();
   const auto cost = std::make_shared<ExportCost>();
   studio.jobs().start(

@@ -68,7 +68,9 @@ ExportInput export_input(const Session& session, size_t k, const ExportChoice& c
   US_CHECK(state.ready && state.character && !state.shown.poses.empty(), "there is nothing to export yet");
   ExportInput out;
   out.body = {state.character, state.deformer, choice.file};
-  out.body.file.their_rig = choice.theirs && on_their_rig(take.target, *state.character);
+  const bool own = on_their_rig(take.target, *state.character);
+  US_CHECK(own || !choice.theirs.value_or(false), take.name, ": does not perform on bones of its own");
+  out.body.file.their_rig = choice.theirs.value_or(own);
   out.body.file.joints = state.target->joints;
   CharacterClip clip{clip_name(session, take), session.source.fps, {}};
   for (const int frame : kept_frames(take.pose_edits, static_cast<int>(state.shown.poses.size()))) {

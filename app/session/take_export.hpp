@@ -1,6 +1,7 @@
 // What an export needs of a take: the same for the studio and for a document on the command line.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/run/exports.hpp"
@@ -12,7 +13,7 @@ namespace understudy::app {
 struct ExportChoice {
   ExportFormat format = ExportFormat::Glb;
   CharacterExportOptions file;
-  bool theirs = true;  ///< drive the character's own bones, where the take performs on them
+  std::optional<bool> theirs;  ///< drive the character's own bones; none: where the take performs on them
 };
 
 /// key=value words: format=NAME, rig=theirs|ours, influences=4|8, morphs=COUNT, reduce=MM, in_place=on|off,

@@ -55,7 +55,7 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, 
   CharacterExportOptions& file = state.choice.file;
   if (on_own_bones)
     if (const auto i = choice_row(ui, {"export.rig", "Skeleton", "Which bones the file moves"},
-                                  {"Its own", "22 joints"}, state.choice.theirs ? 0 : 1))
+                                  {"Its own", "22 joints"}, state.choice.theirs.value_or(true) ? 0 : 1))
       state.choice.theirs = *i == 0;
   if (const auto i = choice_row(ui, {"export.influences", "Bones a vertex", "Old engines read four only"},
                                 {"4", "8"}, file.influences == 8 ? 1 : 0))
@@ -109,7 +109,7 @@ app::Arguments export_words(const app::ExportFormatInfo& format, const app::Expo
   const CharacterExportOptions& file = choice.file;
   if (file.in_place) words.push_back("in_place=on");
   if (!format.is_character) return words;
-  if (!choice.theirs) words.push_back("rig=ours");
+  if (!choice.theirs.value_or(true)) words.push_back("rig=ours");
   if (file.influences == 8) words.push_back("influences=8");
   if (file.shapes > 0) words.push_back("morphs=" + std::to_string(file.shapes));
   if (file.reduce_mm > 0)
