@@ -42,6 +42,9 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_choice("target.units", 2, {"target.units 0 cm"});
   expect_choice("target.up", 3, {"target.up 0 z"});
   expect_typed("target.yaw", "-45", {"target.yaw 0 -45"});
+  expect_typed("target.yaw", "north", {});
+  session.document.takes[0].target.forward = false;
+  expect_typed("target.yaw", "auto", {"target.yaw 0 auto"});
   expect_typed("target.betas", "1.2,-0.5", {"target.betas 0 1.2,-0.5"});
   expect_typed("take.name", "the adult", {"take.rename 0 \"the adult\""});
 }

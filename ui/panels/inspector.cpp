@@ -26,7 +26,7 @@ void warn(Ui& ui, const std::string& sentence) {
   ImGui::PopTextWrapPos();
 }
 
-/// Units, axis and turn, alike for scans and targets. `before`: what comes first in the commands.
+/// Units and axis, alike for scans and targets. `before`: what comes first in the commands.
 void draw_import(PanelContext& context, const std::string& group, const ImportOptions& import,
                  const app::Arguments& before) {
   Ui& ui = context.ui;
@@ -41,9 +41,16 @@ void draw_import(PanelContext& context, const std::string& group, const ImportOp
   if (const auto i = choice_row(ui, {group + ".up", "Up", "The file's axis that points up"}, kAxes,
                                 index_of(kAxes, import.up)))
     ask("up", kAxes[static_cast<size_t>(*i)]);
-  if (const auto deg = typed_number_row(ui, {group + ".yaw", "Turned by", "Degrees about the vertical"},
-                                        import.yaw_deg, 1))
-    ask("yaw", argument(*deg));
+}
+
+void draw_target_yaw(const app::TargetOptions& target, PanelContext& context, const std::string& k) {
+  const bool automatic = target.forward && target.import.yaw_deg == 0;
+  const auto text = text_row(
+      context.ui, {"target.yaw", "Turned by", "Degrees about the vertical; auto: so that it faces forward"},
+      automatic ? "auto" : argument(target.import.yaw_deg));
+  if (!text) return;
+  const auto deg = parse_number(*text);
+  if (deg || *text == "auto") context.ask("target.yaw", {k, deg ? argument(*deg) : "auto"});
 }
 
 void draw_source_facts(const app::Session& session, Ui& ui) {
@@ -86,6 +93,9 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
   if (may_move(source)) draw_animation_fields(source, context);
   draw_import(context, "source", source.import, {});
+  if (const auto deg = typed_number_row(ui, {"source.yaw", "Turned by", "Degrees about the vertical"},
+                                        source.import.yaw_deg, 1))
+    context.ask("source.yaw", {argument(*deg)});
   const std::string floor = source.import.floor ? argument(*source.import.floor) : "auto";
   if (const auto text = text_row(ui, {"source.floor", "Floor", "Its height in metres, or auto"}, floor)) {
     const auto height = parse_number(*text);
@@ -171,6 +181,7 @@ void draw_target(const app::Session& session, PanelContext& context) {
   row_text(ui, "File", file_name(take->target.path));
   if (const app::TakeState* state = selected_state(session)) draw_target_facts(*state, ui);
   draw_import(context, "target", take->target.import, {k});
+  draw_target_yaw(take->target, context, k);
   std::ostringstream betas;
   for (size_t i = 0; i < take->target.betas.size(); ++i)
     betas << (i > 0 ? "," : "") << argument(take->target.betas[i]);

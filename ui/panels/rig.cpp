@@ -38,7 +38,7 @@ void draw_choice(const app::Take& take, PanelContext& context, const std::string
   if (const auto i = choice_row(context.ui,
                                 {"rig.choice", "Performs on",
                                  "Its own bones and weights, or the 22 joints with weights found here"},
-                                {"Automatic", "Its own", "Ours"}, static_cast<int>(at - kRigs.begin())))
+                                {"Auto", "Its own", "Ours"}, static_cast<int>(at - kRigs.begin())))
     context.ask("target.rig", {k, kRigs[static_cast<size_t>(*i)]});
 }
 
@@ -49,7 +49,7 @@ void draw_facts(const PreparedCharacter& character, Ui& ui) {
                ? "none"
                : std::to_string(count) + " of 22 joints, " + character.map.how);
   const float turned = character.pose.largest_deg;
-  row_text(ui, "Rest pose", turned < 0.5f ? "T-pose" : "turned to the T-pose by " + figure(turned, "\u00b0"));
+  row_text(ui, "Rest pose", turned < 0.5f ? "T-pose" : figure(turned, "\u00b0") + " off the T-pose");
   for (const std::string& note : character.notes) hint(ui, note);
 }
 
