@@ -1,6 +1,7 @@
 us_test(app_test SOURCES
   tests/app/program.cpp tests/app/latency_test.cpp tests/app/judge_test.cpp tests/app/case_folder_test.cpp
   tests/app/source_test.cpp tests/app/preview_test.cpp tests/app/report_test.cpp
+  tests/retarget/motion/made_motion.cpp tests/retarget/character/characters.cpp
   LIBS understudy_app understudy_npz LABELS fast)
 
 us_test(exports_test SOURCES tests/app/exports_test.cpp tests/retarget/character/characters.cpp
@@ -9,7 +10,8 @@ us_test(exports_test SOURCES tests/app/exports_test.cpp tests/retarget/character
 # These run the shipped program: each run loads LibTorch.
 us_test(commands_test SOURCES
   tests/app/commands_test.cpp tests/app/program.cpp tests/app/sample_files.cpp tests/support/training_folder.cpp
-  LIBS understudy_npz understudy_builtin understudy_body nlohmann_json::nlohmann_json LABELS torch gl TIMEOUT 600)
+  tests/retarget/motion/made_motion.cpp tests/retarget/character/characters.cpp
+  LIBS understudy_character understudy_npz understudy_builtin understudy_body nlohmann_json::nlohmann_json LABELS torch gl TIMEOUT 600)
 us_test(bad_input_test SOURCES
   tests/app/bad_input_test.cpp tests/app/program.cpp tests/app/sample_files.cpp
   LIBS understudy_npz understudy_builtin LABELS torch gl TIMEOUT 600)

@@ -5,6 +5,7 @@
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/app/cli_fixture.hpp"
+#include "tests/retarget/motion/made_motion.hpp"
 #include "tests/support/training_folder.hpp"
 
 namespace understudy::tests {
@@ -59,6 +60,18 @@ TEST_F(Commands, RetargetGivesAllFiguresAsArrays) {
   EXPECT_EQ(npz.at("joints").shape, (std::vector<int64_t>{kFrames, 22, 3}));
   EXPECT_EQ(npz.at("rotations").shape, (std::vector<int64_t>{kFrames, 22, 3, 3}));
   EXPECT_EQ(npz.at("source_joints").shape, (std::vector<int64_t>{kFrames, 22, 3}));
+}
+
+TEST_F(Commands, RetargetPerformsASkeletalMotion) {
+  const Joints rest = tests::made_joints({});
+  std::ofstream(out("walk.bvh")) << tests::made_bvh({}, rest, tests::made_motion(4, rest));
+  const Finished run = retarget(out("walk.bvh"), {"--out", out("a.npz")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("22 of 22 joints"), std::string::npos) << run.err;
+  EXPECT_EQ(read_npz(out("a.npz")).at("joints").shape, (std::vector<int64_t>{4, 22, 3}));
+  const Finished bad = retarget(out("walk.bvh"), {"--clip", "dance", "--out", out("b.npz")});
+  EXPECT_EQ(bad.code, 1);
+  EXPECT_NE(bad.err.find("walk.bvh: has no animation 'dance'"), std::string::npos) << bad.err;
 }
 
 TEST_F(Commands, RetargetGivesTheSameBytesTwice) {

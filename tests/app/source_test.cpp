@@ -7,9 +7,11 @@
 #include <fstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/character/gltf_character.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/app/program.hpp"
+#include "tests/retarget/motion/made_motion.hpp"
 
 namespace understudy::app {
 namespace {
@@ -181,6 +183,56 @@ TEST_F(SourceFiles, ABodyPerformsAMotion) {
   const Points first = source->next()->mesh.vertices, second = source->next()->mesh.vertices;
   EXPECT_NEAR((second.col(0) - first.col(0)).mean(), 0.5f, 1e-5);
   EXPECT_NEAR(first.col(1).minCoeff(), 0, 0.1);  // on the floor
+}
+
+TEST_F(SourceFiles, ASkeletonThatMovesIsASource) {
+  const Joints rest = tests::made_joints({});
+  const std::string path = scratch.path("walk.bvh");
+  std::ofstream(path) << tests::made_bvh({}, rest, tests::made_motion(10, rest));
+  SourceOptions options;
+  options.path = path;
+  const auto source = open_source(options);
+  EXPECT_EQ(source->count(), 10);
+  EXPECT_EQ(source->fps(), 120);
+  EXPECT_NE(source->decision().find("22 of 22 joints"), std::string::npos) << source->decision();
+  source->seek(7);
+  const auto frame = source->next();
+  ASSERT_TRUE(frame && frame->skeleton);
+  EXPECT_EQ(frame->number, 7);
+  EXPECT_GT(frame->mesh.faces.rows(), 0);  // its bones, to look at
+  EXPECT_TRUE(frame->skeleton->exact);
+  while (source->next()) {
+  }
+  EXPECT_THROW(source->seek(10), Error);
+  options.as_scan = true;
+  EXPECT_THROW(open_source(options), Error);  // bones have no surface
+}
+
+TEST_F(SourceFiles, AnAnimatedSurfaceIsSampledAnewWhereAScanIsAskedFor) {
+  Character person = tests::make_character();
+  CharacterTrack path;
+  path.node = 1;  // the hips
+  path.path = TrackPath::Translation;
+  path.times = {0, 0.5f, 1};
+  const Vec3 at = person.nodes[1].local.translation;
+  for (const float x : {0.0f, 0.5f, 1.0f})
+    path.values.insert(path.values.end(), {at.x() + x, at.y(), at.z()});
+  person.animations.push_back({"slide", {path}});
+  SourceOptions options;
+  options.path = scratch.path("slide.glb");
+  write_gltf_character(options.path, person);
+  options.as_scan = true;
+  options.fps = 4;
+  const auto source = open_source(options);
+  EXPECT_EQ(source->count(), 5);
+  const auto first = source->next(), second = source->next();
+  EXPECT_FALSE(first->skeleton);
+  EXPECT_TRUE(first->mesh.is_cloud());
+  EXPECT_EQ(first->mesh.vertices.rows(), 8000);
+  EXPECT_NEAR((second->mesh.vertices.col(0).mean() - first->mesh.vertices.col(0).mean()), 0.25f, 0.02f);
+  EXPECT_GT((second->mesh.vertices.row(0) - first->mesh.vertices.row(0)).norm(), 0.01f);
+  options.as_scan = false;
+  EXPECT_TRUE(open_source(options)->next()->skeleton);
 }
 
 TEST_F(SourceFiles, ATargetTakesShapeParameters) {
