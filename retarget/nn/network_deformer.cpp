@@ -87,8 +87,10 @@ void NetworkDeformer::bind(const Points& rest, const Joints& rest_joints) {
       bind_surface(net_, tensor_of(rest.data(), rest.rows(), 3),
                    tensor_of(rest_joints.data(), kJointCount, 3), tensor_of(spread.data(), spread.rows(), 3));
   const torch::Tensor weights = bound.weights.contiguous(), basis = bound.basis.contiguous();
-  US_CHECK(weights.isfinite().all().item<bool>() && basis.isfinite().all().item<bool>(), path_,
-           ": the deformation networks give no numbers for this target");
+  using Numbers = Eigen::Map<const Eigen::VectorXf>;
+  US_CHECK(Numbers(weights.data_ptr<float>(), weights.numel()).allFinite() &&
+               Numbers(basis.data_ptr<float>(), basis.numel()).allFinite(),
+           path_, ": the deformation networks give no numbers for this target");
   rest_ = rest;
   joints_ = rest_joints;
   weights_ = Eigen::Map<const RowMatrix>(weights.data_ptr<float>(), rest.rows(), kJointCount);

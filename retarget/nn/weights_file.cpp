@@ -43,6 +43,16 @@ Opened open(const std::string& path) {
   return opened;
 }
 
+/// What `read` makes of the description; members that are missing or of another kind are damage.
+template <class Read>
+auto described(const std::string& path, Read read) {
+  try {
+    return read();
+  } catch (const json::exception&) {
+    throw Error(path + ": the weights file is damaged");
+  }
+}
+
 WeightsHeader header_of(const json& d) {
   return {d.value("kind", ""), d.value("version", 0), d.value("numbers", std::map<std::string, double>())};
 }
@@ -57,6 +67,7 @@ torch::Tensor tensor_of(const json& entry, const std::string& bytes, const std::
              ": the weights file is damaged");
     count *= static_cast<uint64_t>(extent);
   }
+  US_CHECK(count < (uint64_t{1} << 31), path, ": the weights file is damaged");
   US_CHECK(offset <= bytes.size() && count * (half ? 2 : 4) <= bytes.size() - offset, path,
            ": the weights file is cut off");
   const auto options = torch::TensorOptions().dtype(half ? torch::kFloat16 : torch::kFloat32);
@@ -91,13 +102,14 @@ void save_weights(const std::string& path, const WeightsHeader& header, const to
 }
 
 WeightsHeader read_weights_header(const std::string& path) {
-  return header_of(open(path).description);
+  const Opened opened = open(path);
+  return described(path, [&] { return header_of(opened.description); });
 }
 
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,
                            torch::nn::Module& module) {
   const Opened opened = open(path);
-  const WeightsHeader header = header_of(opened.description);
+  const WeightsHeader header = described(path, [&] { return header_of(opened.description); });
   US_CHECK(header.kind == kind, path, ": holds weights for '", header.kind, "', not for '", kind, "'");
   US_CHECK(header.version == version, path, ": weights of version ", header.version,
            ", this program wants version ", version);
@@ -105,7 +117,7 @@ WeightsHeader load_weights(const std::string& path, const std::string& kind, int
   const json& tensors = opened.description.at("tensors");
   each_tensor(module, [&](const std::string& name, torch::Tensor tensor) {
     US_CHECK(tensors.contains(name), path, ": has no '", name, "'");
-    const auto stored = tensor_of(tensors.at(name), opened.bytes, path);
+    const auto stored = described(path, [&] { return tensor_of(tensors.at(name), opened.bytes, path); });
     US_CHECK(stored.sizes() == tensor.sizes(), path, ": '", name, "' has another shape");
     tensor.copy_(stored);
   });

@@ -187,21 +187,21 @@ namespace {
 
 constexpr int64_t kChunk = 2048;  // points at a time: bounds the memory of a target of any size
 
-/// Weights and basis of points, all seen from the side whose joints these are.
-BoundSurface one_side(DeformationNet& net, const Tensor& points, const Tensor& joints,
-                      const Tensor& surface) {
+/// Gives take(rows, weights, basis) what holds for the points of those rows, all seen from the side whose
+/// joints these are. The basis of all points at once would be copied through the memory again and again.
+template <class Take>
+void one_side(DeformationNet& net, const Tensor& points, const Tensor& rows, const Tensor& joints,
+              const Tensor& surface, Take take) {
+  if (rows.size(0) == 0) return;
   const Tensor code = net->body_code(joints, surface);
   // Beyond people's range of sizes the body is seen as one of the nearest size: offsets grow with it.
   const double scale = body_scale(joints).item<double>();
   const double beyond = scale / std::min(1.4, std::max(0.5, scale));
-  std::vector<Tensor> weights, basis;
-  for (int64_t from = 0; from < points.size(0); from += kChunk) {
-    const Tensor part = points.slice(0, from, std::min(from + kChunk, points.size(0))).unsqueeze(0);
-    const SurfaceFunctions out = net->forward(part, joints, code);
-    weights.push_back(out.log_weights.squeeze(0).exp());
-    basis.push_back(out.basis.squeeze(0) * beyond);
+  for (int64_t from = 0; from < rows.size(0); from += kChunk) {
+    const Tensor chunk = rows.slice(0, from, std::min(from + kChunk, rows.size(0)));
+    const SurfaceFunctions out = net->forward(points.index_select(0, chunk).unsqueeze(0), joints, code);
+    take(chunk, out.log_weights.squeeze(0).exp(), out.basis.squeeze(0) * beyond);
   }
-  return {torch::cat(weights), torch::cat(basis)};
 }
 
 }  // namespace
@@ -219,20 +219,19 @@ BoundSurface bind_surface(DeformationNet& net, const Tensor& points, const Tenso
   BoundSurface out{torch::zeros({points.size(0), kJointCount}, points.options()),
                    torch::zeros({points.size(0), 3 * kPoseFeatureCount}, points.options())};
   const Tensor left = (own > 0).nonzero().flatten(), right = (own < 1).nonzero().flatten();
-  if (left.size(0) > 0) {
-    const BoundSurface side = one_side(net, points.index_select(0, left), j, surface.unsqueeze(0));
-    const Tensor share = own.index_select(0, left).unsqueeze(-1);
-    out.weights.index_add_(0, left, side.weights * share);
-    out.basis.index_add_(0, left, side.basis * share);
-  }
-  if (right.size(0) > 0) {
-    const BoundSurface side =
-        one_side(net, mirror_points(points.index_select(0, right).unsqueeze(0), middle).squeeze(0),
-                 mirror_joints(j, middle), mirror_points(surface.unsqueeze(0), middle));
-    const Tensor share = 1 - own.index_select(0, right).unsqueeze(-1);
-    out.weights.index_add_(0, right, mirror_weights(side.weights) * share);
-    out.basis.index_add_(0, right, mirror_basis(side.basis) * share);
-  }
+  one_side(net, points, left, j, surface.unsqueeze(0),
+           [&](const Tensor& rows, const Tensor& weights, const Tensor& basis) {
+             const Tensor share = own.index_select(0, rows).unsqueeze(-1);
+             out.weights.index_add_(0, rows, weights * share);
+             out.basis.index_add_(0, rows, basis * share);
+           });
+  one_side(net, mirror_points(points.unsqueeze(0), middle).squeeze(0), right, mirror_joints(j, middle),
+           mirror_points(surface.unsqueeze(0), middle),
+           [&](const Tensor& rows, const Tensor& weights, const Tensor& basis) {
+             const Tensor share = 1 - own.index_select(0, rows).unsqueeze(-1);
+             out.weights.index_add_(0, rows, mirror_weights(weights) * share);
+             out.basis.index_add_(0, rows, mirror_basis(basis) * share);
+           });
   return out;
 }
 

@@ -60,5 +60,27 @@ TEST(WeightsFile, CutAnywhereIsAnErrorThatNamesTheFile) {
   fs::remove(path);
 }
 
+TEST(WeightsFile, DescriptionsOfAnotherFormAreErrorsThatNameTheFile) {
+  torch::nn::Linear net(2, 2);
+  const std::string path = path_for("form");
+  for (
+      const std::string text :
+      {R"({"kind":3,"tensors":{}})", R"({"kind":"test","version":2,"tensors":[1]})",
+       R"({"kind":"test","version":2,"tensors":{"weight":{"shape":[2,2],"half":"no","offset":0}}})",
+       R"({"kind":"test","version":2,"tensors":{"weight":{"shape":[2147483647,2147483647,8],"half":true,"offset":0}}})",
+       R"({"kind":"test","version":2,"tensors":{"weight":{"shape":[2,2],"half":true,"offset":-8}}})"}) {
+    const auto length = static_cast<uint32_t>(text.size());
+    std::string bytes = "USWEIGHT" + std::string(reinterpret_cast<const char*>(&length), 4);
+    std::ofstream(path, std::ios::binary) << bytes + text + std::string(64, '\0');
+    try {
+      load_weights(path, "test", 2, *net);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    }
+  }
+  fs::remove(path);
+}
+
 }  // namespace
 }  // namespace understudy::nn
