@@ -164,8 +164,9 @@ TEST(Exports, ABarePointCloudIsPointsInEveryFormat) {
   const TempFolder folder;
   tests::MadeCharacter made;
   made.rigged = false;
+  const Character body = tests::make_character(made);
   Mesh cloud;
-  cloud.vertices = tests::make_character(made).parts[0].vertices;
+  cloud.vertices = posed_vertices(body, body.world());
   tests::KnownExtractor known(tests::made_joints(made));
   auto character = std::make_shared<PreparedCharacter>(
       prepare_character(character_of_mesh(cloud, "cloud"), &known, &known));
