@@ -129,6 +129,7 @@ RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt) {
     frame.source = filter_.push(seen, waited_);
     frame.pose.local = networks_.transfer->push(frame.source, waited_);
     frame.pose.root = root_.push(frame.source, frame.pose.local, waited_);
+    if (options_.lock_feet) frame.pose = root_.plant(frame.pose, waited_);
     if (options_.lock_feet && options_.root.mode == RootMode::Scaled)
       frame.pose = feet_.push(frame.pose, target_.joints, waited_, frame.source.joints);
     frame.ms.transfer = watch.lap();

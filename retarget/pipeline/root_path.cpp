@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/skeleton/leg_ik.hpp"
 
 namespace understudy {
 
@@ -11,6 +12,10 @@ namespace {
 
 constexpr std::array<int, 4> kFeet = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
 constexpr float kContactEase = 0.1f;  // seconds in which a contact takes hold
+constexpr float kPlantEase = 0.04f;   // the same of a leg that reaches for the floor
+constexpr float kPelvisEase = 0.05f;  // the same of a pelvis that was seen far from where the feet say
+constexpr float kUsual = 0.035f;      // of the leg: what errors of the feet alone amount to
+constexpr float kSlack = 0.01f;       // of the leg: soles this near are left alone
 
 }  // namespace
 
@@ -75,6 +80,18 @@ float SupportPoints::lowest(const PosedSkeleton& posed) const {
   return low;
 }
 
+float SupportPoints::lowest_of_foot(const PosedSkeleton& posed, int side) const {
+  float low = posed.joints(LeftAnkle + side, 1);
+  for (size_t i = 0; i < joint.size(); ++i) {
+    const int j = joint[i];
+    if (j != LeftAnkle + side && j != LeftFoot + side) continue;
+    const Vec3 offset_world =
+        posed.global[static_cast<size_t>(j)] * offset.row(static_cast<Eigen::Index>(i)).transpose();
+    low = std::min(low, posed.joints(j, 1) + offset_world.y());
+  }
+  return low;
+}
+
 void RootPath::reset(const Points& rest_b, const Joints& joints_b) {
   rest_b_ = joints_b;
   leg_b_ = leg_length(joints_b);
@@ -83,7 +100,7 @@ void RootPath::reset(const Points& rest_b, const Joints& joints_b) {
   leg_a_.clear();
   offsets_.clear();
   started_ = false;
-  offset_ = correction_ = 0;
+  offset_ = correction_ = pelvis_error_ = sole_ = touching_ = left_over_ = lowered_ = 0;
   scale_ = 1;
 }
 
@@ -123,15 +140,44 @@ Vec3 RootPath::push(const Extraction& source, const Rotations& local_b, float dt
   offset_ += follow * (offsets_.value() - offset_);
   root_.y() = scale_ * pelvis.y() + offset_;
 
-  // In contact the rest of the error is taken out in part: all of it would shake the body with every foot's
-  // error.
+  // In contact the rest of the error is taken out: small ones in part, all of it would shake the body with
+  // every foot's error; larger ones whole, then it is the pelvis that was not well seen.
   const float height = std::max(0.0f, clear) / std::max(options_.contact_height_m, 1e-4f);
-  const float contact = options_.contact * std::clamp(1.5f - height, 0.0f, 1.0f);
+  touching_ = std::clamp(1.5f - height, 0.0f, 1.0f);
   const float ease = started_ ? 1 - std::exp(-dt / kContactEase) : 1.0f;
-  correction_ += ease * (contact * (exact - root_.y()) - correction_);
-  root_.y() += correction_;
+  const float error = exact - root_.y();
+  const float small = std::clamp(error, -kUsual * leg_b_, kUsual * leg_b_);
+  const float swift = started_ ? 1 - std::exp(-dt / kPelvisEase) : 1.0f;
+  correction_ += ease * (touching_ * options_.contact * small - correction_);
+  pelvis_error_ += swift * (touching_ * (error - small) - pelvis_error_);
+  root_.y() += correction_ + pelvis_error_;
+  sole_ = scale_ * clear;
+  const float quick = started_ ? 1 - std::exp(-dt / kPlantEase) : 1.0f;
+  const float rest = exact - root_.y();
+  const float seen = std::copysign(std::max(0.0f, std::abs(rest) - kSlack * leg_b_), rest);
+  left_over_ += quick * (touching_ * seen - left_over_);
   started_ = true;
   return root_;
+}
+
+Pose RootPath::plant(const Pose& pose, float dt) {
+  const PosedSkeleton posed = forward_kinematics(rest_b_, pose);
+  const float lowest = support_.lowest(posed) + posed.joints(Pelvis, 1);
+  Pose result = pose;
+  float low = 1e9f;
+  for (const int side : {0, 1}) {
+    const float above = support_.lowest_of_foot(posed, side) - lowest;
+    const float reach = std::clamp(1.5f - above / std::max(options_.contact_height_m, 1e-4f), 0.0f, 1.0f);
+    if (reach <= 0) continue;
+    const Vec3 move(0, reach * left_over_, 0);
+    const Vec3 ankle = posed.joints.row(LeftAnkle + side).transpose();
+    const Vec3 came = place_ankle(rest_b_, side, ankle + move, result);
+    low = std::min(low, lowest + above + came.y() - ankle.y());
+  }
+  const float short_by = low < 1e9f ? touching_ * std::max(0.0f, low - sole_) : 0.0f;
+  lowered_ += (1 - std::exp(-dt / kContactEase)) * (short_by - lowered_);
+  result.root.y() -= lowered_;
+  return result;
 }
 
 }  // namespace understudy

@@ -31,6 +31,8 @@ struct SupportPoints {
   static SupportPoints from(const Points& rest, const Joints& rest_joints);
   /// Height of the lowest point above the pelvis (negative).
   float lowest(const PosedSkeleton& posed) const;
+  /// World height of the lowest point of one foot, 0 left, 1 right.
+  float lowest_of_foot(const PosedSkeleton& posed, int side) const;
 };
 
 /// Height over y = 0 of the lowest scan points near the foot joints, metres; a few are let go as outliers.
@@ -46,6 +48,10 @@ class RootPath {
   /// The target's pelvis in the world, metres. source: the source's joints and, where seen, the height of its
   /// soles; local_b: the target's local rotations; dt seconds since the last frame.
   Vec3 push(const Extraction& source, const Rotations& local_b, float dt);
+  /// The pose of the last push() with its legs bent or stretched so that soles in contact are as high as the
+  /// source's: what the pelvis' height could not make good without shaking the body. Where a leg is too short
+  /// the body comes down.
+  Pose plant(const Pose& pose, float dt);
   float scale() const;
 
  private:
@@ -57,7 +63,11 @@ class RootPath {
   float leg_b_ = 1;
   RunningMedian leg_a_, offsets_;
   Vec3 last_source_ = Vec3::Zero(), root_ = Vec3::Zero();
-  float offset_ = 0, correction_ = 0, scale_ = 1;
+  float offset_ = 0, correction_ = 0, pelvis_error_ = 0, scale_ = 1;
+  float sole_ = 0;       // height that the lowest sole should have
+  float touching_ = 0;   // 0..1, how far the source is in contact
+  float left_over_ = 0;  // metres that legs are to make good
+  float lowered_ = 0;    // metres that the body came down because its legs were too short
   bool started_ = false;
 };
 
