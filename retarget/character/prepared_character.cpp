@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/character/body_heading.hpp"
+#include "retarget/character/careful_deformer.hpp"
+#include "retarget/character/geometric_binding.hpp"
 #include "retarget/character/plausible_person.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/import.hpp"
@@ -15,8 +18,9 @@ namespace understudy {
 namespace {
 
 constexpr float kSmallestTurn = 8 * kPi / 180;
-constexpr float kBallHeight = 0.25f;  // of the ankle's over the floor
-constexpr float kRoughDeg = 4;        // joints that were seen, not given, are not better
+constexpr float kBallHeight = 0.25f;     // of the ankle's over the floor
+constexpr float kRoughDeg = 4;           // joints that were seen, not given, are not better
+constexpr float kRoughSpreadDeg = 1.5f;  // the same of what both legs say together
 
 /// The axis that a rig's spine points along, where that is not y.
 std::string up_of_rig(const BoneMap& map, const BindPose& bind) {
@@ -234,14 +238,15 @@ Joints with_straight_arms(const Mesh& mesh, const Joints& joints) {
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
   if (options.yaw_deg) {
-    turn(c, *options.yaw_deg * kPi / 180);
+    if (*options.yaw_deg != 0) turn(c, *options.yaw_deg * kPi / 180);
   } else {
-    const float yaw = tidy(heading_of_joints(any_pose.extract(c.surface.mesh).joints));
+    const float yaw = tidy(body_heading(c.surface.mesh, any_pose));
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
   }
   Mesh mesh = c.surface.mesh;
   const Joints found = with_straight_arms(mesh, prepare_target(mesh, any_pose).joints);
   c.pose = to_t_pose(found, kRoughDeg);
+  spread_legs(c.pose, kRoughSpreadDeg);
   c.pose_weights = geometric_weights(mesh, found);
   if (c.pose.largest_deg > 0) mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
   note_turns(c);
@@ -377,7 +382,10 @@ Points RigDeformer::offsets(const Pose& pose) const {
 }
 
 Networks networks_for(Networks networks, const PreparedCharacter& character, bool their_rig) {
-  if (!character.rigged || !their_rig) return networks;
+  if (!character.rigged || !their_rig) {
+    networks.deformer = std::make_shared<CarefulDeformer>(character.target.mesh.faces, networks.deformer);
+    return networks;
+  }
   networks.transfer = std::make_unique<FoldingTransfer>(std::move(networks.transfer), character.map);
   networks.deformer = std::make_shared<RigDeformer>(character, networks.deformer);
   return networks;

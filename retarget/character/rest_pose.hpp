@@ -22,12 +22,12 @@ struct RestPose {
 /// tolerance. Bone lengths stay.
 RestPose to_t_pose(const Joints& bind, float tolerance_deg = 1);
 
+/// Turns both legs about the hips, alike, until they stand apart as a mean human's. For joints that were
+/// seen, not given: single bones are rough, what both legs say together is not.
+void spread_legs(RestPose& pose, float tolerance_deg);
+
 /// The surface in T-pose: linear blend skinning by `weights` [V, 22].
 Points in_t_pose(const Points& vertices, const RowMatrix& weights, const RestPose& pose);
-
-/// Skin weights from distances to the bones alone, smoothed along the surface: good enough to bring limbs to
-/// the T-pose where no rig and no network can say better. [V, 22], rows sum to 1.
-RowMatrix geometric_weights(const Mesh& mesh, const Joints& joints);
 
 /// Where joints face, radians about +y from +z towards +x: across hips and shoulders.
 float heading_of_joints(const Joints& joints);

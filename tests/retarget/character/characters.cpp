@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "retarget/character/geometric_binding.hpp"
 #include "retarget/character/rest_pose.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"

@@ -1,0 +1,71 @@
+#include "retarget/character/body_heading.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "retarget/base/error.hpp"
+#include "retarget/character/rest_pose.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr float kReach = 75 * kPi / 180;  // from the guess
+constexpr int kSides = 4;
+
+/// Mean distance of points to their mirror image about the upright plane through the middle that faces this
+/// way; far ones count as 5 % of the height, so that one odd limb does not decide.
+float asymmetry(const Points& points, float heading, float tall) {
+  const Mat3 turn = rotation_about_y(-heading);
+  Points facing = points * turn.transpose();
+  Points flipped = facing;
+  flipped.col(0) *= -1;
+  const auto nearest = nearest_neighbours(facing, flipped, 1);
+  float sum = 0;
+  for (Eigen::Index i = 0; i < flipped.rows(); ++i)
+    sum += std::min(0.05f * tall, (flipped.row(i) - facing.row(nearest(i, 0))).norm());
+  return sum / static_cast<float>(points.rows());
+}
+
+}  // namespace
+
+float symmetric_heading(const Points& points, float guess) {
+  US_CHECK(points.rows() > 0, "a body without points has no heading");
+  Points centred = points;
+  const Eigen::RowVector3f middle(points.col(0).mean(), 0, points.col(2).mean());
+  centred.rowwise() -= middle;
+  const float tall = points.col(1).maxCoeff() - points.col(1).minCoeff();
+  float best = guess, least = 1e9f;
+  const auto consider = [&](float heading) {
+    const float far = std::remainder(heading - guess, 2 * kPi) / kReach;
+    const float cost = asymmetry(centred, heading, tall) * (1 + 0.3f * far * far);
+    if (cost < least) {
+      least = cost;
+      best = heading;
+    }
+  };
+  const float at_guess = asymmetry(centred, guess, tall);
+  constexpr int kCoarse = 12;
+  for (int i = -kCoarse; i <= kCoarse; ++i) consider(guess + kReach * static_cast<float>(i) / kCoarse);
+  const float near = best;
+  for (int i = -4; i <= 4; ++i) consider(near + kReach / kCoarse * static_cast<float>(i) / 5);
+  return least < 0.8f * at_guess ? best : guess;
+}
+
+float body_heading(const Mesh& mesh, SkeletonExtractor& extractor) {
+  Vec3 sum = Vec3::Zero();
+  for (int side = 0; side < kSides; ++side) {
+    const float turned = 2 * kPi * static_cast<float>(side) / kSides;
+    Mesh seen = mesh;
+    seen.vertices = mesh.vertices * rotation_about_y(turned).transpose();
+    const Extraction found = extractor.extract(seen);
+    const float heading = heading_of_joints(found.joints) - turned;
+    sum += std::max(0.01f, found.confidence.mean()) * Vec3(std::sin(heading), 0, std::cos(heading));
+  }
+  const float guess = std::atan2(sum.x(), sum.z());
+  Rng rng(20261);
+  return symmetric_heading(sample_points(mesh, 700, rng), guess);
+}
+
+}  // namespace understudy
