@@ -5,9 +5,13 @@ us_test(interop_test SOURCES ${interop_sources}
   tests/interop/assimp_test.cpp tests/interop/round_trip_test.cpp tests/interop/three_test.cpp
   tests/interop/validator_test.cpp
   LIBS understudy_character nlohmann_json::nlohmann_json ${ASSIMP_LIBRARY} LABELS interop TIMEOUT 300)
+us_test(interop_program_test SOURCES ${interop_sources} tests/interop/program_test.cpp tests/app/sample_files.cpp
+  LIBS understudy_character understudy_builtin nlohmann_json::nlohmann_json ${ASSIMP_LIBRARY}
+  LABELS torch interop TIMEOUT 300)
+add_dependencies(interop_program_test understudy_all)
 us_test(blender_test SOURCES ${interop_sources} tests/interop/blender_test.cpp
   LIBS understudy_character nlohmann_json::nlohmann_json LABELS blender TIMEOUT 600)
-foreach(test interop_test blender_test)
+foreach(test interop_test interop_program_test blender_test)
   target_compile_definitions(${test} PRIVATE US_INTEROP_PACKAGES="${PROJECT_BINARY_DIR}/interop")
 endforeach()
 

@@ -1,7 +1,9 @@
 // Khronos' glTF-Validator finds nothing to say against what we export.
 #include <gtest/gtest.h>
 
+#include "tests/app/program.hpp"
 #include "tests/interop/exported.hpp"
+#include "tests/retarget/character/characters.hpp"
 
 namespace understudy::tests {
 namespace {
@@ -14,14 +16,59 @@ std::string first_messages(const nlohmann::json& report) {
   return out;
 }
 
-TEST(Validator, FindsNoErrorAndNoWarningInAnyExport) {
-  std::vector<std::string> paths;
-  for (const Exported& exported : all_exported()) paths.push_back(exported.path);
+void expect_clean(const std::vector<std::string>& paths) {
   for (const auto& report : validated(paths)) {
     ASSERT_FALSE(report.contains("failed")) << report.dump();
     EXPECT_EQ(report["errors"], 0) << report["file"] << "\n" << first_messages(report);
     EXPECT_EQ(report["warnings"], 0) << report["file"] << "\n" << first_messages(report);
   }
+}
+
+TEST(Validator, FindsNoErrorAndNoWarningInAnyExport) {
+  std::vector<std::string> paths;
+  for (const Exported& exported : all_exported()) paths.push_back(exported.path);
+  expect_clean(paths);
+}
+
+/// What files of the world are like: a bone twice, directions of any length, faces without area, names twice.
+Character careless() {
+  Character out = make_character();
+  for (CharacterPart& part : out.parts) {
+    const Eigen::Index count = part.vertices.rows();
+    part.joints.row(5).setConstant(7);
+    part.weights.row(5).setConstant(0.25f);
+    part.normals *= 3;
+    part.normals.row(2).setZero();
+    part.tangents = RowMatrix::Constant(count, 4, 0.2f);
+    part.tangents.row(1).setZero();
+    part.colors = RowMatrix::Constant(count, 4, 1.5f);
+    part.faces.row(0).setConstant(4);  // no area
+    part.uvs[0](0, 0) = 40;
+  }
+  out.nodes[3].name.clear();
+  out.nodes[4].name = out.nodes[5].name;
+  out.nodes[6].local.rotation.coeffs() *= 1.3f;
+  return out;
+}
+
+TEST(Validator, FindsNothingInWhatACarelessFileBecomes) {
+  const ScratchFolder folder;
+  std::vector<std::string> paths;
+  const PreparedCharacter character = prepare_character(careless(), nullptr, nullptr);
+  const std::vector<Pose> poses = made_motion(9, character.target.joints);
+  for (const bool their_rig : {true, false}) {
+    BulgingDeformer ours(0.02f);
+    ours.bind(character.target.mesh.vertices, character.target.joints);
+    const RigDeformer rig(character, nullptr);
+    CharacterExportOptions options;
+    options.their_rig = their_rig;
+    options.t_pose_clip = true;
+    options.shapes = their_rig ? 0 : 3;
+    paths.push_back(folder.path(their_rig ? "theirs.glb" : "ours.gltf"));
+    export_character(paths.back(), character, their_rig ? static_cast<const Deformer&>(rig) : ours,
+                     {{"", 30, poses}, {"still", 30, {poses[0]}}}, options);
+  }
+  expect_clean(paths);
 }
 
 }  // namespace
