@@ -87,7 +87,7 @@ TEST(VertexColors, TellPartsApartByTheirMaterials) {
   made.materials.push_back(R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}})");
   const Points colors = vertex_colors(made);
   ASSERT_EQ(colors.rows(), 4);
-  EXPECT_EQ(colors.row(3), Eigen::RowVector3f(1, 0, 0));
+  EXPECT_TRUE(colors.row(3).isApprox(Eigen::RowVector3f(1, 0, 0), 1e-5f));
   EXPECT_GT(colors(0, 1), 0.8f);
 }
 
