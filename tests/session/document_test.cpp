@@ -141,8 +141,8 @@ const Changes& document_changes() {
 /// Does not compile once a member is added: then it belongs into same(), fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
-  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, bones, quiet] =
-      SourceOptions();
+  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones,
+                                quiet] = SourceOptions();
   [[maybe_unused]] const auto& [units, up, yaw, floor] = ImportOptions();
   [[maybe_unused]] const auto& [crop, cut, cluster, gap] = ScanEdits();
   [[maybe_unused]] const auto& [low, high] = Box();
