@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <thread>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/nn/plugin_api.hpp"
 
 namespace understudy::nn {
@@ -114,7 +116,11 @@ int train(const TrainOptions& options) {
   setenv("OMP_NUM_THREADS", "1", 0);
   TrainOptions with_weights = options;
   if (options.weights.empty()) with_weights.weights = weights_folder({});
-  return plugin().train(with_weights);
+  const std::clock_t before = std::clock();  // of all threads
+  const int result = plugin().train(with_weights);
+  log::info(detail::join("train ", options.network, ": ", (std::clock() - before) / CLOCKS_PER_SEC,
+                         " core-seconds in this run"));
+  return result;
 }
 
 }  // namespace understudy::nn
