@@ -335,7 +335,18 @@ Eigen::VectorXf big_head(const Mesh& mesh, const Joints& joints) {
   }
   const bool big = most.x() - least.x() > kBigHead * leg && most.y() - least.y() > kBigHead * leg;
   const bool alone = most.x() - least.x() < 0.8f * std::abs(joints(LeftElbow, 0) - joints(RightElbow, 0));
-  return big && alone ? share : Eigen::VectorXf(0 * share);
+  if (!big || !alone) return Eigen::VectorXf(0 * share);
+  // Ways along edges are rough: what lies over the neck under an overhanging head belongs to it as well.
+  float height = 0, count = 0;
+  for (Eigen::Index v = 0; v < share.size(); ++v)
+    if (std::abs(way[static_cast<size_t>(v)] - at_neck) < 2 * step) height += mesh.vertices(v, 1), ++count;
+  if (count < 1) return share;
+  height /= count;
+  for (Eigen::Index v = 0; v < share.size(); ++v)
+    if (way[static_cast<size_t>(v)] < at_neck + 0.3f * leg && mesh.vertices(v, 0) > least.x() &&
+        mesh.vertices(v, 0) < most.x())
+      share[v] = std::max(share[v], smooth_step(height, height + 1.5f * step, mesh.vertices(v, 1)));
+  return share;
 }
 
 ShapeHints shape_hints(const Mesh& mesh, const Joints& joints) {
