@@ -51,7 +51,8 @@ Action declare_eval(CLI::App& command) {
                   "skeleton: true source joints; pose: true rotations, root, target joints")
       ->check(CLI::IsMember({"skeleton", "pose"}));
   command.add_option("--filter", options->filter, "only cases whose name holds this");
-  command.add_option("--limit", options->limit, "at most so many cases, evenly spread")->check(CLI::NonNegativeNumber);
+  command.add_option("--limit", options->limit, "at most so many cases, evenly spread")
+      ->check(CLI::NonNegativeNumber);
   command.add_flag("!--no-foot-lock", options->retarget.lock_feet, "standing feet may slide");
   command.add_flag("!--no-offsets", options->networks.offsets, "no pose-corrective offsets");
   command

@@ -9,7 +9,8 @@ namespace understudy::app {
 
 Action declare_train(CLI::App& command) {
   const auto options = std::make_shared<nn::TrainOptions>();
-  command.add_option("network", options->network, "skeleton, leaf, motion, hybrid, deformation or pose-transfer")
+  command
+      .add_option("network", options->network, "skeleton, leaf, motion, hybrid, deformation or pose-transfer")
       ->required()
       ->check(CLI::IsMember({"skeleton", "leaf", "motion", "hybrid", "deformation", "pose-transfer"}));
   command.add_option("--data", options->data, "folder with body/, motion/ and splits.json")->required();

@@ -108,8 +108,8 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
 
 std::string source_key(const SourceOptions& source, const ScanEdits& edits) {
   std::ostringstream out;
-  out << source.path << '|' << source.motion << '|' << source.fps << '|' << source.as_scan << '|' << source.clip
-      << '|';
+  out << source.path << '|' << source.motion << '|' << source.fps << '|' << source.as_scan << '|'
+      << source.clip << '|';
   for (const auto& [joint, bone] : source.bones) out << joint << '=' << bone.size() << ':' << bone << '|';
   write_import(out, source.import);
   for (const float beta : source.betas) out << beta << ' ';

@@ -46,14 +46,14 @@ struct SourceState {
 
 /// A take as far as it has been performed.
 struct TakeState {
-  bool ready = false;                                  ///< target, weights and joints below are there
-  std::string problem;                                 ///< why it never will be, one sentence; empty: fine
+  bool ready = false;   ///< target, weights and joints below are there
+  std::string problem;  ///< why it never will be, one sentence; empty: fine
   /// As it was read and brought to the T-pose; of the file as it was prepared before, until it is ready.
   std::shared_ptr<const PreparedCharacter> character;
-  std::shared_ptr<const Target> target;                ///< T-pose mesh and joints (edited)
-  std::shared_ptr<const RowMatrix> weights;            ///< [V, 22], edited
-  std::shared_ptr<const Deformer> deformer;            ///< bound to the target, with those weights
-  std::vector<KeptFrame> performed;                    ///< as the engine gave them
+  std::shared_ptr<const Target> target;      ///< T-pose mesh and joints (edited)
+  std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
+  std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
+  std::vector<KeptFrame> performed;          ///< as the engine gave them
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
   std::vector<Joints> joints;  ///< of `shown`
   std::vector<Series> series;  ///< as many values as frames shown

@@ -126,8 +126,7 @@ TEST_F(ExportCommand, CtrlCAndAFullDiskLeaveTheOldFile) {
   EXPECT_EQ(stopped.code, 1) << stopped.err;
   EXPECT_NE(stopped.err.find("writing failed"), std::string::npos) << stopped.err;
   EXPECT_EQ(read_bytes(out("a.glb")), "old");
-  Program program(
-      {"export", "--follow", "--source", scans(), "--target", target(), "--out", out("a.glb")});
+  Program program({"export", "--follow", "--source", scans(), "--target", target(), "--out", out("a.glb")});
   program.wait_for("frame ");
   program.send(SIGINT);
   EXPECT_NE(program.finish().code, 0);
