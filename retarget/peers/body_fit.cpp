@@ -15,7 +15,7 @@ constexpr int kTurns = 3 * kJointCount;       // parameters: place, world turn o
 constexpr float kMostTurn = 0.5f;             // radians a joint turns in one step
 constexpr float kSliding = 0.1f;              // weight of what lies along the surface, against across it
 constexpr float kFar = 0.30f, kNear = 0.05f;  // metres: reach of the robust weight, first and last step
-constexpr float kToLast = 0.008f, kToRest = 0.003f, kToMeanShape = 0.002f;  // weights of the priors
+constexpr float kToLast = 0.008f, kToRest = 0.003f, kToMeanShape = 0.0025f;  // weights of the priors
 
 /// Every so many-th of the finite points.
 Points thinned(const Points& scan, int count) {
@@ -194,7 +194,10 @@ BodyFit::Equations BodyFit::data_equations(const State& state, const Posed& p, c
 }
 
 /// Near the frame before and the T-pose, near the mean shape. A world turn w is R^T w in a joint's own axes.
-void BodyFit::add_priors(Equations& to, const State& state, const Posed& p, const Task& task) const {
+/// The shape is freed as the surfaces come near each other.
+void BodyFit::add_priors(Equations& to, const State& state, const Posed& p, const Task& task,
+                         float reach) const {
+  const float to_mean = std::pow(kToMeanShape * reach / kNear, 2.f);
   for (int j = 0; j < kJointCount; ++j) {
     const auto pull = [&](const Mat3& toward, float weight) {
       const Vec3 off = rotation_to_axis_angle(toward.transpose() * state.pose.local[j]);
@@ -205,8 +208,8 @@ void BodyFit::add_priors(Equations& to, const State& state, const Posed& p, cons
     if (j != Pelvis) pull(Mat3::Identity(), kToRest);
   }
   for (Eigen::Index b = 0; 3 + kTurns + b < to.g.size(); ++b) {
-    to.H(3 + kTurns + b, 3 + kTurns + b) += kToMeanShape * kToMeanShape;
-    to.g[3 + kTurns + b] -= kToMeanShape * kToMeanShape * state.betas[b];
+    to.H(3 + kTurns + b, 3 + kTurns + b) += to_mean;
+    to.g[3 + kTurns + b] -= to_mean * state.betas[b];
   }
   to.H.diagonal().array() += 1e-6f;
 }
@@ -214,7 +217,7 @@ void BodyFit::add_priors(Equations& to, const State& state, const Posed& p, cons
 void BodyFit::step(State& state, const Task& task, float reach) const {
   const Posed p = posed(state);
   Equations equations = data_equations(state, p, task, reach);
-  add_priors(equations, state, p, task);
+  add_priors(equations, state, p, task, reach);
   const Eigen::VectorXf x = equations.H.ldlt().solve(equations.g);
   if (!x.allFinite()) return;
   state.pose.root += x.head<3>();

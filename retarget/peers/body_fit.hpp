@@ -54,7 +54,7 @@ class BodyFit final : public SkeletonExtractor {
   /// Takes the steps; gives the robust mean distance of the surfaces at the end, metres.
   float improve(State& state, const Task& task, int iterations) const;
   Equations data_equations(const State& state, const Posed& posed, const Task& task, float reach) const;
-  void add_priors(Equations& to, const State& state, const Posed& posed, const Task& task) const;
+  void add_priors(Equations& to, const State& state, const Posed& posed, const Task& task, float reach) const;
   void step(State& state, const Task& task, float reach) const;
   State start(const Points& scan) const;
 
