@@ -167,14 +167,6 @@ struct Bench {
   std::shared_ptr<const FitBody> fit;  // null: no peer
 };
 
-Networks networks_of(const Bench& bench) {
-  Networks networks = nn::load_networks(bench.options.networks);
-  if (!bench.fit) return networks;
-  if (!networks.rest_extractor) networks.rest_extractor = std::move(networks.extractor);
-  networks.extractor = std::make_unique<BodyFit>(bench.fit);
-  return networks;
-}
-
 void judge_case(const Bench& bench, const std::string& folder, const Case& c, Verdict& verdict,
                 Breakdown& breakdown) {
   const EvalOptions& options = bench.options;
@@ -187,9 +179,10 @@ void judge_case(const Bench& bench, const std::string& folder, const Case& c, Ve
   if (options.oracle == "pose" && !c.target.empty()) {
     mesh = read_mesh(c.target);
   } else {
-    networks = networks_of(bench);
+    networks = nn::load_networks(options.networks);
     if (!c.target.empty()) target = open_target(case_target(c), networks);
     if (target) mesh = target->target_in_file_order();
+    if (bench.fit) networks.extractor = std::make_unique<BodyFit>(bench.fit);  // of the source alone
   }
   Judge judge(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
   Judging to{judge, verdict, truth ? &*truth : nullptr};
