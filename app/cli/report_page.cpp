@@ -215,7 +215,8 @@ void write_breakdown(std::ofstream& page, const std::string& folder, const Repor
 
 void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
                        const std::string& command) {
-  std::ofstream page(folder + "/report.md");
+  const std::string path = folder + "/report.md", part = path + ".part";
+  std::ofstream page(part);
   page << "# Comparison\n\nMade by `" << command
        << "`.\nTruth copies rotations between bodies of one family, so figures of other protocols do not "
           "compare.\n";
@@ -226,7 +227,7 @@ void write_report_page(const std::string& folder, const std::vector<ReportResult
   for (const ReportResult& result : results)
     if (result.lost.empty() && result.row.breakdown) write_breakdown(page, folder, result);
   page.close();
-  US_CHECK(page, folder, "/report.md: cannot be written");
+  US_CHECK(page && std::rename(part.c_str(), path.c_str()) == 0, path, ": cannot be written");
 }
 
 }  // namespace understudy::app
