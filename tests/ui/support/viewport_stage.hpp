@@ -72,12 +72,12 @@ class StageSource final : public app::Source {
  public:
   StageSource(std::shared_ptr<const Deformer> person, Mesh mesh, int frames)
       : Source(30), person_(std::move(person)), mesh_(std::move(mesh)), frames_(frames) {}
-  std::optional<ScanFrame> next() override {
+  std::optional<app::SourceFrame> next() override {
     if (at_ >= frames_) return std::nullopt;
     Mesh posed = mesh_;
     posed.vertices = person_->deform(stage_pose(static_cast<int>(at_)));
     Rng rng(7 + static_cast<uint64_t>(at_));
-    ScanFrame frame;
+    app::SourceFrame frame;
     frame.mesh.vertices = sample_points(posed, 4000, rng);
     frame.number = at_++;
     return frame;
