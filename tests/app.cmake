@@ -18,7 +18,7 @@ us_test(bad_input_test SOURCES
 us_test(target_command_test SOURCES
   tests/app/target_command_test.cpp tests/app/program.cpp tests/app/sample_files.cpp
   tests/retarget/character/characters.cpp
-  LIBS understudy_npz understudy_builtin understudy_character LABELS torch gl TIMEOUT 600)
+  LIBS understudy_npz understudy_builtin understudy_body understudy_character LABELS torch gl TIMEOUT 600)
 add_dependencies(target_command_test understudy_all)
 add_dependencies(commands_test understudy_all)
 add_dependencies(bad_input_test understudy_all)
