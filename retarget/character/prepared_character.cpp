@@ -151,6 +151,19 @@ std::string up_of_lying(const PreparedCharacter& c, ImportOptions import) {
   return (stance_of(upright).centre < 0.46f ? "-" : "") + decision.up;
 }
 
+/// Millimetres are guessed of people down to half a metre, but a character of a few hundred units has units
+/// of its own.
+void refit(ImportDecision& decision, const std::string& told_units) {
+  constexpr float kSmallest = 0.84f, kUsual = 1.7f;
+  const bool guessed = told_units.empty() || told_units == "auto";
+  if (!guessed || decision.units != "mm" || decision.height >= kSmallest) return;
+  const float factor = kUsual / decision.height;
+  decision.sentence = "its units are unknown: it is made 1.7 m tall, up: " + decision.up;
+  decision.scale *= factor;
+  decision.floor *= factor;
+  decision.height = kUsual;
+}
+
 void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   const Points& file = c.bind.vertices;
   ImportOptions import;
@@ -164,7 +177,8 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
     c.notes.push_back(import.up == "y" ? "it lies down with y up"
                                        : "it lies down with y up, so " + import.up + " is taken as up");
   }
-  const ImportDecision decision = decide_import(c.surface.mesh, import);
+  ImportDecision decision = decide_import(c.surface.mesh, import);
+  refit(decision, options.units);
   US_CHECK(decision.height > 1e-9f && std::isfinite(decision.height), c.character.name, ": has no height");
   c.to_world.scale = decision.scale;
   c.to_world.R = decision.axes;

@@ -10,12 +10,12 @@ using Json = nlohmann::json;
 
 class Measuring : public ShippedProgram {
  protected:
-  /// One case of the suite, of twelve frames.
+  /// One case of the suite, of 24 frames.
   void make_suite(const std::string& suite) {
     test::write_training_folder(scratch.path("data"));
     const Finished run =
         run_program({"cases", scratch.path("data"), "--suite", suite, "--out", scratch.path("cases/" + suite),
-                     "--cases", "1", "--frames", "12", "--points", "2000"});
+                     "--cases", "1", "--frames", "24", "--points", "2000"});
     ASSERT_EQ(run.code, 0) << run.err;
     EXPECT_NE(run.out.find("1 cases"), std::string::npos) << run.out;
   }

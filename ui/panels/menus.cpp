@@ -114,7 +114,6 @@ Items target_menu(const app::Session& session) {
   Items items = {{"Add target\u2026", "target.add", {}, false, {}},
                  {"Replace\u2026", "target.replace", {}, false, {}},
                  {"Compare with\u2026", "compare.add", {}, false, {}},
-                 dialog("Export\u2026", "export"),
                  {"Remove", "target.remove", {k}, false, {}}};
   if (!session.document.takes.empty()) items.push_back(line());
   for (size_t i = 0; i < session.document.takes.size(); ++i)

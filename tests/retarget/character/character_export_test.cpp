@@ -346,7 +346,7 @@ TEST(CharacterExport, ABarePointCloudIsSkinnedPoints) {
   made.rigged = false;
   const Character body = make_character(made);
   Mesh cloud;
-  cloud.vertices = body.parts[0].vertices;
+  cloud.vertices = posed_vertices(body, body.world());
   KnownExtractor known(made_joints(made));
   const PreparedCharacter character = prepare_character(character_of_mesh(cloud, "cloud"), &known, &known);
   BulgingDeformer screen;

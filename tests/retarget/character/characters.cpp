@@ -329,9 +329,17 @@ Character make_robot() {
   return robot;
 }
 
-Extraction KnownExtractor::extract(const Mesh&) {
+Extraction KnownExtractor::extract(const Mesh& scan) {
+  if (first_.rows() == 0) first_ = scan.vertices;
   Extraction out;
   out.joints = joints_;
+  if (scan.vertices.rows() != first_.rows()) return out;
+  // The turn about y that fits best.
+  const Points a = first_.rowwise() - first_.colwise().mean(),
+               b = scan.vertices.rowwise() - scan.vertices.colwise().mean();
+  const float along = a.col(0).dot(b.col(0)) + a.col(2).dot(b.col(2)),
+              across = a.col(2).dot(b.col(0)) - a.col(0).dot(b.col(2));
+  out.joints = joints_ * rotation_about_y(std::atan2(across, along)).transpose();
   return out;
 }
 

@@ -41,6 +41,7 @@ class KnownExtractor final : public SkeletonExtractor {
 
  private:
   Joints joints_;
+  Points first_;  // the scan that was seen first: others are it, turned about y
 };
 
 /// Linear blend skinning by distance, with offsets that grow with the bend of the knees and elbows.

@@ -127,7 +127,7 @@ TEST_F(ExportCommand, CtrlCAndAFullDiskLeaveTheOldFile) {
   EXPECT_NE(stopped.err.find("writing failed"), std::string::npos) << stopped.err;
   EXPECT_EQ(read_bytes(out("a.glb")), "old");
   Program program({"export", "--follow", "--source", scans(), "--target", target(), "--out", out("a.glb")});
-  program.wait_for("frame ");
+  ASSERT_TRUE(program.wait_for("frames/s assumed"));
   program.send(SIGINT);
   EXPECT_NE(program.finish().code, 0);
   EXPECT_EQ(read_bytes(out("a.glb")), "old");
