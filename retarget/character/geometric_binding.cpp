@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -372,6 +373,18 @@ void smooth_along(const Mesh& mesh, float radius, RowMatrix& values) {
   }
 }
 
+/// Files and engines know four bones a vertex: what is bound by distances alone needs no more.
+void keep_strongest(RowMatrix& weights) {
+  constexpr int kBones = 4;
+  for (Eigen::Index v = 0; v < weights.rows(); ++v) {
+    std::array<float, kJointCount> sorted;
+    Eigen::Map<Eigen::RowVectorXf>(sorted.data(), kJointCount) = weights.row(v);
+    std::nth_element(sorted.begin(), sorted.begin() + kBones - 1, sorted.end(), std::greater<float>());
+    weights.row(v) = (weights.row(v).array() < sorted[kBones - 1]).select(0.0f, weights.row(v));
+    weights.row(v) /= weights.row(v).sum();
+  }
+}
+
 RowMatrix geometric_weights(const Mesh& mesh, const BoneDistances& distances, const ShapeHints& hints) {
   const float least = 0.01f * distances.leg;
   RowMatrix weights(mesh.vertices.rows(), kJointCount);
@@ -387,6 +400,7 @@ RowMatrix geometric_weights(const Mesh& mesh, const BoneDistances& distances, co
     weights.row(v) *= 1 - hints.head[v];
     weights(v, Head) += hints.head[v];
   }
+  keep_strongest(weights);
   return weights;
 }
 

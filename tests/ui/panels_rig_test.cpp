@@ -28,10 +28,10 @@ TEST_F(RigPanel, TheRigIsChosen) {
 TEST_F(RigPanel, AJointIsSelectedInTheTable) {
   EXPECT_FALSE(shown("rig.joint.4"));
   click("inspector.bones");
-  frame(2);
+  frame(6);
   expect_click("rig.joint.4", {"select.joint left_knee"});
   session.selected_joint = LeftKnee;
-  frame(2);
+  frame(6);
   expect_click("rig.joint.4", {"select.joint none"});
 }
 

@@ -123,9 +123,8 @@ bool Table::row(bool selected, bool selectable) {
   ++row_, column_ = 0;
   if (!selectable) return false;
   ImGui::TableSetColumnIndex(0);
-  const bool clicked =
-      ImGui::Selectable(("##row" + std::to_string(row_)).c_str(), selected,
-                        ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap);
+  const bool clicked = ImGui::Selectable(("##row" + std::to_string(row_)).c_str(), selected,
+                                         ImGuiSelectableFlags_SpanAllColumns);
   ui_.mark(name_ + "." + std::to_string(row_));
   ImGui::SameLine(0, 0);
   return clicked;
