@@ -329,17 +329,34 @@ Character make_robot() {
   return robot;
 }
 
+namespace {
+
+/// The turn about y that takes `from` best to `to`, both centred: its cosine and sine, as long as it fits
+/// well.
+Eigen::Vector2f best_turn(const Points& from, const Points& to) {
+  return {from.col(0).dot(to.col(0)) + from.col(2).dot(to.col(2)),
+          from.col(2).dot(to.col(0)) - from.col(0).dot(to.col(2))};
+}
+
+}  // namespace
+
 Extraction KnownExtractor::extract(const Mesh& scan) {
   if (first_.rows() == 0) first_ = scan.vertices;
   Extraction out;
   out.joints = joints_;
   if (scan.vertices.rows() != first_.rows()) return out;
-  // The turn about y that fits best.
-  const Points a = first_.rowwise() - first_.colwise().mean(),
-               b = scan.vertices.rowwise() - scan.vertices.colwise().mean();
-  const float along = a.col(0).dot(b.col(0)) + a.col(2).dot(b.col(2)),
-              across = a.col(2).dot(b.col(0)) - a.col(0).dot(b.col(2));
-  out.joints = joints_ * rotation_about_y(std::atan2(across, along)).transpose();
+  const Points to = scan.vertices.rowwise() - scan.vertices.colwise().mean();
+  Points from = first_.rowwise() - first_.colwise().mean();
+  const Eigen::Vector2f straight = best_turn(from, to);
+  from.col(0) *= -1;
+  const Eigen::Vector2f mirrored = best_turn(from, to);
+  const bool in_mirror = mirrored.norm() > 1.0001f * straight.norm();
+  const Eigen::Vector2f turn = in_mirror ? mirrored : straight;
+  if (in_mirror)
+    for (int j = 0; j < kJointCount; ++j)
+      out.joints.row(j) =
+          joints_.row(kMirror[static_cast<size_t>(j)]).cwiseProduct(Eigen::RowVector3f(-1, 1, 1));
+  out.joints = (out.joints * rotation_about_y(std::atan2(turn.y(), turn.x())).transpose()).eval();
   return out;
 }
 
