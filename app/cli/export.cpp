@@ -20,6 +20,7 @@
 #include "retarget/character/bone_choices.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
 
 namespace understudy::app {
@@ -159,8 +160,10 @@ void preview_file(const ExportOptions& options, const Performance& done) {
     moment.seconds = static_cast<double>(at) / clip.fps;
     moment.source = rest;
     moment.source_joints = Joints(joints * turn.transpose());
-    moment.target =
-        merged_surface(written, vertices_at(written, animation, static_cast<float>(moment.seconds))).mesh;
+    MergedSurface surface =
+        merged_surface(written, vertices_at(written, animation, static_cast<float>(moment.seconds)));
+    paint(surface, written);
+    moment.target = std::move(surface.mesh);
     moments.push_back(std::move(moment));
   }
   render::SheetOptions sheet;

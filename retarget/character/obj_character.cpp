@@ -143,7 +143,8 @@ void ObjReader::read_materials(const std::string& name) {
   const auto file = beside(path_, name);
   US_CHECK(file, path_, ": its materials are outside of its folder (", excerpt(name), ")");
   if (!libraries_.insert(*file).second) return;
-  if (!std::filesystem::exists(*file)) {
+  std::error_code failed;  // names may be longer than any file's
+  if (!std::filesystem::exists(*file, failed)) {
     log::warn(path_ + ": its materials " + excerpt(name) + " are missing");
     return;
   }

@@ -29,7 +29,8 @@ bool is_amass_motion(const std::string& path) {
 bool is_motion_file(const std::string& path) {
   const std::string suffix = suffix_of(path);
   if (suffix != ".npz" && suffix != ".bvh" && suffix != ".fbx" && suffix != ".dae") return false;
-  US_CHECK(std::filesystem::exists(path), path, ": there is no such file");
+  std::error_code failed;
+  US_CHECK(std::filesystem::exists(path, failed), path, ": there is no such file");
   if (std::filesystem::is_directory(path)) return false;
   return suffix != ".npz" || is_amass_motion(path);
 }

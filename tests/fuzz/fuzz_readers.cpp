@@ -31,7 +31,8 @@ void on_malloc(const volatile void*, size_t size) {
 }
 
 /// Text becomes numbers, numbers doubles, and lists grow by doubling: all within this times the file's size.
-constexpr size_t kOfFile = 64, kSmall = 1 << 20, kLargest = size_t{3} << 30;
+/// libzip makes room for the 65,535 entries that an archive may name.
+constexpr size_t kOfFile = 64, kSmall = 4 << 20, kLargest = size_t{3} << 30;
 
 size_t limit_for(const std::string& bytes) {
   const size_t declared = std::min(reader->declared(bytes), kLargest);
