@@ -4,7 +4,7 @@ us_test(corpus_test SOURCES tests/fuzz/corpus_test.cpp tests/fuzz/readers.cpp
 
 # libFuzzer under AddressSanitizer, objects of its own (clang only; .ci/run builds and runs it):
 #   cmake -G Ninja -B build-fuzz -DUNDERSTUDY_FUZZ=ON -DCMAKE_CXX_COMPILER=clang++
-#   ninja -C build-fuzz fuzz_readers && build-fuzz/fuzz_readers --reader=ply -seed=1 -runs=5000 NEW tests/fuzz/corpus/ply
+#   ninja -C build-fuzz fuzz_readers && build-fuzz/fuzz_readers --reader=ply -max_total_time=3600 NEW tests/fuzz/corpus/ply
 # What it finds is mended and goes into the corpus.
 option(UNDERSTUDY_FUZZ "build the fuzzer of the readers" OFF)
 if(NOT UNDERSTUDY_FUZZ)
