@@ -17,23 +17,53 @@ constexpr float kPelvisEase = 0.2f;   // the same of a pelvis that was seen far 
 constexpr float kUsual = 0.035f;      // of the leg: what errors of the feet alone amount to
 constexpr float kSlack = 0.01f;       // of the leg: soles this near are left alone
 
+/// At most some 2,000 points of the scan within `reach` of a foot's joint, the lowest first.
+std::vector<Vec3> points_near_feet(const Joints& source, const Points& scan, float reach) {
+  std::vector<Vec3> near;
+  for (Eigen::Index i = 0; i < scan.rows(); ++i)
+    for (const int j : kFeet)
+      if ((scan.row(i) - source.row(j)).squaredNorm() < reach * reach) {
+        near.push_back(scan.row(i).transpose());
+        break;
+      }
+  constexpr size_t kMost = 2000;
+  const size_t step = 1 + near.size() / kMost;
+  for (size_t i = 0; i * step < near.size(); ++i) near[i] = near[i * step];
+  near.resize((near.size() + step - 1) / step);
+  std::sort(near.begin(), near.end(), [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); });
+  return near;
+}
+
+int neighbours_of(const Vec3& point, const std::vector<Vec3>& points, float reach) {
+  int count = -1;  // itself
+  for (const Vec3& other : points) count += (other - point).squaredNorm() < reach * reach ? 1 : 0;
+  return count;
+}
+
 }  // namespace
 
 std::optional<float> sole_height(const Joints& source, const Points& scan) {
-  const float near = 0.25f * std::max(leg_length(source), 1e-3f);
-  std::vector<float> heights;
-  for (Eigen::Index i = 0; i < scan.rows(); ++i) {
-    const auto p = scan.row(i);
-    for (const int j : kFeet)
-      if ((p - source.row(j)).squaredNorm() < near * near) {
-        heights.push_back(p.y());
-        break;
-      }
+  const float leg = std::max(leg_length(source), 1e-3f);
+  const std::vector<Vec3> near = points_near_feet(source, scan, 0.25f * leg);
+  if (near.size() < 20) return std::nullopt;
+  // Bits of floor and outliers lie below the soles, but sparsely; a sole is as dense as the legs above it.
+  const float apart = 0.03f * leg;
+  std::vector<int> neighbours;
+  for (size_t i = 0; i < near.size(); i += 1 + near.size() / 64)
+    neighbours.push_back(neighbours_of(near[i], near, apart));
+  std::nth_element(neighbours.begin(), neighbours.begin() + static_cast<long>(neighbours.size() / 2),
+                   neighbours.end());
+  const int dense = std::max(2, (neighbours[neighbours.size() / 2] + 1) / 2);
+  // The mean of the lowest ones: one alone would tremble.
+  const size_t skip = near.size() / 400, wanted = 1 + near.size() / 50;
+  size_t found = 0;
+  float sum = 0;
+  for (const Vec3& point : near) {
+    if (neighbours_of(point, near, apart) < dense || found++ < skip) continue;
+    sum += point.y();
+    if (found == skip + wanted) return sum / static_cast<float>(wanted);
   }
-  if (heights.size() < 20) return std::nullopt;
-  const size_t skip = heights.size() / 100;
-  std::nth_element(heights.begin(), heights.begin() + static_cast<long>(skip), heights.end());
-  return heights[skip];
+  return std::nullopt;
 }
 
 SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints) {

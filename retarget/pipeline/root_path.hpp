@@ -35,8 +35,8 @@ struct SupportPoints {
   float lowest_of_foot(const PosedSkeleton& posed, int side) const;
 };
 
-/// Height over y = 0 of the lowest scan points near the foot joints, metres; a few are let go as outliers.
-/// None where fewer than 20 points are near.
+/// Height over y = 0 of the soles: the lowest scan points near the foot joints that lie as densely as a body
+/// does (bits of floor and outliers do not), metres. None where fewer than 20 points are near.
 std::optional<float> sole_height(const Joints& source, const Points& scan);
 
 /// Online: only the frames so far. s = leg_B / leg_A, leg_A the median over the frames so far; the path is

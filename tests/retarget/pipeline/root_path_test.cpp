@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/retarget/pipeline/fixtures.hpp"
 
 namespace understudy {
@@ -65,6 +67,37 @@ TEST(RootPath, LiftsTheTargetAsTheSourceIsInTheAir) {
   const float sole_b = -walk.b.mesh.vertices.col(1).minCoeff();
   const float up = walk.path(RootMode::Scaled, 1.1153f + 0.3f).back().y();
   EXPECT_NEAR(up, sole_b + 0.6f * 0.3f, 0.01f);
+}
+
+/// Points as dense on feet that hang `height` over y = 0 as scanners give them, and a few of the floor below.
+Points feet_over_a_floor(const Joints& source, float height) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  Points points(700, 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Vec3 ankle = source.row(i % 2 == 0 ? LeftAnkle : RightAnkle).transpose();
+    const bool sole = i < 300;  // the rest is shin
+    points.row(i) =
+        Vec3(ankle.x() + 0.04f * unit(random), height + (sole ? 0.0f : 0.1f + 0.08f * unit(random)),
+             ankle.z() + (sole ? 0.12f : 0.04f) * unit(random))
+            .transpose();
+    if (i % 70 == 0) points.row(i) = Vec3(0.3f * unit(random), 0, 0.3f * unit(random)).transpose();
+  }
+  return points;
+}
+
+TEST(SoleHeight, IsThatOfTheFeetNotOfBitsOfFloorBelowThem) {
+  Joints source = human_rest();
+  for (const float height : {0.0f, 0.06f, 0.15f}) {
+    source.col(1).array() += height + 0.08f - source(LeftAnkle, 1);
+    const auto sole = sole_height(source, feet_over_a_floor(source, height));
+    ASSERT_TRUE(sole);
+    EXPECT_NEAR(*sole, height, 0.005f);
+  }
+}
+
+TEST(SoleHeight, IsUnknownWhereNoFootWasSeen) {
+  EXPECT_FALSE(sole_height(human_rest(), Points::Constant(500, 3, 5.0f)));
 }
 
 TEST(RootPath, DoesNotJumpWhenTheLegsTurnOutShorter) {
