@@ -27,8 +27,8 @@ namespace understudy::app {
 namespace {
 
 struct ExportOptions {
-  std::string document;  // empty: --source and --target
-  int take = 1;
+  std::string document;            // empty: --source and --target
+  std::vector<std::string> takes;  // by name, or number from 1; empty: the first
   std::vector<std::string> sources;
   std::string format, out, map_file, preview, report;
   SourceOptions source;  // what all sources share
@@ -109,7 +109,21 @@ void check_session(const Session& session) {
   US_CHECK(session.errors.empty(), session.errors.front().text);
 }
 
-/// The document's take as the studio shows it: its edits, its corrections of joints and weights.
+std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& document,
+                                 const ExportFormatInfo& format) {
+  std::vector<size_t> takes;
+  try {
+    for (const std::string& name : options.takes) takes.push_back(take_called(document, name, 1));
+  } catch (const Error& error) {
+    throw Error(options.document + ": " + error.what());
+  }
+  if (takes.empty()) takes.push_back(0);
+  US_CHECK(takes.size() == 1 || format.is_character, options.out, ": ", format.label,
+           " holds one motion, these are ", takes.size());
+  return takes;
+}
+
+/// The document's takes as the studio shows them: its edits, its corrections of joints and weights.
 Performance perform_document(const ExportOptions& options, const ExportFormatInfo& format) {
   US_CHECK(options.sources.empty() && options.target.path.empty(), options.document,
            ": a document has its own source and target");
@@ -118,10 +132,10 @@ Performance perform_document(const ExportOptions& options, const ExportFormatInf
   Studio studio(std::move(services));
   studio.run("document.open", {options.document});
   const Session& session = studio.session();
-  const size_t count = session.document.takes.size(), take = static_cast<size_t>(options.take) - 1;
-  US_CHECK(!session.document.source.path.empty() && count > 0, options.document, ": has no ",
-           session.document.source.path.empty() ? "source" : "target");
-  US_CHECK(take < count, options.document, ": has no take ", options.take, ", only ", count);
+  US_CHECK(!session.document.source.path.empty() && !session.document.takes.empty(), options.document,
+           ": has no ", session.document.source.path.empty() ? "source" : "target");
+  const std::vector<size_t> takes = chosen_takes(options, session.document, format);
+  const size_t take = takes[0];
   const std::string name = session.document.takes[take].name;
   Progress progress(clip_name(options.document) + " -> " + name, 0);
   do {
@@ -136,7 +150,7 @@ Performance perform_document(const ExportOptions& options, const ExportFormatInf
   progress.finish();
   ExportChoice choice{format.format, options.file, {}};
   if (options.target.rig != "auto") choice.theirs = options.target.rig == "theirs";
-  return {export_input(session, take, choice), name};
+  return {export_input(session, takes, choice), name};
 }
 
 /// Six moments of the first clip as the file has them, and how it stands in the T-pose.
@@ -256,8 +270,8 @@ Action declare_export(CLI::App& command) {
   const auto options = std::make_shared<ExportOptions>();
   command.add_option("DOCUMENT", options->document,
                      "a document of the studio: its take as it is shown there");
-  command.add_option("--take", options->take, "which one of the document's, from 1")
-      ->check(CLI::Range(1, 1000));
+  command.add_option("--take", options->takes,
+                     "which of the document's, by name or number from 1; several become several clips");
   command.add_option("--source", options->sources, "motions to perform; several become several clips");
   command.add_option("--target", options->target.path,
                      "a character: GLB, glTF, FBX, DAE, OBJ, PLY, OFF, STL");

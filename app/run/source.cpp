@@ -189,6 +189,7 @@ class MovingSkeleton final : public AnimatedSource {
  public:
   MovingSkeleton(SkeletalMotion motion, const SourceOptions& options)
       : AnimatedSource(motion.fps(), motion.count()), motion_(std::move(motion)) {
+    set_clips(motion_.character(), motion_.clip());
     for (const std::string& note : motion_.notes()) {
       if (!options.quiet) log::info(options.path + ": " + note);
       decision_ += (decision_.empty() ? "" : "; ") + note;
@@ -218,6 +219,7 @@ class ScannedCharacter final : public AnimatedSource {
         times_(times),
         surface_(character_),
         decision_(decide_import(surface_.at(nodes_at(character_, clip_, times_.at(0))), options.import)) {
+    set_clips(character_, clip_);
     if (!options.quiet)
       log::info(options.path + ": its surface is looked at as a scan, " + in_words(fps()) + ", " +
                 decision_.sentence);
@@ -259,6 +261,12 @@ std::unique_ptr<Source> as_skeleton(const Character& character, const SourceOpti
 }
 
 }  // namespace
+
+void Source::set_clips(const Character& character, int clip) {
+  for (const CharacterAnimation& animation : character.animations)
+    clips_.push_back({animation.name, static_cast<double>(animation.duration())});
+  clip_ = clip;
+}
 
 bool turn_upright(Motion& motion, const std::string& up) {
   US_CHECK(up.empty() || up == "auto" || up == "y" || up == "z", "a motion's up is y or z, not ", up);

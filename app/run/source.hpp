@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "retarget/character/bone_map.hpp"
+#include "retarget/character/character.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/pipeline/interfaces.hpp"
@@ -33,6 +34,12 @@ struct SourceFrame : ScanFrame {
   std::optional<Extraction> skeleton;  ///< nothing is to be extracted from the scan
 };
 
+/// One of the animations in a file.
+struct SourceClip {
+  std::string name;
+  double seconds = 0;
+};
+
 /// Hands out frames in metres, y up, floor at 0, one at a time and never a later one early.
 class Source {
  public:
@@ -48,12 +55,18 @@ class Source {
   virtual std::optional<int64_t> count() const = 0;
   /// Frames per second.
   double fps() const { return fps_; }
+  /// Of a skeletal motion all animations in its file, and the one that is played; none of scans, and -1.
+  const std::vector<SourceClip>& clips() const { return clips_; }
+  int clip() const { return clip_; }
 
  protected:
   explicit Source(double fps) : fps_(fps) {}
+  void set_clips(const Character& character, int clip);
 
  private:
   double fps_;
+  std::vector<SourceClip> clips_;
+  int clip_ = -1;
 };
 
 /// Says through the log what it decided about units, axes and rate. Throws Error naming the path.

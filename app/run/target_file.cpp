@@ -45,22 +45,32 @@ Character read_target(const std::string& path, const std::vector<float>& betas) 
   return read_character(path);
 }
 
-std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks) {
+std::shared_ptr<PreparedCharacter> stand_target(const TargetOptions& options) {
   US_CHECK(options.rig == "auto" || options.rig == "theirs" || options.rig == "ours",
            "a rig is auto, theirs or ours, not '", options.rig, "'");
   Character character = read_target(options.path, options.betas);
   US_CHECK(character.vertex_count() > 0, options.path, ": holds no mesh");
-  auto prepared = std::make_shared<PreparedCharacter>(
-      prepare_character(std::move(character), networks.extractor.get(), networks.rest_extractor.get(),
-                        character_options(options)));
-  US_CHECK(options.rig != "theirs" || prepared->rigged, options.path,
-           ": has no skeleton of its own that can be driven, ", prepared->map.count(),
+  auto standing =
+      std::make_shared<PreparedCharacter>(stand_character(std::move(character), character_options(options)));
+  US_CHECK(options.rig != "theirs" || standing->rigged, options.path,
+           ": has no skeleton of its own that can be driven, ", standing->map.count(),
            " of 22 joints have a bone");
-  for (const std::string& note : prepared->notes) log::info(options.path + ": " + note);
-  if (prepared->rigged)
-    log::info(options.path + ": " + std::to_string(prepared->map.count()) + " of 22 joints are mapped " +
-              prepared->map.how);
-  return prepared;
+  return standing;
+}
+
+std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> character,
+                                                     const TargetOptions& options, const Networks& networks) {
+  find_t_pose(*character, networks.extractor.get(), networks.rest_extractor.get(),
+              character_options(options));
+  for (const std::string& note : character->notes) log::info(options.path + ": " + note);
+  if (character->rigged)
+    log::info(options.path + ": " + std::to_string(character->map.count()) + " of 22 joints are mapped " +
+              character->map.how);
+  return character;
+}
+
+std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks) {
+  return bind_target(stand_target(options), options, networks);
 }
 
 bool on_their_rig(const TargetOptions& options, const PreparedCharacter& character) {

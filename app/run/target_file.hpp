@@ -24,6 +24,13 @@ struct TargetOptions {
 /// read, no body is found in it, its own rig is wanted and its bones are not known.
 std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks);
 
+/// The first half of it, which asks no network: as the file has it, upright and at its size, to be looked at.
+/// Throws Error naming the file.
+std::shared_ptr<PreparedCharacter> stand_target(const TargetOptions& options);
+/// The second half, with the same options.
+std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> standing,
+                                                     const TargetOptions& options, const Networks& networks);
+
 /// Whether the target performs on its own bones and skin.
 bool on_their_rig(const TargetOptions& options, const PreparedCharacter& character);
 

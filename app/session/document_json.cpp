@@ -36,7 +36,8 @@ using Names = std::array<const char*, N>;
 constexpr Names<3> kRootNames{"scaled", "original", "in-place"};
 constexpr Names<3> kLimbNames{"arms", "legs", "both"};
 constexpr Names<4> kLayoutNames{"side-by-side", "single", "overlay", "wipe"};
-constexpr Names<6> kColouringNames{"plain", "weights", "offsets", "error", "difference", "confidence"};
+constexpr Names<7> kColouringNames{"plain",      "weights",    "offsets", "error",
+                                   "difference", "confidence", "doubt"};
 
 std::string indexed(const std::string& where, size_t i) {
   return where + '[' + std::to_string(i) + ']';

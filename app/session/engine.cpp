@@ -65,6 +65,12 @@ RetargetOptions retarget_options(const Method& method) {
   return options;
 }
 
+/// Where the networks' weights were doubted; null where they are not asked for any.
+std::shared_ptr<const SafeBinding> binding_of(const std::shared_ptr<const Deformer>& deformer) {
+  const auto careful = std::dynamic_pointer_cast<const CarefulDeformer>(deformer);
+  return careful ? std::shared_ptr<const SafeBinding>(careful, &careful->binding()) : nullptr;
+}
+
 /// What one scan gave, kept to be performed again.
 struct Extracted {
   Extraction extraction;
@@ -84,6 +90,7 @@ struct Stream {
 struct TakeWork {
   Plan::TakePlan plan;
   std::string target_is, method_is, joints_are;
+  std::shared_ptr<PreparedCharacter> standing;  // until it is the character
   std::shared_ptr<const PreparedCharacter> character;
   std::unique_ptr<Retargeter> retargeter;
   bool failed = false;
@@ -187,6 +194,7 @@ struct Engine::Impl {
   void close_source();
   void open();
   void adopt_take(TakeWork& take, const Plan::TakePlan& wanted);
+  bool stand(TakeWork& take);
   bool prepare(TakeWork& take);
   Stream& stream_of(const std::string& extractor);
   bool read_frame();
@@ -197,7 +205,8 @@ struct Engine::Impl {
 
 /// Whether an event says something of the source's frames, which another source makes untrue.
 bool of_frames(const EngineEvent& event) {
-  return !std::holds_alternative<TakeReady>(event) && !std::holds_alternative<TakeFailed>(event);
+  return !std::holds_alternative<TakeStands>(event) && !std::holds_alternative<TakeReady>(event) &&
+         !std::holds_alternative<TakeFailed>(event);
 }
 
 void Engine::Impl::tell(EngineEvent event) {
@@ -300,7 +309,7 @@ void Engine::Impl::adopt(Plan wanted) {
 void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   const std::string target_wanted = target_key(wanted.target), method_wanted = method_key(wanted.method),
                     joints_wanted = joints_key(wanted.joints);
-  if (target_wanted != take.target_is) take.character.reset();
+  if (target_wanted != take.target_is) take.character.reset(), take.standing.reset();
   if (target_wanted != take.target_is || method_wanted != take.method_is) take.told_new = 0;
   if (target_wanted != take.target_is || method_wanted != take.method_is ||
       joints_wanted != take.joints_are) {
@@ -328,6 +337,8 @@ void Engine::Impl::close_source() {
 
 /// Does a little of what is left, the most urgent first. False: nothing is left.
 bool Engine::Impl::step() {
+  for (TakeWork& take : takes)
+    if (!take.character && !take.standing && !take.failed) return stand(take);
   if (!opened && !plan.source.path.empty()) {
     open();
     return true;
@@ -351,6 +362,8 @@ void Engine::Impl::open() {
     event.name = (path.has_filename() ? path : path.parent_path()).filename().string();
     event.count = source->count();
     event.fps = source->fps();
+    event.clips = source->clips();
+    event.clip = source->clip();
     tell(event);
   } catch (const std::exception& error) {
     source.reset();
@@ -359,10 +372,25 @@ void Engine::Impl::open() {
   }
 }
 
+/// Reads a target's file and shows how it came: binding it takes longer.
+bool Engine::Impl::stand(TakeWork& take) {
+  try {
+    take.standing = stand_target(take.plan.target);
+    auto shown = std::make_shared<Target>();
+    shown->mesh = take.standing->surface.mesh;
+    tell(TakeStands{take.plan.id, std::move(shown)});
+  } catch (const std::exception& error) {
+    take.failed = true;
+    tell(TakeFailed{take.plan.id, error.what()});
+  }
+  return true;
+}
+
 bool Engine::Impl::prepare(TakeWork& take) {
   try {
     Networks networks = networks_of(take.plan.method);
-    if (!take.character) take.character = open_target(take.plan.target, networks);
+    if (!take.character)
+      take.character = bind_target(std::exchange(take.standing, nullptr), take.plan.target, networks);
     Stream& stream = streams[take.plan.method.extractor];
     if (!stream.extractor) stream.extractor = std::move(networks.extractor);
     networks.extractor.reset();
@@ -376,8 +404,8 @@ bool Engine::Impl::prepare(TakeWork& take) {
     retargeter->set_target(target);
     take.retargeter = std::move(retargeter);  // only with a target: without one it can do nothing
     take.done = 0;
-    tell(
-        TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)), deformer});
+    tell(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)), deformer,
+                   binding_of(deformer)});
   } catch (const std::exception& error) {
     take.failed = true;
     tell(TakeFailed{take.plan.id, error.what()});

@@ -41,6 +41,8 @@ struct SourceOpened {
   std::string name;
   std::optional<int64_t> count;
   double fps = 30;
+  std::vector<SourceClip> clips;
+  int clip = -1;
 };
 /// The source cannot be opened, or broke off.
 struct SourceFailed {
@@ -53,11 +55,17 @@ struct SourceFrames {
   std::string decision;  ///< about units, axes and floor
   std::vector<KeptSource> frames;
 };
+/// A target's file was read: how it came, upright and at its size. What performs is still to be bound.
+struct TakeStands {
+  int64_t id = 0;
+  std::shared_ptr<const Target> as_it_came;  ///< its mesh alone
+};
 struct TakeReady {
   int64_t id = 0;
   std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Target> target;
-  std::shared_ptr<const Deformer> deformer;  ///< bound, with the networks' weights
+  std::shared_ptr<const Deformer> deformer;    ///< bound, with the networks' weights
+  std::shared_ptr<const SafeBinding> binding;  ///< where they are doubted; null on a skin of its own
 };
 struct TakeFailed {
   int64_t id = 0;
@@ -70,7 +78,8 @@ struct TakeFrames {
   std::vector<KeptFrame> frames;
   std::vector<FrameTimes> times;  ///< of new ones; empty when made anew
 };
-using EngineEvent = std::variant<SourceOpened, SourceFailed, SourceFrames, TakeReady, TakeFailed, TakeFrames>;
+using EngineEvent =
+    std::variant<SourceOpened, SourceFailed, SourceFrames, TakeStands, TakeReady, TakeFailed, TakeFrames>;
 
 class Engine {
  public:

@@ -22,7 +22,13 @@ void run_export(Studio& studio, const Arguments& a) {
   const size_t take = take_number(studio, a);
   const std::string path = whole_path(a);
   const ExportChoice choice = export_choice(path, {a.begin() + 2, a.end()});
-  const auto input = std::make_shared<ExportInput>(export_input(studio.session(), take, choice));
+  const Session& session = studio.session();
+  std::vector<size_t> takes = {take};
+  for (const std::string& name : choice.takes) takes.push_back(take_called(session.document, name));
+  const ExportFormatInfo& format = info_of(choice.format);
+  US_CHECK(takes.size() == 1 || format.is_character, path, ": ", format.label,
+           " holds one motion, these are ", takes.size());
+  const auto input = std::make_shared<ExportInput>(export_input(session, takes, choice));
   check_export(path, choice.format);
   const std::string name = fs::path(path).filename().string();
   const auto cost = std::make_shared<ExportCost>();
@@ -55,7 +61,7 @@ void export_figures(Studio& studio, const Arguments& a) {
 void add_export_commands(Commands& commands) {
   commands.add({"export.run", "Export animation",
                 "TAKE PATH [format=NAME] [rig=theirs|ours] [influences=4|8] [morphs=COUNT] [reduce=MM] "
-                "[in_place=on] [t_pose=on] [keep_clips=on]",
+                "[in_place=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]",
                 "", false, false, run_export});
   commands.add({"export.csv", "Export figures as CSV", "TAKE PATH", "", false, false, export_figures});
 }

@@ -18,6 +18,7 @@
 #include "app/session/series.hpp"
 #include "app/session/settings.hpp"
 #include "app/session/view.hpp"
+#include "retarget/character/careful_deformer.hpp"
 
 namespace understudy::app {
 
@@ -39,6 +40,8 @@ struct SourceState {
   std::optional<int64_t> count;  ///< frames in all, where known
   double fps = 30;
   std::string decision;            ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
+  std::vector<SourceClip> clips;   ///< animations in the file; none of scans
+  int clip = -1;                   ///< the one that is played
   std::vector<KeptSource> frames;  ///< of the extractor of the first take
   bool has_faces = false;
   int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
@@ -50,7 +53,11 @@ struct TakeState {
   std::string problem;  ///< why it never will be, one sentence; empty: fine
   /// As it was read and brought to the T-pose; of the file as it was prepared before, until it is ready.
   std::shared_ptr<const PreparedCharacter> character;
-  std::shared_ptr<const Target> target;      ///< T-pose mesh and joints (edited)
+  /// The mesh as it came, upright and at its size; to be seen until `target` is there, then null.
+  std::shared_ptr<const Target> as_it_came;
+  std::shared_ptr<const Target> target;  ///< T-pose mesh and joints (edited)
+  std::shared_ptr<const SafeBinding>
+      binding;                               ///< where the networks' weights are doubted; null: nowhere asked
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
   std::vector<KeptFrame> performed;          ///< as the engine gave them

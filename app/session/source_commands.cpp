@@ -77,11 +77,25 @@ void add_import(Commands& commands) {
                 }});
 }
 
+/// Where the file's animations are known, a wrong name is said at once.
+void check_clip(const SourceState& source, const std::string& clip) {
+  if (source.clips.empty() || clip.empty()) return;
+  std::string all;
+  for (size_t i = 0; i < source.clips.size(); ++i) {
+    const std::string number_of = std::to_string(i + 1);
+    if (source.clips[i].name == clip || number_of == clip) return;
+    if (i < 20) all += (i > 0 ? ", " : "") + number_of + " " + source.clips[i].name;
+  }
+  throw Error(source.name + ": has no animation '" + clip + "', only " + all);
+}
+
 void add_skeletal(Commands& commands) {
   commands.add({"source.clip", "Animation of the source", "NAME|NUMBER|longest", "", true, false,
                 [](Studio& s, const Arguments& a) {
                   const std::string clip = word(a, 0, "animation");
-                  s.session().document.source.clip = clip == "longest" ? "" : clip;
+                  const std::string wanted = clip == "longest" ? "" : clip;
+                  check_clip(s.session().source, wanted);
+                  s.session().document.source.clip = wanted;
                 }});
   commands.add({"source.as_scan", "Look at an animated source as a scan", "on|off", "", true, false,
                 [](Studio& s, const Arguments& a) {

@@ -178,6 +178,7 @@ void Studio::follow_source() {
   if (key != b.source_key) {
     b.source_key = key;
     cache_.set_source(document.source, document.scan_edits);
+    if (document.source.path != b.followed.source.path) session_.source.clips.clear();
     if (document.source.path.empty()) session_.source = SourceState{};
   }
   if (document.truth == b.truth_path) return;
@@ -259,6 +260,9 @@ void Studio::tick(double seconds) {
     for (CameraState& camera : session_.view.cameras)
       camera.yaw += static_cast<float>(seconds) * session_.view.turntable_deg_s * kPi / 180;
   session_.jobs = jobs_.views();
+  for (size_t k = 0; k < session_.takes.size(); ++k)
+    if (session_.takes[k].as_it_came && session_.takes[k].problem.empty() && !session_.paused)
+      session_.jobs.push_back({0, "Binding " + session_.document.takes[k].name, -1, -1, false});
   auto& notices = session_.notices;
   notices.erase(std::remove_if(notices.begin(), notices.end(),
                                [this](const Notice& notice) { return notice.until < session_.time; }),

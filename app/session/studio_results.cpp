@@ -86,6 +86,8 @@ void Studio::take_in(SourceOpened& event) {
   session_.source.name = event.name;
   session_.source.count = event.count;
   session_.source.fps = event.fps;
+  session_.source.clips = std::move(event.clips);
+  session_.source.clip = event.clip;
   for (TakeState& take : session_.takes) {
     take.performed.clear();
     take.shown = Motion{};
@@ -112,6 +114,12 @@ void Studio::take_in(SourceFrames& event) {
 }
 
 template <>
+void Studio::take_in(TakeStands& event) {
+  TakeState* const take = take_of(event.id);
+  if (take && !take->target) take->as_it_came = std::move(event.as_it_came);
+}
+
+template <>
 void Studio::take_in(TakeReady& event) {
   TakeState* const take = take_of(event.id);
   if (!take) return;
@@ -119,6 +127,8 @@ void Studio::take_in(TakeReady& event) {
   take->problem.clear();
   take->character = event.character;
   take->target = event.target;
+  take->binding = event.binding;
+  take->as_it_came.reset();
   background_->applied[event.id].deformer = event.deformer;
   apply_weights(static_cast<size_t>(take - session_.takes.data()));
   for (const std::string& warning : event.target->warnings) notify(warning, true);

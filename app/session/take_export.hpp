@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/run/exports.hpp"
 #include "app/session/session.hpp"
@@ -13,15 +14,27 @@ namespace understudy::app {
 struct ExportChoice {
   ExportFormat format = ExportFormat::Glb;
   CharacterExportOptions file;
-  std::optional<bool> theirs;  ///< drive the character's own bones; none: where the take performs on them
+  std::optional<bool> theirs;      ///< drive the character's own bones; none: where the take performs on them
+  std::vector<std::string> takes;  ///< more takes, by name or number from 0, each a clip of its own
 };
 
 /// key=value words: format=NAME, rig=theirs|ours, influences=4|8, morphs=COUNT, reduce=MM, in_place=on|off,
-/// t_pose=on|off, keep_clips=on|off; without a format the path's suffix decides. Throws Error for any other.
+/// t_pose=on|off, keep_clips=on|off, and any number of take=NAME for more clips; without a format the path's
+/// suffix decides. Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 
-/// Copied for another thread: the shown motion without what trim and skip leave out, on the target with its
-/// moved joints and painted weights. Throws Error when nothing has been performed yet.
-ExportInput export_input(const Session& session, size_t take, const ExportChoice& choice);
+/// The take of that name, or else of that number, counted from `first`. Throws Error, which lists them: there
+/// is none, or the name is that of several.
+size_t take_called(const Document& document, const std::string& name, int first = 0);
+
+/// Takes that can be clips of one file with this one, itself too: the same target with the same joints and
+/// weights, with or without offsets alike.
+std::vector<size_t> takes_of_one_body(const Document& document, size_t take);
+
+/// Copied for another thread: the shown motions without what trim and skip leave out, on the target with its
+/// moved joints and painted weights. A take alone is a clip of the source's name, each of several one of its
+/// own. Throws Error when nothing has been performed yet, or the takes are not of one body.
+ExportInput export_input(const Session& session, const std::vector<size_t>& takes,
+                         const ExportChoice& choice);
 
 }  // namespace understudy::app

@@ -23,7 +23,8 @@ enum class Colouring {
   Offsets,     ///< length of the pose-corrective offsets, mm
   Error,       ///< distance to the truth, mm
   Difference,  ///< distance to the same vertex of the first take, mm
-  Confidence   ///< extraction confidence of the nearest joint (the source's scan)
+  Confidence,  ///< extraction confidence of the nearest joint (the source's scan)
+  Doubt        ///< how far a vertex is bound by the shape alone, %
 };
 
 /// An orbit camera, as render's: yaw and pitch in radians, distance in metres.

@@ -178,12 +178,13 @@ void add_layers(Commands& commands) {
                   bool& shown = layer(layers(s.session(), a), a);
                   shown = switched(a, 2, shown);
                 }});
-  commands.add(
-      {"view.colour", "Colour by", "source|take plain|weights|offsets|error|difference|confidence", "", false,
-       false, [](Studio& s, const Arguments& a) {
-         layers(s.session(), a).colouring = static_cast<Colouring>(
-             choice(a, 1, "colouring", {"plain", "weights", "offsets", "error", "difference", "confidence"}));
-       }});
+  commands.add({"view.colour", "Colour by",
+                "source|take plain|weights|offsets|error|difference|confidence|doubt", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  const std::vector<std::string> all = {"plain",      "weights",    "offsets", "error",
+                                                        "difference", "confidence", "doubt"};
+                  layers(s.session(), a).colouring = static_cast<Colouring>(choice(a, 1, "colouring", all));
+                }});
   commands.add(
       {"view.weights_joint", "Weights of", "JOINT|all", "", false, false, [](Studio& s, const Arguments& a) {
          s.session().view.weights_joint = word(a, 0, "joint") == "all" ? -1 : joint_argument(a, 0);

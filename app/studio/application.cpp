@@ -181,11 +181,11 @@ std::string Application::fingerprint() const {
   text << shown_frame(s) << ' ' << s.source.frames.size() << ' ' << s.source.generation << ' '
        << s.notices.size() << ' ' << s.errors.size() << ' ' << s.question.has_value() << ' ' << s.working
        << ' ' << s.log.size() << ' ' << s.changed << ' ' << (s.truth != nullptr) << ' '
-       << studio_->cache().bytes();
+       << studio_->cache().bytes() << ' ' << views_->arrived();
   for (const TakeState& take : s.takes)
     text << ' ' << take.ready << take.problem.empty() << ' ' << take.generation << ' '
          << take.shown.poses.size() << ' ' << take.performed.size() << ' ' << take.series.size() << ' '
-         << take.deformer.get();
+         << take.deformer.get() << take.as_it_came.get();
   for (const JobView& job : s.jobs) text << ' ' << job.id << ' ' << static_cast<int>(job.progress * 200);
   for (const CameraState& camera : s.view.cameras) text << ' ' << camera.yaw;
   return text.str();
@@ -193,6 +193,10 @@ std::string Application::fingerprint() const {
 
 bool Application::waiting() const {
   return views_->waiting() || previews_->busy() || gui_->pending();
+}
+
+bool Application::shows_take(int k) const {
+  return views_->shows_take(k);
 }
 
 /// The start screen's pictures, one a frame as they come.

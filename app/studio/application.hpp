@@ -64,6 +64,8 @@ class Application {
   void run();
   /// Frames drawn so far.
   int64_t drawn() const { return drawn_; }
+  /// Whether the frame drawn last shows the surface of this take.
+  bool shows_take(int k) const;
 
  private:
   using Clock = std::chrono::steady_clock;

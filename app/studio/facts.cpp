@@ -47,6 +47,21 @@ size_t ready_takes(const Session& session) {
   return ready;
 }
 
+/// Those whose file has been read, whether they are bound yet or not.
+size_t seen_takes(const Session& session) {
+  size_t seen = 0;
+  for (const TakeState& take : session.takes) seen += take.as_it_came || take.target;
+  return seen;
+}
+
+/// Per cent of the selected take's surface; "none" before it is bound, and where it keeps its own skin.
+std::string bound_by_shape(const Session& session) {
+  const size_t k = static_cast<size_t>(session.selected_take);
+  if (k >= session.takes.size() || !session.takes[k].binding || session.takes[k].binding->doubt.size() == 0)
+    return "none";
+  return std::to_string(100 * session.takes[k].binding->doubt.mean());
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -58,6 +73,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"source", session.document.source.path},
       {"takes", count(session.document.takes.size())},
       {"ready_takes", count(ready_takes(session))},
+      {"seen_takes", count(seen_takes(session))},
+      {"bound_by_shape", bound_by_shape(session)},
       {"playing", yes_no(session.playback.playing)},
       {"rate", std::to_string(session.playback.rate)},
       {"working", yes_no(session.working)},

@@ -194,9 +194,12 @@ void note_turns(PreparedCharacter& c) {
                       std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
 }
 
-void find_in_rig(PreparedCharacter& c, const CharacterOptions& options) {
+void turn_rig_forward(PreparedCharacter& c, const CharacterOptions& options) {
   const float yaw = options.yaw_deg ? -*options.yaw_deg * kPi / 180 : tidy(heading_of_joints(rig_joints(c)));
   if (std::abs(std::remainder(yaw, 2 * kPi)) > 1e-3f) turn(c, -yaw);
+}
+
+void find_in_rig(PreparedCharacter& c) {
   c.driver = drivers(c);
   c.weights = gathered_weights(c);
   c.pose = to_t_pose(rig_joints(c));
@@ -251,9 +254,7 @@ Joints with_straight_arms(const Mesh& mesh, const Joints& joints) {
 
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
-  if (options.yaw_deg) {
-    if (*options.yaw_deg != 0) turn(c, *options.yaw_deg * kPi / 180);
-  } else {
+  if (!options.yaw_deg) {
     const float yaw = tidy(body_heading(c.surface.mesh, any_pose));
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
   }
@@ -287,8 +288,7 @@ std::vector<int> joints_of_nodes(const PreparedCharacter& c) {
   return joint_of;
 }
 
-PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
-                                    SkeletonExtractor* t_pose, const CharacterOptions& options) {
+PreparedCharacter stand_character(Character character, const CharacterOptions& options) {
   US_CHECK(character.vertex_count() > 0, character.name, ": holds no mesh");
   PreparedCharacter c;
   c.character = std::move(character);
@@ -306,18 +306,36 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
                       " of 22): its own rig is not used");
   place_in_world(c, options);
   if (c.rigged) {
-    find_in_rig(c, options);
+    turn_rig_forward(c, options);
+    return c;
+  }
+  const Stance stance = stance_of(c.surface.mesh);
+  const std::string why_not = refusal(stance), why_doubt = doubt(stance);
+  US_CHECK(why_not.empty(), c.character.name, ": does not look like a person: ", why_not);
+  if (!why_doubt.empty()) c.target.warnings.push_back("the target may be no person: " + why_doubt);
+  if (options.yaw_deg && *options.yaw_deg != 0) turn(c, *options.yaw_deg * kPi / 180);
+  return c;
+}
+
+void find_t_pose(PreparedCharacter& c, SkeletonExtractor* any_pose, SkeletonExtractor* t_pose,
+                 const CharacterOptions& options) {
+  if (c.rigged) {
+    find_in_rig(c);
     SkeletonExtractor* const network = t_pose != nullptr ? t_pose : any_pose;
     if (!options.own_joints && network != nullptr) c.target = prepare_target(c.target.mesh, *network);
-  } else {
-    US_CHECK(any_pose != nullptr, c.character.name,
-             ": has no rig that is known, and no network may look at it");
-    const Stance stance = stance_of(c.surface.mesh);
-    const std::string why_not = refusal(stance), why_doubt = doubt(stance);
-    US_CHECK(why_not.empty(), c.character.name, ": does not look like a person: ", why_not);
-    find_in_shape(c, *any_pose, t_pose, options);
-    if (!why_doubt.empty()) c.target.warnings.push_back("the target may be no person: " + why_doubt);
+    return;
   }
+  US_CHECK(any_pose != nullptr, c.character.name,
+           ": has no rig that is known, and no network may look at it");
+  const std::vector<std::string> doubts = std::move(c.target.warnings);
+  find_in_shape(c, *any_pose, t_pose, options);
+  c.target.warnings.insert(c.target.warnings.end(), doubts.begin(), doubts.end());
+}
+
+PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
+                                    SkeletonExtractor* t_pose, const CharacterOptions& options) {
+  PreparedCharacter c = stand_character(std::move(character), options);
+  find_t_pose(c, any_pose, t_pose, options);
   return c;
 }
 

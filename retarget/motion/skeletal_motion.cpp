@@ -252,6 +252,10 @@ const BoneMap& SkeletalMotion::map() const {
   return impl_->c.map;
 }
 
+int SkeletalMotion::clip() const {
+  return impl_->clip;
+}
+
 const Character& SkeletalMotion::character() const {
   return impl_->c.character;
 }

@@ -35,6 +35,8 @@ class SkeletalMotion {
   /// The skinned surface, or its bones.
   Mesh surface(int64_t frame) const;
   const BoneMap& map() const;
+  /// Which of the character's animations it is.
+  int clip() const;
   /// The character's nodes, by which the map names bones.
   const Character& character() const;
   /// What was decided about clip, rate, bones, units, axes and floor, one sentence each.

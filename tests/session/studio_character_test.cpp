@@ -1,5 +1,11 @@
 // Targets with bones of their own in the studio.
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "app/session/document_file.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/character/read_character.hpp"
 #include "tests/retarget/character/characters.hpp"
 #include "tests/session/studio_fixture.hpp"
 
@@ -45,6 +51,115 @@ TEST_F(StudioCharacter, PerformsOnItsOwnBonesFromAnyPoseAndHeading) {
   EXPECT_GT(rest(LeftWrist, 0), rest(LeftShoulder, 0) + 0.3f);  // the arms are stretched out to its left
   EXPECT_NEAR(rest(LeftWrist, 1), rest(LeftShoulder, 1), 0.06f);
   EXPECT_FALSE(state.target->mesh.is_cloud());
+}
+
+TEST_F(StudioCharacter, IsSeenAsItCameBeforeAnyNetworkIsThere) {
+  std::promise<void> loaded;
+  StudioServices slow = services();
+  slow.networks = [networks = slow.networks, gate = loaded.get_future().share()](const Method& method) {
+    gate.wait();
+    return networks(method);
+  };
+  Studio studio(std::move(slow));
+  studio.run("target.add", {path("made.glb")});
+  for (int i = 0; i < 5000 && !take(studio).as_it_came; ++i) {
+    studio.tick(0.01);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const auto came = take(studio).as_it_came;
+  if (!came) loaded.set_value();
+  ASSERT_NE(came, nullptr);
+  EXPECT_EQ(take(studio).target, nullptr);
+  EXPECT_FALSE(take(studio).ready);
+  EXPECT_FALSE(studio.idle());
+  studio.tick(0);
+  ASSERT_EQ(studio.session().jobs.size(), 1u);
+  EXPECT_EQ(studio.session().jobs[0].name, "Binding made");
+  const auto y = came->mesh.vertices.col(1);
+  EXPECT_NEAR(y.minCoeff(), 0, 1e-3f);
+  EXPECT_NEAR(y.maxCoeff(), 1.7f, 0.15f);
+  EXPECT_GT(came->mesh.colors.rows(), 0);
+  loaded.set_value();
+  studio.wait_idle(60);
+  EXPECT_TRUE(take(studio).ready);
+  EXPECT_EQ(take(studio).as_it_came, nullptr);
+  EXPECT_EQ(take(studio).character->surface.mesh.vertices, came->mesh.vertices);
+  EXPECT_GT((take(studio).target->mesh.vertices - came->mesh.vertices).cwiseAbs().maxCoeff(),
+            0.2f);  // arms up
+  EXPECT_TRUE(studio.session().jobs.empty());
+}
+
+TEST_F(StudioCharacter, OnlyWeightsOfNetworksAreDoubted) {
+  Studio studio(services());
+  open(studio);
+  EXPECT_EQ(take(studio).binding, nullptr);
+  studio.run("target.rig", {"0", "ours"});
+  studio.wait_idle(60);
+  ASSERT_NE(take(studio).binding, nullptr);
+  EXPECT_EQ(take(studio).binding->doubt.size(), take(studio).target->mesh.vertices.rows());
+  studio.run("view.colour", {"take", "doubt"});
+  EXPECT_EQ(studio.session().view.take.colouring, Colouring::Doubt);
+}
+
+TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {
+  Studio studio(services());
+  open(studio);
+  studio.run("compare.add", {"0", "engine=paper"});
+  studio.run("take.rename", {"1", "late"});
+  studio.run("edit.trim", {"1", "10", "15"});
+  studio.run("target.add", {path("target.obj")});
+  studio.wait_idle(60);
+  studio.run("export.run", {"0", path("both.glb"), "take=late"});
+  studio.run("export.run", {"1", path("one.glb")});
+  studio.wait_idle(60);
+  ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
+  const auto both = read_character(path("both.glb")).animations;
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].name, "made");
+  EXPECT_EQ(both[1].name, "late");
+  EXPECT_NEAR(both[0].duration(), 23 / 30.0, 1e-3);
+  EXPECT_NEAR(both[1].duration(), 5 / 30.0, 1e-3);
+  EXPECT_EQ(read_character(path("one.glb")).animations.at(0).name, "scan");
+  const auto refused = [&](const std::string& option, const std::string& file = "x.glb") {
+    return refusal(studio, "export.run", {"0", path(file), option});
+  };
+  EXPECT_NE(refused("take=early").find("there is no take 'early', only 0 made, 1 late, 2 target"),
+            std::string::npos);
+  EXPECT_NE(refused("take=target").find("same target"), std::string::npos);
+  EXPECT_NE(refused("take=late", "x.bvh").find("holds one motion"), std::string::npos);
+  studio.run("take.rename", {"2", "late"});
+  EXPECT_NE(refused("take=late").find("several takes"), std::string::npos);
+  studio.run("method.offsets", {"1", "off"});
+  studio.wait_idle(60);
+  EXPECT_NE(refused("take=1").find("offsets"), std::string::npos);
+}
+
+TEST_F(StudioCharacter, OneOfAFilesAnimationsIsTheSource) {
+  Character moves = tests::make_character({});
+  for (const float seconds : {1.0f, 2.0f}) {
+    CharacterTrack track;
+    track.node = 1, track.times = {0, seconds}, track.values = {0, 0, 0, 1, 0, 0.1f, 0, 0.995f};
+    moves.animations.push_back({seconds < 1.5f ? "nod" : "look", {track}});
+  }
+  write_gltf_character(path("moves.glb"), moves);
+  Studio studio(services());
+  studio.run("source.open", {path("moves.glb")});
+  studio.wait_idle(60);
+  const SourceState& source = studio.session().source;
+  ASSERT_EQ(source.clips.size(), 2u);
+  EXPECT_EQ(source.clips[0].name, "nod");
+  EXPECT_NEAR(source.clips[1].seconds, 2, 1e-4);
+  EXPECT_EQ(source.clip, 1);  // the longest
+  const size_t frames = source.frames.size();
+  studio.run("source.clip", {"nod"});
+  studio.wait_idle(60);
+  EXPECT_EQ(source.clip, 0);
+  EXPECT_LT(source.frames.size(), frames);
+  EXPECT_NE(refusal(studio, "source.clip", {"jump"}).find("'jump', only 1 nod, 2 look"), std::string::npos);
+  studio.run("document.save_as", {path("moves")});
+  EXPECT_EQ(read_document(path("moves.understudy")).document.source.clip, "nod");
+  studio.run("source.open", {path("scan.npz")});
+  EXPECT_TRUE(source.clips.empty());
 }
 
 TEST_F(StudioCharacter, TheRigIsChosenAndTheScanIsNotLookedAtAgain) {

@@ -122,6 +122,24 @@ TEST_F(SceneTest, OneJointsWeightsAreOnAScaleAllJointsAreCategories) {
   EXPECT_EQ(Vec3(all.scene.meshes[0].colors->row(7)), render::kCategories[static_cast<size_t>(joint)]);
 }
 
+TEST_F(SceneTest, DoubtOfTheBindingIsNeutralToWarm) {
+  session.view.take.colouring = app::Colouring::Doubt;
+  EXPECT_FALSE(scene(1).legend.missing.empty());  // a skin of its own is not doubted
+  auto binding = std::make_shared<SafeBinding>();
+  binding->doubt = Eigen::VectorXf::Zero(stage.mesh.vertices.rows());
+  binding->doubt[3] = 1, binding->doubt[4] = 0.25f;
+  session.takes[0].binding = binding;
+  const PaneScene made = scene(1);
+  ASSERT_NE(made.values, nullptr);
+  EXPECT_FLOAT_EQ((*made.values)[4], 25);
+  EXPECT_EQ(made.legend.unit, "%");
+  const Points& colors = *made.scene.meshes[0].colors;
+  const Vec3 trusted = colors.row(0), doubted = colors.row(3);
+  EXPECT_LT(trusted.maxCoeff() - trusted.minCoeff(), 0.03f);
+  EXPECT_GT(doubted.x(), doubted.z() + 0.3f);
+  EXPECT_LT((scale_color(made.legend.scale, 1) - doubted).norm(), 1e-5f);
+}
+
 TEST_F(SceneTest, ConfidenceIsOfTheNearestJoint) {
   session.view.source.colouring = app::Colouring::Confidence;
   session.source.frames[10].confidence_of[LeftWrist] = 0.2f;
@@ -206,6 +224,38 @@ TEST_F(SceneTest, WithoutFramesATakeIsInTPose) {
   EXPECT_EQ(keeper.update(session, *stage.cache, looks, pane_of(1)).takes[0]->vertices, stage.mesh.vertices);
 }
 
+TEST_F(SceneTest, ACharacterIsSeenAsItCameUntilItIsBound) {
+  app::TakeState& take = session.takes[0];
+  const auto target = take.target;
+  auto came = std::make_shared<Target>();
+  came->mesh = stage.mesh;
+  came->mesh.vertices.col(0).array() += 3;  // wherever its file has it
+  came->mesh.colors = Points::Constant(stage.mesh.vertices.rows(), 3, 0.25f);
+  take = {};
+  EXPECT_NE(pane_hint(session, pane_of(1)), "");
+  take.as_it_came = came;
+  EXPECT_TRUE(shows_as_it_came(session, pane_of(1)));
+  EXPECT_EQ(pane_hint(session, pane_of(1)), "");
+  TargetLooks looks;
+  PictureKeeper keeper;
+  keeper.update(session, *stage.cache, looks, pane_of(1));
+  looks.wait();
+  const PanePictures shown = keeper.update(session, *stage.cache, looks, pane_of(1));
+  EXPECT_FALSE(keeper.waiting());
+  const PaneScene made = build_scene({session, pane_of(1), shown, {}, {}, ThemeKind::Dark});
+  ASSERT_EQ(made.scene.meshes.size(), 1u);
+  EXPECT_EQ(*made.scene.meshes[0].vertices, came->mesh.vertices);
+  EXPECT_EQ(*made.scene.meshes[0].colors, came->mesh.colors);
+  EXPECT_TRUE(made.scene.skeletons.empty());
+  EXPECT_NEAR(follow_offset(session, pane_of(1)).x(), 3, 0.1f);
+
+  take.target = target, take.as_it_came = nullptr, take.ready = true;
+  keeper.update(session, *stage.cache, looks, pane_of(1));
+  EXPECT_EQ(keeper.pictures().takes.size(), 1u);  // no gap: what stood there stays until the T-pose is drawn
+  looks.wait();
+  EXPECT_EQ(keeper.update(session, *stage.cache, looks, pane_of(1)).takes[0]->vertices, stage.mesh.vertices);
+}
+
 TEST(Panes, FollowTheLayout) {
   Stage stage;
   stage.add_take("a"), stage.add_take("b");
@@ -255,6 +305,22 @@ TEST(TargetLook, OtherJointsKeepTheLook) {
   EXPECT_EQ(looks.of(std::make_shared<const Target>(moved)), look);
   moved.mesh.vertices(0, 0) += 1;
   EXPECT_EQ(looks.of(std::make_shared<const Target>(moved)), nullptr);
+}
+
+TEST(TargetLook, WhatIsShownForAMomentStaysPlainAndIsShadedLater) {
+  Stage stage(1, 500);
+  TargetLooks looks;
+  EXPECT_EQ(looks.plain_of(stage.target), nullptr);
+  const int64_t before = looks.arrived();
+  looks.wait();
+  EXPECT_EQ(looks.arrived(), before + 1);
+  const auto plain = looks.plain_of(stage.target);
+  ASSERT_NE(plain, nullptr);
+  EXPECT_EQ(plain->ambient->size(), 0);
+  EXPECT_EQ(plain->rest.normals.rows(), stage.mesh.vertices.rows());
+  EXPECT_EQ(looks.of(stage.target), plain);  // at once, while the rest is made
+  looks.wait();
+  EXPECT_EQ(looks.of(stage.target)->ambient->size(), stage.mesh.vertices.rows());
 }
 
 TEST(TargetLook, ATubeIsClosedAndAnOpenOneIsNot) {

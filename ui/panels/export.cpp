@@ -79,6 +79,55 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, 
     file.keep_clips = *on;
 }
 
+/// The takes that go into the file, one clip each.
+std::vector<size_t> clips_of(const app::Session& session, const ExportState& state) {
+  const size_t selected = static_cast<size_t>(session.selected_take);
+  const app::ExportFormatInfo* const format = format_of(state);
+  if (!state.all_takes || format == nullptr || !format->is_character ||
+      selected >= session.document.takes.size())
+    return {selected};
+  std::vector<size_t> takes;
+  for (const size_t k : takes_of_one_body(session.document, selected))
+    if (state.left_out.count(k) == 0) takes.push_back(k);
+  return takes;
+}
+
+/// A take's name in commands; its number where several are called like it.
+std::string word_for_take(const app::Document& document, size_t k) {
+  const std::string& name = document.takes[k].name;
+  const auto called = [&](const app::Take& take) { return take.name == name; };
+  const bool is_clear = std::count_if(document.takes.begin(), document.takes.end(), called) == 1;
+  return is_clear && !name.empty() ? name : std::to_string(k);
+}
+
+std::string frames_words(const app::Session& session, size_t k) {
+  if (k >= session.takes.size()) return "";
+  const int made = static_cast<int>(session.takes[k].shown.poses.size());
+  const auto frames = kept_frames(session.document.takes[k].pose_edits, made).size();
+  return grouped(static_cast<int64_t>(frames)) + " frames";
+}
+
+void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
+  const auto takes = takes_of_one_body(session.document, static_cast<size_t>(session.selected_take));
+  if (takes.size() < 2) return;
+  if (const auto on = toggle_row(
+          ui, {"export.all_takes", "All takes as clips", "Of this target, in one file, a clip each"},
+          state.all_takes))
+    state.all_takes = *on;
+  if (!state.all_takes) return;
+  for (const size_t k : takes) {
+    bool in_file = state.left_out.count(k) == 0;
+    row(ui, "");
+    const std::string words = session.document.takes[k].name + "  \u00b7  " + frames_words(session, k);
+    const std::string seen = cut_to(words, ImGui::GetContentRegionAvail().x - ui.px(44));
+    if (!toggle(ui, "export.clip." + std::to_string(k), seen, in_file)) continue;
+    if (in_file)
+      state.left_out.erase(k);
+    else
+      state.left_out.insert(k);
+  }
+}
+
 void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
   Ui& ui = context.ui;
   draw_format(ui, state);
@@ -92,12 +141,12 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
   const app::TakeState* const made = selected_state(session);
   if (format != nullptr && take != nullptr && made != nullptr) {
     const bool own_bones = made->character && on_their_rig(take->target, *made->character);
+    if (format->is_character) draw_clip_rows(session, ui, state);
     if (format->is_character) draw_character_rows(ui, *made, own_bones, state);
     if (const auto on = toggle_row(ui, {"export.in_place", "In place", "Without the path over the floor"},
                                    state.choice.file.in_place))
       state.choice.file.in_place = *on;
-    const auto frames = kept_frames(take->pose_edits, static_cast<int>(made->shown.poses.size())).size();
-    hint(ui, grouped(static_cast<int64_t>(frames)) + " frames, " +
+    hint(ui, frames_words(session, static_cast<size_t>(session.selected_take)) + ", " +
                  figure(frames_per_second(session), "frames/s"));
   }
   hint(ui, format != nullptr ? format->words : "Every figure of every frame, as a table.");
@@ -197,7 +246,7 @@ int figures_format() {
 
 void begin_export(ExportState& state, ExportKind kind, int format) {
   state.kind = kind, state.format = format;
-  state.path.clear(), state.agreed.clear();
+  state.path.clear(), state.agreed.clear(), state.left_out.clear();
   state.asking = false;
 }
 
@@ -222,10 +271,14 @@ std::string proposed_path(const app::Session& session, const ExportState& state)
 
 void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state) {
   if (state.kind == ExportKind::Animation) {
-    app::Arguments asked = {std::to_string(session.selected_take), state.path};
+    const std::vector<size_t> takes = clips_of(session, state);
+    if (takes.empty()) return;
+    app::Arguments asked = {std::to_string(takes[0]), state.path};
     const app::ExportFormatInfo* const format = format_of(state);
     if (format == nullptr) return context.ask("export.csv", asked);
     for (std::string& word : export_words(*format, state.choice)) asked.push_back(std::move(word));
+    for (size_t i = 1; i < takes.size(); ++i)
+      asked.push_back("take=" + word_for_take(session.document, takes[i]));
     return context.ask("export.run", asked);
   }
   app::Arguments arguments = {state.path, std::to_string(state.width), std::to_string(state.height)};
@@ -247,7 +300,8 @@ ExportAnswer draw_export(const app::Session& session, PanelContext& context, Exp
   ImGui::Dummy({0, ui.px(4)});
   ButtonRow buttons(2);
   ButtonOptions save;
-  save.look = ButtonLook::Main, save.disabled = state.path.empty();
+  save.look = ButtonLook::Main, save.disabled = state.path.empty() || (state.kind == ExportKind::Animation &&
+                                                                       clips_of(session, state).empty());
   const bool escape =
       !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
   if (buttons.add(ui, "export.cancel", "Cancel", {}) || escape) answer.stays = false;

@@ -1,10 +1,11 @@
 // Saving what is not the document: animations, figures, pictures, video.
 // Marks: export.format, export.take, export.rig, export.influences, export.morphs, export.reduce,
-// export.in_place, export.t_pose, export.keep_clips, export.path, export.browse, export.size, export.width,
-// export.height, export.all, export.transparent, export.save, export.cancel; export.overwrite.yes and
-// .cancel.
+// export.in_place, export.t_pose, export.keep_clips, export.all_takes, export.clip.TAKE, export.path,
+// export.browse, export.size, export.width, export.height, export.all, export.transparent, export.save,
+// export.cancel; export.overwrite.yes and .cancel.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "app/session/take_export.hpp"
@@ -16,9 +17,11 @@ enum class ExportKind { Animation, Picture, Video };
 
 struct ExportState {
   ExportKind kind = ExportKind::Animation;
-  int format = 0;            ///< of an animation: one of app::export_formats(), or behind them the figures
-  app::ExportChoice choice;  ///< of an animation, kept for the next one; its format is not used
-  std::string path;          ///< empty: one is proposed
+  int format = 0;             ///< of an animation: one of app::export_formats(), or behind them the figures
+  app::ExportChoice choice;   ///< of an animation, kept for the next one; its format is not used
+  bool all_takes = false;     ///< of the selected take's target, as clips of one file
+  std::set<size_t> left_out;  ///< of those
+  std::string path;           ///< empty: one is proposed
   int width = 1920, height = 1080;
   bool all = true;           ///< all views; false: the active one
   bool transparent = false;  ///< pictures

@@ -6,6 +6,7 @@
 
 #include "ui/panels/rig.hpp"
 #include "ui/panels/rows.hpp"
+#include "ui/widgets/lists.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -75,10 +76,47 @@ bool may_move(const app::SourceOptions& source) {
   return source.motion.empty() && std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
 }
 
-void draw_animation_fields(const app::SourceOptions& source, PanelContext& context) {
+/// By its name where that alone says which, else by its number.
+std::string word_for_clip(const std::vector<app::SourceClip>& clips, size_t i) {
+  const auto called = [&](const app::SourceClip& clip) { return clip.name == clips[i].name; };
+  const bool is_plain = !clips[i].name.empty() && clips[i].name != "longest" &&
+                        clips[i].name.find_first_not_of("0123456789") != std::string::npos;
+  return is_plain && std::count_if(clips.begin(), clips.end(), called) == 1 ? clips[i].name
+                                                                            : std::to_string(i + 1);
+}
+
+std::string clip_label(const std::vector<app::SourceClip>& clips, size_t i) {
+  return clips[i].name.empty() ? "animation " + std::to_string(i + 1) : clips[i].name;
+}
+
+/// The animations in the file, one of them chosen by a click.
+void draw_clips(const app::SourceState& source, PanelContext& context) {
+  constexpr size_t kSeen = 6;
+  Ui& ui = context.ui;
+  const auto& clips = source.clips;
+  if (clips.size() == 1)
+    return row_text(ui, "Animation", clip_label(clips, 0) + ", " + figure(clips[0].seconds, "s"));
+  const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+  const float height = clips.size() > kSeen ? line * (static_cast<float>(kSeen) + 1.5f) : 0;
+  Table table(ui, "source.clips",
+              {{grouped(static_cast<int64_t>(clips.size())) + " animations"}, {"Length", 64, true}}, height);
+  if (!table.open()) return;
+  for (size_t i = 0; i < clips.size(); ++i) {
+    const bool chosen = static_cast<int>(i) == source.clip;
+    if (table.row(chosen) && !chosen) context.ask("source.clip", {word_for_clip(clips, i)});
+    table.cell(clip_label(clips, i));
+    table.cell(figure(clips[i].seconds, "s"));
+  }
+}
+
+void draw_animation_fields(const app::SourceState& state, const app::SourceOptions& source,
+                           PanelContext& context) {
   Ui& ui = context.ui;
   const std::string clip = source.clip.empty() ? "longest" : source.clip;
-  if (const auto text = text_row(ui, {"source.clip", "Animation", "Its name or number, or longest"}, clip))
+  if (!state.clips.empty())
+    draw_clips(state, context);
+  else if (const auto text =
+               text_row(ui, {"source.clip", "Animation", "Its name or number, or longest"}, clip))
     context.ask("source.clip", {text->empty() ? "longest" : *text});
   if (const auto on = toggle_row(
           ui, {"source.as_scan", "As a scan", "Its surface is looked at, not its skeleton"}, source.as_scan))
@@ -91,7 +129,7 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
   const std::string fps = source.fps > 0 ? argument(source.fps) : "auto";
   if (const auto text = text_row(ui, {"source.fps", "Frames/s", "auto: as the file says, or 30"}, fps))
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
-  if (may_move(source)) draw_animation_fields(source, context);
+  if (may_move(source)) draw_animation_fields(session.source, source, context);
   draw_import(context, "source", source.import, {});
   if (const auto deg = typed_number_row(ui, {"source.yaw", "Turned by", "Degrees about the vertical"},
                                         source.import.yaw_deg, 1))
@@ -154,20 +192,35 @@ void draw_takes(const app::Session& session, PanelContext& context) {
     context.ask("target.remove", {std::to_string(session.selected_take)});
 }
 
+/// Where the shape binds it; who wants to know more colours the view by it.
+void draw_binding(const SafeBinding& binding, Ui& ui) {
+  if (binding.note.empty())
+    hint(ui, "Bound by the network everywhere.");
+  else
+    hint(ui, binding.note + ".");
+  ui.mark("target.binding");
+}
+
 void draw_target_facts(const app::TakeState& state, Ui& ui) {
   if (!state.problem.empty()) warn(ui, state.problem);
-  if (!state.target) {
-    if (state.problem.empty()) hint(ui, "Being prepared\u2026");
+  const auto& shown = state.target ? state.target : state.as_it_came;
+  if (!shown) {
+    if (state.problem.empty()) hint(ui, "Being read\u2026");
     return;
   }
-  const Mesh& mesh = state.target->mesh;
+  const Mesh& mesh = shown->mesh;
   row_text(ui, "Vertices", grouped(mesh.vertices.rows()));
   row_text(ui, "Faces", grouped(mesh.faces.rows()));
   if (mesh.vertices.rows() > 0) {
     const auto y = mesh.vertices.col(1);
     row_text(ui, "Height", figure(y.maxCoeff() - y.minCoeff(), "m"));
   }
+  if (!state.target) {
+    if (state.problem.empty()) hint(ui, "Its joints and skin weights are being found\u2026");
+    return;
+  }
   row_text(ui, "Joints", std::to_string(kJointCount) + " found in the T-pose");
+  if (state.binding) draw_binding(*state.binding, ui);
   for (const std::string& warning : state.target->warnings) warn(ui, warning);
 }
 

@@ -36,6 +36,7 @@ constexpr Colour kSourceColours[] = {{Colouring::Plain, "plain", "Plain"},
                                      {Colouring::Confidence, "confidence", "Confidence"}};
 constexpr Colour kTakeColours[] = {{Colouring::Plain, "plain", "Plain"},
                                    {Colouring::Weights, "weights", "Skin weights"},
+                                   {Colouring::Doubt, "doubt", "Binding doubt, %"},
                                    {Colouring::Offsets, "offsets", "Corrective offsets, mm"},
                                    {Colouring::Error, "error", "Error to the truth, mm"},
                                    {Colouring::Difference, "difference", "Difference to take 1, mm"}};

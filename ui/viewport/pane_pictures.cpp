@@ -80,10 +80,17 @@ std::optional<PanePictures> pictures_of(const Session& session, app::FrameCache&
   return out;
 }
 
+std::optional<std::shared_ptr<const TargetLook>> look_of_standing(const Session& session, TargetLooks& looks,
+                                                                  const PaneContent& pane) {
+  if (shows_rest(session, pane)) return looks.of(take_of(session, pane.takes[0])->target);
+  if (shows_as_it_came(session, pane)) return looks.plain_of(take_of(session, pane.takes[0])->as_it_came);
+  return std::nullopt;
+}
+
 const PanePictures& PictureKeeper::update(const Session& session, app::FrameCache& cache, TargetLooks& looks,
                                           const PaneContent& pane) {
   forget_others(session, pane);
-  if (show_rest(session, looks, pane)) return pictures_;
+  if (show_standing(session, looks, pane)) return pictures_;
   const int frame = pane_frame(session, pane);
   waiting_ = false;
   if (frame < 0) return pictures_ = {};
@@ -103,14 +110,16 @@ const PanePictures& PictureKeeper::update(const Session& session, app::FrameCach
   return pictures_;
 }
 
-bool PictureKeeper::show_rest(const Session& session, TargetLooks& looks, const PaneContent& pane) {
-  if (!shows_rest(session, pane)) return false;
+/// In T-pose, or as it came. What stood there before stays until that can be drawn.
+bool PictureKeeper::show_standing(const Session& session, TargetLooks& looks, const PaneContent& pane) {
+  const auto look = look_of_standing(session, looks, pane);
+  if (!look) return false;
   asked_.clear();
+  waiting_ = *look == nullptr || (!(*look)->shaded && shows_rest(session, pane));
+  if (*look == nullptr && pictures_.frame < 0) return true;
   pictures_ = {};
-  const auto look = looks.of(take_of(session, pane.takes[0])->target);
-  waiting_ = look == nullptr;
-  if (look != nullptr && session.view.take.surface)
-    pictures_.takes = {std::shared_ptr<const app::PosedPicture>(look, &look->rest)};
+  if (*look != nullptr && session.view.take.surface)
+    pictures_.takes = {std::shared_ptr<const app::PosedPicture>(*look, &(*look)->rest)};
   return true;
 }
 
@@ -118,7 +127,7 @@ bool PictureKeeper::show_rest(const Session& session, TargetLooks& looks, const 
 void PictureKeeper::forget_others(const Session& session, const PaneContent& pane) {
   std::vector<std::shared_ptr<const Target>> targets;
   for (const int k : pane.takes)
-    targets.push_back(take_of(session, k) != nullptr ? take_of(session, k)->target : nullptr);
+    targets.push_back(take_of(session, k) != nullptr ? shown_target(*take_of(session, k)) : nullptr);
   const bool same =
       source_ == session.document.source.path &&
       std::equal(targets.begin(), targets.end(), targets_.begin(), targets_.end(),

@@ -15,6 +15,12 @@ namespace understudy::ui {
 std::optional<PanePictures> pictures_of(const app::Session& session, app::FrameCache& cache,
                                         const PaneContent& pane, int frame);
 
+/// The look of a pane's first target where that stands in its T-pose, or as it came, instead of a frame; none
+/// where it does not.
+std::optional<std::shared_ptr<const TargetLook>> look_of_standing(const app::Session& session,
+                                                                  TargetLooks& looks,
+                                                                  const PaneContent& pane);
+
 /// One for each pane.
 class PictureKeeper {
  public:
@@ -25,7 +31,7 @@ class PictureKeeper {
   bool waiting() const { return waiting_; }
 
  private:
-  bool show_rest(const app::Session& session, TargetLooks& looks, const PaneContent& pane);
+  bool show_standing(const app::Session& session, TargetLooks& looks, const PaneContent& pane);
   void forget_others(const app::Session& session, const PaneContent& pane);
 
   PanePictures pictures_;

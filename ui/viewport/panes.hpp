@@ -38,6 +38,11 @@ int pane_frame(const app::Session& session, const PaneContent& pane);
 /// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited, and before
 /// there is a frame.
 bool shows_rest(const app::Session& session, const PaneContent& pane);
+/// Whether a pane shows the character of its take as it came: until it is bound.
+bool shows_as_it_came(const app::Session& session, const PaneContent& pane);
+/// What the surface of a take is drawn with: its target, or until that is there the character as it came;
+/// null before that.
+std::shared_ptr<const Target> shown_target(const app::TakeState& take);
 /// The joints of the pane's first person in a frame (extracted or performed); null where there are none.
 const Joints* pane_joints(const app::Session& session, const PaneContent& pane, int frame);
 

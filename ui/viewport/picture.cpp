@@ -98,13 +98,15 @@ Image PictureMaker::Impl::one(const Session& session, app::FrameCache& cache, co
                               const render::Camera& camera, const PictureOptions& options) {
   std::vector<std::shared_ptr<const TargetLook>> found;
   for (const int k : pane.takes) looks.of(session.takes[static_cast<size_t>(k)].target);
+  look_of_standing(session, looks, pane);
   looks.wait();
   for (const int k : pane.takes) found.push_back(looks.of(session.takes[static_cast<size_t>(k)].target));
   PanePictures pictures;
-  if (!shows_rest(session, pane))
+  const auto standing = look_of_standing(session, looks, pane);
+  if (!standing)
     pictures = awaited(session, cache, pane);
   else if (session.view.take.surface)
-    pictures.takes = {std::shared_ptr<const app::PosedPicture>(found[0], &found[0]->rest)};
+    pictures.takes = {std::shared_ptr<const app::PosedPicture>(*standing, &(*standing)->rest)};
   const ThemeKind theme = session.settings.dark ? ThemeKind::Dark : ThemeKind::Light;
   PaneScene made = build_scene({session, pane, pictures, found, {}, theme}, &colours);
   made.scene.background.transparent = options.transparent;

@@ -41,6 +41,8 @@ SharedPoints scale_colors(const SurfaceValues& surface) {
   if (surface.values == nullptr) return {};
   if (surface.legend.scale == Legend::Scale::Error)
     return render::error_colors(*surface.values, surface.legend.high);
+  if (surface.legend.scale == Legend::Scale::Doubt)
+    return render::diverging_colors(*surface.values, surface.legend.high);
   return render::viridis_colors(*surface.values, surface.legend.low, surface.legend.high);
 }
 
@@ -62,6 +64,7 @@ class Builder {
  private:
   void add_frame();
   void add_rest();
+  void add_as_it_came();
   void add_scan();
   void add_take(size_t i);
   struct Look {
@@ -96,6 +99,8 @@ PaneScene Builder::build() {
   out_.values_take = in_.pane.takes.empty() ? -1 : in_.pane.takes[0];
   if (shows_rest(session_, in_.pane))
     add_rest();
+  else if (shows_as_it_came(session_, in_.pane))
+    add_as_it_came();
   else
     add_frame();
   if (in_.preview.gizmo) out_.scene.gizmos.push_back(*in_.preview.gizmo);
@@ -117,6 +122,11 @@ void Builder::add_rest() {
     add_target_surface(0, in_.pictures.takes[0], {});
   render::SkeletonView view = render::skeleton_view(in_.preview.take_joints.value_or(take.target->joints));
   out_.scene.skeletons.push_back(std::move(view));
+}
+
+void Builder::add_as_it_came() {
+  if (!in_.pictures.takes.empty() && in_.pictures.takes[0] != nullptr)
+    add_target_surface(0, in_.pictures.takes[0], {});
 }
 
 void Builder::add_scan() {
@@ -163,17 +173,18 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
                                  const Look& how) {
   const int k = in_.pane.takes[i];
   const app::TakeState* take = take_of(session_, k);
-  if (take == nullptr || take->target == nullptr || posed->vertices.rows() == 0 ||
-      posed->vertices.rows() != take->target->mesh.vertices.rows())
+  const auto target = take != nullptr ? shown_target(*take) : nullptr;
+  if (target == nullptr || posed->vertices.rows() == 0 ||
+      posed->vertices.rows() != target->mesh.vertices.rows())
     return;
   const auto& look = i < in_.looks.size() ? in_.looks[i] : nullptr;
-  const Mesh& mesh = take->target->mesh;
+  const Mesh& mesh = target->mesh;
   SharedPoints colors;
   if (how.coloured) {
     const ColourMemory::Made& made = take_colors(k, posed);
     colors = made.colors;
     if (colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
-      colors = part_of(take->target, mesh.colors);
+      colors = part_of(target, mesh.colors);
     if (i == 0 || out_.legend.title.empty()) tell(made, k);
   }
   if (mesh.is_cloud()) {
@@ -185,7 +196,7 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
     return;
   }
   render::MeshView view;
-  view.vertices = part_of(posed, posed->vertices), view.faces = part_of(take->target, mesh.faces);
+  view.vertices = part_of(posed, posed->vertices), view.faces = part_of(target, mesh.faces);
   view.normals = part_of(posed, posed->normals);
   view.colors = colors, view.color = take_color(k), view.opacity = how.opacity;
   if (look != nullptr) view.ambient = look->ambient, view.two_sided = !look->closed;
@@ -288,8 +299,8 @@ void Builder::set_ground() {
   render::GroundView& ground = out_.scene.ground;
   ground.visible = layer(&app::Layers::ground);
   if (in_.theme == ThemeKind::Dark) ground.line = Vec3(0.42f, 0.45f, 0.50f), ground.shadow = 0.8f;
-  if (!shows_rest(session_, in_.pane)) return;
-  const Points& rest = take_of(session_, in_.pane.takes[0])->target->mesh.vertices;
+  if (!shows_rest(session_, in_.pane) && !shows_as_it_came(session_, in_.pane)) return;
+  const Points& rest = shown_target(*take_of(session_, in_.pane.takes[0]))->mesh.vertices;
   if (rest.rows() > 0) ground.height = rest.col(1).minCoeff();
 }
 
@@ -307,8 +318,8 @@ const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<cons
   const float frame = static_cast<float>(in_.pictures.frame);
   now.settings = {static_cast<float>(colouring), session_.view.error_scale_mm,
                   static_cast<float>(weights_joint(session_))};
-  if (colouring == Colouring::Weights) {  // the same in every frame
-    now.kept = {take.weights};
+  if (colouring == Colouring::Weights || colouring == Colouring::Doubt) {  // the same in every frame
+    now.kept = {take.weights, take.binding};
   } else if (colouring != Colouring::Plain) {
     now.kept = {posed, in_.pictures.reference, session_.truth};
     now.settings.push_back(frame);

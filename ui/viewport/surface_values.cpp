@@ -53,6 +53,17 @@ SurfaceValues weights(const Session& session, const app::TakeState& take) {
   return out;
 }
 
+SurfaceValues doubt(const app::TakeState& take, Eigen::Index vertices) {
+  const char* const title = "Binding doubt";
+  if (take.binding == nullptr || take.binding->doubt.size() != vertices)
+    return missing(title, "it keeps its own skin");
+  SurfaceValues out;
+  out.legend = scale(title, "%", 100);
+  out.legend.scale = Legend::Scale::Doubt;
+  out.values = std::make_shared<const Eigen::VectorXf>(100 * take.binding->doubt);
+  return out;
+}
+
 SurfaceValues error(const Session& session, const Points& vertices, int frame) {
   const char* const title = "Error";
   if (session.truth == nullptr) return missing(title, "no ground truth is open");
@@ -78,6 +89,8 @@ SurfaceValues confidence(const Session& session, const Points& points, const std
 }  // namespace
 
 Vec3 scale_color(Legend::Scale scale, float share) {
+  if (scale == Legend::Scale::Doubt)
+    return render::diverging_color(0.5f + 0.5f * share);  // from neutral to warm
   return scale == Legend::Scale::Error ? render::error_color(share) : render::viridis(share);
 }
 
@@ -93,7 +106,10 @@ int weights_joint(const Session& session) {
 SurfaceValues take_values(const Session& session, int k, const PanePictures& pictures, const Picture& posed) {
   if (posed == nullptr || static_cast<size_t>(k) >= session.takes.size()) return {};
   const app::TakeState& take = session.takes[static_cast<size_t>(k)];
-  switch (take_colouring(session)) {
+  const Colouring colouring = take_colouring(session);
+  if (take.target == nullptr && colouring != Colouring::Plain)
+    return missing("Colours", "the target is not bound yet");
+  switch (colouring) {
     case Colouring::Plain:
       return {};
     case Colouring::Weights:
@@ -101,6 +117,8 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
     case Colouring::Offsets:
       if (posed->offsets.rows() != posed->vertices.rows()) return missing("Offsets", "not ready yet");
       return millimetres(session, "Offsets", 1000 * posed->offsets.rowwise().norm());
+    case Colouring::Doubt:
+      return doubt(take, posed->vertices.rows());
     case Colouring::Error:
       return error(session, posed->vertices, pictures.frame);
     case Colouring::Difference:

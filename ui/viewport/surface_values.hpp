@@ -26,7 +26,7 @@ struct PanePictures {
 
 /// A scale, or categories, or nothing (plain).
 struct Legend {
-  enum class Scale { Viridis, Error };
+  enum class Scale { Viridis, Error, Doubt };
   std::string title;  ///< "Offsets"; empty: no legend
   std::string unit;   ///< "mm"
   float low = 0, high = 1;

@@ -14,16 +14,38 @@ namespace {
 
 constexpr size_t kKept = 8;  // targets; a document rarely shows more
 
-/// A target that cannot be shaded is drawn without.
-std::shared_ptr<const TargetLook> guarded_look(const Target& target) {
+using Look = std::shared_ptr<const TargetLook>;
+
+Look guarded_plain_look(const Target& target) {
   try {
-    return std::make_shared<const TargetLook>(look_of(target));
+    return std::make_shared<const TargetLook>(plain_look_of(target));
   } catch (const Error& error) {
     log::warn(std::string("the shading of a target: ") + error.what());
-    TargetLook plain;
-    plain.rest.vertices = target.mesh.vertices;
-    return std::make_shared<const TargetLook>(std::move(plain));
+    TargetLook bare;
+    bare.rest.vertices = target.mesh.vertices;
+    return std::make_shared<const TargetLook>(std::move(bare));
   }
+}
+
+void shade(TargetLook& look, const Target& target) {
+  look.shaded = true;
+  if (!target.mesh.is_cloud() && look.rest.normals.rows() > 0)
+    look.ambient = ambient_occlusion(target.mesh.vertices, target.mesh.faces, look.rest.normals);
+}
+
+/// A target that cannot be shaded is drawn without.
+Look guarded_shaded_look(const Look& plain, const Target& target) {
+  TargetLook look = *plain;
+  try {
+    shade(look, target);
+  } catch (const Error& error) {
+    log::warn(std::string("the shading of a target: ") + error.what());
+  }
+  return std::make_shared<const TargetLook>(std::move(look));
+}
+
+bool is_ready(const std::future<Look>& look) {
+  return look.valid() && look.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 }  // namespace
@@ -46,7 +68,7 @@ bool is_closed(const Faces& faces) {
   return !edges.empty();
 }
 
-TargetLook look_of(const Target& target) {
+TargetLook plain_look_of(const Target& target) {
   TargetLook look;
   look.rest.vertices = target.mesh.vertices;
   look.rest.offsets = Points::Zero(target.mesh.vertices.rows(), 3);
@@ -56,7 +78,12 @@ TargetLook look_of(const Target& target) {
   }
   look.rest.normals = vertex_normals(target.mesh.vertices, target.mesh.faces);
   look.closed = is_closed(target.mesh.faces);
-  look.ambient = ambient_occlusion(target.mesh.vertices, target.mesh.faces, look.rest.normals);
+  return look;
+}
+
+TargetLook look_of(const Target& target) {
+  TargetLook look = plain_look_of(target);
+  shade(look, target);
   return look;
 }
 
@@ -67,37 +94,71 @@ bool same_surface(const Target* a, const Target* b) {
          std::equal(f.data(), f.data() + f.size(), g.data());
 }
 
-std::shared_ptr<const TargetLook> TargetLooks::of(const std::shared_ptr<const Target>& target) {
-  if (target == nullptr) return nullptr;
-  auto found =
+TargetLooks::Entry& TargetLooks::entry_of(const std::shared_ptr<const Target>& target) {
+  const auto found =
       std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.target == target; });
-  if (found == entries_.end()) {
-    const auto alike = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) {
-      return e.look != nullptr && same_surface(e.target.get(), target.get()) &&
-             e.target->mesh.vertices == target->mesh.vertices;
-    });
-    const auto known = alike != entries_.end() ? alike->look : nullptr;
-    entries_.emplace_front();
-    found = entries_.begin();
-    found->target = target, found->look = known;
-    if (known == nullptr)
-      found->coming = std::async(std::launch::async, [target] { return guarded_look(*target); });
-    if (entries_.size() > kKept) entries_.pop_back();
-  } else {
+  if (found != entries_.end()) {
     entries_.splice(entries_.begin(), entries_, found);
+    return entries_.front();
   }
-  take_in(*found, false);
-  return found->look;
+  const auto alike = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) {
+    return e.look != nullptr && same_surface(e.target.get(), target.get()) &&
+           e.target->mesh.vertices == target->mesh.vertices;
+  });
+  Entry entry;
+  entry.target = target;
+  if (alike != entries_.end()) entry.look = alike->look;
+  entries_.push_front(std::move(entry));
+  if (entries_.size() > kKept) entries_.pop_back();
+  return entries_.front();
+}
+
+Look TargetLooks::of(const std::shared_ptr<const Target>& target) {
+  if (target == nullptr) return nullptr;
+  Entry& entry = entry_of(target);
+  take_in(entry, false);
+  const bool shaded = entry.look != nullptr && entry.look->shaded;
+  if (shaded || entry.shaded.valid()) return entry.look;
+  if (entry.look != nullptr) {
+    entry.shaded = std::async(std::launch::async,
+                              [target, plain = entry.look] { return guarded_shaded_look(plain, *target); });
+    return entry.look;
+  }
+  std::promise<Look> early;
+  entry.plain = early.get_future();
+  entry.shaded = std::async(std::launch::async, [target, early = std::move(early)]() mutable {
+    const Look plain = guarded_plain_look(*target);
+    early.set_value(plain);
+    return guarded_shaded_look(plain, *target);
+  });
+  return nullptr;
+}
+
+Look TargetLooks::plain_of(const std::shared_ptr<const Target>& target) {
+  if (target == nullptr) return nullptr;
+  Entry& entry = entry_of(target);
+  take_in(entry, false);
+  if (entry.look == nullptr && !entry.plain.valid())
+    entry.plain = std::async(std::launch::async, [target] { return guarded_plain_look(*target); });
+  return entry.look;
 }
 
 void TargetLooks::wait() {
   for (Entry& entry : entries_) take_in(entry, true);
 }
 
+int64_t TargetLooks::arrived() const {
+  int64_t count = taken_in_;
+  for (const Entry& entry : entries_) count += is_ready(entry.plain) + is_ready(entry.shaded);
+  return count;
+}
+
 void TargetLooks::take_in(Entry& entry, bool wait) {
-  if (!entry.coming.valid()) return;
-  if (!wait && entry.coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  entry.look = entry.coming.get();
+  for (std::future<Look>* coming : {&entry.plain, &entry.shaded}) {
+    if (!coming->valid() || (!wait && !is_ready(*coming))) continue;
+    entry.look = coming->get();
+    ++taken_in_;
+  }
 }
 
 }  // namespace understudy::ui

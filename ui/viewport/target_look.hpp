@@ -15,10 +15,13 @@ struct TargetLook {
   bool closed = false;           ///< its inside is never seen
   float spacing = 0;             ///< of a cloud's points, metres
   app::PosedPicture rest;        ///< the T-pose as a picture
+  bool shaded = false;           ///< `ambient` was asked for, too
 };
 
 /// Whether every edge has a face on either side, so that the inside cannot be seen.
 bool is_closed(const Faces& faces);
+/// All but `ambient`, within some hundredths of a second.
+TargetLook plain_look_of(const Target& target);
 /// All of it; takes about a quarter of a second for 13,000 vertices.
 TargetLook look_of(const Target& target);
 
@@ -28,19 +31,27 @@ bool same_surface(const Target* a, const Target* b);
 /// The looks of the targets shown, each made on a thread of its own. Use from one thread.
 class TargetLooks {
  public:
-  /// Null while it is being made. A target of which only the joints are others has the look that it had.
+  /// Null at first, then the plain one, then all of it. A target of which only the joints are others has the
+  /// look that it had.
   std::shared_ptr<const TargetLook> of(const std::shared_ptr<const Target>& target);
+  /// The same of what is shown for a moment only: it stays plain.
+  std::shared_ptr<const TargetLook> plain_of(const std::shared_ptr<const Target>& target);
   /// Waits for all that were asked for.
   void wait();
+  /// Grows with every look that has come: then there is something new to draw.
+  int64_t arrived() const;
 
  private:
+  using Look = std::shared_ptr<const TargetLook>;
   struct Entry {
     std::shared_ptr<const Target> target;
-    std::shared_ptr<const TargetLook> look;
-    std::future<std::shared_ptr<const TargetLook>> coming;
+    Look look;
+    std::future<Look> plain, shaded;  // still coming
   };
-  static void take_in(Entry& entry, bool wait);
+  Entry& entry_of(const std::shared_ptr<const Target>& target);
+  void take_in(Entry& entry, bool wait);
   std::list<Entry> entries_;  // the last asked for first
+  int64_t taken_in_ = 0;
 };
 
 }  // namespace understudy::ui

@@ -26,6 +26,10 @@ class Views {
 
   /// Whether something that should be seen is still being made, or was drawn quickly only: draw again soon.
   bool waiting() const;
+  /// Whether the surface of this take was in the frame drawn last, as it came, in T-pose or performing.
+  bool shows_take(int k) const;
+  /// Grows when the background has made something to be drawn that the session knows nothing of.
+  int64_t arrived() const;
   /// Pictures of panes drawn since the start; for tests and figures.
   int64_t drawn() const;
 
