@@ -19,7 +19,8 @@ const Reach& reach_of(LeafKind kind) {
   static const std::array<Reach, kLeafKinds> reaches = {{{Vec3(0.085f, 0, 0), 0.18f},
                                                          {Vec3(0, 0.11f, 0.03f), 0.23f},
                                                          {Vec3(0, -0.035f, 0.07f), 0.20f},
-                                                         {Vec3(0, 0, 0), 0.28f}}};
+                                                         {Vec3(0, 0, 0), 0.28f},
+                                                         {Vec3(0, 0, 0), 0.30f}}};
   return reaches[static_cast<size_t>(kind)];
 }
 
@@ -52,6 +53,16 @@ Mat3 from_leaf(const Mat3& local, const Extraction& seen, const Leaf& leaf) {
   return frame_of(seen, leaf) * (leaf.mirrored ? mirrored(local) : local);
 }
 
+Vec3 way_into_leaf(const Vec3& world, const Extraction& seen, const Leaf& leaf) {
+  const Vec3 local = frame_of(seen, leaf).transpose() * world / leg_length(seen.joints);
+  return leaf.mirrored ? Vec3(-local.x(), local.y(), local.z()) : local;
+}
+
+Vec3 way_from_leaf(const Vec3& local, const Extraction& seen, const Leaf& leaf) {
+  const Vec3 side(leaf.mirrored ? -1.0f : 1.0f, 1, 1);
+  return frame_of(seen, leaf) * local.cwiseProduct(side) * leg_length(seen.joints);
+}
+
 std::optional<LeafCrop> cut_leaf(const Points& scan, const Extraction& seen, const Leaf& leaf,
                                  uint32_t first) {
   const float size = leg_length(seen.joints);
@@ -75,7 +86,10 @@ std::optional<LeafCrop> cut_leaf(const Points& scan, const Extraction& seen, con
   crop.context.head<3>() = bone.cwiseProduct(side);
   crop.context.segment<6>(3) =
       rotation_to_6d(into_leaf((*seen.global)[static_cast<size_t>(parent)], seen, leaf));
-  crop.context[9] = std::min(1.0f, static_cast<float>(count) / kLeafPoints);
+  const int second = leaf.corrects[1] < 0 ? leaf.joint : leaf.corrects[1];
+  crop.context.segment<3>(9) =
+      way_into_leaf((seen.joints.row(second) - seen.joints.row(leaf.joint)).transpose(), seen, leaf);
+  crop.context[12] = std::min(1.0f, static_cast<float>(count) / kLeafPoints);
   return crop;
 }
 

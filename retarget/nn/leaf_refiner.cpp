@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kRounds = 2;  // the second crop lies better than the first
 
+constexpr float kHalfConfidence = 0.06f;  // metres
 constexpr int kSurfacePoints = 8192;
 constexpr uint64_t kSurfaceSeed = 20240319;
 
@@ -33,12 +34,15 @@ class NetworkLeafRefiner final : public LeafRefiner {
     const Points points = dense_points(scan);
     // From the trunk outwards: a hand is looked at beside the forearm as it is known by then.
     for (int round = 0; round < kRounds; ++round)
-      for (const LeafKind kind : {LeafKind::Arm, LeafKind::Hand, LeafKind::Head, LeafKind::Foot})
+      for (const LeafKind kind :
+           {LeafKind::Arm, LeafKind::Hand, LeafKind::Head, LeafKind::Leg, LeafKind::Foot})
         refine_kind(points, kind, seen);
   }
 
  private:
   void refine_kind(const Points& points, LeafKind kind, Extraction& seen);
+  static void correct(int slot, const Leaf& leaf, const float* said, const Extraction& before,
+                      Extraction& seen);
 
   LeafRefinerNet net_;
 };
@@ -58,16 +62,30 @@ void NetworkLeafRefiner::refine_kind(const Points& points, LeafKind kind, Extrac
   const auto said = net_->of(kind)->forward(torch::stack(crops), torch::stack(contexts)).contiguous();
   const Extraction before = seen;
   for (size_t i = 0; i < leaves.size(); ++i)
-    for (size_t k = 0; k < kLeafTurns; ++k) {
-      const int joint = leaves[i]->corrects[k];
-      if (joint < 0) continue;
-      const float* six = said.data_ptr<float>() + (i * kLeafTurns + k) * 6;
-      const Mat3 local = rotation_from_6d(Eigen::Map<const Vec6>(six));
-      (*seen.global)[static_cast<size_t>(joint)] = from_leaf(local, before, *leaves[i]);
-    }
+    for (int k = 0; k < kLeafJoints; ++k)
+      correct(k, *leaves[i],
+              said.data_ptr<float>() + (i * kLeafJoints + static_cast<size_t>(k)) * kLeafNumbers, before,
+              seen);
+}
+
+void NetworkLeafRefiner::correct(int slot, const Leaf& leaf, const float* said, const Extraction& before,
+                                 Extraction& seen) {
+  const int joint = leaf.corrects[static_cast<size_t>(slot)];
+  if (joint < 0) return;
+  const Mat3 local = rotation_from_6d(Eigen::Map<const Vec6>(said));
+  (*seen.global)[static_cast<size_t>(joint)] = from_leaf(local, before, leaf);
+  if (slot >= leaf.moves) return;
+  const Vec3 way = way_from_leaf(Eigen::Map<const Vec3>(said + 6), before, leaf);
+  seen.joints.row(joint) = before.joints.row(joint) + way.transpose();
+  seen.confidence[joint] = confidence_for(std::exp(said[9]) * leg_length(before.joints));
 }
 
 }  // namespace
+
+float confidence_for(float expected_error_m) {
+  const float expected = expected_error_m / kHalfConfidence;
+  return 1 / (1 + expected * expected);
+}
 
 std::unique_ptr<LeafRefiner> load_leaf_refiner(const std::string& path) {
   return std::make_unique<NetworkLeafRefiner>(path);

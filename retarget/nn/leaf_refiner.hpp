@@ -1,4 +1,4 @@
-// Rotations of arms, hands, head and feet, seen again from near: the whole body's 1,024 points leave them
+// Joints and rotations of limbs and head, seen again from near: the whole body's 1,024 points leave a hand
 // some twenty.
 #pragma once
 
@@ -10,11 +10,13 @@
 
 namespace understudy::nn {
 
+/// Confidence, 0..1, of a joint that is expected to be off by so many metres: one half at 0.06.
+float confidence_for(float expected_error_m);
+
 class LeafRefiner {
  public:
   virtual ~LeafRefiner() = default;
-  /// Corrects seen.global of shoulders, elbows, wrists, neck, head, ankles and feet where the scan has points
-  /// there.
+  /// Corrects rotations, places and confidences of limbs, neck and head where the scan has points there.
   virtual void refine(const Mesh& scan, Extraction& seen) = 0;
 };
 

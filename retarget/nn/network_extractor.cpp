@@ -15,8 +15,6 @@ namespace {
 
 // Which of a scan's points are looked at: always the same ones, so that the same scan gives the same joints.
 constexpr uint64_t kThinningSeed = 20240318;
-constexpr float kHalfConfidence =
-    0.06f;  // metres: an expected error of this much is a confidence of one half
 
 class NetworkExtractor : public SkeletonExtractor {
  public:
@@ -60,8 +58,7 @@ Extraction NetworkExtractor::to_world(const ExtractorOutput& out, const ScanPatc
   if (!out.rotations.defined()) return extraction;
   const auto spread = torch::exp(out.log_spread).contiguous();
   for (int j = 0; j < kJointCount; ++j) {
-    const float expected = spread.data_ptr<float>()[j] * patches.scale / kHalfConfidence;
-    extraction.confidence[j] = 1 / (1 + expected * expected);
+    extraction.confidence[j] = confidence_for(spread.data_ptr<float>()[j] * patches.scale);
   }
   const auto rotations = out.rotations.contiguous();
   extraction.global.emplace();

@@ -10,9 +10,11 @@ namespace {
 
 constexpr float kRadians = kPi / 180;
 
+using Told = Eigen::Matrix<float, 9, 1>;
+
 struct Crops {
   std::vector<nn::LeafCrop> crops;
-  std::vector<std::array<Vec6, nn::kLeafTurns>> truth, before;
+  std::vector<std::array<Told, nn::kLeafJoints>> truth, before;
 };
 
 ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
@@ -22,11 +24,17 @@ ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
   return ScanMaker(data, options, seed);
 }
 
-torch::Tensor tensor_of(const std::vector<std::array<Vec6, nn::kLeafTurns>>& rows) {
-  auto tensor = torch::empty({static_cast<int64_t>(rows.size()), nn::kLeafTurns, 6});
+Told told(const Mat3& rotation, const Vec3& way, const Extraction& seen, const nn::Leaf& leaf) {
+  Told result;
+  result << rotation_to_6d(nn::into_leaf(rotation, seen, leaf)), nn::way_into_leaf(way, seen, leaf);
+  return result;
+}
+
+torch::Tensor tensor_of(const std::vector<std::array<Told, nn::kLeafJoints>>& rows) {
+  auto tensor = torch::empty({static_cast<int64_t>(rows.size()), nn::kLeafJoints, 9});
   float* out = tensor.data_ptr<float>();
   for (const auto& row : rows)
-    for (const Vec6& six : row) out = std::copy(six.data(), six.data() + 6, out);
+    for (const Told& one : row) out = std::copy(one.data(), one.data() + one.size(), out);
   return tensor;
 }
 
@@ -56,12 +64,15 @@ Extraction LeafSampler::pretend(const PosedSkeleton& truth) {
     const Vec3 axis = Vec3(rng_.normal(), rng_.normal(), rng_.normal()).normalized();
     return rotation_from_axis_angle(degrees * kRadians * std::abs(rng_.normal()) * axis);
   };
-  const float spread = rng_.chance(0.2f) ? 0.03f : rng_.uniform(0.004f, 0.015f);
+  const float spread = rng_.chance(0.2f) ? 0.025f : rng_.uniform(0.003f, 0.014f);
   seen.global.emplace();
+  Joints error = Joints::Zero();
   for (size_t j = 0; j < kJointCount; ++j) {
-    for (int axis = 0; axis < 3; ++axis)
-      seen.joints(static_cast<Eigen::Index>(j), axis) =
-          truth.joints(static_cast<Eigen::Index>(j), axis) + spread * rng_.normal();
+    const auto row = static_cast<Eigen::Index>(j);
+    if (kParents[j] >= 0)
+      error.row(row) = 0.5f * error.row(kParents[j]);  // limbs are misplaced as a whole, too
+    for (int axis = 0; axis < 3; ++axis) error(row, axis) += spread * rng_.normal();
+    seen.joints.row(row) = truth.joints.row(row) + error.row(row);
     const int p = kParents[j];
     const Eigen::Quaternionf own(truth.global[j]);
     // What the limb suggests of the leaf on it: no bend.
@@ -81,21 +92,27 @@ LeafBatches LeafSampler::next(int scans) {
       const auto crop = nn::cut_leaf(scan.points, seen, leaf);
       if (!crop) continue;
       Crops& to = made[static_cast<size_t>(leaf.kind)];
-      std::array<Vec6, nn::kLeafTurns> truth, before;
-      truth.fill(rotation_to_6d(Mat3::Identity()));
+      std::array<Told, nn::kLeafJoints> truth, before;
+      Told none = Told::Zero();
+      none[0] = none[4] = 1;
+      truth.fill(none);
       before = truth;
-      for (size_t k = 0; k < nn::kLeafTurns; ++k) {
+      for (size_t k = 0; k < nn::kLeafJoints; ++k) {
         if (leaf.corrects[k] < 0) continue;
         const auto j = static_cast<size_t>(leaf.corrects[k]);
-        truth[k] = rotation_to_6d(nn::into_leaf(scan.truth.global[j], seen, leaf));
-        before[k] = rotation_to_6d(nn::into_leaf((*seen.global)[j], seen, leaf));
+        const Vec3 way =
+            (scan.truth.joints.row(leaf.corrects[k]) - seen.joints.row(leaf.corrects[k])).transpose();
+        truth[k] = told(scan.truth.global[j], way, seen, leaf);
+        before[k] = told((*seen.global)[j], Vec3::Zero(), seen, leaf);
       }
       to.crops.push_back(*crop);
       to.truth.push_back(truth);
       to.before.push_back(before);
     }
   }
-  return {batch_of(made[0]), batch_of(made[1]), batch_of(made[2]), batch_of(made[3])};
+  LeafBatches batches;
+  for (size_t kind = 0; kind < made.size(); ++kind) batches[kind] = batch_of(made[kind]);
+  return batches;
 }
 
 }  // namespace understudy::training

@@ -1,4 +1,4 @@
-// Crops of hands, heads and feet with their true rotations.
+// Crops of arms, legs, hands, heads and feet with what is true of them.
 #pragma once
 
 #include <torch/torch.h>
@@ -14,8 +14,9 @@ namespace understudy::training {
 struct LeafBatch {
   torch::Tensor points;   ///< [B, kLeafPoints, 3]
   torch::Tensor context;  ///< [B, kLeafContext]
-  torch::Tensor truth;    ///< [B, kLeafTurns, 6] in the crops' frames; what a kind lacks is the identity
-  torch::Tensor before;   ///< [B, kLeafTurns, 6] what would be said without looking
+  torch::Tensor
+      truth;  ///< [B, kLeafJoints, 9] rotation and way as LeafNet tells them; what a kind lacks: none
+  torch::Tensor before;  ///< [B, kLeafJoints, 9] what would be said without looking
 };
 using LeafBatches = std::array<LeafBatch, nn::kLeafKinds>;
 

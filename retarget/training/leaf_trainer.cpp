@@ -21,19 +21,42 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kLearningRate = 1e-3;
-constexpr int kWarmUpSteps = 200, kScansAStep = 24, kDevScans = 300;
+constexpr int kWarmUpSteps = 200, kScansAStep = 24, kDevScans = 120;
 constexpr double kAverageDecay = 0.998, kSecondsPerCheckpoint = 120, kSecondsPerReport = 120;
 
-/// Mean angle in degrees between rotations in 6D form, [B, K, 6] each, of the first.
+/// Mean angle in degrees between the rotations of what is told of the first joints.
 double mean_angle(const torch::Tensor& said, const torch::Tensor& truth) {
   const auto a = said.contiguous(), b = truth.contiguous();
   double sum = 0;
   for (int64_t i = 0; i < a.size(0); ++i) {
-    const int64_t at = i * nn::kLeafTurns * 6;
-    sum += geodesic_angle(rotation_from_6d(Eigen::Map<const Vec6>(a.data_ptr<float>() + at)),
-                          rotation_from_6d(Eigen::Map<const Vec6>(b.data_ptr<float>() + at)));
+    const float *one = a.data_ptr<float>() + i * a.stride(0), *other = b.data_ptr<float>() + i * b.stride(0);
+    sum += geodesic_angle(rotation_from_6d(Eigen::Map<const Vec6>(one)),
+                          rotation_from_6d(Eigen::Map<const Vec6>(other)));
   }
   return sum / static_cast<double>(std::max<int64_t>(1, a.size(0))) * 180 / kPi;
+}
+
+/// How far the places are off, [B, K], in leg lengths.
+torch::Tensor distances(const torch::Tensor& said, const torch::Tensor& truth) {
+  return (said.narrow(2, 6, 3) - truth.narrow(2, 6, 3)).square().sum(2).add(1e-8).sqrt();
+}
+
+torch::Tensor leaf_loss(const torch::Tensor& said, const torch::Tensor& truth) {
+  const auto turn = (said.narrow(2, 0, 6) - truth.narrow(2, 0, 6)).abs().mean();
+  const auto away = distances(said, truth);
+  const auto log_spread = said.select(2, 9);
+  const auto spread = (away.detach() * torch::exp(-log_spread) + log_spread).mean();
+  return turn + 5 * away.mean() + 0.01 * spread;
+}
+
+/// Of every kind, before and after looking: degrees of its first joint, how far off its two joints, leg
+/// lengths.
+std::string curve_header() {
+  std::string header = "minutes,step,samples,rate,loss";
+  for (const char* kind : {"hand", "head", "foot", "arm", "leg"})
+    for (const char* what : {"deg", "first", "second"})
+      header += detail::join(",", kind, "_", what, "_before,", kind, "_", what);
+  return header;
 }
 
 class LeafTrainer {
@@ -141,7 +164,7 @@ void LeafTrainer::train_step(const LeafBatches& batches) {
     const LeafBatch& batch = batches[static_cast<size_t>(kind)];
     if (batch.points.size(0) == 0) continue;
     const auto said = net_->of(static_cast<nn::LeafKind>(kind))->forward(batch.points, batch.context);
-    loss = loss + (said - batch.truth).abs().mean();
+    loss = loss + leaf_loss(said, batch.truth);
   }
   loss.backward();
   for (auto& group : optimizer_->param_groups())
@@ -162,29 +185,30 @@ void LeafTrainer::train_step(const LeafBatches& batches) {
 
 void LeafTrainer::report() {
   const torch::NoGradGuard no_grad;
-  std::array<double, nn::kLeafKinds> dev, before;
+  std::string row;
+  char number[64];
   for (size_t kind = 0; kind < nn::kLeafKinds; ++kind) {
     const LeafBatch& batch = dev_batches_[kind];
-    before[kind] = mean_angle(batch.before, batch.truth);
-    dev[kind] = mean_angle(
-        average_->of(static_cast<nn::LeafKind>(kind))->forward(batch.points, batch.context), batch.truth);
+    const auto said = average_->of(static_cast<nn::LeafKind>(kind))->forward(batch.points, batch.context);
+    const auto now = distances(said, batch.truth).mean(0), was = distances(batch.before, batch.truth).mean(0);
+    std::snprintf(number, sizeof number, ",%.2f,%.2f", mean_angle(batch.before, batch.truth),
+                  mean_angle(said, batch.truth));
+    row += number;
+    for (int64_t k = 0; k < nn::kLeafJoints; ++k) {
+      std::snprintf(number, sizeof number, ",%.4f,%.4f", was[k].item<double>(), now[k].item<double>());
+      row += number;
+    }
   }
-  char line[240];
-  std::snprintf(line, sizeof line, "%.1f,%lld,%lld,%.6f,%.4f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f",
-                seconds_ / 60, static_cast<long long>(step_), static_cast<long long>(samples_),
-                learning_rate(), loss_sum_ / std::max(1, loss_count_), dev[0], dev[1], dev[2], dev[3],
-                before[0], before[1], before[2], before[3]);
+  char line[120];
+  std::snprintf(line, sizeof line, "%.1f,%lld,%lld,%.6f,%.4f", seconds_ / 60, static_cast<long long>(step_),
+                static_cast<long long>(samples_), learning_rate(), loss_sum_ / std::max(1, loss_count_));
   loss_sum_ = loss_count_ = 0;
   const std::string curve = options_.curve.empty() ? options_.out + ".csv" : options_.curve;
   const bool fresh = !fs::exists(curve);
   std::ofstream out(curve, std::ios::app);
-  if (fresh)
-    out << "minutes,step,samples,rate,loss,dev_hand_deg,dev_head_deg,dev_foot_deg,dev_arm_deg,before_hand_"
-           "deg,before_"
-           "head_"
-           "deg,before_foot_deg,before_arm_deg\n";
-  out << line << "\n";
-  log::info(std::string("leaf ") + line);
+  if (fresh) out << curve_header() << "\n";
+  out << line << row << "\n";
+  log::info(std::string("leaf ") + line + row);
 }
 
 int LeafTrainer::run() {

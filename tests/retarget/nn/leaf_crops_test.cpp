@@ -7,8 +7,8 @@
 namespace understudy::nn {
 namespace {
 
-constexpr const Leaf& kLeftHand = kLeaves[2];
-constexpr const Leaf& kRightHand = kLeaves[3];
+constexpr const Leaf& kLeftHand = kLeaves[4];
+constexpr const Leaf& kRightHand = kLeaves[5];
 
 /// A dancer with a cloud about every joint.
 struct Scene {
@@ -79,6 +79,19 @@ TEST(LeafCrops, TurnsGoInAndComeBack) {
     EXPECT_LT((from_leaf(into_leaf(world, s.seen, leaf), s.seen, leaf) - world).norm(), 1e-5f);
     const Mat3& own = (*s.seen.global)[static_cast<size_t>(leaf.joint)];
     EXPECT_LT((into_leaf(own, s.seen, leaf) - Mat3::Identity()).norm(), 1e-5f);
+  }
+}
+
+TEST(LeafCrops, WaysGoInAndComeBackAndRightOnesAreMirrored) {
+  const Scene s = scene(2);
+  const Vec3 world(0.03f, -0.02f, 0.05f);
+  for (const Leaf& leaf : kLeaves)
+    EXPECT_LT((way_from_leaf(way_into_leaf(world, s.seen, leaf), s.seen, leaf) - world).norm(), 1e-6f);
+  // Along the frame's own x axis: a left one's way is +x, a right one's -x, in leg lengths.
+  for (const Leaf& leaf : {kLeftHand, kRightHand}) {
+    const Vec3 x = (*s.seen.global)[static_cast<size_t>(leaf.joint)].col(0);
+    const Vec3 way = way_into_leaf(leg_length(s.seen.joints) * x, s.seen, leaf);
+    EXPECT_LT((way - Vec3(leaf.mirrored ? -1.0f : 1.0f, 0, 0)).norm(), 1e-5f);
   }
 }
 

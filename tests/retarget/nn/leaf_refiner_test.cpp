@@ -42,16 +42,24 @@ class LeafRefinerFile : public testing::Test {
   Mesh scan_;
 };
 
-TEST_F(LeafRefinerFile, TurnsArmsHandsHeadAndFeetAndNothingElse) {
+TEST_F(LeafRefinerFile, CorrectsLimbsAndHeadAndNothingElse) {
   Extraction refined = seen_;
   load_leaf_refiner(path_)->refine(scan_, refined);
-  std::array<bool, kJointCount> told{};
+  std::array<bool, kJointCount> told{}, moved{};
   for (const Leaf& leaf : kLeaves)
-    for (const int j : leaf.corrects)
-      if (j >= 0) told[static_cast<size_t>(j)] = true;
-  for (size_t j = 0; j < kJointCount; ++j)
+    for (int k = 0; k < kLeafJoints; ++k) {
+      const int j = leaf.corrects[static_cast<size_t>(k)];
+      if (j < 0) continue;
+      told[static_cast<size_t>(j)] = true;
+      moved[static_cast<size_t>(j)] = k < leaf.moves;
+    }
+  for (size_t j = 0; j < kJointCount; ++j) {
+    const auto row = static_cast<Eigen::Index>(j);
     EXPECT_EQ((*refined.global)[j] != (*seen_.global)[j], told[j]) << j;
-  EXPECT_EQ(refined.joints, seen_.joints);
+    EXPECT_EQ(refined.joints.row(row) != seen_.joints.row(row), moved[j]) << j;
+    EXPECT_EQ(refined.confidence[row] != seen_.confidence[row], moved[j]) << j;
+  }
+  EXPECT_TRUE((refined.confidence > 0 && refined.confidence < 1.001f).all());
   for (const Mat3& R : *refined.global) EXPECT_LT((R * R.transpose() - Mat3::Identity()).norm(), 1e-4f);
 }
 
@@ -66,6 +74,7 @@ TEST_F(LeafRefinerFile, LeavesWhatNoPointShows) {
   scan_.vertices.rowwise() += Vec3(10, 0, 0).transpose();
   load_leaf_refiner(path_)->refine(scan_, seen_);
   for (size_t j = 0; j < kJointCount; ++j) EXPECT_EQ((*seen_.global)[j], (*before.global)[j]);
+  EXPECT_EQ(seen_.joints, before.joints);
 }
 
 }  // namespace

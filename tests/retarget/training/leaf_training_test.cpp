@@ -36,7 +36,7 @@ class LeafTraining : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(LeafTraining, CropsComeWithRotationsInTheirFrame) {
+TEST_F(LeafTraining, CropsComeWithRotationsAndWaysInTheirFrame) {
   const TrainingData data = load_training_data(folder_.string(), Split::Train);
   LeafSampler a(data, 7), b(data, 7);
   const LeafBatches batches = a.next(6), again = b.next(6);
@@ -50,7 +50,9 @@ TEST_F(LeafTraining, CropsComeWithRotationsInTheirFrame) {
     // Columns of a rotation have length 1.
     EXPECT_NEAR(batch.truth.narrow(2, 0, 3).square().sum(2).min().item<double>(), 1, 1e-4);
     // The frame is the first corrected joint's own: what was seen of it is no turn.
-    const auto none = torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f});
+    const auto none = torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f});
+    EXPECT_GT(batch.truth.narrow(2, 6, 3).abs().max().item<double>(), 1e-4);  // joints were misplaced
+    EXPECT_LT(batch.truth.narrow(2, 6, 3).abs().max().item<double>(), 0.4);
     EXPECT_LT((batch.before.select(1, 0) - none).abs().max().item<double>(), 1e-4);
   }
   EXPECT_GT(crops, 0);
