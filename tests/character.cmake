@@ -12,4 +12,4 @@ us_test(export_command_test SOURCES
 add_dependencies(export_command_test understudy_all)
 
 us_test(vertex_colors_test SOURCES tests/retarget/character/vertex_colors_test.cpp
-  LIBS understudy_character LABELS fast)
+  LIBS understudy_character PkgConfig::LIBWEBP LABELS fast)

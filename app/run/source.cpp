@@ -286,7 +286,6 @@ std::unique_ptr<Source> open_source(const SourceOptions& options) {
     return std::make_unique<PerformingBody>(options, read_amass_motion(options.motion));
   std::optional<Character> moving = read_motion(options.path);
   if (!moving) return std::make_unique<ScanFiles>(options);
-  moving->name = options.path;  // by which complaints call it
   return options.as_scan ? as_scan(std::move(*moving), options) : as_skeleton(*moving, options);
 }
 

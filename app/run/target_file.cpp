@@ -31,6 +31,17 @@ CharacterOptions character_options(const TargetOptions& options) {
   return result;
 }
 
+/// What cannot be done with a character is said of its file.
+template <class Work>
+auto said_of(const std::string& path, Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    throw Error(what.find(path) != what.npos ? what : path + ": " + what);
+  }
+}
+
 }  // namespace
 
 Character read_target(const std::string& path, const std::vector<float>& betas) {
@@ -40,6 +51,7 @@ Character read_target(const std::string& path, const std::vector<float>& betas) 
       const ShapedBody person = read_smpl_body(path).shaped(as_vector(betas));
       return character_of_mesh({person.vertices, person.faces}, std::filesystem::path(path).stem().string());
     }
+    US_CHECK(!npz.count("poses"), path, ": is a motion, not a character");
   }
   US_CHECK(betas.empty(), path, ": only an SMPL-format body takes --betas");
   return read_character(path);
@@ -50,8 +62,8 @@ std::shared_ptr<PreparedCharacter> stand_target(const TargetOptions& options) {
            "a rig is auto, theirs or ours, not '", options.rig, "'");
   Character character = read_target(options.path, options.betas);
   US_CHECK(character.vertex_count() > 0, options.path, ": holds no mesh");
-  auto standing =
-      std::make_shared<PreparedCharacter>(stand_character(std::move(character), character_options(options)));
+  auto standing = std::make_shared<PreparedCharacter>(said_of(
+      options.path, [&] { return stand_character(std::move(character), character_options(options)); }));
   US_CHECK(options.rig != "theirs" || standing->rigged, options.path,
            ": has no skeleton of its own that can be driven, ", standing->map.count(),
            " of 22 joints have a bone");
@@ -60,8 +72,10 @@ std::shared_ptr<PreparedCharacter> stand_target(const TargetOptions& options) {
 
 std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> character,
                                                      const TargetOptions& options, const Networks& networks) {
-  find_t_pose(*character, networks.extractor.get(), networks.rest_extractor.get(),
-              character_options(options));
+  said_of(options.path, [&] {
+    find_t_pose(*character, networks.extractor.get(), networks.rest_extractor.get(),
+                character_options(options));
+  });
   for (const std::string& note : character->notes) log::info(options.path + ": " + note);
   if (character->rigged)
     log::info(options.path + ": " + std::to_string(character->map.count()) + " of 22 joints are mapped " +

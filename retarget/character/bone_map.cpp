@@ -307,14 +307,15 @@ std::string family_of(const Character& character) {
 void apply_choices(const Rig& rig, const BoneChoices& choices, BoneMap& map) {
   for (const auto& [joint, bone] : choices) {
     const auto at = std::find(kJointNames.begin(), kJointNames.end(), joint);
-    US_CHECK(at != kJointNames.end(), "the map names a joint '", excerpt(joint), "', which does not exist");
+    US_CHECK(at != kJointNames.end(), rig.character.called(), ": the map names a joint '", excerpt(joint),
+             "', which does not exist");
     const auto j = static_cast<size_t>(at - kJointNames.begin());
     map.node[j] = -1;
     map.confidence[j] = 0;
     if (bone.empty()) continue;
     for (size_t n = 0; n < rig.place.size() && map.node[j] < 0; ++n)
       if (rig.character.nodes[n].name == bone) map.node[j] = static_cast<int>(n);
-    US_CHECK(map.node[j] >= 0, "the map names a bone '", excerpt(bone),
+    US_CHECK(map.node[j] >= 0, rig.character.called(), ": the map names a bone '", excerpt(bone),
              "', which the character does not have");
     map.confidence[j] = 1;
     map.how = "given";
@@ -323,8 +324,9 @@ void apply_choices(const Rig& rig, const BoneChoices& choices, BoneMap& map) {
     for (size_t b = a + 1; b < kJointCount; ++b) {
       if (map.node[a] < 0 || map.node[a] != map.node[b]) continue;
       const bool both = choices.count(kJointNames[a]) > 0 && choices.count(kJointNames[b]) > 0;
-      US_CHECK(!both, "the map gives the bone '", rig.character.nodes[static_cast<size_t>(map.node[a])].name,
-               "' to both ", kJointNames[a], " and ", kJointNames[b]);
+      US_CHECK(!both, rig.character.called(), ": the map gives the bone '",
+               rig.character.nodes[static_cast<size_t>(map.node[a])].name, "' to both ", kJointNames[a],
+               " and ", kJointNames[b]);
       const size_t loser = choices.count(kJointNames[a]) > 0 ? b : a;  // what the user chose stands
       map.node[loser] = -1;
       map.confidence[loser] = 0;

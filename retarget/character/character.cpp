@@ -348,8 +348,8 @@ MergedSurface merged_surface(const Character& character, const Points& positions
   out.in_file = out.map;
   const auto& numbers = character.file_vertices;
   if (!numbers.empty()) {
-    US_CHECK(numbers.size() == out.map.size(), character.name, ": has ", out.map.size(), " vertices, but ",
-             numbers.size(), " numbers of them");
+    US_CHECK(numbers.size() == out.map.size(), character.called(), ": has ", out.map.size(),
+             " vertices, but ", numbers.size(), " numbers of them");
     out.in_file.assign(static_cast<size_t>(*std::max_element(numbers.begin(), numbers.end())) + 1, 0);
     for (size_t i = 0; i < numbers.size(); ++i) out.in_file[static_cast<size_t>(numbers[i])] = out.map[i];
   }

@@ -84,11 +84,15 @@ struct Character {
   std::vector<CharacterImage> images;
   std::vector<std::string> materials, textures, samplers;
   std::vector<std::string> extensions;  ///< that materials and textures use
+  std::vector<std::string> required;    ///< those of them without which they mean nothing
   std::vector<CharacterAnimation> animations;
   /// Of each vertex of the parts, one part after the other, its number in the file, every number at least
   /// once; empty: they are the file's in its order.
   std::vector<int> file_vertices;
+  std::string file;  ///< where it came from; may be empty
 
+  /// By which complaints call it.
+  const std::string& called() const { return file.empty() ? name : file; }
   Eigen::Index vertex_count() const;
   /// Transforms of the nodes to the world, from their own to the parents'.
   std::vector<Mat4> world() const;

@@ -201,7 +201,7 @@ void lift_skinned_nodes(Character& character) {
 }
 
 Character TheirRig::still() {
-  US_CHECK(source_.rigged, source_.character.name, ": has no skeleton that could be driven");
+  US_CHECK(source_.rigged, source_.character.called(), ": has no skeleton that could be driven");
   Character out = source_.character;
   apply_painted_weights(source_, screen_.weights(), influences_, out);
   const Mat4 world = matrix_of(source_.to_world);
@@ -329,6 +329,7 @@ Character OurRig::still() {
   out.textures = from.textures;
   out.samplers = from.samplers;
   out.extensions = from.extensions;
+  out.required = from.required;
   CharacterSkin skin;
   skin.name = "22 joints";
   const Joints rest = moved_.value_or(source_.target.joints);
@@ -386,7 +387,7 @@ Sampled OurRig::sample(const CharacterClip& clip) const {
 
 std::vector<CharacterClip> wanted_clips(const PreparedCharacter& character, std::vector<CharacterClip> clips,
                                         const CharacterExportOptions& options) {
-  US_CHECK(!clips.empty(), character.character.name, ": there is no motion to export");
+  US_CHECK(!clips.empty(), character.character.called(), ": there is no motion to export");
   const Joints joints = options.joints.value_or(character.target.joints);
   for (auto& clip : clips) {
     US_CHECK(!clip.poses.empty() && clip.fps > 0, "the clip '", clip.name, "' is empty");

@@ -135,6 +135,11 @@ void CharacterReader::read_skin_joints(const Json& skin, CharacterSkin& out) {
     US_CHECK(joint.is_number(), path_, ": a joint of a skin is no number");
     out.joints.push_back(node_number(whole(joint.get<double>())));
   }
+  std::vector<int> sorted = out.joints;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  US_CHECK(twice == sorted.end(), path_, ": a skin names the bone '",
+           excerpt(out_.nodes[static_cast<size_t>(*twice)].name), "' twice");
 }
 
 void CharacterReader::read_skins() {
@@ -346,6 +351,8 @@ void CharacterReader::keep_texts(const char* name, std::vector<std::string>& out
     if (std::string_view(name) == "textures") {
       check_index(object, "source", out_.images.size(), path_);
       check_index(object, "sampler", file_.list("samplers").size(), path_);
+      for (const auto& extension : object_in(object, "extensions"))
+        if (extension.is_object()) check_index(extension, "source", out_.images.size(), path_);
     }
     const std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
     US_CHECK(text.size() <= 1000000, path_, ": number ", i, " of its ", name, " is too long");
@@ -353,6 +360,10 @@ void CharacterReader::keep_texts(const char* name, std::vector<std::string>& out
     out.push_back(text);
   }
   out_.extensions.assign(extensions.begin(), extensions.end());
+  out_.required.clear();
+  for (const auto& required : file_.list("extensionsRequired"))
+    if (required.is_string() && extensions.erase(required.get<std::string>()) > 0)
+      out_.required.push_back(required.get<std::string>());
 }
 
 TrackPath track_path(const std::string& name, const std::string& path) {

@@ -269,6 +269,7 @@ void add_materials(const Character& character, BinaryChunk& chunk, json& gltf) {
   for (const auto& text : character.textures) gltf["textures"].push_back(json::parse(text));
   for (const auto& text : character.materials) gltf["materials"].push_back(json::parse(text));
   if (!character.extensions.empty()) gltf["extensionsUsed"] = character.extensions;
+  if (!character.required.empty()) gltf["extensionsRequired"] = character.required;
 }
 
 void add_animations(const Character& character, BinaryChunk& chunk, json& gltf) {

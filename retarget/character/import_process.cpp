@@ -46,6 +46,7 @@ void limit(int resource, rlim_t most) {
   ::dup2(errors, 2);
   limit(RLIMIT_CPU, seconds);
   limit(RLIMIT_AS, bytes);
+  limit(RLIMIT_FSIZE, bytes);
   limit(RLIMIT_CORE, 0);
   ::execv(arguments[0], const_cast<char* const*>(arguments));
   ::_exit(127);
@@ -67,14 +68,29 @@ bool wait_for(pid_t pid, double patience_s, int& status) {
   }
 }
 
-std::string last_line(const std::string& text) {
-  const size_t end = text.find_last_not_of("\n\r ");
-  if (end == text.npos) return {};
-  const size_t begin = text.find_last_of('\n', end);
-  return text.substr(begin == text.npos ? 0 : begin + 1, end - (begin == text.npos ? 0 : begin + 1) + 1);
+/// What the worker made, which is to be trusted no more than the file it was made of.
+Character answer(const std::string& made, const std::string& path) {
+  try {
+    return parse_gltf_character(read_file(made), made);
+  } catch (const Error&) {
+    throw Error(path + ": the reader of this format made nothing of it that can be used");
+  }
 }
 
 }  // namespace
+
+std::string last_words(std::string_view said) {
+  constexpr size_t kMost = 200;
+  const size_t end = said.find_last_not_of("\n\r ");
+  if (end == said.npos) return {};
+  said = said.substr(0, end + 1);
+  const size_t begin = said.find_last_of('\n');
+  if (begin != said.npos) said.remove_prefix(begin + 1);
+  std::string out(said.substr(0, kMost));
+  for (char& c : out)
+    if (c < ' ' || c > '~') c = '?';
+  return out;
+}
 
 Character read_in_process(const std::string& path, const ReadCharacterOptions& options) {
   const WorkFolder folder;
@@ -86,7 +102,7 @@ Character read_in_process(const std::string& path, const ReadCharacterOptions& o
   const int errors = ::open(said.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
   US_CHECK(errors >= 0, said, ": cannot be written (", std::strerror(errno), ")");
   const auto seconds = static_cast<rlim_t>(options.patience_s + 1);
-  const auto bytes = static_cast<rlim_t>(options.memory_bytes);
+  const auto bytes = static_cast<rlim_t>(options.memory_bytes);  // of memory, and of what it writes
   const pid_t pid = ::fork();
   if (pid == 0) become_worker(arguments, errors, seconds, bytes);
   ::close(errors);
@@ -97,10 +113,10 @@ Character read_in_process(const std::string& path, const ReadCharacterOptions& o
   US_CHECK(WIFEXITED(status), path, ": the reader of this format crashed on it; the file may be damaged");
   US_CHECK(WEXITSTATUS(status) != 127, worker, ": cannot be started to read ", path);
   if (WEXITSTATUS(status) != 0) {
-    const std::string why = last_line(read_file(said));
+    const std::string why = last_words(read_file(said));
     throw Error(path + ": " + (why.empty() ? "could not be read" : why));
   }
-  Character character = parse_gltf_character(read_file(out), out);
+  Character character = answer(out, path);
   character.name = std::filesystem::path(path).stem().string();
   return character;
 }

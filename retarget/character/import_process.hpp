@@ -12,4 +12,8 @@ namespace understudy {
 /// that it crashed, or that it took too long or too much memory.
 Character read_in_process(const std::string& path, const ReadCharacterOptions& options);
 
+/// The last line of what a worker said, fit for a dialog box whatever it said: 200 printable characters at
+/// most. May be empty.
+std::string last_words(std::string_view said);
+
 }  // namespace understudy

@@ -19,6 +19,22 @@ bool needs_process(const std::string& path, std::string_view bytes) {
          bytes.substr(0, 512).find("<COLLADA") != bytes.npos;
 }
 
+Character read_any(const std::string& path, const ReadCharacterOptions& options) {
+  const std::string bytes = read_file(path), stem = std::filesystem::path(path).stem().string();
+  US_CHECK(!bytes.empty(), path, ": is empty");
+  US_CHECK(lower_case(std::filesystem::path(path).extension().string()) != ".bvh", path,
+           ": is a motion, not a character");
+  if (needs_process(path, bytes)) return read_in_process(path, options);
+  const auto content = format_of_content(bytes), suffix = format_of_suffix(path);
+  const auto format = content ? content : suffix;
+  if (format == MeshFormat::Gltf) return parse_gltf_character(bytes, path);
+  if (format == MeshFormat::Obj) return parse_obj_character(bytes, path);
+  const Mesh mesh = parse_mesh(bytes, path);
+  Character out = character_of_mesh(mesh, stem);
+  check_character(out, path);
+  return out;
+}
+
 }  // namespace
 
 Character character_of_mesh(const Mesh& mesh, const std::string& name) {
@@ -51,17 +67,9 @@ bool is_character_file(const std::string& path) {
 }
 
 Character read_character(const std::string& path, const ReadCharacterOptions& options) {
-  const std::string bytes = read_file(path), stem = std::filesystem::path(path).stem().string();
-  US_CHECK(!bytes.empty(), path, ": is empty");
-  if (needs_process(path, bytes)) return read_in_process(path, options);
-  const auto content = format_of_content(bytes), suffix = format_of_suffix(path);
-  const auto format = content ? content : suffix;
-  if (format == MeshFormat::Gltf) return parse_gltf_character(bytes, path);
-  if (format == MeshFormat::Obj) return parse_obj_character(bytes, path);
-  const Mesh mesh = parse_mesh(bytes, path);
-  Character out = character_of_mesh(mesh, stem);
-  check_character(out, path);
-  return out;
+  Character character = read_any(path, options);
+  character.file = path;
+  return character;
 }
 
 }  // namespace understudy

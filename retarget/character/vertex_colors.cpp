@@ -1,79 +1,43 @@
 #include "retarget/character/vertex_colors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
-#define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 65536
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#pragma GCC diagnostic ignored "-Wshadow"
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
-
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/character/picture.hpp"
+#include "retarget/character/pixels.hpp"
 
 namespace understudy {
 namespace {
 
 using nlohmann::json;
 
-constexpr int64_t kMostPixels = 64ll << 20;
+const std::array<float, 256>& linear_of_byte() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> t{};
+    for (size_t i = 0; i < t.size(); ++i) t[i] = to_linear(static_cast<float>(i) / 255);
+    return t;
+  }();
+  return table;
+}
 
-/// A picture's pixels, three bytes each, the first row on top.
-class Pixels {
- public:
-  explicit Pixels(const CharacterImage& image) {
-    const auto* const bytes = reinterpret_cast<const stbi_uc*>(image.bytes.data());
-    const auto size = static_cast<int>(image.bytes.size());
-    const std::string type = picture_type(image.bytes);
-    US_CHECK((type == "image/png" || type == "image/jpeg") && image.bytes.size() < (1ull << 31),
-             "it is neither PNG nor JPEG");
-    int channels = 0;
-    US_CHECK(stbi_info_from_memory(bytes, size, &width_, &height_, &channels) && width_ > 0 && height_ > 0,
-             "it cannot be decoded");
-    US_CHECK(static_cast<int64_t>(width_) * height_ <= kMostPixels, "it has ", width_, " x ", height_,
-             " pixels, over 64 megapixels");
-    rgb_ = {stbi_load_from_memory(bytes, size, &width_, &height_, &channels, 3), stbi_image_free};
-    US_CHECK(rgb_, "it cannot be decoded");
-  }
+int pixel(float t, int count, bool repeat) {
+  if (!std::isfinite(t)) return 0;
+  t = repeat ? t - std::floor(t) : std::clamp(t, 0.0f, 1.0f);
+  return std::clamp(static_cast<int>(t * static_cast<float>(count)), 0, count - 1);
+}
 
-  /// Linear light at texture coordinates, repeated beyond 0..1 or not.
-  Vec3 at(float u, float v, bool repeat_u, bool repeat_v) const {
-    const int x = pixel(u, width_, repeat_u), y = pixel(v, height_, repeat_v);
-    const stbi_uc* const p = rgb_.get() + 3 * (static_cast<int64_t>(y) * width_ + x);
-    return {kLinear()[p[0]], kLinear()[p[1]], kLinear()[p[2]]};
-  }
-
- private:
-  static int pixel(float t, int count, bool repeat) {
-    if (!std::isfinite(t)) return 0;
-    t = repeat ? t - std::floor(t) : std::clamp(t, 0.0f, 1.0f);
-    return std::clamp(static_cast<int>(t * static_cast<float>(count)), 0, count - 1);
-  }
-  static const std::array<float, 256>& kLinear() {
-    static const std::array<float, 256> table = [] {
-      std::array<float, 256> t{};
-      for (size_t i = 0; i < t.size(); ++i) t[i] = to_linear(static_cast<float>(i) / 255);
-      return t;
-    }();
-    return table;
-  }
-
-  int width_ = 0, height_ = 0;
-  std::unique_ptr<stbi_uc, void (*)(void*)> rgb_{nullptr, stbi_image_free};
-};
+/// Linear light at texture coordinates, repeated beyond 0..1 or not.
+Vec3 light_at(const Pixels& pixels, float u, float v, bool repeat_u, bool repeat_v) {
+  const int x = pixel(u, pixels.width, repeat_u), y = pixel(v, pixels.height, repeat_v);
+  const uint8_t* const p = pixels.rgb.get() + 3 * (static_cast<int64_t>(y) * pixels.width + x);
+  return {linear_of_byte()[p[0]], linear_of_byte()[p[1]], linear_of_byte()[p[2]]};
+}
 
 /// What is seen of a material.
 struct Look {
@@ -127,8 +91,7 @@ class Looks {
     if (!texture) return;
     look.uv = index_in(info, "texCoord", 8).value_or(0);
     const json object = object_of(character_.textures[*texture]);
-    if (const auto source = index_in(object, "source", character_.images.size()))
-      look.picture = picture(*source);
+    look.picture = picture_of(object);
     const auto sampler = index_in(object, "sampler", character_.samplers.size());
     if (!sampler) return;
     const json how = object_of(character_.samplers[*sampler]);
@@ -137,15 +100,28 @@ class Looks {
     look.repeat_v = member(how, "wrapT") != kClampToEdge;
   }
 
+  /// Of the texture's own picture or, where that is none or not decoded here, of the extensions'.
+  std::shared_ptr<const Pixels> picture_of(const json& texture) {
+    std::vector<size_t> sources;
+    const json extensions = member(texture, "extensions");
+    for (const json& from :
+         {texture, member(extensions, "EXT_texture_webp"), member(extensions, "KHR_texture_basisu")})
+      if (const auto source = index_in(from, "source", character_.images.size())) sources.push_back(*source);
+    const auto decoded = [&](size_t i) { return is_decoded(character_.images[i].bytes); };
+    const auto first = std::find_if(sources.begin(), sources.end(), decoded);
+    if (first != sources.end()) return picture(*first);
+    return sources.empty() ? nullptr : picture(sources.front());
+  }
+
   std::shared_ptr<const Pixels> picture(size_t index) {
     const auto known = pictures_.find(index);
     if (known != pictures_.end()) return known->second;
     auto& made = pictures_[index];
     const CharacterImage& image = character_.images[index];
     try {
-      made = std::make_shared<const Pixels>(image);
+      made = std::make_shared<const Pixels>(decode_picture(image.bytes));
     } catch (const Error& error) {
-      log::warn(character_.name + ": the picture '" + image.name + "' is not shown: " + error.what());
+      log::warn(character_.called() + ": the picture '" + image.name + "' is not shown: " + error.what());
     }
     return made;
   }
@@ -158,8 +134,8 @@ class Looks {
 Vec3 linear_color(const CharacterPart& part, const Look& look, Eigen::Index v) {
   Vec3 color = look.factor;
   if (look.picture && look.uv < part.uvs.size())
-    color = color.cwiseProduct(
-        look.picture->at(part.uvs[look.uv](v, 0), part.uvs[look.uv](v, 1), look.repeat_u, look.repeat_v));
+    color = color.cwiseProduct(light_at(*look.picture, part.uvs[look.uv](v, 0), part.uvs[look.uv](v, 1),
+                                        look.repeat_u, look.repeat_v));
   if (part.colors.rows() > 0) color = color.cwiseProduct(Vec3(part.colors.row(v).head<3>().transpose()));
   return color.cwiseMax(0.0f).cwiseMin(1.0f);
 }
@@ -192,7 +168,7 @@ void paint(MergedSurface& surface, const Character& character) {
   surface.mesh.colors.resize(0, 3);
   const Points colors = vertex_colors(character);
   if (colors.rows() == 0) return;
-  US_CHECK(colors.rows() == static_cast<Eigen::Index>(surface.map.size()), character.name, ": has ",
+  US_CHECK(colors.rows() == static_cast<Eigen::Index>(surface.map.size()), character.called(), ": has ",
            colors.rows(), " vertices, its surface ", surface.map.size());
   surface.mesh.colors = Points::Zero(surface.mesh.vertices.rows(), 3);
   Eigen::VectorXf corners = Eigen::VectorXf::Zero(surface.mesh.vertices.rows());

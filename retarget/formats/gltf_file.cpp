@@ -120,10 +120,23 @@ GltfFile::GltfFile(std::string_view bytes, const std::string& path) : path_(path
   root_ = Json::parse(text.begin(), text.end(), nullptr, false);
   US_CHECK(root_.is_object(), path_, ": its JSON is broken or cut off");
   US_CHECK(root_.contains("asset"), path_, ": is JSON, but no glTF");
+  check_version();
   for (const auto& name : list("extensionsRequired")) {
     const std::string extension = name.is_string() ? name.get<std::string>() : "";
     US_CHECK(extension != "KHR_draco_mesh_compression" && extension != "EXT_meshopt_compression", path_,
              ": is compressed with ", extension, ", which is not read; export it without");
+  }
+}
+
+void GltfFile::check_version() const {
+  const Json& asset = root_["asset"];
+  for (const char* name : {"minVersion", "version"}) {
+    const auto version = asset.is_object() ? asset.find(name) : asset.end();
+    if (!asset.is_object() || version == asset.end()) continue;
+    const std::string text = version->is_string() ? version->get<std::string>() : version->dump();
+    US_CHECK(text.rfind("2.", 0) == 0 || text == "2", path_, ": is glTF version ", excerpt(text),
+             ", only 2 is read");
+    return;
   }
 }
 
@@ -217,7 +230,12 @@ std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what)
   const std::filesystem::path inside = std::filesystem::path(name).lexically_normal();
   US_CHECK(inside.is_relative() && !inside.empty() && *inside.begin() != ".." && name.find('\0') == name.npos,
            path_, ": ", what, " is outside of the file's folder (", excerpt(name), ")");
-  std::string bytes = read_file((std::filesystem::path(path_).parent_path() / inside).string());
+  std::string bytes;
+  try {
+    bytes = read_file((std::filesystem::path(path_).parent_path() / inside).string());
+  } catch (const Error& error) {
+    throw Error(path_ + ": " + what + ", " + error.what());
+  }
   size_ += bytes.size();
   spend(bytes.size());
   return bytes;

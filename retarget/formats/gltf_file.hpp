@@ -53,6 +53,7 @@ class GltfFile {
     uint64_t stride;  // 0: packed
   };
 
+  void check_version() const;
   std::string_view split_glb(std::string_view bytes);
   std::string_view buffer(int64_t index);
   Stretch view(int64_t index);

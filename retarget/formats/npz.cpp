@@ -170,8 +170,11 @@ Zip open_archive(const std::string& path) {
   int code = 0;
   Zip archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
   if (archive) return archive;
+  std::error_code failed;
+  US_CHECK(!std::filesystem::is_directory(path, failed), path, ": is a folder, not a file");
   std::ifstream probe(path);
   US_CHECK(probe, path, ": cannot be opened");
+  US_CHECK(probe.peek() != std::ifstream::traits_type::eof(), path, ": is empty");
   throw Error(path + ": not an .npz archive");
 }
 

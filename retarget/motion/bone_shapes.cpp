@@ -50,7 +50,7 @@ void add_bone_shapes(Character& character, const BoneChoices& choices) {
   }
   character.skins.push_back(std::move(skin));
   const BoneMap map = map_bones(character, world, choices);
-  check_bones(map, character.name);
+  check_bones(map, character.called());
   const auto place = [&](size_t n) -> Vec3 { return world[n].topRightCorner<3, 1>(); };
   std::vector<bool> in_body(character.nodes.size(), false);
   Shapes shapes;
@@ -61,7 +61,7 @@ void add_bone_shapes(Character& character, const BoneChoices& choices) {
     const Vec3 from = place(static_cast<size_t>(p)), to = place(n);
     if ((to - from).norm() > 1e-6f * (1 + to.norm())) add_octahedron(shapes, p, from, to);
   }
-  US_CHECK(!shapes.vertices.empty(), character.name, ": none of its bones has a length");
+  US_CHECK(!shapes.vertices.empty(), character.called(), ": none of its bones has a length");
   CharacterNode carrier;
   carrier.name = "bones";
   CharacterPart part;

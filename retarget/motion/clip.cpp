@@ -62,7 +62,7 @@ double own_fps(const CharacterAnimation& animation) {
 
 int chosen_clip(const Character& character, const std::string& clip) {
   const auto& animations = character.animations;
-  US_CHECK(!animations.empty(), character.name, ": has no animation");
+  US_CHECK(!animations.empty(), character.called(), ": has no animation");
   int longest = 0;
   std::string names;
   for (size_t i = 0; i < animations.size(); ++i) {
@@ -72,7 +72,7 @@ int chosen_clip(const Character& character, const std::string& clip) {
       longest = static_cast<int>(i);
     if (i < 20) names += (i > 0 ? ", " : "") + std::to_string(i + 1) + " " + excerpt(animations[i].name);
   }
-  US_CHECK(clip.empty(), character.name, ": has no animation '", excerpt(clip), "', only ", names);
+  US_CHECK(clip.empty(), character.called(), ": has no animation '", excerpt(clip), "', only ", names);
   return longest;
 }
 

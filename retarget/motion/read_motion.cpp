@@ -40,9 +40,12 @@ std::optional<Character> read_motion(const std::string& path, const ReadCharacte
   const std::string suffix = suffix_of(path);
   const bool is_gltf = suffix == ".glb" || suffix == ".gltf";
   if (std::filesystem::is_directory(path, failed) || (!is_gltf && !is_motion_file(path))) return std::nullopt;
-  if (suffix == ".bvh") return read_bvh(path);
-  if (suffix == ".npz") return read_amass_character(path);
-  Character character = read_character(path, options);
+  const bool bones_alone = suffix == ".bvh" || suffix == ".npz";
+  Character character = suffix == ".bvh"   ? read_bvh(path)
+                        : suffix == ".npz" ? read_amass_character(path)
+                                           : read_character(path, options);
+  character.file = path;
+  if (bones_alone) return character;
   auto& all = character.animations;
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& one) { return one.tracks.empty(); }),
             all.end());

@@ -36,7 +36,7 @@ Character in_first_frame(Character character, int clip, const ClipTimes& times) 
 PreparedCharacter prepared(Character character, const SkeletalMotionOptions& options) {
   if (character.vertex_count() == 0) add_bone_shapes(character, options.bones);
   const BoneMap map = map_bones(character, bind_pose(character).nodes, options.bones);
-  check_bones(map, character.name);
+  check_bones(map, character.called());
   CharacterOptions how;
   how.choices = options.bones;
   how.units = options.import.units;
@@ -172,7 +172,7 @@ void SkeletalMotion::Impl::find_floor(const ImportOptions& import) {
   for (int64_t f = 0; f < times.count; f += step) soles.push_back(lowest(joints(posed(f))));
   std::sort(soles.begin(), soles.end());
   const float low = soles[soles.size() / 20];
-  US_CHECK(std::isfinite(low), c.character.name, ": its animation has numbers that are not finite");
+  US_CHECK(std::isfinite(low), c.character.called(), ": its animation has numbers that are not finite");
   const float near = kNearFloor * leg_length(c.target.joints), over_zero = low + floor;
   if (has_skin && std::abs(over_zero) < std::min(near, std::abs(low)))
     floor = 0;

@@ -1,6 +1,9 @@
 // Khronos' glTF-Validator finds nothing to say against what we export.
 #include <gtest/gtest.h>
 
+#include "retarget/character/gltf_character.hpp"
+#include "retarget/character/read_character.hpp"
+#include "retarget/formats/bytes.hpp"
 #include "tests/app/program.hpp"
 #include "tests/interop/exported.hpp"
 #include "tests/retarget/character/characters.hpp"
@@ -69,6 +72,37 @@ TEST(Validator, FindsNothingInWhatACarelessFileBecomes) {
                      {{"", 30, poses}, {"still", 30, {poses[0]}}}, options);
   }
   expect_clean(paths);
+}
+
+/// Pictures that only extensions know; KTX2's bytes are no more than its beginning.
+Character with_extended_pictures() {
+  Character out = make_character();
+  const std::string webp = read_file(US_SOURCE_DIR "/tests/fuzz/corpus/picture/lossless.webp");
+  out.images = {{"skin", "image/webp", webp}};
+  out.textures = {R"({"extensions":{"EXT_texture_webp":{"source":0}}})"};
+  out.extensions = out.required = {"EXT_texture_webp"};
+  return out;
+}
+
+TEST(Validator, SaysNoMoreOfPicturesInExtensionsThanOfTheFileTheyCameIn) {
+  const ScratchFolder folder;
+  const std::string input = folder.path("input.glb");
+  write_gltf_character(input, with_extended_pictures());
+  const auto before = validated({input});
+  std::vector<std::string> paths;
+  const PreparedCharacter character = prepare_character(read_character(input), nullptr, nullptr);
+  const RigDeformer rig(character, nullptr);
+  for (const char* name : {"a.glb", "a.gltf"}) {
+    paths.push_back(folder.path(name));
+    export_character(paths.back(), character, rig, {{"walk", 30, made_motion(5, character.target.joints)}},
+                     {});
+    EXPECT_EQ(read_character(paths.back()).images[0].bytes, character.character.images[0].bytes);
+    EXPECT_EQ(read_character(paths.back()).required, character.character.required);
+  }
+  for (const auto& after : validated(paths)) {
+    EXPECT_EQ(after["errors"], before[0]["errors"]) << first_messages(after);
+    EXPECT_EQ(after["warnings"], before[0]["warnings"]) << first_messages(after);
+  }
 }
 
 }  // namespace

@@ -138,6 +138,57 @@ TEST(CharacterFile, NegativeStrideIsRefused) {
   EXPECT_TRUE(contains(complaint_about(gltf), "'byteStride' is negative"));
 }
 
+TEST(CharacterFile, OtherVersionsOfGltfAreRefused) {
+  json gltf = broken_base();
+  gltf["asset"]["version"] = "1.0";
+  EXPECT_TRUE(contains(complaint_about(gltf), "broken.gltf: is glTF version 1.0, only 2 is read"));
+  gltf["asset"] = {{"version", "2.1"}, {"minVersion", "3.0"}};
+  EXPECT_TRUE(contains(complaint_about(gltf), "version 3.0"));
+  gltf["asset"] = {{"version", "2.1"}};
+  EXPECT_EQ(complaint_about(gltf), "");
+}
+
+TEST(CharacterFile, ABoneThatASkinNamesTwiceIsRefused) {
+  json gltf = broken_base();
+  gltf["skins"][0]["joints"][4] = gltf["skins"][0]["joints"][3];
+  EXPECT_TRUE(contains(complaint_about(gltf), "broken.gltf: a skin names the bone 'mixamorig:"))
+      << complaint_about(gltf);
+  EXPECT_TRUE(contains(complaint_about(gltf), "' twice"));
+}
+
+TEST(CharacterFile, AMissingBufferIsToldWithBothFiles) {
+  json gltf = broken_base();
+  gltf["buffers"][0]["uri"] = "gone.bin";
+  const std::string complaint = complaint_about(gltf);
+  EXPECT_TRUE(contains(complaint, "broken.gltf: buffer 0, gone.bin: cannot be opened")) << complaint;
+}
+
+TEST(CharacterFile, PicturesThatOnlyExtensionsNameAreKeptAsTheyCame) {
+  json gltf = broken_base();
+  const std::string picture = read_file(US_SOURCE_DIR "/tests/fuzz/corpus/picture/lossless.webp");
+  const std::string packed = "data:application/octet-stream;base64,q0tUWCAyMLsNChoKAAAAAAAAAAA=";  // KTX2
+  const TempFolder folder;
+  folder.write("a.webp", picture);
+  gltf["images"] = {{{"uri", "a.webp"}, {"name", "skin"}}, {{"uri", packed}}};
+  gltf["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}},
+                      {{"source", 0}, {"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}}};
+  gltf["extensionsUsed"] = {"EXT_texture_webp", "KHR_texture_basisu", "EXT_never_used"};
+  gltf["extensionsRequired"] = {"EXT_texture_webp"};
+  const Character read = read_character(folder.write("a.gltf", gltf.dump()));
+  const Character again = written_and_read(read, "b.glb");
+  ASSERT_EQ(again.images.size(), 2u);
+  EXPECT_EQ(again.images[0].bytes, picture);
+  EXPECT_EQ(again.images[0].mime, "image/webp");
+  EXPECT_EQ(again.images[1].mime, "image/ktx2");
+  EXPECT_EQ(again.textures, read.textures);
+  EXPECT_EQ(again.extensions, (std::vector<std::string>{"EXT_texture_webp", "KHR_texture_basisu"}));
+  EXPECT_EQ(again.required, std::vector<std::string>{"EXT_texture_webp"});
+  gltf["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 7;
+  folder.write("a.gltf", gltf.dump());
+  EXPECT_TRUE(
+      contains(error_of([&] { read_character(folder.path("a.gltf")); }), "names number 7 of its 2 sources"));
+}
+
 TEST(CharacterFile, NodesInACircleAreRefused) {
   json gltf = broken_base();
   gltf["nodes"].push_back({{"children", {gltf["nodes"].size() + 1}}});
@@ -303,6 +354,9 @@ TEST(ImportProcess, CrashesHangsAndMissingProgramsAreOneSentence) {
   EXPECT_TRUE(contains(worker("kill -SEGV $$\n"), "a.fbx: the reader of this format crashed"));
   EXPECT_TRUE(contains(worker("exec sleep 20\n"), "longer than 0.5 s"));
   EXPECT_TRUE(contains(worker("echo it is no FBX >&2; exit 1\n"), "a.fbx: it is no FBX"));
+  EXPECT_TRUE(contains(worker("printf 'it is\\033[31m\\001bad' >&2; exit 1\n"), "a.fbx: it is?[31m?bad"));
+  EXPECT_TRUE(contains(worker("echo nonsense >$3\n"), "a.fbx: the reader of this format made nothing of it"));
+  EXPECT_TRUE(contains(worker("mkfifo $3\n"), "a.fbx: the reader of this format made nothing of it"));
   ReadCharacterOptions missing;
   missing.worker = folder.path("nobody");
   EXPECT_TRUE(contains(error_of([&] { read_character(file, missing); }), "cannot be started"));

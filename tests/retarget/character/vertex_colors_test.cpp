@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <webp/encode.h>
+
 #include "retarget/base/log.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/formats/bytes.hpp"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -26,6 +29,15 @@ std::string red_and_green() {
         static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<size_t>(size));
       },
       &bytes, 2, 1, 3, pixels, 6);
+  return bytes;
+}
+
+std::string red_and_green_as_webp() {
+  const unsigned char pixels[] = {255, 0, 0, 0, 255, 0};
+  uint8_t* made = nullptr;
+  const size_t size = WebPEncodeLosslessRGB(pixels, 2, 1, 6, &made);
+  const std::string bytes(reinterpret_cast<const char*>(made), size);
+  WebPFree(made);
   return bytes;
 }
 
@@ -66,6 +78,35 @@ TEST(VertexColors, AreThoseOfTheTextureAtTheVertex) {
   EXPECT_TRUE(colors.row(2).isApprox(Eigen::RowVector3f(1, 0, 0), 0.01f)) << colors;  // it is repeated
   const Points clamped = vertex_colors(textured(red_and_green(), R"({"wrapS":33071})"));
   EXPECT_TRUE(clamped.row(2).isApprox(Eigen::RowVector3f(0, 1, 0), 0.01f)) << clamped;
+}
+
+TEST(VertexColors, AreThoseOfAWebPPictureThatAnExtensionNames) {
+  Character made = textured(red_and_green_as_webp());
+  made.textures = {R"({"extensions":{"EXT_texture_webp":{"source":0}}})"};
+  Points colors = vertex_colors(made);
+  ASSERT_EQ(colors.rows(), 3);
+  EXPECT_TRUE(colors.row(1).isApprox(Eigen::RowVector3f(0, 1, 0), 0.01f)) << colors;
+  made.images.push_back(
+      {"packed", "image/ktx2", std::string("\xabKTX 20\xbb\r\n\x1a\n", 12) + std::string(40, '\0')});
+  made.textures = {R"({"source":0,"extensions":{"KHR_texture_basisu":{"source":1}}})"};
+  EXPECT_EQ(vertex_colors(made), colors);  // the one that everybody reads stands for the other
+}
+
+TEST(VertexColors, ArePlainWhereNoPictureIsDecodedAndThatIsToldOnce) {
+  Character made = textured(std::string("\xabKTX 20\xbb\r\n\x1a\n", 12) + std::string(40, '\0'));
+  made.file = "folder/made.glb";
+  made.parts.push_back(made.parts[0]);
+  made.textures = {R"({"extensions":{"KHR_texture_basisu":{"source":0}}})"};
+  Points colors;
+  const std::string said = warnings([&] { colors = vertex_colors(made); });
+  EXPECT_EQ(said, "folder/made.glb: the picture 'skin' is not shown: it is neither PNG, JPEG nor WebP\n");
+  EXPECT_EQ(colors.rows(), 0);
+}
+
+TEST(VertexColors, OfAPictureThatUnpacksToFarMoreThanItsPixelsAreLeftOut) {
+  const std::string bomb = read_file(US_SOURCE_DIR "/tests/fuzz/corpus/picture/bomb.png");
+  const std::string said = warnings([&] { vertex_colors(textured(bomb)); });
+  EXPECT_NE(said.find("it cannot be decoded"), std::string::npos) << said;
 }
 
 TEST(VertexColors, AreDarkerByTheMaterialAndTheVertexInLinearLight) {
