@@ -56,6 +56,32 @@ TEST_F(Inspector, AFileThatMayMoveHasAnimationsToChoose) {
   expect_click("source.as_scan", {"source.as_scan on"});
 }
 
+TEST_F(Inspector, AnimationsOfAFileAreListedAndChosenByAClick) {
+  session.document.source.path = "/clips/moves.glb";
+  session.source.clips = {{"idle", 1.5}, {"walk", 12.25}, {"walk", 3}, {"2", 1}};
+  session.source.clip = 1;
+  frame(3);
+  EXPECT_FALSE(shown("source.clip"));
+  expect_click("source.clips.0", {"source.clip idle"});
+  expect_click("source.clips.1", {});  // it is the one
+  expect_click("source.clips.2", {"source.clip 3"});
+  expect_click("source.clips.3", {"source.clip 4"});
+  session.source.clips.resize(1);
+  frame(3);
+  EXPECT_FALSE(shown("source.clips.0"));
+}
+
+TEST_F(Inspector, SaysWhereTheShapeBinds) {
+  EXPECT_FALSE(shown("target.binding"));  // it keeps its own skin
+  auto binding = std::make_shared<SafeBinding>();
+  session.takes[0].binding = binding;
+  frame(3);
+  const float one_line = mark("target.binding").rect.height();
+  binding->note = "12 % of the surface is bound by its shape alone: head, left arm, left hand, right hand";
+  frame(3);
+  EXPECT_GT(mark("target.binding").rect.height(), 1.5f * one_line);  // wrapped, not cut
+}
+
 TEST_F(Inspector, WhatIsLeftWithoutEnterIsAskedForToo) {
   write_into("source.yaw", "15");
   EXPECT_EQ(asked(), Lines());
@@ -117,7 +143,8 @@ TEST_F(LayersPanel, EverySwitchOfBothPanesAsksForItsLayer) {
 
 TEST_F(LayersPanel, ColoursTrailsAndScales) {
   expect_choice("layers.source.colour", 1, {"view.colour source confidence"});
-  expect_choice("layers.take.colour", 3, {"view.colour take error"});
+  expect_choice("layers.take.colour", 2, {"view.colour take doubt"});
+  expect_choice("layers.take.colour", 4, {"view.colour take error"});
   expect_choice("layers.weights_joint", 1, {"view.weights_joint pelvis"});
   expect_choice("layers.trail_joint", 5, {"view.trail_joint right_knee on"});
   expect_click("layers.trail.left_wrist", {"view.trail_joint left_wrist off"});

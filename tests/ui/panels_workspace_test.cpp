@@ -387,6 +387,40 @@ TEST_F(Exporting, SaysWhatTheAnimationIsToBe) {
   EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult").string() + " format=ply in_place=on"});
 }
 
+TEST_F(Exporting, TakesOfOneTargetBecomeClips) {
+  open("export");
+  EXPECT_FALSE(shown("export.all_takes"));  // the other take is of another target
+  click("export.cancel");
+  const app::Take adult = session.document.takes[0];
+  for (const char* name : {"slow", "fast", "fast"}) {
+    session.document.takes.push_back(adult);
+    session.document.takes.back().name = name;
+    session.takes.push_back(session.takes[0]);
+  }
+  open("export");
+  click("export.all_takes");
+  frame(2);
+  EXPECT_FALSE(shown("export.clip.1"));
+  click("export.save");
+  const std::string run = "export.run 0 " + (folder / "adult.glb").string() + " format=glb";
+  EXPECT_EQ(take_log(), Lines{run + " take=slow take=3 take=4"});  // two are called alike
+  open("export");
+  frame(2);
+  click("export.clip.0");
+  click("export.clip.3");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 2 " + (folder / "adult.glb").string() + " format=glb take=4"});
+  open("export");
+  frame(2);
+  click("export.format");
+  frame(2);
+  click("export.format.2");  // BVH holds one motion
+  frame(2);
+  EXPECT_FALSE(shown("export.all_takes"));
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.bvh").string() + " format=bvh"});
+}
+
 TEST_F(Exporting, AFileThatIsThereIsAskedAbout) {
   std::ofstream(folder / "adult.glb") << "old";
   open("export");

@@ -117,10 +117,13 @@ void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
   if (!state.all_takes) return;
   for (const size_t k : takes) {
     bool in_file = state.left_out.count(k) == 0;
-    row(ui, "");
     const std::string words = session.document.takes[k].name + "  \u00b7  " + frames_words(session, k);
+    ImGui::Indent(ui.px(16));
     const std::string seen = cut_to(words, ImGui::GetContentRegionAvail().x - ui.px(44));
-    if (!toggle(ui, "export.clip." + std::to_string(k), seen, in_file)) continue;
+    const bool changed = toggle(ui, "export.clip." + std::to_string(k), seen, in_file);
+    if (seen != words) tooltip(ui, words);
+    ImGui::Unindent(ui.px(16));
+    if (!changed) continue;
     if (in_file)
       state.left_out.erase(k);
     else
