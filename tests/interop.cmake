@@ -10,7 +10,7 @@ us_test(interop_program_test SOURCES ${interop_sources} tests/interop/program_te
   LABELS torch interop TIMEOUT 300)
 add_dependencies(interop_program_test understudy_all)
 us_test(blender_test SOURCES ${interop_sources} tests/interop/blender_test.cpp
-  LIBS understudy_character nlohmann_json::nlohmann_json LABELS blender TIMEOUT 600)
+  LIBS understudy_run understudy_character nlohmann_json::nlohmann_json LABELS blender TIMEOUT 600)
 foreach(test interop_test interop_program_test blender_test)
   target_compile_definitions(${test} PRIVATE US_INTEROP_PACKAGES="${PROJECT_BINARY_DIR}/interop")
 endforeach()
