@@ -1,4 +1,5 @@
-us_module(nn_core SOURCES nn/scan_patches.cpp nn/leaf_crops.cpp PUBLIC understudy_core)
+us_module(nn_core SOURCES nn/scan_patches.cpp nn/leaf_crops.cpp nn/weights_layout.cpp
+  PUBLIC understudy_core PRIVATE nlohmann_json::nlohmann_json)
 us_module(nn TORCH SOURCES
   nn/weights_file.cpp nn/skeleton_form.cpp nn/modules/skeleton_extractor.cpp nn/modules/point_transformer.cpp nn/modules/point_net.cpp
   nn/network_extractor.cpp nn/leaf_refiner.cpp nn/modules/leaf_refiner.cpp
