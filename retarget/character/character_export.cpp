@@ -331,7 +331,7 @@ Character OurRig::still() {
   out.extensions = from.extensions;
   out.required = from.required;
   CharacterSkin skin;
-  skin.name = "22 joints";
+  skin.name = kOurSkin;
   const Joints rest = moved_.value_or(source_.target.joints);
   const Pose back = source_.pose.back();
   for (int j = 0; j < kJointCount; ++j) {

@@ -198,29 +198,84 @@ std::vector<float> surface_ways(const Mesh& mesh, int from) {
   return way;
 }
 
-/// Length of the lines on the surface where `way` has each of the levels step, 2 step, ...
-std::vector<float> ring_lengths(const Mesh& mesh, const std::vector<float>& way, float step, int levels) {
-  std::vector<float> length(static_cast<size_t>(levels), 0.0f);
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    std::array<float, 3> w{};
-    for (int c = 0; c < 3; ++c) w[static_cast<size_t>(c)] = way[static_cast<size_t>(mesh.faces(f, c))];
-    const auto [low, high] = std::minmax({w[0], w[1], w[2]});
-    if (high == kFar) continue;
-    for (int k = std::max(0, static_cast<int>(low / step));
-         k < levels && step * static_cast<float>(k) <= high; ++k) {
-      const float level = step * static_cast<float>(k);
-      std::vector<Vec3> ends;
-      for (size_t c = 0; c < 3; ++c) {
-        const float a = w[c] - level, b = w[(c + 1) % 3] - level;
-        if ((a < 0) == (b < 0)) continue;
-        const Vec3 p = mesh.vertices.row(mesh.faces(f, static_cast<int>(c))).transpose();
-        const Vec3 q = mesh.vertices.row(mesh.faces(f, static_cast<int>((c + 1) % 3))).transpose();
-        ends.emplace_back(p + a / (a - b) * (q - p));
+/// What a level cuts out of the middle of a body: of nothing, low is over high.
+struct Slice {
+  float low_x = kFar, high_x = -kFar, low_z = kFar, high_z = -kFar;
+  float width() const { return high_x - low_x; }
+  float size() const { return high_x < low_x ? 0 : width() + high_z - low_z; }
+};
+
+/// Slices from `top` down, `step` apart, of what lies no further than `reach` from the plane x = middle.
+std::vector<Slice> slices_down(const Mesh& mesh, float top, float step, int count, float middle,
+                               float reach) {
+  std::vector<Slice> out(static_cast<size_t>(count));
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+    for (int c = 0; c < 3; ++c) {
+      Vec3 a = mesh.vertices.row(mesh.faces(f, c)).transpose();
+      Vec3 b = mesh.vertices.row(mesh.faces(f, (c + 1) % 3)).transpose();
+      if (a.y() < b.y()) std::swap(a, b);
+      if (!(a.y() > b.y())) continue;
+      const float first = std::max(0.0f, std::ceil((top - a.y()) / step));
+      for (int k = static_cast<int>(std::min(first, static_cast<float>(count)));
+           k < count && top - step * static_cast<float>(k) >= b.y(); ++k) {
+        const Vec3 at = a + (a.y() - top + step * static_cast<float>(k)) / (a.y() - b.y()) * (b - a);
+        if (std::abs(at.x() - middle) > reach) continue;
+        Slice& slice = out[static_cast<size_t>(k)];
+        slice.low_x = std::min(slice.low_x, at.x());
+        slice.high_x = std::max(slice.high_x, at.x());
+        slice.low_z = std::min(slice.low_z, at.z());
+        slice.high_z = std::max(slice.high_z, at.z());
       }
-      if (ends.size() == 2) length[static_cast<size_t>(k)] += (ends[1] - ends[0]).norm();
     }
+  return out;
+}
+
+/// The vertex at the top of the head, -1 for none.
+int crown_of(const Mesh& mesh, const Joints& joints) {
+  int crown = -1;
+  for (int v = 0; v < mesh.vertices.rows(); ++v) {
+    const float off = std::abs(mesh.vertices(v, 0) - joints(Head, 0));
+    if (off < 0.25f * leg_length(joints) && (crown < 0 || mesh.vertices(v, 1) > mesh.vertices(crown, 1)))
+      crown = v;
   }
-  return length;
+  return crown;
+}
+
+struct HeadAndNeck {
+  int crown = 0;
+  Vec3 neck;            ///< its middle, where it is narrowest
+  float low_x, high_x;  ///< of the head
+};
+
+/// A head much larger than a human's, over the narrowest slice above the shoulders.
+std::optional<HeadAndNeck> find_big_head(const Mesh& mesh, const Joints& joints) {
+  const int crown = mesh.is_cloud() ? -1 : crown_of(mesh, joints);
+  if (crown < 0) return std::nullopt;
+  const float leg = leg_length(joints), step = 0.01f * leg, top = mesh.vertices(crown, 1);
+  const int count = std::clamp(static_cast<int>((top - joints(Spine1, 1)) / step), 1, 200);
+  const auto slices = slices_down(mesh, top, step, count, joints(Head, 0), 0.45f * leg);
+  int neck = -1;
+  float largest = 0, smallest = kFar, wide = 0;
+  Slice head;
+  for (int k = 1; k < count; ++k) {
+    const Slice& slice = slices[static_cast<size_t>(k)];
+    if (neck >= 0 && slice.size() > 1.25f * smallest) break;  // the shoulders
+    largest = std::max(largest, slice.size());
+    if (neck < 0 && slice.width() > wide) {
+      wide = slice.width();
+      head = slice;
+    }
+    if (slice.size() <= 0 || slice.size() > 0.7f * largest || slice.size() >= smallest) continue;
+    smallest = slice.size();
+    neck = k;
+  }
+  const float across = 0.8f * std::abs(joints(LeftElbow, 0) - joints(RightElbow, 0));
+  if (neck < 0 || wide < kBigHead * leg || step * static_cast<float>(neck) < kBigHead * leg || wide > across)
+    return std::nullopt;
+  const Slice& at = slices[static_cast<size_t>(neck)];
+  const Vec3 middle(0.5f * (at.low_x + at.high_x), top - step * static_cast<float>(neck),
+                    0.5f * (at.low_z + at.high_z));
+  return HeadAndNeck{crown, middle, head.low_x, head.high_x};
 }
 
 int root_of(std::vector<int>& parent, int v) {
@@ -232,25 +287,44 @@ int root_of(std::vector<int>& parent, int v) {
 }  // namespace
 
 BoneDistances bone_distances(const Mesh& mesh, const Joints& joints) {
+  return bone_distances(mesh, joints, mesh.vertices);
+}
+
+BoneDistances bone_distances(const Mesh& mesh, const Joints& joints, const Points& at) {
+  constexpr float kBeyond = 4;  // times as far as the nearest bone no detour matters any more
   const VoxelBody body(mesh);
   const Segments bones = bones_of(joints);
+  std::array<std::vector<float>, kJointCount> ways;
+  for (size_t j = 0; j < kJointCount; ++j) ways[j] = body.ways_from(bones[j]);
   BoneDistances out;
   out.leg = leg_length(joints);
-  out.metres.resize(mesh.vertices.rows(), kJointCount);
-  for (size_t j = 0; j < kJointCount; ++j) {
-    const std::vector<float> ways = body.ways_from(bones[j]);
-    for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
-      const Vec3 p = mesh.vertices.row(v).transpose();
-      float straight = 1e9f, plain = 1e9f;
+  out.metres.resize(at.rows(), kJointCount);
+  for (Eigen::Index v = 0; v < at.rows(); ++v) {
+    const Vec3 p = at.row(v).transpose();
+    std::array<float, kJointCount> straight, plain;
+    std::array<int, kJointCount> order;
+    std::iota(order.begin(), order.end(), 0);
+    for (size_t j = 0; j < kJointCount; ++j) {
+      straight[j] = plain[j] = 1e9f;
       for (const auto& s : bones[j]) {
-        straight = std::min(straight, straight_distance(p, s));
+        straight[j] = std::min(straight[j], straight_distance(p, s));
         const Vec3 d = s.second - s.first;
         const float t = std::clamp((p - s.first).dot(d) / std::max(1e-12f, d.squaredNorm()), 0.0f, 1.0f);
-        plain = std::min(plain, (p - s.first - t * d).norm());
+        plain[j] = std::min(plain[j], (p - s.first - t * d).norm());
       }
+    }
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+      return straight[static_cast<size_t>(a)] < straight[static_cast<size_t>(b)];
+    });
+    float nearest = kFar;
+    for (const int joint : order) {
+      const auto j = static_cast<size_t>(joint);
+      float detour = 0;
       // Ways along a grid are longer than straight ones by a tenth at most.
-      const float detour = std::max(0.0f, body.at(ways, p) - 1.1f * plain - 1.5f * body.size());
-      out.metres(v, static_cast<Eigen::Index>(j)) = straight + kDetour * detour;
+      if (nearest == kFar || straight[j] < kBeyond * (nearest + 0.06f * out.leg))
+        detour = std::max(0.0f, body.at(ways[j], p) - 1.1f * plain[j] - 1.5f * body.size());
+      out.metres(v, joint) = straight[j] + kDetour * detour;
+      nearest = std::min(nearest, out.metres(v, joint));
     }
   }
   return out;
@@ -295,59 +369,30 @@ std::optional<Skirt> find_skirt(const Mesh& mesh, const Joints& joints) {
 
 Eigen::VectorXf big_head(const Mesh& mesh, const Joints& joints) {
   Eigen::VectorXf share = Eigen::VectorXf::Zero(mesh.vertices.rows());
-  if (mesh.is_cloud()) return share;
-  const float leg = leg_length(joints), step = 0.02f * leg;
-  constexpr int kLevels = 100;
-  int crown = -1;
-  for (int v = 0; v < mesh.vertices.rows(); ++v) {
-    const float off = std::abs(mesh.vertices(v, 0) - joints(Head, 0));
-    if (off < 0.25f * leg && (crown < 0 || mesh.vertices(v, 1) > mesh.vertices(crown, 1))) crown = v;
-  }
-  if (crown < 0) return share;
-  const std::vector<float> way = surface_ways(mesh, crown);
-  const std::vector<float> ring = ring_lengths(mesh, way, step, kLevels);
-  // The neck: the narrowest ring before the shoulders.
-  float reach = kFar;
-  for (const int elbow : {LeftElbow, RightElbow}) {
-    Eigen::Index nearest = 0;
-    (mesh.vertices.rowwise() - joints.row(elbow)).rowwise().squaredNorm().minCoeff(&nearest);
-    reach =
-        std::min(reach, way[static_cast<size_t>(nearest)] - 0.25f * bone(joints, elbow - 2, elbow).norm());
-  }
-  const int last = std::min(kLevels, static_cast<int>(std::clamp(reach / step, 0.0f, 1e4f)));
-  int neck = -1;
-  float widest = 0, narrowest = kFar;
-  for (int k = 1; k < last; ++k) {
-    const float length = ring[static_cast<size_t>(k)];
-    if (neck >= 0 && length > 1.3f * narrowest) break;  // the shoulders
-    widest = std::max(widest, length);
-    if (length <= 0 || length > 0.7f * widest || length >= narrowest) continue;
-    narrowest = length;
-    neck = k;
-  }
-  if (neck < 0) return share;
-  const float at_neck = step * static_cast<float>(neck);
-  Vec3 least = Vec3::Constant(kFar), most = Vec3::Constant(-kFar);
+  const auto head = find_big_head(mesh, joints);
+  if (!head) return share;
+  const float step = 0.02f * leg_length(joints);
+  // Hair and chins that hang below the neck are nearer to the crown than the neck is.
+  const std::vector<float> way = surface_ways(mesh, head->crown);
+  float at_neck = kFar;
+  for (Eigen::Index v = 0; v < share.size(); ++v)
+    if ((mesh.vertices.row(v) - head->neck.transpose()).norm() < 6 * step &&
+        std::abs(mesh.vertices(v, 1) - head->neck.y()) < step)
+      at_neck = std::min(at_neck, way[static_cast<size_t>(v)]);
   for (Eigen::Index v = 0; v < share.size(); ++v) {
-    share[v] = 1 - smooth_step(at_neck - 1.5f * step, at_neck + step, way[static_cast<size_t>(v)]);
-    if (share[v] < 0.5f) continue;
-    least = least.cwiseMin(mesh.vertices.row(v).transpose());
-    most = most.cwiseMax(mesh.vertices.row(v).transpose());
+    if (at_neck < kFar)
+      share[v] = 1 - smooth_step(at_neck - 1.5f * step, at_neck, way[static_cast<size_t>(v)]);
+    if (mesh.vertices(v, 0) > head->low_x && mesh.vertices(v, 0) < head->high_x)
+      share[v] =
+          std::max(share[v], smooth_step(head->neck.y(), head->neck.y() + 1.5f * step, mesh.vertices(v, 1)));
   }
-  const bool big = most.x() - least.x() > kBigHead * leg && most.y() - least.y() > kBigHead * leg;
-  const bool alone = most.x() - least.x() < 0.8f * std::abs(joints(LeftElbow, 0) - joints(RightElbow, 0));
-  if (!big || !alone) return Eigen::VectorXf(0 * share);
-  // Ways along edges are rough: what lies over the neck under an overhanging head belongs to it as well.
-  float height = 0, count = 0;
-  for (Eigen::Index v = 0; v < share.size(); ++v)
-    if (std::abs(way[static_cast<size_t>(v)] - at_neck) < 2 * step) height += mesh.vertices(v, 1), ++count;
-  if (count < 1) return share;
-  height /= count;
-  for (Eigen::Index v = 0; v < share.size(); ++v)
-    if (way[static_cast<size_t>(v)] < at_neck + 0.3f * leg && mesh.vertices(v, 0) > least.x() &&
-        mesh.vertices(v, 0) < most.x())
-      share[v] = std::max(share[v], smooth_step(height, height + 1.5f * step, mesh.vertices(v, 1)));
   return share;
+}
+
+std::optional<Vec3> neck_under_big_head(const Mesh& mesh, const Joints& joints) {
+  const auto head = find_big_head(mesh, joints);
+  if (!head) return std::nullopt;
+  return head->neck;
 }
 
 ShapeHints shape_hints(const Mesh& mesh, const Joints& joints) {
@@ -385,15 +430,20 @@ void keep_strongest(RowMatrix& weights) {
   }
 }
 
-RowMatrix geometric_weights(const Mesh& mesh, const BoneDistances& distances, const ShapeHints& hints) {
+RowMatrix weights_by_distance(const BoneDistances& distances) {
   const float least = 0.01f * distances.leg;
-  RowMatrix weights(mesh.vertices.rows(), kJointCount);
+  RowMatrix weights(distances.metres.rows(), kJointCount);
   for (Eigen::Index v = 0; v < weights.rows(); ++v) {
     const float closest = std::max(least, distances.metres.row(v).minCoeff());
     weights.row(v) = (closest / distances.metres.row(v).array().max(closest)).pow(kSharpness);
     weights.row(v) = (weights.row(v).array() < 0.01f).select(0.0f, weights.row(v));
     weights.row(v) /= weights.row(v).sum();
   }
+  return weights;
+}
+
+RowMatrix geometric_weights(const Mesh& mesh, const BoneDistances& distances, const ShapeHints& hints) {
+  RowMatrix weights = weights_by_distance(distances);
   smooth_along(mesh, 0.03f * distances.leg, weights);
   for (Eigen::Index v = 0; v < weights.rows(); ++v) {
     if (hints.skirt) weights.row(v) += hints.skirt->share[v] * (hints.skirt->weights.row(v) - weights.row(v));

@@ -16,6 +16,11 @@ struct BoneDistances {
   float leg = 1;     ///< of the body, metres
 };
 BoneDistances bone_distances(const Mesh& mesh, const Joints& joints);
+/// The same of any points of the body, [K, 22].
+BoneDistances bone_distances(const Mesh& mesh, const Joints& joints, const Points& at);
+
+/// Weights [K, 22] by the inverse of the distances alone, rows sum to 1.
+RowMatrix weights_by_distance(const BoneDistances& distances);
 
 /// Cloth that hangs about both legs.
 struct Skirt {
@@ -27,10 +32,12 @@ struct Skirt {
 /// thighs, and for clouds.
 std::optional<Skirt> find_skirt(const Mesh& mesh, const Joints& joints);
 
-/// How far each vertex belongs to a head much larger than a human's, [V] 0..1, fading at the neck: what of
-/// the surface lies before its narrowest ring, on the way from the crown to the shoulders. All 0 where the
-/// head is of usual size or no neck is seen.
+/// How far each vertex belongs to a head much larger than a human's, [V] 0..1, fading at the neck: the
+/// narrowest slice between crown and shoulders of an upright body. All 0 where the head is of usual size or
+/// no neck is seen, and for clouds.
 Eigen::VectorXf big_head(const Mesh& mesh, const Joints& joints);
+/// The middle of that slice; none where the head is of usual size.
+std::optional<Vec3> neck_under_big_head(const Mesh& mesh, const Joints& joints);
 
 /// What is seen in the shape, besides distances.
 struct ShapeHints {

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "retarget/base/error.hpp"
 #include "retarget/character/body_heading.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr float kSmallestTurn = 8 * kPi / 180;
 constexpr float kBallHeight = 0.25f;     // of the ankle's over the floor
+constexpr float kPelvisSlack = 0.03f;    // of the leg
 constexpr float kRoughDeg = 4;           // joints that were seen, not given, are not better
 constexpr float kRoughSpreadDeg = 1.5f;  // the same of what both legs say together
 
@@ -108,6 +110,24 @@ Joints complete_joints(const BoneMap& map, const Joints& known) {
   return out;
 }
 
+/// A file of ours: bound in the very T-pose that it was performed from.
+bool on_our_joints(const Character& character) {
+  return character.skins.size() == 1 && character.skins[0].name == kOurSkin &&
+         character.skins[0].joints.size() == kJointCount;
+}
+
+/// Rigs keep the bone that they call pelvis anywhere from the floor of the hips to the navel, or in front of
+/// the belly, and it turns alike about any point. The body is led by one between the hips, where people are
+/// seen to have theirs, unless the rig's own lies near it.
+Eigen::RowVector3f pelvis_between(const Joints& known, bool has_own) {
+  const Joints& human = human_rest();
+  const float leg = leg_length(known);
+  Eigen::RowVector3f between = 0.5f * (known.row(LeftHip) + known.row(RightHip));
+  between.y() += leg * (human(Pelvis, 1) - 0.5f * (human(LeftHip, 1) + human(RightHip, 1)));
+  const bool near = has_own && (known.row(Pelvis) - between).norm() < kPelvisSlack * leg;
+  return near ? Eigen::RowVector3f(known.row(Pelvis)) : between;
+}
+
 Joints rig_joints(const PreparedCharacter& c) {
   Points places = Points::Zero(kJointCount, 3);
   for (int j = 0; j < kJointCount; ++j)
@@ -117,7 +137,7 @@ Joints rig_joints(const PreparedCharacter& c) {
                           .transpose();
   const Points moved = c.to_world.apply(places);
   Joints known = moved;
-  if (!c.map.has(Pelvis)) known.row(Pelvis) = 0.5f * (known.row(LeftHip) + known.row(RightHip));
+  if (!on_our_joints(c.character)) known.row(Pelvis) = pelvis_between(known, c.map.has(Pelvis));
   Joints joints = complete_joints(c.map, known);
   // Soles may be thinner than a human's: a ball that the rig lacks stays over them.
   for (const int foot : {LeftFoot, RightFoot})
@@ -179,7 +199,8 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   }
   ImportDecision decision = decide_import(c.surface.mesh, import);
   refit(decision, options.units);
-  US_CHECK(decision.height > 1e-9f && std::isfinite(decision.height), c.character.name, ": has no height");
+  US_CHECK(decision.height > 1e-9f && std::isfinite(decision.height), c.character.called(),
+           ": has no height");
   c.to_world.scale = decision.scale;
   c.to_world.R = decision.axes;
   c.to_world.t = Vec3(0, -decision.floor, 0);
@@ -194,24 +215,13 @@ void note_turns(PreparedCharacter& c) {
                       std::to_string(std::lround(c.pose.largest_deg)) + " degrees");
 }
 
-void turn_rig_forward(PreparedCharacter& c, const CharacterOptions& options) {
-  const float yaw = options.yaw_deg ? -*options.yaw_deg * kPi / 180 : tidy(heading_of_joints(rig_joints(c)));
-  if (std::abs(std::remainder(yaw, 2 * kPi)) > 1e-3f) turn(c, -yaw);
-}
+struct Line {
+  Vec3 middle, along;
+};
 
-void find_in_rig(PreparedCharacter& c) {
-  c.driver = drivers(c);
-  c.weights = gathered_weights(c);
-  c.pose = to_t_pose(rig_joints(c));
-  c.pose_weights = c.weights;
-  Mesh mesh = c.surface.mesh;
-  mesh.vertices = in_t_pose(mesh.vertices, c.weights, c.pose);
-  note_turns(c);
-  c.target = prepare_target(mesh, c.pose.rest);
-}
-
-/// The direction in which points with a weight over 0.8 reach furthest, on the side of `like`.
-Vec3 long_axis(const Points& points, const Eigen::VectorXf& weights, const Vec3& like) {
+/// Through points with a weight over 0.8, in the direction in which they reach furthest, on the side of
+/// `like`; none where they are few.
+std::optional<Line> long_axis(const Points& points, const Eigen::VectorXf& weights, const Vec3& like) {
   Vec3 mean = Vec3::Zero();
   float count = 0;
   for (Eigen::Index v = 0; v < points.rows(); ++v)
@@ -219,7 +229,7 @@ Vec3 long_axis(const Points& points, const Eigen::VectorXf& weights, const Vec3&
       mean += points.row(v).transpose();
       ++count;
     }
-  if (count < 10) return like.normalized();
+  if (count < 10) return std::nullopt;
   mean /= count;
   Mat3 spread = Mat3::Zero();
   for (Eigen::Index v = 0; v < points.rows(); ++v)
@@ -228,27 +238,94 @@ Vec3 long_axis(const Points& points, const Eigen::VectorXf& weights, const Vec3&
       spread += d * d.transpose();
     }
   const Vec3 axis = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(2);
-  return axis.dot(like) < 0 ? Vec3(-axis) : axis;
+  return Line{mean, axis.dot(like) < 0 ? Vec3(-axis) : axis};
+}
+
+/// Rigs made for posing by the feet keep the ankle's bone at the sole, or in front: where shins do not lie
+/// along their bones, it is the shins that stand upright in the T-pose.
+RestPose rest_pose_of_rig(const PreparedCharacter& c) {
+  if (on_our_joints(c.character)) {
+    RestPose bound;
+    bound.bind = bound.rest = rig_joints(c);
+    return bound;
+  }
+  constexpr float kLeast = 3 * kPi / 180;
+  const Joints joints = rig_joints(c);
+  Joints seen = joints;
+  for (const int knee : {LeftKnee, RightKnee}) {
+    const Vec3 bone = (joints.row(knee + 3) - joints.row(knee)).transpose();
+    const auto shin = long_axis(c.surface.mesh.vertices, c.weights.col(knee), bone);
+    if (shin && shin->along.cross(bone.normalized()).norm() > std::sin(kLeast))
+      seen.row(knee + 3) = joints.row(knee) + bone.norm() * shin->along.transpose();
+  }
+  return with_joints(to_t_pose(seen), joints);
+}
+
+void turn_rig_forward(PreparedCharacter& c, const CharacterOptions& options) {
+  const float yaw = options.yaw_deg ? -*options.yaw_deg * kPi / 180 : tidy(heading_of_joints(rig_joints(c)));
+  if (std::abs(std::remainder(yaw, 2 * kPi)) > 1e-3f) turn(c, -yaw);
+}
+
+void find_in_rig(PreparedCharacter& c) {
+  c.driver = drivers(c);
+  c.weights = gathered_weights(c);
+  c.pose = rest_pose_of_rig(c);
+  c.pose_weights = c.weights;
+  Mesh mesh = c.surface.mesh;
+  mesh.vertices = in_t_pose(mesh.vertices, c.weights, c.pose);
+  note_turns(c);
+  c.target = prepare_target(mesh, c.pose.rest);
 }
 
 /// Extracted shoulders of bodies unlike those the network knows are rough, forearms and hands stand free and
 /// can be measured. An arm that is nearly straight is taken as straight, and its shoulder put on its line.
 Joints with_straight_arms(const Mesh& mesh, const Joints& joints) {
   constexpr float kLeast = 15 * kPi / 180, kMost = 60 * kPi / 180;
-  const RowMatrix weights = geometric_weights(mesh, joints);
+  constexpr Eigen::Index kEnough = 4000;
+  const Eigen::Index step = 1 + mesh.vertices.rows() / kEnough;
+  Points some((mesh.vertices.rows() + step - 1) / step, 3);
+  for (Eigen::Index i = 0; i < some.rows(); ++i) some.row(i) = mesh.vertices.row(i * step);
+  const RowMatrix weights = weights_by_distance(bone_distances(mesh, joints, some));
   Joints out = joints;
   for (const int right : {0, 1}) {
     const int shoulder = LeftShoulder + right, elbow = LeftElbow + right, wrist = LeftWrist + right;
-    const Vec3 axis = long_axis(mesh.vertices, weights.col(elbow) + weights.col(wrist),
-                                (joints.row(wrist) - joints.row(elbow)).transpose());
     const Vec3 upper = (joints.row(elbow) - joints.row(shoulder)).transpose();
+    const auto arm = long_axis(some, weights.col(elbow) + weights.col(wrist),
+                               (joints.row(wrist) - joints.row(elbow)).transpose());
+    if (!arm) continue;
+    const Vec3& axis = arm->along;
     const float bend = std::atan2(upper.cross(axis).norm(), upper.dot(axis));
     if (bend < kLeast || bend > kMost) continue;
+    const auto onto_arm = [&](int j) -> Vec3 {
+      return arm->middle + axis * axis.dot(joints.row(j).transpose() - arm->middle);
+    };
     // Relaxed elbows bend forward: seen from the front alone the arm is straight.
     const Vec3 line = Vec3(axis.x(), axis.y(), upper.z() / upper.norm()).normalized();
-    out.row(shoulder) = joints.row(elbow) - upper.norm() * line.transpose();
-    out.row(wrist) = joints.row(elbow) + (joints.row(wrist) - joints.row(elbow)).norm() * axis.transpose();
+    // How far out the shoulder lies is seen better than how high.
+    const Vec3 hinge = onto_arm(elbow);
+    const float out_to = hinge.x() - joints(shoulder, 0);
+    const float length = std::abs(line.x()) > 0.3f ? out_to / line.x() : upper.norm();
+    out.row(shoulder) = (hinge - std::clamp(length, 0.3f * upper.norm(), upper.norm()) * line).transpose();
+    out.row(elbow) = hinge.transpose();
+    out.row(wrist) = onto_arm(wrist).transpose();
   }
+  return out;
+}
+
+/// Networks take a part of a head much larger than a human's for neck and chest.
+Joints with_seen_neck(const Mesh& mesh, const Joints& joints) {
+  const auto neck = neck_under_big_head(mesh, joints);
+  const float bottom = joints(Pelvis, 1), reach = joints(Neck, 1) - bottom;
+  if (!neck || joints(Neck, 1) - neck->y() < 0.05f * leg_length(joints)) return joints;
+  const float share = (neck->y() - bottom) / reach;
+  if (!(share > 0.3f)) return joints;
+  Joints out = joints;
+  for (const int j : {Spine1, Spine2, Spine3, LeftCollar, RightCollar})
+    out(j, 1) = bottom + share * (joints(j, 1) - bottom);
+  for (const int j : {LeftShoulder, RightShoulder})
+    if (joints(j, 1) > neck->y()) out(j, 1) = bottom + share * (joints(j, 1) - bottom);
+  out.row(Neck) = neck->transpose();
+  out.row(Head) += out.row(Neck) - joints.row(Neck);
   return out;
 }
 
@@ -259,13 +336,14 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
   }
   Mesh mesh = c.surface.mesh;
-  const Joints found = with_straight_arms(mesh, prepare_target(mesh, any_pose).joints);
+  const Joints found = with_straight_arms(mesh, with_seen_neck(mesh, prepare_target(mesh, any_pose).joints));
   c.pose = to_t_pose(found, kRoughDeg);
   spread_legs(c.pose, kRoughSpreadDeg);
   c.pose_weights = geometric_weights(mesh, found);
   if (c.pose.largest_deg > 0) mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
   note_turns(c);
   c.target = prepare_target(mesh, t_pose != nullptr ? *t_pose : any_pose);
+  c.target.joints = with_straight_arms(mesh, with_seen_neck(mesh, c.target.joints));
 }
 
 }  // namespace
@@ -289,14 +367,15 @@ std::vector<int> joints_of_nodes(const PreparedCharacter& c) {
 }
 
 PreparedCharacter stand_character(Character character, const CharacterOptions& options) {
-  US_CHECK(character.vertex_count() > 0, character.name, ": holds no mesh");
+  US_CHECK(character.vertex_count() > 0, character.called(), ": holds no mesh");
   PreparedCharacter c;
   c.character = std::move(character);
   // Files are written node by node: the same order here keeps vertices in theirs.
   std::stable_sort(c.character.parts.begin(), c.character.parts.end(),
                    [](const auto& a, const auto& b) { return a.node < b.node; });
   c.bind = bind_pose(c.character);
-  US_CHECK(c.bind.vertices.allFinite(), c.character.name, ": its bind pose has numbers that are not finite");
+  US_CHECK(c.bind.vertices.allFinite(), c.character.called(),
+           ": its bind pose has numbers that are not finite");
   if (options.use_rig) {
     c.map = map_bones(c.character, c.bind.nodes, options.choices);
     c.rigged = c.map.usable();
@@ -311,7 +390,7 @@ PreparedCharacter stand_character(Character character, const CharacterOptions& o
   }
   const Stance stance = stance_of(c.surface.mesh);
   const std::string why_not = refusal(stance), why_doubt = doubt(stance);
-  US_CHECK(why_not.empty(), c.character.name, ": does not look like a person: ", why_not);
+  US_CHECK(why_not.empty(), c.character.called(), ": does not look like a person: ", why_not);
   if (!why_doubt.empty()) c.target.warnings.push_back("the target may be no person: " + why_doubt);
   if (options.yaw_deg && *options.yaw_deg != 0) turn(c, *options.yaw_deg * kPi / 180);
   return c;

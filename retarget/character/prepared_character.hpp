@@ -14,6 +14,9 @@
 
 namespace understudy {
 
+/// The name of the skin on the 22 joints, in files that we write.
+constexpr const char* kOurSkin = "22 joints";
+
 struct CharacterOptions {
   BoneChoices choices;           ///< the user's corrections of the map
   std::string units, up = "y";   ///< as in ImportOptions; empty: guessed

@@ -89,6 +89,12 @@ void spread_legs(RestPose& pose, float tolerance_deg) {
   place_rest(pose);
 }
 
+RestPose with_joints(RestPose pose, const Joints& bind) {
+  pose.bind = bind;
+  place_rest(pose);
+  return pose;
+}
+
 Points in_t_pose(const Points& vertices, const RowMatrix& weights, const RestPose& pose) {
   return linear_blend_skinning(vertices, weights, pose.bind, {pose.to_rest, pose.rest});
 }

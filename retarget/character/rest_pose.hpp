@@ -26,6 +26,9 @@ RestPose to_t_pose(const Joints& bind, float tolerance_deg = 1);
 /// seen, not given: single bones are rough, what both legs say together is not.
 void spread_legs(RestPose& pose, float tolerance_deg);
 
+/// The same turns for joints that lie elsewhere.
+RestPose with_joints(RestPose pose, const Joints& bind);
+
 /// The surface in T-pose: linear blend skinning by `weights` [V, 22].
 Points in_t_pose(const Points& vertices, const RowMatrix& weights, const RestPose& pose);
 

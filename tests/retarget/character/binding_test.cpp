@@ -249,6 +249,58 @@ TEST(GeometricBinding, ABigHeadIsRigidAUsualOneIsLeftAlone) {
   EXPECT_EQ(big_head(bust(joints, 0.11f), joints).maxCoeff(), 0);
 }
 
+TEST(GeometricBinding, TheNeckOfABigHeadIsSeenWhateverTheJointsSay) {
+  Joints joints = standing_joints();
+  const Mesh child = bust(joints, 0.26f);
+  const float chin = joints(Head, 1) - 0.05f;
+  for (const float too_high : {0.0f, 0.2f}) {
+    joints(Neck, 1) += too_high;
+    joints(Head, 1) += too_high;
+    const auto neck = neck_under_big_head(child, joints);
+    ASSERT_TRUE(neck);
+    EXPECT_NEAR(neck->y(), chin - 0.03f, 0.04f);
+  }
+  EXPECT_FALSE(neck_under_big_head(bust(standing_joints(), 0.11f), standing_joints()));
+}
+
+/// A coat so puffy that the gaps between arms and trunk close.
+Mesh puffy_coat(const Joints& j) {
+  const auto at = [&](int joint) -> Vec3 { return j.row(joint).transpose(); };
+  Mesh mesh = tube(
+      at(Neck), at(Pelvis) - Vec3(0, 0.15f, 0), [](float t) { return 0.07f + 0.17f * std::sqrt(t); }, 30);
+  for (const int right : {0, 1})
+    append(mesh, tube(
+                     at(LeftShoulder + right), at(LeftWrist + right), [](float) { return 0.1f; }, 30));
+  return mesh;
+}
+
+TEST(GeometricBinding, APuffyCoatsArmsStayTheArmsAndDoNotTear) {
+  Joints joints = standing_joints();  // arms hang down, 25 degrees from the trunk
+  for (const int right : {0, 1}) {
+    const float side = right == 1 ? -1.0f : 1.0f;
+    const Vec3 down = Vec3(side * std::sin(0.44f), -std::cos(0.44f), 0);
+    for (const int j : {LeftElbow + right, LeftWrist + right}) {
+      const float length = (standing_joints().row(j) - standing_joints().row(j - 2)).norm();
+      joints.row(j) = joints.row(j - 2) + length * down.transpose();
+    }
+  }
+  const Mesh coat = puffy_coat(joints);
+  const RowMatrix weights = geometric_weights(coat, joints);
+  ASSERT_TRUE(weights.rowwise().sum().isApproxToConstant(1, 1e-4f));
+  for (Eigen::Index v = 30 * 12 + 2; v < coat.vertices.rows(); ++v) {
+    const bool left = coat.vertices(v, 0) > 0;
+    const int other = left ? 1 : 0;
+    for (const int j : {LeftCollar, LeftShoulder, LeftElbow, LeftWrist, LeftHip, LeftKnee})
+      EXPECT_LT(weights(v, j + other), 0.01f) << v;
+    // From the elbow on nothing belongs to the trunk that it touches.
+    if (coat.vertices(v, 1) > joints(LeftElbow, 1)) continue;
+    for (const int j : {Pelvis, Spine1, Spine2, Spine3}) EXPECT_LT(weights(v, j), 0.35f) << v;
+  }
+  const RestPose pose = to_t_pose(joints);
+  // Cloth is pushed together over a raised shoulder; an edge torn off the trunk grows some twenty times.
+  EXPECT_LT(largest_stretch(coat, in_t_pose(coat.vertices, weights, pose)), 8);
+}
+
 TEST(GeometricBinding, ASkirtFollowsPelvisAndThighsWithoutTearing) {
   const Joints joints = standing_joints();
   const Mesh mesh = skirted(joints);

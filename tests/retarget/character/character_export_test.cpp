@@ -327,6 +327,54 @@ TEST(CharacterExport, ItsFileOpensAgainAsTheSameCharacter) {
   EXPECT_LT((second.target.mesh.vertices - first.target.mesh.vertices).rowwise().norm().maxCoeff(), 1e-3f);
 }
 
+TEST(CharacterExport, ABareShapesFileOpensAgainAsTheSameShapeAndAnimation) {
+  const TempFolder folder;
+  MadeCharacter made;
+  made.rigged = false;
+  made.arms_down_deg = 3;  // near enough to the T-pose for joints that were seen
+  made.legs_apart_deg = 2;
+  KnownExtractor known(made_joints(made));
+  const PreparedCharacter first = prepare_character(make_character(made), &known, &known);
+  BulgingDeformer screen;
+  screen.bind(first.target.mesh.vertices, first.target.joints);
+  CharacterExportOptions options;
+  options.their_rig = false;
+  const auto poses = made_motion(10, first.target.joints);
+  const Exported out = exported(folder, first, screen, poses, options);
+  const PreparedCharacter second = prepare_character(out.file, nullptr, nullptr);
+  ASSERT_TRUE(second.rigged);
+  EXPECT_LT((second.target.joints - first.target.joints).rowwise().norm().maxCoeff(), 1e-4f);
+  EXPECT_LT((second.target.mesh.vertices - first.target.mesh.vertices).rowwise().norm().maxCoeff(), 1e-4f);
+  const RigDeformer again(second, nullptr);
+  EXPECT_LT(largest_mm(out, second, again, poses), 0.1f);
+}
+
+TEST(PreparedCharacter, IsLedByAPelvisBetweenTheHipsWhereverTheRigHasItsBone) {
+  const PreparedCharacter usual = prepared({});
+  Character odd = make_character({});
+  const int hips = usual.map.node[Pelvis];
+  const Vec3 moved(0, -0.05f, 0.12f);  // in front of the belly
+  odd.nodes[static_cast<size_t>(hips)].local.translation += moved;
+  for (auto& node : odd.nodes)
+    if (node.parent == hips) node.local.translation -= moved;
+  for (auto& skin : odd.skins)
+    for (size_t j = 0; j < skin.joints.size(); ++j)
+      if (skin.joints[j] == hips) skin.inverse_bind[j].topRightCorner<3, 1>() -= moved;
+  const PreparedCharacter character = prepare_character(odd, nullptr, nullptr);
+  EXPECT_LT((character.target.joints - usual.target.joints).rowwise().norm().maxCoeff(), 0.03f);
+  // It performs as it would with its bone in place.
+  const auto poses = made_motion(12, usual.target.joints);
+  auto same = poses;
+  for (auto& pose : same)
+    pose.root += pose.local[Pelvis] *
+                 (character.target.joints.row(Pelvis) - usual.target.joints.row(Pelvis)).transpose();
+  const RigDeformer screen(character, nullptr), before(usual, nullptr);
+  EXPECT_LT((screen.deform(same[7]) - before.deform(poses[7])).rowwise().norm().maxCoeff(), 2e-4f);
+  const TempFolder folder;
+  const Exported out = exported(folder, character, screen, same);
+  EXPECT_LT(largest_mm(out, character, screen, same), 0.1f);
+}
+
 TEST(CharacterExport, ARobotOfHardPartsStaysHard) {
   const TempFolder folder;
   const PreparedCharacter character = prepare_character(make_robot(), nullptr, nullptr);

@@ -94,5 +94,29 @@ TEST(MovedJoints, AreInTheFileOnBothSkeletons) {
   EXPECT_GT(cost_of(character, ours, options).largest_mm, 2);
 }
 
+TEST(MovedJoints, WithPaintedWeightsEightInfluencesAndFewerKeysTheFileShowsTheScreen) {
+  const PreparedCharacter character = prepare_character(make_character(), nullptr, nullptr);
+  CharacterExportOptions options;
+  options.joints = character.target.joints;
+  options.joints->row(LeftElbow) += Vec3(0.03f, 0.02f, 0).transpose();
+  options.influences = 8;
+  BulgingDeformer ours;
+  ours.bind(character.target.mesh.vertices, *options.joints);
+  RigDeformer theirs(character, nullptr);
+  theirs.bind(character.target.mesh.vertices, *options.joints);
+  for (const bool their_rig : {false, true}) {
+    options.their_rig = their_rig;
+    const auto screen =
+        their_rig ? theirs.with_weights(painted(character)) : ours.with_weights(painted(character));
+    options.reduce_mm = 0;
+    const ExportCost full = cost_of(character, *screen, options);
+    options.reduce_mm = 0.5f;
+    const ExportCost fewer = cost_of(character, *screen, options);
+    EXPECT_LT(full.largest_mm, 0.2) << their_rig;
+    EXPECT_LT(fewer.largest_mm, full.largest_mm + 0.55) << their_rig;
+    EXPECT_LT(fewer.keys, full.keys) << their_rig;
+  }
+}
+
 }  // namespace
 }  // namespace understudy::tests
