@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <future>
+#include <thread>
 
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -197,11 +199,19 @@ void one_side(DeformationNet& net, const Tensor& points, const Tensor& rows, con
   // Beyond people's range of sizes the body is seen as one of the nearest size: offsets grow with it.
   const double scale = body_scale(joints).item<double>();
   const double beyond = scale / std::min(1.4, std::max(0.5, scale));
-  for (int64_t from = 0; from < rows.size(0); from += kChunk) {
-    const Tensor chunk = rows.slice(0, from, std::min(from + kChunk, rows.size(0)));
-    const SurfaceFunctions out = net->forward(points.index_select(0, chunk).unsqueeze(0), joints, code);
-    take(chunk, out.log_weights.squeeze(0).exp(), out.basis.squeeze(0) * beyond);
-  }
+  // Nothing else runs while a target is bound: chunks go to two cores. Each writes rows of its own.
+  const auto every_other = [&](int64_t first, int64_t step) {
+    const torch::NoGradGuard no_grad;  // of this thread
+    for (int64_t from = first * kChunk; from < rows.size(0); from += step * kChunk) {
+      const Tensor chunk = rows.slice(0, from, std::min(from + kChunk, rows.size(0)));
+      const SurfaceFunctions out = net->forward(points.index_select(0, chunk).unsqueeze(0), joints, code);
+      take(chunk, out.log_weights.squeeze(0).exp(), out.basis.squeeze(0) * beyond);
+    }
+  };
+  if (rows.size(0) <= 2 * kChunk || std::thread::hardware_concurrency() < 2) return every_other(0, 1);
+  auto other = std::async(std::launch::async, every_other, 1, 2);
+  every_other(0, 2);
+  other.get();
 }
 
 }  // namespace
