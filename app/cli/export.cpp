@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <thread>
 
 #include "app/cli/commands.hpp"
@@ -17,7 +18,6 @@
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/character/bone_choices.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
@@ -30,8 +30,9 @@ struct ExportOptions {
   std::string document;            // empty: --source and --target
   std::vector<std::string> takes;  // by name, or number from 1; empty: the first
   std::vector<std::string> sources;
-  std::string format, out, map_file, preview, report;
-  SourceOptions source;  // what all sources share
+  std::string format, out, preview, report;
+  std::string not_of_documents;  // a given option that a document answers itself
+  SourceOptions source;          // what all sources share
   TargetOptions target;
   CharacterExportOptions file;
   RetargetOptions retarget;
@@ -125,8 +126,8 @@ std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& d
 
 /// The document's takes as the studio shows them: its edits, its corrections of joints and weights.
 Performance perform_document(const ExportOptions& options, const ExportFormatInfo& format) {
-  US_CHECK(options.sources.empty() && options.target.path.empty(), options.document,
-           ": a document has its own source and target");
+  US_CHECK(options.not_of_documents.empty(), options.document, ": a document has its own source and target, ",
+           options.not_of_documents, " is for others");
   StudioServices services;
   services.networks = studio_services(options.networks.weights).networks;
   Studio studio(std::move(services));
@@ -220,8 +221,7 @@ int print_map(const ExportOptions& options) {
   return 0;
 }
 
-int run_export(ExportOptions options) {
-  if (!options.map_file.empty()) options.target.bones = read_bone_choices(options.map_file);
+int run_export(const ExportOptions& options) {
   if (options.print_map) return print_map(options);
   US_CHECK(!options.out.empty(), "--out: a file to write is wanted");
   const ExportFormatInfo& format = info_of(export_format(options.format, options.out));
@@ -247,10 +247,6 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
     formats += std::string(formats.empty() ? "" : ", ") + info.name;
   command.add_option("--format", options.format,
                      formats + " (default: by the suffix; ply and obj are folders)");
-  command
-      .add_option("--rig", options.target.rig,
-                  "theirs: the character's own skeleton; ours: 22 joints (default: theirs, if any)")
-      ->check(CLI::IsMember({"auto", "theirs", "ours"}));
   command.add_option("--influences", options.file.influences, "bones a vertex on our rig: 4 or 8")
       ->check(CLI::IsMember({4, 8}));
   command.add_option("--morphs", options.file.shapes, "morph targets for the pose-corrective offsets")
@@ -262,6 +258,19 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
   command.add_flag("--keep-clips", options.file.keep_clips, "keep the file's own animations");
   command.add_option("--frames", options.frames, "only so many frames of each source")
       ->check(CLI::Range(1, 100000000));
+}
+
+/// Empty: none was given.
+std::string first_not_of_documents(const CLI::App& command) {
+  static const std::set<std::string> kOfDocuments = {
+      "DOCUMENT",      "--help",       "--take",    "--out",    "--format",
+      "--rig",         "--influences", "--morphs",  "--reduce", "--in-place",
+      "--t-pose-clip", "--keep-clips", "--preview", "--report", "--weights"};
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && kOfDocuments.count(option->get_single_name()) == 0 &&
+        kOfDocuments.count("--" + option->get_single_name()) == 0)
+      return option->get_name();
+  return {};
 }
 
 }  // namespace
@@ -276,18 +285,18 @@ Action declare_export(CLI::App& command) {
   command.add_option("--target", options->target.path,
                      "a character: GLB, glTF, FBX, DAE, OBJ, PLY, OFF, STL");
   command.add_option("--out", options->out, "the file, or the folder of a sequence");
-  command.add_option("--map", options->map_file, R"(JSON that names bones: {"left_wrist": "Hand.L"})");
   command.add_flag("--print-map", options->print_map, "show which bone is which joint, and stop");
   command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");
   command.add_option("--report", options->report, "what it costs, as JSON");
-  ImportOptions& import = options->target.import;
-  command.add_option("--target-units", import.units, "the character's units: auto, m, dm, cm, mm, in");
-  command.add_option("--target-up", import.up, "the character's up axis: auto, y (default), z, ...");
-  command.add_option("--target-yaw", import.yaw_deg, "turns the character, degrees (default: to the front)");
   add_source_options(command, options->source);
+  add_target_options(command, options->target);
+  add_performance_options(command, options->retarget);
   add_file_options(command, *options);
   add_network_options(command, options->networks);
-  return [options] { return run_export(*options); };
+  return [options, &command] {
+    options->not_of_documents = first_not_of_documents(command);
+    return run_export(*options);
+  };
 }
 
 }  // namespace understudy::app

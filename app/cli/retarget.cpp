@@ -7,6 +7,16 @@
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {
+
+void add_performance_options(CLI::App& command, RetargetOptions& performance) {
+  command.add_option("--root", performance.root.mode, "path: scaled by leg length, original, in-place")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, RootMode>{{"scaled", RootMode::Scaled},
+                                                                          {"original", RootMode::Original},
+                                                                          {"in-place", RootMode::InPlace}},
+                                          CLI::ignore_case));
+  command.add_flag("!--no-foot-lock", performance.lock_feet, "standing feet may slide");
+}
+
 void add_network_options(CLI::App& command, nn::NetworkOptions& networks) {
   command.add_option("--engine", networks.engine, "motion transfer: copy, paper or hybrid")
       ->check(CLI::IsMember({"copy", "paper", "hybrid"}));
@@ -35,12 +45,7 @@ Action declare_retarget(CLI::App& command) {
       ->required();
   add_target_options(command, job->target);
   add_network_options(command, job->networks);
-  command.add_option("--root", job->retarget.root.mode, "path: scaled by leg length, original, in-place")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, RootMode>{{"scaled", RootMode::Scaled},
-                                                                          {"original", RootMode::Original},
-                                                                          {"in-place", RootMode::InPlace}},
-                                          CLI::ignore_case));
-  command.add_flag("!--no-foot-lock", job->retarget.lock_feet, "standing feet may slide");
+  add_performance_options(command, job->retarget);
   command.add_option(
       "--out", job->out,
       "the animated target: .glb, .gltf, .bvh, .pc2, .csv of joints, or .npz with all figures");

@@ -108,8 +108,12 @@ TEST_F(ExportCommand, ADocumentThatCannotBeExportedIsASentence) {
   expect_clean_failure(run_program({"export", document, "--take", "2", "--out", out("a.glb")}), "no take 2");
   expect_clean_failure(run_program({"export", document, "--rig", "theirs", "--out", out("a.glb")}),
                        "bones of its own");
-  expect_clean_failure(run_program({"export", document, "--target", target(), "--out", out("a.glb")}),
-                       "its own source and target");
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--target", target()}, {"--root", "original"}, {"--no-foot-lock"}}) {
+    std::vector<std::string> arguments = {"export", document, "--out", out("a.glb")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_clean_failure(run_program(arguments), "its own source and target, " + more[0] + " is for others");
+  }
   std::string text = read_bytes(document);
   text.replace(text.find("scans"), 5, "gone!");
   write_text(scratch.path("moved.understudy"), text);
@@ -148,12 +152,35 @@ TEST_F(ExportCommand, EveryFormatIsWrittenWithoutAWindow) {
   }
 }
 
+TEST_F(ExportCommand, PerformsAsRetargetDoesWithTheSameOptions) {
+  const std::string path = character();
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--root", "in-place"},
+                                                  {"--root", "original", "--no-foot-lock"},
+                                                  {"--target-yaw", "0", "--fps", "50", "--engine", "copy"}}) {
+    std::vector<std::string> exported = {"--out", out("export.bvh")},
+                             retargeted = {"--out", out("retarget.bvh")};
+    exported.insert(exported.end(), options.begin(), options.end());
+    retargeted.insert(retargeted.end(), options.begin(), options.end());
+    retargeted.insert(retargeted.begin(), {"retarget", "--source", scans(), "--target", path});
+    const Finished one = run(path, exported), other = run_program(retargeted);
+    ASSERT_EQ(one.code, 0) << one.err;
+    ASSERT_EQ(other.code, 0) << other.err;
+    EXPECT_EQ(read_bytes(out("export.bvh")), read_bytes(out("retarget.bvh"))) << options[1];
+  }
+}
+
 TEST_F(ExportCommand, SaysWhatIsWrong) {
   const std::string path = character();
   std::ofstream(scratch.path("twice.json")) << R"({"head": "mixamorig:Neck", "neck": "mixamorig:Neck"})";
   std::ofstream(scratch.path("list.json")) << "[1]";
   expect_clean_failure(run(path, {"--out", out("a.fbx")}), "use .glb, .gltf, .bvh");
   expect_clean_failure(run(path, {"--out", out("a.glb"), "--map", scratch.path("twice.json")}), "to both");
+  std::ofstream(scratch.path("none.json")) << R"({"head": "Nobody"})";
+  expect_clean_failure(run(path, {"--out", out("a.glb"), "--map", scratch.path("none.json")}),
+                       "made.glb: the map names a bone 'Nobody'");
+  expect_clean_failure(run_program({"export", "--source", path, "--source-map", scratch.path("none.json"),
+                                    "--target", target(), "--out", out("a.glb")}),
+                       "made.glb: ");
   expect_clean_failure(run(path, {"--out", out("a.glb"), "--map", scratch.path("list.json")}),
                        "no map of bones");
   expect_clean_failure(run(target(), {"--out", out("a.glb"), "--rig", "theirs"}), "has no skeleton");
