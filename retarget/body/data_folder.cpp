@@ -39,6 +39,11 @@ DataSplit split_of(const fs::path& root, const json& all, const std::string& nam
   return split;
 }
 
+/// Whether all are numbers from 0 to below `count`.
+bool all_below(const RowMatrix& values, Eigen::Index count) {
+  return values.allFinite() && (values.array() >= 0 && values.array() < static_cast<float>(count)).all();
+}
+
 }  // namespace
 
 DataSplit read_split(const std::string& folder, const std::string& name) {
@@ -59,7 +64,6 @@ ShapedBody read_dressed_body(const std::string& path) {
   const Npz npz = read_npz(path);
   ShapedBody body;
   body.vertices = require(npz, "vertices", path).matrix(3, path);
-  body.faces = require(npz, "faces", path).matrix(3, path).cast<int>();
   const RowMatrix joints = require(npz, "joints", path).matrix(3, path);
   US_CHECK(joints.rows() == kJointCount, path, ": ", joints.rows(), " joints, not ", kJointCount);
   body.joints = joints;
@@ -68,10 +72,10 @@ ShapedBody read_dressed_body(const std::string& path) {
   const Eigen::Index count = body.vertices.rows();
   US_CHECK(owner.rows() == count && weight.rows() == count, path, ": weights do not fit ", count,
            " vertices");
-  US_CHECK(body.faces.size() == 0 || (body.faces.minCoeff() >= 0 && body.faces.maxCoeff() < count), path,
-           ": a face names a vertex that is not there");
-  US_CHECK(owner.minCoeff() >= 0 && owner.maxCoeff() < kJointCount, path,
-           ": a weight names a joint that is not there");
+  const RowMatrix corners = require(npz, "faces", path).matrix(3, path);
+  US_CHECK(all_below(corners, count), path, ": a face names a vertex that is not there");
+  body.faces = corners.cast<int>();
+  US_CHECK(all_below(owner, kJointCount), path, ": a weight names a joint that is not there");
   body.weights = RowMatrix::Zero(count, kJointCount);
   for (Eigen::Index v = 0; v < count; ++v)
     for (int k = 0; k < 4; ++k) body.weights(v, static_cast<int>(owner(v, k))) += weight(v, k);

@@ -30,13 +30,13 @@ void on_malloc(const volatile void*, size_t size) {
   std::abort();
 }
 
-/// Text becomes numbers, numbers doubles, and lists grow by doubling: all within this times the file's size.
-/// libzip makes room for the 65,535 entries that an archive may name.
-constexpr size_t kOfFile = 64, kSmall = 4 << 20, kLargest = size_t{3} << 30;
+/// What a reader may take whatever it reads: buffers of streams, tables of the decoders of packed data
+/// (libpng, zlib, JPEG), and what is looked at of a file at once.
+constexpr size_t kWhatever = 256 << 10, kLargest = size_t{3} << 30;
 
+/// Four times what the input declares: lists grow by doubling, and what is made of them is as large again.
 size_t limit_for(const std::string& bytes) {
-  const size_t declared = std::min(reader->declared(bytes), kLargest);
-  return std::min(4 * declared + kOfFile * bytes.size() + kSmall, kLargest);
+  return std::min(4 * std::min(reader->declared(bytes), kLargest) + kWhatever, kLargest);
 }
 
 }  // namespace

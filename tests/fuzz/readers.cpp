@@ -10,15 +10,23 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/cli/report_rows.hpp"
+#include "app/run/case_folder.hpp"
 #include "app/session/commands.hpp"
 #include "app/session/document_file.hpp"
 #include "app/session/document_text.hpp"
+#include "app/session/settings.hpp"
 #include "app/studio/event_text.hpp"
 #include "app/studio/key_chord.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/body/body.hpp"
+#include "retarget/body/data_folder.hpp"
 #include "retarget/character/bone_choices.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/character/import_process.hpp"
 #include "retarget/character/obj_character.hpp"
+#include "retarget/character/pixels.hpp"
+#include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/gltf_mesh.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
@@ -30,6 +38,8 @@
 #include "retarget/formats/stl.hpp"
 #include "retarget/formats/xyz.hpp"
 #include "retarget/motion/bvh.hpp"
+#include "retarget/motion/read_motion.hpp"
+#include "retarget/nn/weights_layout.hpp"
 
 namespace understudy::fuzz {
 namespace {
@@ -56,8 +66,17 @@ void any_mesh(const std::string& bytes) {
   check_mesh(parse_mesh(bytes, "x"));
 }
 
-size_t nothing_packed(const std::string&) {
-  return 0;
+// What the bytes say they hold, once decoded. Text and JSON say it by their length: no text is denser than
+// lists of two characters an element ("1,", "a "), and an element takes eight bytes a character at most (a
+// JSON value or a view of a word: sixteen). Bytes that stand for themselves become floats: four for each.
+constexpr size_t kOfText = 8, kOfBytes = 4;
+
+size_t text_size(const std::string& bytes) {
+  return kOfText * bytes.size();
+}
+
+size_t bytes_size(const std::string& bytes) {
+  return kOfBytes * bytes.size();
 }
 
 /// A file in a folder of this process, for readers that want a path.
@@ -113,7 +132,40 @@ void gltf_scan(const std::string& bytes) {
   check_mesh(parse_gltf(bytes, nowhere()));
 }
 
-// Of the largest accessor, and of the pictures and buffers inside, which are part of the file.
+double number_in(const nlohmann::json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  return object.is_object() && found != object.end() && found->is_number() ? found->get<double>() : 0;
+}
+
+// Four bytes for every number of an accessor.
+double accessor_size(const nlohmann::json& accessors, double index) {
+  if (!accessors.is_array() || !(index >= 0 && index < static_cast<double>(accessors.size()))) return 0;
+  const auto& accessor = accessors[static_cast<size_t>(index)];
+  const std::string type = accessor.is_object() && accessor.contains("type") && accessor["type"].is_string()
+                               ? accessor["type"]
+                               : "";
+  const double parts = type == "MAT4" ? 16 : type == "MAT3" ? 9 : type.rfind("VEC", 0) == 0 ? 4 : 1;
+  return 4 * parts * number_in(accessor, "count");
+}
+
+// Of a mesh: its corners' and vertices' accessors, each as often as it is named.
+double mesh_size(const nlohmann::json& root, double index) {
+  if (!root.contains("meshes") || !root["meshes"].is_array() || !root.contains("accessors")) return 0;
+  const auto& meshes = root["meshes"];
+  if (!(index >= 0 && index < static_cast<double>(meshes.size()))) return 0;
+  const auto& mesh = meshes[static_cast<size_t>(index)];
+  if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) return 0;
+  double sum = 0;
+  for (const auto& primitive : mesh["primitives"]) {
+    sum += accessor_size(root["accessors"], number_in(primitive, "indices"));
+    if (primitive.is_object() && primitive.contains("attributes") && primitive["attributes"].is_object())
+      for (const auto& attribute : primitive["attributes"])
+        if (attribute.is_number()) sum += accessor_size(root["accessors"], attribute.get<double>());
+  }
+  return sum;
+}
+
+// The text and the bytes, every accessor, and every mesh as often as nodes show it.
 size_t declared_by_gltf(const std::string& bytes) {
   std::string_view text = bytes;
   if (text.substr(0, 4) == "glTF" && text.size() > 20) {
@@ -122,16 +174,15 @@ size_t declared_by_gltf(const std::string& bytes) {
     text = text.substr(20, size);
   }
   const auto root = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
-  if (!root.is_object() || !root.contains("accessors") || !root["accessors"].is_array()) return 0;
-  double largest = 0;
-  for (const auto& accessor : root["accessors"]) {
-    if (!accessor.is_object() || !accessor.contains("count") || !accessor["count"].is_number()) continue;
-    const std::string type =
-        accessor.contains("type") && accessor["type"].is_string() ? accessor["type"] : "";
-    const double parts = type == "MAT4" ? 16 : type == "MAT3" ? 9 : type.rfind("VEC", 0) == 0 ? 4 : 1;
-    largest = std::max(largest, 4 * parts * accessor["count"].get<double>());
-  }
-  return static_cast<size_t>(std::min(largest, 1e18));
+  double sum = static_cast<double>(text_size(bytes));
+  if (!root.is_object()) return static_cast<size_t>(sum);
+  if (root.contains("accessors"))
+    for (size_t i = 0; i < root["accessors"].size(); ++i)
+      sum += accessor_size(root["accessors"], static_cast<double>(i));
+  if (root.contains("nodes") && root["nodes"].is_array())
+    for (const auto& node : root["nodes"])
+      if (node.is_object() && node.contains("mesh")) sum += mesh_size(root, number_in(node, "mesh"));
+  return static_cast<size_t>(std::min(sum, 1e18));
 }
 
 // The text of a .mtl follows the line "#mtl".
@@ -172,26 +223,133 @@ void npz_frames(const std::string& bytes) {
   frames_of(ScratchFile("x.npz", bytes).path());
 }
 
-// The unpacked sizes in the archive's directory.
+// The unpacked sizes in the archive's directory, which become floats, and libzip's table of as many entries
+// as the directory's end announces. Where there are more, it makes room for 65,536 at once: 2 MiB at most, no
+// more for being asked to take four times what is declared.
 size_t declared_by_zip(const std::string& bytes) {
-  size_t sum = 0;
+  constexpr size_t kEntry = 32, kMoreEntries = 65536;
+  size_t sum = bytes_size(bytes), entries = 0;
   for (size_t at = bytes.find("PK\x01\x02"); at != bytes.npos && at + 28 <= bytes.size();
        at = bytes.find("PK\x01\x02", at + 4)) {
     uint32_t size = 0;
     std::memcpy(&size, bytes.data() + at + 24, 4);
-    sum += size;
+    sum += kOfBytes * size;
   }
-  return sum;
+  for (size_t at = bytes.find("PK\x05\x06"); at != bytes.npos && at + 12 <= bytes.size();
+       at = bytes.find("PK\x05\x06", at + 4)) {
+    uint16_t count = 0;
+    std::memcpy(&count, bytes.data() + at + 10, 2);
+    entries = std::max<size_t>(entries, count);
+  }
+  return sum + kEntry * entries + kEntry * kMoreEntries / 4;
 }
 
 // The unpacked size that stands before a compressed body.
 size_t declared_by_pcd(const std::string& bytes) {
   const size_t line = bytes.find("binary_compressed");
   const size_t body = line == bytes.npos ? line : bytes.find('\n', line);
-  if (body == bytes.npos || body + 9 > bytes.size()) return 0;
+  if (body == bytes.npos || body + 9 > bytes.size()) return text_size(bytes);
   uint32_t size = 0;
   std::memcpy(&size, bytes.data() + body + 5, 4);
-  return size;
+  return text_size(bytes) + size;
+}
+
+// Any mesh: the largest of what each format takes them for.
+size_t declared_by_mesh(const std::string& bytes) {
+  return std::max(declared_by_gltf(bytes), declared_by_pcd(bytes));
+}
+
+size_t declared_by_picture(const std::string& bytes) {
+  return bytes.size() + static_cast<size_t>(decoded_size(bytes));
+}
+
+// On a square, by every corner of it.
+void picture(const std::string& bytes) {
+  Character character;
+  character.name = "x";
+  character.nodes.push_back({});
+  character.images.push_back({"x", "image/png", bytes});
+  character.textures = {R"({"source":0})"};
+  character.materials = {R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"};
+  CharacterPart part;
+  part.vertices.setRandom(4, 3);
+  part.node = part.material = 0;
+  part.uvs.push_back(RowMatrix::Zero(4, 2));
+  part.uvs[0] << 0, 0, 1, 0, 0.5f, 0.99f, -7, 1e30f;
+  character.parts.push_back(part);
+  const Points colors = vertex_colors(character);
+  must(colors.rows() == 0 || colors.allFinite(), "colours are numbers");
+}
+
+void weights(const std::string& bytes) {
+  for (const auto& [name, tensor] : nn::parse_weights(bytes, "x.weights").tensors) {
+    int64_t count = 1;
+    for (const int64_t extent : tensor.shape) count *= extent;
+    must(static_cast<int64_t>(tensor.bytes.size()) == count * (tensor.half ? 2 : 4),
+         "tensors have their bytes");
+    uint8_t sum = 0;
+    for (const char byte : tensor.bytes) sum = static_cast<uint8_t>(sum + static_cast<uint8_t>(byte));
+    must(sum + 1 > 0, "they can be read");
+  }
+}
+
+void amass(const std::string& bytes) {
+  const auto character = read_motion(ScratchFile("m.npz", bytes).path());
+  if (!character) return;
+  must(character->animations.size() == 1, "one motion");
+  nodes_at(*character, 0, character->animations[0].duration() / 3);
+}
+
+void body(const std::string& bytes) {
+  const Body read = read_smpl_body(ScratchFile("b.npz", bytes).path());
+  check_mesh({posed_vertices(read.shaped(Eigen::VectorXf()), Pose()), read.faces});
+}
+
+void dressed_body(const std::string& bytes) {
+  const ShapedBody read = read_dressed_body(ScratchFile("d.npz", bytes).path());
+  check_mesh({posed_vertices(read, Pose()), read.faces});
+}
+
+void truth(const std::string& bytes) {
+  const app::Truth read = app::read_truth(ScratchFile("t.npz", bytes).path());
+  if (read.vertex_count > 0) read.frame_vertices(read.frames - 1);
+}
+
+void test_case(const std::string& bytes) {
+  const ScratchFile file("case.json", bytes);
+  app::read_case(std::filesystem::path(file.path()).parent_path().string());
+}
+
+// The people that a good split names are beside it.
+void splits(const std::string& bytes) {
+  const ScratchFile file("splits.json", bytes), people("betas.npz", "");
+  NpyArray betas;
+  betas.shape = {2, 1};
+  betas.values = {0, 1};
+  write_npz(people.path(), {{"betas", betas}});
+  read_split(std::filesystem::path(file.path()).parent_path().string(), "dev");
+}
+
+void report_rows(const std::string& bytes) {
+  app::read_report_rows(ScratchFile("rows.json", bytes).path());
+}
+
+void settings(const std::string& bytes) {
+  const app::Settings read = app::read_settings(ScratchFile("settings.json", bytes).path());
+  must(read.scale >= 0 && read.cache_mb >= 64 && read.window_width > 0, "settings are in their ranges");
+}
+
+// One frame is beside the list; what else it names is missing.
+void scan_list(const std::string& bytes) {
+  const ScratchFile frame("a.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  frames_of(ScratchFile("x.lst", bytes).path());
+}
+
+// What the process that reads FBX and DAE says when it fails; what it makes is a GLB, and read as any other.
+void worker_words(const std::string& bytes) {
+  const std::string words = last_words(bytes);
+  must(words.size() <= 200, "words are short");
+  for (const char c : words) must(c >= ' ' && c <= '~', "words can be shown");
 }
 
 void document(const std::string& bytes) {
@@ -238,22 +396,34 @@ void bone_choices(const std::string& bytes) {
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> all = {{"gltf", gltf_character, declared_by_gltf},
                                           {"gltf_scan", gltf_scan, declared_by_gltf},
-                                          {"obj", obj_character, nothing_packed},
-                                          {"obj_scan", mesh<parse_obj>, nothing_packed},
-                                          {"ply", mesh<parse_ply>, nothing_packed},
-                                          {"off", mesh<parse_off>, nothing_packed},
-                                          {"stl", mesh<parse_stl>, nothing_packed},
-                                          {"xyz", mesh<parse_xyz>, nothing_packed},
+                                          {"obj", obj_character, text_size},
+                                          {"obj_scan", mesh<parse_obj>, text_size},
+                                          {"ply", mesh<parse_ply>, text_size},
+                                          {"off", mesh<parse_off>, text_size},
+                                          {"stl", mesh<parse_stl>, text_size},
+                                          {"xyz", mesh<parse_xyz>, text_size},
                                           {"pcd", mesh<parse_pcd>, declared_by_pcd},
-                                          {"any_mesh", any_mesh, declared_by_gltf},
-                                          {"npy", npy, nothing_packed},
-                                          {"npy_frames", npy_frames, nothing_packed},
+                                          {"any_mesh", any_mesh, declared_by_mesh},
+                                          {"npy", npy, bytes_size},
+                                          {"npy_frames", npy_frames, bytes_size},
                                           {"npz", npz, declared_by_zip},
                                           {"npz_frames", npz_frames, declared_by_zip},
-                                          {"bvh", bvh, nothing_packed},
-                                          {"document", document, nothing_packed},
-                                          {"script", script, nothing_packed},
-                                          {"bone_map", bone_choices, nothing_packed}};
+                                          {"amass", amass, declared_by_zip},
+                                          {"body", body, declared_by_zip},
+                                          {"dressed_body", dressed_body, declared_by_zip},
+                                          {"truth", truth, declared_by_zip},
+                                          {"bvh", bvh, text_size},
+                                          {"picture", picture, declared_by_picture},
+                                          {"weights", weights, text_size},
+                                          {"worker_words", worker_words, bytes_size},
+                                          {"document", document, text_size},
+                                          {"script", script, text_size},
+                                          {"bone_map", bone_choices, text_size},
+                                          {"scan_list", scan_list, text_size},
+                                          {"case", test_case, text_size},
+                                          {"splits", splits, text_size},
+                                          {"report_rows", report_rows, text_size},
+                                          {"settings", settings, text_size}};
   return all;
 }
 
