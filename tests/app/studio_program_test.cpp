@@ -11,6 +11,7 @@
 #include "render/image.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/app/program.hpp"
+#include "tests/app/sample_files.hpp"
 
 namespace understudy::tests {
 namespace {
@@ -87,6 +88,34 @@ TEST_F(StudioProgram, SaysThatThereIsNoDisplay) {
   options.environment = {"DISPLAY=", "WAYLAND_DISPLAY=", "UNDERSTUDY_CONFIG=" + scratch.path("config"),
                          "UNDERSTUDY_STATE=" + scratch.path("state")};
   expect_sentence(run_program({"studio"}, options), "display");
+}
+
+TEST_F(StudioProgram, TakesAreClipsByteForByteAsTheCommandLineMakesThem) {
+  for (const char* name : {"walk", "again"}) write_scans(scratch.path(name), 6);
+  write_target(scratch.path("body.obj"));
+  const std::string document = scratch.path("two.understudy"), studio = scratch.path("studio.glb");
+  const Finished run =
+      play("open " + scratch.path("walk") + " " + scratch.path("body.obj") +
+               "\nwait_value seen_takes = 1\nwait\ncompare.add 0\ntake.rename 0 walk\ntake.rename 1 again\n"
+               "wait\nexport.run 0 " +
+               studio + " take=again\nwait\ndocument.save_as " + document + "\n",
+           {"--context", "null"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto exported = [&](std::vector<std::string> arguments, const std::string& out) {
+    arguments.insert(arguments.begin(), "export");
+    arguments.insert(arguments.end(), {"--out", out});
+    const Finished done = run_program(arguments);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return read_bytes(out);
+  };
+  const std::string bytes = read_bytes(studio);
+  ASSERT_GT(bytes.size(), 1000u);
+  EXPECT_TRUE(bytes == exported({document, "--take", "walk", "--take", "2"}, scratch.path("document.glb")));
+  EXPECT_TRUE(bytes == exported({"--source", scratch.path("walk"), "--source", scratch.path("again"),
+                                 "--target", scratch.path("body.obj")},
+                                scratch.path("sources.glb")));
+  expect_sentence(run_program({"export", document, "--take", "fly", "--out", scratch.path("x.glb")}),
+                  "there is no take 'fly', only 1 walk, 2 again");
 }
 
 TEST_F(StudioProgram, RecoversTheWorkAfterItWasKilled) {

@@ -270,7 +270,8 @@ void Views::Impl::draw_picture(const Frame& f, Pane& pane) {
 }
 
 bool Views::Impl::moving(const Session& session) const {
-  const bool live = session.working && !session.paused && session.playback.live;
+  const bool live =
+      session.working && !session.paused && session.playback.live && app::shown_frame(session) >= 0;
   const bool steering = under != nullptr && (pointer.held || pointer.turning || pointer.panning);
   return session.playback.playing || live || steering || hand.busy() || session.view.turntable_deg_s != 0;
 }
