@@ -108,6 +108,14 @@ Truth read_truth(const std::string& path) {
   truth.joints = joint_frames(frames_of(npz, "joints", {kJointCount, 3}, path, truth.frames));
   truth.source_joints = joint_frames(frames_of(npz, "source_joints", {kJointCount, 3}, path, truth.frames));
   truth.rotations = rotation_frames(frames_of(npz, "rotations", {kJointCount, 3, 3}, path, truth.frames));
+  if (const auto* values = frames_of(npz, "source_gaps", {2, kTouchedParts}, path, truth.frames))
+    for (size_t i = 0; i < values->size(); i += 2 * kTouchedParts) {
+      HandGaps& gaps = truth.source_gaps.emplace_back();
+      for (size_t k = 0; k < 2 * kTouchedParts; ++k)
+        gaps[k / kTouchedParts][k % kTouchedParts] = (*values)[i + k];
+    }
+  if (const auto* values = frames_of(npz, "source_buried", {}, path, truth.frames))
+    truth.source_buried = *values;
   const auto rest = npz.find("target_joints");
   if (rest != npz.end()) {
     US_CHECK(rest->second.shape == (std::vector<int64_t>{kJointCount, 3}), path,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/metrics/hand_contact.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::app {
@@ -27,6 +28,8 @@ struct Truth {
   std::vector<Joints> joints, source_joints;
   std::vector<Rotations> rotations;  ///< local
   std::optional<Joints> target_joints;
+  std::vector<HandGaps> source_gaps;  ///< [T, 2, 5] metres: what the source's hands touch
+  std::vector<float> source_buried;   ///< [T] share of the source's hands and forearms inside its own body
   /// The vertices of one frame, [V, 3].
   Points frame_vertices(int64_t t) const;
 };

@@ -17,6 +17,7 @@
 #include "retarget/body/data_folder.hpp"
 #include "retarget/body/exact_body.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/metrics/hand_contact.hpp"
 
 namespace understudy::app {
 namespace {
@@ -244,6 +245,22 @@ ExactMotion turned_motion(Workshop& shop, const CasePlan& plan) {
   return motion;
 }
 
+/// What the source's hands touch, and how far its arms are in its own body.
+void add_touching(const ExactPerson& source, const Performance& shown, Npz& truth) {
+  const HandContact contact(source.vertices.cast<float>(), source.faces, source.joints.cast<float>());
+  NpyArray gaps, buried;
+  for (const Points64& vertices : shown.vertices) {
+    const Points posed = vertices.cast<float>();
+    for (const auto& hand : contact.gaps(posed))
+      gaps.values.insert(gaps.values.end(), hand.begin(), hand.end());
+    buried.values.push_back(static_cast<float>(contact.buried(posed)));
+  }
+  gaps.shape = {static_cast<int64_t>(shown.vertices.size()), 2, kTouchedParts};
+  buried.shape = {static_cast<int64_t>(shown.vertices.size())};
+  truth["source_gaps"] = std::move(gaps);
+  truth["source_buried"] = std::move(buried);
+}
+
 /// The target's file and truth: the source's path from where it starts, scaled by leg length.
 void add_target(const Workshop& shop, const CasePlan& plan, const Performance& shown, double source_leg,
                 ExactMotion motion, const fs::path& folder, Npz& truth) {
@@ -272,7 +289,10 @@ void make_case(Workshop& shop, const CasePlan& plan) {
   Npz truth{{"rotations", rotations_array(motion.local)},
             {"source_joints", frames_array(shown.joints, {kJointCount, 3})}};
   const bool performed = plan.target || !plan.dressed_target.empty();
-  if (performed) add_target(shop, plan, shown, source.leg(), motion, folder, truth);
+  if (performed) {
+    add_target(shop, plan, shown, source.leg(), motion, folder, truth);
+    add_touching(source, shown, truth);
+  }
   for (size_t t = 0; t < shown.vertices.size(); ++t) {
     const auto count = static_cast<int64_t>(shop.options.points * shop.random.uniform(0.8, 1.2));
     const auto scan = shop.options.suite == "captured" ? captured : surface;

@@ -18,6 +18,8 @@ void put(Metrics& metrics, const char* key, double value) {
 Judge::Judge(double fps, const Truth* truth, const Mesh* target, int slow_every)
     : fps_(fps), slow_every_(slow_every), truth_(truth) {
   if (target && !target->is_cloud()) penetration_.emplace(target->vertices, target->faces);
+  if (target && !target->is_cloud() && truth && truth->target_joints && !truth->source_gaps.empty())
+    hands_.emplace(target->vertices, target->faces, *truth->target_joints);
 }
 
 void Judge::push(const JudgedFrame& frame) {
@@ -45,9 +47,20 @@ void Judge::push_surface(const JudgedFrame& frame) {
     last_.medl_mm *= 1000;
   }
   floor_.add(last_.floor_mm = floor_penetration(p));
+  floor_worst_ = std::max(floor_worst_, last_.floor_mm);
   last_.floor_mm *= 1000;
+  if (hands_) push_hands(p);
   if (penetration_ && frames_ % slow_every_ == 0)
     self_penetration_.add(last_.self_penetration = penetration_->share(p));
+}
+
+void Judge::push_hands(const Points& vertices) {
+  const auto t = static_cast<size_t>(frames_);
+  contacts_.add(truth_->source_gaps[t], hands_->gaps(vertices));
+  if (truth_->source_buried.empty()) return;
+  const double buried = hands_->buried(vertices);
+  buried_.add(buried);
+  buried_added_.add(buried - static_cast<double>(truth_->source_buried[t]));
 }
 
 Metrics Judge::metrics() const {
@@ -60,6 +73,16 @@ Metrics Judge::metrics() const {
   if (!source_joints_.empty()) put(result, "bone_drift", bone_drift(source_joints_));
   if (!joints_.empty()) put(result, "foot_skate", foot_skate(joints_, fps_));
   if (floor_.count > 0) put(result, "floor_mm", 1000 * floor_.sum / floor_.count);
+  if (floor_.count > 0) put(result, "floor_worst_mm", 1000 * floor_worst_);
+  if (contacts_.count() > 0) {
+    put(result, "hand_contacts", contacts_.count());
+    put(result, "hand_contact_kept", contacts_.kept());
+    put(result, "hand_contact_gap_mm", 1000 * contacts_.gap_m());
+  }
+  if (buried_.count > 0) {
+    put(result, "arm_buried", buried_.sum / buried_.count);
+    put(result, "arm_buried_added", buried_added_.sum / buried_added_.count);
+  }
   if (!joints_.empty()) put(result, "jerk", jerk(joints_, fps_));
   if (self_penetration_.count > 0)
     put(result, "self_penetration", self_penetration_.sum / self_penetration_.count);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/run/case_folder.hpp"
+#include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/metrics/surface_metrics.hpp"
 
@@ -38,6 +39,13 @@ struct SurfaceFigures {
 
 /// Collects a sequence. Surface figures are summed as the frames come; the slow ones (self_penetration,
 /// inside) look at every tenth frame, unless told otherwise.
+///
+/// Where the truth knows what the source's own surface does, too: hand_contact_kept, the share of the
+/// source's contacts (a hand within 2 cm of torso, head, thighs, other arm or other hand; each frame, hand
+/// and part is one) in which the target's same hand is within 2 cm of the same part; hand_contact_gap_mm, the
+/// mean gap of the target in them; arm_buried, the share of hands and forearms inside the rest of the
+/// target's body, and arm_buried_added, that less the source's own. floor_worst_mm is the deepest vertex of
+/// all frames.
 class Judge {
  public:
   /// truth may be null; target (its T-pose) too. slow_every: frames between looks of the slow figures.
@@ -62,6 +70,7 @@ class Judge {
     void add(double value) { sum += value, ++count; }
   };
   void push_surface(const JudgedFrame& frame);
+  void push_hands(const Points& vertices);
   void add_truth(Metrics& result) const;
   void add_extraction(Metrics& result) const;
 
@@ -69,12 +78,15 @@ class Judge {
   int slow_every_;
   const Truth* truth_;
   std::optional<SelfPenetration> penetration_;
+  std::optional<HandContact> hands_;  // of the target
+  ContactsKept contacts_;
   int64_t frames_ = 0;
   JointSequence joints_, source_joints_, raw_joints_;
   std::vector<Rotations> rotations_;
   std::vector<Confidence> confidence_;
   SurfaceFigures last_;
-  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_;
+  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_, buried_, buried_added_;
+  double floor_worst_ = 0;
 };
 
 /// The mean of each figure over the sequences that have it, in the order of first appearance.

@@ -1,0 +1,190 @@
+#include "retarget/metrics/hand_contact.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/metrics/inside.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr int kHandPoints = 200, kJudged = 40;
+
+enum Region { Trunk, Skull, Thigh, Shin, UpperArm, Forearm, Hand };
+struct Label {
+  Region region;
+  int side;  // 0 left, 1 right; 0 in the middle
+};
+
+/// A straight piece of the skeleton and what lies around it.
+struct Piece {
+  Vec3 a, b;
+  Label label;
+};
+
+std::vector<Piece> pieces_of(const Joints& rest) {
+  const auto at = [&](int j) { return Vec3(rest.row(j).transpose()); };
+  std::vector<Piece> pieces;
+  for (const auto& [a, b] : {std::pair(Pelvis, Spine1), {Spine1, Spine2}, {Spine2, Spine3}, {Spine3, Neck}})
+    pieces.push_back({at(a), at(b), {Trunk, 0}});
+  pieces.push_back({at(Head), at(Head) + 1.5f * (at(Head) - at(Neck)), {Skull, 0}});
+  for (const int side : {0, 1}) {
+    const Vec3 hip = at(LeftHip + side), knee = at(LeftKnee + side), ankle = at(LeftAnkle + side);
+    const Vec3 shoulder = at(LeftShoulder + side), elbow = at(LeftElbow + side), wrist = at(LeftWrist + side);
+    pieces.push_back({at(Pelvis), hip, {Trunk, side}});
+    pieces.push_back({at(Spine3), shoulder, {Trunk, side}});
+    pieces.push_back({hip + 0.2f * (knee - hip), knee, {Thigh, side}});
+    pieces.push_back({knee, ankle, {Shin, side}});
+    pieces.push_back({ankle, at(LeftFoot + side), {Shin, side}});
+    pieces.push_back({shoulder + 0.2f * (elbow - shoulder), elbow, {UpperArm, side}});
+    pieces.push_back({elbow, wrist, {Forearm, side}});
+    pieces.push_back({wrist, wrist + 0.8f * (wrist - elbow), {Hand, side}});
+  }
+  return pieces;
+}
+
+Label label_of(const Vec3& point, const std::vector<Piece>& pieces) {
+  float nearest = INFINITY;
+  Label label{};
+  for (const Piece& piece : pieces) {
+    const Vec3 along = piece.b - piece.a;
+    const float u =
+        std::clamp((point - piece.a).dot(along) / std::max(along.squaredNorm(), 1e-12f), 0.f, 1.f);
+    const float squared = (point - piece.a - u * along).squaredNorm();
+    if (squared < nearest) nearest = squared, label = piece.label;
+  }
+  return label;
+}
+
+/// The part that `label` is to a hand of `side`; kTouchedParts for its own arm and for shins.
+TouchedPart part_for(int side, const Label& label) {
+  switch (label.region) {
+    case Trunk:
+      return TouchTorso;
+    case Skull:
+      return TouchHead;
+    case Thigh:
+      return TouchThighs;
+    case UpperArm:
+    case Forearm:
+      return label.side == side ? kTouchedParts : TouchOtherArm;
+    case Hand:
+      return label.side == side ? kTouchedParts : TouchOtherHand;
+    default:
+      return kTouchedParts;
+  }
+}
+
+Faces faces_where(const Faces& faces, const std::vector<bool>& in) {
+  Faces result(faces.rows(), 3);
+  Eigen::Index count = 0;
+  const auto has = [&](int v) { return in[static_cast<size_t>(v)]; };
+  for (Eigen::Index f = 0; f < faces.rows(); ++f)
+    if (has(faces(f, 0)) && has(faces(f, 1)) && has(faces(f, 2))) result.row(count++) = faces.row(f);
+  return result.topRows(count);
+}
+
+std::vector<int> spread(const Points& rest, const std::vector<int>& from, int count) {
+  Points some(static_cast<Eigen::Index>(from.size()), 3);
+  for (size_t i = 0; i < from.size(); ++i) some.row(static_cast<Eigen::Index>(i)) = rest.row(from[i]);
+  std::vector<int> result;
+  if (from.empty()) return result;
+  for (const int i : farthest_points(some, std::min(count, static_cast<int>(from.size()))))
+    result.push_back(from[static_cast<size_t>(i)]);
+  return result;
+}
+
+float squared_to_box(const Vec3& p, const Eigen::AlignedBox3f& box) {
+  return box.isEmpty() ? INFINITY : box.squaredExteriorDistance(p);
+}
+
+}  // namespace
+
+HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& rest_joints) : faces_(faces) {
+  US_CHECK(faces.rows() > 0, "what hands touch wants a surface, not a point cloud");
+  const std::vector<Piece> pieces = pieces_of(rest_joints);
+  const auto count = static_cast<size_t>(rest.rows());
+  std::vector<Label> labels(count);
+  for (size_t v = 0; v < count; ++v)
+    labels[v] = label_of(rest.row(static_cast<Eigen::Index>(v)).transpose(), pieces);
+  for (int side = 0; side < 2; ++side) {
+    const auto s = static_cast<size_t>(side);
+    std::vector<int> hand, arm;
+    std::vector<bool> other(count);
+    std::array<std::vector<bool>, kTouchedParts> in;
+    in.fill(std::vector<bool>(count));
+    for (size_t v = 0; v < count; ++v) {
+      const Label& label = labels[v];
+      const bool mine = label.side == side;
+      if (mine && label.region == Hand) hand.push_back(static_cast<int>(v));
+      if (mine && (label.region == Hand || label.region == Forearm)) arm.push_back(static_cast<int>(v));
+      other[v] = !(mine && (label.region == Hand || label.region == Forearm || label.region == UpperArm));
+      const TouchedPart part = part_for(side, label);
+      if (part == kTouchedParts) continue;
+      parts_[s][part].push_back(static_cast<int>(v));
+      in[part][v] = true;
+    }
+    hands_[s] = spread(rest, hand, kHandPoints);
+    judged_[s] = spread(rest, arm, kJudged);
+    others_[s] = faces_where(faces, other);
+    for (size_t p = 0; p < kTouchedParts; ++p) part_faces_[s][p] = faces_where(faces, in[p]);
+  }
+}
+
+HandGaps HandContact::gaps(const Points& vertices) const {
+  HandGaps result;
+  for (size_t s = 0; s < 2; ++s) {
+    Eigen::Matrix3Xf hand(3, static_cast<Eigen::Index>(hands_[s].size()));
+    Eigen::AlignedBox3f box;
+    for (size_t i = 0; i < hands_[s].size(); ++i) {
+      hand.col(static_cast<Eigen::Index>(i)) = vertices.row(hands_[s][i]).transpose();
+      box.extend(hand.col(static_cast<Eigen::Index>(i)));
+    }
+    for (size_t p = 0; p < kTouchedParts; ++p) {
+      float nearest = kFarGap * kFarGap;
+      const auto look = [&](const Vec3& point) {
+        if (squared_to_box(point, box) < nearest)
+          nearest = std::min(nearest, (hand.colwise() - point).colwise().squaredNorm().minCoeff());
+      };
+      for (const int v : parts_[s][p]) look(vertices.row(v).transpose());
+      const Faces& faces = part_faces_[s][p];
+      for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        look((vertices.row(faces(f, 0)) + vertices.row(faces(f, 1)) + vertices.row(faces(f, 2))).transpose() /
+             3);
+      result[s][p] = std::sqrt(nearest);
+    }
+  }
+  return result;
+}
+
+double HandContact::buried(const Points& vertices) const {
+  int inside = 0;
+  size_t judged = 0;
+  for (size_t s = 0; s < 2; ++s) {
+    std::array<Eigen::AlignedBox3f, kTouchedParts> boxes;  // outside all of them nothing can be inside
+    for (size_t p = 0; p < kTouchedParts; ++p)
+      for (const int v : parts_[s][p]) boxes[p].extend(vertices.row(v).transpose());
+    for (const int v : judged_[s]) {
+      const Vec3 point = vertices.row(v).transpose();
+      const bool near =
+          std::any_of(boxes.begin(), boxes.end(), [&](const auto& b) { return b.contains(point); });
+      inside += near && winding_number(vertices, others_[s], point) > 0.5;
+    }
+    judged += judged_[s].size();
+  }
+  return judged == 0 ? 0 : static_cast<double>(inside) / static_cast<double>(judged);
+}
+
+void ContactsKept::add(const HandGaps& source, const HandGaps& target) {
+  for (size_t s = 0; s < 2; ++s)
+    for (size_t p = 0; p < kTouchedParts; ++p) {
+      if (!(source[s][p] < touch_m)) continue;
+      ++count_;
+      kept_ += target[s][p] < touch_m;
+      gap_sum_ += target[s][p];
+    }
+}
+
+}  // namespace understudy
