@@ -13,8 +13,8 @@ std::string one_line(const Verdict& verdict) {
   if (!verdict.error.empty()) return verdict.name + ": ERROR " + verdict.error;
   std::string line = verdict.name + ": " + std::to_string(verdict.frames) + " frames";
   if (verdict.flagged > 0) line += ", " + std::to_string(verdict.flagged) + " flagged";
-  for (const char* key :
-       {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "extraction_mpjpe_mm", "extraction_swap_rate"})
+  for (const char* key : {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "extraction_mpjpe_mm",
+                          "extraction_swap_rate", "hand_contact_kept", "arm_buried_added"})
     for (const auto& [name, value] : verdict.metrics) {
       char text[64];
       std::snprintf(text, sizeof text, ", %s %.4g", key, value);
@@ -54,6 +54,8 @@ Action declare_eval(CLI::App& command) {
   command.add_option("--limit", options->limit, "at most so many cases, evenly spread")
       ->check(CLI::NonNegativeNumber);
   command.add_flag("!--no-foot-lock", options->retarget.lock_feet, "standing feet may slide");
+  command.add_flag("!--no-hand-contacts", options->retarget.keep_contacts,
+                   "hands that touch the source's body need not touch the target's");
   command.add_flag("!--no-offsets", options->networks.offsets, "no pose-corrective offsets");
   command
       .add_option("--restart-every", options->restart_every,

@@ -38,7 +38,8 @@ std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
   if (oracle) {
     Extraction known = *oracle;
     known.sole_height = sole_height(known.joints, scan->mesh.vertices);
-    frame.result = retargeter_.push(known, dt);
+    const BodyGirth girth = measure_girth(known, scan->mesh.vertices);
+    frame.result = retargeter_.push(known, dt, &girth);
   } else if (scan->skeleton) {
     frame.result = retargeter_.push(*scan->skeleton, dt);
   } else {

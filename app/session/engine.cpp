@@ -74,6 +74,7 @@ std::shared_ptr<const SafeBinding> binding_of(const std::shared_ptr<const Deform
 /// What one scan gave, kept to be performed again.
 struct Extracted {
   Extraction extraction;
+  std::optional<BodyGirth> girth;
   bool usable = true;
   std::string problem;
   int points = 0;
@@ -438,6 +439,7 @@ Extracted Engine::Impl::extracted(Stream& stream, const SourceFrame& frame) cons
     }
     result.extraction = stream.extractor->extract(frame.mesh);
     result.extraction.sole_height = sole_height(result.extraction.joints, frame.mesh.vertices);
+    result.girth = measure_girth(result.extraction, frame.mesh.vertices);
   } catch (const Error& error) {
     result.usable = false;
     result.problem = error.what();
@@ -528,10 +530,10 @@ bool Engine::Impl::perform(TakeWork& take) {
   for (int n = 0; n < kReplayChunk && take.done < frames.size(); ++n, ++take.done) {
     const Extracted& frame = frames[take.done];
     const RetargetedFrame result =
-        frame.usable
-            ? take.retargeter->push(
-                  understudy::apply(plan.skeleton_edits, frame.extraction, static_cast<int>(take.done)), dt)
-            : take.retargeter->skip(frame.problem, dt);
+        frame.usable ? take.retargeter->push(understudy::apply(plan.skeleton_edits, frame.extraction,
+                                                               static_cast<int>(take.done)),
+                                             dt, frame.girth ? &*frame.girth : nullptr)
+                     : take.retargeter->skip(frame.problem, dt);
     event.frames.push_back(kept(result));
     if (take.done < take.told_new) continue;
     take.told_new = take.done + 1;

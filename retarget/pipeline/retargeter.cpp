@@ -43,7 +43,8 @@ Retargeter::Retargeter(Networks networks, const RetargetOptions& options)
       options_(options),
       filter_(options.filter),
       root_(options.root),
-      feet_(options.feet) {
+      feet_(options.feet),
+      hands_(options.hands) {
   US_CHECK(networks_.transfer && networks_.deformer, "the pipeline wants a motion transfer and a deformer");
 }
 
@@ -57,6 +58,7 @@ void Retargeter::set_target(Target target) {
   target_ = std::move(target);
   for (const std::string& warning : target_.warnings) log::warn(warning);
   networks_.deformer->bind(target_.mesh.vertices, target_.joints);
+  hands_.bind(target_.mesh, target_.joints, networks_.deformer->weights());
   has_target_ = true;
   restart();
 }
@@ -67,6 +69,7 @@ void Retargeter::restart() {
   filter_.reset();
   root_.reset(target_.mesh.vertices, target_.joints);
   feet_.reset();
+  hands_.reset();
   last_ = Pose{};
   waited_ = 0;
 }
@@ -89,15 +92,18 @@ RetargetedFrame Retargeter::push(const Mesh& scan, float dt) {
     return skip(error.what(), dt);
   }
   frame.source_raw.sole_height = sole_height(frame.source_raw.joints, scan.vertices);
+  std::optional<BodyGirth> girth;
+  if (options_.keep_contacts && frame.source_raw.joints.allFinite())
+    girth = measure_girth(frame.source_raw, scan.vertices);
   frame.ms.extract = watch.lap();
-  return transfer(std::move(frame), dt);
+  return transfer(std::move(frame), dt, girth ? &*girth : nullptr);
 }
 
-RetargetedFrame Retargeter::push(const Extraction& extraction, float dt) {
+RetargetedFrame Retargeter::push(const Extraction& extraction, float dt, const BodyGirth* girth) {
   US_CHECK(has_target_, "there is no target yet");
   RetargetedFrame frame;
   frame.source_raw = extraction;
-  return transfer(std::move(frame), dt);
+  return transfer(std::move(frame), dt, girth);
 }
 
 RetargetedFrame Retargeter::skip(const std::string& reason, float dt) {
@@ -106,7 +112,7 @@ RetargetedFrame Retargeter::skip(const std::string& reason, float dt) {
   return repeat(RetargetedFrame{}, reason);
 }
 
-RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt) {
+RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt, const BodyGirth* girth) {
   Stopwatch watch;
   waited_ += dt;
   const Extraction& seen = frame.source_raw;
@@ -119,10 +125,12 @@ RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt) {
   const JointFilter filter_before = filter_;
   const RootPath root_before = root_;
   const FootLock feet_before = feet_;
+  const HandContacts hands_before = hands_;
   const auto refuse = [&](const std::string& reason) {
     filter_ = filter_before;  // a frame that is not believed leaves no trace
     root_ = root_before;
     feet_ = feet_before;
+    hands_ = hands_before;
     return repeat(std::move(frame), reason);
   };
   try {
@@ -132,6 +140,7 @@ RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt) {
     if (options_.lock_feet) frame.pose = root_.plant(frame.pose, waited_);
     if (options_.lock_feet && options_.root.mode == RootMode::Scaled)
       frame.pose = feet_.push(frame.pose, target_.joints, waited_, frame.source.joints);
+    if (options_.keep_contacts) frame.pose = hands_.push(frame.pose, frame.source.joints, girth, waited_);
     frame.ms.transfer = watch.lap();
     if (!finite(frame.pose.local) || !frame.pose.root.allFinite())
       return refuse("the motion transfer gave numbers that are not finite");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "retarget/pipeline/foot_lock.hpp"
+#include "retarget/pipeline/hand_contacts.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
 #include "retarget/pipeline/root_path.hpp"
@@ -17,6 +18,8 @@ struct RetargetOptions {
   RootPathOptions root;
   bool lock_feet = true;  ///< feet that stand do not slide
   FootLockOptions feet;
+  bool keep_contacts = true;  ///< hands that touch the body or each other do so on the target, too
+  HandContactOptions hands;
   float min_confidence = 0.08f;  ///< mean over joints below which a frame is not believed
   int min_points = 32;           ///< finite points below which a frame is not looked at
   bool vertices = true;          ///< false: poses only, no deformation
@@ -77,8 +80,8 @@ class Retargeter {
   /// without a target.
   RetargetedFrame push(const Mesh& scan, float dt);
   /// The same with what was extracted given: kept from before, corrected, an oracle, or an extractor of one's
-  /// own.
-  RetargetedFrame push(const Extraction& extraction, float dt);
+  /// own. girth: of the scan that it was extracted from (measure_girth); null where there is none.
+  RetargetedFrame push(const Extraction& extraction, float dt, const BodyGirth* girth = nullptr);
   /// A frame in which nothing of the source can be used: the last pose again, flagged. Wants no extractor.
   RetargetedFrame skip(const std::string& reason, float dt);
   /// The target in a pose given, no transfer: for poses kept, and for an oracle.
@@ -90,7 +93,7 @@ class Retargeter {
   float leg_scale() const { return root_.scale(); }
 
  private:
-  RetargetedFrame transfer(RetargetedFrame frame, float dt);
+  RetargetedFrame transfer(RetargetedFrame frame, float dt, const BodyGirth* girth);
   RetargetedFrame repeat(RetargetedFrame frame, const std::string& reason);
   void finish(RetargetedFrame& frame);
 
@@ -100,6 +103,7 @@ class Retargeter {
   JointFilter filter_;
   RootPath root_;
   FootLock feet_;
+  HandContacts hands_;
   Pose last_;
   float waited_ = 0;  // seconds of flagged frames since the last good one
   bool has_target_ = false;

@@ -14,10 +14,8 @@ struct Leg {
 };
 
 /// Turns hip and knee of one leg so that its ankle comes to `ankle` (world, metres) and gives back where it
-/// came: short of it where the leg is too short, softly near full length so that the knee does not snap. The
-/// knee keeps pointing where it did and the foot keeps its world rotation. An ankle that is where it should
-/// be leaves the pose as it is. Analytic: law of cosines about the knee's own axis, then the smallest turn of
-/// the hip.
+/// came: short of it where the leg is too short. The knee keeps pointing where it did and the foot keeps its
+/// world rotation; see place_end.
 Vec3 place_ankle(const Joints& rest, int side, const Vec3& ankle, Pose& pose);
 
 }  // namespace understudy
