@@ -149,7 +149,7 @@ Performance perform_document(const ExportOptions& options, const ExportFormatInf
   studio.tick(0);
   check_session(session);
   progress.finish();
-  ExportChoice choice{format.format, options.file, {}};
+  ExportChoice choice{format.format, options.file, {}, {}};
   if (options.target.rig != "auto") choice.theirs = options.target.rig == "theirs";
   return {export_input(session, takes, choice), name};
 }
