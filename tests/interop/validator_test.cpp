@@ -100,8 +100,8 @@ TEST(Validator, SaysNoMoreOfPicturesInExtensionsThanOfTheFileTheyCameIn) {
     EXPECT_EQ(read_character(paths.back()).required, character.character.required);
   }
   for (const auto& after : validated(paths)) {
-    EXPECT_EQ(after["errors"], before[0]["errors"]) << first_messages(after);
-    EXPECT_EQ(after["warnings"], before[0]["warnings"]) << first_messages(after);
+    EXPECT_LE(after["errors"], before[0]["errors"]) << first_messages(after);
+    EXPECT_LE(after["warnings"], before[0]["warnings"]) << first_messages(after);
   }
 }
 

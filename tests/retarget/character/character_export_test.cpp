@@ -327,6 +327,14 @@ TEST(CharacterExport, ItsFileOpensAgainAsTheSameCharacter) {
   EXPECT_LT((second.target.mesh.vertices - first.target.mesh.vertices).rowwise().norm().maxCoeff(), 1e-3f);
 }
 
+/// How far the vertices of b are from those of a at most: rounding may weld a few more of them.
+float farthest_from(const Points& a, const Points& b) {
+  float farthest = 0;
+  for (Eigen::Index i = 0; i < b.rows(); ++i)
+    farthest = std::max(farthest, (a.rowwise() - b.row(i)).rowwise().norm().minCoeff());
+  return farthest;
+}
+
 TEST(CharacterExport, ABareShapesFileOpensAgainAsTheSameShapeAndAnimation) {
   const TempFolder folder;
   MadeCharacter made;
@@ -344,7 +352,7 @@ TEST(CharacterExport, ABareShapesFileOpensAgainAsTheSameShapeAndAnimation) {
   const PreparedCharacter second = prepare_character(out.file, nullptr, nullptr);
   ASSERT_TRUE(second.rigged);
   EXPECT_LT((second.target.joints - first.target.joints).rowwise().norm().maxCoeff(), 1e-4f);
-  EXPECT_LT((second.target.mesh.vertices - first.target.mesh.vertices).rowwise().norm().maxCoeff(), 1e-4f);
+  EXPECT_LT(farthest_from(first.target.mesh.vertices, second.target.mesh.vertices), 1e-4f);
   const RigDeformer again(second, nullptr);
   EXPECT_LT(largest_mm(out, second, again, poses), 0.1f);
 }

@@ -105,7 +105,8 @@ TEST_F(ExportCommand, ADocumentThatCannotBeExportedIsASentence) {
   write_text(scratch.path("make.us"),
              "open " + scans() + "\nopen " + target() + "\nwait\ndocument.save_as " + document + "\n");
   ASSERT_EQ(run_program({"play", scratch.path("make.us"), "--context", "null"}).code, 0);
-  expect_clean_failure(run_program({"export", document, "--take", "2", "--out", out("a.glb")}), "no take 2");
+  expect_clean_failure(run_program({"export", document, "--take", "2", "--out", out("a.glb")}),
+                       "no take '2'");
   expect_clean_failure(run_program({"export", document, "--rig", "theirs", "--out", out("a.glb")}),
                        "bones of its own");
   for (const std::vector<std::string>& more :
@@ -178,9 +179,11 @@ TEST_F(ExportCommand, SaysWhatIsWrong) {
   std::ofstream(scratch.path("none.json")) << R"({"head": "Nobody"})";
   expect_clean_failure(run(path, {"--out", out("a.glb"), "--map", scratch.path("none.json")}),
                        "made.glb: the map names a bone 'Nobody'");
-  expect_clean_failure(run_program({"export", "--source", path, "--source-map", scratch.path("none.json"),
+  const std::string moving = scratch.path("moving.glb");
+  ASSERT_EQ(run(path, {"--out", moving}).code, 0);
+  expect_clean_failure(run_program({"export", "--source", moving, "--source-map", scratch.path("none.json"),
                                     "--target", target(), "--out", out("a.glb")}),
-                       "made.glb: ");
+                       "moving.glb: ");
   expect_clean_failure(run(path, {"--out", out("a.glb"), "--map", scratch.path("list.json")}),
                        "no map of bones");
   expect_clean_failure(run(target(), {"--out", out("a.glb"), "--rig", "theirs"}), "has no skeleton");
