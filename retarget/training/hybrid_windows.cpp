@@ -79,8 +79,15 @@ std::vector<HybridWindow> to_windows(const torch::Tensor& all, const torch::Tens
 
 }  // namespace
 
+/// As many points as scanners give: hands and feet are seen from near.
+static ScanMakerOptions dense_scans() {
+  ScanMakerOptions options;
+  options.points = 6000;
+  return options;
+}
+
 HybridWindowMaker::HybridWindowMaker(const TrainingData& data, int frames, uint64_t seed)
-    : data_(data), frames_(frames), rng_(seed), maker_(data, {}, seed + 1) {
+    : data_(data), frames_(frames), rng_(seed), maker_(data, dense_scans(), seed + 1) {
   for (size_t c = 0; c < data.clips.size(); ++c) {
     const std::vector<int>& good = data.clips[c].good;
     std::vector<int> mine;
