@@ -25,6 +25,7 @@
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/import_process.hpp"
 #include "retarget/character/obj_character.hpp"
+#include "retarget/character/picture.hpp"
 #include "retarget/character/pixels.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/gltf_mesh.hpp"
@@ -259,8 +260,12 @@ size_t declared_by_mesh(const std::string& bytes) {
   return std::max(declared_by_gltf(bytes), declared_by_pcd(bytes));
 }
 
+// The pixels. A lossless WebP may have codes of its own for every 4 x 4 of them, 12 KiB in libwebp's tables,
+// and tables for the whole.
 size_t declared_by_picture(const std::string& bytes) {
-  return bytes.size() + static_cast<size_t>(decoded_size(bytes));
+  const auto decoded = static_cast<size_t>(decoded_size(bytes));
+  const size_t codes = picture_type(bytes) == "image/webp" ? decoded / 3 / 16 * 3072 + (64 << 10) : 0;
+  return bytes.size() + decoded + codes;
 }
 
 // On a square, by every corner of it.
