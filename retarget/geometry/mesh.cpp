@@ -98,17 +98,40 @@ Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neig
                                                                                        const Points& queries,
                                                                                        int k) {
   US_CHECK(k <= points.rows(), k, " neighbours wanted of ", points.rows(), " points");
-  const Eigen::ArrayXf x = points.col(0), y = points.col(1), z = points.col(2);
+  // In order of height: only points whose height alone is not too far can be among the nearest.
+  std::vector<int> order(static_cast<size_t>(points.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return points(a, 1) < points(b, 1); });
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(queries.rows(), k);
-  std::vector<int> order(points.rows());
+  std::vector<std::pair<float, int>> best;  // a heap, the farthest first; of equally far ones the later
   for (Eigen::Index q = 0; q < queries.rows(); ++q) {
-    const Eigen::ArrayXf d =
-        (x - queries(q, 0)).square() + (y - queries(q, 1)).square() + (z - queries(q, 2)).square();
-    std::iota(order.begin(), order.end(), 0);
-    const auto nearer = [&d](int a, int b) { return d[a] < d[b] || (d[a] == d[b] && a < b); };
-    std::nth_element(order.begin(), order.begin() + (k - 1), order.end(), nearer);
-    std::sort(order.begin(), order.begin() + k, nearer);
-    std::copy(order.begin(), order.begin() + k, result.row(q).data());
+    const auto height = [&](size_t at) { return points(order[at], 1) - queries(q, 1); };
+    const auto above =
+        static_cast<size_t>(std::lower_bound(order.begin(), order.end(), queries(q, 1),
+                                             [&](int i, float y) { return points(i, 1) < y; }) -
+                            order.begin());
+    best.clear();
+    const auto look = [&](size_t at) {
+      const std::pair<float, int> seen((points.row(order[at]) - queries.row(q)).squaredNorm(), order[at]);
+      if (best.size() == static_cast<size_t>(k)) {
+        if (!(seen < best.front())) return;
+        std::pop_heap(best.begin(), best.end());
+        best.pop_back();
+      }
+      best.push_back(seen);
+      std::push_heap(best.begin(), best.end());
+    };
+    const auto too_far = [&](float dy) {
+      return best.size() == static_cast<size_t>(k) && dy * dy > best.front().first;
+    };
+    size_t up = above, down = above;
+    while (up < order.size() || down > 0) {
+      const bool rising = down == 0 || (up < order.size() && height(up) <= -height(down - 1));
+      if (too_far(rising ? height(up) : height(down - 1))) break;
+      look(rising ? up++ : --down);
+    }
+    std::sort_heap(best.begin(), best.end());
+    for (int i = 0; i < k; ++i) result(q, i) = best[static_cast<size_t>(i)].second;
   }
   return result;
 }
