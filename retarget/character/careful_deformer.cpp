@@ -9,6 +9,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/character/geometric_binding.hpp"
+#include "retarget/math/smooth_step.hpp"
 #include "retarget/skeleton/skinning.hpp"
 
 namespace understudy {
@@ -16,11 +17,6 @@ namespace {
 
 // Where a bone is this many times as far as the nearest one, a weight on it is doubted, and not believed.
 constexpr float kStrange = 2.2f, kAbsurd = 3.6f;
-
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
 
 /// [V]: the share of each vertex' weights that lies on bones far away.
 Eigen::VectorXf strayed_share(const BoneDistances& distances, const RowMatrix& weights) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/geometry/far_apart.hpp"
 #include "retarget/metrics/inside.hpp"
 
 namespace understudy {
@@ -86,23 +87,13 @@ Faces faces_where(const Faces& faces, const std::vector<bool>& in) {
   return result.topRows(count);
 }
 
-std::vector<int> spread(const Points& rest, const std::vector<int>& from, int count) {
-  Points some(static_cast<Eigen::Index>(from.size()), 3);
-  for (size_t i = 0; i < from.size(); ++i) some.row(static_cast<Eigen::Index>(i)) = rest.row(from[i]);
-  std::vector<int> result;
-  if (from.empty()) return result;
-  for (const int i : farthest_points(some, std::min(count, static_cast<int>(from.size()))))
-    result.push_back(from[static_cast<size_t>(i)]);
-  return result;
-}
-
 float squared_to_box(const Vec3& p, const Eigen::AlignedBox3f& box) {
   return box.isEmpty() ? INFINITY : box.squaredExteriorDistance(p);
 }
 
 }  // namespace
 
-HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& rest_joints) : faces_(faces) {
+HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& rest_joints) {
   US_CHECK(faces.rows() > 0, "what hands touch wants a surface, not a point cloud");
   const std::vector<Piece> pieces = pieces_of(rest_joints);
   const auto count = static_cast<size_t>(rest.rows());
@@ -126,8 +117,8 @@ HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& r
       parts_[s][part].push_back(static_cast<int>(v));
       in[part][v] = true;
     }
-    hands_[s] = spread(rest, hand, kHandPoints);
-    judged_[s] = spread(rest, arm, kJudged);
+    hands_[s] = far_apart(rest, hand, kHandPoints);
+    judged_[s] = far_apart(rest, arm, kJudged);
     others_[s] = faces_where(faces, other);
     for (size_t p = 0; p < kTouchedParts; ++p) part_faces_[s][p] = faces_where(faces, in[p]);
   }

@@ -30,7 +30,6 @@ class HandContact {
   double buried(const Points& vertices) const;
 
  private:
-  Faces faces_;
   std::array<std::vector<int>, 2> hands_, judged_;                    // vertices a side
   std::array<std::array<std::vector<int>, kTouchedParts>, 2> parts_;  // vertices
   std::array<std::array<Faces, kTouchedParts>, 2> part_faces_;

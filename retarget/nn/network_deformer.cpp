@@ -126,12 +126,6 @@ struct Asked {
   }
 };
 
-Points rows_of(const Points& points, const std::vector<int>& rows) {
-  Points out(static_cast<Eigen::Index>(rows.size()), 3);
-  for (size_t i = 0; i < rows.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = points.row(rows[i]);
-  return out;
-}
-
 class NetworkDeformer : public Deformer {
  public:
   NetworkDeformer(const std::string& path, bool offsets, int most_asked)
@@ -209,7 +203,7 @@ Asked NetworkDeformer::ask_all(const Points& rest, const Points& spread) {
 /// The networks change slowly over a centimetre, but not everywhere: across gaps and creases the vertices are
 /// asked for themselves.
 Asked NetworkDeformer::ask_some(const Points& rest, const Points& spread, const std::vector<int>& chosen) {
-  const Points some = rows_of(rest, chosen);
+  const Points some = rest(chosen, Eigen::all);
   const BoundSurface known = ask(some, spread);
   Asked asked{known, nearest_neighbours(some, rest, kBetween), RowMatrix(rest.rows(), kBetween)};
   std::vector<int> rough;
@@ -220,7 +214,7 @@ Asked NetworkDeformer::ask_some(const Points& rest, const Points& spread, const 
     if (!is_flat(offsets, asked.near.row(v), asked.weights())) rough.push_back(static_cast<int>(v));
   }
   if (rough.empty()) return asked;
-  const BoundSurface exact = ask(rows_of(rest, rough), spread);
+  const BoundSurface exact = ask(rest(rough, Eigen::all), spread);
   for (size_t i = 0; i < rough.size(); ++i) {
     asked.near(rough[i], 0) = static_cast<int>(chosen.size() + i);
     asked.shares.row(rough[i]).setZero();

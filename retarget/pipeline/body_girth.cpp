@@ -144,11 +144,8 @@ BodyGirth measure_girth(const Joints& joints, const Rotations& global, const Poi
 BodyGirth measure_girth(const Extraction& source, const Points& scan) {
   CopyTransfer solver;
   solver.reset(human_rest());
-  const Rotations local = solver.push(source, 1 / 30.0f);
-  Rotations global;
-  for (size_t j = 0; j < local.size(); ++j)
-    global[j] = kParents[j] < 0 ? local[j] : Mat3(global[static_cast<size_t>(kParents[j])] * local[j]);
-  return measure_girth(source.joints, global, scan);
+  const Pose pose{solver.push(source, 1 / 30.0f), Vec3::Zero()};
+  return measure_girth(source.joints, forward_kinematics(human_rest(), pose).global, scan);
 }
 
 const BodyGirth& human_girth() {

@@ -7,6 +7,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/smooth_step.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 
 namespace understudy {
@@ -18,11 +19,6 @@ constexpr std::array<int, kJointCount> kBoneEnd = {
     -1,        LeftKnee,   RightKnee, Spine2, LeftAnkle,    RightAnkle,    Spine3, LeftFoot,  RightFoot,
     -1,        -1,         -1,        Head,   LeftShoulder, RightShoulder, -1,     LeftElbow, RightElbow,
     LeftWrist, RightWrist, -1,        -1};
-
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
 
 Mat3 blend(const Mat3& A, const Mat3& B, float t) {
   if (t <= 0) return A;

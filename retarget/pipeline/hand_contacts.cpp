@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/geometry/far_apart.hpp"
+#include "retarget/math/smooth_step.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "retarget/skeleton/arm_ik.hpp"
 
@@ -17,21 +19,11 @@ constexpr float kNewest = 90;    // frames that the mean bone lengths remember
 constexpr float kReach = 0.15f;  // metres around a hand in which surfaces count
 constexpr float kBlur = 0.02f;   // metres over which neighbouring samples are blended
 
-float eased(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return 1 - t * t * (3 - 2 * t);
-}
-
-std::vector<int> spread(const Points& points, const std::vector<int>& from, int count) {
-  const size_t step = std::max<size_t>(1, from.size() / 6000);
-  std::vector<int> thinned;
-  for (size_t i = 0; i < from.size(); i += step) thinned.push_back(from[i]);
-  Points some(static_cast<Eigen::Index>(thinned.size()), 3);
-  for (size_t i = 0; i < thinned.size(); ++i) some.row(static_cast<Eigen::Index>(i)) = points.row(thinned[i]);
+/// The vertices, or an even share of them where they are very many.
+std::vector<int> thinned(const std::vector<int>& vertices) {
+  const size_t step = std::max<size_t>(1, vertices.size() / 6000);
   std::vector<int> result;
-  if (thinned.empty()) return result;
-  for (const int i : farthest_points(some, std::min(count, static_cast<int>(thinned.size()))))
-    result.push_back(thinned[static_cast<size_t>(i)]);
+  for (size_t i = 0; i < vertices.size(); i += step) result.push_back(vertices[i]);
   return result;
 }
 
@@ -117,11 +109,12 @@ void HandContacts::bind(const Mesh& target, const Joints& rest, const RowMatrix&
     if (vertices.row(v).allFinite())
       of[static_cast<size_t>(arm_of(owner) < 0 ? kJointCount : owner)].push_back(static_cast<int>(v));
   }
-  std::vector<int> chosen = spread(vertices, of[kJointCount], kTrunkSamples);
+  std::vector<int> chosen = far_apart(vertices, thinned(of[kJointCount]), kTrunkSamples);
   for (int side = 0; side < 2; ++side)
     for (const int joint : {LeftWrist + side, LeftElbow + side, LeftShoulder + side}) {
       const bool hand = joint == LeftWrist + side;
-      const auto some = spread(vertices, of[static_cast<size_t>(joint)], hand ? kHandSamples : kArmSamples);
+      const auto some =
+          far_apart(vertices, thinned(of[static_cast<size_t>(joint)]), hand ? kHandSamples : kArmSamples);
       const int actors = hand ? kHandActors : joint == LeftElbow + side ? kForearmActors : 0;
       for (size_t i = 0; i < some.size(); ++i) {
         if (static_cast<int>(i) < actors)
@@ -276,7 +269,7 @@ Vec3 HandContacts::pull(const Scene& scene, const std::vector<int>& hand, const 
   held = 0;
   for (const int i : hand) {
     const Touch source = touch(scene.a.col(i), near, {scene.a, scene.moved, scene.normals, body_->follows});
-    const float w = eased(options_.near_m, options_.far_m, source.gap);
+    const float w = 1 - smooth_step(options_.near_m, options_.far_m, source.gap);
     if (w <= 0) continue;
     // Nearer than seen: what touches is seen now above the skin, now below. Hands may hold each other.
     const float gap = std::max(source.gap * (1 - options_.snap * w), -0.005f - 0.03f * source.moves);
