@@ -5,7 +5,7 @@ us_module(run SOURCES
   app/run/breakdown.cpp app/run/case_folder.cpp app/run/case_maker.cpp app/run/exports.cpp app/run/interrupt.cpp app/run/judge.cpp app/run/latency.cpp app/run/performer.cpp
   app/run/report.cpp app/run/samples.cpp app/run/source.cpp app/run/target_file.cpp
   PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline understudy_character nlohmann_json::nlohmann_json
-  PRIVATE understudy_npz understudy_motion understudy_data_folder understudy_results ZLIB::ZLIB)
+  PRIVATE understudy_npz understudy_motion understudy_data_folder understudy_hindrances understudy_results ZLIB::ZLIB)
 
 include(app/session/session.cmake)
 include(app/studio/studio.cmake)

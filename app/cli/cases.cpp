@@ -11,12 +11,12 @@ Action declare_cases(CLI::App& command) {
   command.add_option("data", options->data, "folder of people and motions with splits.json")->required();
   command.add_option("--suite", options->suite, "what is judged")
       ->required()
-      ->check(CLI::IsMember({"naked", "clothed", "captured", "extraction"}));
+      ->check(CLI::IsMember({"naked", "clothed", "captured", "extraction", "hindered"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split, "of splits.json (default: dev)");
   command.add_option("--body", options->body, "an SMPL-format body in place of the folder's own");
   command.add_option("--cases", options->cases, "only the first so many")->check(CLI::NonNegativeNumber);
-  command.add_option("--frames", options->frames, "of a case (default: 90; the suite extraction has 12)")
+  command.add_option("--frames", options->frames, "of a case (default: 90; extraction and hindered have 12)")
       ->check(CLI::Range(1, 100000));
   command.add_option("--points", options->points, "about how many a scan has (default: 8000)")
       ->check(CLI::Range(100, 10000000));

@@ -14,8 +14,11 @@
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/numpy_random.hpp"
+#include "retarget/base/rng.hpp"
+#include "retarget/body/costume.hpp"
 #include "retarget/body/data_folder.hpp"
 #include "retarget/body/exact_body.hpp"
+#include "retarget/body/partial_view.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 
@@ -36,7 +39,25 @@ struct CasePlan {
   std::string dressed_target;             // or a file
   Eigen::VectorXf source;
   std::string dressed_source;  // in place of the shape, where not empty
+  size_t hindrance = 0;        // number in kHindrances, of the suite "hindered"
 };
+
+/// What makes people hard to see.
+struct Hindrance {
+  const char* name;
+  void (*put)(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng);
+};
+constexpr std::array<Hindrance, 6> kHindrances = {
+    {{"skirt", wear_skirt},
+     {"coat", wear_coat},
+     {"hair", wear_hair},
+     {"held", hold_thing},
+     {"one-sided", see_from_one_side},
+     {"limbless", [](LabelledPoints& cloud, const PosedSkeleton&, Rng& rng) { lose_limb(cloud, rng); }}}};
+
+bool has_joints_only(const std::string& suite) {
+  return suite == "extraction" || suite == "hindered";
+}
 
 /// A whole suite's data.
 struct Workshop {
@@ -92,6 +113,11 @@ std::vector<CasePlan> extraction_plans(const Workshop& shop) {
     char name[8];
     std::snprintf(name, sizeof name, "b%02zu", i);
     plans.push_back({name, motions[i % motions.size()], {}, "", betas[i % betas.size()], ""});
+    if (shop.options.suite != "hindered") continue;
+    plans.back().hindrance = i % kHindrances.size();
+    // Each hindrance meets other motions and people than the ones before.
+    plans.back().motion = motions[(i + i / kHindrances.size()) % motions.size()];
+    plans.back().name += std::string("_") + kHindrances[plans.back().hindrance].name;
   }
   return plans;
 }
@@ -192,6 +218,24 @@ Points64 captured(NumpyRandom& random, const Points64& vertices, const Faces& fa
   return points;
 }
 
+/// The points as they are when the person is hard to see: the same skirt, thing or side in every frame.
+Points64 hindered(const CasePlan& plan, const Points64& points, const Joints64& joints,
+                  const Rotations64& local) {
+  PosedSkeleton truth;
+  truth.joints = joints.cast<float>();
+  for (size_t j = 0; j < kJointCount; ++j) {
+    const Mat3 own = local[j].cast<float>();
+    truth.global[j] = kParents[j] < 0 ? own : truth.global[static_cast<size_t>(kParents[j])] * own;
+  }
+  LabelledPoints cloud{points.cast<float>(), {}};
+  cloud.parts = nearest_parts(cloud.points, truth.joints);
+  uint64_t seed = 0;
+  for (const char c : plan.name) seed = 131 * seed + static_cast<unsigned char>(c);
+  Rng same(seed);
+  kHindrances[plan.hindrance].put(cloud, truth, same);
+  return cloud.points.cast<double>();
+}
+
 void write_points(const std::string& path, const Points& points) {
   std::ofstream file(path, std::ios::binary);
   file << "ply\nformat binary_little_endian 1.0\nelement vertex " << points.rows()
@@ -237,7 +281,7 @@ NpyArray rotations_array(const std::vector<Rotations64>& frames) {
 
 /// The clip of the case, turned to a random heading.
 ExactMotion turned_motion(Workshop& shop, const CasePlan& plan) {
-  const int frames = shop.options.suite == "extraction" ? kExtractionFrames : shop.options.frames;
+  const int frames = has_joints_only(shop.options.suite) ? kExtractionFrames : shop.options.frames;
   ExactMotion motion = read_exact_motion(plan.motion.path, plan.motion.start, frames);
   const Matrix3d turn = exact_rotation({0, shop.random.uniform(-M_PI, M_PI), 0});
   for (Rotations64& local : motion.local) local[Pelvis] = turn * local[Pelvis];
@@ -296,7 +340,8 @@ void make_case(Workshop& shop, const CasePlan& plan) {
   for (size_t t = 0; t < shown.vertices.size(); ++t) {
     const auto count = static_cast<int64_t>(shop.options.points * shop.random.uniform(0.8, 1.2));
     const auto scan = shop.options.suite == "captured" ? captured : surface;
-    const Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
+    Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
+    if (shop.options.suite == "hindered") points = hindered(plan, points, shown.joints[t], motion.local[t]);
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05zu.ply", t);
     write_points((folder / "source" / name).string(),
@@ -307,6 +352,7 @@ void make_case(Workshop& shop, const CasePlan& plan) {
   if (performed) json["target"] = "target.obj";
   json["truth"] = "truth.npz";
   json["tags"] = {shop.options.suite, plan.motion.tag};
+  if (shop.options.suite == "hindered") json["tags"].push_back(kHindrances[plan.hindrance].name);
   write_json((folder / "case.json").string(), json);
 }
 
@@ -333,7 +379,7 @@ int make_suite(const SuiteOptions& options, const std::function<void(const std::
            "\" has nobody dressed, whom the suite ", options.suite, " wants");
   Workshop shop(options, std::move(split));
   std::vector<CasePlan> plans =
-      options.suite == "extraction" ? extraction_plans(shop) : performance_plans(shop);
+      has_joints_only(options.suite) ? extraction_plans(shop) : performance_plans(shop);
   if (options.cases > 0 && plans.size() > static_cast<size_t>(options.cases))
     plans.resize(static_cast<size_t>(options.cases));
   for (const CasePlan& plan : plans) {

@@ -13,7 +13,7 @@ struct SuiteOptions {
   std::string suite = "naked";  ///< see make_suite
   std::string split = "dev";
   std::string body;   ///< SMPL-format; empty: the data folder's own
-  int frames = 90;    ///< of a case; those of "extraction" have 12
+  int frames = 90;    ///< of a case; those of joints alone have 12
   int points = 8000;  ///< about how many a scan has
   int cases = 0;      ///< only the first so many; 0: all
   uint32_t seed = 0;  ///< the same options give the same files
@@ -29,6 +29,8 @@ struct SuiteOptions {
 /// holes,
 ///   noise, outliers, some floor
 /// extraction: 40 people and short clips, joints of the source only
+/// hindered: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
+///   without a limb (a tag tells which)
 /// Throws Error naming what is missing.
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 

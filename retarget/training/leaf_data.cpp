@@ -64,7 +64,10 @@ Extraction LeafSampler::pretend(const PosedSkeleton& truth) {
     const Vec3 axis = Vec3(rng_.normal(), rng_.normal(), rng_.normal()).normalized();
     return rotation_from_axis_angle(degrees * kRadians * std::abs(rng_.normal()) * axis);
   };
-  const float spread = rng_.chance(0.2f) ? 0.025f : rng_.uniform(0.003f, 0.014f);
+  const float kind = rng_.uniform();
+  const float spread = kind < 0.12f   ? rng_.uniform(0.025f, 0.05f)
+                       : kind < 0.32f ? 0.025f
+                                      : rng_.uniform(0.003f, 0.014f);
   seen.global.emplace();
   Joints error = Joints::Zero();
   for (size_t j = 0; j < kJointCount; ++j) {

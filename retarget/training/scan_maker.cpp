@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/body/costume.hpp"
+#include "retarget/body/partial_view.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::training {
@@ -10,7 +12,6 @@ namespace {
 
 constexpr int kPoolSize = 40;
 constexpr int kScansPerPerson = 24;
-constexpr int kNoBody = kJointCount;
 // Sampled before holes take their share; the rest fills up with what is left.
 constexpr int kRawPoints = 1800;
 
@@ -23,17 +24,6 @@ Vec3 random_direction(Rng& rng) {
 
 bool is_upper(int joint) {
   return joint == Spine1 || joint == Spine2 || joint == Spine3 || joint >= Neck;
-}
-
-void keep_rows(MadeScan& scan, const std::vector<int>& kept) {
-  Points points(kept.size(), 3);
-  std::vector<int> parts(kept.size());
-  for (size_t i = 0; i < kept.size(); ++i) {
-    points.row(i) = scan.points.row(kept[i]);
-    parts[i] = scan.parts[kept[i]];
-  }
-  scan.points = std::move(points);
-  scan.parts = std::move(parts);
 }
 
 /// Exactly kScanPoints of the points, at random, repeating some where there are too few.
@@ -56,6 +46,7 @@ ScanMakerOptions ScanMakerOptions::rest() {
   options.t_pose = 1;
   options.yaw = 0.5f;
   options.stretch = 0.15f;
+  options.one_sided = 0;
   return options;
 }
 
@@ -132,6 +123,16 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose, int cou
   scan.parts.resize(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i) weights.row(i).maxCoeff(&scan.parts[i]);
   return scan;
+}
+
+/// Wide clothes, hair, held things, one camera, lost limbs: what clips and dressed people of the data lack.
+void ScanMaker::hinder(MadeScan& scan) {
+  if (rng_.chance(options_.skirts)) wear_skirt(scan, scan.truth, rng_);
+  if (rng_.chance(options_.coats)) wear_coat(scan, scan.truth, rng_);
+  if (rng_.chance(options_.hair)) wear_hair(scan, scan.truth, rng_);
+  if (rng_.chance(options_.holding)) hold_thing(scan, scan.truth, rng_);
+  if (rng_.chance(options_.limbless)) lose_limb(scan, rng_);
+  if (rng_.chance(options_.one_sided)) see_from_one_side(scan, scan.truth, rng_);
 }
 
 /// Joints of a stretched body are the stretched joints; rotations are kept, as bodies stay near the T-pose.
@@ -217,6 +218,7 @@ Pose ScanMaker::turned_pose() {
 
 MadeScan ScanMaker::scan_of(const Person& person, const Pose& pose) {
   MadeScan scan = sample_posed(person, pose, raw_points());
+  hinder(scan);
   if (options_.stretch > 0) stretch(scan);
   finish(scan, rng_.chance(options_.captured));
   return scan;

@@ -2,21 +2,28 @@
 // true of it.
 #pragma once
 
+#include "retarget/body/labelled_points.hpp"
 #include "retarget/nn/scan_patches.hpp"
 #include "retarget/training/training_data.hpp"
 
 namespace understudy::training {
 
 struct ScanMakerOptions {
-  float captured = 0.6f;  ///< share of scans with noise, holes, uneven density, outliers, floor
-  float dressed = 0.35f;  ///< share of dressed people
-  float mixed = 0.25f;    ///< share with upper and lower body from different postures
-  float jittered = 0.5f;  ///< share with every joint turned a little
-  float limp = 0;         ///< share with hands, head and feet turned much, as no clip has them
-  float t_pose = 0.06f;   ///< share in (nearly) the T-pose: targets
-  float tilted = 0.06f;   ///< share of bodies far from upright
-  bool mirror = true;     ///< mirror half of the postures
-  float yaw = kPi;        ///< headings, +- radians
+  float captured = 0.6f;    ///< share of scans with noise, holes, uneven density, outliers, floor
+  float dressed = 0.35f;    ///< share of dressed people
+  float mixed = 0.25f;      ///< share with upper and lower body from different postures
+  float jittered = 0.5f;    ///< share with every joint turned a little
+  float limp = 0;           ///< share with hands, head and feet turned much, as no clip has them
+  float t_pose = 0.06f;     ///< share in (nearly) the T-pose: targets
+  float tilted = 0.06f;     ///< share of bodies far from upright
+  bool mirror = true;       ///< mirror half of the postures
+  float yaw = kPi;          ///< headings, +- radians
+  float skirts = 0.12f;     ///< share in a wide skirt or dress, its legs hidden
+  float coats = 0.06f;      ///< share with thick sleeves and trunk
+  float hair = 0.12f;       ///< share with a bun or much hair
+  float holding = 0.1f;     ///< share with a thing in a hand
+  float one_sided = 0.08f;  ///< share seen by one camera
+  float limbless = 0.04f;   ///< share without a hand, forearm, foot or shin
   float stretch = 0;  ///< people made wider, taller, deeper by up to this share: characters beyond the data
 
   int points = 0;  ///< of a scan before holes, all of them kept; 0: kScanPoints, thinned from more
@@ -25,10 +32,8 @@ struct ScanMakerOptions {
   static ScanMakerOptions rest();
 };
 
-/// One scan and its truth, world metres.
-struct MadeScan {
-  Points points;           ///< [kScanPoints, 3], or as many as the options say
-  std::vector<int> parts;  ///< of each point the joint with the largest skin weight, 22: not the body
+/// One scan of kScanPoints points, or as many as the options say, and its truth, world metres.
+struct MadeScan : LabelledPoints {
   PosedSkeleton truth;
 };
 
@@ -60,6 +65,7 @@ class ScanMaker {
   Pose turned_pose();
   MadeScan scan_of(const Person& person, const Pose& pose);
   MadeScan sample_posed(const Person& person, const Pose& pose, int count, Points* rest = nullptr);
+  void hinder(MadeScan& scan);
   void stretch(MadeScan& scan);
   void degrade(MadeScan& scan);
   void finish(MadeScan& scan, bool captured);

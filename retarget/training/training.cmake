@@ -1,5 +1,5 @@
 us_module(training_data SOURCES training/training_data.cpp training/scan_maker.cpp
-  PUBLIC understudy_data_folder understudy_nn_core)
+  PUBLIC understudy_data_folder understudy_hindrances understudy_nn_core)
 us_module(training TORCH SOURCES
   training/skeleton_loss.cpp training/skeleton_batch.cpp training/skeleton_trainer.cpp
   training/deformation_losses.cpp training/deformation_data.cpp training/deformation_step.cpp training/deformation_trainer.cpp

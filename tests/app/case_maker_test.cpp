@@ -77,6 +77,15 @@ TEST_F(CaseMaker, SuitesHaveTheirShape) {
   EXPECT_TRUE(read_truth(extraction.truth).joints.empty());
 }
 
+TEST_F(CaseMaker, HinderedSourcesAreTaggedAndCoverAllKinds) {
+  options.cases = 6;
+  ASSERT_EQ(make("hindered"), 6);
+  EXPECT_EQ(names.front(), "b00_skirt");
+  EXPECT_EQ(made("b05_limbless").tags, (std::vector<std::string>{"hindered", "sway", "limbless"}));
+  EXPECT_GT(read_mesh(made("b00_skirt").source + "/frame_00003.ply").vertices.rows(), 0);
+  EXPECT_FALSE(read_truth(made("b03_held").truth).source_joints.empty());
+}
+
 TEST_F(CaseMaker, SaysWhatIsMissing) {
   options.split = "test";
   EXPECT_THROW(make("naked"), Error);
