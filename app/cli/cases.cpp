@@ -11,7 +11,7 @@ Action declare_cases(CLI::App& command) {
   command.add_option("data", options->data, "folder of people and motions with splits.json")->required();
   command.add_option("--suite", options->suite, "what is judged")
       ->required()
-      ->check(CLI::IsMember({"naked", "clothed", "captured", "extraction", "hindered"}));
+      ->check(CLI::IsMember({"naked", "clothed", "captured", "bends", "extraction", "hindered"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split, "of splits.json (default: dev)");
   command.add_option("--body", options->body, "an SMPL-format body in place of the folder's own");

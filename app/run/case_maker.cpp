@@ -30,6 +30,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kExtractionCases = 40, kExtractionFrames = 12, kTargets = 4, kMotions = 4;
+constexpr int kBendFrames = 24;  // from straight to bent and back
 
 /// Who shows what to whom.
 struct CasePlan {
@@ -118,6 +119,21 @@ std::vector<CasePlan> extraction_plans(const Workshop& shop) {
     // Each hindrance meets other motions and people than the ones before.
     plans.back().motion = motions[(i + i / kHindrances.size()) % motions.size()];
     plans.back().name += std::string("_") + kHindrances[plans.back().hindrance].name;
+  }
+  return plans;
+}
+
+/// The four extremes and four more people, each shown the same bends.
+std::vector<CasePlan> bend_plans(const Workshop& shop) {
+  const auto& betas = shop.split.betas;
+  std::vector<CasePlan> plans;
+  const auto add = [&](const std::string& name, const Eigen::VectorXf& target) {
+    plans.push_back({name, {"", 0, "bends"}, target, "", betas[(7 * plans.size()) % betas.size()], ""});
+  };
+  for (const auto& [name, target] : extremes(shop)) add(name, target);
+  for (size_t i = 0; i < kTargets; ++i) {
+    const size_t row = i * betas.size() / kTargets;
+    add("b" + std::to_string(row), betas[row]);
   }
   return plans;
 }
@@ -279,10 +295,42 @@ NpyArray rotations_array(const std::vector<Rotations64>& frames) {
   return array;
 }
 
+/// Elbows, shoulders, knees and both hips, one after the other bent by 120 degrees and straightened, arms
+/// hanging otherwise.
+ExactMotion bending_motion() {
+  constexpr int kMoves = 5;
+  const double far = 2 * M_PI / 3, hang = 7 * M_PI / 18;
+  ExactMotion motion;
+  motion.root.assign(kMoves * kBendFrames, Vector3d::Zero());
+  Rotations64 standing;
+  standing.fill(Matrix3d::Identity());
+  standing[LeftShoulder] = exact_rotation({0, 0, -hang});
+  standing[RightShoulder] = exact_rotation({0, 0, hang});
+  motion.local.assign(motion.root.size(), standing);
+  for (int t = 0; t < kMoves * kBendFrames; ++t) {
+    const double sine = std::sin(M_PI * (t % kBendFrames) / kBendFrames), bend = far * sine * sine;
+    Rotations64& local = motion.local[static_cast<size_t>(t)];
+    const int move = t / kBendFrames;
+    for (const bool left : {true, false}) {
+      const double side = left ? 1 : -1;
+      Matrix3d& shoulder = local[left ? LeftShoulder : RightShoulder];
+      if (move == 0) local[left ? LeftElbow : RightElbow] = exact_rotation({0, -side * bend, 0});
+      if (move == 1) shoulder = exact_rotation({-bend, 0, 0}) * shoulder;
+      if (move == 2) local[left ? LeftKnee : RightKnee] = exact_rotation({bend, 0, 0});
+      if (move != (left ? 3 : 4)) continue;
+      local[left ? LeftHip : RightHip] = exact_rotation({-bend, 0, 0});
+      local[left ? LeftKnee : RightKnee] = exact_rotation({0.75 * bend, 0, 0});
+    }
+  }
+  return motion;
+}
+
 /// The clip of the case, turned to a random heading.
 ExactMotion turned_motion(Workshop& shop, const CasePlan& plan) {
   const int frames = has_joints_only(shop.options.suite) ? kExtractionFrames : shop.options.frames;
-  ExactMotion motion = read_exact_motion(plan.motion.path, plan.motion.start, frames);
+  ExactMotion motion = shop.options.suite == "bends"
+                           ? bending_motion()
+                           : read_exact_motion(plan.motion.path, plan.motion.start, frames);
   const Matrix3d turn = exact_rotation({0, shop.random.uniform(-M_PI, M_PI), 0});
   for (Rotations64& local : motion.local) local[Pelvis] = turn * local[Pelvis];
   for (Vector3d& root : motion.root) root = turn * root;
@@ -378,8 +426,9 @@ int make_suite(const SuiteOptions& options, const std::function<void(const std::
   US_CHECK(!dressed || !split.clothed.empty(), options.data, ": the split \"", options.split,
            "\" has nobody dressed, whom the suite ", options.suite, " wants");
   Workshop shop(options, std::move(split));
-  std::vector<CasePlan> plans =
-      has_joints_only(options.suite) ? extraction_plans(shop) : performance_plans(shop);
+  std::vector<CasePlan> plans = has_joints_only(options.suite) ? extraction_plans(shop)
+                                : options.suite == "bends"     ? bend_plans(shop)
+                                                               : performance_plans(shop);
   if (options.cases > 0 && plans.size() > static_cast<size_t>(options.cases))
     plans.resize(static_cast<size_t>(options.cases));
   for (const CasePlan& plan : plans) {

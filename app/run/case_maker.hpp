@@ -28,6 +28,7 @@ struct SuiteOptions {
 /// captured: the naked suite's targets; dressed sources as a rig of cameras would see them: uneven density,
 /// holes,
 ///   noise, outliers, some floor
+/// bends: the naked suite's targets and four more; elbows, shoulders, knees and hips bent by 120 degrees
 /// extraction: 40 people and short clips, joints of the source only
 /// hindered: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
 ///   without a limb (a tag tells which)

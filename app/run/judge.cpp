@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
 #include "retarget/metrics/inside.hpp"
 
 namespace understudy::app {
 namespace {
+
+constexpr float kBent = kPi / 2;
 
 void put(Metrics& metrics, const char* key, double value) {
   if (std::isfinite(value)) metrics.emplace_back(key, value);
@@ -20,6 +23,8 @@ Judge::Judge(double fps, const Truth* truth, const Mesh* target, int slow_every)
   if (target && !target->is_cloud()) penetration_.emplace(target->vertices, target->faces);
   if (target && !target->is_cloud() && truth && truth->target_joints && !truth->source_gaps.empty())
     hands_.emplace(target->vertices, target->faces, *truth->target_joints);
+  if (target && !target->is_cloud() && truth && truth->target_joints && !truth->rotations.empty())
+    bends_.emplace(target->vertices, target->faces, *truth->target_joints);
 }
 
 void Judge::push(const JudgedFrame& frame) {
@@ -45,6 +50,7 @@ void Judge::push_surface(const JudgedFrame& frame) {
     pa_mpvd_.add(last_.pa_mpvd_m = aligned_vertex_error(p, q));
     medl_.add(last_.medl_mm = edge_length_error(p, q));
     last_.medl_mm *= 1000;
+    if (bends_) push_bends(p, q);
   }
   floor_.add(last_.floor_mm = floor_penetration(p));
   floor_worst_ = std::max(floor_worst_, last_.floor_mm);
@@ -61,6 +67,18 @@ void Judge::push_hands(const Points& vertices) {
   const double buried = hands_->buried(vertices);
   buried_.add(buried);
   buried_added_.add(buried - static_cast<double>(truth_->source_buried[t]));
+}
+
+void Judge::push_bends(const Points& vertices, const Points& true_vertices) {
+  const Rotations& local = truth_->rotations[static_cast<size_t>(frames_)];
+  for (size_t bend = 0; bend < BentVolume::kBends.size(); ++bend) {
+    const Mat3& turn = local[static_cast<size_t>(BentVolume::kBends[bend])];
+    if (geodesic_angle(turn, Mat3::Identity()) < kBent) continue;
+    const double kept = bends_->kept(bend, vertices), should = bends_->kept(bend, true_vertices);
+    if (!std::isfinite(kept) || !std::isfinite(should)) continue;
+    bent_.add(kept);
+    bent_true_.add(should);
+  }
 }
 
 Metrics Judge::metrics() const {
@@ -82,6 +100,10 @@ Metrics Judge::metrics() const {
   if (buried_.count > 0) {
     put(result, "arm_buried", buried_.sum / buried_.count);
     put(result, "arm_buried_added", buried_added_.sum / buried_added_.count);
+  }
+  if (bent_.count > 0) {
+    put(result, "bent_volume", bent_.sum / bent_.count);
+    put(result, "bent_volume_true", bent_true_.sum / bent_true_.count);
   }
   if (!joints_.empty()) put(result, "jerk", jerk(joints_, fps_));
   if (self_penetration_.count > 0)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/run/case_folder.hpp"
+#include "retarget/metrics/bent_volume.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/metrics/surface_metrics.hpp"
@@ -46,6 +47,9 @@ struct SurfaceFigures {
 /// mean gap of the target in them; arm_buried, the share of hands and forearms inside the rest of the
 /// target's body, and arm_buried_added, that less the source's own. floor_worst_mm is the deepest vertex of
 /// all frames.
+///
+/// bent_volume is the volume about elbows, knees, shoulders and hips over that in T-pose, in frames in which
+/// they are turned by more than 90 degrees; bent_volume_true is the truth's.
 class Judge {
  public:
   /// truth may be null; target (its T-pose) too. slow_every: frames between looks of the slow figures.
@@ -71,6 +75,7 @@ class Judge {
   };
   void push_surface(const JudgedFrame& frame);
   void push_hands(const Points& vertices);
+  void push_bends(const Points& vertices, const Points& true_vertices);
   void add_truth(Metrics& result) const;
   void add_extraction(Metrics& result) const;
 
@@ -79,13 +84,14 @@ class Judge {
   const Truth* truth_;
   std::optional<SelfPenetration> penetration_;
   std::optional<HandContact> hands_;  // of the target
+  std::optional<BentVolume> bends_;   // of the target
   ContactsKept contacts_;
   int64_t frames_ = 0;
   JointSequence joints_, source_joints_, raw_joints_;
   std::vector<Rotations> rotations_;
   std::vector<Confidence> confidence_;
   SurfaceFigures last_;
-  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_, buried_, buried_added_;
+  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_, buried_, buried_added_, bent_, bent_true_;
   double floor_worst_ = 0;
 };
 

@@ -1,4 +1,4 @@
 find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
 us_module(metrics SOURCES metrics/joint_metrics.cpp metrics/surface_metrics.cpp metrics/inside.cpp
-  metrics/failures.cpp metrics/confidence.cpp metrics/hand_contact.cpp
+  metrics/failures.cpp metrics/confidence.cpp metrics/hand_contact.cpp metrics/bent_volume.cpp
   PUBLIC understudy_core)

@@ -8,6 +8,8 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/numpy_random.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/metrics/bent_volume.hpp"
 #include "tests/app/program.hpp"
 #include "tests/support/training_folder.hpp"
 
@@ -75,6 +77,20 @@ TEST_F(CaseMaker, SuitesHaveTheirShape) {
   EXPECT_TRUE(extraction.target.empty());
   EXPECT_EQ(read_truth(extraction.truth).frames, 12);
   EXPECT_TRUE(read_truth(extraction.truth).joints.empty());
+}
+
+TEST_F(CaseMaker, BendsBendEachJointFarAndComeBack) {
+  options.cases = 1;
+  ASSERT_EQ(make("bends"), 1);
+  const Truth truth = read_truth(made("tall").truth);
+  ASSERT_EQ(truth.frames, 120);
+  for (const int joint : BentVolume::kBends) {
+    float most = 0;
+    for (const Rotations& local : truth.rotations)
+      most = std::max(most, geodesic_angle(local[static_cast<size_t>(joint)], Mat3::Identity()));
+    EXPECT_GT(most, 119 * kPi / 180) << kJointNames[static_cast<size_t>(joint)];
+  }
+  EXPECT_LT(geodesic_angle(truth.rotations[0][LeftElbow], Mat3::Identity()), 1e-3f);
 }
 
 TEST_F(CaseMaker, HinderedSourcesAreTaggedAndCoverAllKinds) {
