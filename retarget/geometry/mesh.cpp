@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nanoflann.hpp>
 #include <numeric>
 
 #include "retarget/base/error.hpp"
@@ -94,44 +95,37 @@ std::vector<int> farthest_points(const Points& points, int count, int first) {
   return chosen;
 }
 
+namespace {
+
+/// nanoflann's view of our points.
+struct TreePoints {
+  const Points& points;
+  size_t kdtree_get_point_count() const { return static_cast<size_t>(points.rows()); }
+  float kdtree_get_pt(size_t i, size_t axis) const {
+    return points(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis));
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, TreePoints>, TreePoints,
+                                                 3, uint32_t>;
+
+}  // namespace
+
 Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,
                                                                                        const Points& queries,
                                                                                        int k) {
   US_CHECK(k <= points.rows(), k, " neighbours wanted of ", points.rows(), " points");
-  // In order of height: only points whose height alone is not too far can be among the nearest.
-  std::vector<int> order(static_cast<size_t>(points.rows()));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return points(a, 1) < points(b, 1); });
+  const TreePoints seen{points};
+  const Tree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(/*leaf_max_size=*/16));
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(queries.rows(), k);
-  std::vector<std::pair<float, int>> best;  // a heap, the farthest first; of equally far ones the later
+  std::vector<uint32_t> found(static_cast<size_t>(k));
+  std::vector<float> squared(static_cast<size_t>(k));
   for (Eigen::Index q = 0; q < queries.rows(); ++q) {
-    const auto height = [&](size_t at) { return points(order[at], 1) - queries(q, 1); };
-    const auto above =
-        static_cast<size_t>(std::lower_bound(order.begin(), order.end(), queries(q, 1),
-                                             [&](int i, float y) { return points(i, 1) < y; }) -
-                            order.begin());
-    best.clear();
-    const auto look = [&](size_t at) {
-      const std::pair<float, int> seen((points.row(order[at]) - queries.row(q)).squaredNorm(), order[at]);
-      if (best.size() == static_cast<size_t>(k)) {
-        if (!(seen < best.front())) return;
-        std::pop_heap(best.begin(), best.end());
-        best.pop_back();
-      }
-      best.push_back(seen);
-      std::push_heap(best.begin(), best.end());
-    };
-    const auto too_far = [&](float dy) {
-      return best.size() == static_cast<size_t>(k) && dy * dy > best.front().first;
-    };
-    size_t up = above, down = above;
-    while (up < order.size() || down > 0) {
-      const bool rising = down == 0 || (up < order.size() && height(up) <= -height(down - 1));
-      if (too_far(rising ? height(up) : height(down - 1))) break;
-      look(rising ? up++ : --down);
-    }
-    std::sort_heap(best.begin(), best.end());
-    for (int i = 0; i < k; ++i) result(q, i) = best[static_cast<size_t>(i)].second;
+    tree.knnSearch(queries.row(q).data(), found.size(), found.data(), squared.data());
+    for (int i = 0; i < k; ++i) result(q, i) = static_cast<int>(found[static_cast<size_t>(i)]);
   }
   return result;
 }

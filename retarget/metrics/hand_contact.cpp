@@ -6,7 +6,6 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/geometry/far_apart.hpp"
-#include "retarget/metrics/inside.hpp"
 
 namespace understudy {
 namespace {
@@ -119,7 +118,7 @@ HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& r
     }
     hands_[s] = far_apart(rest, hand, kHandPoints);
     judged_[s] = far_apart(rest, arm, kJudged);
-    others_[s] = faces_where(faces, other);
+    others_.emplace_back(rest, faces_where(faces, other));
     for (size_t p = 0; p < kTouchedParts; ++p) part_faces_[s][p] = faces_where(faces, in[p]);
   }
 }
@@ -157,12 +156,13 @@ double HandContact::buried(const Points& vertices) const {
     std::array<Eigen::AlignedBox3f, kTouchedParts> boxes;  // outside all of them nothing can be inside
     for (size_t p = 0; p < kTouchedParts; ++p)
       for (const int v : parts_[s][p]) boxes[p].extend(vertices.row(v).transpose());
-    for (const int v : judged_[s]) {
-      const Vec3 point = vertices.row(v).transpose();
-      const bool near =
-          std::any_of(boxes.begin(), boxes.end(), [&](const auto& b) { return b.contains(point); });
-      inside += near && winding_number(vertices, others_[s], point) > 0.5;
-    }
+    std::vector<int> near;
+    for (const int v : judged_[s])
+      if (std::any_of(boxes.begin(), boxes.end(),
+                      [&](const auto& b) { return b.contains(vertices.row(v).transpose()); }))
+        near.push_back(v);
+    const std::vector<bool> around = others_[s].around(vertices, vertices(near, Eigen::all));
+    inside += static_cast<int>(std::count(around.begin(), around.end(), true));
     judged += judged_[s].size();
   }
   return judged == 0 ? 0 : static_cast<double>(inside) / static_cast<double>(judged);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/metrics/windings.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy {
@@ -33,7 +34,7 @@ class HandContact {
   std::array<std::vector<int>, 2> hands_, judged_;                    // vertices a side
   std::array<std::array<std::vector<int>, kTouchedParts>, 2> parts_;  // vertices
   std::array<std::array<Faces, kTouchedParts>, 2> part_faces_;
-  std::array<Faces, 2> others_;  // the body without this arm
+  std::vector<Windings> others_;  // a side: the body without this arm
 };
 
 /// Sums up a sequence: of the hands that come within `touch_m` of a part of the source, how many do so of the

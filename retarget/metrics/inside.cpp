@@ -35,7 +35,7 @@ Points finite_rows(const Points& points) {
 
 }  // namespace
 
-double winding_number(const Points& vertices, const Faces& faces, const Vec3& point) {
+double winding_number(const Points& vertices, const Eigen::Ref<const Faces>& faces, const Vec3& point) {
   double solid_angle = 0;
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
     const Vec3 a = vertices.row(faces(f, 0)).transpose() - point;

@@ -7,7 +7,7 @@ namespace understudy {
 
 /// Generalised winding number of a triangle mesh around a point: 1 inside, 0 outside, between near holes
 /// (Jacobson et al. 2013; solid angles after van Oosterom and Strackee 1983).
-double winding_number(const Points& vertices, const Faces& faces, const Vec3& point);
+double winding_number(const Points& vertices, const Eigen::Ref<const Faces>& faces, const Vec3& point);
 
 /// Share of 42 directions, evenly spread, in which a point sees the cloud within `reach` metres; the points
 /// count as discs of `radius`. Near 1 inside a body, well below outside.

@@ -3,10 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 
 #include "retarget/base/error.hpp"
-#include "retarget/metrics/inside.hpp"
 
 namespace understudy {
 namespace {
@@ -16,21 +14,6 @@ void check_same_size(const Points& p, const Points& q) {
            " true ones cannot be compared");
   US_CHECK(q.rows() > 0, "no vertices to compare");
 }
-
-/// nanoflann's view of our points.
-struct Cloud {
-  const Points& points;
-  size_t kdtree_get_point_count() const { return static_cast<size_t>(points.rows()); }
-  float kdtree_get_pt(size_t i, size_t axis) const {
-    return points(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis));
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, uint32_t>;
 
 double edge(const Points& x, Eigen::Index a, Eigen::Index b) {
   return (x.row(a).cast<double>() - x.row(b).cast<double>()).norm();
@@ -54,20 +37,17 @@ double aligned_vertex_error(const Points& p, const Points& q) {
 
 double edge_length_error(const Points& p, const Points& q, int neighbours) {
   check_same_size(p, q);
-  const Cloud cloud{q};
-  const Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(/*leaf_max_size=*/16));
   // One more than wanted: the vertex finds itself, though not first where vertices coincide.
-  const size_t wanted = static_cast<size_t>(std::min<Eigen::Index>(neighbours + 1, q.rows()));
-  std::vector<uint32_t> found(wanted);
-  std::vector<float> squared(wanted);
+  const int wanted = static_cast<int>(std::min<Eigen::Index>(neighbours + 1, q.rows()));
+  const auto near = nearest_neighbours(q, q, wanted);
   double sum = 0;
   int64_t edges = 0;
   for (Eigen::Index v = 0; v < q.rows(); ++v) {
-    const size_t count = tree.knnSearch(q.row(v).data(), wanted, found.data(), squared.data());
     int used = 0;
-    for (size_t i = 0; i < count && used < neighbours; ++i) {
-      if (found[i] == static_cast<uint32_t>(v)) continue;
-      sum += std::abs(edge(p, v, found[i]) - edge(q, v, found[i]));
+    for (int i = 0; i < wanted && used < neighbours; ++i) {
+      const int other = near(v, i);
+      if (other == v) continue;
+      sum += std::abs(edge(p, v, other) - edge(q, v, other));
       ++used;
     }
     edges += used;
@@ -80,7 +60,8 @@ double floor_penetration(const Points& vertices) {
   return std::max(0.0, -static_cast<double>(vertices.col(1).minCoeff()));
 }
 
-SelfPenetration::SelfPenetration(const Points& rest, const Faces& faces, int samples) : faces_(faces) {
+SelfPenetration::SelfPenetration(const Points& rest, const Faces& faces, int samples)
+    : faces_(faces), windings_(rest, faces) {
   US_CHECK(faces.rows() > 0, "self-penetration wants a surface, not a point cloud");
   judged_ = farthest_points(rest, static_cast<int>(std::min<Eigen::Index>(samples, rest.rows())));
   const std::vector<bool> inside = buried(rest);
@@ -93,12 +74,7 @@ SelfPenetration::SelfPenetration(const Points& rest, const Faces& faces, int sam
 std::vector<bool> SelfPenetration::buried(const Points& vertices) const {
   constexpr float kAbove = 0.002f;  // metres above its own skin, where only another part's inside can be
   const Points normals = vertex_normals(vertices, faces_);
-  std::vector<bool> result(judged_.size());
-  for (size_t i = 0; i < judged_.size(); ++i) {
-    const Vec3 point = (vertices.row(judged_[i]) + kAbove * normals.row(judged_[i])).transpose();
-    result[i] = winding_number(vertices, faces_, point) > 0.5;
-  }
-  return result;
+  return windings_.around(vertices, vertices(judged_, Eigen::all) + kAbove * normals(judged_, Eigen::all));
 }
 
 double SelfPenetration::share(const Points& vertices) const {

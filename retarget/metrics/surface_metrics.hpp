@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/metrics/windings.hpp"
 
 namespace understudy {
 
@@ -33,6 +34,7 @@ class SelfPenetration {
  private:
   std::vector<bool> buried(const Points& vertices) const;
   Faces faces_;
+  Windings windings_;
   std::vector<int> judged_;  // vertex numbers
 };
 
