@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2f;
 
-constexpr int kLeft = 78, kRight = 24, kTop = 50, kBottom = 62;  // pixels about the axes
+constexpr int kLeft = 78, kRight = 24, kTop = 66, kBottom = 62;  // pixels about the axes
 const Vec3 kInk(0.13f, 0.15f, 0.18f), kFaint(0.87f, 0.88f, 0.90f), kPaper(1, 1, 1);
 const Vec3 kColors[] = {{0.12f, 0.42f, 0.70f}, {0.85f, 0.37f, 0.12f}, {0.17f, 0.58f, 0.31f},
                         {0.55f, 0.30f, 0.66f}, {0.62f, 0.54f, 0.10f}, {0.35f, 0.38f, 0.42f}};
