@@ -64,10 +64,15 @@ const std::vector<Table>& tables() {
         {"ms", "extract", "ms a frame", 1, 1}}},
       {"offsets",
        "Pose-corrective offsets",
-       "With true poses weights and offsets alone are judged.",
+       "With true poses weights and offsets alone are judged. Volume: what flesh about elbows, knees, "
+       "shoulders "
+       "and hips "
+       "keeps of its volume where they are turned by more than 90 degrees, and what it should.",
        {{"mean", "mpvd_m", "mpvd_m", 1, 5},
         {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 5},
-        {"mean", "medl_mm", "medl_mm", 1, 3}}}};
+        {"mean", "medl_mm", "medl_mm", 1, 3},
+        {"mean", "bent_volume", "volume, %", 100, 1},
+        {"mean", "bent_volume_true", "true, %", 100, 1}}}};
   return all;
 }
 
