@@ -12,6 +12,7 @@
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/pipeline/person_doubt.hpp"
 
 namespace understudy::app {
 namespace {
@@ -141,8 +142,11 @@ void run_job(const JobOptions& options) {
   Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
                     job.source->count().value_or(0), options.progress_lines);
+  PersonDoubt person;
   while (const auto frame = job.performer->next()) {
     take_frame(job, *frame, options.source.follow);
+    const std::string doubt = frame->result.flagged ? "" : person.push(frame->result.source_raw);
+    if (!doubt.empty()) log::warn(options.source.path + ": " + doubt);
     progress.step(job.frames);
     check_interrupt("after frame " + std::to_string(frame->scan.number));
   }

@@ -14,6 +14,7 @@
 #include "app/session/background_thread.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/pipeline/person_doubt.hpp"
 
 namespace understudy::app {
 namespace {
@@ -85,6 +86,7 @@ struct Extracted {
 struct Stream {
   std::unique_ptr<SkeletonExtractor> extractor;
   std::vector<Extracted> frames;
+  PersonDoubt person;
 };
 
 /// A take at work.
@@ -200,6 +202,8 @@ struct Engine::Impl {
   Stream& stream_of(const std::string& extractor);
   bool read_frame();
   Extracted extracted(Stream& stream, const SourceFrame& frame) const;
+  /// Says where the source may be no person.
+  void doubt(Stream& stream) const;
   bool tell_source();
   bool perform(TakeWork& take);
 };
@@ -326,7 +330,7 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
 
 void Engine::Impl::close_source() {
   source.reset();
-  for (auto& [name, stream] : streams) stream.frames.clear();
+  for (auto& [name, stream] : streams) stream.frames.clear(), stream.person = {};
   opened = ended = has_faces = false;
   told = 0;
   filter.reset();
@@ -448,6 +452,12 @@ Extracted Engine::Impl::extracted(Stream& stream, const SourceFrame& frame) cons
   return result;
 }
 
+void Engine::Impl::doubt(Stream& stream) const {
+  const Extracted& last = stream.frames.back();
+  const std::string why = last.usable ? stream.person.push(last.extraction) : "";
+  if (!why.empty()) log::warn(plan.source.path + ": " + why);
+}
+
 /// The next scan through every extractor that a take or the view wants. A stream that came later catches up
 /// first.
 bool Engine::Impl::read_frame() {
@@ -479,6 +489,7 @@ bool Engine::Impl::read_frame() {
       if (stream->frames.size() == behind) {
         stream->frames.push_back(extracted(*stream, *frame));
         stream->frames.back().read_ms = read_ms;
+        doubt(*stream);
       }
     return true;
   } catch (const std::exception& error) {

@@ -1,0 +1,63 @@
+#include "retarget/pipeline/person_doubt.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/retarget/pipeline/fixtures.hpp"
+
+namespace understudy {
+namespace {
+
+/// Legs as long as a cat's are of its trunk, a neck that reaches far, arms short.
+Joints four_legged() {
+  auto lengths = bone_lengths(human_rest());
+  for (const int j : {LeftKnee, RightKnee, LeftAnkle, RightAnkle}) lengths[j] *= 0.45f;
+  for (const int j : {Spine1, Spine2, Spine3}) lengths[j] *= 1.6f;
+  for (const int j : {Neck, Head, LeftFoot, RightFoot}) lengths[j] *= 1.8f;
+  return rest_with_lengths(human_rest(), lengths);
+}
+
+Extraction seen(const Joints& joints, float confidence = 0.9f) {
+  Extraction extraction;
+  extraction.joints = joints;
+  extraction.confidence.setConstant(confidence);
+  return extraction;
+}
+
+TEST(PersonDoubt, PeopleOfAnySizeInAnyPoseAreNotDoubted) {
+  for (const Joints& body : {human_rest(), fixtures::other_body(), Joints(0.5f * human_rest())}) {
+    EXPECT_LT(bone_strangeness(body), 0.2f);
+    PersonDoubt person;
+    for (int t = 0; t < 20; ++t) {
+      Pose pose = fixtures::dance(0.3f * static_cast<float>(t));
+      pose.local[Pelvis] = rotation_from_axis_angle(Vec3(1.5f, 0, 0));  // on all fours
+      EXPECT_EQ(person.push(seen(forward_kinematics(body, pose).joints)), "");
+    }
+  }
+}
+
+TEST(PersonDoubt, BonesThatAreNobodysAreToldOnce) {
+  EXPECT_GT(bone_strangeness(four_legged()), 0.25f);
+  PersonDoubt person;
+  int told = 0;
+  for (int t = 0; t < 10; ++t) {
+    const std::string sentence = person.push(seen(four_legged()));
+    told += sentence.empty() ? 0 : 1;
+    if (!sentence.empty()) EXPECT_EQ(sentence.rfind("may be no person", 0), 0u) << sentence;
+  }
+  EXPECT_EQ(told, 1);
+}
+
+TEST(PersonDoubt, ABadFrameAmongGoodOnesIsNoReason) {
+  PersonDoubt person;
+  for (int t = 0; t < 60; ++t) EXPECT_EQ(person.push(seen(t % 3 ? human_rest() : four_legged())), "") << t;
+}
+
+TEST(PersonDoubt, AGivenSkeletonIsNotDoubted) {
+  PersonDoubt person;
+  Extraction given = seen(four_legged());
+  given.exact = true;
+  for (int t = 0; t < 10; ++t) EXPECT_EQ(person.push(given), "");
+}
+
+}  // namespace
+}  // namespace understudy
