@@ -2,7 +2,7 @@ find_package(CLI11 REQUIRED)
 
 # What command line and studio share.
 us_module(run SOURCES
-  app/run/breakdown.cpp app/run/case_folder.cpp app/run/case_maker.cpp app/run/exports.cpp app/run/interrupt.cpp app/run/judge.cpp app/run/latency.cpp app/run/performer.cpp
+  app/run/breakdown.cpp app/run/case_folder.cpp app/run/case_maker.cpp app/run/exports.cpp app/run/file_figures.cpp app/run/interrupt.cpp app/run/judge.cpp app/run/latency.cpp app/run/performer.cpp
   app/run/report.cpp app/run/samples.cpp app/run/source.cpp app/run/target_file.cpp
   PUBLIC understudy_core understudy_metrics understudy_formats understudy_pipeline understudy_character nlohmann_json::nlohmann_json
   PRIVATE understudy_npz understudy_motion understudy_data_folder understudy_hindrances understudy_results ZLIB::ZLIB)

@@ -13,8 +13,9 @@ std::string one_line(const Verdict& verdict) {
   if (!verdict.error.empty()) return verdict.name + ": ERROR " + verdict.error;
   std::string line = verdict.name + ": " + std::to_string(verdict.frames) + " frames";
   if (verdict.flagged > 0) line += ", " + std::to_string(verdict.flagged) + " flagged";
-  for (const char* key : {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "extraction_mpjpe_mm",
-                          "extraction_swap_rate", "hand_contact_kept", "arm_buried_added"})
+  for (const char* key :
+       {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "file_medl_mm", "extraction_mpjpe_mm",
+        "extraction_swap_rate", "hand_contact_kept", "arm_buried_added"})
     for (const auto& [name, value] : verdict.metrics) {
       char text[64];
       std::snprintf(text, sizeof text, ", %s %.4g", key, value);
@@ -67,6 +68,10 @@ Action declare_eval(CLI::App& command) {
           "fit: fit a body to each scan instead of extracting a skeleton; npt: pose transfer without a "
           "skeleton (weights: --engine-weights)")
       ->check(CLI::IsMember({"fit", "npt"}));
+  command
+      .add_option("--file", options->file_shapes,
+                  "judge the GLB that would be exported, too, with so many morph targets: file_medl_mm, ...")
+      ->check(CLI::Range(0, 64));
   command.add_option("--body", options->body, "the SMPL-format body that the peer fits");
   command.add_option("--worst", options->worst, "how many of the worst frames are told (default: 20)")
       ->check(CLI::Range(0, 10000));

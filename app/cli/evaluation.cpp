@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "app/cli/attempt.hpp"
+#include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/performer.hpp"
 #include "app/run/target_file.hpp"
@@ -43,6 +44,7 @@ struct Judging {
   Judge& judge;
   Verdict& verdict;
   const Truth* truth;  // null: none
+  Metrics file;        // of the exported file, where asked for
 };
 
 double ms_since(std::chrono::steady_clock::time_point began) {
@@ -85,8 +87,10 @@ void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) 
 
 /// The whole way, frame by frame; with `oracle` the true skeleton takes the place of the extracted one.
 void judge_performance(const Case& c, const EvalOptions& options, Networks networks,
-                       const PreparedCharacter& target, Judging& to) {
+                       const std::shared_ptr<const PreparedCharacter>& character, Judging& to) {
+  const PreparedCharacter& target = *character;
   const auto source = open_source(case_source(c));
+  CharacterClip clip{c.name, c.fps, {}};
   const std::vector<Joints>* const oracle =
       options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
   US_CHECK(options.oracle.empty() || (oracle && !oracle->empty()), c.truth,
@@ -101,6 +105,7 @@ void judge_performance(const Case& c, const EvalOptions& options, Networks netwo
     const auto frame = known ? performer.next((*oracle)[t]) : performer.next();
     if (!frame) break;
     const RetargetedFrame& result = frame->result;
+    clip.poses.push_back(result.pose);
     to.verdict.latency.add(frame->times);
     to.verdict.flagged += result.flagged;
     const Points vertices = target.surface.in_file_order(result.vertices);
@@ -110,6 +115,11 @@ void judge_performance(const Case& c, const EvalOptions& options, Networks netwo
                    result.flagged ? &frame->source_joints : &result.source_raw.joints,
                    frame->scan.usable ? &frame->scan.mesh : nullptr, &confidence});
   }
+  if (!options.file_shapes || !to.truth || to.truth->vertices.empty()) return;
+  ExportBody body{character, performer.retargeter().networks().deformer, {}};
+  body.file.their_rig = false;
+  body.file.shapes = *options.file_shapes;
+  to.file = file_figures(body, clip, *to.truth);
 }
 
 /// The peer without a skeleton: its surface, and joints read off it. A frame that it cannot use stays as the
@@ -185,17 +195,18 @@ void judge_case(const Bench& bench, const std::string& folder, const Case& c, Ve
     if (bench.fit) networks.extractor = std::make_unique<BodyFit>(bench.fit);  // of the source alone
   }
   Judge judge(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
-  Judging to{judge, verdict, truth ? &*truth : nullptr};
+  Judging to{judge, verdict, truth ? &*truth : nullptr, {}};
   if (target && options.peer == "npt")
     judge_surface(c, options, std::move(networks), *target, to);
   else if (target)
-    judge_performance(c, options, std::move(networks), *target, to);
+    judge_performance(c, options, std::move(networks), target, to);
   else if (mesh)
     judge_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);
   else
     judge_extraction(c, *networks.extractor, to);
   verdict.frames = verdict.latency.frames();
   verdict.metrics = judge.metrics();
+  verdict.metrics.insert(verdict.metrics.end(), to.file.begin(), to.file.end());
   if (truth) breakdown.add(folder, c, judge, *truth);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,9 @@ struct EvalOptions {
   /// "fit": a body is fitted to each scan in place of the extractor; "npt": pose transfer without a skeleton,
   /// its weights those of --engine-weights; empty: none
   std::string peer;
-  std::string body;  ///< SMPL-format, of the peer "fit"
-  int worst = 20;    ///< frames told as the worst
+  std::optional<int> file_shapes;  ///< the exported file is judged, too, with so many morph targets
+  std::string body;                ///< SMPL-format, of the peer "fit"
+  int worst = 20;                  ///< frames told as the worst
   nn::NetworkOptions networks;
   RetargetOptions retarget;
 };

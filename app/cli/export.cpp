@@ -22,6 +22,7 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
+#include "retarget/pipeline/person_doubt.hpp"
 
 namespace understudy::app {
 namespace {
@@ -65,10 +66,13 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
   int64_t flagged = 0;
   const auto dt = static_cast<float>(1 / source->fps());
   Joints seen = Joints::Zero();
+  PersonDoubt person;
   while (auto scan = source->next()) {
     const RetargetedFrame frame =
         scan->skeleton ? retargeter.push(*scan->skeleton, dt) : retargeter.push(scan->mesh, dt);
     flagged += frame.flagged ? 1 : 0;
+    const std::string doubt = frame.flagged ? "" : person.push(frame.source_raw);
+    if (!doubt.empty()) log::warn(path + ": " + doubt);
     if (!frame.flagged) seen = frame.source.joints;
     clip.poses.push_back(frame.pose);
     input.source_joints.push_back(seen);
@@ -93,12 +97,16 @@ Performance perform_sources(const ExportOptions& options, const ExportFormatInfo
   Networks networks = nn::load_networks(options.networks);
   const auto character = open_target(options.target, networks);
   const bool theirs = on_their_rig(options.target, *character);
+  CharacterExportOptions file = options.file;
+  file.their_rig = theirs;
+  check_export_options(options.out, format.format, file);
+  US_CHECK(!theirs || file.influences == 4, options.target.path,
+           ": its own skin stays as it is, --influences is for ours (--rig ours)");
   RetargetOptions quick = options.retarget;
   quick.vertices = false;
   Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
   retargeter.set_target(character->target);
-  Performance out{{{character, retargeter.networks().deformer, options.file}, {}, {}}, options.target.path};
-  out.input.body.file.their_rig = theirs;
+  Performance out{{{character, retargeter.networks().deformer, file}, {}, {}}, options.target.path};
   for (const std::string& path : options.sources) perform(options, path, retargeter, out.input);
   return out;
 }
@@ -228,6 +236,10 @@ int run_export(const ExportOptions& options) {
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
            ": only of a GLB or glTF file a picture can be made");
   check_export(options.out, format.format);
+  CharacterExportOptions on_any_rig = options.file;
+  on_any_rig.their_rig = options.target.rig != "ours";
+  check_export_options(options.out, format.format, on_any_rig);
+  US_CHECK(options.takes.empty() || !options.document.empty(), "--take: only a document has takes");
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
   Performance done =
       options.document.empty() ? perform_sources(options, format) : perform_document(options, format);

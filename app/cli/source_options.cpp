@@ -11,11 +11,13 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
   command.add_option("--source-betas", source.betas, "shape parameters of the source body")->delimiter(',');
   command.add_option("--clip", source.clip,
                      "which animation of a skeletal source: its name or number (default: the longest)");
-  command.add_flag("--as-scan", source.as_scan,
-                   "the surface of an animated source is looked at as a scan, not its skeleton");
-  command.add_option_function<std::string>(
+  CLI::Option* const as_scan =
+      command.add_flag("--as-scan", source.as_scan,
+                       "the surface of an animated source is looked at as a scan, not its skeleton");
+  CLI::Option* const map = command.add_option_function<std::string>(
       "--source-map", [&source](const std::string& path) { source.bones = read_bone_choices(path); },
       R"(JSON that names bones of a skeletal source: {"left_wrist": "Hand.L"})");
+  map->excludes(as_scan);
   command.add_flag("--follow", source.follow, "the source folder is still being written");
   command
       .add_option("--fps", source.fps, "frames per second of the source (default: the motion's own, or 30)")

@@ -254,10 +254,23 @@ void check_export(const std::string& path, ExportFormat format) {
   const PartFolder made_and_removed(path);
 }
 
+void check_export_options(const std::string& path, ExportFormat format, const CharacterExportOptions& file) {
+  const ExportFormatInfo& info = info_of(format);
+  US_CHECK(!info.is_character || file.their_rig || !file.keep_clips, path,
+           ": the file's own clips move its own rig, on our 22 joints they cannot be kept");
+  if (info.is_character) return;
+  US_CHECK(!file.t_pose_clip, path, ": ", info.label, " holds one motion, the T-pose cannot be another");
+  US_CHECK(!file.keep_clips, path, ": ", info.label,
+           " holds one motion, the file's own clips cannot be kept");
+  US_CHECK(file.shapes == 0, path, ": ", info.label, " holds no morph targets");
+  US_CHECK(file.influences == 4, path, ": ", info.label, " holds no skin weights, so no ", file.influences,
+           " bones a vertex");
+  US_CHECK(!(file.reduce_mm > 0), path, ": ", info.label, " holds every frame, keys cannot be left out");
+}
+
 std::unique_ptr<MotionOutput> open_export(const std::string& path, ExportFormat format,
                                           const ExportBody& body, const std::string& name, double fps) {
-  US_CHECK(info_of(format).is_character || !body.file.t_pose_clip, path, ": ", info_of(format).label,
-           " holds one motion, the T-pose cannot be another");
+  check_export_options(path, format, body.file);
   switch (format) {
     case ExportFormat::Bvh:
       return std::make_unique<BvhOutput>(path, body, fps);
@@ -284,6 +297,7 @@ ExportCost export_motion(const std::string& path, ExportFormat format, const Exp
   US_CHECK(!input.clips.empty(), path, ": there is no motion to export");
   if (info_of(format).is_character) {
     check_export(path, format);
+    check_export_options(path, format, input.body.file);
     return export_character(path, *input.body.character, *input.body.screen, input.clips, input.body.file);
   }
   US_CHECK(input.clips.size() == 1, path, ": ", info_of(format).label, " holds one motion, these are ",

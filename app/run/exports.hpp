@@ -29,6 +29,9 @@ ExportFormat export_format(const std::string& name, const std::string& path);
 /// Throws Error at once when nothing could be written there, before hours of work are done for it.
 void check_export(const std::string& path, ExportFormat format);
 
+/// Throws Error where an option says something that such a file cannot hold.
+void check_export_options(const std::string& path, ExportFormat format, const CharacterExportOptions& file);
+
 /// Who performs, as on screen.
 struct ExportBody {
   std::shared_ptr<const PreparedCharacter> character;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/body/body.hpp"
+#include "retarget/formats/bytes.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
@@ -243,6 +245,34 @@ class ScannedCharacter final : public AnimatedSource {
   ImportDecision decision_;
 };
 
+/// What asks for bones or animations of a source that has none would go unheard.
+void check_no_skeleton(const SourceOptions& options, const char* is) {
+  US_CHECK(options.bones.empty(), options.path, ": ", is,
+           ", it has no bones that a map (--source-map) could name");
+  US_CHECK(options.clip.empty(), options.path, ": ", is, ", it has no animations to choose from (--clip)");
+}
+
+void check_scan_options(const SourceOptions& options) {
+  check_no_skeleton(options, "is a scan");
+  US_CHECK(options.betas.empty(), options.path,
+           ": is a scan, only an SMPL-format body that performs a --motion takes --source-betas");
+}
+
+void check_body_options(const SourceOptions& options) {
+  check_no_skeleton(options, "is a body that performs a motion");
+  const std::string& units = options.import.units;
+  US_CHECK(units.empty() || units == "auto" || units == "m", options.path,
+           ": is a body in metres, other units (--units) are for scans and rigs");
+  US_CHECK(!options.follow, options.path,
+           ": is a body that performs a motion, only a folder of scans can be followed");
+}
+
+void check_skeletal_options(const SourceOptions& options) {
+  US_CHECK(options.betas.empty(), options.path,
+           ": is a skeletal motion, only an SMPL-format body that performs a --motion takes --source-betas");
+  US_CHECK(!options.follow, options.path, ": is a skeletal motion, only a folder of scans can be followed");
+}
+
 std::unique_ptr<Source> as_scan(Character character, const SourceOptions& options) {
   US_CHECK(character.vertex_count() > 0, options.path,
            ": holds no surface that could be looked at as a scan");
@@ -281,11 +311,25 @@ bool turn_upright(Motion& motion, const std::string& up) {
   return true;
 }
 
+void check_source_options(const SourceOptions& options) {
+  if (!options.motion.empty()) return check_body_options(options);
+  if (is_motion_file(options.path)) return check_skeletal_options(options);
+  const std::string suffix = lower_case(std::filesystem::path(options.path).extension().string());
+  std::error_code failed;
+  const bool is_folder = std::filesystem::is_directory(options.path, failed);
+  if (is_folder || (suffix != ".glb" && suffix != ".gltf")) check_scan_options(options);
+}
+
 std::unique_ptr<Source> open_source(const SourceOptions& options) {
+  check_source_options(options);
   if (!options.motion.empty())
     return std::make_unique<PerformingBody>(options, read_amass_motion(options.motion));
   std::optional<Character> moving = read_motion(options.path);
-  if (!moving) return std::make_unique<ScanFiles>(options);
+  if (!moving) {
+    check_scan_options(options);
+    return std::make_unique<ScanFiles>(options);
+  }
+  check_skeletal_options(options);
   return options.as_scan ? as_scan(std::move(*moving), options) : as_skeleton(*moving, options);
 }
 

@@ -69,8 +69,12 @@ class Source {
   int clip_ = -1;
 };
 
-/// Says through the log what it decided about units, axes and rate. Throws Error naming the path.
+/// Says through the log what it decided about units, axes and rate. Throws Error naming the path, also where
+/// an option says something of such a source that it does not have, as bones of a scan.
 std::unique_ptr<Source> open_source(const SourceOptions& options);
+
+/// The same of the options, as far as the path alone tells what the source is.
+void check_source_options(const SourceOptions& options);
 
 /// Turns a motion whose up is z (AMASS's own) to y up; decided from where the body's up points in the first
 /// frame. up: "auto", "y" or "z". True when it was turned.

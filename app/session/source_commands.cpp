@@ -89,27 +89,38 @@ void check_clip(const SourceState& source, const std::string& clip) {
   throw Error(source.name + ": has no animation '" + clip + "', only " + all);
 }
 
+/// What says nothing to such a source is refused at once.
+void set_skeletal(Studio& studio, SourceOptions source) {
+  if (!source.path.empty()) check_source_options(source);
+  studio.session().document.source = std::move(source);
+}
+
 void add_skeletal(Commands& commands) {
   commands.add({"source.clip", "Animation of the source", "NAME|NUMBER|longest", "", true, false,
                 [](Studio& s, const Arguments& a) {
                   const std::string clip = word(a, 0, "animation");
                   const std::string wanted = clip == "longest" ? "" : clip;
                   check_clip(s.session().source, wanted);
-                  s.session().document.source.clip = wanted;
+                  SourceOptions source = s.session().document.source;
+                  source.clip = wanted;
+                  set_skeletal(s, std::move(source));
                 }});
   commands.add({"source.as_scan", "Look at an animated source as a scan", "on|off", "", true, false,
                 [](Studio& s, const Arguments& a) {
                   choice(a, 0, "switch", {"on", "off"});
-                  s.session().document.source.as_scan = a[0] == "on";
+                  SourceOptions source = s.session().document.source;
+                  source.as_scan = a[0] == "on";
+                  set_skeletal(s, std::move(source));
                 }});
   commands.add({"source.bone", "Bone of the source for a joint", "JOINT BONE; auto: as it is found; none", "",
                 true, false, [](Studio& s, const Arguments& a) {
-                  BoneChoices& bones = s.session().document.source.bones;
+                  SourceOptions source = s.session().document.source;
                   const std::string joint = word(a, 0, "joint"), bone = word(a, 1, "bone");
                   US_CHECK(std::find(kJointNames.begin(), kJointNames.end(), joint) != kJointNames.end(),
                            "there is no joint '", joint, "'");
-                  bones[joint] = bone == "none" ? "" : bone;
-                  if (bone == "auto") bones.erase(joint);
+                  source.bones[joint] = bone == "none" ? "" : bone;
+                  if (bone == "auto") source.bones.erase(joint);
+                  set_skeletal(s, std::move(source));
                 }});
 }
 

@@ -1,5 +1,6 @@
 // One motion in every format, what an export leaves behind when it ends badly, and what it says it costs.
 #include "app/run/exports.hpp"
+#include "app/run/file_figures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,6 +45,64 @@ std::vector<std::string> names_in(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
+}
+
+TEST(FileFigures, AreThoseOfTheWrittenSurface) {
+  const ExportInput input = made_input();
+  const PreparedCharacter& character = *input.body.character;
+  Truth truth;
+  truth.frames = kFrames;
+  truth.vertex_count = static_cast<int64_t>(character.surface.in_file.size());
+  const auto frame = [&](int t) {
+    return character.surface.in_file_order(
+        input.body.screen->deform(input.clips[0].poses[static_cast<size_t>(t)]));
+  };
+  const auto add = [&](float scale) {
+    truth.vertices.clear();
+    for (int t = 0; t < kFrames; ++t) {
+      const Points points = scale * frame(t);
+      truth.vertices.insert(truth.vertices.end(), points.data(), points.data() + points.size());
+    }
+  };
+  const auto figure = [](const Metrics& metrics, const std::string& key) {
+    for (const auto& [name, value] : metrics)
+      if (name == key) return value;
+    return std::nan("");
+  };
+  add(1);
+  const Metrics same = file_figures(input.body, input.clips[0], truth);
+  EXPECT_LT(figure(same, "file_mpvd_m"), 1e-4);
+  EXPECT_LT(figure(same, "file_medl_mm"), 0.01);
+  EXPECT_LT(figure(same, "file_screen_mm"), 0.1);
+  EXPECT_GT(figure(same, "file_mb"), 0.001);
+  add(1.1f);
+  const Metrics larger = file_figures(input.body, input.clips[0], truth);
+  EXPECT_GT(figure(larger, "file_medl_mm"), 1);
+  EXPECT_GT(figure(larger, "file_mpvd_m"), 0.02);
+  truth.frames = kFrames - 1;
+  EXPECT_TRUE(contains(error_of([&] { file_figures(input.body, input.clips[0], truth); }), "other frames"));
+}
+
+TEST(CheckExportOptions, WhatAFileCannotHoldIsRefusedAndNotLeftOut) {
+  const auto refused = [](ExportFormat format, auto change) {
+    CharacterExportOptions file;
+    change(file);
+    return error_of([&] { check_export_options("a", format, file); });
+  };
+  EXPECT_TRUE(contains(refused(ExportFormat::Bvh, [](auto& file) { file.shapes = 3; }), "no morph targets"));
+  EXPECT_TRUE(
+      contains(refused(ExportFormat::Npz, [](auto& file) { file.influences = 8; }), "no skin weights"));
+  EXPECT_TRUE(contains(refused(ExportFormat::Obj, [](auto& file) { file.reduce_mm = 1; }), "every frame"));
+  EXPECT_TRUE(
+      contains(refused(ExportFormat::Amass, [](auto& file) { file.keep_clips = true; }), "own clips"));
+  EXPECT_TRUE(contains(refused(ExportFormat::Glb,
+                               [](auto& file) {
+                                 file.their_rig = false;
+                                 file.keep_clips = true;
+                               }),
+                       "own clips"));
+  for (const ExportFormatInfo& info : export_formats())
+    EXPECT_NO_THROW(check_export_options("a", info.format, {})) << info.name;
 }
 
 class EveryFormat : public testing::TestWithParam<ExportFormatInfo> {

@@ -85,6 +85,49 @@ TEST_F(SourceFiles, ObeyForcedUnitsAndRate) {
   EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 0.017f, 0.001);
 }
 
+std::string refusal(const SourceOptions& options) {
+  try {
+    open_source(options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(SourceFiles, AreNotAskedForBonesOrAnimations) {
+  write_frame(0, 1);
+  SourceOptions bones = here(), clip = here(), betas = here();
+  bones.bones = {{"head", "Head"}};
+  clip.clip = "walk";
+  betas.betas = {1};
+  EXPECT_NE(refusal(bones).find("is a scan, it has no bones"), std::string::npos) << refusal(bones);
+  EXPECT_NE(refusal(clip).find("is a scan, it has no animations"), std::string::npos) << refusal(clip);
+  EXPECT_NE(refusal(betas).find("--source-betas"), std::string::npos) << refusal(betas);
+  EXPECT_EQ(refusal(here()), "");
+}
+
+TEST_F(SourceFiles, ACharacterThatDoesNotMoveIsAScanWithoutBones) {
+  SourceOptions options;
+  options.path = scratch.path("still.glb");
+  write_gltf_character(options.path, tests::make_character());
+  EXPECT_EQ(refusal(options), "");
+  options.bones = {{"head", "mixamorig:Head"}};
+  EXPECT_NE(refusal(options).find("still.glb: is a scan, it has no bones"), std::string::npos);
+}
+
+TEST_F(SourceFiles, SkeletalMotionsAreNotFollowedNorShaped) {
+  SourceOptions options;
+  options.path = scratch.path("walk.bvh");
+  std::ofstream(options.path) << tests::made_bvh({}, tests::made_joints({}),
+                                                 tests::made_motion(5, tests::made_joints({})));
+  EXPECT_EQ(refusal(options), "");
+  options.follow = true;
+  EXPECT_NE(refusal(options).find("only a folder of scans"), std::string::npos) << refusal(options);
+  options.follow = false;
+  options.betas = {1};
+  EXPECT_NE(refusal(options).find("--source-betas"), std::string::npos) << refusal(options);
+}
+
 TEST_F(SourceFiles, PassABadFrameOn) {
   write_frame(0, 1);
   std::ofstream(scratch.path("frame_00001.xyz")) << "nan nan nan\n";

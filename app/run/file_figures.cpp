@@ -1,0 +1,50 @@
+#include "app/run/file_figures.hpp"
+
+#include <chrono>
+
+#include "app/run/interrupt.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/character/gltf_character.hpp"
+#include "retarget/metrics/surface_metrics.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// Vertices of a file's parts as the vertices of the surface that they were made of.
+Points merged(const MergedSurface& surface, const Points& of_parts) {
+  Points out(surface.mesh.vertices.rows(), 3);
+  for (Eigen::Index v = 0; v < of_parts.rows(); ++v)
+    out.row(surface.map[static_cast<size_t>(v)]) = of_parts.row(v);
+  return out;
+}
+
+}  // namespace
+
+Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Truth& truth) {
+  US_CHECK(!truth.vertices.empty() && truth.frames == static_cast<int64_t>(clip.poses.size()),
+           "the truth has other frames than the file that is to be judged, or no vertices");
+  const auto began = std::chrono::steady_clock::now();
+  const std::string bytes =
+      gltf_bytes(animated_character(*body.character, *body.screen, {clip}, body.file), "judged.glb");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const Character written = parse_gltf_character(bytes, "judged.glb");
+  const MergedSurface& surface = body.character->surface;
+  double medl = 0, mpvd = 0, off_screen = 0;
+  const auto count = static_cast<double>(truth.frames);
+  for (int64_t t = 0; t < truth.frames; ++t) {
+    check_interrupt("while the file was judged");
+    const auto at = static_cast<float>(static_cast<double>(t) / clip.fps);
+    const Points seen = merged(surface, vertices_at(written, 0, at));
+    const Points in_file = surface.in_file_order(seen), right = truth.frame_vertices(t);
+    medl += edge_length_error(in_file, right) / count;
+    mpvd += mean_vertex_error(in_file, right) / count;
+    off_screen += mean_vertex_error(seen, body.screen->deform(clip.poses[static_cast<size_t>(t)])) / count;
+  }
+  return {{"file_medl_mm", 1000 * medl},
+          {"file_mpvd_m", mpvd},
+          {"file_screen_mm", 1000 * off_screen},
+          {"file_mb", static_cast<double>(bytes.size()) / 1e6},
+          {"file_s", seconds}};
+}
+
+}  // namespace understudy::app

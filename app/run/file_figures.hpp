@@ -1,0 +1,16 @@
+// What a performance looks like once it is in a file for engines, against the truth.
+#pragma once
+
+#include "app/run/case_folder.hpp"
+#include "app/run/exports.hpp"
+#include "app/run/judge.hpp"
+
+namespace understudy::app {
+
+/// Makes the GLB of a clip in memory, reads it back and judges the surface that it says for each frame as
+/// Judge does the screen's: file_medl_mm, file_mpvd_m; file_screen_mm is its distance to the screen's
+/// surface, file_mb what it weighs, file_s how long making it took. Throws Error when the truth has no
+/// vertices, or other frames.
+Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Truth& truth);
+
+}  // namespace understudy::app
