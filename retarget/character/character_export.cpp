@@ -443,6 +443,20 @@ void add_shapes(const CorrectiveShapes& shapes, const Animator& animator, const 
   }
 }
 
+/// Weights of shapes that the file had, followed by those of the new ones: none of them.
+void leave_room(size_t added, CharacterTrack& track) {
+  if (track.path != TrackPath::Shapes || added == 0) return;
+  const size_t chunks = track.times.size() * (track.interpolation == TrackInterpolation::Cubic ? 3 : 1);
+  const size_t width = chunks > 0 ? track.values.size() / chunks : 0;
+  std::vector<float> values;
+  for (size_t i = 0; i < chunks; ++i) {
+    const auto first = track.values.begin() + static_cast<long>(i * width);
+    values.insert(values.end(), first, first + static_cast<long>(width));
+    values.insert(values.end(), added, 0.0f);
+  }
+  track.values = std::move(values);
+}
+
 /// The longest way from a node to a vertex that it could move, metres: the height of the character at most.
 float lever(const PreparedCharacter& character) {
   const Points& v = character.target.mesh.vertices;
@@ -548,7 +562,8 @@ Character animated_character(const PreparedCharacter& character, const Deformer&
   if (options.keep_clips && options.their_rig)
     for (CharacterAnimation animation : own) {
       animation.name = fresh_name(animation.name, out.animations);
-      if (shapes.shapes.empty()) out.animations.push_back(std::move(animation));
+      for (CharacterTrack& track : animation.tracks) leave_room(shapes.shapes.size(), track);
+      out.animations.push_back(std::move(animation));
     }
   return out;
 }

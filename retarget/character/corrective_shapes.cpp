@@ -64,7 +64,7 @@ CorrectiveShapes corrective_shapes(const Deformer& deformer, const std::vector<P
                                    const std::function<void(float)>& progress) {
   US_CHECK(!poses.empty() && count > 0, "there is no pose to take shapes from");
   const size_t step = (poses.size() + kLookedAt - 1) / kLookedAt;
-  const size_t work = poses.size() + poses.size() / step;
+  const size_t work = poses.size();
   size_t done = 0;
   const auto offsets_of = [&](const Pose& pose) {
     if (progress) progress(static_cast<float>(done++) / static_cast<float>(work));
@@ -78,8 +78,9 @@ CorrectiveShapes corrective_shapes(const Deformer& deformer, const std::vector<P
   for (Points& offsets : seen) offsets -= mean;
   CorrectiveShapes out;
   if (count > 1) out.shapes = principal(seen, count - 1);
-  for (const Pose& pose : poses) {
-    const Points offsets = offsets_of(pose) - mean;
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const bool is_known = i % step == 0;
+    const Points offsets = is_known ? std::move(seen[i / step]) : Points(offsets_of(poses[i]) - mean);
     std::vector<float> weights;
     for (const Points& shape : out.shapes) weights.push_back(flat(shape).dot(flat(offsets)));
     out.weights.push_back(std::move(weights));

@@ -192,7 +192,13 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   import.floor = options.floor;
   if (c.rigged && (import.up.empty() || import.up == "auto")) import.up = up_of_rig(c.map, c.bind);
   c.surface = merged_surface(c.character, file);
-  if (import.up == "y" && lies_down(stance_of(c.surface.mesh))) {
+  const std::string seen = c.rigged ? up_of_rig(c.map, c.bind) : "";
+  if (seen == (import.up[0] == '-' ? import.up.substr(1) : "-" + import.up)) {
+    US_CHECK(options.turn_if_lying, c.character.called(), ": is head down with ", import.up, " up, ", seen,
+             " up (--target-up) turns it over");
+    c.notes.push_back("it is head down with " + import.up + " up, so " + seen + " is taken as up");
+    import.up = seen;
+  } else if (import.up == "y" && lies_down(stance_of(c.surface.mesh))) {
     if (options.turn_if_lying) import.up = up_of_lying(c, import);
     c.notes.push_back(import.up == "y" ? "it lies down with y up"
                                        : "it lies down with y up, so " + import.up + " is taken as up");
@@ -329,8 +335,26 @@ Joints with_seen_neck(const Mesh& mesh, const Joints& joints) {
   return out;
 }
 
+/// Half a turn about z, onto the same floor.
+void turn_over(PreparedCharacter& c, const CharacterOptions& options) {
+  const Mat3 R = Eigen::AngleAxisf(kPi, Vec3::UnitZ()).toRotationMatrix();
+  c.to_world.R = R * c.to_world.R;
+  c.to_world.t = R * c.to_world.t;
+  Points& vertices = c.surface.mesh.vertices;
+  vertices = (vertices * R.transpose()).eval();
+  const float lift = options.floor ? -2 * *options.floor : -vertices.col(1).minCoeff();
+  vertices.col(1).array() += lift;
+  c.to_world.t.y() += lift;
+  c.notes.push_back("it is head down, so it is turned over");
+}
+
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
+  if (stands_on_head(c.surface.mesh, any_pose)) {
+    US_CHECK(options.turn_if_lying || options.up == "auto", c.character.called(), ": is head down with ",
+             options.up, " up, another up axis (--target-up) turns it over");
+    turn_over(c, options);
+  }
   if (!options.yaw_deg) {
     const float yaw = tidy(body_heading(c.surface.mesh, any_pose));
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
@@ -445,6 +469,18 @@ Rotations FoldingTransfer::push(const Extraction& source, float dt) {
   return local_rotations(folded);
 }
 
+namespace {
+
+/// Offsets correct what a network's own weights get wrong: 1 where a rig's are alike, 0 where they are others
+/// and the offsets say nothing of them.
+Eigen::VectorXf trust_in_offsets(const RowMatrix& own, const RowMatrix& rig) {
+  constexpr float kAlike = 0.3f, kUnlike = 1.0f;  // summed differences, 2 at most
+  const Eigen::ArrayXf differ = (own - rig).cwiseAbs().rowwise().sum().array();
+  return 1 - ((differ - kAlike) / (kUnlike - kAlike)).max(0.0f).min(1.0f);
+}
+
+}  // namespace
+
 RigDeformer::RigDeformer(const PreparedCharacter& character, std::shared_ptr<Deformer> inner)
     : inner_(std::move(inner)),
       bind_vertices_(character.surface.mesh.vertices),
@@ -462,6 +498,7 @@ void RigDeformer::bind(const Points& rest, const Joints& rest_joints) {
   bind_joints_ = moved_bind_joints(pose_, rest_joints);
   if (!inner_) return;
   inner_->bind(rest, rest_joints);
+  trust_ = trust_in_offsets(inner_->weights(), weights_);
   inner_ = inner_->with_weights(weights_);
 }
 
@@ -484,12 +521,13 @@ Points RigDeformer::deform(const Pose& pose) const {
   // Offsets turn with the joints: skinned as points about joints that stay at the origin.
   PosedSkeleton turned = posed;
   turned.joints.setZero();
-  out += linear_blend_skinning(inner_->offsets(pose), weights_, Joints::Zero(), turned);
+  out += linear_blend_skinning(offsets(pose), weights_, Joints::Zero(), turned);
   return out;
 }
 
 Points RigDeformer::offsets(const Pose& pose) const {
-  return inner_ ? inner_->offsets(pose) : Points(Points::Zero(bind_vertices_.rows(), 3));
+  if (!inner_) return Points::Zero(bind_vertices_.rows(), 3);
+  return inner_->offsets(pose).array().colwise() * trust_.array();
 }
 
 Networks networks_for(Networks networks, const PreparedCharacter& character, bool their_rig) {

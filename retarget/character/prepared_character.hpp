@@ -20,7 +20,7 @@ constexpr const char* kOurSkin = "22 joints";
 struct CharacterOptions {
   BoneChoices choices;           ///< the user's corrections of the map
   std::string units, up = "y";   ///< as in ImportOptions; empty: guessed
-  bool turn_if_lying = true;     ///< a body that lies flat with y up is turned upright, with a note
+  bool turn_if_lying = true;     ///< who lies or is head down with y up is turned upright, with a note
   std::optional<float> floor;    ///< its height after scale and axes, metres; none: the lowest points
   std::optional<float> yaw_deg;  ///< turns it about y; none: so that it faces +z
   bool use_rig = true;           ///< false: as if it had no bones
@@ -79,8 +79,8 @@ class FoldingTransfer final : public MotionTransfer {
 };
 
 /// Deforms as the character's own skin does: from its bind pose at once, not by way of the T-pose. `inner`,
-/// which may be null, gives the pose-corrective offsets. Joints that are bound elsewhere than the rig has
-/// them move the points that its bones turn about.
+/// which may be null, gives the pose-corrective offsets, where its own weights are like the rig's. Joints
+/// that are bound elsewhere than the rig has them move the points that its bones turn about.
 class RigDeformer final : public Deformer {
  public:
   RigDeformer(const PreparedCharacter& character, std::shared_ptr<Deformer> inner);
@@ -97,6 +97,7 @@ class RigDeformer final : public Deformer {
   RestPose pose_;
   Joints rest_joints_, bind_joints_;
   RowMatrix weights_;
+  Eigen::VectorXf trust_;  // [V] 0..1: the share of the offsets that is taken
 };
 
 /// The networks as a character wants them that performs on its own rig: folding, and its own skin.

@@ -235,6 +235,48 @@ TEST(CharacterExport, OurRigCostsWhatFourInfluencesLeaveOut) {
   EXPECT_EQ(eight.file.nodes[LeftElbow].name, "left_elbow");
 }
 
+TEST(RigDeformer, TakesOffsetsWhereItsWeightsAreThoseTheyWereMadeFor) {
+  PreparedCharacter character = prepared({});
+  auto bulging = std::make_shared<BulgingDeformer>(0.03f);
+  bulging->bind(character.target.mesh.vertices, character.target.joints);
+  const Eigen::Index half = character.weights.rows() / 2;
+  character.weights = bulging->weights();
+  for (Eigen::Index v = half; v < character.weights.rows(); ++v)
+    character.weights.row(v) = Eigen::RowVectorXf::Unit(kJointCount, Head);
+  RigDeformer rig(character, std::make_shared<BulgingDeformer>(0.03f));
+  rig.bind(character.target.mesh.vertices, character.target.joints);
+  const Pose pose = made_motion(20, character.target.joints)[15];
+  const Points theirs = rig.offsets(pose), all = bulging->offsets(pose);
+  ASSERT_GT(all.norm(), 0.01f);
+  EXPECT_EQ(theirs.topRows(half), all.topRows(half));
+  for (Eigen::Index v = half; v < all.rows(); ++v)
+    if (bulging->weights()(v, Head) < 0.5f) EXPECT_EQ(theirs.row(v).norm(), 0) << v;
+}
+
+TEST(CharacterExport, ItsOwnClipsStayBesideMorphTargets) {
+  const TempFolder folder;
+  PreparedCharacter character = prepared({});
+  CharacterAnimation nod;
+  nod.name = "nod";
+  CharacterTrack track;
+  track.node = character.map.node[Head];
+  track.path = TrackPath::Rotation;
+  track.times = {0, 1};
+  track.values = {0, 0, 0, 1, 0.1f, 0, 0, 0.995f};
+  nod.tracks = {track};
+  character.character.animations = {nod};
+  auto bulging = std::make_shared<BulgingDeformer>(0.03f);
+  RigDeformer rig(character, bulging);
+  rig.bind(character.target.mesh.vertices, character.target.joints);
+  CharacterExportOptions options;
+  options.shapes = 3;
+  options.keep_clips = true;
+  const Exported out = exported(folder, character, rig, made_motion(10, character.target.joints), options);
+  ASSERT_EQ(out.file.animations.size(), 2u);
+  EXPECT_EQ(out.file.animations[1].name, "nod");
+  EXPECT_GT(out.file.parts[0].shapes.size(), 0u);
+}
+
 TEST(CharacterExport, ShapesBringTheOffsetsBack) {
   for (const bool theirs : {true, false}) {
     const TempFolder folder;

@@ -117,6 +117,57 @@ TEST(OddShapes, ALyingRigIsTurnedByItsSpine) {
   EXPECT_NEAR(height_of(c), 1.7f, 0.2f);
 }
 
+/// Sees who stands on the feet as they are, and who stands on the head with the head below.
+class HonestExtractor final : public SkeletonExtractor {
+ public:
+  Extraction extract(const Mesh& scan) override {
+    Joints joints = made_joints({});
+    // Heads are narrower than legs and feet are apart: the upper half of who stands is wider, by the arms.
+    const float middle = 0.5f * (scan.vertices.col(1).maxCoeff() + scan.vertices.col(1).minCoeff());
+    Eigen::Index widest = 0;
+    scan.vertices.leftCols<1>()
+        .cwiseAbs()
+        .cwiseMax(scan.vertices.rightCols<1>().cwiseAbs())
+        .maxCoeff(&widest);
+    Extraction out;
+    if (scan.vertices(widest, 1) < middle) {
+      joints.col(1) = (1.7f - joints.col(1).array()).matrix();
+      joints.col(0) *= -1;
+    }
+    out.joints = joints;
+    return out;
+  }
+  std::string name() const override { return "honest"; }
+};
+
+TEST(OddShapes, WhoIsHeadDownIsTurnedOverWithANote) {
+  HonestExtractor honest;
+  const Mat3 over = Eigen::AngleAxisf(kPi, Vec3::UnitZ()).toRotationMatrix();
+  CharacterOptions options;
+  options.yaw_deg = 0;
+  const PreparedCharacter c = prepare_character(turned(bare(), over), &honest, nullptr, options);
+  EXPECT_TRUE(noted(c, "is head down"));
+  EXPECT_NEAR(c.surface.mesh.vertices.col(1).minCoeff(), 0, 0.03f);
+  const PreparedCharacter upright = prepare_character(bare(), &honest, nullptr, options);
+  EXPECT_FALSE(noted(upright, "head down"));
+  EXPECT_LT((c.target.mesh.vertices - upright.target.mesh.vertices).rowwise().norm().maxCoeff(), 0.02f);
+  options.turn_if_lying = false;  // told to stand so
+  EXPECT_TRUE(contains(error_of([&] { prepare_character(turned(bare(), over), &honest, nullptr, options); }),
+                       "is head down with y up"));
+}
+
+TEST(OddShapes, ARigThatIsHeadDownIsTurnedByItsSpine) {
+  Character down = make_character();
+  down.nodes[0].local.rotation = Eigen::Quaternionf(about_x(180)) * down.nodes[0].local.rotation;
+  const PreparedCharacter c = prepare_character(down, nullptr, nullptr);
+  EXPECT_TRUE(noted(c, "it is head down with y up, so -y is taken as up"));
+  EXPECT_GT(c.target.joints(Head, 1), c.target.joints(Pelvis, 1));
+  CharacterOptions options;
+  options.turn_if_lying = false;
+  EXPECT_TRUE(contains(error_of([&] { prepare_character(down, nullptr, nullptr, options); }),
+                       "is head down with y up, -y up (--target-up) turns it over"));
+}
+
 TEST(OddShapes, ACatIsRefusedInASentence) {
   KnownExtractor known(made_joints({}));
   for (const float leg : {0.12f, 0.18f, 0.25f}) {
