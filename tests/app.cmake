@@ -15,6 +15,11 @@ us_test(commands_test SOURCES
 us_test(bad_input_test SOURCES
   tests/app/bad_input_test.cpp tests/app/program.cpp tests/app/sample_files.cpp
   LIBS understudy_npz understudy_builtin LABELS torch gl TIMEOUT 600)
+us_test(low_poly_test SOURCES
+  tests/app/low_poly_test.cpp tests/app/program.cpp tests/app/sample_files.cpp
+  tests/retarget/motion/made_motion.cpp tests/retarget/character/characters.cpp
+  LIBS understudy_character understudy_builtin understudy_body understudy_metrics LABELS torch TIMEOUT 600)
+add_dependencies(low_poly_test understudy_all)
 us_test(target_command_test SOURCES
   tests/app/target_command_test.cpp tests/app/program.cpp tests/app/sample_files.cpp
   tests/retarget/character/characters.cpp
