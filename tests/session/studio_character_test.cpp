@@ -160,6 +160,9 @@ TEST_F(StudioCharacter, OneOfAFilesAnimationsIsTheSource) {
   EXPECT_EQ(read_document(path("moves.understudy")).document.source.clip, "nod");
   studio.run("source.open", {path("scan.npz")});
   EXPECT_TRUE(source.clips.empty());
+  EXPECT_NE(refusal(studio, "source.clip", {"nod"}).find("is a scan"), std::string::npos);
+  EXPECT_NE(refusal(studio, "source.bone", {"head", "Head"}).find("is a scan"), std::string::npos);
+  EXPECT_TRUE(studio.session().document.source.bones.empty());
 }
 
 TEST_F(StudioCharacter, TheRigIsChosenAndTheScanIsNotLookedAtAgain) {
