@@ -408,30 +408,30 @@ PreparedCharacter stand_character(Character character, const CharacterOptions& o
     c.notes.push_back("its bones could not be mapped (" + std::to_string(c.map.count()) +
                       " of 22): its own rig is not used");
   place_in_world(c, options);
-  if (c.rigged) {
-    turn_rig_forward(c, options);
-    return c;
-  }
   const Stance stance = stance_of(c.surface.mesh);
   const std::string why_not = refusal(stance), why_doubt = doubt(stance);
-  US_CHECK(why_not.empty(), c.character.called(), ": does not look like a person: ", why_not);
-  if (!why_doubt.empty()) c.target.warnings.push_back("the target may be no person: " + why_doubt);
-  if (options.yaw_deg && *options.yaw_deg != 0) turn(c, *options.yaw_deg * kPi / 180);
+  US_CHECK(why_not.empty() || c.rigged, c.character.called(), ": does not look like a person: ", why_not);
+  if (!(c.rigged ? why_not : why_doubt).empty())
+    c.target.warnings.push_back("the target may be no person: " + why_doubt);
+  if (c.rigged)
+    turn_rig_forward(c, options);
+  else if (options.yaw_deg && *options.yaw_deg != 0)
+    turn(c, *options.yaw_deg * kPi / 180);
   return c;
 }
 
 void find_t_pose(PreparedCharacter& c, SkeletonExtractor* any_pose, SkeletonExtractor* t_pose,
                  const CharacterOptions& options) {
+  const std::vector<std::string> doubts = std::move(c.target.warnings);
   if (c.rigged) {
     find_in_rig(c);
     SkeletonExtractor* const network = t_pose != nullptr ? t_pose : any_pose;
     if (!options.own_joints && network != nullptr) c.target = prepare_target(c.target.mesh, *network);
-    return;
+  } else {
+    US_CHECK(any_pose != nullptr, c.character.name,
+             ": has no rig that is known, and no network may look at it");
+    find_in_shape(c, *any_pose, t_pose, options);
   }
-  US_CHECK(any_pose != nullptr, c.character.name,
-           ": has no rig that is known, and no network may look at it");
-  const std::vector<std::string> doubts = std::move(c.target.warnings);
-  find_in_shape(c, *any_pose, t_pose, options);
   c.target.warnings.insert(c.target.warnings.end(), doubts.begin(), doubts.end());
 }
 

@@ -183,6 +183,69 @@ TEST(OddShapes, ACatIsRefusedInASentence) {
   EXPECT_FALSE(refusal(stance_of(table)).empty());
 }
 
+/// The cat on bones: a spine, neck and head, on each side a hind leg and a foreleg; named as a person's or by
+/// numbers.
+Character rigged_cat(bool as_a_person) {
+  const std::vector<int> joints = {Pelvis,     Spine1,     Spine3,    Neck,         Head,      LeftHip,
+                                   LeftKnee,   LeftAnkle,  LeftFoot,  LeftShoulder, LeftElbow, LeftWrist,
+                                   -1,         RightHip,   RightKnee, RightAnkle,   RightFoot, RightShoulder,
+                                   RightElbow, RightWrist, -1};
+  Character tom = character_of_mesh(cat(), "tom");
+  tom.nodes.clear();
+  tom.nodes.push_back({});  // the mesh
+  CharacterSkin skin;
+  const auto add = [&](int parent, const Vec3& at) {
+    CharacterNode node;
+    const int joint = joints.at(tom.nodes.size() - 1);
+    node.name = as_a_person && joint >= 0 ? made_name(Naming::Mixamo, joint)
+                                          : "Bone." + std::to_string(tom.nodes.size());
+    node.parent = parent;
+    Vec3 above = Vec3::Zero();
+    for (int p = parent; p >= 0; p = tom.nodes[static_cast<size_t>(p)].parent)
+      above += tom.nodes[static_cast<size_t>(p)].local.translation;
+    node.local.translation = at - above;
+    skin.joints.push_back(static_cast<int>(tom.nodes.size()));
+    Mat4 inverse = Mat4::Identity();
+    inverse.topRightCorner<3, 1>() = -at;
+    skin.inverse_bind.push_back(inverse);
+    tom.nodes.push_back(node);
+    return skin.joints.back();
+  };
+  const int hips = add(-1, {0, 0.25f, -0.18f});
+  const int spine = add(hips, {0, 0.25f, 0}), chest = add(spine, {0, 0.25f, 0.18f});
+  add(add(chest, {0, 0.3f, 0.22f}), {0, 0.33f, 0.28f});
+  for (const float x : {0.045f, -0.045f})
+    for (const bool front : {false, true}) {
+      const float z = front ? 0.185f : -0.185f;
+      const int upper = add(front ? chest : hips, {x, 0.2f, z}), lower = add(upper, {x, 0.1f, z + 0.01f});
+      add(add(lower, {x, 0.02f, z}), {x, 0.0f, z + 0.04f});
+    }
+  CharacterPart& part = tom.parts[0];
+  part.skin = 0;
+  part.joints.setZero(part.vertices.rows(), 4);
+  part.weights.setZero(part.vertices.rows(), 4);
+  for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
+    float nearest = 1e9f;
+    for (size_t j = 0; j < skin.joints.size(); ++j) {
+      const Vec3 at = -skin.inverse_bind[j].topRightCorner<3, 1>();
+      const float d = (part.vertices.row(v).transpose() - at).norm();
+      if (d < nearest) nearest = d, part.joints(v, 0) = static_cast<int>(j);
+    }
+    part.weights(v, 0) = 1;
+  }
+  tom.skins = {skin};
+  return tom;
+}
+
+TEST(OddShapes, ACatOnARigIsRefusedAndWarnedOfWhereItsBonesAreNamedAsAPersons) {
+  const std::string complaint = error_of([] { stand_character(rigged_cat(false)); });
+  EXPECT_TRUE(contains(complaint, "tom: does not look like a person: it is ")) << complaint;
+  const PreparedCharacter c = prepare_character(rigged_cat(true), nullptr, nullptr);
+  ASSERT_TRUE(c.rigged);
+  ASSERT_FALSE(c.target.warnings.empty());
+  EXPECT_TRUE(contains(c.target.warnings.back(), "may be no person: it is ")) << c.target.warnings.back();
+}
+
 TEST(OddShapes, WhatMayBeNoPersonIsWarnedOf) {
   EXPECT_TRUE(refusal(stance_of(ball())).empty());
   EXPECT_FALSE(doubt(stance_of(ball())).empty());
