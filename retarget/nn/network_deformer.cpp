@@ -1,6 +1,7 @@
 #include "retarget/nn/network_deformer.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,10 +21,10 @@ constexpr float kLeastWeight = 2e-3f;   // smaller skin weights are noise: in tr
 constexpr float kLeastOffset = 2e-5f;   // metres: an offset that no pose makes larger is left out
 constexpr float kLargestBend = 2.829f;  // Frobenius norm of R - I at 180 degrees
 
-/// The part of O_net that answers to one joint at one vertex: offset += block * (R - I). Four rows, the last
+/// The part of O_net that answers to one joint at one point: offset += block * (R - I). Four rows, the last
 /// one zero: columns of four are what the machine multiplies at once.
 struct OffsetBlock {
-  int vertex, joint;
+  int row, joint;
   Eigen::Matrix<float, 4, 9> block;
 };
 
@@ -32,8 +33,8 @@ struct Influence {
   float weight;
 };
 
-OffsetBlock offset_block(int vertex, int joint, const Eigen::Matrix<float, 3, 9>& block) {
-  OffsetBlock b{vertex, joint, Eigen::Matrix<float, 4, 9>::Zero()};
+OffsetBlock offset_block(int row, int joint, const Eigen::Matrix<float, 3, 9>& block) {
+  OffsetBlock b{row, joint, Eigen::Matrix<float, 4, 9>::Zero()};
   b.block.topRows<3>() = block;
   return b;
 }
@@ -52,24 +53,29 @@ torch::Tensor tensor_of(const float* data, int64_t rows, int64_t cols) {
   return torch::from_blob(const_cast<float*>(data), {rows, cols}).clone();
 }
 
-constexpr float kCells = 180;     // a body's height in cells of one asked point each: 1 cm on an adult
-constexpr int kBetween = 8;       // asked points that tell of one between them
-constexpr float kRough = 0.008f;  // a weight that is that far from linear among them is asked for itself
+constexpr float kCells = 180;  // a body's height in cells of one asked point each: 1 cm on an adult
+constexpr float kMostCells = 4 * kCells;  // where a centimetre is too coarse
+constexpr int kSlice = 16384;             // points asked at once: what the networks say of one takes 2.4 kB
+constexpr int kBetween = 8;               // asked points that tell of one between them
+constexpr float kRough = 0.008f;          // where a weight is that far from linear among them, each is asked
+constexpr float kOffsetUnit = 0.1f;       // metres: offsets may be as rough as weights in it
+constexpr int kKnown = kJointCount + 9;
 
-using Numbers = Eigen::Map<const RowMatrix>;
+using Neighbours = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Of every cell of a grid the point next to its middle, whatever the order of the points.
-std::vector<int> one_a_cell(const Points& points) {
+/// Of every cell of a grid that one of the points `of` that is next to its middle, whatever their order.
+/// cells: along the longest side of the box around all points.
+std::vector<int> one_a_cell(const Points& points, const std::vector<int>& of, float cells) {
   const Vec3 low = points.colwise().minCoeff();
-  const float edge = (points.colwise().maxCoeff().transpose() - low).maxCoeff() / kCells;
+  const float edge = (points.colwise().maxCoeff().transpose() - low).maxCoeff() / cells;
   if (!(edge > 0)) return {};
   std::unordered_map<uint64_t, std::pair<float, int>> best;
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+  for (const int i : of) {
     const Vec3 at = (points.row(i).transpose() - low) / edge;
     const Vec3 cell = at.array().floor();
     const uint64_t key = (static_cast<uint64_t>(cell.x()) << 42) | (static_cast<uint64_t>(cell.y()) << 21) |
                          static_cast<uint64_t>(cell.z());
-    const std::pair<float, int> own{(at - cell - Vec3::Constant(0.5f)).squaredNorm(), static_cast<int>(i)};
+    const std::pair<float, int> own{(at - cell - Vec3::Constant(0.5f)).squaredNorm(), i};
     const auto [found, fresh] = best.emplace(key, own);
     if (!fresh) found->second = std::min(found->second, own);
   }
@@ -93,11 +99,11 @@ Eigen::RowVectorXf shares_of(const Eigen::Matrix<float, kBetween, 3>& offsets) {
   return ((terms * solved).array() * w).matrix().transpose();
 }
 
-/// Whether these rows of the weights lie near one plane over the place.
+/// Whether what is known of these rows lies near one plane over the place.
 bool is_flat(const Eigen::Matrix<float, kBetween, 3>& offsets,
-             const Eigen::Ref<const Eigen::RowVectorXi>& rows, const Numbers& weights) {
-  Eigen::Matrix<float, kBetween, Eigen::Dynamic> seen(kBetween, weights.cols());
-  for (int k = 0; k < kBetween; ++k) seen.row(k) = weights.row(rows[k]);
+             const Eigen::Ref<const Eigen::RowVectorXi>& rows, const RowMatrix& known) {
+  Eigen::Matrix<float, kBetween, Eigen::Dynamic> seen(kBetween, known.cols());
+  for (int k = 0; k < kBetween; ++k) seen.row(k) = known.row(rows[k]);
   if ((seen.colwise().maxCoeff() - seen.colwise().minCoeff()).maxCoeff() < kRough) return true;
   Eigen::Matrix<float, kBetween, 4> terms;
   terms << Eigen::Matrix<float, kBetween, 1>::Ones(),
@@ -108,21 +114,37 @@ bool is_flat(const Eigen::Matrix<float, kBetween, 3>& offsets,
   return (terms * plane - seen).cwiseAbs().maxCoeff() < kRough;
 }
 
-/// What the networks said: of every vertex, or of some between which the others lie.
+/// The pose features of all joints bent at once about x, y or z, [189, 3]: what offsets do then is seen
+/// where they are looked at for being flat.
+Eigen::Matrix<float, kPoseFeatureCount, 3> probing_bends() {
+  Eigen::Matrix<float, kPoseFeatureCount, 3> bends;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> bend =
+        Eigen::AngleAxisf(kPi / 3, Vec3::Unit(axis)).toRotationMatrix() - Mat3::Identity();
+    for (int j = 1; j < kJointCount; ++j)
+      bends.block<9, 1>(9 * (j - 1), axis) = Eigen::Map<const Eigen::Matrix<float, 9, 1>>(bend.data());
+  }
+  return bends;
+}
+
+/// What the networks said of some points.
 struct Asked {
-  BoundSurface values;                                                       // contiguous
-  Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> near;  // [V, k] rows of values
-  RowMatrix shares;                                                          // [V, k]
-  Numbers weights() const {
-    return {values.weights.data_ptr<float>(), values.weights.size(0), values.weights.size(1)};
-  }
-  Numbers basis() const {
-    return {values.basis.data_ptr<float>(), values.basis.size(0), values.basis.size(1)};
-  }
-  void row(const Numbers& from, Eigen::Index v, Eigen::RowVectorXf& out) const {
-    out = shares(v, 0) * from.row(near(v, 0));
-    for (Eigen::Index k = 1; k < near.cols(); ++k)
-      if (shares(v, k) != 0) out += shares(v, k) * from.row(near(v, k));
+  Points points;                    // [N, 3]
+  RowMatrix known;                  // [N, kKnown]: the weights, then offsets of probing bends, kOffsetUnit
+  std::vector<OffsetBlock> blocks;  // by row
+};
+
+/// How vertices lie between points that were asked for; without rows: every vertex was, in their order.
+struct Between {
+  Neighbours near;   // [V, kBetween] rows of what was asked
+  RowMatrix shares;  // [V, kBetween], 0 behind the first of a vertex that was asked for itself
+  /// A vertex' row from those of the points.
+  template <int Columns, class Rows>
+  Eigen::Matrix<float, 1, Columns> row(const Rows& rows, Eigen::Index v) const {
+    Eigen::Matrix<float, 1, Columns> sum = shares(v, 0) * rows.row(near(v, 0));
+    for (int k = 1; k < kBetween; ++k)
+      if (shares(v, k) != 0) sum += shares(v, k) * rows.row(near(v, k));
+    return sum;
   }
 };
 
@@ -141,11 +163,10 @@ class NetworkDeformer : public Deformer {
   std::string name() const override { return offsets_ ? "network" : "network, no offsets"; }
 
  private:
-  BoundSurface ask(const Points& points, const Points& spread);
-  Asked ask_all(const Points& rest, const Points& spread);
-  Asked ask_some(const Points& rest, const Points& spread, const std::vector<int>& chosen);
+  void ask(const Points& points, const Points& spread, Asked& asked);
+  void ask_slice(Eigen::Index first, Eigen::Index count, const Points& spread, Asked& asked);
+  bool ask_some(const Points& rest, const Points& spread, Asked& asked, Between& between);
   void keep_weights();
-  void keep_offsets(const Asked& asked);
   void add_offsets(const Pose& pose, Points& rest) const;
 
   DeformationNet net_;
@@ -155,8 +176,11 @@ class NetworkDeformer : public Deformer {
   Points rest_;
   Joints joints_ = Joints::Zero();
   RowMatrix weights_;
-  std::shared_ptr<const std::vector<OffsetBlock>> blocks_;  // by vertex; shared by copies with other weights
-  std::vector<int> first_influence_;                        // [V + 1] into influences_
+  // Shared by copies with other weights: offsets of all vertices, or of the points between which they lie.
+  std::shared_ptr<const std::vector<OffsetBlock>> blocks_;
+  std::shared_ptr<const Between> between_;
+  Eigen::Index asked_ = 0;            // how many of either
+  std::vector<int> first_influence_;  // [V + 1] into influences_
   std::vector<Influence> influences_;
 };
 
@@ -165,63 +189,88 @@ void NetworkDeformer::bind(const Points& rest, const Joints& rest_joints) {
   US_CHECK(rest.allFinite() && rest_joints.allFinite(), "the target has a coordinate that is no number");
   const Points spread = spread_points(rest, static_cast<int>(net_->options.context_points));
   joints_ = rest_joints;
-  const std::vector<int> chosen = rest.rows() > most_asked_ ? one_a_cell(rest) : std::vector<int>();
-  const bool some = chosen.size() > kBetween && 2 * static_cast<Eigen::Index>(chosen.size()) < rest.rows();
-  const Asked asked = some ? ask_some(rest, spread, chosen) : ask_all(rest, spread);
+  Asked asked;
+  auto between = std::make_shared<Between>();
+  if (rest.rows() <= most_asked_ || !ask_some(rest, spread, asked, *between)) ask(rest, spread, asked);
   rest_ = rest;
-  weights_.resize(rest.rows(), kJointCount);
-  Eigen::RowVectorXf row;
-  for (Eigen::Index v = 0; v < rest.rows(); ++v) {
-    asked.row(asked.weights(), v, row);
-    weights_.row(v) = row.cwiseMax(0);
+  asked_ = asked.points.rows();
+  if (between->near.rows() == 0) {
+    weights_ = asked.known.leftCols<kJointCount>().cwiseMax(0);
+  } else {
+    weights_.resize(rest.rows(), kJointCount);
+    for (Eigen::Index v = 0; v < rest.rows(); ++v)
+      weights_.row(v) = between->row<kKnown>(asked.known, v).head<kJointCount>().cwiseMax(0);
   }
   tidy_weights(weights_);
   keep_weights();
-  blocks_ = std::make_shared<std::vector<OffsetBlock>>();
-  if (offsets_) keep_offsets(asked);
+  asked.blocks.shrink_to_fit();
+  blocks_ = std::make_shared<const std::vector<OffsetBlock>>(std::move(asked.blocks));
+  between_ = std::move(between);
 }
 
-BoundSurface NetworkDeformer::ask(const Points& points, const Points& spread) {
+/// Appends what the networks say of these points.
+void NetworkDeformer::ask(const Points& points, const Points& spread, Asked& asked) {
+  const Eigen::Index before = asked.points.rows(), all = before + points.rows();
+  asked.points.conservativeResize(all, 3);
+  asked.points.bottomRows(points.rows()) = points;
+  asked.known.conservativeResize(all, kKnown);
+  for (Eigen::Index from = before; from < all; from += kSlice)
+    ask_slice(from, std::min<Eigen::Index>(kSlice, all - from), spread, asked);
+}
+
+void NetworkDeformer::ask_slice(Eigen::Index first, Eigen::Index count, const Points& spread, Asked& asked) {
   const BoundSurface bound =
-      bind_surface(net_, tensor_of(points.data(), points.rows(), 3),
+      bind_surface(net_, tensor_of(asked.points.data() + 3 * first, count, 3),
                    tensor_of(joints_.data(), kJointCount, 3), tensor_of(spread.data(), spread.rows(), 3));
-  BoundSurface out{bound.weights.contiguous(), bound.basis.contiguous()};
-  using Flat = Eigen::Map<const Eigen::VectorXf>;
-  US_CHECK(Flat(out.weights.data_ptr<float>(), out.weights.numel()).allFinite() &&
-               Flat(out.basis.data_ptr<float>(), out.basis.numel()).allFinite(),
-           path_, ": the deformation networks give no numbers for this target");
-  return out;
+  const torch::Tensor weights = bound.weights.contiguous(), basis = bound.basis.contiguous();
+  const Eigen::Map<const RowMatrix> W(weights.data_ptr<float>(), count, kJointCount),
+      B(basis.data_ptr<float>(), 3 * count, kPoseFeatureCount);
+  US_CHECK(W.allFinite() && B.allFinite(), path_,
+           ": the deformation networks give no numbers for this target");
+  asked.known.middleRows(first, count).leftCols<kJointCount>() = W;
+  static const Eigen::Matrix<float, kPoseFeatureCount, 3> bends = probing_bends();
+  const RowMatrix probed = offsets_ ? RowMatrix(B * bends) : RowMatrix(RowMatrix::Zero(3 * count, 3));
+  asked.known.middleRows(first, count).rightCols<9>() =
+      Eigen::Map<const RowMatrix>(probed.data(), count, 9) / kOffsetUnit;
+  for (Eigen::Index i = 0; offsets_ && i < count; ++i)
+    for (int j = 1; j < kJointCount; ++j) {
+      const auto block = B.block<3, 9>(3 * i, 9 * (j - 1));
+      if (block.norm() * kLargestBend > kLeastOffset)
+        asked.blocks.push_back(offset_block(static_cast<int>(first + i), j, block));
+    }
 }
 
-Asked NetworkDeformer::ask_all(const Points& rest, const Points& spread) {
-  Asked asked{ask(rest, spread), {}, RowMatrix::Ones(rest.rows(), 1)};
-  asked.near.resize(rest.rows(), 1);
-  std::iota(asked.near.data(), asked.near.data() + rest.rows(), 0);
-  return asked;
-}
-
-/// The networks change slowly over a centimetre, but not everywhere: across gaps and creases the vertices are
-/// asked for themselves.
-Asked NetworkDeformer::ask_some(const Points& rest, const Points& spread, const std::vector<int>& chosen) {
-  const Points some = rest(chosen, Eigen::all);
-  const BoundSurface known = ask(some, spread);
-  Asked asked{known, nearest_neighbours(some, rest, kBetween), RowMatrix(rest.rows(), kBetween)};
-  std::vector<int> rough;
-  for (Eigen::Index v = 0; v < rest.rows(); ++v) {
-    Eigen::Matrix<float, kBetween, 3> offsets;
-    for (int k = 0; k < kBetween; ++k) offsets.row(k) = some.row(asked.near(v, k)) - rest.row(v);
-    asked.shares.row(v) = shares_of(offsets);
-    if (!is_flat(offsets, asked.near.row(v), asked.weights())) rough.push_back(static_cast<int>(v));
+/// The networks change slowly over a centimetre, but not everywhere: across gaps and creases vertices are
+/// asked for closer together, and at last themselves. False where the vertices lie too far apart for that.
+bool NetworkDeformer::ask_some(const Points& rest, const Points& spread, Asked& asked, Between& between) {
+  std::vector<int> open(static_cast<size_t>(rest.rows()));  // not yet known
+  std::iota(open.begin(), open.end(), 0);
+  for (float cells = kCells; cells <= kMostCells; cells *= 2) {
+    const std::vector<int> chosen = one_a_cell(rest, open, cells);
+    if (chosen.size() <= kBetween || 2 * chosen.size() >= open.size()) break;
+    ask(rest(chosen, Eigen::all), spread, asked);
+    between.near.conservativeResize(rest.rows(), kBetween);
+    between.shares.conservativeResize(rest.rows(), kBetween);
+    const Neighbours near = nearest_neighbours(asked.points, rest(open, Eigen::all), kBetween);
+    std::vector<int> rough;
+    for (size_t i = 0; i < open.size(); ++i) {
+      const int v = open[i];
+      between.near.row(v) = near.row(static_cast<Eigen::Index>(i));
+      Eigen::Matrix<float, kBetween, 3> offsets;
+      for (int k = 0; k < kBetween; ++k) offsets.row(k) = asked.points.row(between.near(v, k)) - rest.row(v);
+      between.shares.row(v) = shares_of(offsets);
+      if (!is_flat(offsets, between.near.row(v), asked.known)) rough.push_back(v);
+    }
+    open = std::move(rough);
   }
-  if (rough.empty()) return asked;
-  const BoundSurface exact = ask(rest(rough, Eigen::all), spread);
-  for (size_t i = 0; i < rough.size(); ++i) {
-    asked.near(rough[i], 0) = static_cast<int>(chosen.size() + i);
-    asked.shares.row(rough[i]).setZero();
-    asked.shares(rough[i], 0) = 1;
+  if (between.near.rows() == 0) return false;
+  const Eigen::Index before = asked.points.rows();
+  if (!open.empty()) ask(rest(open, Eigen::all), spread, asked);
+  for (size_t i = 0; i < open.size(); ++i) {
+    between.near.row(open[i]).setConstant(static_cast<int>(before + static_cast<Eigen::Index>(i)));
+    between.shares.row(open[i]) = Eigen::RowVectorXf::Unit(kBetween, 0);
   }
-  asked.values = {torch::cat({known.weights, exact.weights}), torch::cat({known.basis, exact.basis})};
-  return asked;
+  return true;
 }
 
 void NetworkDeformer::keep_weights() {
@@ -234,33 +283,23 @@ void NetworkDeformer::keep_weights() {
   }
 }
 
-void NetworkDeformer::keep_offsets(const Asked& asked) {
-  auto blocks = std::make_shared<std::vector<OffsetBlock>>();
-  const Numbers basis = asked.basis();
-  Eigen::RowVectorXf row;
-  for (Eigen::Index v = 0; v < rest_.rows(); ++v) {
-    asked.row(basis, v, row);
-    const Eigen::Map<const RowMatrix> own(row.data(), 3, kPoseFeatureCount);
-    for (int j = 1; j < kJointCount; ++j) {
-      const auto block = own.middleCols<9>(9 * (j - 1));
-      if (block.norm() * kLargestBend > kLeastOffset)
-        blocks->push_back(offset_block(static_cast<int>(v), j, block));
-    }
-  }
-  blocks_ = std::move(blocks);
-}
-
 void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
   std::array<Eigen::Matrix<float, 9, 1>, kJointCount> bend;  // R - I, row-major
   for (int j = 0; j < kJointCount; ++j) {
     const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> m = pose.local[j] - Mat3::Identity();
     bend[j] = Eigen::Map<const Eigen::Matrix<float, 9, 1>>(m.data());
   }
+  Eigen::Matrix<float, Eigen::Dynamic, 4, Eigen::RowMajor> moved;
+  moved.setZero(asked_, 4);
   for (const OffsetBlock& b : *blocks_) {
     Eigen::Vector4f offset = Eigen::Vector4f::Zero();
     for (int k = 0; k < 9; ++k) offset += b.block.col(k) * bend[b.joint][k];
-    rest.row(b.vertex) += offset.head<3>().transpose();
+    moved.row(b.row) += offset.transpose();
   }
+  if (between_->near.rows() == 0)
+    rest += moved.leftCols<3>();
+  else
+    for (Eigen::Index v = 0; v < rest.rows(); ++v) rest.row(v) += between_->row<4>(moved, v).head<3>();
 }
 
 std::shared_ptr<Deformer> NetworkDeformer::with_weights(RowMatrix weights) const {
