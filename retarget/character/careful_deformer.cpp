@@ -75,7 +75,7 @@ SafeBinding safe_binding(const Mesh& mesh, const Joints& joints, const RowMatrix
   SafeBinding out;
   RowMatrix doubt = strayed_share(distances, weights);
   for (Eigen::Index v = 0; v < doubt.rows(); ++v) doubt(v, 0) = smooth_step(0.08f, 0.35f, doubt(v, 0));
-  smooth_along(mesh, 0.05f * distances.leg, doubt);
+  if (doubt.maxCoeff() > 0) smooth_along(mesh, 0.05f * distances.leg, doubt);
   doubt = (doubt.array() < 0.01f).select(0.0f, doubt);
   out.doubt = doubt.col(0);
   if (hints.skirt) out.doubt = out.doubt.cwiseMax(hints.skirt->share);
@@ -116,7 +116,8 @@ void CarefulDeformer::bind(const Points& rest, const Joints& rest_joints) {
   binding_ = safe_binding(mesh, rest_joints, inner_->weights());
   if (!binding_.note.empty()) log::info(binding_.note);
   if (!(binding_.weights.array() == inner_->weights().array()).all())
-    inner_ = inner_->with_weights(binding_.weights);
+    inner_ = inner_->with_weights(std::move(binding_.weights));
+  binding_.weights.resize(0, kJointCount);  // they are inner_'s
 }
 
 std::shared_ptr<Deformer> CarefulDeformer::with_weights(RowMatrix weights) const {

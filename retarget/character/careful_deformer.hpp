@@ -32,6 +32,7 @@ class CarefulDeformer final : public Deformer {
   Points deform(const Pose& pose) const override;
   Points offsets(const Pose& pose) const override;
   std::string name() const override { return inner_->name(); }
+  /// Its weights are moved: see weights().
   const SafeBinding& binding() const { return binding_; }
 
  private:

@@ -31,6 +31,16 @@ Mat4 rigid(const Mat3& R, const Vec3& t) {
   return M;
 }
 
+/// How a vertex of the surface is turned from the bind pose to the T-pose.
+Mat3 turned_to_t_pose(const PreparedCharacter& c, Eigen::Index vertex) {
+  if (c.pose_weights.rows() == 0) return Mat3::Identity();
+  Mat3 turned = Mat3::Zero();
+  for (int j = 0; j < kJointCount; ++j)
+    if (c.pose_weights(vertex, j) > 0)
+      turned += c.pose_weights(vertex, j) * c.pose.to_rest[static_cast<size_t>(j)];
+  return turned;
+}
+
 /// The linear part that carries each vertex of a part from the file to the T-pose, metres: [V] of 3 x 3.
 std::vector<Mat3> to_t_pose_maps(const PreparedCharacter& c, const CharacterPart& part, Eigen::Index first,
                                  const std::vector<Mat4>& nodes) {
@@ -48,11 +58,7 @@ std::vector<Mat3> to_t_pose_maps(const PreparedCharacter& c, const CharacterPart
     if (part.skin < 0) bound = nodes[static_cast<size_t>(part.node)].topLeftCorner<3, 3>();
     for (Eigen::Index k = 0; k < part.joints.cols(); ++k)
       if (part.weights(v, k) > 0) bound += part.weights(v, k) * bones[static_cast<size_t>(part.joints(v, k))];
-    const auto weights = c.pose_weights.row(c.surface.map[static_cast<size_t>(first + v)]);
-    Mat3 turned = Mat3::Zero();
-    for (int j = 0; j < kJointCount; ++j)
-      if (weights[j] > 0) turned += weights[j] * c.pose.to_rest[static_cast<size_t>(j)];
-    out.push_back(turned * world * bound);
+    out.push_back(turned_to_t_pose(c, c.surface.map[static_cast<size_t>(first + v)]) * world * bound);
   }
   return out;
 }

@@ -4,12 +4,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <future>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <queue>
+#include <unordered_map>
 
-#include "retarget/character/voxel_body.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -278,6 +279,59 @@ std::optional<HeadAndNeck> find_big_head(const Mesh& mesh, const Joints& joints)
   return HeadAndNeck{crown, middle, head.low_x, head.high_x};
 }
 
+/// Does work(first, last) for both halves of 0 .. count at once: nothing else runs while a target is bound.
+template <class Work>
+void in_halves(Eigen::Index count, const Work& work) {
+  auto other = std::async(std::launch::async, [&] { work(count / 2, count); });
+  work(0, count / 2);
+  other.get();
+}
+
+/// A place in a grid, for places that are alike up to rounding.
+using GridPlace = std::array<int64_t, 3>;
+struct GridPlaceHash {
+  size_t operator()(const GridPlace& p) const {
+    uint64_t hash = 0;
+    for (const int64_t a : p) hash = (hash ^ static_cast<uint64_t>(a)) * 0x9E3779B97F4A7C15u;
+    return static_cast<size_t>(hash ^ hash >> 32);
+  }
+};
+
+using Ways = std::array<std::vector<float>, kJointCount>;
+
+/// How far a point is from each joint's bones: straight, with detours through the solid added.
+Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody& body, const Segments& bones,
+                                                  const Ways& ways, float leg) {
+  constexpr float kBeyond = 4;  // times as far as the nearest bone no detour matters any more
+  std::array<float, kJointCount> straight, plain;
+  std::array<int, kJointCount> order;
+  std::iota(order.begin(), order.end(), 0);
+  for (size_t j = 0; j < kJointCount; ++j) {
+    straight[j] = plain[j] = 1e9f;
+    for (const auto& s : bones[j]) {
+      straight[j] = std::min(straight[j], straight_distance(p, s));
+      const Vec3 d = s.second - s.first;
+      const float t = std::clamp((p - s.first).dot(d) / std::max(1e-12f, d.squaredNorm()), 0.0f, 1.0f);
+      plain[j] = std::min(plain[j], (p - s.first - t * d).norm());
+    }
+  }
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return straight[static_cast<size_t>(a)] < straight[static_cast<size_t>(b)];
+  });
+  Eigen::Matrix<float, 1, kJointCount> out;
+  float nearest = kFar;
+  for (const int joint : order) {
+    const auto j = static_cast<size_t>(joint);
+    float detour = 0;
+    // Ways along a grid are longer than straight ones by a tenth at most.
+    if (nearest == kFar || straight[j] < kBeyond * (nearest + 0.06f * leg))
+      detour = std::max(0.0f, body.at(ways[j], p) - 1.1f * plain[j] - 1.5f * body.size());
+    out[joint] = straight[j] + kDetour * detour;
+    nearest = std::min(nearest, out[joint]);
+  }
+  return out;
+}
+
 int root_of(std::vector<int>& parent, int v) {
   while (parent[static_cast<size_t>(v)] != v)
     v = parent[static_cast<size_t>(v)] = parent[static_cast<size_t>(parent[static_cast<size_t>(v)])];
@@ -287,46 +341,23 @@ int root_of(std::vector<int>& parent, int v) {
 }  // namespace
 
 BoneDistances bone_distances(const Mesh& mesh, const Joints& joints) {
-  return bone_distances(mesh, joints, mesh.vertices);
+  return bone_distances(VoxelBody(mesh), joints, mesh.vertices);
 }
 
-BoneDistances bone_distances(const Mesh& mesh, const Joints& joints, const Points& at) {
-  constexpr float kBeyond = 4;  // times as far as the nearest bone no detour matters any more
-  const VoxelBody body(mesh);
+BoneDistances bone_distances(const VoxelBody& body, const Joints& joints, const Points& at) {
   const Segments bones = bones_of(joints);
-  std::array<std::vector<float>, kJointCount> ways;
-  for (size_t j = 0; j < kJointCount; ++j) ways[j] = body.ways_from(bones[j]);
+  Ways ways;
+  in_halves(kJointCount, [&](Eigen::Index first, Eigen::Index last) {
+    for (auto j = static_cast<size_t>(first); j < static_cast<size_t>(last); ++j)
+      ways[j] = body.ways_from(bones[j]);
+  });
   BoneDistances out;
   out.leg = leg_length(joints);
   out.metres.resize(at.rows(), kJointCount);
-  for (Eigen::Index v = 0; v < at.rows(); ++v) {
-    const Vec3 p = at.row(v).transpose();
-    std::array<float, kJointCount> straight, plain;
-    std::array<int, kJointCount> order;
-    std::iota(order.begin(), order.end(), 0);
-    for (size_t j = 0; j < kJointCount; ++j) {
-      straight[j] = plain[j] = 1e9f;
-      for (const auto& s : bones[j]) {
-        straight[j] = std::min(straight[j], straight_distance(p, s));
-        const Vec3 d = s.second - s.first;
-        const float t = std::clamp((p - s.first).dot(d) / std::max(1e-12f, d.squaredNorm()), 0.0f, 1.0f);
-        plain[j] = std::min(plain[j], (p - s.first - t * d).norm());
-      }
-    }
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
-      return straight[static_cast<size_t>(a)] < straight[static_cast<size_t>(b)];
-    });
-    float nearest = kFar;
-    for (const int joint : order) {
-      const auto j = static_cast<size_t>(joint);
-      float detour = 0;
-      // Ways along a grid are longer than straight ones by a tenth at most.
-      if (nearest == kFar || straight[j] < kBeyond * (nearest + 0.06f * out.leg))
-        detour = std::max(0.0f, body.at(ways[j], p) - 1.1f * plain[j] - 1.5f * body.size());
-      out.metres(v, joint) = straight[j] + kDetour * detour;
-      nearest = std::min(nearest, out.metres(v, joint));
-    }
-  }
+  in_halves(at.rows(), [&](Eigen::Index first, Eigen::Index last) {
+    for (Eigen::Index v = first; v < last; ++v)
+      out.metres.row(v) = distances_at(at.row(v).transpose(), body, bones, ways, out.leg);
+  });
   return out;
 }
 
@@ -465,9 +496,10 @@ SurfaceParts surface_parts(const Mesh& mesh) {
   std::iota(parent.begin(), parent.end(), 0);
   const float extent = (mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff()).maxCoeff();
   const float same = std::max(1e-9f, 2e-5f * extent);
-  std::map<std::array<int64_t, 3>, int> places;
+  std::unordered_map<GridPlace, int, GridPlaceHash> places;
+  places.reserve(count);
   for (size_t v = 0; v < count; ++v) {
-    std::array<int64_t, 3> key{};
+    GridPlace key{};
     for (int a = 0; a < 3; ++a)
       key[static_cast<size_t>(a)] = std::llround(mesh.vertices(static_cast<Eigen::Index>(v), a) / same);
     const auto [at, fresh] = places.try_emplace(key, static_cast<int>(v));

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "retarget/character/voxel_body.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -16,8 +17,8 @@ struct BoneDistances {
   float leg = 1;     ///< of the body, metres
 };
 BoneDistances bone_distances(const Mesh& mesh, const Joints& joints);
-/// The same of any points of the body, [K, 22].
-BoneDistances bone_distances(const Mesh& mesh, const Joints& joints, const Points& at);
+/// The same of any points of a body whose solid is known, [K, 22].
+BoneDistances bone_distances(const VoxelBody& body, const Joints& joints, const Points& at);
 
 /// Weights [K, 22] by the inverse of the distances alone, rows sum to 1.
 RowMatrix weights_by_distance(const BoneDistances& distances);

@@ -285,13 +285,13 @@ void find_in_rig(PreparedCharacter& c) {
 
 /// Extracted shoulders of bodies unlike those the network knows are rough, forearms and hands stand free and
 /// can be measured. An arm that is nearly straight is taken as straight, and its shoulder put on its line.
-Joints with_straight_arms(const Mesh& mesh, const Joints& joints) {
+Joints with_straight_arms(const VoxelBody& body, const Points& vertices, const Joints& joints) {
   constexpr float kLeast = 15 * kPi / 180, kMost = 60 * kPi / 180;
   constexpr Eigen::Index kEnough = 4000;
-  const Eigen::Index step = 1 + mesh.vertices.rows() / kEnough;
-  Points some((mesh.vertices.rows() + step - 1) / step, 3);
-  for (Eigen::Index i = 0; i < some.rows(); ++i) some.row(i) = mesh.vertices.row(i * step);
-  const RowMatrix weights = weights_by_distance(bone_distances(mesh, joints, some));
+  const Eigen::Index step = 1 + vertices.rows() / kEnough;
+  Points some((vertices.rows() + step - 1) / step, 3);
+  for (Eigen::Index i = 0; i < some.rows(); ++i) some.row(i) = vertices.row(i * step);
+  const RowMatrix weights = weights_by_distance(bone_distances(body, joints, some));
   Joints out = joints;
   for (const int right : {0, 1}) {
     const int shoulder = LeftShoulder + right, elbow = LeftElbow + right, wrist = LeftWrist + right;
@@ -360,14 +360,20 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
   }
   Mesh mesh = c.surface.mesh;
-  const Joints found = with_straight_arms(mesh, with_seen_neck(mesh, prepare_target(mesh, any_pose).joints));
+  auto body = std::make_unique<VoxelBody>(mesh);
+  const Joints found =
+      with_straight_arms(*body, mesh.vertices, with_seen_neck(mesh, prepare_target(mesh, any_pose).joints));
   c.pose = to_t_pose(found, kRoughDeg);
   spread_legs(c.pose, kRoughSpreadDeg);
-  c.pose_weights = geometric_weights(mesh, found);
-  if (c.pose.largest_deg > 0) mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
+  if (c.pose.largest_deg > 0) {
+    c.pose_weights =
+        geometric_weights(mesh, bone_distances(*body, found, mesh.vertices), shape_hints(mesh, found));
+    mesh.vertices = in_t_pose(mesh.vertices, c.pose_weights, c.pose);
+    body = std::make_unique<VoxelBody>(mesh);
+  }
   note_turns(c);
   c.target = prepare_target(mesh, t_pose != nullptr ? *t_pose : any_pose);
-  c.target.joints = with_straight_arms(mesh, with_seen_neck(mesh, c.target.joints));
+  c.target.joints = with_straight_arms(*body, mesh.vertices, with_seen_neck(mesh, c.target.joints));
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ struct PreparedCharacter {
   MergedSurface surface;    ///< as it was bound
   RowMatrix weights;        ///< [V, 22] of its own skin, gathered at the joints; without a rig empty
   RestPose pose;            ///< from the bind pose to the T-pose and back
-  RowMatrix pose_weights;   ///< [V, 22] that brought the surface to the T-pose: the rig's, or geometric ones
+  RowMatrix pose_weights;   ///< [V, 22] that brought the surface to the T-pose: the rig's, or geometric ones;
+                            ///< none where it stood so
   Target target;            ///< in T-pose
   std::vector<int> driver;  ///< of each node the joint that moves it, -1: it keeps its place on its parent
   std::vector<std::string> notes;  ///< what was decided, a sentence each
