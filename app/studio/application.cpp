@@ -15,6 +15,7 @@
 #include "render/gl/functions.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "ui/panels/panel.hpp"
 #include "ui/viewport/panes.hpp"
 #include "ui/viewport/views.hpp"
 #include "ui/workspace.hpp"
@@ -254,6 +255,7 @@ void Application::draw_interface(double dt, const std::vector<InputEvent>& event
   input.theme = s.settings.dark ? ui::ThemeKind::Dark : ui::ThemeKind::Light;
   surface_->context().make_current();
   show_previews();
+  if (!ui::has_document(s)) views_->forget();
   gui_->begin_frame(input, events);
   ui::PanelContext context{gui_->ui(), queue_, studio_->commands()};
   workspace_->draw(s, context, frame_rate_);

@@ -55,6 +55,17 @@ TEST_F(ApplicationTest, DroppedPathsAreOpened) {
   play("drop samples/scan.npz samples/target.obj\nwait\nexpect_value frames 24");
 }
 
+TEST_F(ApplicationTest, WhatWasClosedIsShownNoMore) {
+  make();
+  play(kOpenBoth);
+  play("frames 5");
+  EXPECT_TRUE(application_->shows_take(0));
+  play("document.new\nquestion.answer discard\nframes 3\nexpect start.open_scan");
+  EXPECT_FALSE(application_->shows_take(0));
+  play("target.add samples/target.obj\nwait\nframes 5");
+  EXPECT_TRUE(application_->shows_take(0));
+}
+
 TEST_F(ApplicationTest, FailuresOfTheUserBecomeDialogsThatWait) {
   make();
   play("drop /no/such/file\nframes 3\nexpect_error \"no such file\"\nexpect_value errors 0");

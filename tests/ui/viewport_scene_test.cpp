@@ -322,6 +322,20 @@ TEST(TargetLook, WhatIsShownForAMomentStaysPlainAndIsShadedLater) {
   EXPECT_EQ(looks.of(stage.target)->ambient->size(), stage.mesh.vertices.rows());
 }
 
+TEST(TargetLook, WhatIsForgottenIsMadeAgain) {
+  Stage stage(1, 500);
+  TargetLooks looks;
+  looks.of(stage.target);
+  looks.wait();
+  ASSERT_NE(looks.of(stage.target), nullptr);
+  const int64_t arrived = looks.arrived();
+  looks.forget();
+  EXPECT_EQ(looks.of(stage.target), nullptr);
+  looks.wait();
+  EXPECT_NE(looks.of(stage.target), nullptr);
+  EXPECT_GT(looks.arrived(), arrived);
+}
+
 TEST(TargetLook, ATubeIsClosedAndAnOpenOneIsNot) {
   Faces faces(4, 3);
   faces << 0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0;

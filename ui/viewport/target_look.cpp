@@ -143,6 +143,13 @@ Look TargetLooks::plain_of(const std::shared_ptr<const Target>& target) {
   return entry.look;
 }
 
+void TargetLooks::forget() {
+  entries_.remove_if([this](Entry& entry) {
+    take_in(entry, false);
+    return !entry.plain.valid() && !entry.shaded.valid();
+  });
+}
+
 void TargetLooks::wait() {
   for (Entry& entry : entries_) take_in(entry, true);
 }

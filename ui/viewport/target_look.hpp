@@ -36,6 +36,8 @@ class TargetLooks {
   std::shared_ptr<const TargetLook> of(const std::shared_ptr<const Target>& target);
   /// The same of what is shown for a moment only: it stays plain.
   std::shared_ptr<const TargetLook> plain_of(const std::shared_ptr<const Target>& target);
+  /// Lets go of all but those that are still being made.
+  void forget();
   /// Waits for all that were asked for.
   void wait();
   /// Grows with every look that has come: then there is something new to draw.

@@ -86,6 +86,13 @@ void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQue
   impl_->draw({session, cache, queue, ui});
 }
 
+void Views::forget() {
+  impl_->hand.let_go();
+  impl_->under = nullptr;
+  impl_->panes.clear();
+  impl_->looks.forget();
+}
+
 bool Views::waiting() const {
   return std::any_of(impl_->panes.begin(), impl_->panes.end(),
                      [](const auto& pane) { return pane->keeper.waiting() || !pane->canvas.fine(); });

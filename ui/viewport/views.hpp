@@ -24,6 +24,8 @@ class Views {
   /// context's complaints are fatal.
   void draw(const app::Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui);
 
+  /// Lets go of all that was shown: the document is gone.
+  void forget();
   /// Whether something that should be seen is still being made, or was drawn quickly only: draw again soon.
   bool waiting() const;
   /// Whether the surface of this take was in the frame drawn last, as it came, in T-pose or performing.
