@@ -46,7 +46,12 @@ Action declare_train(CLI::App& command) {
                      "folder of the trained extractor (default: beside the program)");
   command.add_option("--device", options->device, "cpu, or cuda where LibTorch has it")
       ->check(CLI::IsMember({"cpu", "cuda"}));
-  command.add_option("--init", options->init, "weights to start from");
+  const auto init = command.add_option("--init", options->init, "weights to start from");
+  command
+      .add_option("--keep", options->keep,
+                  "share of the weights to start from that is mixed into those written (skeleton and leaf)")
+      ->needs(init)
+      ->check(CLI::Range(0.0, 0.95));
   return [options] {
     options->cancelled = interrupted;
     return nn::train(*options);

@@ -60,6 +60,7 @@ struct TrainOptions {
   std::string weights;              ///< folder of the trained extractor; empty: beside the program
   std::string device = "cpu";       ///< "cpu" or "cuda"
   std::string init;                 ///< weights to start from
+  double keep = 0;                  ///< share of those in what is written; skeleton and leaf only
   std::function<bool()> cancelled;  ///< asked between steps; the checkpoint is written before it stops
 };
 int train(const TrainOptions& options);

@@ -10,6 +10,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/deformation_step.hpp"
+#include "retarget/training/parameters.hpp"
 
 namespace understudy::training {
 namespace {
@@ -53,13 +54,6 @@ class DeformationTrainer {
   int sum_count_ = 0;
 };
 
-void copy_parameters(const nn::DeformationNet& from, nn::DeformationNet& to) {
-  const torch::NoGradGuard no_grad;
-  const auto source = from->parameters();
-  auto target = to->parameters();
-  for (size_t i = 0; i < source.size(); ++i) target[i].copy_(source[i]);
-}
-
 DeformationTrainer::DeformationTrainer(const nn::TrainOptions& options)
     : options_(options),
       device_(options.device),
@@ -73,7 +67,7 @@ DeformationTrainer::DeformationTrainer(const nn::TrainOptions& options)
   average_ = nn::DeformationNet();
   if (!options_.init.empty()) nn::load_weights(options_.init, "deformation", nn::kDeformationVersion, *net_);
   net_->to(device_);
-  copy_parameters(net_, average_);
+  copy_parameters(*net_, *average_);
   parameters_ = net_->parameters();
   optimizer_ = std::make_unique<torch::optim::Adam>(
       parameters_, torch::optim::AdamOptions(kLearningRate).betas({0.9, 0.98}));

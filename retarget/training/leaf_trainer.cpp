@@ -13,6 +13,7 @@
 #include "retarget/nn/modules/leaf_refiner.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/leaf_data.hpp"
+#include "retarget/training/parameters.hpp"
 
 namespace understudy::training {
 namespace {
@@ -77,7 +78,7 @@ class LeafTrainer {
   TrainingData train_, dev_;
   std::unique_ptr<LeafSampler> sampler_;
   LeafBatches dev_batches_;
-  nn::LeafRefinerNet net_, average_;
+  nn::LeafRefinerNet net_, average_, first_;  // first_: what training started from
   std::unique_ptr<torch::optim::AdamW> optimizer_;
   int64_t step_ = 0, samples_ = 0;
   double seconds_ = 0, seconds_before_ = 0, loss_sum_ = 0;
@@ -97,9 +98,8 @@ LeafTrainer::LeafTrainer(const nn::TrainOptions& options)
   net_ = nn::LeafRefinerNet();
   average_ = nn::LeafRefinerNet();
   if (!options_.init.empty()) nn::load_weights(options_.init, "leaf", nn::kLeafVersion, *net_);
-  const torch::NoGradGuard no_grad;
-  for (size_t i = 0; i < net_->parameters().size(); ++i)
-    average_->parameters()[i].copy_(net_->parameters()[i]);
+  copy_parameters(*net_, *average_);
+  if (options_.keep > 0) copy_parameters(*net_, *first_);
   optimizer_ = std::make_unique<torch::optim::AdamW>(
       net_->parameters(), torch::optim::AdamWOptions(kLearningRate).weight_decay(1e-4));
   resume();
@@ -139,10 +139,12 @@ void LeafTrainer::save_checkpoint() {
       torch::tensor({static_cast<double>(step_), static_cast<double>(samples_), seconds_}, torch::kFloat64));
   archive.save_to(checkpoint() + ".part");
   fs::rename(checkpoint() + ".part", checkpoint());
+  nn::LeafRefinerNet kept;
+  copy_parameters(*average_, *kept);
+  if (options_.keep > 0) mix_parameters(*first_, *kept, options_.keep);
   nn::save_weights(
       options_.out,
-      {"leaf", nn::kLeafVersion, {{"samples", samples_}, {"steps", step_}, {"seconds", seconds_}}},
-      *average_);
+      {"leaf", nn::kLeafVersion, {{"samples", samples_}, {"steps", step_}, {"seconds", seconds_}}}, *kept);
 }
 
 double LeafTrainer::done_share() const {

@@ -10,6 +10,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/skeleton_form.hpp"
+#include "retarget/training/parameters.hpp"
 #include "retarget/training/skeleton_batch.hpp"
 
 namespace understudy::training {
@@ -62,7 +63,7 @@ class SkeletonTrainer {
   torch::Device device_;
   TrainingData train_, dev_;
   ScanMakerOptions scans_;
-  std::shared_ptr<SkeletonForm> net_, average_;
+  std::shared_ptr<SkeletonForm> net_, average_, first_;  // first_: where some of it is kept
   std::vector<torch::Tensor> parameters_;
   std::unique_ptr<torch::optim::AdamW> optimizer_;
   std::vector<Replica> replicas_;
@@ -74,13 +75,6 @@ class SkeletonTrainer {
 
 std::string checkpoint_path(const nn::TrainOptions& options) {
   return options.out + ".checkpoint";
-}
-
-void copy_parameters(const torch::nn::Module& from, torch::nn::Module& to) {
-  const torch::NoGradGuard no_grad;
-  const auto source = from.parameters();
-  auto target = to.parameters();
-  for (size_t i = 0; i < source.size(); ++i) target[i].copy_(source[i]);
 }
 
 SkeletonTrainer::SkeletonTrainer(const nn::TrainOptions& options)
@@ -95,11 +89,16 @@ SkeletonTrainer::SkeletonTrainer(const nn::TrainOptions& options)
   US_CHECK(options_.poses == "all" || options_.poses == "rest", "--poses is all or rest, not ",
            options_.poses);
   if (options_.poses == "rest") scans_ = ScanMakerOptions::rest();
+  US_CHECK(options_.keep == 0 || !options_.init.empty(), "--keep wants --init");
   US_CHECK(options_.minutes > 0 || options_.samples > 0, "training wants --minutes or --samples");
   torch::manual_seed(options_.seed);
   net_ = nn::make_skeleton_form(options_.form);
   average_ = nn::make_skeleton_form(options_.form);
   if (!options_.init.empty()) nn::load_skeleton_form(options_.init, options_.form, *net_);
+  if (options_.keep > 0) {
+    first_ = nn::make_skeleton_form(options_.form);
+    copy_parameters(*net_, *first_);
+  }
   net_->to(device_);
   average_->to(device_);
   copy_parameters(*net_, *average_);
@@ -157,7 +156,10 @@ void SkeletonTrainer::save_checkpoint() {
   const std::string path = checkpoint_path(options_);
   archive.save_to(path + ".part");
   fs::rename(path + ".part", path);
-  nn::save_skeleton_form(options_.out, options_.form, *average_, progress_.samples);
+  const auto kept = nn::make_skeleton_form(options_.form);
+  copy_parameters(*average_, *kept);
+  if (options_.keep > 0) mix_parameters(*first_, *kept, options_.keep);
+  nn::save_skeleton_form(options_.out, options_.form, *kept, progress_.samples);
 }
 
 double SkeletonTrainer::done_share() const {

@@ -149,6 +149,33 @@ TEST_F(SkeletonTraining, ResumesFromItsCheckpoint) {
   EXPECT_NE(second.find(",3,12,"), std::string::npos) << second;
 }
 
+TEST_F(SkeletonTraining, KeepsAShareOfWhatItStartedFrom) {
+  train_skeleton(few_samples(folder_, 8));
+  const std::string begun = (folder_ / "begun.weights").string(), out = (folder_ / "out.weights").string();
+  fs::rename(out, begun);
+  fs::remove(out + ".checkpoint");
+  nn::TrainOptions options = few_samples(folder_, 40);
+  options.init = begun;
+  train_skeleton(options);
+  const auto parameters_of = [](const std::string& path) {
+    const auto net = nn::make_skeleton_form("dense");
+    nn::load_skeleton_form(path, "dense", *net);
+    return net->parameters();
+  };
+  const auto first = parameters_of(begun), last = parameters_of(out);
+  options.keep = 0.25;
+  train_skeleton(options);  // nothing left to train: only written anew
+  const auto kept = parameters_of(out);
+  double moved = 0;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    moved += (last[i] - first[i]).abs().sum().item<double>();
+    EXPECT_TRUE(torch::allclose(kept[i], 0.25 * first[i] + 0.75 * last[i], 1e-2, 1e-3));
+  }
+  EXPECT_GT(moved, 0.1);
+  options.init.clear();
+  EXPECT_THROW(train_skeleton(options), Error);
+}
+
 TEST_F(SkeletonTraining, WithoutDataIsOneSentence) {
   EXPECT_THROW(train_skeleton(few_samples(folder_ / "nowhere", 8)), Error);
 }
