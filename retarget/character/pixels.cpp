@@ -11,8 +11,9 @@ namespace {
 // the file want it, and no larger.
 thread_local size_t largest_piece = 0;
 
+/// Zeros: the decoder looks into tables of codes that a JPEG names and never gives.
 void* piece(size_t size) {
-  return size <= largest_piece ? std::malloc(size) : nullptr;
+  return size <= largest_piece ? std::calloc(1, size) : nullptr;
 }
 
 void* piece_again(void* old, size_t size) {

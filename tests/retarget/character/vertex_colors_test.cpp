@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "retarget/base/error.hpp"
+
+#include "retarget/character/pixels.hpp"
+
 #include <webp/encode.h>
 
 #include "retarget/base/log.hpp"
@@ -156,6 +160,31 @@ TEST(VertexColors, LeaveOutPicturesThatAreNoneOrTooLarge) {
   }
   const std::string said = warnings([&] { vertex_colors(textured(large)); });
   EXPECT_NE(said.find("64 megapixels"), std::string::npos) << said;
+}
+
+// Its scan names a table of codes that the file does not have: what lay in memory before must not count.
+TEST(DecodedPictures, OfAJpegWithoutItsCodesDependOnNothingElse) {
+  std::string jpeg("\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0", 20);
+  jpeg += std::string("\xff\xdb\0\x43\0", 5) + std::string(64, '\x08');
+  jpeg += std::string("\xff\xc0\0\x11\x08\0\x10\0\x10\3\1\x22\0\2\x11\0\3\x11\0", 19);
+  jpeg += std::string("\xff\xc4\0\x15\0\1\1", 7) + std::string(15, '\0') + '\1';
+  jpeg += std::string("\xff\xda\0\x0c\3\1\0\2\0\3\0\0\x3f\0\0\x3f\0\xff\xd9", 19);
+  std::vector<std::string> seen;
+  for (const int before : {0xee, 0x7f, 0x01}) {
+    for (int i = 0; i < 64; ++i) {
+      std::vector<std::string> dirt;
+      for (size_t size = 16000; size < 24000; size += 500) dirt.emplace_back(size, static_cast<char>(before));
+    }
+    try {
+      const Pixels pixels = decode_picture(jpeg);
+      seen.emplace_back(reinterpret_cast<const char*>(pixels.rgb.get()),
+                        3 * static_cast<size_t>(pixels.width) * static_cast<size_t>(pixels.height));
+    } catch (const Error& error) {
+      seen.emplace_back(error.what());
+    }
+  }
+  EXPECT_EQ(seen[0], seen[1]);
+  EXPECT_EQ(seen[0], seen[2]);
 }
 
 }  // namespace
