@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "retarget/base/error.hpp"
-
-#include "retarget/character/pixels.hpp"
-
 #include <webp/encode.h>
 
+#include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/character/pixels.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/bytes.hpp"
 
