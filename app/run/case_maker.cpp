@@ -21,6 +21,7 @@
 #include "retarget/body/partial_view.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/metrics/hand_contact.hpp"
+#include "retarget/metrics/joint_metrics.hpp"
 
 namespace understudy::app {
 namespace {
@@ -237,12 +238,9 @@ Points64 captured(NumpyRandom& random, const Points64& vertices, const Faces& fa
 /// The points as they are when the person is hard to see: the same skirt, thing or side in every frame.
 Points64 hindered(const CasePlan& plan, const Points64& points, const Joints64& joints,
                   const Rotations64& local) {
-  PosedSkeleton truth;
-  truth.joints = joints.cast<float>();
-  for (size_t j = 0; j < kJointCount; ++j) {
-    const Mat3 own = local[j].cast<float>();
-    truth.global[j] = kParents[j] < 0 ? own : truth.global[static_cast<size_t>(kParents[j])] * own;
-  }
+  Rotations turned;
+  for (size_t j = 0; j < kJointCount; ++j) turned[j] = local[j].cast<float>();
+  const PosedSkeleton truth{global_rotations(turned), joints.cast<float>()};
   LabelledPoints cloud{points.cast<float>(), {}};
   cloud.parts = nearest_parts(cloud.points, truth.joints);
   uint64_t seed = 0;

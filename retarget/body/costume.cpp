@@ -6,16 +6,14 @@
 #include <array>
 #include <cmath>
 
+#include "retarget/math/random_direction.hpp"
+
 namespace understudy {
 namespace {
 
 constexpr int kRings = 12, kWays = 24;
 constexpr float kTurn = 2 * kPi;
 constexpr float kUnder = 0.01f;  // what pokes out of a skirt by so much is still under it, metres
-
-Vec3 random_way(Rng& rng) {
-  return Vec3(rng.normal(), rng.normal(), rng.normal()).normalized();
-}
 
 Vec3 at(const PosedSkeleton& truth, int joint) {
   return truth.joints.row(joint).transpose();
@@ -141,12 +139,12 @@ bool is_coated(int part) {
          part == LeftShoulder || part == RightShoulder || part == LeftElbow || part == RightElbow;
 }
 
-/// A random point on a ball about the origin of radius 1.
+/// Points on a ball, drawn out along the columns of `axes`, as densely as on a round one of that volume.
 void add_ball(std::vector<Vec3>& points, const Vec3& centre, const Mat3& axes, float per_square_metre,
               Rng& rng) {
   const float radius = std::cbrt(std::abs(axes.determinant()));
   const int count = static_cast<int>(per_square_metre * 2 * kTurn * radius * radius);
-  for (int i = 0; i < count; ++i) points.push_back(centre + axes * random_way(rng));
+  for (int i = 0; i < count; ++i) points.push_back(centre + axes * random_direction(rng));
 }
 
 void add_stick(std::vector<Vec3>& points, const Vec3& through, const Vec3& way, float per_square_metre,

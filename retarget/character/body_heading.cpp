@@ -12,17 +12,11 @@ namespace understudy {
 namespace {
 
 constexpr float kReach = 75 * kPi / 180;  // from the guess
-constexpr int kSides = 4;
+constexpr size_t kSides = std::tuple_size_v<SideViews>;
 constexpr float kUpsideDown = 0.4f;  // of the legs: those who stand have 0.75 to 0.9 and 1
 
-float turn_of(int side) {
+float turn_of(size_t side) {
   return 2 * kPi * static_cast<float>(side) / kSides;
-}
-
-Extraction seen_from(const Mesh& mesh, int side, SkeletonExtractor& extractor) {
-  Mesh seen = mesh;
-  seen.vertices = mesh.vertices * rotation_about_y(turn_of(side)).transpose();
-  return extractor.extract(seen);
 }
 
 /// Mean distance of points to their mirror image about the upright plane through the middle that faces this
@@ -64,10 +58,20 @@ float symmetric_heading(const Points& points, float guess) {
   return least < 0.8f * at_guess ? best : guess;
 }
 
-bool stands_on_head(const Mesh& mesh, SkeletonExtractor& extractor) {
+SideViews seen_from_sides(const Mesh& mesh, SkeletonExtractor& extractor) {
+  SideViews views;
+  Mesh seen = mesh;
+  for (size_t side = 0; side < kSides; ++side) {
+    seen.vertices = mesh.vertices * rotation_about_y(turn_of(side)).transpose();
+    views[side] = extractor.extract(seen);
+  }
+  return views;
+}
+
+bool stands_on_head(const SideViews& seen) {
   float head = 0, ankles = 0;  // over the pelvis, mean of all sides, shares of the legs
-  for (int side = 0; side < kSides; ++side) {
-    const Joints joints = seen_from(mesh, side, extractor).joints;
+  for (const Extraction& view : seen) {
+    const Joints& joints = view.joints;
     const float unit = 1 / (kSides * std::max(leg_length(joints), 1e-6f));
     head += unit * (joints(Head, 1) - joints(Pelvis, 1));
     ankles += unit * (0.5f * (joints(LeftAnkle, 1) + joints(RightAnkle, 1)) - joints(Pelvis, 1));
@@ -75,10 +79,10 @@ bool stands_on_head(const Mesh& mesh, SkeletonExtractor& extractor) {
   return head < -kUpsideDown && ankles > kUpsideDown;
 }
 
-float body_heading(const Mesh& mesh, SkeletonExtractor& extractor) {
+float body_heading(const Mesh& mesh, const SideViews& seen) {
   Vec3 sum = Vec3::Zero();
-  for (int side = 0; side < kSides; ++side) {
-    const Extraction found = seen_from(mesh, side, extractor);
+  for (size_t side = 0; side < kSides; ++side) {
+    const Extraction& found = seen[side];
     const float heading = heading_of_joints(found.joints) - turn_of(side);
     sum += std::max(0.01f, found.confidence.mean()) * Vec3(std::sin(heading), 0, std::cos(heading));
   }

@@ -350,13 +350,15 @@ void turn_over(PreparedCharacter& c, const CharacterOptions& options) {
 
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
-  if (stands_on_head(c.surface.mesh, any_pose)) {
+  SideViews seen = seen_from_sides(c.surface.mesh, any_pose);
+  if (stands_on_head(seen)) {
     US_CHECK(options.turn_if_lying || options.up == "auto", c.character.called(), ": is head down with ",
              options.up, " up, another up axis (--target-up) turns it over");
     turn_over(c, options);
+    seen = seen_from_sides(c.surface.mesh, any_pose);
   }
   if (!options.yaw_deg) {
-    const float yaw = tidy(body_heading(c.surface.mesh, any_pose));
+    const float yaw = tidy(body_heading(c.surface.mesh, seen));
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
   }
   Mesh mesh = c.surface.mesh;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "retarget/math/random_direction.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::training {
@@ -61,7 +62,7 @@ LeafSampler::LeafSampler(const TrainingData& data, uint64_t seed)
 Extraction LeafSampler::pretend(const PosedSkeleton& truth) {
   Extraction seen;
   const auto turned = [this](float degrees) {
-    const Vec3 axis = Vec3(rng_.normal(), rng_.normal(), rng_.normal()).normalized();
+    const Vec3 axis = random_direction(rng_);
     return rotation_from_axis_angle(degrees * kRadians * std::abs(rng_.normal()) * axis);
   };
   const float kind = rng_.uniform();

@@ -5,6 +5,7 @@
 
 #include "retarget/body/costume.hpp"
 #include "retarget/body/partial_view.hpp"
+#include "retarget/math/random_direction.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::training {
@@ -14,13 +15,6 @@ constexpr int kPoolSize = 40;
 constexpr int kScansPerPerson = 24;
 // Sampled before holes take their share; the rest fills up with what is left.
 constexpr int kRawPoints = 1800;
-
-Vec3 random_direction(Rng& rng) {
-  Vec3 d;
-  do d = Vec3(rng.normal(), rng.normal(), rng.normal());
-  while (d.norm() < 1e-3f);
-  return d.normalized();
-}
 
 bool is_upper(int joint) {
   return joint == Spine1 || joint == Spine2 || joint == Spine3 || joint >= Neck;
