@@ -54,6 +54,7 @@ double ms_since(std::chrono::steady_clock::time_point began) {
 /// Only the skeletons of the scans: cases without a target. Repaired and smoothed as for a performance.
 void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) {
   const auto source = open_source(case_source(c));
+  RecentJoints recent;
   JointFilter filter;
   std::optional<Extraction> raw;  // of the last good frame
   std::optional<Joints> smooth;
@@ -67,7 +68,8 @@ void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) 
     times.read = ms_since(began);
     waited_s += static_cast<float>(1 / c.fps);
     const std::string problem = failure_of([&] {
-      raw = extractor.extract(frame->mesh);
+      raw = extractor.extract_next(frame->mesh, recent);
+      recent.push(raw->joints);
       smooth = filter.push(*raw, waited_s).joints;
       waited_s = 0;
     });

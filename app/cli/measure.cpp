@@ -41,6 +41,7 @@ Measured measured(const MeasureOptions& options) {
   const auto source = open_source(options.source);
   const auto extractor = nn::load_networks(options.networks).extractor;
   Measured result(source->fps(), options.every);
+  RecentJoints recent;
   JointFilter filter;
   float waited_s = 0;
   while (const auto frame = source->next()) {
@@ -48,7 +49,9 @@ Measured measured(const MeasureOptions& options) {
     ++result.frames;
     waited_s += static_cast<float>(1 / source->fps());
     const std::string problem = failure_of([&] {
-      const Extraction seen = frame->skeleton ? *frame->skeleton : extractor->extract(frame->mesh);
+      const Extraction seen =
+          frame->skeleton ? *frame->skeleton : extractor->extract_next(frame->mesh, recent);
+      recent.push(seen.joints);
       push(result.raw, seen.joints, frame->mesh);
       push(result.smooth, filter.push(seen, waited_s).joints, frame->mesh);
       waited_s = 0;

@@ -86,6 +86,7 @@ struct Extracted {
 struct Stream {
   std::unique_ptr<SkeletonExtractor> extractor;
   std::vector<Extracted> frames;
+  RecentJoints recent;
   PersonDoubt person;
 };
 
@@ -330,7 +331,7 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
 
 void Engine::Impl::close_source() {
   source.reset();
-  for (auto& [name, stream] : streams) stream.frames.clear(), stream.person = {};
+  for (auto& [name, stream] : streams) stream.frames.clear(), stream.recent = {}, stream.person = {};
   opened = ended = has_faces = false;
   told = 0;
   filter.reset();
@@ -441,7 +442,8 @@ Extracted Engine::Impl::extracted(Stream& stream, const SourceFrame& frame) cons
       result.extraction = *frame.skeleton;
       return result;
     }
-    result.extraction = stream.extractor->extract(frame.mesh);
+    result.extraction = stream.extractor->extract_next(frame.mesh, stream.recent);
+    stream.recent.push(result.extraction.joints);
     result.extraction.sole_height = sole_height(result.extraction.joints, frame.mesh.vertices);
     result.girth = measure_girth(result.extraction, frame.mesh.vertices);
   } catch (const Error& error) {

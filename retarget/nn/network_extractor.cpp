@@ -3,11 +3,10 @@
 #include <torch/torch.h>
 
 #include <cmath>
-#include <vector>
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/nn/scan_patches.hpp"
+#include "retarget/nn/extractor_input.hpp"
 #include "retarget/nn/skeleton_form.hpp"
 
 namespace understudy::nn {
@@ -24,17 +23,12 @@ class NetworkExtractor : public SkeletonExtractor {
     net_->eval();
   }
 
-  Extraction extract(const Mesh& scan) override {
+  Extraction extract(const Mesh& scan) override { return extract_next(scan, {}); }
+
+  Extraction extract_next(const Mesh& scan, const RecentJoints& recent) override {
     const torch::NoGradGuard no_grad;
     const ScanPatches patches = cut_patches(thin_scan(scan, kThinningSeed));
-    // from_blob does not copy; the network only reads.
-    const auto view = [](const Points& points, std::vector<int64_t> shape) {
-      return torch::from_blob(const_cast<float*>(points.data()), shape);
-    };
-    const auto out =
-        net_->forward({view(patches.points, {1, kScanPoints, 3}), view(patches.centres, {1, kPatches, 3}),
-                       view(patches.offsets, {1, kPatches, kPatchPoints, 3})});
-    Extraction seen = to_world(out, patches);
+    Extraction seen = to_world(net_->forward(extractor_input({patches}, {recent})), patches);
     if (leaves_) leaves_->refine(scan, seen);
     return seen;
   }

@@ -21,6 +21,21 @@ struct Extraction {
   bool exact = false;  ///< a skeleton's own, seen in no scan: nothing is to be repaired, smoothed or solved
 };
 
+/// The joints seen in the last two frames of a stream, world, metres. Those that are not finite are left out.
+class RecentJoints {
+ public:
+  void push(const Joints& joints) {
+    if (!joints.allFinite()) return;
+    before_last_ = last_;
+    last_ = joints;
+  }
+  const std::optional<Joints>& last() const { return last_; }
+  const std::optional<Joints>& before_last() const { return before_last_; }
+
+ private:
+  std::optional<Joints> last_, before_last_;
+};
+
 /// Joints from a scan of any number of points, any order, any heading (paper 1, section 3.1). One thread at a
 /// time.
 class SkeletonExtractor {
@@ -28,6 +43,9 @@ class SkeletonExtractor {
   virtual ~SkeletonExtractor() = default;
   /// Throws Error when the cloud has fewer than 32 finite points or the network gives NaN.
   virtual Extraction extract(const Mesh& scan) = 0;
+  /// The same of a stream's next scan, knowing what was seen just before. Whoever has no use for that looks
+  /// at the scan alone.
+  virtual Extraction extract_next(const Mesh& scan, const RecentJoints& /*recent*/) { return extract(scan); }
   virtual std::string name() const = 0;
 };
 

@@ -66,6 +66,7 @@ void Retargeter::set_target(Target target) {
 void Retargeter::restart() {
   US_CHECK(has_target_, "there is no target yet");
   networks_.transfer->reset(target_.joints);
+  recent_ = {};
   filter_.reset();
   root_.reset(target_.mesh.vertices, target_.joints);
   feet_.reset();
@@ -87,7 +88,8 @@ RetargetedFrame Retargeter::push(const Mesh& scan, float dt) {
   const int points = finite_points(scan.vertices);
   if (points < options_.min_points) return skip(detail::join("the scan has ", points, " usable points"), dt);
   try {
-    frame.source_raw = networks_.extractor->extract(scan);
+    frame.source_raw = networks_.extractor->extract_next(scan, recent_);
+    recent_.push(frame.source_raw.joints);
   } catch (const Error& error) {
     return skip(error.what(), dt);
   }

@@ -100,6 +100,7 @@ class Retargeter {
   Networks networks_;
   RetargetOptions options_;
   Target target_;
+  RecentJoints recent_;
   JointFilter filter_;
   RootPath root_;
   FootLock feet_;

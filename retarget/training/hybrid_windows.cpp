@@ -132,10 +132,12 @@ std::vector<Pose> HybridWindowMaker::poses(float& dt) {
 
 HybridWindow HybridWindowMaker::next(SkeletonExtractor& extractor) {
   HybridWindow window;
+  RecentJoints recent;
   for (const MadeScan& scan : maker_.follow(poses(window.dt))) {
     Mesh cloud;
     cloud.vertices = scan.points;
-    window.seen.push_back(extractor.extract(cloud));
+    window.seen.push_back(extractor.extract_next(cloud, recent));
+    recent.push(window.seen.back().joints);
     US_CHECK(window.seen.back().global, "hybrid wants an extractor that sees rotations");
     window.truth.push_back(scan.truth);
   }

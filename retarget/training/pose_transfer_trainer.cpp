@@ -15,7 +15,7 @@ namespace understudy::training {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kLearningRate = 1e-3, kEdgeWeight = 0.1, kReportMinutes = 3;
+constexpr double kLearningRate = 3e-4, kEdgeWeight = 0.1, kReportMinutes = 3;
 constexpr int kBatch = 8, kDevBatches = 8;
 constexpr int64_t kNeighbours = 4;
 

@@ -48,50 +48,61 @@ ScanMaker::ScanMaker(const TrainingData& data, const ScanMakerOptions& options, 
     : data_(data), options_(options), rng_(seed) {
   for (int i = 0; i < kPoolSize; ++i) {
     people_.push_back(make_person());
-    people_.back().left = 1 + rng_.below(kScansPerPerson);  // so that they are not all replaced at once
+    people_.back()->left = 1 + rng_.below(kScansPerPerson);  // so that they are not all replaced at once
   }
 }
 
-ScanMaker::Person ScanMaker::make_person() {
+std::shared_ptr<ScanMaker::Person> ScanMaker::make_person() {
   ShapedBody body;
   if (!data_.dressed.empty() && rng_.chance(options_.dressed))
     body = data_.dressed[rng_.below(static_cast<int>(data_.dressed.size()))];
   else
     body = data_.body.shaped(random_shape(data_, rng_));
   SurfaceSampler sampler(body.vertices, body.faces);
-  return {std::move(body), std::move(sampler), kScansPerPerson};
+  return std::make_shared<Person>(Person{std::move(body), std::move(sampler), kScansPerPerson});
 }
 
-Pose ScanMaker::make_pose() {
-  Pose pose;
+std::vector<Pose> ScanMaker::clip_poses(int count) {
+  std::vector<Pose> poses = random_poses(data_, count, rng_);
+  if (options_.mirror && rng_.chance(0.5f))
+    for (Pose& pose : poses) pose = mirrored(pose);
+  return poses;
+}
+
+/// Up to `count`; what is changed of a clip's postures is changed in all of them alike.
+std::vector<Pose> ScanMaker::make_poses(int count) {
+  const auto turn = [this](float angle) { return rotation_from_axis_angle(angle * random_direction(rng_)); };
+  Mat3 yaw = rotation_about_y(rng_.uniform(-options_.yaw, options_.yaw));
+  std::vector<Pose> poses(static_cast<size_t>(count));
+  Rotations changed;
+  changed.fill(Mat3::Identity());
   if (rng_.chance(options_.t_pose)) {
     const float spread = rng_.chance(0.5f) ? 0.0f : 0.08f;
-    for (Mat3& R : pose.local) R = rotation_from_axis_angle(spread * rng_.uniform() * random_direction(rng_));
-    return pose;
+    for (Mat3& R : changed) R = turn(spread * rng_.uniform());
+  } else {
+    poses = clip_poses(count);
+    if (rng_.chance(options_.mixed)) {
+      const std::vector<Pose> others = clip_poses(count);
+      poses.resize(std::min(poses.size(), others.size()));
+      for (size_t i = 0; i < poses.size(); ++i)
+        for (int j = 0; j < kJointCount; ++j)
+          if (is_upper(j)) poses[i].local[j] = others[i].local[j];
+    }
+    if (rng_.chance(options_.jittered)) {
+      const float spread = rng_.uniform(0.0f, 0.3f);
+      for (int j = 1; j < kJointCount; ++j) changed[j] = turn(spread * std::abs(rng_.normal()));
+    }
+    if (rng_.chance(options_.limp))
+      for (const int j : {LeftWrist, RightWrist, Head, LeftAnkle, RightAnkle})
+        changed[j] = changed[j] * turn(0.5f * std::abs(rng_.normal()));
+    yaw = yaw * turn((rng_.chance(options_.tilted) ? 1.2f : 0.05f) * rng_.normal());
   }
-  const auto clip_pose = [this] {
-    const Pose& p = random_pose(data_, rng_);
-    return options_.mirror && rng_.chance(0.5f) ? mirrored(p) : p;
-  };
-  pose = clip_pose();
-  if (rng_.chance(options_.mixed)) {
-    const Pose other = clip_pose();
-    for (int j = 0; j < kJointCount; ++j)
-      if (is_upper(j)) pose.local[j] = other.local[j];
+  for (Pose& pose : poses) {
+    for (int j = 0; j < kJointCount; ++j) pose.local[j] = pose.local[j] * changed[j];
+    pose.local[Pelvis] = yaw * pose.local[Pelvis];
+    pose.root = yaw * pose.root;
   }
-  if (rng_.chance(options_.jittered)) {
-    const float spread = rng_.uniform(0.0f, 0.3f);
-    for (int j = 1; j < kJointCount; ++j)
-      pose.local[j] =
-          pose.local[j] * rotation_from_axis_angle(spread * std::abs(rng_.normal()) * random_direction(rng_));
-  }
-  if (rng_.chance(options_.limp))
-    for (const int j : {LeftWrist, RightWrist, Head, LeftAnkle, RightAnkle})
-      pose.local[j] =
-          pose.local[j] * rotation_from_axis_angle(0.5f * std::abs(rng_.normal()) * random_direction(rng_));
-  const float tilt = rng_.chance(options_.tilted) ? 1.2f * rng_.normal() : 0.05f * rng_.normal();
-  pose.local[0] = rotation_from_axis_angle(tilt * random_direction(rng_)) * pose.local[0];
-  return pose;
+  return poses;
 }
 
 /// `rest`, where given, are the same places in T-pose.
@@ -120,13 +131,19 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose, int cou
 }
 
 /// Wide clothes, hair, held things, one camera, lost limbs: what clips and dressed people of the data lack.
-void ScanMaker::hinder(MadeScan& scan) {
-  if (rng_.chance(options_.skirts)) wear_skirt(scan, scan.truth, rng_);
-  if (rng_.chance(options_.coats)) wear_coat(scan, scan.truth, rng_);
-  if (rng_.chance(options_.hair)) wear_hair(scan, scan.truth, rng_);
-  if (rng_.chance(options_.holding)) hold_thing(scan, scan.truth, rng_);
-  if (rng_.chance(options_.limbless)) lose_limb(scan, rng_);
-  if (rng_.chance(options_.one_sided)) see_from_one_side(scan, scan.truth, rng_);
+/// The same seed, in another frame, puts on the same things.
+void ScanMaker::hinder(MadeScan& scan, uint64_t seed) {
+  uint64_t kind = 0;
+  const auto sometimes = [&](float share, auto&& change) {
+    Rng rng(seed ^ (0xd1342543de82ef95ull * ++kind));
+    if (rng.chance(share)) change(rng);
+  };
+  sometimes(options_.skirts, [&](Rng& rng) { wear_skirt(scan, scan.truth, rng); });
+  sometimes(options_.coats, [&](Rng& rng) { wear_coat(scan, scan.truth, rng); });
+  sometimes(options_.hair, [&](Rng& rng) { wear_hair(scan, scan.truth, rng); });
+  sometimes(options_.holding, [&](Rng& rng) { hold_thing(scan, scan.truth, rng); });
+  sometimes(options_.limbless, [&](Rng& rng) { lose_limb(scan, rng); });
+  sometimes(options_.one_sided, [&](Rng& rng) { see_from_one_side(scan, scan.truth, rng); });
 }
 
 /// Joints of a stretched body are the stretched joints; rotations are kept, as bodies stay near the T-pose.
@@ -185,49 +202,54 @@ void ScanMaker::finish(MadeScan& scan, bool captured) {
   if (options_.points == 0) thin(scan, rng_);
 }
 
-ScanMaker::Person& ScanMaker::draw_person() {
-  Person& person = people_[rng_.below(kPoolSize)];
-  if (--person.left < 0) person = make_person();
+std::shared_ptr<const ScanMaker::Person> ScanMaker::draw_person() {
+  std::shared_ptr<Person>& person = people_[rng_.below(kPoolSize)];
+  if (--person->left < 0) person = make_person();
   return person;
 }
 
 std::vector<MadeScan> ScanMaker::follow(const std::vector<Pose>& poses) {
-  const Person& person = draw_person();
-  const float scale = leg_length(person.body.joints) / data_.template_leg;
+  const auto person = draw_person();
+  const float scale = leg_length(person->body.joints) / data_.template_leg;
   const bool captured = rng_.chance(options_.captured);
   std::vector<MadeScan> scans;
   for (Pose pose : poses) {
     pose.root *= scale;  // clips' paths are the template's
-    scans.push_back(sample_posed(person, pose, raw_points()));
+    scans.push_back(sample_posed(*person, pose, raw_points()));
     finish(scans.back(), captured);
   }
   return scans;
 }
 
-Pose ScanMaker::turned_pose() {
-  Pose pose = make_pose();
-  pose.local[0] = rotation_about_y(rng_.uniform(-options_.yaw, options_.yaw)) * pose.local[0];
-  return pose;
+ScanMaker::Stream ScanMaker::start() {
+  const int frames = 1 + rng_.below(options_.longest);
+  Stream stream{draw_person(), make_poses(frames), rng_.next(), rng_.chance(options_.captured)};
+  const float scale = leg_length(stream.person->body.joints) / data_.template_leg;
+  for (Pose& pose : stream.poses) pose.root *= scale;  // clips' paths are the template's
+  std::reverse(stream.poses.begin(), stream.poses.end());
+  return stream;
 }
 
-MadeScan ScanMaker::scan_of(const Person& person, const Pose& pose) {
-  MadeScan scan = sample_posed(person, pose, raw_points());
-  hinder(scan);
+MadeScan ScanMaker::next(Stream& stream) {
+  MadeScan scan = sample_posed(*stream.person, stream.poses.back(), raw_points());
+  stream.poses.pop_back();
+  hinder(scan, stream.seed);
   if (options_.stretch > 0) stretch(scan);
-  finish(scan, rng_.chance(options_.captured));
+  finish(scan, stream.captured);
   return scan;
 }
 
 MadeScan ScanMaker::next() {
-  const Person& person = draw_person();
-  return scan_of(person, turned_pose());
+  Stream stream = start();
+  return next(stream);
 }
 
 PosedPair ScanMaker::pair() {
-  const Pose pose = turned_pose();
+  Stream stream = start();
+  const Pose pose = stream.poses.back();
   PosedPair pair;
-  pair.source = scan_of(draw_person(), pose).points;
-  pair.posed = sample_posed(draw_person(), pose, nn::kScanPoints, &pair.rest).points;
+  pair.source = next(stream).points;
+  pair.posed = sample_posed(*draw_person(), pose, nn::kScanPoints, &pair.rest).points;
   return pair;
 }
 

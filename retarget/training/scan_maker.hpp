@@ -2,6 +2,9 @@
 // true of it.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "retarget/body/labelled_points.hpp"
 #include "retarget/nn/scan_patches.hpp"
 #include "retarget/training/training_data.hpp"
@@ -9,22 +12,24 @@
 namespace understudy::training {
 
 struct ScanMakerOptions {
-  float captured = 0.6f;    ///< share of scans with noise, holes, uneven density, outliers, floor
-  float dressed = 0.35f;    ///< share of dressed people
-  float mixed = 0.25f;      ///< share with upper and lower body from different postures
-  float jittered = 0.5f;    ///< share with every joint turned a little
-  float limp = 0;           ///< share with hands, head and feet turned much, as no clip has them
-  float t_pose = 0.06f;     ///< share in (nearly) the T-pose: targets
-  float tilted = 0.06f;     ///< share of bodies far from upright
-  bool mirror = true;       ///< mirror half of the postures
-  float yaw = kPi;          ///< headings, +- radians
-  float skirts = 0.12f;     ///< share in a wide skirt or dress, its legs hidden
-  float coats = 0.06f;      ///< share with thick sleeves and trunk
-  float hair = 0.12f;       ///< share with a bun or much hair
-  float holding = 0.1f;     ///< share with a thing in a hand
-  float one_sided = 0.08f;  ///< share seen by one camera
-  float limbless = 0.04f;   ///< share without a hand, forearm, foot or shin
+  float captured = 0.6f;   ///< share of scans with noise, holes, uneven density, outliers, floor
+  float dressed = 0.35f;   ///< share of dressed people
+  float mixed = 0.25f;     ///< share with upper and lower body from different postures
+  float jittered = 0.5f;   ///< share with every joint turned a little
+  float limp = 0;          ///< share with hands, head and feet turned much, as no clip has them
+  float t_pose = 0.06f;    ///< share in (nearly) the T-pose: targets
+  float tilted = 0.06f;    ///< share of bodies far from upright
+  bool mirror = true;      ///< mirror half of the postures
+  float yaw = kPi;         ///< headings, +- radians
+  float skirts = 0.06f;    ///< share in a wide skirt or dress, its legs hidden
+  float coats = 0.05f;     ///< share with thick sleeves and trunk
+  float hair = 0.08f;      ///< share with a bun or much hair
+  float holding = 0.08f;   ///< share with a thing in a hand
+  float one_sided = 0.1f;  ///< share seen by one camera
+  float limbless = 0.04f;  ///< share without a hand, forearm, foot or shin
   float stretch = 0;  ///< people made wider, taller, deeper by up to this share: characters beyond the data
+
+  int longest = 1;  ///< frames that somebody is followed for, at most
 
   int points = 0;  ///< of a scan before holes, all of them kept; 0: kScanPoints, thinned from more
 
@@ -49,23 +54,34 @@ class ScanMaker {
  public:
   ScanMaker(const TrainingData& data, const ScanMakerOptions& options, uint64_t seed);
   MadeScan next();
-  /// One person in these poses one after the other, all of them degraded or none.
-  std::vector<MadeScan> follow(const std::vector<Pose>& poses);
-  PosedPair pair();
 
- private:
   struct Person {
     ShapedBody body;
     SurfaceSampler sampler;
     int left;  ///< scans until it is replaced
   };
-  Person make_person();
-  Person& draw_person();
-  Pose make_pose();
-  Pose turned_pose();
-  MadeScan scan_of(const Person& person, const Pose& pose);
+  /// Somebody over some frames of a clip, dressed and seen in one way.
+  struct Stream {
+    std::shared_ptr<const Person> person;
+    std::vector<Pose> poses;  ///< those that are left, the last one first
+    uint64_t seed = 0;        ///< of what they wear and of where they are seen from
+    bool captured = false;
+  };
+  /// Of 1 to options.longest frames.
+  Stream start();
+  /// The next frame of a stream that has one left.
+  MadeScan next(Stream& stream);
+  /// One person in these poses one after the other, all of them degraded or none.
+  std::vector<MadeScan> follow(const std::vector<Pose>& poses);
+  PosedPair pair();
+
+ private:
+  std::shared_ptr<Person> make_person();
+  std::shared_ptr<const Person> draw_person();
+  std::vector<Pose> clip_poses(int count);
+  std::vector<Pose> make_poses(int count);
   MadeScan sample_posed(const Person& person, const Pose& pose, int count, Points* rest = nullptr);
-  void hinder(MadeScan& scan);
+  void hinder(MadeScan& scan, uint64_t seed);
   void stretch(MadeScan& scan);
   void degrade(MadeScan& scan);
   void finish(MadeScan& scan, bool captured);
@@ -75,7 +91,7 @@ class ScanMaker {
   const TrainingData& data_;
   ScanMakerOptions options_;
   Rng rng_;
-  std::vector<Person> people_;
+  std::vector<std::shared_ptr<Person>> people_;
 };
 
 }  // namespace understudy::training

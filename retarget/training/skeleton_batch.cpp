@@ -3,20 +3,17 @@
 #include <cstring>
 
 #include "retarget/math/rotation.hpp"
+#include "retarget/nn/extractor_input.hpp"
 
 namespace understudy::training {
 namespace {
 
-constexpr int64_t M = nn::kPatches, K = nn::kPatchPoints, J = kJointCount;
+constexpr int64_t M = nn::kPatches, J = kJointCount;
 
 // Limbs as (left, right) joints: exchanging them and seeing a smaller error is a swap.
 const std::vector<std::vector<std::pair<int, int>>> kLimbs = {
     {{LeftShoulder, RightShoulder}, {LeftElbow, RightElbow}, {LeftWrist, RightWrist}},
     {{LeftHip, RightHip}, {LeftKnee, RightKnee}, {LeftAnkle, RightAnkle}, {LeftFoot, RightFoot}}};
-
-void copy_to(const Points& points, torch::Tensor tensor) {
-  std::memcpy(tensor.data_ptr<float>(), points.data(), sizeof(float) * points.size());
-}
 
 double swaps(const Joints& found, const Joints& truth) {
   int count = 0;
@@ -33,23 +30,22 @@ double swaps(const Joints& found, const Joints& truth) {
 
 }  // namespace
 
-SkeletonBatch make_batch(const std::vector<MadeScan>& scans) {
+SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<RecentJoints>& recent) {
   const auto B = static_cast<int64_t>(scans.size());
+  std::vector<nn::ScanPatches> all;
+  for (const MadeScan& scan : scans) all.push_back(nn::cut_patches(scan.points));
   SkeletonBatch batch;
-  batch.input.points = torch::empty({B, nn::kScanPoints, 3});
-  batch.input.centres = torch::empty({B, M, 3});
-  batch.input.offsets = torch::empty({B, M, K, 3});
+  batch.input = nn::extractor_input(all, recent);
   batch.scale = torch::empty({B});
+  batch.centre = torch::empty({B, 3});
   batch.truth.joints = torch::empty({B, J, 3});
   batch.truth.rotations = torch::empty({B, J, 6});
   batch.truth.parts = torch::empty({B, M}, torch::kInt64);
   for (int64_t b = 0; b < B; ++b) {
     const MadeScan& scan = scans[b];
-    const nn::ScanPatches patches = nn::cut_patches(scan.points);
-    copy_to(patches.points, batch.input.points[b]);
-    copy_to(patches.centres, batch.input.centres[b]);
-    copy_to(patches.offsets, batch.input.offsets[b]);
+    const nn::ScanPatches& patches = all[static_cast<size_t>(b)];
     batch.scale.data_ptr<float>()[b] = patches.scale;
+    std::memcpy(batch.centre[b].data_ptr<float>(), patches.centre.data(), sizeof(float) * 3);
     const Joints joints = (scan.truth.joints.rowwise() - patches.centre.transpose()) / patches.scale;
     std::memcpy(batch.truth.joints[b].data_ptr<float>(), joints.data(), sizeof(float) * joints.size());
     for (int64_t j = 0; j < J; ++j) {
@@ -70,9 +66,21 @@ SkeletonBatch make_batch(ScanMaker& maker, int count) {
 
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device) {
   const nn::ExtractorInput& in = batch.input;
-  return {{in.points.to(device), in.centres.to(device), in.offsets.to(device)},
+  const auto moved = [&](const torch::Tensor& x) { return x.defined() ? x.to(device) : x; };
+  return {{in.points.to(device), in.centres.to(device), in.offsets.to(device), moved(in.recent),
+           moved(in.recent_known)},
           batch.scale.to(device),
+          batch.centre.to(device),
           {batch.truth.joints.to(device), batch.truth.rotations.to(device), batch.truth.parts.to(device)}};
+}
+
+std::vector<Joints> world_joints(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {
+  const auto world =
+      (out.joints.detach() * batch.scale.view({-1, 1, 1}) + batch.centre.unsqueeze(1)).cpu().contiguous();
+  std::vector<Joints> joints;
+  for (int64_t b = 0; b < world.size(0); ++b)
+    joints.emplace_back(Eigen::Map<const Joints>(world[b].data_ptr<float>()));
+  return joints;
 }
 
 SkeletonScore score(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {

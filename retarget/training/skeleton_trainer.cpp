@@ -11,6 +11,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/nn/skeleton_form.hpp"
 #include "retarget/training/parameters.hpp"
+#include "retarget/training/scan_streams.hpp"
 #include "retarget/training/skeleton_batch.hpp"
 
 namespace understudy::training {
@@ -20,11 +21,12 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using nn::SkeletonForm;
 
-constexpr double kLearningRate = 1e-3;
+constexpr double kLearningRate = 1e-3, kContinuedRate = 5e-4;  // the latter where weights are trained on
 constexpr int kWarmUpSteps = 400;
 constexpr double kAverageDecay = 0.999;
 constexpr double kSecondsPerCheckpoint = 180;
-constexpr int kDevScans = 192;
+constexpr int kDevScans = 192, kDevPeople = 32;
+constexpr int kFollowed = 5;  // frames that a person is followed for, at most
 
 /// Several copies of one network on as many threads. Their parameters are the same memory, their gradients
 /// are their own: each thread makes and learns from its own scans, then the gradients are averaged. Scales
@@ -32,7 +34,7 @@ constexpr int kDevScans = 192;
 /// wants a core.
 struct Replica {
   std::shared_ptr<SkeletonForm> net;
-  std::unique_ptr<ScanMaker> maker;
+  std::unique_ptr<ScanStreams> streams;
   SkeletonLoss loss;
   std::exception_ptr failure;
 };
@@ -88,7 +90,10 @@ SkeletonTrainer::SkeletonTrainer(const nn::TrainOptions& options)
   if (device_.is_cuda()) options_.threads = 1;
   US_CHECK(options_.poses == "all" || options_.poses == "rest", "--poses is all or rest, not ",
            options_.poses);
-  if (options_.poses == "rest") scans_ = ScanMakerOptions::rest();
+  if (options_.poses == "rest")
+    scans_ = ScanMakerOptions::rest();
+  else if (options_.form == "dense")  // the others look at one scan alone
+    scans_.longest = kFollowed;
   US_CHECK(options_.keep == 0 || !options_.init.empty(), "--keep wants --init");
   US_CHECK(options_.minutes > 0 || options_.samples > 0, "training wants --minutes or --samples");
   torch::manual_seed(options_.seed);
@@ -118,7 +123,7 @@ void SkeletonTrainer::add_replicas() {
     for (size_t p = 0; p < own.size(); ++p) own[p].set_data(parameters_[p].data());
     // A resumed run makes new scans, not the first ones again.
     const uint64_t seed = options_.seed * 1000003 + static_cast<uint64_t>(progress_.samples) * 101 + i;
-    replica.maker = std::make_unique<ScanMaker>(train_, scans_, seed);
+    replica.streams = std::make_unique<ScanStreams>(train_, scans_, seed, std::max(128, 4 * options_.batch));
     replicas_.push_back(std::move(replica));
   }
 }
@@ -171,7 +176,8 @@ double SkeletonTrainer::done_share() const {
 
 double SkeletonTrainer::learning_rate() const {
   const double warm = std::min(1.0, (progress_.step + 1) / static_cast<double>(kWarmUpSteps));
-  return kLearningRate * warm * (0.01 + 0.99 * 0.5 * (1 + std::cos(kPi * std::min(1.0, done_share()))));
+  const double peak = options_.init.empty() ? kLearningRate : kContinuedRate;
+  return peak * warm * (0.01 + 0.99 * 0.5 * (1 + std::cos(kPi * std::min(1.0, done_share()))));
 }
 
 void SkeletonTrainer::train_step() {
@@ -179,10 +185,12 @@ void SkeletonTrainer::train_step() {
   const auto work = [this, share](Replica& replica) {
     try {
       at::set_num_threads(1);
-      const SkeletonBatch batch = to_device(make_batch(*replica.maker, share), device_);
+      const FollowedScans followed = replica.streams->next(share);
+      const SkeletonBatch batch = to_device(make_batch(followed.scans, followed.recent), device_);
       for (auto& p : replica.net->parameters())
         if (p.grad().defined()) p.mutable_grad().zero_();
       const auto out = replica.net->forward(batch.input);
+      replica.streams->saw(world_joints(out, batch));
       replica.loss = skeleton_loss(out, batch.input.centres, batch.truth);
       replica.loss.total.backward();
     } catch (...) {
@@ -244,12 +252,15 @@ std::vector<SkeletonScore> SkeletonTrainer::evaluate() {
     plain.mirror = false;
     plain.captured = captured;
     plain.dressed = captured;
-    ScanMaker maker(dev_, plain, 77);
+    ScanStreams streams(dev_, plain, 77, kDevPeople);
     SkeletonScore mean;
-    for (int i = 0; i < kDevScans / 32; ++i) {
-      const SkeletonBatch batch = to_device(make_batch(maker, 32), device_);
-      const SkeletonScore s = score(average_->forward(batch.input), batch);
-      const double w = 32.0 / kDevScans;
+    for (int i = 0; i < kDevScans / kDevPeople; ++i) {
+      const FollowedScans followed = streams.next(kDevPeople);
+      const SkeletonBatch batch = to_device(make_batch(followed.scans, followed.recent), device_);
+      const auto out = average_->forward(batch.input);
+      streams.saw(world_joints(out, batch));
+      const SkeletonScore s = score(out, batch);
+      const double w = static_cast<double>(kDevPeople) / kDevScans;
       mean.joint_mm += w * s.joint_mm, mean.swap_rate += w * s.swap_rate,
           mean.rotation_deg += w * s.rotation_deg;
     }

@@ -49,17 +49,41 @@ Eigen::VectorXf random_shape(const TrainingData& data, Rng& rng) {
   return (1 - mix) * a + mix * pick();
 }
 
-const Pose& random_pose(const TrainingData& data, Rng& rng) {
+namespace {
+
+/// A clip and the number of one of its good frames.
+std::pair<const Clip*, size_t> random_frame(const TrainingData& data, Rng& rng) {
   if (rng.chance(0.5f)) {
     const Clip& clip = data.clips[rng.below(static_cast<int>(data.clips.size()))];
-    return clip.motion.poses[clip.good[rng.below(static_cast<int>(clip.good.size()))]];
+    return {&clip, rng.below(static_cast<int>(clip.good.size()))};
   }
   int64_t at = rng.below(static_cast<int>(data.good_frames));
   for (const Clip& clip : data.clips) {
-    if (at < static_cast<int64_t>(clip.good.size())) return clip.motion.poses[clip.good[at]];
+    if (at < static_cast<int64_t>(clip.good.size())) return {&clip, at};
     at -= static_cast<int64_t>(clip.good.size());
   }
-  return data.clips.back().motion.poses[data.clips.back().good.back()];
+  return {&data.clips.back(), data.clips.back().good.size() - 1};
+}
+
+}  // namespace
+
+const Pose& random_pose(const TrainingData& data, Rng& rng) {
+  const auto [clip, number] = random_frame(data, rng);
+  return clip->motion.poses[clip->good[number]];
+}
+
+std::vector<Pose> random_poses(const TrainingData& data, int count, Rng& rng) {
+  const auto [clip, first] = random_frame(data, rng);
+  const size_t step = count > 1 ? 1 + rng.below(3) : 1;
+  std::vector<Pose> poses;
+  for (size_t k = 0; k < static_cast<size_t>(count); ++k) {
+    const size_t number = first + k * step;
+    if (number >= clip->good.size()) break;
+    const int frame = clip->good[number];
+    if (frame != clip->good[first] + static_cast<int>(k * step)) break;
+    poses.push_back(clip->motion.poses[frame]);
+  }
+  return poses;
 }
 
 }  // namespace understudy::training

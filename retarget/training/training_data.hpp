@@ -36,4 +36,8 @@ Eigen::VectorXf random_shape(const TrainingData& data, Rng& rng);
 /// clips count.
 const Pose& random_pose(const TrainingData& data, Rng& rng);
 
+/// Up to `count` postures of a clip, one to three frames apart, beginning with one as of random_pose. Fewer
+/// where a frame is not good.
+std::vector<Pose> random_poses(const TrainingData& data, int count, Rng& rng);
+
 }  // namespace understudy::training

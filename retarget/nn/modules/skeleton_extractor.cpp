@@ -9,6 +9,7 @@ namespace {
 
 constexpr int64_t J = kJointCount;
 constexpr int64_t kParts = J + 1;
+constexpr double kFarthest = 1.5;  // beyond that the frame before is of somebody else
 
 torch::nn::LayerNorm layer_norm(int64_t width) {
   return torch::nn::LayerNorm(torch::nn::LayerNormOptions({width}));
@@ -89,6 +90,10 @@ SkeletonExtractorNetImpl::SkeletonExtractorNetImpl(const ExtractorShape& shape) 
   patch_mlp = register_module("patch_mlp", Sequential(Linear(3, 64), ReLU(), Linear(64, 96), ReLU()));
   patch_out = register_module("patch_out", Linear(96, C));
   position_mlp = register_module("position_mlp", Sequential(Linear(3, C), ReLU(), Linear(C, C)));
+  recent_mlp = register_module("recent_mlp", Sequential(Linear(8, C), ReLU(), Linear(C, C)));
+  // At first the past says nothing: a network of single scans is trained on from where it is.
+  torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->weight);
+  torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->bias);
   encoder = register_module("encoder", torch::nn::ModuleList());
   for (int64_t i = 0; i < shape.layers; ++i) encoder->push_back(EncoderLayer(shape));
   token_norm = register_module("token_norm", layer_norm(C));
@@ -124,17 +129,29 @@ ExtractorOutput SkeletonExtractorNetImpl::forward(const ExtractorInput& input) {
   const auto choice = torch::softmax(said.narrow(2, kParts, J), 1);  // [B, M, 22] over patches
   out.votes = centres.unsqueeze(2) + said.narrow(2, kParts + J, 3 * J).view({B, M, J, 3});
   out.voted = (choice.unsqueeze(3) * out.votes).sum(1);  // [B, 22, 3]
-  decode(x + position, centres, choice, out);
+  decode(x + position, input, choice, out);
   return out;
 }
 
-void SkeletonExtractorNetImpl::decode(const torch::Tensor& tokens, const torch::Tensor& centres,
+torch::Tensor SkeletonExtractorNetImpl::embed_recent(const ExtractorInput& input,
+                                                     const torch::Tensor& voted) {
+  const auto known = input.recent_known.unsqueeze(1);                        // [B, 1, 2]
+  const auto there = known.narrow(2, 0, 1), moving = known.narrow(2, 1, 1);  // [B, 1, 1]
+  const auto way = (input.recent.narrow(2, 0, 3) - voted).clamp(-kFarthest, kFarthest);
+  const auto moved = input.recent.narrow(2, 3, 3).clamp(-kFarthest, kFarthest);  // [B, 22, 3]
+  const auto said = torch::cat({way * there, moved * moving, known.expand({-1, J, -1})}, 2);
+  return there * recent_mlp->forward(said);  // [B, 22, C]
+}
+
+void SkeletonExtractorNetImpl::decode(const torch::Tensor& tokens, const ExtractorInput& input,
                                       const torch::Tensor& choice, ExtractorOutput& out) {
+  const auto& centres = input.centres;
   // The votes are trained by their own loss: the decoder takes them as they are.
   const auto at = out.voted.detach();
   const auto among = squared_distance(at, at), across = squared_distance(at, centres);
   const auto position = position_mlp->forward(at);                           // [B, 22, C]
   auto x = joint_embedding + torch::matmul(choice.transpose(1, 2), tokens);  // [B, 22, C]
+  if (input.recent.defined()) x = x + embed_recent(input, at);
   for (const auto& layer : *decoder)
     x = layer->as<JointDecoderLayer>()->forward(x, position, tokens, among, across);
   const auto said = joint_head->forward(joint_norm(x));  // [B, 22, 10]

@@ -16,9 +16,12 @@ struct ExtractorShape {
 };
 
 /// B scans as the network sees them, normalised (ScanPatches): all points [B, N, 3], patch centres [B, M, 3],
-/// and the points of each patch minus its centre [B, M, K, 3].
+/// and the points of each patch minus its centre [B, M, K, 3]. Of streams also what was seen in the frame
+/// before, in the same frame of reference: joints and how they moved since the one before that [B, 22, 6],
+/// and whether either is known, 1 or 0 [B, 2]; undefined: of no scan.
 struct ExtractorInput {
   torch::Tensor points, centres, offsets;
+  torch::Tensor recent, recent_known;
 };
 
 /// What the network says of B scans; undefined where a form does not say it. Everything in the normalised
@@ -93,11 +96,13 @@ class SkeletonExtractorNetImpl : public torch::nn::Module {
 
  private:
   torch::Tensor embed_patches(const torch::Tensor& offsets);
-  void decode(const torch::Tensor& tokens, const torch::Tensor& centres, const torch::Tensor& choice,
+  void decode(const torch::Tensor& tokens, const ExtractorInput& input, const torch::Tensor& choice,
               ExtractorOutput& out);
+  torch::Tensor embed_recent(const ExtractorInput& input, const torch::Tensor& voted);
 
   ExtractorShape shape_;
-  torch::nn::Sequential patch_mlp{nullptr}, position_mlp{nullptr}, vote_head{nullptr}, joint_head{nullptr};
+  torch::nn::Sequential patch_mlp{nullptr}, position_mlp{nullptr}, recent_mlp{nullptr}, vote_head{nullptr},
+      joint_head{nullptr};
   torch::nn::Linear patch_out{nullptr};
   torch::nn::ModuleList encoder{nullptr}, decoder{nullptr};
   torch::nn::LayerNorm token_norm{nullptr}, joint_norm{nullptr};

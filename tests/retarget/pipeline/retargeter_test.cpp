@@ -75,6 +75,43 @@ TEST(Retargeter, StartsAnewAfterRestart) {
   EXPECT_TRUE(same_bytes(retargeter.push(stage.scan(0), 1 / 30.0f), first));
 }
 
+/// Keeps what it was told of the frames before.
+class RememberingExtractor final : public SkeletonExtractor {
+ public:
+  Extraction extract(const Mesh& scan) override { return telltale_.extract(scan); }
+  Extraction extract_next(const Mesh& scan, const RecentJoints& recent) override {
+    told.push_back(recent);
+    return extract(scan);
+  }
+  std::string name() const override { return "remembering"; }
+  std::vector<RecentJoints> told;
+
+ private:
+  TellTaleExtractor telltale_;
+};
+
+TEST(Retargeter, TellsTheExtractorWhatItSawJustBefore) {
+  Stage stage;
+  Networks networks;
+  auto remembering = std::make_unique<RememberingExtractor>();
+  RememberingExtractor& extractor = *remembering;
+  networks.extractor = std::move(remembering);
+  networks.transfer = std::make_unique<CopyTransfer>();
+  networks.deformer = std::make_unique<RigidDeformer>(stage.target.weights);
+  Retargeter retargeter(std::move(networks), {});
+  retargeter.set_target(prepare_target(stage.target.mesh, stage.rest));
+  std::vector<Joints> seen;
+  for (int i = 0; i < 3; ++i) seen.push_back(retargeter.push(stage.scan(i), 1 / 30.0f).source_raw.joints);
+  ASSERT_EQ(extractor.told.size(), 3u);
+  EXPECT_FALSE(extractor.told[0].last());
+  EXPECT_FALSE(extractor.told[1].before_last());
+  EXPECT_EQ(*extractor.told[2].last(), seen[1]);
+  EXPECT_EQ(*extractor.told[2].before_last(), seen[0]);
+  retargeter.restart();
+  retargeter.push(stage.scan(3), 1 / 30.0f);
+  EXPECT_FALSE(extractor.told[3].last());
+}
+
 TEST(Retargeter, RepeatsThePoseAndFlagsAFrameWithoutPoints) {
   Stage stage;
   Retargeter retargeter = stage.make();

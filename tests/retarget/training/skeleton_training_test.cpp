@@ -6,6 +6,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/skeleton_form.hpp"
+#include "retarget/training/scan_streams.hpp"
 #include "retarget/training/skeleton_batch.hpp"
 #include "retarget/training/skeleton_trainer.hpp"
 #include "tests/support/training_folder.hpp"
@@ -103,6 +104,59 @@ TEST_F(SkeletonTraining, ScansForTargetsAreNearTheTPoseAndFaceForwards) {
     for (int j = 1; j < kJointCount; ++j) EXPECT_LT(geodesic_angle(local[j], Mat3::Identity()), 0.1f);
     EXPECT_LT(geodesic_angle(local[0], Mat3::Identity()), 0.8f);
   }
+}
+
+float farthest(const Joints& a, const Joints& b) {
+  return (a - b).rowwise().norm().maxCoeff();
+}
+
+TEST_F(SkeletonTraining, SomebodyFollowedGoesOnAndIsSeenFromTheSameSide) {
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  ScanMakerOptions options;
+  options.longest = 4;
+  options.captured = 0;
+  options.one_sided = 1;
+  options.skirts = options.coats = options.hair = options.holding = options.limbless = 0;
+  ScanMaker maker(data, options, 8);
+  int followed = 0;
+  for (int i = 0; i < 12; ++i) {
+    ScanMaker::Stream stream = maker.start();
+    MadeScan before = maker.next(stream);
+    while (!stream.poses.empty()) {
+      const MadeScan after = maker.next(stream);
+      EXPECT_LT(farthest(before.truth.joints, after.truth.joints), 0.5f);
+      const auto side = [](const MadeScan& scan) -> Vec3 {  // of the body that is seen
+        return (scan.points.colwise().mean() - scan.truth.joints.colwise().mean()).normalized();
+      };
+      EXPECT_GT(side(before).dot(side(after)), 0);
+      before = after;
+      ++followed;
+    }
+  }
+  EXPECT_GT(followed, 6);
+}
+
+TEST_F(SkeletonTraining, APastIsWhatWasSeenButForAFewThatAreWrong) {
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  ScanMakerOptions options;
+  options.longest = 4;
+  ScanStreams streams(data, options, 9, 8);
+  int known = 0, right = 0;
+  for (int i = 0; i < 60; ++i) {
+    const FollowedScans batch = streams.next(4);
+    std::vector<Joints> seen;
+    for (size_t k = 0; k < batch.scans.size(); ++k) {
+      const auto& last = batch.recent[k].last();
+      known += last.has_value();
+      right += last && farthest(*last, batch.scans[k].truth.joints) < 0.5f;
+      seen.push_back(batch.scans[k].truth.joints);
+    }
+    streams.saw(seen);
+  }
+  EXPECT_GT(known, 80);
+  EXPECT_LT(known, 240);  // those that are new have none
+  EXPECT_GT(right, 0.85 * known);
+  EXPECT_LT(right, known);
 }
 
 TEST_F(SkeletonTraining, FlaggedFramesAreLeftOut) {
