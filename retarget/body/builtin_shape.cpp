@@ -7,6 +7,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/segment.hpp"
 
 namespace understudy {
 namespace {
@@ -60,9 +61,8 @@ float ellipsoid_distance(const Vec3& p, const Vec3& radii) {
 
 /// A capsule whose radius changes evenly from one end to the other.
 float cone_distance(const Vec3& p, const Primitive& c) {
-  const Vec3 axis = c.b - c.a;
-  const float s = std::clamp((p - c.a).dot(axis) / axis.squaredNorm(), 0.0f, 1.0f);
-  return (p - c.a - s * axis).norm() - mix(c.ra, c.rb, s);
+  const float s = along_segment(p, c.a, c.b);
+  return (p - c.a - s * (c.b - c.a)).norm() - mix(c.ra, c.rb, s);
 }
 
 Vec3 vec(const float (&v)[3]) {

@@ -1,7 +1,8 @@
 #include "retarget/body/labelled_points.hpp"
 
-#include <algorithm>
 #include <limits>
+
+#include "retarget/math/segment.hpp"
 
 namespace understudy {
 
@@ -30,9 +31,9 @@ std::vector<int> nearest_parts(const Points& points, const Joints& joints) {
     float nearest = std::numeric_limits<float>::max();
     for (int j = 1; j < kJointCount; ++j) {
       const int p = kParents[static_cast<size_t>(j)];
-      const Eigen::RowVector3f bone = joints.row(j) - joints.row(p), way = points.row(i) - joints.row(p);
-      const float along = std::clamp(way.dot(bone) / std::max(bone.squaredNorm(), 1e-8f), 0.0f, 1.0f);
-      const float squared = (way - along * bone).squaredNorm();
+      const Vec3 point = points.row(i), upper = joints.row(p), lower = joints.row(j);
+      const float along = along_segment(point, upper, lower);
+      const float squared = (point - upper - along * (lower - upper)).squaredNorm();
       if (squared >= nearest) continue;
       nearest = squared;
       parts[static_cast<size_t>(i)] = along >= 1 && is_last(j) ? j : p;

@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/segment.hpp"
 
 namespace understudy {
 namespace {
@@ -310,9 +311,7 @@ Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody
     straight[j] = plain[j] = 1e9f;
     for (const auto& s : bones[j]) {
       straight[j] = std::min(straight[j], straight_distance(p, s));
-      const Vec3 d = s.second - s.first;
-      const float t = std::clamp((p - s.first).dot(d) / std::max(1e-12f, d.squaredNorm()), 0.0f, 1.0f);
-      plain[j] = std::min(plain[j], (p - s.first - t * d).norm());
+      plain[j] = std::min(plain[j], from_segment(p, s.first, s.second).norm());
     }
   }
   std::sort(order.begin(), order.end(), [&](int a, int b) {

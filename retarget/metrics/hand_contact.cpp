@@ -6,6 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/geometry/far_apart.hpp"
+#include "retarget/math/segment.hpp"
 
 namespace understudy {
 namespace {
@@ -49,10 +50,7 @@ Label label_of(const Vec3& point, const std::vector<Piece>& pieces) {
   float nearest = INFINITY;
   Label label{};
   for (const Piece& piece : pieces) {
-    const Vec3 along = piece.b - piece.a;
-    const float u =
-        std::clamp((point - piece.a).dot(along) / std::max(along.squaredNorm(), 1e-12f), 0.f, 1.f);
-    const float squared = (point - piece.a - u * along).squaredNorm();
+    const float squared = from_segment(point, piece.a, piece.b).squaredNorm();
     if (squared < nearest) nearest = squared, label = piece.label;
   }
   return label;

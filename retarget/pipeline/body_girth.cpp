@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/segment.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 
@@ -80,9 +81,8 @@ Nearest nearest_bone(const Vec3& point, const Joints& joints, float leg_m) {
   Nearest result;
   std::array<float, kBones.size()> out;
   for (size_t b = 0; b < kBones.size(); ++b) {
-    const Vec3 a = joints.row(kBones[b].joint).transpose(), along = bone_end(kBones[b], joints) - a;
-    const float u = std::clamp((point - a).dot(along) / std::max(along.squaredNorm(), 1e-12f), 0.f, 1.f);
-    out[b] = (point - a - u * along).norm() - kBones[b].radius * leg_m;
+    const Vec3 start = joints.row(kBones[b].joint).transpose();
+    out[b] = from_segment(point, start, bone_end(kBones[b], joints)).norm() - kBones[b].radius * leg_m;
     if (out[b] < result.out) result.bone = b, result.out = out[b];
   }
   const Group mine = kBones[result.bone].group;

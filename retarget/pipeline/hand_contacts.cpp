@@ -5,6 +5,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/geometry/far_apart.hpp"
+#include "retarget/math/segment.hpp"
 #include "retarget/math/smooth_step.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "retarget/skeleton/arm_ik.hpp"
@@ -86,9 +87,8 @@ HandContacts::Body::Sample HandContacts::Body::sample_of(const RowMatrix& weight
   sample.arm = arm_of(sample.owner);
   sample.place = girth_place(point, rest, identity_rotations());
   if (sample.arm < 0) return sample;
-  const Vec3 elbow = rest.row(LeftElbow + sample.arm).transpose(),
-             along = (rest.row(LeftWrist + sample.arm) - rest.row(LeftElbow + sample.arm)).transpose();
-  sample.follows = std::clamp((point - elbow).dot(along) / std::max(along.squaredNorm(), 1e-12f), 0.0f, 1.0f);
+  sample.follows = along_segment(point, rest.row(LeftElbow + sample.arm).transpose(),
+                                 rest.row(LeftWrist + sample.arm).transpose());
   return sample;
 }
 
