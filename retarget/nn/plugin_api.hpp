@@ -5,7 +5,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 3;
+constexpr int kPluginVersion = 4;
 
 struct PluginApi {
   int version;
