@@ -1,6 +1,10 @@
 #include "retarget/nn/leaf_refiner.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/smooth_step.hpp"
 #include "retarget/nn/modules/leaf_refiner.hpp"
 #include "retarget/nn/scan_patches.hpp"
 #include "retarget/nn/weights_file.hpp"
@@ -11,6 +15,12 @@ namespace {
 constexpr int kRounds = 2;  // the second crop lies better than the first
 
 constexpr float kHalfConfidence = 0.06f;  // metres
+// A crop tells more of a joint's error than the whole body does, the two together still more.
+constexpr float kShareOfCrop = 0.7f;
+// A joint that may be farther off than so is perhaps looked for in the wrong place, at the other leg say,
+// where the crop tells nothing of it. Metres: from where that begins to where the crop is not believed at
+// all.
+constexpr float kNear = 0.05f, kAstray = 0.12f;
 constexpr int kSurfacePoints = 8192;
 constexpr uint64_t kSurfaceSeed = 20240319;
 
@@ -20,6 +30,9 @@ Points dense_points(const Mesh& scan) {
   Rng rng(kSurfaceSeed);
   return sample_points(scan, kSurfacePoints, rng);
 }
+
+/// Of a joint that was seen with the confidence `whole`, then from near with `crop`.
+float confidence_of_both(float crop, float whole);
 
 class NetworkLeafRefiner final : public LeafRefiner {
  public:
@@ -32,11 +45,15 @@ class NetworkLeafRefiner final : public LeafRefiner {
     if (!seen.global) return;
     const torch::NoGradGuard no_grad;
     const Points points = dense_points(scan);
+    const auto whole = seen.confidence;  // from the whole body
     // From the trunk outwards: a hand is looked at beside the forearm as it is known by then.
     for (int round = 0; round < kRounds; ++round)
       for (const LeafKind kind :
            {LeafKind::Arm, LeafKind::Hand, LeafKind::Head, LeafKind::Leg, LeafKind::Foot})
         refine_kind(points, kind, seen);
+    for (int j = 0; j < kJointCount; ++j)
+      if (seen.confidence[j] != whole[j])
+        seen.confidence[j] = confidence_of_both(seen.confidence[j], whole[j]);
   }
 
  private:
@@ -80,7 +97,20 @@ void NetworkLeafRefiner::correct(int slot, const Leaf& leaf, const float* said, 
   seen.confidence[joint] = confidence_for(std::exp(said[9]) * leg_length(before.joints));
 }
 
+float confidence_of_both(float crop, float whole) {
+  constexpr float kLeast = 0.001f;  // metres
+  const float near = std::max(kLeast, expected_error_for(crop)),
+              far = std::max(kLeast, expected_error_for(whole));
+  const float both = std::pow(near, kShareOfCrop) * std::pow(far, 1 - kShareOfCrop);
+  const float astray = smooth_step(kNear, kAstray, far);
+  return confidence_for(both + astray * (std::max(both, far) - both));
+}
+
 }  // namespace
+
+float expected_error_for(float confidence) {
+  return kHalfConfidence * std::sqrt(1 / std::clamp(confidence, 1e-6f, 1.0f) - 1);
+}
 
 float confidence_for(float expected_error_m) {
   const float expected = expected_error_m / kHalfConfidence;

@@ -63,6 +63,17 @@ TEST_F(LeafRefinerFile, CorrectsLimbsAndHeadAndNothingElse) {
   for (const Mat3& R : *refined.global) EXPECT_LT((R * R.transpose() - Mat3::Identity()).norm(), 1e-4f);
 }
 
+TEST_F(LeafRefinerFile, BelievesNoCropThatWasCutWhereTheJointMayNotBe) {
+  Extraction sure = seen_, lost = seen_;
+  sure.confidence.setConstant(0.99f);
+  lost.confidence.setConstant(0.05f);
+  load_leaf_refiner(path_)->refine(scan_, sure);
+  load_leaf_refiner(path_)->refine(scan_, lost);
+  EXPECT_EQ(sure.joints, lost.joints);
+  EXPECT_GT(sure.confidence.mean(), 0.5f);
+  EXPECT_LT(lost.confidence.maxCoeff(), 0.051f);
+}
+
 TEST_F(LeafRefinerFile, LeavesAnExtractionWithoutRotationsAlone) {
   seen_.global.reset();
   load_leaf_refiner(path_)->refine(scan_, seen_);
