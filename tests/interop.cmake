@@ -4,10 +4,10 @@ set(interop_sources tests/interop/exported.cpp tests/interop/outside_programs.cp
 us_test(interop_test SOURCES ${interop_sources}
   tests/interop/assimp_test.cpp tests/interop/round_trip_test.cpp tests/interop/three_test.cpp
   tests/interop/validator_test.cpp
-  LIBS understudy_character nlohmann_json::nlohmann_json ${ASSIMP_LIBRARY} LABELS interop TIMEOUT 300)
+  LIBS understudy_character nlohmann_json::nlohmann_json ${ASSIMP_LIBRARY} LABELS interop TIMEOUT 600)
 us_test(interop_program_test SOURCES ${interop_sources} tests/interop/program_test.cpp tests/app/sample_files.cpp
   LIBS understudy_character understudy_builtin nlohmann_json::nlohmann_json ${ASSIMP_LIBRARY}
-  LABELS torch interop TIMEOUT 300)
+  LABELS torch interop TIMEOUT 600)
 add_dependencies(interop_program_test understudy_all)
 us_test(blender_test SOURCES ${interop_sources} tests/interop/blender_test.cpp
   LIBS understudy_run understudy_character nlohmann_json::nlohmann_json LABELS blender TIMEOUT 600)

@@ -12,7 +12,7 @@ const [modules, chromium, jobs_file] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
 const jobs = JSON.parse(await readFile(jobs_file)).map((job, index) => ({...job, index}));
 const said = jobs.map(job => ({file: job.file, failed: 'the page never came to it'}));
-const kPatience_ms = 90000;
+const kPatience_ms = 240000;
 const kTypes = {'.html': 'text/html', '.mjs': 'text/javascript', '.js': 'text/javascript'};
 
 let finish;
