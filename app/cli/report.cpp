@@ -24,6 +24,11 @@ struct ReportOptions {
   bool again = false;  ///< judge also what was judged before
 };
 
+/// A file's name and what is in it.
+std::string marked(const std::string& file) {
+  return fs::exists(file) ? file + ":" + checksum(file) : file;
+}
+
 /// What a row is, for recognising its results of an earlier run.
 Json identity(const ReportRow& row) {
   const EvalOptions& e = row.eval;
@@ -33,7 +38,7 @@ Json identity(const ReportRow& row) {
           {"engine", e.networks.engine},
           {"extractor", e.networks.extractor},
           {"weights", report_header(nn::weights_folder(e.networks))["weights"]},
-          {"files", {e.networks.engine_file, e.networks.extractor_file}},
+          {"files", {marked(e.networks.engine_file), marked(e.networks.extractor_file)}},
           {"offsets", e.networks.offsets},
           {"foot_lock", e.retarget.lock_feet},
           {"oracle", e.oracle},

@@ -39,7 +39,8 @@ const std::vector<Table>& tables() {
        "scan by "
        "optimisation from the scans alone, and its rotations are copied; where the people judged on are of "
        "that very "
-       "body, as in suites made from one data folder, it knows them better than it would know strangers.",
+       "body, as in suites made from one data folder, it knows them better than it would know strangers. "
+       "`pose transfer`: the target's points are moved one by one as the scan's say, without a skeleton.",
        kPerformance},
       {"contexts",
        "Contexts",

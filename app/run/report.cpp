@@ -13,7 +13,6 @@
 
 namespace understudy::app {
 namespace fs = std::filesystem;
-namespace {
 
 std::string checksum(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -26,8 +25,6 @@ std::string checksum(const fs::path& path) {
   std::snprintf(text, sizeof text, "%08lx", crc);
   return text;
 }
-
-}  // namespace
 
 Json report_header(const std::string& weights_folder) {
   std::vector<fs::path> files;
