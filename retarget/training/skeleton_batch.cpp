@@ -58,12 +58,6 @@ SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<R
   return batch;
 }
 
-SkeletonBatch make_batch(ScanMaker& maker, int count) {
-  std::vector<MadeScan> scans;
-  for (int i = 0; i < count; ++i) scans.push_back(maker.next());
-  return make_batch(scans);
-}
-
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device) {
   const nn::ExtractorInput& in = batch.input;
   const auto moved = [&](const torch::Tensor& x) { return x.defined() ? x.to(device) : x; };

@@ -18,8 +18,6 @@ struct SkeletonBatch {
 
 /// Scans cut into patches and put beside each other. `recent`: what was seen before each, or empty.
 SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<RecentJoints>& recent = {});
-/// `count` new scans as a batch.
-SkeletonBatch make_batch(ScanMaker& maker, int count);
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device);
 
 /// The joints that the network saw, world, metres.

@@ -167,7 +167,7 @@ TEST_F(SkeletonTraining, OverfitsOneBatch) {
   torch::manual_seed(4);
   const TrainingData data = load_training_data(folder_.string(), Split::Train);
   ScanMaker maker(data, {}, 7);
-  const SkeletonBatch batch = make_batch(maker, 2);
+  const SkeletonBatch batch = make_batch({maker.next(), maker.next()});
   const auto net = nn::make_skeleton_form("dense");
   torch::optim::Adam optimizer(net->parameters(), 1e-3);
   double first = 0, last = 0;
