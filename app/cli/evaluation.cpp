@@ -9,6 +9,7 @@
 #include "app/run/target_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "retarget/math/rotation.hpp"
 #include "retarget/peers/body_fit.hpp"
 #include "retarget/peers/surface_joints.hpp"
 
@@ -69,7 +70,6 @@ void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) 
     waited_s += static_cast<float>(1 / c.fps);
     const std::string problem = failure_of([&] {
       raw = extractor.extract_next(frame->mesh, recent);
-      recent.push(raw->joints);
       smooth = filter.push(*raw, waited_s).joints;
       waited_s = 0;
     });
@@ -124,8 +124,8 @@ void judge_performance(const Case& c, const EvalOptions& options, Networks netwo
   to.file = file_figures(body, clip, *to.truth);
 }
 
-/// The peer without a skeleton: its surface, and joints read off it. A frame that it cannot use stays as the
-/// last.
+/// The peer without a skeleton: its surface, and joints read off it. It is told where the source faces, since
+/// its paper's people all face one way. A frame that it cannot use stays as the last.
 void judge_surface(const Case& c, const EvalOptions& options, Networks networks,
                    const PreparedCharacter& target, Judging& to) {
   const auto source = open_source(case_source(c));
@@ -135,6 +135,7 @@ void judge_surface(const Case& c, const EvalOptions& options, Networks networks,
   const SurfaceJoints joints_of(rest, networks.deformer->weights(), target.target.joints);
   peer->reset(rest);
   Points posed = rest;
+  RecentJoints recent;
   while (true) {
     check_interrupt("in case " + c.name);
     FrameTimes times;
@@ -142,7 +143,11 @@ void judge_surface(const Case& c, const EvalOptions& options, Networks networks,
     const auto frame = source->next();
     if (!frame) break;
     times.read = ms_since(began);
-    to.verdict.flagged += !failure_of([&] { posed = peer->push(frame->mesh); }).empty();
+    to.verdict.flagged += !failure_of([&] {
+                             const Extraction seen = networks.extractor->extract_next(frame->mesh, recent);
+                             US_CHECK(seen.global, "the peer wants an extractor that sees rotations");
+                             posed = peer->push(frame->mesh, heading_of((*seen.global)[Pelvis]));
+                           }).empty();
     times.total = ms_since(began);
     times.deform = times.total - times.read;
     to.verdict.latency.add(times);

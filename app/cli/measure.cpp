@@ -51,7 +51,6 @@ Measured measured(const MeasureOptions& options) {
     const std::string problem = failure_of([&] {
       const Extraction seen =
           frame->skeleton ? *frame->skeleton : extractor->extract_next(frame->mesh, recent);
-      recent.push(seen.joints);
       push(result.raw, seen.joints, frame->mesh);
       push(result.smooth, filter.push(seen, waited_s).joints, frame->mesh);
       waited_s = 0;

@@ -443,7 +443,6 @@ Extracted Engine::Impl::extracted(Stream& stream, const SourceFrame& frame) cons
       return result;
     }
     result.extraction = stream.extractor->extract_next(frame.mesh, stream.recent);
-    stream.recent.push(result.extraction.joints);
     result.extraction.sole_height = sole_height(result.extraction.joints, frame.mesh.vertices);
     result.girth = measure_girth(result.extraction, frame.mesh.vertices);
   } catch (const Error& error) {

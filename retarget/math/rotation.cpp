@@ -41,6 +41,10 @@ Mat3 rotation_about_y(float angle) {
   return Eigen::AngleAxisf(angle, Vec3::UnitY()).toRotationMatrix();
 }
 
+float heading_of(const Mat3& R) {
+  return std::atan2(R(0, 2), R(2, 2));
+}
+
 Mat3 rotation_between(const Vec3& from, const Vec3& to) {
   return Eigen::Quaternionf::FromTwoVectors(from, to).toRotationMatrix();
 }

@@ -20,6 +20,8 @@ Mat3 rotation_from_axis_angle(const Vec3& axis_angle);
 Vec3 rotation_to_axis_angle(const Mat3& R);
 /// Rotation about +y by `angle` radians: takes +z towards +x.
 Mat3 rotation_about_y(float angle);
+/// How far a body turned so faces away from +z, radians about +y: where R takes +z, seen from above.
+float heading_of(const Mat3& R);
 /// The smallest rotation that takes direction `from` to direction `to` (any lengths but zero).
 Mat3 rotation_between(const Vec3& from, const Vec3& to);
 /// Angle of A^T B in radians, [0, pi].

@@ -23,9 +23,11 @@ class NetworkExtractor : public SkeletonExtractor {
     net_->eval();
   }
 
-  Extraction extract(const Mesh& scan) override { return extract_next(scan, {}); }
+  Extraction extract(const Mesh& scan) override { return extract_after({}, scan); }
+  std::string name() const override { return form_; }
 
-  Extraction extract_next(const Mesh& scan, const RecentJoints& recent) override {
+ private:
+  Extraction extract_after(const RecentJoints& recent, const Mesh& scan) override {
     const torch::NoGradGuard no_grad;
     const ScanPatches patches = cut_patches(thin_scan(scan, kThinningSeed));
     Extraction seen = to_world(net_->forward(extractor_input({patches}, {recent})), patches);
@@ -33,9 +35,6 @@ class NetworkExtractor : public SkeletonExtractor {
     return seen;
   }
 
-  std::string name() const override { return form_; }
-
- private:
   static Extraction to_world(const ExtractorOutput& out, const ScanPatches& patches);
 
   std::string form_;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
 #include "retarget/nn/modules/pose_transfer_net.hpp"
 #include "retarget/nn/scan_patches.hpp"
 #include "retarget/nn/weights_file.hpp"
@@ -44,20 +45,22 @@ class PoseTransfer : public SurfaceTransfer {
     frames_ = 0;
   }
 
-  Points push(const Mesh& scan) override {
+  Points push(const Mesh& scan, float heading) override {
     US_CHECK(rest_, "pose transfer: no target was set");
     const torch::NoGradGuard no_grad;
     const Points thinned = thin_scan(scan, kThinningSeed);
-    const Centred source = centred(thinned);
+    const Mat3 turn = rotation_about_y(heading);
+    const Centred source = centred(thinned * turn);  // rows: it faces +z
     const auto made = net_->forward(source.points, rest_->points).contiguous();
     US_CHECK(torch::isfinite(made).all().item<bool>(), "the pose transfer network gave no finite point");
     Points posed = rest_->size * Eigen::Map<const Points>(made.data_ptr<float>(), made.size(1), 3);
+    posed = (posed * turn.transpose()).eval();
     // Where it stands is no business of the network: over the scan's path, scaled, and as high over the
     // floor.
-    if (!first_) first_ = source.mean;
+    const Eigen::RowVector3f here = thinned.colwise().mean();
+    if (!first_) first_ = here;
     follow(rest_->size / source.size);
-    posed.rowwise() +=
-        *first_ + scale_ * (source.mean - *first_) - Eigen::RowVector3f(posed.colwise().mean());
+    posed.rowwise() += *first_ + scale_ * (here - *first_) - Eigen::RowVector3f(posed.colwise().mean());
     posed.col(1).array() += scale_ * thinned.col(1).minCoeff() - posed.col(1).minCoeff();
     return posed;
   }

@@ -43,10 +43,18 @@ class SkeletonExtractor {
   virtual ~SkeletonExtractor() = default;
   /// Throws Error when the cloud has fewer than 32 finite points or the network gives NaN.
   virtual Extraction extract(const Mesh& scan) = 0;
-  /// The same of a stream's next scan, knowing what was seen just before. Whoever has no use for that looks
-  /// at the scan alone.
-  virtual Extraction extract_next(const Mesh& scan, const RecentJoints& /*recent*/) { return extract(scan); }
+  /// The same of a stream's next scan, knowing what was seen just before; `recent` is told what is seen now,
+  /// if anything is.
+  Extraction extract_next(const Mesh& scan, RecentJoints& recent) {
+    Extraction seen = extract_after(recent, scan);
+    recent.push(seen.joints);
+    return seen;
+  }
   virtual std::string name() const = 0;
+
+ private:
+  /// Whoever has no use for the past looks at the scan alone.
+  virtual Extraction extract_after(const RecentJoints& /*recent*/, const Mesh& scan) { return extract(scan); }
 };
 
 /// Source joints in, the target's local rotations out, frame by frame, with state (paper 1, section 3.1).

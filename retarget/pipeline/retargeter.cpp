@@ -89,7 +89,6 @@ RetargetedFrame Retargeter::push(const Mesh& scan, float dt) {
   if (points < options_.min_points) return skip(detail::join("the scan has ", points, " usable points"), dt);
   try {
     frame.source_raw = networks_.extractor->extract_next(scan, recent_);
-    recent_.push(frame.source_raw.joints);
   } catch (const Error& error) {
     return skip(error.what(), dt);
   }

@@ -137,7 +137,6 @@ HybridWindow HybridWindowMaker::next(SkeletonExtractor& extractor) {
     Mesh cloud;
     cloud.vertices = scan.points;
     window.seen.push_back(extractor.extract_next(cloud, recent));
-    recent.push(window.seen.back().joints);
     US_CHECK(window.seen.back().global, "hybrid wants an extractor that sees rotations");
     window.truth.push_back(scan.truth);
   }

@@ -245,11 +245,16 @@ MadeScan ScanMaker::next() {
 }
 
 PosedPair ScanMaker::pair() {
+  constexpr float kHeadingError = 0.1f;  // radians: where somebody faces is known no better than it was seen
   Stream stream = start();
-  const Pose pose = stream.poses.back();
+  Pose& pose = stream.poses.back();
+  const Mat3 ahead = rotation_about_y(kHeadingError * rng_.normal() - heading_of(pose.local[Pelvis]));
+  pose.local[Pelvis] = ahead * pose.local[Pelvis];
+  pose.root = ahead * pose.root;
+  const Pose posture = pose;  // the stream forgets it
   PosedPair pair;
   pair.source = next(stream).points;
-  pair.posed = sample_posed(*draw_person(), pose, nn::kScanPoints, &pair.rest).points;
+  pair.posed = sample_posed(*draw_person(), posture, nn::kScanPoints, &pair.rest).points;
   return pair;
 }
 

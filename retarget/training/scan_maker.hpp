@@ -42,7 +42,8 @@ struct MadeScan : LabelledPoints {
   PosedSkeleton truth;
 };
 
-/// One posture on two people, metres: a scan of the first, and as many places on the second.
+/// One posture on two people who face about +z, metres: a scan of the first, and as many places on the
+/// second.
 struct PosedPair {
   Points source;       ///< [kScanPoints, 3] of the first, in the posture
   Points rest, posed;  ///< [kScanPoints, 3] of the second, in T-pose and in the posture

@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPoseTransferVersion = 1;
+constexpr int kPoseTransferVersion = 2;
 constexpr int64_t kPoseTransferPoints = 1024;  ///< of source and target in training, and of a source scan
 
 /// Normalises over points, then scales and shifts by the target's places and adds what the source's pose
@@ -40,8 +40,9 @@ TORCH_MODULE(PlaceBlock);
 class PoseTransferNetImpl : public torch::nn::Module {
  public:
   PoseTransferNetImpl();
-  /// source [B, M, 3]: a body in a pose, any points; rest [B, N, 3]: the target in T-pose; both around their
-  /// mean and over their mean distance from it. The target's points in that pose, [B, N, 3], likewise.
+  /// source [B, M, 3]: a body in a pose, any points, that faces +z; rest [B, N, 3]: the target in T-pose;
+  /// both around their mean and over their mean distance from it. The target's points in that pose, [B, N,
+  /// 3], likewise.
   torch::Tensor forward(const torch::Tensor& source, const torch::Tensor& rest);
 
  private:

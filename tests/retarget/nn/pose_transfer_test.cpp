@@ -108,13 +108,19 @@ TEST_F(PoseTransfer, TheCommandTrainsAndItsWeightsMoveATarget) {
   Mesh scan;
   scan.vertices = rest * 0.5f;
   scan.vertices.col(1).array() += 3 - scan.vertices.col(1).minCoeff();
-  EXPECT_THROW(peer->push(scan), Error);  // no target yet
+  EXPECT_THROW(peer->push(scan, 0), Error);  // no target yet
   peer->reset(rest);
-  const Points first = peer->push(scan);
+  const Points first = peer->push(scan, 0);
   EXPECT_EQ(first.rows(), 300);
   EXPECT_TRUE(first.allFinite());
   peer->reset(rest);
-  EXPECT_EQ(peer->push(scan), first);  // the same again
+  EXPECT_EQ(peer->push(scan, 0), first);  // the same again
+  // Whoever turns, and is told to face elsewhere, turns the result.
+  const Mat3 turn = rotation_about_y(1.0f);
+  Mesh turned = scan;
+  turned.vertices = scan.vertices * turn.transpose();
+  peer->reset(rest);
+  EXPECT_LT((peer->push(turned, 1.0f) - first * turn.transpose()).rowwise().norm().maxCoeff(), 0.05f);
   EXPECT_THROW(peer->reset(Points(0, 3)), Error);
   EXPECT_THROW(nn::load_pose_transfer(file("absent")), Error);
 }

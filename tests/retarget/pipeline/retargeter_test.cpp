@@ -79,14 +79,15 @@ TEST(Retargeter, StartsAnewAfterRestart) {
 class RememberingExtractor final : public SkeletonExtractor {
  public:
   Extraction extract(const Mesh& scan) override { return telltale_.extract(scan); }
-  Extraction extract_next(const Mesh& scan, const RecentJoints& recent) override {
-    told.push_back(recent);
-    return extract(scan);
-  }
   std::string name() const override { return "remembering"; }
   std::vector<RecentJoints> told;
 
  private:
+  Extraction extract_after(const RecentJoints& recent, const Mesh& scan) override {
+    told.push_back(recent);
+    return extract(scan);
+  }
+
   TellTaleExtractor telltale_;
 };
 
