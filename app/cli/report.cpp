@@ -29,12 +29,24 @@ std::string marked(const std::string& file) {
   return fs::exists(file) ? file + ":" + checksum(file) : file;
 }
 
+/// When the newest of a suite's cases was written, in the file clock's ticks.
+int64_t made(const std::string& cases) {
+  int64_t newest = 0;
+  for (const std::string& folder : case_folders(cases))
+    for (const char* file : {"case.json", "truth.npz"})
+      if (std::error_code missing; fs::exists(folder + "/" + file, missing))
+        newest =
+            std::max<int64_t>(newest, fs::last_write_time(folder + "/" + file).time_since_epoch().count());
+  return newest;
+}
+
 /// What a row is, for recognising its results of an earlier run.
 Json identity(const ReportRow& row) {
   const EvalOptions& e = row.eval;
   return {{"table", row.table},
           {"name", row.name},
           {"cases", e.cases},
+          {"made", made(e.cases)},
           {"engine", e.networks.engine},
           {"extractor", e.networks.extractor},
           {"weights", report_header(nn::weights_folder(e.networks))["weights"]},
@@ -73,6 +85,7 @@ ReportResult result_of(const ReportOptions& options, ReportRow row) {
     US_CHECK(evaluation.latency.frames() > 0, evaluation.verdicts.front().error);
     result.report = report_of(result.row.eval, evaluation);
     result.report["row"] = known;
+    if (result.row.breakdown) result.report["confidence_record"] = to_json(evaluation.breakdown.confidence());
     write_json(file, result.report);
     if (result.row.breakdown)
       write_worst_frames(options.out + "/worst_" + result.row.suite, evaluation.breakdown.worst());

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 
+#include "app/run/breakdown.hpp"
 #include "render/plot.hpp"
 #include "retarget/base/error.hpp"
 
@@ -40,13 +41,15 @@ const std::vector<Table>& tables() {
        "optimisation from the scans alone, and its rotations are copied; where the people judged on are of "
        "that very "
        "body, as in suites made from one data folder, it knows them better than it would know strangers. "
-       "`pose transfer`: the target's points are moved one by one as the scan's say, without a skeleton.",
+       "`pose transfer`: the target's points are moved one by one as the scan's say, without a skeleton; it "
+       "is "
+       "told where our extractor sees the source face.",
        kPerformance},
       {"contexts",
        "Contexts",
-       "The method forgets the past after so many frames. Places start anew with it, so only figures after "
-       "alignment "
-       "are compared.",
+       "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
+       "of "
+       "that length. Places start anew, so only figures after alignment are compared.",
        {{"mean", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4},
         {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 4},
         {"mean", "medl_mm", "medl_mm", 1, 3},
@@ -148,16 +151,20 @@ void plot_contexts(std::ofstream& page, const std::string& folder, const std::ve
   page << "\n![Error over the length of the context](contexts.png)\n";
 }
 
+/// NaN where there is no such number.
+double number_of(const Json& json, const char* key) {
+  return json[key].is_number() ? json[key].get<double>() : std::nan("");
+}
+
 void write_confidence(std::ofstream& page, const std::string& folder, const std::string& suite,
                       const Json& confidence) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "\nConfidence against error, rank correlation: %.2f over joints, %.2f over frames.\n\n",
-                confidence["rank_correlation"].is_number() ? confidence["rank_correlation"].get<double>()
-                                                           : std::nan(""),
-                confidence["frame_rank_correlation"].is_number()
-                    ? confidence["frame_rank_correlation"].get<double>()
-                    : std::nan(""));
+  char text[300];
+  std::snprintf(
+      text, sizeof text,
+      "\nConfidence against error, rank correlation: %.2f over joints (errors drawn from exactly what "
+      "it expects: %.2f), %.2f over frames.\n\n",
+      number_of(confidence, "rank_correlation"), number_of(confidence, "best_rank_correlation"),
+      number_of(confidence, "frame_rank_correlation"));
   page << text;
   render::Curve mean{"mean error", {}, {}}, p90{"90 % stay below", {}, {}};
   write_head(page, {"confidence", "mean error, mm", "90 % below, mm", "joints"});
@@ -217,6 +224,21 @@ void write_breakdown(std::ofstream& page, const std::string& folder, const Repor
     write_confidence(page, folder, result.row.suite, breakdown["confidence"]);
 }
 
+/// Whoever looks at a scan does not know of which suite it is.
+void write_confidence_of_all(std::ofstream& page, const std::string& folder,
+                             const std::vector<ReportResult>& results) {
+  ConfidenceRecord all;
+  std::string suites;
+  for (const ReportResult& result : results) {
+    if (!result.lost.empty() || !result.report.contains("confidence_record")) continue;
+    all.append(confidence_record(result.report["confidence_record"]));
+    suites += (suites.empty() ? "" : ", ") + result.row.suite;
+  }
+  if (all.confidence.empty()) return;
+  page << "\n## Confidence in all of these together: " << suites << "\n";
+  write_confidence(page, folder, "all", all.figures());
+}
+
 }  // namespace
 
 void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
@@ -232,6 +254,7 @@ void write_report_page(const std::string& folder, const std::vector<ReportResult
   }
   for (const ReportResult& result : results)
     if (result.lost.empty() && result.row.breakdown) write_breakdown(page, folder, result);
+  write_confidence_of_all(page, folder, results);
   page.close();
   US_CHECK(page && std::rename(part.c_str(), path.c_str()) == 0, path, ": cannot be written");
 }

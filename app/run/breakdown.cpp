@@ -6,6 +6,7 @@
 
 #include "retarget/math/rotation.hpp"
 #include "retarget/metrics/confidence.hpp"
+#include "retarget/pipeline/confidence.hpp"
 
 namespace understudy::app {
 namespace {
@@ -111,25 +112,49 @@ void Breakdown::add_confidence(const Judge& judge, const Truth& truth) {
   for (size_t t = 0; t < judge.confidence().size(); ++t) {
     const Joints &seen = judge.raw_joints()[t], &known = truth.source_joints[t];
     for (int j = 0; j < kJointCount; ++j) {
-      confidence_.push_back(judge.confidence()[t][j]);
-      error_.push_back((seen.row(j) - known.row(j)).norm());
+      confidence_.confidence.push_back(judge.confidence()[t][j]);
+      confidence_.error.push_back((seen.row(j) - known.row(j)).norm());
     }
-    frame_confidence_.push_back(judge.confidence()[t].mean());
-    frame_error_.push_back(mean_joint_error({seen}, {known}));
+    confidence_.frame_confidence.push_back(judge.confidence()[t].mean());
+    confidence_.frame_error.push_back(mean_joint_error({seen}, {known}));
   }
 }
 
-/// Correlation of the confidence with nearness: 1 when the more confident is always the nearer.
-Json Breakdown::confidence_json() const {
-  Json json = {{"rank_correlation", -rank_correlation(confidence_, error_)},
-               {"frame_rank_correlation", -rank_correlation(frame_confidence_, frame_error_)}};
+void ConfidenceRecord::append(const ConfidenceRecord& other) {
+  const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  add(confidence, other.confidence);
+  add(error, other.error);
+  add(frame_confidence, other.frame_confidence);
+  add(frame_error, other.frame_error);
+}
+
+/// Correlations of the confidence with nearness: 1 when the more confident is always the nearer.
+Json ConfidenceRecord::figures() const {
+  std::vector<double> expected;
+  for (const double c : confidence) expected.push_back(expected_error_for(static_cast<float>(c)));
+  Json json = {{"rank_correlation", -rank_correlation(confidence, error)},
+               {"best_rank_correlation", best_rank_correlation(expected)},
+               {"frame_rank_correlation", -rank_correlation(frame_confidence, frame_error)}};
   json["bins"] = Json::array();
-  for (const ReliabilityBin& bin : reliability(confidence_, error_))
+  for (const ReliabilityBin& bin : reliability(confidence, error))
     json["bins"].push_back({{"confidence", bin.confidence},
                             {"error_mm", 1000 * bin.error},
                             {"p90_mm", 1000 * bin.p90},
                             {"count", bin.count}});
   return json;
+}
+
+Json to_json(const ConfidenceRecord& record) {
+  return {{"confidence", record.confidence},
+          {"error", record.error},
+          {"frame_confidence", record.frame_confidence},
+          {"frame_error", record.frame_error}};
+}
+
+ConfidenceRecord confidence_record(const Json& json) {
+  return {json.at("confidence"), json.at("error"), json.at("frame_confidence"), json.at("frame_error")};
 }
 
 Json Breakdown::json() const {
@@ -143,7 +168,7 @@ Json Breakdown::json() const {
     for (const auto& [motion, counts] : motion_failures_)
       if (counts[f] > 0) failure["motions"][motion] = counts[f];
   }
-  if (!confidence_.empty()) json["confidence"] = confidence_json();
+  if (!confidence_.confidence.empty()) json["confidence"] = confidence_.figures();
   json["worst"] = Json::array();
   for (const WorstFrame& w : worst_)
     json["worst"].push_back({{"case", w.case_name},

@@ -21,6 +21,18 @@ struct WorstFrame {
   FrameFailures failures{};
 };
 
+/// What an extractor was confident of, and how far off it was: of joints, and of frames (the means of their
+/// joints). Metres.
+struct ConfidenceRecord {
+  std::vector<double> confidence, error, frame_confidence, frame_error;
+  void append(const ConfidenceRecord& other);
+  /// {"rank_correlation", "best_rank_correlation", "frame_rank_correlation", "bins": [...]}
+  Json figures() const;
+};
+/// The lists themselves, as report keeps them. Throws nlohmann's exceptions where the JSON is another.
+Json to_json(const ConfidenceRecord& record);
+ConfidenceRecord confidence_record(const Json& json);
+
 /// Collects judged cases.
 class Breakdown {
  public:
@@ -30,10 +42,11 @@ class Breakdown {
   void add(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth);
   /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
   /// {"jolt":
-  /// {"frames", "share"}}, "confidence": {"rank_correlation", "frame_rank_correlation", "bins": [...]},
+  /// {"frames", "share"}}, "confidence": ConfidenceRecord::figures(),
   /// "worst":
   /// [...]}; without what nothing is known of.
   Json json() const;
+  const ConfidenceRecord& confidence() const { return confidence_; }
   /// The worst first; those of one case are at least ten frames apart.
   const std::vector<WorstFrame>& worst() const { return worst_; }
 
@@ -47,7 +60,6 @@ class Breakdown {
                  const std::vector<FrameFailures>& failures);
   void add_joints(const Judge& judge, const Truth& truth);
   void add_confidence(const Judge& judge, const Truth& truth);
-  Json confidence_json() const;
   static void put(Figures& figures, const std::string& key, double value);
   static Json to_json(const Figures& figures);
 
@@ -57,7 +69,7 @@ class Breakdown {
   std::map<std::string, std::array<int64_t, kFailureCount>> motion_failures_;
   std::array<int64_t, kFailureCount> failures_{};
   int64_t frames_ = 0;
-  std::vector<double> confidence_, error_, frame_confidence_, frame_error_;
+  ConfidenceRecord confidence_;
   std::vector<WorstFrame> worst_;
 };
 

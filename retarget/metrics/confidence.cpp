@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/rng.hpp"
+#include "retarget/math/types.hpp"
 
 namespace understudy {
 namespace {
@@ -42,6 +44,14 @@ double rank_correlation(const std::vector<double>& a, const std::vector<double>&
     yy += (y[i] - mean) * (y[i] - mean);
   }
   return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : std::nan("");
+}
+
+double best_rank_correlation(const std::vector<double>& expected) {
+  Rng rng(1);
+  std::vector<double> drawn;
+  for (const double error : expected)
+    drawn.push_back(error * Vec3(rng.normal(), rng.normal(), rng.normal()).norm());
+  return rank_correlation(expected, drawn);
 }
 
 std::vector<ReliabilityBin> reliability(const std::vector<double>& confidence,

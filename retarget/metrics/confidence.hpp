@@ -10,6 +10,10 @@ namespace understudy {
 /// when one of them does not vary.
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
 
+/// The rank correlation that expected errors would have with errors drawn from exactly them, normal and alike
+/// along all axes: what nobody who expects these errors can go beyond but by luck.
+double best_rank_correlation(const std::vector<double>& expected);
+
 /// One bin of a reliability table.
 struct ReliabilityBin {
   double confidence = 0;  ///< mean

@@ -8,13 +8,13 @@
 #include "retarget/nn/modules/leaf_refiner.hpp"
 #include "retarget/nn/scan_patches.hpp"
 #include "retarget/nn/weights_file.hpp"
+#include "retarget/pipeline/confidence.hpp"
 
 namespace understudy::nn {
 namespace {
 
 constexpr int kRounds = 2;  // the second crop lies better than the first
 
-constexpr float kHalfConfidence = 0.06f;  // metres
 // A crop tells more of a joint's error than the whole body does, the two together still more.
 constexpr float kShareOfCrop = 0.7f;
 // A joint that may be farther off than so is perhaps looked for in the wrong place, at the other leg say,
@@ -107,15 +107,6 @@ float confidence_of_both(float crop, float whole) {
 }
 
 }  // namespace
-
-float expected_error_for(float confidence) {
-  return kHalfConfidence * std::sqrt(1 / std::clamp(confidence, 1e-6f, 1.0f) - 1);
-}
-
-float confidence_for(float expected_error_m) {
-  const float expected = expected_error_m / kHalfConfidence;
-  return 1 / (1 + expected * expected);
-}
 
 std::unique_ptr<LeafRefiner> load_leaf_refiner(const std::string& path) {
   return std::make_unique<NetworkLeafRefiner>(path);

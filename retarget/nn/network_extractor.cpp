@@ -8,6 +8,7 @@
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/extractor_input.hpp"
 #include "retarget/nn/skeleton_form.hpp"
+#include "retarget/pipeline/confidence.hpp"
 
 namespace understudy::nn {
 namespace {

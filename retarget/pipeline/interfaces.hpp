@@ -15,8 +15,9 @@ namespace understudy {
 struct Extraction {
   Joints joints = Joints::Zero();  ///< world, metres
   Eigen::Array<float, kJointCount, 1> confidence =
-      Eigen::Array<float, kJointCount, 1>::Ones();  ///< 0..1 a joint
-  std::optional<Rotations> global;                  ///< world rotations seen on the surface, where known
+      Eigen::Array<float, kJointCount,
+                   1>::Ones();       ///< 0..1 a joint: what it stands for is told in confidence.hpp
+  std::optional<Rotations> global;   ///< world rotations seen on the surface, where known
   std::optional<float> sole_height;  ///< metres over the floor of the lowest points near the feet, where seen
   bool exact = false;  ///< a skeleton's own, seen in no scan: nothing is to be repaired, smoothed or solved
 };

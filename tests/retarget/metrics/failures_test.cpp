@@ -65,6 +65,11 @@ TEST(Confidence, RanksAreWhatCorrelates) {
   EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3, 4}, {5, 4, 3, 2}), -1);
   EXPECT_NEAR(rank_correlation({1, 2, 2, 3}, {1, 2, 3, 4}), 0.948683, 1e-6);  // by hand: ranks 0, 1.5, 1.5, 3
   EXPECT_TRUE(std::isnan(rank_correlation({1, 1, 1}, {1, 2, 3})));
+  // Expected errors that hardly differ say little of what is drawn; those that differ much say nearly all.
+  std::vector<double> near, far;
+  for (int i = 0; i < 2000; ++i) near.push_back(1 + 1e-4 * i), far.push_back(std::pow(1.01, i));
+  EXPECT_LT(best_rank_correlation(near), 0.2);
+  EXPECT_GT(best_rank_correlation(far), 0.95);
 }
 
 TEST(Confidence, BinsHoldEquallyMany) {
