@@ -57,6 +57,7 @@ Action declare_eval(CLI::App& command) {
   command.add_flag("!--no-foot-lock", options->retarget.lock_feet, "standing feet may slide");
   command.add_flag("!--no-hand-contacts", options->retarget.keep_contacts,
                    "hands that touch the source's body need not touch the target's");
+  command.add_flag("!--no-near", options->networks.near, "limbs and head are not looked at again from near");
   command.add_flag("!--no-offsets", options->networks.offsets, "no pose-corrective offsets");
   command
       .add_option("--restart-every", options->restart_every,

@@ -133,7 +133,7 @@ void judge_surface(const Case& c, const EvalOptions& options, Networks networks,
   const Points& rest = target.target.mesh.vertices;
   networks.deformer->bind(rest, target.target.joints);
   const SurfaceJoints joints_of(rest, networks.deformer->weights(), target.target.joints);
-  peer->reset(rest);
+  peer->reset(target.target.mesh);
   Points posed = rest;
   RecentJoints recent;
   while (true) {
@@ -184,9 +184,24 @@ struct Bench {
   std::shared_ptr<const FitBody> fit;  // null: no peer
 };
 
+/// What is asked of a case must mean something there.
+void check_options(const EvalOptions& options, const Case& c) {
+  const bool performed = !c.target.empty();
+  US_CHECK(performed || (options.oracle.empty() && options.peer != "npt" && !options.file_shapes &&
+                         options.restart_every == 0),
+           c.name, ": it has no target: --oracle, --peer npt, --file and --restart-every say nothing of it");
+  US_CHECK(
+      options.peer != "npt" || (options.oracle.empty() && !options.file_shapes && options.restart_every == 0),
+      "--peer npt has no skeleton and no past: --oracle, --file and --restart-every say nothing of it");
+  US_CHECK(options.oracle != "pose" ||
+               (options.peer.empty() && !options.file_shapes && options.restart_every == 0),
+           "--oracle pose knows every pose: --peer, --file and --restart-every say nothing of it");
+}
+
 void judge_case(const Bench& bench, const std::string& folder, const Case& c, Verdict& verdict,
                 Breakdown& breakdown) {
   const EvalOptions& options = bench.options;
+  check_options(options, c);
   std::optional<Truth> truth;
   if (!c.truth.empty()) truth = read_truth(c.truth);
   US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle wants a truth");
@@ -286,6 +301,7 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   if (!options.oracle.empty()) report["oracle"] = options.oracle;
   if (!options.peer.empty()) report["peer"] = options.peer;
   if (!options.networks.offsets) report["offsets"] = false;
+  if (!options.networks.near) report["near"] = false;
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
   for (const Verdict& verdict : evaluation.verdicts) report["cases"].push_back(case_json(verdict));

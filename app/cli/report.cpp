@@ -51,10 +51,13 @@ Json identity(const ReportRow& row) {
           {"extractor", e.networks.extractor},
           {"weights", report_header(nn::weights_folder(e.networks))["weights"]},
           {"files", {marked(e.networks.engine_file), marked(e.networks.extractor_file)}},
+          {"near", e.networks.near},
           {"offsets", e.networks.offsets},
           {"foot_lock", e.retarget.lock_feet},
           {"oracle", e.oracle},
           {"peer", e.peer},
+          {"body", e.peer == "fit" ? marked(e.body) : ""},
+          {"breakdown", row.breakdown},
           {"context", e.restart_every},
           {"limit", e.limit}};
 }
@@ -82,7 +85,8 @@ ReportResult result_of(const ReportOptions& options, ReportRow row) {
   }
   result.lost = failure_of([&] {
     const Evaluation evaluation = evaluate(result.row.eval, [](const Verdict&) {});
-    US_CHECK(evaluation.latency.frames() > 0, evaluation.verdicts.front().error);
+    for (const Verdict& verdict : evaluation.verdicts)
+      US_CHECK(verdict.error.empty(), verdict.name, ": ", verdict.error);
     result.report = report_of(result.row.eval, evaluation);
     result.report["row"] = known;
     if (result.row.breakdown) result.report["confidence_record"] = to_json(evaluation.breakdown.confidence());
@@ -94,13 +98,14 @@ ReportResult result_of(const ReportOptions& options, ReportRow row) {
   return result;
 }
 
-std::vector<ReportRow> chosen_rows(const ReportOptions& options) {
+ReportPlan chosen_rows(const ReportOptions& options) {
   nn::NetworkOptions weights;
   weights.weights = options.weights;
   const std::string path =
       options.rows.empty() ? nn::weights_folder(weights) + "/comparison.json" : options.rows;
+  ReportPlan plan = read_report_plan(path);
   std::vector<ReportRow> chosen;
-  for (ReportRow& row : read_report_rows(path)) {
+  for (ReportRow& row : plan.rows) {
     const bool wanted = options.tables.empty() || std::find(options.tables.begin(), options.tables.end(),
                                                             row.table) != options.tables.end();
     if (!wanted) continue;
@@ -112,46 +117,53 @@ std::vector<ReportRow> chosen_rows(const ReportOptions& options) {
     chosen.push_back(std::move(row));
   }
   US_CHECK(!chosen.empty(), "no row is of the tables wanted");
-  return chosen;
+  return {std::move(plan.note), std::move(chosen)};
 }
 
 std::string command_of(const ReportOptions& options) {
   std::string command = "understudy report --cases CASES --out OUT";
   if (!options.rows.empty()) command += " --rows " + fs::path(options.rows).filename().string();
   if (!options.body.empty()) command += " --body BODY.npz";
+  for (const std::string& table : options.tables)
+    command += (&table == &options.tables[0] ? " --tables " : ",") + table;
   if (options.limit > 0) command += " --limit " + std::to_string(options.limit);
   return command;
 }
 
 int report(const ReportOptions& options) {
   US_CHECK(fs::is_directory(options.cases), options.cases, ": not a folder of suites");
-  const std::vector<ReportRow> rows = chosen_rows(options);
+  const ReportPlan plan = chosen_rows(options);
   fs::create_directories(options.out + "/rows");
   std::vector<ReportResult> results;
-  for (const ReportRow& row : rows) {
+  for (const ReportRow& row : plan.rows) {
     results.push_back(result_of(options, row));
     std::printf("%s, %s, %s%s: %s\n", row.table.c_str(), row.suite.c_str(), row.name.c_str(),
                 row.eval.restart_every > 0 ? (" " + std::to_string(row.eval.restart_every)).c_str() : "",
                 results.back().lost.empty() ? "done" : results.back().lost.c_str());
     std::fflush(stdout);
-    write_report_page(options.out, results, command_of(options));
+    write_report_page(options.out, results, command_of(options), plan.note);
   }
   std::printf("wrote %s/report.md\n", options.out.c_str());
-  return 0;
+  return std::any_of(results.begin(), results.end(), [](const auto& result) { return !result.lost.empty(); })
+             ? 1
+             : 0;
 }
 
 }  // namespace
 
 Action declare_report(CLI::App& command) {
   const auto options = std::make_shared<ReportOptions>();
-  command.add_option("--cases", options->cases, "folder of suites: naked/, clothed/, captured/, extraction/")
+  command
+      .add_option("--cases", options->cases,
+                  "folder of the suites that the rows name: naked/, captured/, ...")
       ->required();
   command.add_option("--out", options->out, "folder for report.md, its plots and the figures of each row")
       ->required();
   command.add_option("--rows", options->rows,
                      "JSON that lists the rows (default: comparison.json beside the weights)");
   command
-      .add_option("--tables", options->tables, "only these: peers, contexts, rotation, extraction, offsets")
+      .add_option("--tables", options->tables,
+                  "only these: peers, seen, contexts, rotation, extraction, offsets")
       ->delimiter(',');
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
   command.add_option("--body", options->body, "the SMPL-format body that the peer fits");

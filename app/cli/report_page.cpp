@@ -1,5 +1,6 @@
 #include "app/cli/report_page.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -45,6 +46,31 @@ const std::vector<Table>& tables() {
        "is "
        "told where our extractor sees the source face.",
        kPerformance},
+      {"peers",
+       "Contacts, penetration, and what has no joints of its own",
+       "Of the same rows. Floor: how deep the lowest vertex lies below it, mean and worst. Hand contacts: of "
+       "those "
+       "of the source's own surface (a hand within 2 cm of the body) how many the target keeps. Arms, hands "
+       "and "
+       "skin buried: shares inside the rest of the target's own body, of arms and hands less the source's. "
+       "Stretch: change of edges' lengths within hands and head.",
+       {{"mean", "foot_skate", "feet slide, m/s", 1, 3},
+        {"mean", "floor_mm", "floor, mm", 1, 2},
+        {"mean", "floor_worst_mm", "worst, mm", 1, 1},
+        {"mean", "hand_contact_kept", "hand contacts, %", 100, 0},
+        {"mean", "hand_contact_gap_mm", "gap, mm", 1, 1},
+        {"mean", "arm_buried_added", "arms buried, %", 100, 2},
+        {"mean", "self_penetration", "skin buried, %", 100, 2},
+        {"mean", "hand_stretch", "hands stretch, %", 100, 2},
+        {"mean", "head_stretch", "head stretches, %", 100, 2}}},
+      {"seen",
+       "Rotations seen on the surface",
+       "Positions alone do not say how a bone is turned about itself, nor how head, hands and feet are.",
+       {{"mean", "rot_deg", "rot_deg", 1, 1},
+        {"mean", "head_deg", "head_deg", 1, 1},
+        {"mean", "wrist_deg", "wrist_deg", 1, 1},
+        {"mean", "foot_deg", "foot_deg", 1, 1},
+        {"mean", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4}}},
       {"contexts",
        "Contexts",
        "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
@@ -68,7 +94,8 @@ const std::vector<Table>& tables() {
         {"ms", "extract", "ms a frame", 1, 1}}},
       {"offsets",
        "Pose-corrective offsets",
-       "With true poses weights and offsets alone are judged. Volume: what flesh about elbows, knees, "
+       "With true poses weights and offsets alone are judged. Without: the same network, its offsets left "
+       "out. Volume: what flesh about elbows, knees, "
        "shoulders "
        "and hips "
        "keeps of its volume where they are turned by more than 90 degrees, and what it should.",
@@ -166,21 +193,22 @@ void write_confidence(std::ofstream& page, const std::string& folder, const std:
       number_of(confidence, "rank_correlation"), number_of(confidence, "best_rank_correlation"),
       number_of(confidence, "frame_rank_correlation"));
   page << text;
-  render::Curve mean{"mean error", {}, {}}, p90{"90 % stay below", {}, {}};
-  write_head(page, {"confidence", "mean error, mm", "90 % below, mm", "joints"});
+  render::Curve mean{"mean error", {}, {}}, p90{"90 % stay below", {}, {}}, expected{"expected", {}, {}};
+  write_head(page, {"confidence", "expected, mm", "mean error, mm", "90 % below, mm", "joints"});
   for (const Json& bin : confidence["bins"]) {
-    mean.x.push_back(bin["confidence"]);
-    mean.y.push_back(bin["error_mm"]);
-    p90.x.push_back(bin["confidence"]);
-    p90.y.push_back(bin["p90_mm"]);
-    std::snprintf(text, sizeof text, "| %.3f | %.1f | %.1f | %lld |\n", bin["confidence"].get<double>(),
+    for (auto& [curve, key] : {std::pair(&expected, "expected_mm"), {&mean, "error_mm"}, {&p90, "p90_mm"}}) {
+      curve->x.push_back(bin["confidence"]);
+      curve->y.push_back(bin[key]);
+    }
+    std::snprintf(text, sizeof text, "| %.3f | %.1f | %.1f | %.1f | %lld |\n",
+                  bin["confidence"].get<double>(), bin["expected_mm"].get<double>(),
                   bin["error_mm"].get<double>(), bin["p90_mm"].get<double>(), bin["count"].get<long long>());
     page << text;
   }
   const std::string file = "confidence_" + suite + ".png";
-  render::write_png(
-      folder + "/" + file,
-      render::plot({mean, p90}, {"What the confidence says of the error: " + suite, "confidence", "mm"}));
+  render::write_png(folder + "/" + file,
+                    render::plot({expected, mean, p90},
+                                 {"What the confidence says of the error: " + suite, "confidence", "mm"}));
   page << "\n![What the confidence says of the error](" << file << ")\n";
 }
 
@@ -215,6 +243,7 @@ void write_breakdown(std::ofstream& page, const std::string& folder, const Repor
   page << '\n';
   write_head(page, {"failure", "frames", "share, %"});
   for (const auto& failure : breakdown["failures"].items()) {
+    if (failure.value()["judged"] == 0) continue;
     char text[96];
     std::snprintf(text, sizeof text, "| %s | %lld | %.2f |\n", failure.key().c_str(),
                   failure.value()["frames"].get<long long>(), 100 * failure.value()["share"].get<double>());
@@ -222,6 +251,9 @@ void write_breakdown(std::ofstream& page, const std::string& folder, const Repor
   }
   if (breakdown.contains("confidence"))
     write_confidence(page, folder, result.row.suite, breakdown["confidence"]);
+  if (!breakdown["worst"].empty())
+    page << "\nThe frames seen worst, beside what is true (green):\n\n![The frames seen worst](worst_"
+         << result.row.suite << "/worst.png)\n";
 }
 
 /// Whoever looks at a scan does not know of which suite it is.
@@ -229,9 +261,13 @@ void write_confidence_of_all(std::ofstream& page, const std::string& folder,
                              const std::vector<ReportResult>& results) {
   ConfidenceRecord all;
   std::string suites;
+  std::vector<Json> counted;  // suites may share their scans
   for (const ReportResult& result : results) {
     if (!result.lost.empty() || !result.report.contains("confidence_record")) continue;
-    all.append(confidence_record(result.report["confidence_record"]));
+    const Json& record = result.report["confidence_record"];
+    if (std::find(counted.begin(), counted.end(), record) != counted.end()) continue;
+    counted.push_back(record);
+    all.append(confidence_record(record));
     suites += (suites.empty() ? "" : ", ") + result.row.suite;
   }
   if (all.confidence.empty()) return;
@@ -242,12 +278,13 @@ void write_confidence_of_all(std::ofstream& page, const std::string& folder,
 }  // namespace
 
 void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
-                       const std::string& command) {
+                       const std::string& command, const std::string& note) {
   const std::string path = folder + "/report.md", part = path + ".part";
   std::ofstream page(part);
   page << "# Comparison\n\nMade by `" << command
        << "`.\nTruth copies rotations between bodies of one family, so figures of other protocols do not "
-          "compare.\n";
+          "compare.\n"
+       << note;
   for (const Table& table : tables()) {
     write_table(page, table, results);
     if (std::string(table.id) == "contexts") plot_contexts(page, folder, results);

@@ -15,8 +15,8 @@ struct ReportResult {
   std::string lost;  ///< why the row is left out; empty: it is not
 };
 
-/// Writes FOLDER/report.md and its plots. `command`: how the page was made.
+/// Writes FOLDER/report.md and its plots. `command`: how the page was made; `note`: what else its head says.
 void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
-                       const std::string& command);
+                       const std::string& command, const std::string& note);
 
 }  // namespace understudy::app

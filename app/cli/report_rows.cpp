@@ -12,13 +12,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTables[] = {"peers", "contexts", "rotation", "extraction", "offsets"};
-constexpr const char* kKeys[] = {"table",    "name",           "suite",
-                                 "budget",   "engine",         "extractor",
-                                 "weights",  "engine_weights", "extractor_weights",
-                                 "offsets",  "foot_lock",      "oracle",
-                                 "peer",     "context",        "limit",
-                                 "breakdown"};
+constexpr const char* kTables[] = {"peers", "seen", "contexts", "rotation", "extraction", "offsets"};
+constexpr const char* kKeys[] = {"table",
+                                 "name",
+                                 "suite",
+                                 "budget",
+                                 "engine",
+                                 "extractor",
+                                 "weights",
+                                 "engine_weights",
+                                 "extractor_weights",
+                                 "offsets",
+                                 "foot_lock",
+                                 "oracle",
+                                 "peer",
+                                 "context",
+                                 "limit",
+                                 "breakdown",
+                                 "near"};
 
 ReportRow row_from(const Json& json, const fs::path& folder) {
   for (const auto& item : json.items())
@@ -41,6 +52,7 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
   row.eval.networks.weights = file("weights");
   row.eval.networks.engine_file = file("engine_weights");
   row.eval.networks.extractor_file = file("extractor_weights");
+  row.eval.networks.near = json.value("near", true);
   row.eval.networks.offsets = json.value("offsets", true);
   row.eval.retarget.lock_feet = json.value("foot_lock", true);
   row.eval.oracle = json.value("oracle", "");
@@ -52,20 +64,21 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
 
 }  // namespace
 
-std::vector<ReportRow> read_report_rows(const std::string& path) {
+ReportPlan read_report_plan(const std::string& path) {
   std::ifstream in(path);
   US_CHECK(in, path, ": cannot be read");
   const Json json = Json::parse(in, nullptr, false);
   US_CHECK(json.is_object() && json.contains("rows") && json["rows"].is_array(), path,
            ": not a JSON object with \"rows\"");
-  std::vector<ReportRow> rows;
+  ReportPlan plan;
   try {
-    for (const Json& one : json["rows"]) rows.push_back(row_from(one, fs::path(path).parent_path()));
+    plan.note = json.value("note", "");
+    for (const Json& one : json["rows"]) plan.rows.push_back(row_from(one, fs::path(path).parent_path()));
   } catch (const std::exception& wrong) {
     throw Error(path + ": " + wrong.what());
   }
-  US_CHECK(!rows.empty(), path, ": holds no row");
-  return rows;
+  US_CHECK(!plan.rows.empty(), path, ": holds no row");
+  return plan;
 }
 
 }  // namespace understudy::app

@@ -9,7 +9,7 @@
 namespace understudy::app {
 
 struct ReportRow {
-  std::string table;       ///< contexts, peers, rotation, extraction or offsets
+  std::string table;       ///< peers, seen, contexts, rotation, extraction or offsets
   std::string name;        ///< of the row
   std::string suite;       ///< folder of cases
   std::string budget;      ///< what its networks were trained with, in words
@@ -17,10 +17,15 @@ struct ReportRow {
   EvalOptions eval;        ///< its cases are not named yet
 };
 
-/// {"rows": [{"table", "name", "suite", "budget", "engine", "extractor", "weights", "engine_weights",
-/// "extractor_weights", "offsets", "foot_lock", "oracle", "peer", "context", "limit", "breakdown"}]}; all but
-/// the first three may be missing. "context": frames after which the past is forgotten. Paths are from the
-/// file's folder. Throws Error naming the file and what it does not know.
-std::vector<ReportRow> read_report_rows(const std::string& path);
+struct ReportPlan {
+  std::string note;  ///< for the page's head
+  std::vector<ReportRow> rows;
+};
+
+/// {"note", "rows": [{"table", "name", "suite", "budget", "engine", "extractor", "weights", "engine_weights",
+/// "extractor_weights", "offsets", "foot_lock", "oracle", "peer", "context", "limit", "breakdown", "near"}]};
+/// all but a row's first three may be missing. "context": frames after which the past is forgotten. Paths are
+/// from the file's folder. Throws Error naming the file and what it does not know.
+ReportPlan read_report_plan(const std::string& path);
 
 }  // namespace understudy::app

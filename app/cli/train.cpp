@@ -20,7 +20,9 @@ Action declare_train(CLI::App& command) {
   command.add_option("--minutes", options->minutes, "stop after this long")->check(CLI::NonNegativeNumber);
   command.add_option("--samples", options->samples, "stop after this many samples in all")
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--threads", options->threads, "0: one a core")->check(CLI::Range(0, 1024));
+  command
+      .add_option("--threads", options->threads, "0: the network's own: one a core for skeleton, else one")
+      ->check(CLI::Range(0, 1024));
   command.add_option("--batch", options->batch, "samples a step; 0: the network's own")
       ->check(CLI::Range(0, 65536));
   command.add_option("--seed", options->seed, "of the data and the first weights");
@@ -35,8 +37,11 @@ Action declare_train(CLI::App& command) {
                   "what the motion network says of rotations: 6d or quaternion")
       ->check(CLI::IsMember({"6d", "quaternion"}));
   command.add_flag("!--no-rotation-loss", options->rotation_loss, "the motion network without its L_rot");
-  command.add_option("--context", options->context, "frames of the motion network's sequences (default: 30)")
-      ->check(CLI::Range(3, 600));
+  command
+      .add_option("--context", options->context,
+                  "frames of the motion network's sequences (default: 30; at "
+                  "most 60, as clips are cut)")
+      ->check(CLI::Range(3, 60));
   command.add_option("--cache", options->cache,
                      "of the hybrid network: file of what the extractor saw, made where it is missing");
   command
@@ -53,6 +58,11 @@ Action declare_train(CLI::App& command) {
       ->needs(init)
       ->check(CLI::Range(0.0, 0.95));
   return [options] {
+    const bool only_cpu = options->network == "pose-transfer" || options->network == "leaf";
+    US_CHECK(options->minutes > 0 || options->samples > 0, "training wants an end: --minutes or --samples");
+    US_CHECK(options->device == "cpu" || !only_cpu, options->network, " is trained on the cpu");
+    US_CHECK(options->init.empty() || options->network != "pose-transfer",
+             "pose-transfer starts from nothing, or from the checkpoint beside --out");
     options->cancelled = interrupted;
     return nn::train(*options);
   };

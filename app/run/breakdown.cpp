@@ -58,15 +58,18 @@ void Breakdown::add(const std::string& folder, const Case& c, const Judge& judge
   add_confidence(judge, truth);
   const auto failures = failures_of({judge.source_joints(), truth.source_joints, judge.joints(), truth.joints,
                                      judge.rotations(), truth.rotations, c.fps});
+  const bool seen = !judge.source_joints().empty() && !truth.source_joints.empty(),
+             performed = !judge.joints().empty() && !truth.joints.empty(),
+             turned = !judge.rotations().empty() && !truth.rotations.empty();
+  const std::array<bool, kFailureCount> judged = {seen, seen, seen, seen || performed, performed, turned};
   for (const FrameFailures& frame : failures) {
-    ++frames_;
     for (int f = 0; f < kFailureCount; ++f) {
+      judged_[f] += judged[f];
       failures_[f] += frame[f];
       motion_failures_[motion][f] += frame[f];
     }
   }
-  if (!judge.source_joints().empty() && !truth.source_joints.empty())
-    add_worst(folder, c, judge, truth, failures);
+  if (seen) add_worst(folder, c, judge, truth, failures);
 }
 
 void Breakdown::add_worst(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth,
@@ -140,6 +143,7 @@ Json ConfidenceRecord::figures() const {
   json["bins"] = Json::array();
   for (const ReliabilityBin& bin : reliability(confidence, error))
     json["bins"].push_back({{"confidence", bin.confidence},
+                            {"expected_mm", 1000 * expected_error_for(static_cast<float>(bin.confidence))},
                             {"error_mm", 1000 * bin.error},
                             {"p90_mm", 1000 * bin.p90},
                             {"count", bin.count}});
@@ -163,8 +167,10 @@ Json Breakdown::json() const {
     if (!joints_[j].empty()) json["joints"][kJointNames[j]] = to_json(joints_[j]);
   for (int f = 0; f < kFailureCount; ++f) {
     Json& failure = json["failures"][kFailureNames[f]];
+    failure["judged"] = judged_[f];
     failure["frames"] = failures_[f];
-    failure["share"] = static_cast<double>(failures_[f]) / static_cast<double>(std::max<int64_t>(frames_, 1));
+    failure["share"] =
+        static_cast<double>(failures_[f]) / static_cast<double>(std::max<int64_t>(judged_[f], 1));
     for (const auto& [motion, counts] : motion_failures_)
       if (counts[f] > 0) failure["motions"][motion] = counts[f];
   }

@@ -26,7 +26,8 @@ struct WorstFrame {
 struct ConfidenceRecord {
   std::vector<double> confidence, error, frame_confidence, frame_error;
   void append(const ConfidenceRecord& other);
-  /// {"rank_correlation", "best_rank_correlation", "frame_rank_correlation", "bins": [...]}
+  /// {"rank_correlation", "best_rank_correlation", "frame_rank_correlation", "bins": [{"confidence",
+  /// "expected_mm", "error_mm", "p90_mm", "count"}]}
   Json figures() const;
 };
 /// The lists themselves, as report keeps them. Throws nlohmann's exceptions where the JSON is another.
@@ -42,7 +43,7 @@ class Breakdown {
   void add(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth);
   /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
   /// {"jolt":
-  /// {"frames", "share"}}, "confidence": ConfidenceRecord::figures(),
+  /// {"judged", "frames", "share"}}, "confidence": ConfidenceRecord::figures(),
   /// "worst":
   /// [...]}; without what nothing is known of.
   Json json() const;
@@ -67,8 +68,7 @@ class Breakdown {
   std::array<Figures, kJointCount> joints_;
   std::map<std::string, std::vector<Metrics>> motions_, bodies_;
   std::map<std::string, std::array<int64_t, kFailureCount>> motion_failures_;
-  std::array<int64_t, kFailureCount> failures_{};
-  int64_t frames_ = 0;
+  std::array<int64_t, kFailureCount> failures_{}, judged_{};  // frames with it, and frames looked at for it
   ConfidenceRecord confidence_;
   std::vector<WorstFrame> worst_;
 };

@@ -370,6 +370,7 @@ void add_target(const Workshop& shop, const CasePlan& plan, const Performance& s
 
 void make_case(Workshop& shop, const CasePlan& plan) {
   const fs::path folder = fs::path(shop.options.out) / plan.name;
+  fs::remove_all(folder / "source");  // one made before may have had more frames
   fs::create_directories(folder / "source");
   const ExactMotion motion = turned_motion(shop, plan);
   const ExactPerson source = plan.dressed_source.empty()

@@ -25,6 +25,8 @@ Judge::Judge(double fps, const Truth* truth, const Mesh* target, int slow_every)
     hands_.emplace(target->vertices, target->faces, *truth->target_joints);
   if (target && !target->is_cloud() && truth && truth->target_joints && !truth->rotations.empty())
     bends_.emplace(target->vertices, target->faces, *truth->target_joints);
+  if (target && !target->is_cloud() && truth && truth->target_joints)
+    parts_.emplace(target->vertices, target->faces, *truth->target_joints);
 }
 
 void Judge::push(const JudgedFrame& frame) {
@@ -51,6 +53,10 @@ void Judge::push_surface(const JudgedFrame& frame) {
     medl_.add(last_.medl_mm = edge_length_error(p, q));
     last_.medl_mm *= 1000;
     if (bends_) push_bends(p, q);
+  }
+  if (parts_ && frames_ % slow_every_ == 0) {
+    hand_stretch_.add(parts_->hands(p));
+    head_stretch_.add(parts_->head(p));
   }
   floor_.add(last_.floor_mm = floor_penetration(p));
   floor_worst_ = std::max(floor_worst_, last_.floor_mm);
@@ -105,6 +111,8 @@ Metrics Judge::metrics() const {
     put(result, "bent_volume", bent_.sum / bent_.count);
     put(result, "bent_volume_true", bent_true_.sum / bent_true_.count);
   }
+  if (hand_stretch_.count > 0) put(result, "hand_stretch", hand_stretch_.sum / hand_stretch_.count);
+  if (head_stretch_.count > 0) put(result, "head_stretch", head_stretch_.sum / head_stretch_.count);
   if (!joints_.empty()) put(result, "jerk", jerk(joints_, fps_));
   if (self_penetration_.count > 0)
     put(result, "self_penetration", self_penetration_.sum / self_penetration_.count);

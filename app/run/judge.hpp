@@ -49,7 +49,8 @@ struct SurfaceFigures {
 /// all frames.
 ///
 /// bent_volume is the volume about elbows, knees, shoulders and hips over that in T-pose, in frames in which
-/// they are turned by more than 90 degrees; bent_volume_true is the truth's.
+/// they are turned by more than 90 degrees; bent_volume_true is the truth's. hand_stretch and head_stretch
+/// are PartStretch's.
 class Judge {
  public:
   /// truth may be null; target (its T-pose) too. slow_every: frames between looks of the slow figures.
@@ -85,13 +86,15 @@ class Judge {
   std::optional<SelfPenetration> penetration_;
   std::optional<HandContact> hands_;  // of the target
   std::optional<BentVolume> bends_;   // of the target
+  std::optional<PartStretch> parts_;  // of the target
   ContactsKept contacts_;
   int64_t frames_ = 0;
   JointSequence joints_, source_joints_, raw_joints_;
   std::vector<Rotations> rotations_;
   std::vector<Confidence> confidence_;
   SurfaceFigures last_;
-  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_, buried_, buried_added_, bent_, bent_true_;
+  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_, buried_, buried_added_, bent_, bent_true_,
+      hand_stretch_, head_stretch_;
   double floor_worst_ = 0;
 };
 

@@ -15,8 +15,9 @@ class BentVolume {
   static constexpr std::array<int, 8> kBends = {LeftElbow,    RightElbow,    LeftKnee, RightKnee,
                                                 LeftShoulder, RightShoulder, LeftHip,  RightHip};
 
-  /// rest: [V, 3] in T-pose, pelvis near x = 0; about a joint is what lies nearer to it than half the shorter
-  /// of the bones that meet there, on its own side. Throws Error without faces.
+  /// rest: [V, 3] in T-pose, pelvis near x = 0; about a joint is what lies nearer to it, on its own side,
+  /// than half the shorter of the bones that meet there, at hips and shoulders than half the limb's bone.
+  /// Throws Error without faces.
   BentVolume(const Points& rest, const Faces& faces, const Joints& joints);
   /// Volume of the surface about kBends[bend], its cuts closed, over what it is in T-pose; NaN where the
   /// body has no surface there.

@@ -11,7 +11,7 @@ namespace understudy {
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
 
 /// The rank correlation that expected errors would have with errors drawn from exactly them, normal and alike
-/// along all axes: what nobody who expects these errors can go beyond but by luck.
+/// along all axes: what is left to chance where nothing is wrong with what is expected.
 double best_rank_correlation(const std::vector<double>& expected);
 
 /// One bin of a reliability table.

@@ -17,8 +17,8 @@ double enclosure(const Points& cloud, const Vec3& point, float radius, float rea
 /// more.
 float typical_spacing(const Points& cloud);
 
-/// Share of `points` inside the scan: by winding number for a mesh, by enclosure for a cloud. Rows of the
-/// scan that are not finite are ignored.
+/// Share of `points` inside the scan: by winding number for a mesh, by enclosure for a cloud, of which
+/// rows that are not finite are ignored.
 double inside_share(const Mesh& scan, const Points& points);
 
 }  // namespace understudy

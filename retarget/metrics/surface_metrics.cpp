@@ -60,6 +60,30 @@ double floor_penetration(const Points& vertices) {
   return std::max(0.0, -static_cast<double>(vertices.col(1).minCoeff()));
 }
 
+PartStretch::PartStretch(const Points& rest, const Faces& faces, const Joints& rest_joints) {
+  const auto beyond = [&](int joint, int axis, int v) {
+    const float way = rest(v, axis) - rest_joints(joint, axis);
+    return rest_joints(joint, axis) < rest_joints(Pelvis, axis) ? way < 0 : way > 0;
+  };
+  for (Eigen::Index f = 0; f < faces.rows(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const int a = faces(f, k), b = faces(f, (k + 1) % 3);
+      const Edge joined{a, b, edge(rest, a, b)};
+      for (const int wrist : {LeftWrist, RightWrist})
+        if (beyond(wrist, 0, a) && beyond(wrist, 0, b)) hands_.push_back(joined);
+      if (beyond(Head, 1, a) && beyond(Head, 1, b)) head_.push_back(joined);
+    }
+}
+
+double PartStretch::stretch(const std::vector<Edge>& edges, const Points& vertices) {
+  double change = 0, length = 0;
+  for (const Edge& joined : edges) {
+    change += std::abs(edge(vertices, joined.a, joined.b) - joined.length);
+    length += joined.length;
+  }
+  return length > 0 ? change / length : std::nan("");
+}
+
 SelfPenetration::SelfPenetration(const Points& rest, const Faces& faces, int samples)
     : faces_(faces), windings_(rest, faces) {
   US_CHECK(faces.rows() > 0, "self-penetration wants a surface, not a point cloud");

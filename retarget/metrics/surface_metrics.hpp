@@ -5,6 +5,7 @@
 
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/metrics/windings.hpp"
+#include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy {
 
@@ -21,6 +22,24 @@ double edge_length_error(const Points& p, const Points& q, int neighbours = 6);
 
 /// How far the lowest vertex lies below the floor (y = 0), metres; 0 when none does.
 double floor_penetration(const Points& vertices);
+
+/// How much hands and head, which have no joints of their own that bend them, are stretched in a pose.
+class PartStretch {
+ public:
+  /// A T-pose and its joints: the hands are what lies beyond the wrists, the head what lies above its joint.
+  PartStretch(const Points& rest, const Faces& faces, const Joints& rest_joints);
+  /// Changes of the edges' lengths together over the lengths together; NaN where the part has no edges.
+  double hands(const Points& vertices) const { return stretch(hands_, vertices); }
+  double head(const Points& vertices) const { return stretch(head_, vertices); }
+
+ private:
+  struct Edge {
+    int a, b;
+    double length;  // in T-pose, metres
+  };
+  static double stretch(const std::vector<Edge>& edges, const Points& vertices);
+  std::vector<Edge> hands_, head_;
+};
 
 /// Judges which vertices of a posed surface have entered another part of the same body.
 class SelfPenetration {

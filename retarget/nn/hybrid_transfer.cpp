@@ -39,14 +39,10 @@ class HybridTransfer : public MotionTransfer {
 
  private:
   static HybridGruOptions options_of(const std::string& path) {
-    const auto numbers = read_weights_header(path).numbers;
+    const WeightsHeader header = read_weights_header(path);
     HybridGruOptions options;
-    if (const auto it = numbers.find("hidden"); it != numbers.end())
-      options.hidden = static_cast<int64_t>(it->second);
-    if (const auto it = numbers.find("layers"); it != numbers.end())
-      options.layers = static_cast<int64_t>(it->second);
-    US_CHECK(options.hidden > 0 && options.hidden <= 4096 && options.layers > 0 && options.layers <= 16, path,
-             ": the hybrid network's size cannot be");
+    options.hidden = header_size(path, header, "hidden", options.hidden, 1024);
+    options.layers = header_size(path, header, "layers", options.layers, 4);
     return options;
   }
 

@@ -10,7 +10,7 @@
 namespace understudy::nn {
 
 /// Loads the extractor. form: "dense", "paper" or "pointnet" (see skeleton_form.hpp); leaves, which may be
-/// null, looks again at arms, hands, head and feet. Throws Error naming the weights file.
+/// null, looks again at limbs and head. Throws Error naming the weights file.
 std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form,
                                                           std::unique_ptr<LeafRefiner> leaves = nullptr);
 

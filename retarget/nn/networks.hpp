@@ -16,6 +16,7 @@ struct NetworkOptions {
   std::string weights;          ///< folder of the weights; empty: beside the program, then the source tree's
   std::string engine = "copy";  ///< motion transfer: "copy", "paper" or "hybrid"
   bool offsets = true;          ///< pose-corrective offsets (paper 1, eq. 3) on or off
+  bool near = true;             ///< of "dense": limbs and head are looked at again from near
   std::string extractor = "dense";          ///< "dense", or the ablations "paper" and "pointnet"
   std::string engine_file, extractor_file;  ///< weights in place of the folder's; empty: the folder's
 };
@@ -41,12 +42,12 @@ RuntimeReport runtime_report();
 
 /// `understudy train ...`: everything after `train`. Returns the exit code; throws Error.
 struct TrainOptions {
-  std::string network;    ///< "skeleton", "motion", "hybrid", "deformation" or "pose-transfer"
+  std::string network;    ///< "skeleton", "leaf", "motion", "hybrid", "deformation" or "pose-transfer"
   std::string data, out;  ///< the data folder, the weights file
   std::string curve;      ///< learning curve CSV; empty: out + ".csv"
   double minutes = 0;     ///< stop after this long; 0: no limit
   int64_t samples = 0;    ///< stop after this many in total; 0: no limit
-  int threads = 0;        ///< 0: one a core
+  int threads = 0;        ///< 0: the network's own
   int batch = 0;          ///< 0: the network's own
   uint64_t seed = 1;
   std::string form = "dense";  ///< skeleton only: "dense", "paper" or "pointnet"

@@ -48,16 +48,12 @@ class PaperTransfer : public MotionTransfer {
 
  private:
   static MotionGruOptions options_of(const std::string& path) {
-    const auto numbers = read_weights_header(path).numbers;
+    const WeightsHeader header = read_weights_header(path);
     MotionGruOptions options;
-    if (const auto it = numbers.find("hidden"); it != numbers.end())
-      options.hidden = static_cast<int64_t>(it->second);
-    if (const auto it = numbers.find("layers"); it != numbers.end())
-      options.layers = static_cast<int64_t>(it->second);
-    if (const auto it = numbers.find("quaternions"); it != numbers.end())
-      options.quaternions = it->second != 0;
-    US_CHECK(options.hidden > 0 && options.hidden <= 4096 && options.layers > 0 && options.layers <= 16, path,
-             ": the motion network's size cannot be");
+    options.hidden = header_size(path, header, "hidden", options.hidden, 1024);
+    options.layers = header_size(path, header, "layers", options.layers, 4);
+    const auto quaternions = header.numbers.find("quaternions");
+    if (quaternions != header.numbers.end()) options.quaternions = quaternions->second != 0;
     return options;
   }
 

@@ -38,7 +38,7 @@ std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, con
 std::unique_ptr<LeafRefiner> load_leaves(const std::string& folder) {
   const std::string path = folder + "/leaf.weights";
   if (!std::filesystem::exists(path)) {
-    log::warn_once(path + ": is not there; hands, head and feet are seen from afar only");
+    log::warn_once(path + ": is not there; limbs and head are seen from afar only");
     return nullptr;
   }
   return load_leaf_refiner(path);
@@ -78,8 +78,9 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
   const bool dense = options.extractor == "dense";
   const std::string file =
       folder + (dense ? "/skeleton.weights" : "/skeleton_" + options.extractor + ".weights");
-  networks.extractor = load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
-                                              options.extractor, dense ? load_leaves(folder) : nullptr);
+  networks.extractor =
+      load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
+                             options.extractor, dense && options.near ? load_leaves(folder) : nullptr);
   if (dense && options.extractor_file.empty())
     networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
   networks.transfer = load_transfer(options, folder);

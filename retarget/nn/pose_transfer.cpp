@@ -21,10 +21,11 @@ struct Centred {
   torch::Tensor points;  // [1, N, 3]
 };
 
-Centred centred(const Points& points) {
-  const Eigen::RowVector3f mean = points.colwise().mean();
+/// All points around the mean of the first `counted` and over their mean distance from it.
+Centred centred(const Points& points, Eigen::Index counted) {
+  const Eigen::RowVector3f mean = points.topRows(counted).colwise().mean();
   Points around = points.rowwise() - mean;
-  const float size = around.rowwise().norm().mean();
+  const float size = around.topRows(counted).rowwise().norm().mean();
   US_CHECK(size > 1e-6f, "all points coincide");
   around /= size;
   return {mean, size, torch::from_blob(around.data(), {1, around.rows(), 3}, torch::kFloat32).clone()};
@@ -37,9 +38,16 @@ class PoseTransfer : public SurfaceTransfer {
     net_->eval();
   }
 
-  void reset(const Points& rest) override {
-    US_CHECK(rest.rows() > 3 && rest.allFinite(), "pose transfer: the target has no usable points");
-    rest_ = centred(rest);
+  void reset(const Mesh& rest) override {
+    US_CHECK(rest.vertices.rows() > 3 && rest.vertices.allFinite(),
+             "pose transfer: the target has no usable points");
+    // A file's vertices are dense in faces and hands; the network knows bodies by points spread evenly.
+    Rng rng(kThinningSeed);
+    const Points even = sample_points(rest, kPoseTransferPoints, rng);
+    even_ = even.rows();
+    Points all(even_ + rest.vertices.rows(), 3);
+    all << even, rest.vertices;
+    rest_ = centred(all, even_);
     first_.reset();
     sum_ = 0;
     frames_ = 0;
@@ -50,8 +58,8 @@ class PoseTransfer : public SurfaceTransfer {
     const torch::NoGradGuard no_grad;
     const Points thinned = thin_scan(scan, kThinningSeed);
     const Mat3 turn = rotation_about_y(heading);
-    const Centred source = centred(thinned * turn);  // rows: it faces +z
-    const auto made = net_->forward(source.points, rest_->points).contiguous();
+    const Centred source = centred(thinned * turn, thinned.rows());  // rows: it faces +z
+    const auto made = net_->forward(source.points, rest_->points, even_).contiguous();
     US_CHECK(torch::isfinite(made).all().item<bool>(), "the pose transfer network gave no finite point");
     Points posed = rest_->size * Eigen::Map<const Points>(made.data_ptr<float>(), made.size(1), 3);
     posed = (posed * turn.transpose()).eval();
@@ -59,10 +67,11 @@ class PoseTransfer : public SurfaceTransfer {
     // floor.
     const Eigen::RowVector3f here = thinned.colwise().mean();
     if (!first_) first_ = here;
-    follow(rest_->size / source.size);
-    posed.rowwise() += *first_ + scale_ * (here - *first_) - Eigen::RowVector3f(posed.colwise().mean());
+    const Centred now = centred(posed, even_);
+    follow(now.size / source.size);  // both in one pose
+    posed.rowwise() += *first_ + scale_ * (here - *first_) - now.mean;
     posed.col(1).array() += scale_ * thinned.col(1).minCoeff() - posed.col(1).minCoeff();
-    return posed;
+    return posed.bottomRows(posed.rows() - even_);
   }
 
  private:
@@ -73,7 +82,8 @@ class PoseTransfer : public SurfaceTransfer {
   }
 
   PoseTransferNet net_;
-  std::optional<Centred> rest_;
+  std::optional<Centred> rest_;  // points spread evenly, then the vertices
+  Eigen::Index even_ = 0;        // how many of them are the former
   std::optional<Eigen::RowVector3f> first_;
   float scale_ = 1;
   double sum_ = 0;

@@ -1,5 +1,6 @@
 #include "retarget/nn/weights_file.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -67,6 +68,16 @@ void save_weights(const std::string& path, const WeightsHeader& header, const to
 WeightsHeader read_weights_header(const std::string& path) {
   const std::string bytes = whole_file(path);
   return header_of(parse_weights(bytes, path));
+}
+
+int64_t header_size(const std::string& path, const WeightsHeader& header, const char* key, int64_t usual,
+                    int64_t most) {
+  const auto found = header.numbers.find(key);
+  if (found == header.numbers.end()) return usual;
+  const double size = found->second;
+  US_CHECK(size >= 1 && size <= static_cast<double>(most) && size == std::floor(size), path,
+           ": the network's \"", key, "\" cannot be ", size);
+  return static_cast<int64_t>(size);
 }
 
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,

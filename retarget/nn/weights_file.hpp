@@ -10,8 +10,8 @@ namespace understudy::nn {
 
 /// What a weights file says of itself.
 struct WeightsHeader {
-  std::string kind;                       ///< "skeleton", "motion", "deformation"
-  int version = 0;                        ///< of the network's form; another version is refused
+  std::string kind;  ///< "skeleton", "leaf", "motion", "hybrid", "deformation" or "pose-transfer"
+  int version = 0;   ///< of the network's form; another version is refused
   std::map<std::string, double> numbers;  ///< sizes and training figures
 };
 
@@ -21,6 +21,10 @@ void save_weights(const std::string& path, const WeightsHeader& header, const to
                   bool half = true);
 /// Only the header. Throws Error when the file is missing, damaged, or no weights file.
 WeightsHeader read_weights_header(const std::string& path);
+/// A size of the network that the header of `path` tells, or `usual` where it tells none. Throws Error naming
+/// the file when it is no whole number from 1 to `most`.
+int64_t header_size(const std::string& path, const WeightsHeader& header, const char* key, int64_t usual,
+                    int64_t most);
 /// Fills the module. Throws Error naming the file when kind or version differ, or a tensor is missing or of
 /// another shape.
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,

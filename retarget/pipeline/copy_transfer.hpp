@@ -16,8 +16,7 @@ struct CopyOptions {
   /// How far each bone is then turned to lie along the positions, 0..1 a joint: 1 leaves only the twist about
   /// the bone to the seen rotation. Pelvis, spine3 and leaves have no one bone and ignore it.
   JointWeights point;
-  /// The same as `point` where nothing was seen.
-  bool trust_confidence = false;
+  bool trust_confidence = false;  ///< whether a seen rotation weighs less where its joint's confidence is low
   float shoulder_hint = 0.3f;  ///< weight of the shoulders in the chest's rotation (neck and collars weigh 1)
   float spine_hint = 0.1f;  ///< weight of spine2 and spine3 in the pelvis' rotation (hips and spine1 weigh 1)
   float rest_blend = 0.0f;  ///< the source's T-pose directions: 0 a mean human's, 1 the target's

@@ -62,10 +62,10 @@ class SkeletonExtractor {
 class MotionTransfer {
  public:
   virtual ~MotionTransfer() = default;
-  /// Forgets the past; rest_b are the target's T-pose joints.
+  /// Forgets the past; rest_b are the target's T-pose joints, metres. Throws Error when they are no body's.
   virtual void reset(const Joints& rest_b) = 0;
   /// Local rotations of the target for one source frame, dt seconds after the one before. The root's position
-  /// is RootPath's business.
+  /// is RootPath's business. Throws Error when a joint, or the answer, is not finite.
   virtual Rotations push(const Extraction& source, float dt) = 0;
   virtual std::string name() const = 0;
 };
@@ -75,14 +75,15 @@ class MotionTransfer {
 class Deformer {
  public:
   virtual ~Deformer() = default;
-  /// Prepares for a target: rest vertices [V, 3] in T-pose, its T-pose joints.
+  /// Prepares for a target: rest vertices [V, 3] in T-pose, its T-pose joints, metres. Throws Error when they
+  /// cannot be used.
   virtual void bind(const Points& rest, const Joints& rest_joints) = 0;
   /// [V, 22], rows sum to 1. Valid after bind().
   virtual const RowMatrix& weights() const = 0;
   /// The same, bound to the same target, with other skin weights (a user's), [V, 22] >= 0; rows are made to
   /// sum to 1. Throws Error before bind(), when the shape is another or a row is empty.
   virtual std::shared_ptr<Deformer> with_weights(RowMatrix weights) const = 0;
-  /// Posed vertices [V, 3] (eq. 3): offsets, then linear blend skinning.
+  /// Posed vertices [V, 3] (eq. 3): offsets, then linear blend skinning. Throws Error before bind().
   virtual Points deform(const Pose& pose) const = 0;
   /// Pose-corrective offsets of the T-pose vertices in this pose, [V, 3] metres, T-pose axes; zero without
   /// such a network.

@@ -30,9 +30,9 @@ class JointFilter {
  public:
   explicit JointFilter(const JointFilterOptions& options = {});
   void reset();
-  /// The frame's joints repaired, dt seconds after the one before. Confidence is passed on; seen rotations
-  /// are passed on unless a swap was repaired, since the sides of what was seen are then unknown. What is
-  /// exact stays as it is.
+  /// The frame's joints and seen rotations repaired and smoothed, dt seconds after the one before.
+  /// Confidences go with their joints. Where a swap was repaired there are no seen rotations, since the sides
+  /// of what was seen are unknown. What is exact stays as it is.
   Extraction push(const Extraction& raw, float dt);
   /// Whether the last push() exchanged sides.
   bool repaired() const { return repaired_; }

@@ -90,7 +90,6 @@ class Retargeter {
   const Target& target() const { return target_; }
   const RowMatrix& weights() const;
   const Networks& networks() const { return networks_; }
-  float leg_scale() const { return root_.scale(); }
 
  private:
   RetargetedFrame transfer(RetargetedFrame frame, float dt, const BodyGirth* girth);

@@ -9,8 +9,8 @@ namespace understudy {
 class SurfaceTransfer {
  public:
   virtual ~SurfaceTransfer() = default;
-  /// Starts anew with a target: its vertices in T-pose, [V, 3] metres. Throws Error when they are unusable.
-  virtual void reset(const Points& rest) = 0;
+  /// Starts anew with a target in T-pose, metres. Throws Error when its vertices are unusable.
+  virtual void reset(const Mesh& rest) = 0;
   /// The target's vertices, [V, 3] metres, in its order, for one scan of somebody who faces `heading` radians
   /// about +y from +z. Throws Error when the scan cannot be used or no target was set.
   virtual Points push(const Mesh& scan, float heading) = 0;

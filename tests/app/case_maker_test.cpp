@@ -44,7 +44,7 @@ TEST(NumpyRandom, DrawsWhatNumpyDraws) {
   EXPECT_EQ(other.permutation(8), (std::vector<int64_t>{5, 0, 1, 4, 2, 6, 3, 7}));
 }
 
-// Figures of the fourth of four cases by an independent program (NumPy) that follows the same protocol: all
+// Figures of the third of four cases by an independent program (NumPy) that follows the same protocol: all
 // random numbers before it must have been drawn alike.
 TEST_F(CaseMaker, MakesTheCaseThatAnIndependentProgramMakes) {
   ASSERT_EQ(make("captured"), 4);

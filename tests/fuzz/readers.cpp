@@ -336,7 +336,7 @@ void splits(const std::string& bytes) {
 }
 
 void report_rows(const std::string& bytes) {
-  app::read_report_rows(ScratchFile("rows.json", bytes).path());
+  app::read_report_plan(ScratchFile("rows.json", bytes).path());
 }
 
 void settings(const std::string& bytes) {

@@ -7,9 +7,9 @@ constexpr int64_t kCode = 256;
 
 using torch::nn::Linear, torch::nn::ReLU, torch::nn::Sequential;
 
-torch::Tensor normalised(const torch::Tensor& x) {
-  const auto centred = x - x.mean(1, true);
-  return centred / (centred.square().mean(1, true) + 1e-5).sqrt();
+torch::Tensor normalised(const torch::Tensor& x, int64_t counted) {
+  const auto centred = x - x.narrow(1, 0, counted).mean(1, true);
+  return centred / (centred.narrow(1, 0, counted).square().mean(1, true) + 1e-5).sqrt();
 }
 
 }  // namespace
@@ -21,8 +21,8 @@ PlaceNormImpl::PlaceNormImpl(int64_t width, int64_t code) {
 }
 
 torch::Tensor PlaceNormImpl::forward(const torch::Tensor& x, const torch::Tensor& places,
-                                     const torch::Tensor& code) {
-  return normalised(x) * (1 + scale(places)) + shift(places) + pose(code);
+                                     const torch::Tensor& code, int64_t counted) {
+  return normalised(x, counted) * (1 + scale(places)) + shift(places) + pose(code);
 }
 
 PlaceBlockImpl::PlaceBlockImpl(int64_t from, int64_t to, int64_t code) {
@@ -34,9 +34,9 @@ PlaceBlockImpl::PlaceBlockImpl(int64_t from, int64_t to, int64_t code) {
 }
 
 torch::Tensor PlaceBlockImpl::forward(const torch::Tensor& x, const torch::Tensor& places,
-                                      const torch::Tensor& code) {
-  const auto h = first(torch::relu(norm1(x, places, code)));
-  return past(x) + second(torch::relu(norm2(h, places, code)));
+                                      const torch::Tensor& code, int64_t counted) {
+  const auto h = first(torch::relu(norm1(x, places, code, counted)));
+  return past(x) + second(torch::relu(norm2(h, places, code, counted)));
 }
 
 PoseTransferNetImpl::PoseTransferNetImpl() {
@@ -50,11 +50,13 @@ PoseTransferNetImpl::PoseTransferNetImpl() {
   finish = register_module("finish", Linear(64, 3));
 }
 
-torch::Tensor PoseTransferNetImpl::forward(const torch::Tensor& source, const torch::Tensor& rest) {
+torch::Tensor PoseTransferNetImpl::forward(const torch::Tensor& source, const torch::Tensor& rest,
+                                           int64_t counted) {
+  if (counted < 0) counted = rest.size(1);
   const auto pooled = std::get<0>(each_point->forward(source).max(1));  // [B, 512]
   const auto code = to_code->forward(pooled).unsqueeze(1);              // [B, 1, 256]
-  const auto x = block1(start(rest), rest, code);
-  return finish(block3(block2(x, rest, code), rest, code));
+  const auto x = block1(start(rest), rest, code, counted);
+  return finish(block3(block2(x, rest, code, counted), rest, code, counted));
 }
 
 }  // namespace understudy::nn

@@ -16,8 +16,10 @@ constexpr int64_t kPoseTransferPoints = 1024;  ///< of source and target in trai
 class PlaceNormImpl : public torch::nn::Module {
  public:
   PlaceNormImpl(int64_t width, int64_t code);
-  /// x [B, N, width], places [B, N, 3], code [B, 1, code] -> [B, N, width]
-  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& places, const torch::Tensor& code);
+  /// x [B, N, width], places [B, N, 3], code [B, 1, code] -> [B, N, width]; mean and deviation are those of
+  /// the first `counted` points.
+  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& places, const torch::Tensor& code,
+                        int64_t counted);
 
  private:
   torch::nn::Linear scale{nullptr}, shift{nullptr}, pose{nullptr};
@@ -28,7 +30,8 @@ TORCH_MODULE(PlaceNorm);
 class PlaceBlockImpl : public torch::nn::Module {
  public:
   PlaceBlockImpl(int64_t from, int64_t to, int64_t code);
-  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& places, const torch::Tensor& code);
+  torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& places, const torch::Tensor& code,
+                        int64_t counted);
 
  private:
   PlaceNorm norm1{nullptr}, norm2{nullptr};
@@ -40,10 +43,11 @@ TORCH_MODULE(PlaceBlock);
 class PoseTransferNetImpl : public torch::nn::Module {
  public:
   PoseTransferNetImpl();
-  /// source [B, M, 3]: a body in a pose, any points, that faces +z; rest [B, N, 3]: the target in T-pose;
-  /// both around their mean and over their mean distance from it. The target's points in that pose, [B, N,
-  /// 3], likewise.
-  torch::Tensor forward(const torch::Tensor& source, const torch::Tensor& rest);
+  /// source [B, M, 3]: a body in a pose, any points, that faces +z; rest [B, N, 3]: the target in T-pose, of
+  /// which the first `counted` points (-1: all) are spread evenly over its surface, as the training's are.
+  /// Both around the mean of such points and over their mean distance from it. The target's points in that
+  /// pose, [B, N, 3], likewise.
+  torch::Tensor forward(const torch::Tensor& source, const torch::Tensor& rest, int64_t counted = -1);
 
  private:
   torch::nn::Sequential each_point{nullptr}, to_code{nullptr};

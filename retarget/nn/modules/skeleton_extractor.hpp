@@ -92,7 +92,6 @@ class SkeletonExtractorNetImpl : public torch::nn::Module {
   explicit SkeletonExtractorNetImpl(const ExtractorShape& shape = {});
   /// Order-free in M and K; uses centres and offsets.
   ExtractorOutput forward(const ExtractorInput& input);
-  const ExtractorShape& shape() const { return shape_; }
 
  private:
   torch::Tensor embed_patches(const torch::Tensor& offsets);

@@ -87,6 +87,26 @@ TEST(AlignedVertexError, IsKnownForAStretchedCross) {
   EXPECT_NEAR(aligned_vertex_error(p, q), 1.0 / 3, 1e-6);
 }
 
+TEST(PartStretch, TellsHandsAndHeadFromTheRest) {
+  Joints joints = Joints::Zero();
+  joints(LeftWrist, 0) = 1, joints(RightWrist, 0) = -1, joints(Head, 1) = 1;
+  Points rest(9, 3);
+  rest << 1.1f, 0, 0, 1.3f, 0, 0, 1.1f, 0.2f, 0,  // left hand
+      0.1f, 0, 0, 0.3f, 0, 0, 0.1f, 0.2f, 0,      // trunk
+      0, 1.1f, 0, 0.2f, 1.1f, 0, 0, 1.3f, 0;      // head
+  Faces faces(3, 3);
+  faces << 0, 1, 2, 3, 4, 5, 6, 7, 8;
+  const PartStretch parts(rest, faces, joints);
+  const Mat3 turn = rotation_about_y(1);
+  EXPECT_NEAR(parts.hands(rest * turn), 0, 1e-6);
+  Points posed = rest;
+  posed.topRows(3) *= 1.1f;
+  posed.middleRows(3, 3) *= 3;
+  EXPECT_NEAR(parts.hands(posed), 0.1, 1e-5);
+  EXPECT_NEAR(parts.head(posed), 0, 1e-6);
+  EXPECT_TRUE(std::isnan(PartStretch(rest, faces.middleRows(1, 1), joints).hands(rest)));
+}
+
 TEST(EdgeLengthError, IsZeroForARigidMove) {
   const Points q = random_points(300, 2);
   const Points p = (q * rotation_about_y(1).transpose()).rowwise() + Eigen::RowVector3f(1, 0, 0);

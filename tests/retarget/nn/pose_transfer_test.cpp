@@ -60,6 +60,9 @@ TEST_F(PoseTransfer, ReadsTheSourceInAnyOrderAndFollowsTheTargets) {
   EXPECT_TRUE(torch::allclose(made, net->forward(source.flip(1), rest), 0, 1e-4));
   EXPECT_TRUE(torch::allclose(made.flip(1), net->forward(source, rest.flip(1)), 0, 1e-4));
   EXPECT_FALSE(torch::allclose(made, net->forward(2 * source, rest), 0, 1e-3));
+  // Points beyond those that count change nothing but themselves.
+  const auto more = torch::cat({rest, 3 * torch::randn({1, 500, 3})}, 1);
+  EXPECT_TRUE(torch::allclose(made, net->forward(source, more, 40).narrow(1, 0, 40), 0, 1e-4));
 }
 
 TEST_F(PoseTransfer, OneBatchCanBeLearntByHeart) {
@@ -109,19 +112,19 @@ TEST_F(PoseTransfer, TheCommandTrainsAndItsWeightsMoveATarget) {
   scan.vertices = rest * 0.5f;
   scan.vertices.col(1).array() += 3 - scan.vertices.col(1).minCoeff();
   EXPECT_THROW(peer->push(scan, 0), Error);  // no target yet
-  peer->reset(rest);
+  peer->reset({rest});
   const Points first = peer->push(scan, 0);
   EXPECT_EQ(first.rows(), 300);
   EXPECT_TRUE(first.allFinite());
-  peer->reset(rest);
+  peer->reset({rest});
   EXPECT_EQ(peer->push(scan, 0), first);  // the same again
   // Whoever turns, and is told to face elsewhere, turns the result.
   const Mat3 turn = rotation_about_y(1.0f);
   Mesh turned = scan;
   turned.vertices = scan.vertices * turn.transpose();
-  peer->reset(rest);
+  peer->reset({rest});
   EXPECT_LT((peer->push(turned, 1.0f) - first * turn.transpose()).rowwise().norm().maxCoeff(), 0.05f);
-  EXPECT_THROW(peer->reset(Points(0, 3)), Error);
+  EXPECT_THROW(peer->reset(Mesh{}), Error);
   EXPECT_THROW(nn::load_pose_transfer(file("absent")), Error);
 }
 
