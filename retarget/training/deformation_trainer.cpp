@@ -9,6 +9,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/weights_file.hpp"
+#include "retarget/training/checkpoint_archive.hpp"
 #include "retarget/training/deformation_step.hpp"
 #include "retarget/training/parameters.hpp"
 
@@ -84,39 +85,22 @@ std::string checkpoint_path(const nn::TrainOptions& options) {
 void DeformationTrainer::resume() {
   const std::string path = checkpoint_path(options_);
   if (!fs::exists(path)) return;
-  torch::serialize::InputArchive archive, net, average, optimizer;
-  archive.load_from(path);
-  archive.read("net", net);
-  archive.read("average", average);
-  archive.read("optimizer", optimizer);
-  net_->load(net);
-  average_->load(average);
-  optimizer_->load(optimizer);
-  torch::Tensor numbers, random;
-  archive.read("progress", numbers);
-  archive.read("random", random);
-  const auto* n = numbers.data_ptr<double>();
-  step_ = static_cast<int64_t>(n[0]), samples_ = static_cast<int64_t>(n[1]),
-  seconds_before_ = seconds_ = n[2];
-  sampler_->set_state(static_cast<uint64_t>(random.item<int64_t>()));
+  TrainingProgress progress;
+  read_archive(path, c10::nullopt, [&](torch::serialize::InputArchive& archive) {
+    progress = take_training(archive, *net_, *average_, *optimizer_);
+    sampler_->set_state(static_cast<uint64_t>(number_from(archive, "random").item<int64_t>()));
+  });
+  step_ = progress.step;
+  samples_ = progress.samples;
+  seconds_before_ = seconds_ = progress.seconds;
   log::info("resumed " + path + " at step " + std::to_string(step_));
 }
 
 void DeformationTrainer::save_checkpoint() {
-  torch::serialize::OutputArchive archive, net, average, optimizer;
-  net_->save(net);
-  average_->save(average);
-  optimizer_->save(optimizer);
-  archive.write("net", net);
-  archive.write("average", average);
-  archive.write("optimizer", optimizer);
-  archive.write(
-      "progress",
-      torch::tensor({static_cast<double>(step_), static_cast<double>(samples_), seconds_}, torch::kFloat64));
+  torch::serialize::OutputArchive archive;
+  put_training(archive, *net_, *average_, *optimizer_, {step_, samples_, seconds_});
   archive.write("random", torch::tensor(static_cast<int64_t>(sampler_->state()), torch::kLong));
-  const std::string path = checkpoint_path(options_);
-  archive.save_to(path + ".part");
-  fs::rename(path + ".part", path);
+  save_archive(archive, checkpoint_path(options_));
   nn::WeightsHeader header{"deformation",
                            nn::kDeformationVersion,
                            {{"samples", samples_}, {"steps", step_}, {"seconds", seconds_}}};
@@ -205,7 +189,7 @@ int DeformationTrainer::run() {
   }
   save_checkpoint();
   report();
-  return 0;
+  return done_share() < 1 ? 1 : 0;
 }
 
 }  // namespace

@@ -135,9 +135,7 @@ void HybridTrainer::save_checkpoint(const std::string& path) {
 }
 
 void HybridTrainer::load_checkpoint(const std::string& path) {
-  try {
-    torch::serialize::InputArchive archive;
-    archive.load_from(path, torch::Device(options_.device));
+  read_archive(path, torch::Device(options_.device), [&](torch::serialize::InputArchive& archive) {
     take(archive, "net", *net);
     take(archive, "average", *average);
     take(archive, "optimizer", *optimizer_);
@@ -145,9 +143,7 @@ void HybridTrainer::load_checkpoint(const std::string& path) {
     steps_ = number_from(archive, "steps").item<int64_t>();
     rng_ = Rng(static_cast<uint64_t>(number_from(archive, "rng").item<int64_t>()));
     minutes = number_from(archive, "minutes").item<double>();
-  } catch (const c10::Error&) {
-    throw Error(path + ": not a checkpoint of this network's training");
-  }
+  });
 }
 
 HybridFigures judge_hybrid(nn::HybridGru& net, const HybridBatch& batch) {

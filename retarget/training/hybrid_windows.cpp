@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/training/checkpoint_archive.hpp"
 
 namespace understudy::training {
 namespace {
@@ -150,13 +150,7 @@ void write_hybrid_cache(const std::string& path, const HybridCache& cache) {
   archive.write("train_dt", intervals(cache.train));
   archive.write("dev", to_tensor(cache.dev, cache.frames));
   archive.write("dev_dt", intervals(cache.dev));
-  const std::string part = path + ".part";
-  try {
-    archive.save_to(part);
-  } catch (const c10::Error&) {
-    throw Error(path + ": the extracted windows cannot be written");
-  }
-  US_CHECK(std::rename(part.c_str(), path.c_str()) == 0, path, ": the extracted windows cannot be written");
+  save_archive(archive, path);
 }
 
 HybridCache read_hybrid_cache(const std::string& path) {
@@ -165,6 +159,7 @@ HybridCache read_hybrid_cache(const std::string& path) {
     torch::serialize::InputArchive archive;
     archive.load_from(path);
     archive.read("version", version);
+    TORCH_CHECK(version.numel() == 1 && version.scalar_type() == torch::kInt64);
     archive.read("train", train);
     archive.read("train_dt", train_dt);
     archive.read("dev", dev);

@@ -12,6 +12,7 @@
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/modules/leaf_refiner.hpp"
 #include "retarget/nn/weights_file.hpp"
+#include "retarget/training/checkpoint_archive.hpp"
 #include "retarget/training/leaf_data.hpp"
 #include "retarget/training/parameters.hpp"
 
@@ -107,38 +108,22 @@ LeafTrainer::LeafTrainer(const nn::TrainOptions& options)
 
 void LeafTrainer::resume() {
   if (!fs::exists(checkpoint())) return;
-  torch::serialize::InputArchive archive, net, average, optimizer;
-  archive.load_from(checkpoint());
-  archive.read("net", net);
-  archive.read("average", average);
-  archive.read("optimizer", optimizer);
-  net_->load(net);
-  average_->load(average);
-  optimizer_->load(optimizer);
-  torch::Tensor numbers;
-  archive.read("progress", numbers);
-  const auto* n = numbers.data_ptr<double>();
-  step_ = static_cast<int64_t>(n[0]);
-  samples_ = static_cast<int64_t>(n[1]);
-  seconds_before_ = seconds_ = n[2];
+  TrainingProgress progress;
+  read_archive(checkpoint(), c10::nullopt, [&](torch::serialize::InputArchive& archive) {
+    progress = take_training(archive, *net_, *average_, *optimizer_);
+  });
+  step_ = progress.step;
+  samples_ = progress.samples;
+  seconds_before_ = seconds_ = progress.seconds;
   // Other scans than those that were seen before.
   sampler_ = std::make_unique<LeafSampler>(train_, options_.seed + static_cast<uint64_t>(step_) * 7919);
   log::info("resumed " + checkpoint() + " at step " + std::to_string(step_));
 }
 
 void LeafTrainer::save_checkpoint() {
-  torch::serialize::OutputArchive archive, net, average, optimizer;
-  net_->save(net);
-  average_->save(average);
-  optimizer_->save(optimizer);
-  archive.write("net", net);
-  archive.write("average", average);
-  archive.write("optimizer", optimizer);
-  archive.write(
-      "progress",
-      torch::tensor({static_cast<double>(step_), static_cast<double>(samples_), seconds_}, torch::kFloat64));
-  archive.save_to(checkpoint() + ".part");
-  fs::rename(checkpoint() + ".part", checkpoint());
+  torch::serialize::OutputArchive archive;
+  put_training(archive, *net_, *average_, *optimizer_, {step_, samples_, seconds_});
+  save_archive(archive, checkpoint());
   nn::LeafRefinerNet kept;
   copy_parameters(*average_, *kept);
   if (options_.keep > 0) mix_parameters(*first_, *kept, options_.keep);
@@ -236,7 +221,7 @@ int LeafTrainer::run() {
   coming.wait();
   save_checkpoint();
   report();
-  return 0;
+  return done_share() < 1 ? 1 : 0;
 }
 
 }  // namespace

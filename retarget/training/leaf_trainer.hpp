@@ -1,4 +1,4 @@
-// Trains the network that sees hands, head and feet from near.
+// Trains the network that sees limbs and head from near.
 #pragma once
 
 #include "retarget/nn/networks.hpp"
@@ -7,7 +7,8 @@ namespace understudy::training {
 
 /// Trains until the time or the samples (scans) of the options are used up; resumes from `out +
 /// ".checkpoint"` when it is there. Writes weights (running average) to `out`, the learning curve to `curve`.
-/// Returns 0; throws Error.
+/// 0 when it came to the end, 1 when it was
+/// cancelled. Throws Error.
 int train_leaf(const nn::TrainOptions& options);
 
 }  // namespace understudy::training

@@ -112,9 +112,7 @@ void MotionTrainer::save_checkpoint(const std::string& path) {
 }
 
 void MotionTrainer::load_checkpoint(const std::string& path) {
-  try {
-    torch::serialize::InputArchive archive;
-    archive.load_from(path, torch::Device(options_.device));
+  read_archive(path, torch::Device(options_.device), [&](torch::serialize::InputArchive& archive) {
     take(archive, "net", *net);
     take(archive, "discriminator", *discriminator);
     take(archive, "optimizer", *optimizer_);
@@ -122,9 +120,7 @@ void MotionTrainer::load_checkpoint(const std::string& path) {
     samples = number_from(archive, "samples").item<int64_t>();
     rng_ = Rng(static_cast<uint64_t>(number_from(archive, "rng").item<int64_t>()));
     minutes = number_from(archive, "minutes").item<double>();
-  } catch (const c10::Error&) {
-    throw Error(path + ": not a checkpoint of this network's training");
-  }
+  });
 }
 
 }  // namespace understudy::training

@@ -128,16 +128,12 @@ void PoseTransferTrainer::save_checkpoint(const std::string& path) {
 }
 
 void PoseTransferTrainer::load_checkpoint(const std::string& path) {
-  try {
-    torch::serialize::InputArchive archive;
-    archive.load_from(path);
+  read_archive(path, torch::kCPU, [&](torch::serialize::InputArchive& archive) {
     take(archive, "net", *net);
     take(archive, "optimizer", *optimizer_);
     samples = number_from(archive, "samples").item<int64_t>();
     minutes = number_from(archive, "minutes").item<double>();
-  } catch (const c10::Error&) {
-    throw Error(path + ": not a checkpoint of this network's training");
-  }
+  });
 }
 
 int train_pose_transfer(const nn::TrainOptions& options) {

@@ -10,6 +10,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/skeleton_form.hpp"
+#include "retarget/training/checkpoint_archive.hpp"
 #include "retarget/training/parameters.hpp"
 #include "retarget/training/scan_streams.hpp"
 #include "retarget/training/skeleton_batch.hpp"
@@ -39,11 +40,6 @@ struct Replica {
   std::exception_ptr failure;
 };
 
-struct Progress {
-  int64_t step = 0, samples = 0;
-  double seconds = 0;  ///< spent so far, over all runs
-};
-
 class SkeletonTrainer {
  public:
   explicit SkeletonTrainer(const nn::TrainOptions& options);
@@ -69,7 +65,7 @@ class SkeletonTrainer {
   std::vector<torch::Tensor> parameters_;
   std::unique_ptr<torch::optim::AdamW> optimizer_;
   std::vector<Replica> replicas_;
-  Progress progress_;
+  TrainingProgress progress_;
   Clock::time_point started_ = Clock::now();
   double seconds_before_ = 0, loss_sum_ = 0, vote_sum_ = 0, part_sum_ = 0, rotation_sum_ = 0;
   int loss_count_ = 0;
@@ -131,36 +127,17 @@ void SkeletonTrainer::add_replicas() {
 void SkeletonTrainer::resume() {
   const std::string path = checkpoint_path(options_);
   if (!fs::exists(path)) return;
-  torch::serialize::InputArchive archive, net, average, optimizer;
-  archive.load_from(path);
-  archive.read("net", net);
-  archive.read("average", average);
-  archive.read("optimizer", optimizer);
-  net_->load(net);
-  average_->load(average);
-  optimizer_->load(optimizer);
-  torch::Tensor numbers;
-  archive.read("progress", numbers);
-  const auto* n = numbers.data_ptr<double>();
-  progress_ = {static_cast<int64_t>(n[0]), static_cast<int64_t>(n[1]), n[2]};
+  read_archive(path, c10::nullopt, [&](torch::serialize::InputArchive& archive) {
+    progress_ = take_training(archive, *net_, *average_, *optimizer_);
+  });
   seconds_before_ = progress_.seconds;
   log::info("resumed " + path + " at " + std::to_string(progress_.samples) + " samples");
 }
 
 void SkeletonTrainer::save_checkpoint() {
-  torch::serialize::OutputArchive archive, net, average, optimizer;
-  net_->save(net);
-  average_->save(average);
-  optimizer_->save(optimizer);
-  archive.write("net", net);
-  archive.write("average", average);
-  archive.write("optimizer", optimizer);
-  archive.write("progress", torch::tensor({static_cast<double>(progress_.step),
-                                           static_cast<double>(progress_.samples), progress_.seconds},
-                                          torch::kFloat64));
-  const std::string path = checkpoint_path(options_);
-  archive.save_to(path + ".part");
-  fs::rename(path + ".part", path);
+  torch::serialize::OutputArchive archive;
+  put_training(archive, *net_, *average_, *optimizer_, progress_);
+  save_archive(archive, checkpoint_path(options_));
   const auto kept = nn::make_skeleton_form(options_.form);
   copy_parameters(*average_, *kept);
   if (options_.keep > 0) mix_parameters(*first_, *kept, options_.keep);
@@ -304,7 +281,7 @@ int SkeletonTrainer::run() {
   }
   save_checkpoint();
   report();
-  return 0;
+  return done_share() < 1 ? 1 : 0;
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 namespace understudy::training {
 
 /// Trains until the time or the samples of the options are used up; resumes from `out + ".checkpoint"` when
-/// it is there. Writes weights (running average) to `out`, the learning curve to `curve`. Returns 0; throws
-/// Error.
+/// it is there. Writes weights (running average) to `out`, the learning curve to `curve`. 0 when it came to
+/// the end, 1 when it was cancelled. Throws Error.
 int train_skeleton(const nn::TrainOptions& options);
 
 }  // namespace understudy::training

@@ -166,7 +166,7 @@ TEST_F(DeformationTrainerTest, GoesOnWhereItWasStopped) {
   nn::TrainOptions stopped = options("parts");
   int asked = 0;
   stopped.cancelled = [&asked] { return ++asked > 3; };
-  EXPECT_EQ(train_deformation(stopped), 0);
+  EXPECT_EQ(train_deformation(stopped), 1);
   EXPECT_NE(tensors_of(options("whole").out), tensors_of(stopped.out));
   EXPECT_EQ(train_deformation(options("parts")), 0);
   EXPECT_TRUE(tensors_of(options("whole").out) == tensors_of(options("parts").out));
@@ -177,6 +177,11 @@ TEST_F(DeformationTrainerTest, WritesALearningCurve) {
   const std::string curve = bytes_of(options("curve").out + ".csv");
   EXPECT_EQ(curve.rfind("minutes,step,samples", 0), 0u);
   EXPECT_NE(curve.find("3072"), std::string::npos);
+}
+
+TEST_F(DeformationTrainerTest, RefusesWhatIsNoCheckpoint) {
+  std::ofstream(options("junk").out + ".checkpoint") << "not a checkpoint";
+  EXPECT_THROW(train_deformation(options("junk")), Error);
 }
 
 TEST_F(DeformationTrainerTest, WantsAnEnd) {
