@@ -7,6 +7,7 @@
 #include "app/run/interrupt.hpp"
 #include "app/run/performer.hpp"
 #include "app/run/target_file.hpp"
+#include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/math/rotation.hpp"
@@ -47,10 +48,6 @@ struct Judging {
   const Truth* truth;  // null: none
   Metrics file;        // of the exported file, where asked for
 };
-
-double ms_since(std::chrono::steady_clock::time_point began) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
-}
 
 /// Only the skeletons of the scans: cases without a target. Repaired and smoothed as for a performance.
 void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) {

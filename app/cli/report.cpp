@@ -91,8 +91,11 @@ ReportResult result_of(const ReportOptions& options, ReportRow row) {
     result.report["row"] = known;
     if (result.row.breakdown) result.report["confidence_record"] = to_json(evaluation.breakdown.confidence());
     write_json(file, result.report);
-    if (result.row.breakdown)
-      write_worst_frames(options.out + "/worst_" + result.row.suite, evaluation.breakdown.worst());
+    if (result.row.breakdown && !evaluation.breakdown.worst().empty()) {
+      const std::string pictures = options.out + "/worst_" + result.row.suite;
+      write_worst_frames(pictures, evaluation.breakdown.worst());
+      fs::copy_file(pictures + "/worst.png", pictures + ".png", fs::copy_options::overwrite_existing);
+    }
   });
   check_interrupt("in row " + result.row.name);
   return result;

@@ -253,7 +253,7 @@ void write_breakdown(std::ofstream& page, const std::string& folder, const Repor
     write_confidence(page, folder, result.row.suite, breakdown["confidence"]);
   if (!breakdown["worst"].empty())
     page << "\nThe frames seen worst, beside what is true (green):\n\n![The frames seen worst](worst_"
-         << result.row.suite << "/worst.png)\n";
+         << result.row.suite << ".png)\n";
 }
 
 /// Whoever looks at a scan does not know of which suite it is.

@@ -1,17 +1,8 @@
 #include "app/run/performer.hpp"
 
-#include <chrono>
+#include "retarget/base/clock.hpp"
 
 namespace understudy::app {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point began) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-}
-
-}  // namespace
 
 Performer::Performer(Source& source, Target target, Networks networks, const RetargetOptions& options)
     : source_(source), retargeter_(std::move(networks), options) {
@@ -29,7 +20,7 @@ std::optional<PerformedFrame> Performer::next(const Joints& oracle) {
 }
 
 std::optional<PerformedFrame> Performer::next(const Extraction* oracle) {
-  const auto began = Clock::now();
+  const auto began = std::chrono::steady_clock::now();
   auto scan = source_.next();
   if (!scan) return std::nullopt;
   PerformedFrame frame;

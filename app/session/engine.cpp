@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "app/session/background_thread.hpp"
+#include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/pipeline/person_doubt.hpp"
@@ -21,10 +22,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr int kReplayChunk = 200;  // frames made anew between two looks at the plan
-
-double ms_since(Clock::time_point began) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-}
 
 void write_import(std::ostream& out, const ImportOptions& import) {
   out << import.units << '|' << import.up << '|' << import.yaw_deg << '|' << import.floor.value_or(-1e9f)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "retarget/base/error.hpp"
+#include "retarget/geometry/finite_rows.hpp"
 
 namespace understudy {
 namespace {
@@ -23,14 +24,6 @@ std::array<Vec3, kDirections> spread_directions() {
                      r * std::sin(golden * static_cast<float>(i))};
   }
   return directions;
-}
-
-Points finite_rows(const Points& points) {
-  Points result(points.rows(), 3);
-  Eigen::Index count = 0;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (points.row(i).allFinite()) result.row(count++) = points.row(i);
-  return result.topRows(count);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "retarget/base/error.hpp"
+#include "retarget/geometry/finite_rows.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -24,14 +25,6 @@ void nearest_of(const Eigen::ArrayXf& squared, std::vector<uint64_t>& keys) {
     keys[i] = static_cast<uint64_t>(bits) << 32 | static_cast<uint32_t>(i);
   }
   std::nth_element(keys.begin(), keys.begin() + (kPatchPoints - 1), keys.end());
-}
-
-Points finite_rows(const Points& points) {
-  Points kept(points.rows(), 3);
-  Eigen::Index count = 0;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (points.row(i).allFinite()) kept.row(count++) = points.row(i);
-  return kept.topRows(count);
 }
 
 }  // namespace

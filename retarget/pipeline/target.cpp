@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/geometry/finite_rows.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "retarget/pipeline/retargeter.hpp"
@@ -58,16 +59,8 @@ std::vector<std::string> complaints(const Mesh& mesh, const Joints& joints) {
 }
 
 Mesh finite_part(const Mesh& mesh) {
-  bool finite = mesh.vertices.allFinite();
-  if (finite && !mesh.is_cloud()) return mesh;
-  Mesh cloud;
-  std::vector<int> keep;
-  for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
-    if (mesh.vertices.row(i).allFinite()) keep.push_back(static_cast<int>(i));
-  cloud.vertices.resize(static_cast<Eigen::Index>(keep.size()), 3);
-  for (size_t i = 0; i < keep.size(); ++i)
-    cloud.vertices.row(static_cast<Eigen::Index>(i)) = mesh.vertices.row(keep[i]);
-  return cloud;
+  if (mesh.vertices.allFinite() && !mesh.is_cloud()) return mesh;
+  return Mesh{finite_rows(mesh.vertices)};
 }
 
 /// One look at the target: a sample of it turned and perhaps mirrored, the joints brought back.
