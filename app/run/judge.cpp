@@ -53,10 +53,10 @@ void Judge::push_surface(const JudgedFrame& frame) {
     medl_.add(last_.medl_mm = edge_length_error(p, q));
     last_.medl_mm *= 1000;
     if (bends_) push_bends(p, q);
-  }
-  if (parts_ && frames_ % slow_every_ == 0) {
-    hand_stretch_.add(parts_->hands(p));
-    head_stretch_.add(parts_->head(p));
+    if (parts_) {
+      hand_stretch_.add(parts_->hands(p)), hand_stretch_true_.add(parts_->hands(q));
+      head_stretch_.add(parts_->head(p)), head_stretch_true_.add(parts_->head(q));
+    }
   }
   floor_.add(last_.floor_mm = floor_penetration(p));
   floor_worst_ = std::max(floor_worst_, last_.floor_mm);
@@ -111,8 +111,11 @@ Metrics Judge::metrics() const {
     put(result, "bent_volume", bent_.sum / bent_.count);
     put(result, "bent_volume_true", bent_true_.sum / bent_true_.count);
   }
-  if (hand_stretch_.count > 0) put(result, "hand_stretch", hand_stretch_.sum / hand_stretch_.count);
-  if (head_stretch_.count > 0) put(result, "head_stretch", head_stretch_.sum / head_stretch_.count);
+  for (const auto& [key, mean] : {std::pair("hand_stretch", &hand_stretch_),
+                                  {"hand_stretch_true", &hand_stretch_true_},
+                                  {"head_stretch", &head_stretch_},
+                                  {"head_stretch_true", &head_stretch_true_}})
+    if (mean->count > 0) put(result, key, mean->sum / mean->count);
   if (!joints_.empty()) put(result, "jerk", jerk(joints_, fps_));
   if (self_penetration_.count > 0)
     put(result, "self_penetration", self_penetration_.sum / self_penetration_.count);

@@ -50,7 +50,7 @@ struct SurfaceFigures {
 ///
 /// bent_volume is the volume about elbows, knees, shoulders and hips over that in T-pose, in frames in which
 /// they are turned by more than 90 degrees; bent_volume_true is the truth's. hand_stretch and head_stretch
-/// are PartStretch's.
+/// are PartStretch's, ..._true the truth's.
 class Judge {
  public:
   /// truth may be null; target (its T-pose) too. slow_every: frames between looks of the slow figures.
@@ -94,7 +94,7 @@ class Judge {
   std::vector<Confidence> confidence_;
   SurfaceFigures last_;
   Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_, buried_, buried_added_, bent_, bent_true_,
-      hand_stretch_, head_stretch_;
+      hand_stretch_, head_stretch_, hand_stretch_true_, head_stretch_true_;
   double floor_worst_ = 0;
 };
 
