@@ -36,7 +36,9 @@ int dev_windows(const nn::TrainOptions& options) {
 bool add_windows(std::vector<HybridWindow>& windows, int count, const TrainingData& data, uint64_t seed,
                  const nn::TrainOptions& options, HybridCache& cache) {
   if (static_cast<int>(windows.size()) >= count) return true;
-  const auto extractor = nn::load_network_extractor(options.weights + "/skeleton.weights", "dense");
+  // The eyes that the engine has: limbs and head are looked at from near.
+  const auto extractor = nn::load_network_extractor(options.weights + "/skeleton.weights", "dense",
+                                                    nn::load_leaf_refiner(options.weights + "/leaf.weights"));
   HybridWindowMaker maker(data, kFrames, seed + 1000 * windows.size());
   const auto start = Clock::now();
   const size_t had = windows.size();

@@ -13,7 +13,7 @@ namespace understudy::training {
 namespace {
 
 constexpr float kClipRate = 30;  // frames/s
-constexpr int64_t kVersion = 1;
+constexpr int64_t kVersion = 2;
 // A joint of a frame in the file: place seen, confidence, rotation seen (6D), true place, true rotation (6D).
 constexpr int64_t kNumbers = 3 + 1 + 6 + 3 + 6;
 
