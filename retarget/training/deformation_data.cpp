@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/math/random_direction.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/modules/deformation.hpp"
 
@@ -57,9 +56,6 @@ DeformationSampler::DeformationSampler(const TrainingData& data, const Deformati
   auto surface = std::make_shared<Surface>(mean);
   surface->canonical = mean.vertices;
   surfaces_.push_back(surface);
-  auto padded = std::make_shared<Surface>(*surface);
-  padded->pose_dirs = nullptr;
-  padded_ = padded;
   for (const auto& body : data.dressed) surfaces_.push_back(std::make_shared<Surface>(body));
 }
 
@@ -106,9 +102,7 @@ DeformationSampler::Person DeformationSampler::draw_person() {
     const ShapedBody body = data_.body.shaped(draw_shape(data_, rng_));
     person.vertices = body.vertices;
     person.joints = body.joints;
-    const bool padded = rng_.chance(options_.padded_share / (1 - options_.clothed_share));
-    person.surface = padded ? padded_.get() : surfaces_[0].get();
-    if (padded) pad(person);
+    person.surface = surfaces_[0].get();
     if (rng_.chance(options_.warped_share)) warp(person);
   }
   person.mirror = rng_.chance(0.5f);
@@ -157,25 +151,6 @@ void DeformationSampler::warp(Person& person) {
       person.vertices(v, r) = blended.block<1, 3>(v, 3 * r).dot(p) + blended(v, 9 + r);
   }
   person.joints = moved;
-}
-
-/// Cloth, shoes and hair as thick as chance will have them, in folds: the skin below says how cloth moves.
-void DeformationSampler::pad(Person& person) {
-  constexpr int kFolds = 3;
-  Eigen::VectorXf thickness(kJointCount);  // metres over the skin that goes with each joint
-  for (int j = 0; j < kJointCount; ++j) {
-    const bool bare = j == LeftWrist || j == RightWrist || rng_.chance(0.3f);
-    const float most = j == Head || j == Neck ? 0.05f : j == LeftFoot || j == RightFoot ? 0.02f : 0.035f;
-    thickness[j] = kMirror[j] < j ? thickness[kMirror[j]] : bare ? 0 : rng_.uniform(0, most);
-  }
-  Eigen::VectorXf over = person.surface->weights * thickness;
-  for (int fold = 0; fold < kFolds; ++fold) {
-    const Vec3 wave = 2 * kPi / rng_.uniform(0.1f, 0.8f) * random_direction(rng_);
-    const float phase = rng_.uniform(-kPi, kPi), depth = rng_.uniform(0, 0.4f);
-    over.array() *= 1 + depth * ((person.vertices * wave).array() + phase).sin();
-  }
-  const Points outwards = vertex_normals(person.vertices, person.surface->faces);
-  person.vertices += (outwards.array().colwise() * over.array()).matrix();
 }
 
 /// Mostly a captured pose; often the upper half of another one, sometimes exaggerated.

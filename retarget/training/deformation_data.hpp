@@ -19,7 +19,7 @@ struct DeformationBatch {
       seen_joints;        ///< [B, 22, 3] what the networks get: some bodies' joints are wrong, as at run time
   torch::Tensor surface;  ///< [B, M, 3] points spread over the body
   torch::Tensor weights;  ///< [B, N, 22] truth
-  torch::Tensor basis;    ///< [B, N, 567] truth, 0 on clothed and padded people
+  torch::Tensor basis;    ///< [B, N, 567] truth, 0 on clothed people
   torch::Tensor canonical;      ///< [B, N, 3] the same place on the mean body
   torch::Tensor has_canonical;  ///< [B] 1 for bodies of the parametric family
   torch::Tensor features;       ///< [B, P, 189] pose features
@@ -28,8 +28,7 @@ struct DeformationBatch {
 
 struct DeformationDataOptions {
   int bodies = 8, points = 512, poses = 4, context_points = 512;
-  float clothed_share = 0.25f;
-  float padded_share = 0.25f;  ///< of bodies with cloth made up: skin moved outwards, its weights kept
+  float clothed_share = 0.3f;
   float noisy_share = 0.35f;   ///< of bodies seen with wrong joints
   float joint_noise = 0.015f;  ///< largest standard deviation of those, metres
   float warped_share = 0.2f;   ///< of bodies with other bone lengths, girth and a T-pose not quite held
@@ -53,7 +52,6 @@ class DeformationSampler {
   Person draw_person();
   Rotations draw_pose();
   void warp(Person& person);
-  void pad(Person& person);
   void place(const Person& person, int row, DeformationBatch& batch);
   int neighbour_face(const Surface& surface, int face);
 
@@ -61,7 +59,6 @@ class DeformationSampler {
   DeformationDataOptions options_;
   Rng rng_;
   std::vector<std::shared_ptr<const Surface>> surfaces_;  // 0 the parametric body, then the clothed
-  std::shared_ptr<const Surface> padded_;  // the parametric body without pose-corrective offsets
 };
 
 }  // namespace understudy::training

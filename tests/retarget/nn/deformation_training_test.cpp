@@ -54,38 +54,13 @@ TEST(DeformationSampler, TruthPosesAsTheBodyDoes) {
   TrainingData data = testing::octahedron_data();
   data.betas = {Eigen::VectorXf::Zero(1)};
   DeformationDataOptions options = small_batch();
-  options.noisy_share = options.warped_share = options.padded_share = 0;
+  options.noisy_share = options.warped_share = 0;
   DeformationSampler sampler(data, options, 2);
   const auto batch = sampler.next();
   EXPECT_TRUE(torch::allclose(batch.canonical, batch.points, 0, 0.15));  // noisy shapes, but the same place
   const auto rest = batch.points.unsqueeze(-1) + nn::pose_offsets(batch.basis, batch.features);
   EXPECT_TRUE(nn::blend_skin(batch.weights, rest, batch.transforms).isfinite().all().item<bool>());
   EXPECT_GT(batch.basis.abs().max().item<float>(), 0.005f);
-}
-
-TEST(DeformationSampler, ClothLiesOverTheSkinAndMovesAsItDoes) {
-  TrainingData data = testing::octahedron_data();
-  data.betas = {Eigen::VectorXf()};  // one body
-  DeformationDataOptions bare = small_batch(), padded = small_batch();
-  for (auto* options : {&bare, &padded})
-    options->noisy_share = options->warped_share = options->clothed_share = 0;
-  bare.padded_share = 0;
-  padded.padded_share = 1;
-  const auto size_of = [&](const DeformationDataOptions& options) {
-    DeformationSampler sampler(data, options, 4);
-    double size = 0;
-    for (int i = 0; i < 20; ++i) {
-      const auto batch = sampler.next();
-      const auto around = batch.surface - batch.surface.mean(1, true);
-      size += around.norm(2, -1).mean().item<double>();
-      EXPECT_EQ(batch.basis.abs().max().item<float>() > 0, options.padded_share == 0);
-      EXPECT_TRUE(torch::allclose(batch.weights.sum(-1), torch::ones({2, 32}), 0, 1e-5));
-    }
-    return size / 20;
-  };
-  const double skin = size_of(bare), cloth = size_of(padded);
-  EXPECT_GT(cloth, skin + 0.002);
-  EXPECT_LT(cloth, skin + 0.05);
 }
 
 TEST(DeformationTraining, OverfitsOneBatch) {
