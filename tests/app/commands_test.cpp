@@ -204,9 +204,12 @@ TEST_F(Commands, TrainTrainsAndResumes) {
 }
 
 TEST_F(Commands, TrainWantsData) {
+  expect_clean_failure(run_program({"train", "skeleton", "--samples", "1", "--data", scratch.path("absent"),
+                                    "--out", out("s.weights")}),
+                       "absent");
   expect_clean_failure(
       run_program({"train", "skeleton", "--data", scratch.path("absent"), "--out", out("s.weights")}),
-      "absent");
+      "--minutes");
 }
 
 TEST_F(Commands, SampleWritesScansAndTargetsThatRetargetTakes) {

@@ -61,7 +61,7 @@ TEST_F(Measuring, ReportWritesAPageAndSaysWhatIsLeftOut) {
   const std::vector<std::string> command = {
       "report", "--cases", scratch.path("cases"), "--rows", scratch.path("rows.json"), "--out", out("page")};
   const Finished run = run_program(command);
-  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.code, 1) << run.err;  // not all of it is there
   const std::string page = read_bytes(out("page/report.md"));
   EXPECT_NE(page.find("| extraction | ours |"), std::string::npos) << page;
   EXPECT_NE(page.find("an hour"), std::string::npos) << page;
