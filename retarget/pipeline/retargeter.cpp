@@ -87,7 +87,6 @@ RetargetedFrame Retargeter::push(const Mesh& scan, float dt) {
   RetargetedFrame frame;
   const int points = finite_points(scan.vertices);
   if (points < options_.min_points) return skip(detail::join("the scan has ", points, " usable points"), dt);
-  const RecentJoints recent_before = recent_;
   try {
     frame.source_raw = networks_.extractor->extract_next(scan, recent_);
   } catch (const Error& error) {
@@ -98,9 +97,7 @@ RetargetedFrame Retargeter::push(const Mesh& scan, float dt) {
   if (options_.keep_contacts && frame.source_raw.joints.allFinite())
     girth = measure_girth(frame.source_raw, scan.vertices);
   frame.ms.extract = watch.lap();
-  RetargetedFrame result = transfer(std::move(frame), dt, girth ? &*girth : nullptr);
-  if (result.flagged) recent_ = recent_before;  // what is not believed is not told to the next frame
-  return result;
+  return transfer(std::move(frame), dt, girth ? &*girth : nullptr);
 }
 
 RetargetedFrame Retargeter::push(const Extraction& extraction, float dt, const BodyGirth* girth) {
@@ -131,7 +128,7 @@ RetargetedFrame Retargeter::transfer(RetargetedFrame frame, float dt, const Body
   const FootLock feet_before = feet_;
   const HandContacts hands_before = hands_;
   const auto refuse = [&](const std::string& reason) {
-    filter_ = filter_before;  // a frame that is not believed leaves no trace but in the engine
+    filter_ = filter_before;  // a frame that is not believed leaves no trace here
     root_ = root_before;
     feet_ = feet_before;
     hands_ = hands_before;
