@@ -64,11 +64,8 @@ Action declare_eval(CLI::App& command) {
                   "forget the past after so many frames: contexts of this length")
       ->check(CLI::NonNegativeNumber);
   command
-      .add_option(
-          "--peer", options->peer,
-          "fit: fit a body to each scan instead of extracting a skeleton; npt: pose transfer without a "
-          "skeleton (weights: --engine-weights)")
-      ->check(CLI::IsMember({"fit", "npt"}));
+      .add_option("--peer", options->peer, "fit: fit a body to each scan instead of extracting a skeleton")
+      ->check(CLI::IsMember({"fit"}));
   command
       .add_option("--file", options->file_shapes,
                   "judge the GLB that would be exported, too, with so many morph targets: file_medl_mm, ...")

@@ -10,9 +10,7 @@
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
-#include "retarget/math/rotation.hpp"
 #include "retarget/peers/body_fit.hpp"
-#include "retarget/peers/surface_joints.hpp"
 
 namespace understudy::app {
 
@@ -121,42 +119,6 @@ void judge_performance(const Case& c, const EvalOptions& options, Networks netwo
   to.file = file_figures(body, clip, *to.truth);
 }
 
-/// The peer without a skeleton: its surface, and joints read off it. It is told where the source faces, since
-/// its paper's people all face one way. A frame that it cannot use stays as the last.
-void judge_surface(const Case& c, const EvalOptions& options, Networks networks,
-                   const PreparedCharacter& target, Judging& to) {
-  const auto source = open_source(case_source(c));
-  const auto peer = nn::load_pose_transfer(options.networks);
-  const Points& rest = target.target.mesh.vertices;
-  networks.deformer->bind(rest, target.target.joints);
-  const SurfaceJoints joints_of(rest, networks.deformer->weights(), target.target.joints);
-  peer->reset(target.target.mesh);
-  Points posed = rest;
-  RecentJoints recent;
-  while (true) {
-    check_interrupt("in case " + c.name);
-    FrameTimes times;
-    const auto began = std::chrono::steady_clock::now();
-    const auto frame = source->next();
-    if (!frame) break;
-    times.read = ms_since(began);
-    to.verdict.flagged += !failure_of([&] {
-                             const Extraction seen = networks.extractor->extract_next(frame->mesh, recent);
-                             US_CHECK(seen.global, "the peer wants an extractor that sees rotations");
-                             posed = peer->push(frame->mesh, heading_of((*seen.global)[Pelvis]));
-                           }).empty();
-    times.total = ms_since(began);
-    times.deform = times.total - times.read;
-    to.verdict.latency.add(times);
-    const Points vertices = target.surface.in_file_order(posed);
-    const Joints joints = joints_of.of(posed);
-    JudgedFrame judged;
-    judged.vertices = &vertices;
-    judged.joints = &joints;
-    to.judge.push(judged);
-  }
-}
-
 /// True rotations, root and joints of the target: only weights and offsets are the method's.
 void judge_deformation(const Truth& truth, const Mesh& target, Deformer& deformer, Judging& to) {
   US_CHECK(truth.target_joints && !truth.joints.empty() && !truth.rotations.empty(),
@@ -184,12 +146,8 @@ struct Bench {
 /// What is asked of a case must mean something there.
 void check_options(const EvalOptions& options, const Case& c) {
   const bool performed = !c.target.empty();
-  US_CHECK(performed || (options.oracle.empty() && options.peer != "npt" && !options.file_shapes &&
-                         options.restart_every == 0),
-           c.name, ": it has no target: --oracle, --peer npt, --file and --restart-every say nothing of it");
-  US_CHECK(
-      options.peer != "npt" || (options.oracle.empty() && !options.file_shapes && options.restart_every == 0),
-      "--peer npt has no skeleton and no past: --oracle, --file and --restart-every say nothing of it");
+  US_CHECK(performed || (options.oracle.empty() && !options.file_shapes && options.restart_every == 0),
+           c.name, ": it has no target: --oracle, --file and --restart-every say nothing of it");
   US_CHECK(options.oracle != "pose" ||
                (options.peer.empty() && !options.file_shapes && options.restart_every == 0),
            "--oracle pose knows every pose: --peer, --file and --restart-every say nothing of it");
@@ -215,9 +173,7 @@ void judge_case(const Bench& bench, const std::string& folder, const Case& c, Ve
   }
   Judge judge(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
   Judging to{judge, verdict, truth ? &*truth : nullptr, {}};
-  if (target && options.peer == "npt")
-    judge_surface(c, options, std::move(networks), *target, to);
-  else if (target)
+  if (target)
     judge_performance(c, options, std::move(networks), target, to);
   else if (mesh)
     judge_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);

@@ -18,9 +18,7 @@ struct EvalOptions {
   std::string cases, oracle, filter;
   int limit = 0;          ///< cases; 0: all
   int restart_every = 0;  ///< frames after which the method forgets the past; 0: never
-  /// "fit": a body is fitted to each scan in place of the extractor; "npt": pose transfer without a skeleton,
-  /// its weights those of --engine-weights; empty: none
-  std::string peer;
+  std::string peer;       ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
   std::optional<int> file_shapes;  ///< the exported file is judged, too, with so many morph targets
   std::string body;                ///< SMPL-format, of the peer "fit"
   int worst = 20;                  ///< frames told as the worst

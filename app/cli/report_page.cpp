@@ -37,14 +37,11 @@ const std::vector<Column> kPerformance = {{"mean", "mpjpe_m", "mpjpe_m", 1, 4},
 const std::vector<Table>& tables() {
   static const std::vector<Table> all = {
       {"peers", "Against peers",
-       "`copy`, `paper` and `hybrid` are the program's engines. `fit`: a parametric body is fitted to each "
+       "`copy` and `paper` are the program's engines. `fit`: a parametric body is fitted to each "
        "scan by "
        "optimisation from the scans alone, and its rotations are copied; where the people judged on are of "
        "that very "
-       "body, as in suites made from one data folder, it knows them better than it would know strangers. "
-       "`pose transfer`: the target's points are moved one by one as the scan's say, without a skeleton; it "
-       "is "
-       "told where our extractor sees the source face.",
+       "body, as in suites made from one data folder, it knows them better than it would know strangers.",
        kPerformance},
       {"peers",
        "Contacts, penetration, and what has no joints of its own",

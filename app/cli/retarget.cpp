@@ -18,10 +18,10 @@ void add_performance_options(CLI::App& command, RetargetOptions& performance) {
 }
 
 void add_network_options(CLI::App& command, nn::NetworkOptions& networks) {
-  command.add_option("--engine", networks.engine, "motion transfer: copy, paper or hybrid")
-      ->check(CLI::IsMember({"copy", "paper", "hybrid"}));
-  command.add_option("--extractor", networks.extractor, "skeleton extraction: dense, or an ablation")
-      ->check(CLI::IsMember({"dense", "paper", "pointnet"}));
+  command.add_option("--engine", networks.engine, "motion transfer: copy or paper")
+      ->check(CLI::IsMember({"copy", "paper"}));
+  command.add_option("--extractor", networks.extractor, "skeleton extraction: dense, or paper 1's")
+      ->check(CLI::IsMember({"dense", "paper"}));
   command.add_option("--weights", networks.weights, "folder of the weights (default: beside the program)");
   command.add_option("--engine-weights", networks.engine_file,
                      "weights file of the engine in place of the folder's");

@@ -9,10 +9,9 @@ namespace understudy::app {
 
 Action declare_train(CLI::App& command) {
   const auto options = std::make_shared<nn::TrainOptions>();
-  command
-      .add_option("network", options->network, "skeleton, leaf, motion, hybrid, deformation or pose-transfer")
+  command.add_option("network", options->network, "skeleton, leaf, motion or deformation")
       ->required()
-      ->check(CLI::IsMember({"skeleton", "leaf", "motion", "hybrid", "deformation", "pose-transfer"}));
+      ->check(CLI::IsMember({"skeleton", "leaf", "motion", "deformation"}));
   command.add_option("--data", options->data, "folder with body/, motion/ and splits.json")->required();
   command.add_option("--out", options->out, "the weights file; its checkpoint lies beside it and is resumed")
       ->required();
@@ -26,8 +25,8 @@ Action declare_train(CLI::App& command) {
   command.add_option("--batch", options->batch, "samples a step; 0: the network's own")
       ->check(CLI::Range(0, 65536));
   command.add_option("--seed", options->seed, "of the data and the first weights");
-  command.add_option("--form", options->form, "of the skeleton network: dense, the paper's, or pointnet")
-      ->check(CLI::IsMember({"dense", "paper", "pointnet"}));
+  command.add_option("--form", options->form, "of the skeleton network: dense, or paper 1's")
+      ->check(CLI::IsMember({"dense", "paper"}));
   command
       .add_option("--poses", options->poses,
                   "of the skeleton network: all, or rest (T-poses, for the joints of targets)")
@@ -42,13 +41,6 @@ Action declare_train(CLI::App& command) {
                   "frames of the motion network's sequences (default: 30; at "
                   "most 60, as clips are cut)")
       ->check(CLI::Range(3, 60));
-  command.add_option("--cache", options->cache,
-                     "of the hybrid network: file of what the extractor saw, made where it is missing");
-  command
-      .add_option("--windows", options->windows, "of the hybrid network: windows of 60 frames in the cache")
-      ->check(CLI::Range(1, 1000000));
-  command.add_option("--weights", options->weights,
-                     "folder of the trained extractor (default: beside the program)");
   command.add_option("--device", options->device, "cpu, or cuda where LibTorch has it")
       ->check(CLI::IsMember({"cpu", "cuda"}));
   const auto init = command.add_option("--init", options->init, "weights to start from");
@@ -58,11 +50,8 @@ Action declare_train(CLI::App& command) {
       ->needs(init)
       ->check(CLI::Range(0.0, 0.95));
   return [options] {
-    const bool only_cpu = options->network == "pose-transfer" || options->network == "leaf";
     US_CHECK(options->minutes > 0 || options->samples > 0, "training wants an end: --minutes or --samples");
-    US_CHECK(options->device == "cpu" || !only_cpu, options->network, " is trained on the cpu");
-    US_CHECK(options->init.empty() || options->network != "pose-transfer",
-             "pose-transfer starts from nothing, or from the checkpoint beside --out");
+    US_CHECK(options->device == "cpu" || options->network != "leaf", "leaf is trained on the cpu");
     options->cancelled = interrupted;
     return nn::train(*options);
   };

@@ -9,7 +9,7 @@
 
 namespace understudy::nn {
 
-/// Loads the extractor. form: "dense", "paper" or "pointnet" (see skeleton_form.hpp); leaves, which may be
+/// Loads the extractor. form: "dense" or "paper" (see skeleton_form.hpp); leaves, which may be
 /// null, looks again at limbs and head. Throws Error naming the weights file.
 std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form,
                                                           std::unique_ptr<LeafRefiner> leaves = nullptr);

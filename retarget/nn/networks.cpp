@@ -98,11 +98,6 @@ std::unique_ptr<Deformer> load_deformer(const NetworkOptions& options) {
   return plugin().load_deformer(options, folder);
 }
 
-std::unique_ptr<SurfaceTransfer> load_pose_transfer(const NetworkOptions& options) {
-  US_CHECK(!options.engine_file.empty(), "pose transfer ships without weights: train it, then name its file");
-  return plugin().load_pose_transfer(options.engine_file);
-}
-
 RuntimeReport runtime_report() {
   RuntimeReport report = plugin().report();
   const auto cores = std::thread::hardware_concurrency();
@@ -114,10 +109,8 @@ RuntimeReport runtime_report() {
 int train(const TrainOptions& options) {
   // Trainers bring their own threads: each computes alone.
   setenv("OMP_NUM_THREADS", "1", 0);
-  TrainOptions with_weights = options;
-  if (options.weights.empty()) with_weights.weights = weights_folder({});
   const std::clock_t before = std::clock();  // of all threads
-  const int result = plugin().train(with_weights);
+  const int result = plugin().train(options);
   log::info(detail::join("train ", options.network, ": ", (std::clock() - before) / CLOCKS_PER_SEC,
                          " core-seconds in this run"));
   return result;

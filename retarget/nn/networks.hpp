@@ -8,23 +8,20 @@
 #include <vector>
 
 #include "retarget/pipeline/interfaces.hpp"
-#include "retarget/pipeline/surface_transfer.hpp"
 
 namespace understudy::nn {
 
 struct NetworkOptions {
   std::string weights;          ///< folder of the weights; empty: beside the program, then the source tree's
-  std::string engine = "copy";  ///< motion transfer: "copy", "paper" or "hybrid"
+  std::string engine = "copy";  ///< motion transfer: "copy" or "paper"
   bool offsets = true;          ///< pose-corrective offsets (paper 1, eq. 3) on or off
   bool near = true;             ///< of "dense": limbs and head are looked at again from near
-  std::string extractor = "dense";          ///< "dense", or the ablations "paper" and "pointnet"
+  std::string extractor = "dense";          ///< "dense" or "paper"
   std::string engine_file, extractor_file;  ///< weights in place of the folder's; empty: the folder's
 };
 
 /// The three networks with trained weights. Throws Error when weights are missing or of another version.
 Networks load_networks(const NetworkOptions& options);
-/// The peer without a skeleton, Neural Pose Transfer's idea; its weights are those of `engine_file`.
-std::unique_ptr<SurfaceTransfer> load_pose_transfer(const NetworkOptions& options);
 /// A deformer alone (weights and offsets), for oracle evaluations.
 std::unique_ptr<Deformer> load_deformer(const NetworkOptions& options);
 
@@ -42,7 +39,7 @@ RuntimeReport runtime_report();
 
 /// `understudy train ...`: everything after `train`. Returns the exit code; throws Error.
 struct TrainOptions {
-  std::string network;    ///< "skeleton", "leaf", "motion", "hybrid", "deformation" or "pose-transfer"
+  std::string network;    ///< "skeleton", "leaf", "motion" or "deformation"
   std::string data, out;  ///< the data folder, the weights file
   std::string curve;      ///< learning curve CSV; empty: out + ".csv"
   double minutes = 0;     ///< stop after this long; 0: no limit
@@ -50,15 +47,12 @@ struct TrainOptions {
   int threads = 0;        ///< 0: the network's own
   int batch = 0;          ///< 0: the network's own
   uint64_t seed = 1;
-  std::string form = "dense";  ///< skeleton only: "dense", "paper" or "pointnet"
+  std::string form = "dense";  ///< skeleton only: "dense" or "paper"
   std::string poses =
       "all";  ///< skeleton only: "all", or "rest": people in T-pose, for the joints of targets
   std::string rotation = "6d";      ///< motion only: what the network says of rotations, "6d" or "quaternion"
   bool rotation_loss = true;        ///< motion only: L_rot of paper 1, eq. 2
   int context = 0;                  ///< motion only: frames of a sequence; 0: the paper's 30
-  std::string cache;                ///< hybrid only: file of extracted windows, made where it is missing
-  int windows = 800;                ///< hybrid only: windows that the cache is to hold
-  std::string weights;              ///< folder of the trained extractor; empty: beside the program
   std::string device = "cpu";       ///< "cpu" or "cuda"
   std::string init;                 ///< weights to start from
   double keep = 0;                  ///< share of those in what is written; skeleton and leaf only

@@ -6,19 +6,15 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/nn/hybrid_transfer.hpp"
 #include "retarget/nn/leaf_refiner.hpp"
 #include "retarget/nn/network_deformer.hpp"
 #include "retarget/nn/network_extractor.hpp"
 #include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/plugin_api.hpp"
-#include "retarget/nn/pose_transfer.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/training/deformation_trainer.hpp"
-#include "retarget/training/hybrid_trainer.hpp"
 #include "retarget/training/leaf_trainer.hpp"
 #include "retarget/training/motion_trainer.hpp"
-#include "retarget/training/pose_transfer_trainer.hpp"
 #include "retarget/training/skeleton_trainer.hpp"
 
 namespace understudy::nn {
@@ -26,12 +22,8 @@ namespace {
 
 std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, const std::string& folder) {
   if (options.engine == "copy") return std::make_unique<CopyTransfer>();
-  const auto file = [&](const char* name) {
-    return options.engine_file.empty() ? folder + name : options.engine_file;
-  };
-  if (options.engine == "hybrid") return load_hybrid_transfer(file("/hybrid.weights"));
-  US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy, paper or hybrid");
-  return load_paper_transfer(file("/motion.weights"));
+  US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy or paper");
+  return load_paper_transfer(options.engine_file.empty() ? folder + "/motion.weights" : options.engine_file);
 }
 
 /// Null where the folder has none: weights of one's own need no second look.
@@ -91,12 +83,10 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
 int train_network(const TrainOptions& options) {
   if (options.network == "skeleton") return training::train_skeleton(options);
   if (options.network == "motion") return training::train_motion(options);
-  if (options.network == "hybrid") return training::train_hybrid(options);
-  if (options.network == "pose-transfer") return training::train_pose_transfer(options);
   if (options.network == "deformation") return training::train_deformation(options);
   if (options.network == "leaf") return training::train_leaf(options);
   throw Error("there is no network '" + options.network +
-              "' to train: skeleton, leaf, motion, hybrid, deformation or pose-transfer");
+              "' to train: skeleton, leaf, motion or deformation");
 }
 
 }  // namespace
@@ -104,6 +94,6 @@ int train_network(const TrainOptions& options) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion, load, load_skin, load_pose_transfer, report, train_network};
+  static const PluginApi api{kPluginVersion, load, load_skin, report, train_network};
   return &api;
 }

@@ -5,13 +5,12 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 4;
+constexpr int kPluginVersion = 5;
 
 struct PluginApi {
   int version;
   Networks (*load)(const NetworkOptions& options, const std::string& folder);
   std::unique_ptr<Deformer> (*load_deformer)(const NetworkOptions& options, const std::string& folder);
-  std::unique_ptr<SurfaceTransfer> (*load_pose_transfer)(const std::string& file);
   RuntimeReport (*report)();
   int (*train)(const TrainOptions& options);
 };

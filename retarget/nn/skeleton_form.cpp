@@ -1,7 +1,6 @@
 #include "retarget/nn/skeleton_form.hpp"
 
 #include "retarget/base/error.hpp"
-#include "retarget/nn/modules/point_net.hpp"
 #include "retarget/nn/modules/point_transformer.hpp"
 #include "retarget/nn/weights_file.hpp"
 
@@ -18,10 +17,9 @@ class DenseForm : public SkeletonForm {
 };
 
 /// Joints alone: no parts, votes, rotations or confidence.
-template <class Net>
-class JointsForm : public SkeletonForm {
+class PaperForm : public SkeletonForm {
  public:
-  JointsForm() { net_ = register_module("net", Net()); }
+  PaperForm() { net_ = register_module("net", PointTransformer()); }
   ExtractorOutput forward(const ExtractorInput& input) override {
     ExtractorOutput out;
     out.joints = net_->forward(input.points);
@@ -29,15 +27,14 @@ class JointsForm : public SkeletonForm {
   }
 
  private:
-  Net net_{nullptr};
+  PointTransformer net_{nullptr};
 };
 
 }  // namespace
 
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name) {
-  if (name == "paper") return std::make_shared<JointsForm<PointTransformer>>();
-  if (name == "pointnet") return std::make_shared<JointsForm<PointNet>>();
-  US_CHECK(name == "dense", "there is no extraction network '", name, "': dense, paper or pointnet");
+  if (name == "paper") return std::make_shared<PaperForm>();
+  US_CHECK(name == "dense", "there is no extraction network '", name, "': dense or paper");
   return std::make_shared<DenseForm>();
 }
 

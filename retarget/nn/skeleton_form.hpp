@@ -1,5 +1,4 @@
-// The forms of the extraction network behind one interface: "dense" (shipped), and the ablations "paper" and
-// "pointnet".
+// The forms of the extraction network behind one interface: "dense", and paper 1's, "paper".
 #pragma once
 
 #include <memory>
@@ -16,7 +15,7 @@ class SkeletonForm : public torch::nn::Module {
   virtual ExtractorOutput forward(const ExtractorInput& input) = 0;
 };
 
-/// "dense", "paper" or "pointnet"; anything else is an Error.
+/// "dense" or "paper"; anything else is an Error.
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name);
 void save_skeleton_form(const std::string& path, const std::string& name, const SkeletonForm& form,
                         int64_t samples);

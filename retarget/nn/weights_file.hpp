@@ -10,8 +10,8 @@ namespace understudy::nn {
 
 /// What a weights file says of itself.
 struct WeightsHeader {
-  std::string kind;  ///< "skeleton", "leaf", "motion", "hybrid", "deformation" or "pose-transfer"
-  int version = 0;   ///< of the network's form; another version is refused
+  std::string kind;                       ///< "skeleton", "leaf", "motion" or "deformation"
+  int version = 0;                        ///< of the network's form; another version is refused
   std::map<std::string, double> numbers;  ///< sizes and training figures
 };
 

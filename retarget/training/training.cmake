@@ -5,6 +5,5 @@ us_module(training TORCH SOURCES
   training/deformation_losses.cpp training/deformation_data.cpp training/deformation_step.cpp training/deformation_trainer.cpp
   training/losses/motion_losses.cpp training/motion_discriminator.cpp training/motion_data.cpp training/motion_judge.cpp
   training/motion_trainer.cpp training/motion_training.cpp
-  training/pose_transfer_trainer.cpp training/hybrid_windows.cpp training/hybrid_trainer.cpp training/hybrid_training.cpp
   training/leaf_data.cpp training/leaf_trainer.cpp
   PUBLIC understudy_training_data understudy_nn)
