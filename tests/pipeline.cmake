@@ -1,7 +1,7 @@
 us_test(pipeline_test LABELS fast SOURCES
   tests/retarget/pipeline/copy_transfer_test.cpp
   tests/retarget/pipeline/joint_filter_test.cpp
-  tests/retarget/pipeline/person_doubt_test.cpp
+  tests/retarget/pipeline/person_check_test.cpp
   tests/retarget/pipeline/root_path_test.cpp
   tests/retarget/pipeline/retargeter_test.cpp
   LIBS understudy_pipeline)

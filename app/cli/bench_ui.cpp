@@ -323,7 +323,7 @@ class UiBench {
     line("import of 100,000 vertices to first picture", text);
   }
 
-  /// From the command until all frames have been made, and until their surfaces have been judged, too.
+  /// From the command until all frames have been made, and until their surfaces have been evaluated, too.
   void open(const BenchFiles& files, int vertices) {
     const auto began = Clock::now();
     begin(files.scan(), files.target(vertices));
@@ -335,7 +335,7 @@ class UiBench {
     const double made = seconds_since(began);
     settle();
     char text[128];
-    std::snprintf(text, sizeof text, "%.1f s for %d frames of %d points, %d vertices; judged after %.1f s",
+    std::snprintf(text, sizeof text, "%.1f s for %d frames of %d points, %d vertices; evaluated after %.1f s",
                   made, frame_count(application_->session()), kScanPoints, vertices, seconds_since(began));
     line("opened and retargeted", text);
   }

@@ -24,7 +24,7 @@ const std::vector<Subcommand>& subcommands() {
       {"retarget", "lets a target perform what a source does", declare_retarget},
       {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
       {"cases", "makes suites of test cases from people and motions", declare_cases},
-      {"eval", "judges the method on a folder of cases", declare_eval},
+      {"eval", "evaluates the method on a folder of cases", declare_eval},
       {"measure", "tells what can be told of a source without knowing the truth", declare_measure},
       {"report", "compares ways to do the job: a page of tables and plots", declare_report},
       {"train", "trains a network", declare_train},

@@ -9,14 +9,14 @@
 namespace understudy::app {
 namespace {
 
-std::string one_line(const Verdict& verdict) {
-  if (!verdict.error.empty()) return verdict.name + ": ERROR " + verdict.error;
-  std::string line = verdict.name + ": " + std::to_string(verdict.frames) + " frames";
-  if (verdict.flagged > 0) line += ", " + std::to_string(verdict.flagged) + " flagged";
+std::string one_line(const CaseResult& result) {
+  if (!result.error.empty()) return result.name + ": ERROR " + result.error;
+  std::string line = result.name + ": " + std::to_string(result.frames) + " frames";
+  if (result.flagged > 0) line += ", " + std::to_string(result.flagged) + " flagged";
   for (const char* key :
        {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "file_medl_mm", "extraction_mpjpe_mm",
         "extraction_swap_rate", "hand_contact_kept", "arm_buried_added"})
-    for (const auto& [name, value] : verdict.metrics) {
+    for (const auto& [name, value] : result.metrics) {
       char text[64];
       std::snprintf(text, sizeof text, ", %s %.4g", key, value);
       if (name == key) line += text;
@@ -26,8 +26,8 @@ std::string one_line(const Verdict& verdict) {
 
 int eval(const EvalOptions& options, const std::string& out, const std::string& pictures) {
   check_writable(out);
-  const Evaluation evaluation = evaluate(options, [](const Verdict& verdict) {
-    std::printf("%s\n", one_line(verdict).c_str());
+  const Evaluation evaluation = evaluate(options, [](const CaseResult& result) {
+    std::printf("%s\n", one_line(result).c_str());
     std::fflush(stdout);
   });
   if (!out.empty()) write_json(out, report_of(options, evaluation));
@@ -64,13 +64,15 @@ Action declare_eval(CLI::App& command) {
                   "forget the past after so many frames: contexts of this length")
       ->check(CLI::NonNegativeNumber);
   command
-      .add_option("--peer", options->peer, "fit: fit a body to each scan instead of extracting a skeleton")
+      .add_option("--baseline", options->baseline,
+                  "fit: fit a body to each scan instead of extracting a skeleton")
       ->check(CLI::IsMember({"fit"}));
   command
-      .add_option("--file", options->file_shapes,
-                  "judge the GLB that would be exported, too, with so many morph targets: file_medl_mm, ...")
+      .add_option(
+          "--file", options->file_shapes,
+          "evaluate the GLB that would be exported, too, with so many morph targets: file_medl_mm, ...")
       ->check(CLI::Range(0, 64));
-  command.add_option("--body", options->body, "the SMPL-format body that the peer fits");
+  command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");
   command.add_option("--worst", options->worst, "how many of the worst frames are told (default: 20)")
       ->check(CLI::Range(0, 10000));
   command.add_option("--pictures", files->pictures, "folder for pictures of the worst frames");

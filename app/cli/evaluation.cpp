@@ -9,8 +9,8 @@
 #include "app/run/target_file.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/baselines/body_fit.hpp"
 #include "retarget/formats/mesh_reader.hpp"
-#include "retarget/peers/body_fit.hpp"
 
 namespace understudy::app {
 
@@ -40,15 +40,15 @@ TargetOptions case_target(const Case& c) {
 }
 
 /// Where the figures of a case go.
-struct Judging {
-  Judge& judge;
-  Verdict& verdict;
+struct CaseFigures {
+  Evaluator& evaluator;
+  CaseResult& result;
   const Truth* truth;  // null: none
   Metrics file;        // of the exported file, where asked for
 };
 
 /// Only the skeletons of the scans: cases without a target. Repaired and smoothed as for a performance.
-void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) {
+void evaluate_extraction(const Case& c, SkeletonExtractor& extractor, CaseFigures& to) {
   const auto source = open_source(case_source(c));
   RecentJoints recent;
   JointFilter filter;
@@ -71,20 +71,20 @@ void judge_extraction(const Case& c, SkeletonExtractor& extractor, Judging& to) 
     US_CHECK(smooth, frame->path, ": ", problem);
     times.total = ms_since(began);
     times.extract = times.total - times.read;
-    to.verdict.latency.add(times);
-    to.verdict.flagged += !problem.empty();
-    JudgedFrame judged;
-    judged.source_joints = &*smooth;
-    judged.raw_joints = &raw->joints;
-    judged.confidence = &raw->confidence;
-    judged.scan = frame->usable ? &frame->mesh : nullptr;
-    to.judge.push(judged);
+    to.result.latency.add(times);
+    to.result.flagged += !problem.empty();
+    EvaluatedFrame evaluated;
+    evaluated.source_joints = &*smooth;
+    evaluated.raw_joints = &raw->joints;
+    evaluated.confidence = &raw->confidence;
+    evaluated.scan = frame->usable ? &frame->mesh : nullptr;
+    to.evaluator.push(evaluated);
   }
 }
 
 /// The whole way, frame by frame; with `oracle` the true skeleton takes the place of the extracted one.
-void judge_performance(const Case& c, const EvalOptions& options, Networks networks,
-                       const std::shared_ptr<const PreparedCharacter>& character, Judging& to) {
+void evaluate_performance(const Case& c, const EvalOptions& options, Networks networks,
+                          const std::shared_ptr<const PreparedCharacter>& character, CaseFigures& to) {
   const PreparedCharacter& target = *character;
   const auto source = open_source(case_source(c));
   CharacterClip clip{c.name, c.fps, {}};
@@ -103,14 +103,14 @@ void judge_performance(const Case& c, const EvalOptions& options, Networks netwo
     if (!frame) break;
     const RetargetedFrame& result = frame->result;
     clip.poses.push_back(result.pose);
-    to.verdict.latency.add(frame->times);
-    to.verdict.flagged += result.flagged;
+    to.result.latency.add(frame->times);
+    to.result.flagged += result.flagged;
     const Points vertices = target.surface.in_file_order(result.vertices);
     const Confidence confidence =
         result.flagged ? Confidence(Confidence::Zero()) : result.source_raw.confidence;
-    to.judge.push({&vertices, &result.joints, &result.pose.local, &frame->source_joints,
-                   result.flagged ? &frame->source_joints : &result.source_raw.joints,
-                   frame->scan.usable ? &frame->scan.mesh : nullptr, &confidence});
+    to.evaluator.push({&vertices, &result.joints, &result.pose.local, &frame->source_joints,
+                       result.flagged ? &frame->source_joints : &result.source_raw.joints,
+                       frame->scan.usable ? &frame->scan.mesh : nullptr, &confidence});
   }
   if (!options.file_shapes || !to.truth || to.truth->vertices.empty()) return;
   ExportBody body{character, performer.retargeter().networks().deformer, {}};
@@ -120,7 +120,7 @@ void judge_performance(const Case& c, const EvalOptions& options, Networks netwo
 }
 
 /// True rotations, root and joints of the target: only weights and offsets are the method's.
-void judge_deformation(const Truth& truth, const Mesh& target, Deformer& deformer, Judging& to) {
+void evaluate_deformation(const Truth& truth, const Mesh& target, Deformer& deformer, CaseFigures& to) {
   US_CHECK(truth.target_joints && !truth.joints.empty() && !truth.rotations.empty(),
            "--oracle pose wants target_joints, joints and rotations in the truth");
   deformer.bind(target.vertices, *truth.target_joints);
@@ -131,16 +131,16 @@ void judge_deformation(const Truth& truth, const Mesh& target, Deformer& deforme
     const auto began = std::chrono::steady_clock::now();
     const Points vertices = deformer.deform(pose);
     times.deform = times.total = ms_since(began);
-    to.verdict.latency.add(times);
+    to.result.latency.add(times);
     const Joints joints = forward_kinematics(*truth.target_joints, pose).joints;
-    to.judge.push({&vertices, &joints, &pose.local, nullptr, nullptr, nullptr, nullptr});
+    to.evaluator.push({&vertices, &joints, &pose.local, nullptr, nullptr, nullptr, nullptr});
   }
 }
 
-/// What judges all cases alike.
+/// What evaluates all cases alike.
 struct Bench {
   const EvalOptions& options;
-  std::shared_ptr<const FitBody> fit;  // null: no peer
+  std::shared_ptr<const FitBody> fit;  // null: no baseline
 };
 
 /// What is asked of a case must mean something there.
@@ -149,12 +149,12 @@ void check_options(const EvalOptions& options, const Case& c) {
   US_CHECK(performed || (options.oracle.empty() && !options.file_shapes && options.restart_every == 0),
            c.name, ": it has no target: --oracle, --file and --restart-every say nothing of it");
   US_CHECK(options.oracle != "pose" ||
-               (options.peer.empty() && !options.file_shapes && options.restart_every == 0),
-           "--oracle pose knows every pose: --peer, --file and --restart-every say nothing of it");
+               (options.baseline.empty() && !options.file_shapes && options.restart_every == 0),
+           "--oracle pose knows every pose: --baseline, --file and --restart-every say nothing of it");
 }
 
-void judge_case(const Bench& bench, const std::string& folder, const Case& c, Verdict& verdict,
-                Breakdown& breakdown) {
+void evaluate_case(const Bench& bench, const std::string& folder, const Case& c, CaseResult& result,
+                   Breakdown& breakdown) {
   const EvalOptions& options = bench.options;
   check_options(options, c);
   std::optional<Truth> truth;
@@ -171,31 +171,31 @@ void judge_case(const Bench& bench, const std::string& folder, const Case& c, Ve
     if (target) mesh = target->target_in_file_order();
     if (bench.fit) networks.extractor = std::make_unique<BodyFit>(bench.fit);  // of the source alone
   }
-  Judge judge(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
-  Judging to{judge, verdict, truth ? &*truth : nullptr, {}};
+  Evaluator evaluator(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
+  CaseFigures to{evaluator, result, truth ? &*truth : nullptr, {}};
   if (target)
-    judge_performance(c, options, std::move(networks), target, to);
+    evaluate_performance(c, options, std::move(networks), target, to);
   else if (mesh)
-    judge_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);
+    evaluate_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);
   else
-    judge_extraction(c, *networks.extractor, to);
-  verdict.frames = verdict.latency.frames();
-  verdict.metrics = judge.metrics();
-  verdict.metrics.insert(verdict.metrics.end(), to.file.begin(), to.file.end());
-  if (truth) breakdown.add(folder, c, judge, *truth);
+    evaluate_extraction(c, *networks.extractor, to);
+  result.frames = result.latency.frames();
+  result.metrics = evaluator.metrics();
+  result.metrics.insert(result.metrics.end(), to.file.begin(), to.file.end());
+  if (truth) breakdown.add(folder, c, evaluator, *truth);
 }
 
-Json case_json(const Verdict& verdict) {
-  Json json = {{"name", verdict.name}, {"tags", verdict.tags}};
-  if (!verdict.error.empty()) {
-    json["error"] = verdict.error;
+Json case_json(const CaseResult& result) {
+  Json json = {{"name", result.name}, {"tags", result.tags}};
+  if (!result.error.empty()) {
+    json["error"] = result.error;
     return json;
   }
-  json["frames"] = verdict.frames;
-  json["flagged"] = verdict.flagged;
-  json["metrics"] = to_json(verdict.metrics);
-  json["ms"] = to_json(verdict.latency, 0.5);
-  json["ms_p95"] = to_json(verdict.latency, 0.95);
+  json["frames"] = result.frames;
+  json["flagged"] = result.flagged;
+  json["metrics"] = to_json(result.metrics);
+  json["ms"] = to_json(result.latency, 0.5);
+  json["ms_p95"] = to_json(result.latency, 0.95);
   return json;
 }
 
@@ -217,32 +217,32 @@ std::vector<std::string> chosen_cases(const EvalOptions& options) {
 
 }  // namespace
 
-Evaluation evaluate(const EvalOptions& options, const std::function<void(const Verdict&)>& told) {
+Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& told) {
   Bench bench{options, nullptr};
-  if (options.peer == "fit") {
-    US_CHECK(!options.body.empty(), "the peer \"fit\" wants --body, an SMPL-format body");
+  if (options.baseline == "fit") {
+    US_CHECK(!options.body.empty(), "the baseline \"fit\" wants --body, an SMPL-format body");
     bench.fit = std::make_shared<const FitBody>(read_smpl_body(options.body));
   }
   Evaluation evaluation;
   evaluation.breakdown = Breakdown(static_cast<size_t>(options.worst));
   std::vector<Metrics> metrics;
   for (const std::string& folder : chosen_cases(options)) {
-    Verdict verdict;
-    verdict.name = folder.substr(folder.find_last_of('/') + 1);
-    verdict.error = failure_of([&] {
+    CaseResult result;
+    result.name = folder.substr(folder.find_last_of('/') + 1);
+    result.error = failure_of([&] {
       const Case c = read_case(folder);
-      verdict.name = c.name;
-      verdict.tags = c.tags;
-      judge_case(bench, folder, c, verdict, evaluation.breakdown);
+      result.name = c.name;
+      result.tags = c.tags;
+      evaluate_case(bench, folder, c, result, evaluation.breakdown);
     });
-    check_interrupt("in case " + verdict.name);
-    told(verdict);
-    if (verdict.error.empty()) {
-      metrics.push_back(verdict.metrics);
-      evaluation.latency.add(verdict.latency);
+    check_interrupt("in case " + result.name);
+    told(result);
+    if (result.error.empty()) {
+      metrics.push_back(result.metrics);
+      evaluation.latency.add(result.latency);
     }
-    evaluation.failed |= !verdict.error.empty();
-    evaluation.verdicts.push_back(std::move(verdict));
+    evaluation.failed |= !result.error.empty();
+    evaluation.results.push_back(std::move(result));
   }
   evaluation.mean = mean_metrics(metrics);
   return evaluation;
@@ -252,12 +252,12 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   Json report = report_header(nn::weights_folder(options.networks));
   report["engine"] = options.networks.engine;
   if (!options.oracle.empty()) report["oracle"] = options.oracle;
-  if (!options.peer.empty()) report["peer"] = options.peer;
+  if (!options.baseline.empty()) report["baseline"] = options.baseline;
   if (!options.networks.offsets) report["offsets"] = false;
   if (!options.networks.near) report["near"] = false;
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
-  for (const Verdict& verdict : evaluation.verdicts) report["cases"].push_back(case_json(verdict));
+  for (const CaseResult& result : evaluation.results) report["cases"].push_back(case_json(result));
   report["mean"] = to_json(evaluation.mean);
   report["ms"] = to_json(evaluation.latency, 0.5);
   report["ms_p95"] = to_json(evaluation.latency, 0.95);

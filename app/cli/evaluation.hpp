@@ -1,4 +1,4 @@
-// Judges the method on a folder of cases: what `eval` and `report` share.
+// Evaluates the method on a folder of cases: what `eval` and `report` share.
 #pragma once
 
 #include <functional>
@@ -18,15 +18,15 @@ struct EvalOptions {
   std::string cases, oracle, filter;
   int limit = 0;          ///< cases; 0: all
   int restart_every = 0;  ///< frames after which the method forgets the past; 0: never
-  std::string peer;       ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
-  std::optional<int> file_shapes;  ///< the exported file is judged, too, with so many morph targets
-  std::string body;                ///< SMPL-format, of the peer "fit"
+  std::string baseline;   ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
+  std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
+  std::string body;                ///< SMPL-format, of the baseline "fit"
   int worst = 20;                  ///< frames told as the worst
   nn::NetworkOptions networks;
   RetargetOptions retarget;
 };
 
-struct Verdict {
+struct CaseResult {
   std::string name, error;
   std::vector<std::string> tags;
   int64_t frames = 0, flagged = 0;
@@ -35,7 +35,7 @@ struct Verdict {
 };
 
 struct Evaluation {
-  std::vector<Verdict> verdicts;
+  std::vector<CaseResult> results;
   Breakdown breakdown;
   Metrics mean;
   Latency latency;
@@ -46,9 +46,9 @@ struct Evaluation {
 /// floor at 0.
 SourceOptions case_source(const Case& c);
 
-/// Judges every chosen case; `told` hears of each when it is done. A case that fails has its error told and
-/// the others go on. Throws Error when there is no case.
-Evaluation evaluate(const EvalOptions& options, const std::function<void(const Verdict&)>& told);
+/// Evaluates every chosen case; `told` hears of each when it is done. A case that fails has its error told
+/// and the others go on. Throws Error when there is no case.
+Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& told);
 
 /// report.json: see Breakdown::json for "breakdown".
 Json report_of(const EvalOptions& options, const Evaluation& evaluation);

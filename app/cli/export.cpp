@@ -22,7 +22,7 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
-#include "retarget/pipeline/person_doubt.hpp"
+#include "retarget/pipeline/person_check.hpp"
 
 namespace understudy::app {
 namespace {
@@ -66,7 +66,7 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
   int64_t flagged = 0;
   const auto dt = static_cast<float>(1 / source->fps());
   Joints seen = Joints::Zero();
-  PersonDoubt person;
+  PersonCheck person;
   while (auto scan = source->next()) {
     const RetargetedFrame frame =
         scan->skeleton ? retargeter.push(*scan->skeleton, dt) : retargeter.push(scan->mesh, dt);

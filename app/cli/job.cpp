@@ -6,13 +6,13 @@
 
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
+#include "app/run/evaluator.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
-#include "app/run/judge.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/pipeline/person_doubt.hpp"
+#include "retarget/pipeline/person_check.hpp"
 
 namespace understudy::app {
 namespace {
@@ -29,7 +29,7 @@ struct Running {
   std::unique_ptr<Performer> performer;
   std::unique_ptr<MotionOutput> output;  // null: no animation wanted
   std::optional<PreviewMoments> moments, skeletons;
-  std::optional<Judge> judge;
+  std::optional<Evaluator> evaluator;
   Latency latency;
   int64_t frames = 0, flagged = 0;
 };
@@ -78,9 +78,9 @@ void take_frame(Running& job, const PerformedFrame& frame, bool live) {
     job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.mesh));
   if (job.skeletons && job.skeletons->wanted(job.frames))
     job.skeletons->add(job.frames, source_moment(frame, job.frames, job.source->fps()));
-  if (job.judge)
-    job.judge->push({&frame.result.vertices, &frame.result.joints, &frame.result.pose.local,
-                     &frame.source_joints, nullptr, frame.scan.usable ? &frame.scan.mesh : nullptr});
+  if (job.evaluator)
+    job.evaluator->push({&frame.result.vertices, &frame.result.joints, &frame.result.pose.local,
+                         &frame.source_joints, nullptr, frame.scan.usable ? &frame.scan.mesh : nullptr});
   if (live) tell_live(frame);
   ++job.frames;
 }
@@ -93,7 +93,7 @@ Json report_of(const JobOptions& options, const Running& job) {
   report["fps"] = job.source->fps();
   report["frames"] = job.frames;
   report["flagged"] = job.flagged;
-  report["metrics"] = to_json(job.judge->metrics());
+  report["metrics"] = to_json(job.evaluator->metrics());
   report["ms"] = to_json(job.latency, 0.5);
   report["ms_p95"] = to_json(job.latency, 0.95);
   return report;
@@ -111,7 +111,7 @@ Running start(const JobOptions& options) {
       std::make_unique<Performer>(*job.source, job.character->target, std::move(networks), options.retarget);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
-  if (!options.report.empty()) job.judge.emplace(job.source->fps(), nullptr, &target);
+  if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &target);
   if (!options.out.empty()) {
     ExportBody body{job.character, job.performer->retargeter().networks().deformer, {}};
     body.file.their_rig = on_their_rig(options.target, *job.character);
@@ -123,7 +123,7 @@ Running start(const JobOptions& options) {
 
 void finish(const JobOptions& options, Running& job) {
   if (job.output) log::info(options.out + ": " + sentence(job.output->finish()));
-  if (job.judge) write_json(options.report, report_of(options, job));
+  if (job.evaluator) write_json(options.report, report_of(options, job));
   const std::string title =
       file_name(options.source.path) + " performed by " + file_name(options.target.path);
   if (job.moments) write_preview(options.preview, job.moments->take(), title);
@@ -142,7 +142,7 @@ void run_job(const JobOptions& options) {
   Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
                     job.source->count().value_or(0), options.progress_lines);
-  PersonDoubt person;
+  PersonCheck person;
   while (const auto frame = job.performer->next()) {
     take_frame(job, *frame, options.source.follow);
     const std::string doubt = frame->result.flagged ? "" : person.push(frame->result.source_raw);

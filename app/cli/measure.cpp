@@ -4,8 +4,8 @@
 #include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/options.hpp"
+#include "app/run/evaluator.hpp"
 #include "app/run/interrupt.hpp"
-#include "app/run/judge.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -26,15 +26,15 @@ struct MeasureOptions {
 struct Measured {
   explicit Measured(double fps, int every)
       : raw(fps, nullptr, nullptr, every), smooth(fps, nullptr, nullptr, every) {}
-  Judge raw, smooth;
+  Evaluator raw, smooth;
   int64_t frames = 0, flagged = 0;
 };
 
-void push(Judge& judge, const Joints& joints, const Mesh& scan) {
-  JudgedFrame frame;
+void push(Evaluator& evaluator, const Joints& joints, const Mesh& scan) {
+  EvaluatedFrame frame;
   frame.joints = frame.source_joints = &joints;
   frame.scan = &scan;
-  judge.push(frame);
+  evaluator.push(frame);
 }
 
 Measured measured(const MeasureOptions& options) {

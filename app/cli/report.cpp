@@ -21,7 +21,7 @@ struct ReportOptions {
   std::string cases, out, rows, weights, body;
   std::vector<std::string> tables;
   int limit = 0;       ///< cases a row; 0: as the rows say
-  bool again = false;  ///< judge also what was judged before
+  bool again = false;  ///< evaluate also what was evaluated before
 };
 
 /// A file's name and what is in it.
@@ -55,8 +55,8 @@ Json identity(const ReportRow& row) {
           {"offsets", e.networks.offsets},
           {"foot_lock", e.retarget.lock_feet},
           {"oracle", e.oracle},
-          {"peer", e.peer},
-          {"body", e.peer == "fit" ? marked(e.body) : ""},
+          {"baseline", e.baseline},
+          {"body", e.baseline == "fit" ? marked(e.body) : ""},
           {"breakdown", row.breakdown},
           {"context", e.restart_every},
           {"limit", e.limit}};
@@ -84,9 +84,8 @@ ReportResult result_of(const ReportOptions& options, ReportRow row) {
     return result;
   }
   result.lost = failure_of([&] {
-    const Evaluation evaluation = evaluate(result.row.eval, [](const Verdict&) {});
-    for (const Verdict& verdict : evaluation.verdicts)
-      US_CHECK(verdict.error.empty(), verdict.name, ": ", verdict.error);
+    const Evaluation evaluation = evaluate(result.row.eval, [](const CaseResult&) {});
+    for (const CaseResult& one : evaluation.results) US_CHECK(one.error.empty(), one.name, ": ", one.error);
     result.report = report_of(result.row.eval, evaluation);
     result.report["row"] = known;
     if (result.row.breakdown) result.report["confidence_record"] = to_json(evaluation.breakdown.confidence());
@@ -166,12 +165,12 @@ Action declare_report(CLI::App& command) {
                      "JSON that lists the rows (default: comparison.json beside the weights)");
   command
       .add_option("--tables", options->tables,
-                  "only these: peers, seen, contexts, rotation, extraction, offsets")
+                  "only these: baselines, seen, contexts, rotation, extraction, offsets")
       ->delimiter(',');
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
-  command.add_option("--body", options->body, "the SMPL-format body that the peer fits");
+  command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");
   command.add_option("--limit", options->limit, "at most so many cases a row")->check(CLI::NonNegativeNumber);
-  command.add_flag("--again", options->again, "judge also the rows whose figures are there");
+  command.add_flag("--again", options->again, "evaluate also the rows whose figures are there");
   return [options] { return report(*options); };
 }
 

@@ -36,14 +36,15 @@ const std::vector<Column> kPerformance = {{"mean", "mpjpe_m", "mpjpe_m", 1, 4},
 
 const std::vector<Table>& tables() {
   static const std::vector<Table> all = {
-      {"peers", "Against peers",
+      {"baselines", "Against baselines",
        "`copy` and `paper` are the program's engines. `fit`: a parametric body is fitted to each "
        "scan by "
-       "optimisation from the scans alone, and its rotations are copied; where the people judged on are of "
+       "optimisation from the scans alone, and its rotations are copied; where the people evaluated on are "
+       "of "
        "that very "
        "body, as in suites made from one data folder, it knows them better than it would know strangers.",
        kPerformance},
-      {"peers",
+      {"baselines",
        "Contacts, penetration, and what has no joints of its own",
        "Of the same rows. Floor: how deep the lowest vertex lies below it, mean and worst. Hand contacts: of "
        "those "
@@ -93,7 +94,7 @@ const std::vector<Table>& tables() {
         {"ms", "extract", "ms a frame", 1, 1}}},
       {"offsets",
        "Pose-corrective offsets",
-       "With true poses weights and offsets alone are judged. Without: the same network, its offsets left "
+       "With true poses weights and offsets alone are evaluated. Without: the same network, its offsets left "
        "out. Volume: what flesh about elbows, knees, "
        "shoulders "
        "and hips "
@@ -245,7 +246,7 @@ void write_breakdown(std::ofstream& page, const std::string& folder, const Repor
   page << '\n';
   write_head(page, {"failure", "frames", "share, %"});
   for (const auto& failure : breakdown["failures"].items()) {
-    if (failure.value()["judged"] == 0) continue;
+    if (failure.value()["evaluated"] == 0) continue;
     char text[96];
     std::snprintf(text, sizeof text, "| %s | %lld | %.2f |\n", failure.key().c_str(),
                   failure.value()["frames"].get<long long>(), 100 * failure.value()["share"].get<double>());

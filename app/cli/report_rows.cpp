@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTables[] = {"peers", "seen", "contexts", "rotation", "extraction", "offsets"};
+constexpr const char* kTables[] = {"baselines", "seen", "contexts", "rotation", "extraction", "offsets"};
 constexpr const char* kKeys[] = {"table",
                                  "name",
                                  "suite",
@@ -25,7 +25,7 @@ constexpr const char* kKeys[] = {"table",
                                  "offsets",
                                  "foot_lock",
                                  "oracle",
-                                 "peer",
+                                 "baseline",
                                  "context",
                                  "limit",
                                  "breakdown",
@@ -56,7 +56,7 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
   row.eval.networks.offsets = json.value("offsets", true);
   row.eval.retarget.lock_feet = json.value("foot_lock", true);
   row.eval.oracle = json.value("oracle", "");
-  row.eval.peer = json.value("peer", "");
+  row.eval.baseline = json.value("baseline", "");
   row.eval.restart_every = json.value("context", 0);
   row.eval.limit = json.value("limit", 0);
   return row;

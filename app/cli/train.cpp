@@ -9,9 +9,9 @@ namespace understudy::app {
 
 Action declare_train(CLI::App& command) {
   const auto options = std::make_shared<nn::TrainOptions>();
-  command.add_option("network", options->network, "skeleton, leaf, motion or deformation")
+  command.add_option("network", options->network, "skeleton, part, motion or deformation")
       ->required()
-      ->check(CLI::IsMember({"skeleton", "leaf", "motion", "deformation"}));
+      ->check(CLI::IsMember({"skeleton", "part", "motion", "deformation"}));
   command.add_option("--data", options->data, "folder with body/, motion/ and splits.json")->required();
   command.add_option("--out", options->out, "the weights file; its checkpoint lies beside it and is resumed")
       ->required();
@@ -46,12 +46,12 @@ Action declare_train(CLI::App& command) {
   const auto init = command.add_option("--init", options->init, "weights to start from");
   command
       .add_option("--keep", options->keep,
-                  "share of the weights to start from that is mixed into those written (skeleton and leaf)")
+                  "share of the weights to start from that is mixed into those written (skeleton and part)")
       ->needs(init)
       ->check(CLI::Range(0.0, 0.95));
   return [options] {
     US_CHECK(options->minutes > 0 || options->samples > 0, "training wants an end: --minutes or --samples");
-    US_CHECK(options->device == "cpu" || options->network != "leaf", "leaf is trained on the cpu");
+    US_CHECK(options->device == "cpu" || options->network != "part", "part is trained on the cpu");
     options->cancelled = interrupted;
     return nn::train(*options);
   };

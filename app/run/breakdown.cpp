@@ -50,34 +50,35 @@ Json Breakdown::to_json(const Figures& figures) {
   return json;
 }
 
-void Breakdown::add(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth) {
+void Breakdown::add(const std::string& folder, const Case& c, const Evaluator& evaluator,
+                    const Truth& truth) {
   const std::string motion = c.tags.empty() ? c.name : c.tags.back();
-  motions_[motion].push_back(judge.metrics());
-  bodies_[body_of(c, motion)].push_back(judge.metrics());
-  add_joints(judge, truth);
-  add_confidence(judge, truth);
-  const auto failures = failures_of({judge.source_joints(), truth.source_joints, judge.joints(), truth.joints,
-                                     judge.rotations(), truth.rotations, c.fps});
-  const bool seen = !judge.source_joints().empty() && !truth.source_joints.empty(),
-             performed = !judge.joints().empty() && !truth.joints.empty(),
-             turned = !judge.rotations().empty() && !truth.rotations.empty();
-  const std::array<bool, kFailureCount> judged = {seen, seen, seen, seen || performed, performed, turned};
+  motions_[motion].push_back(evaluator.metrics());
+  bodies_[body_of(c, motion)].push_back(evaluator.metrics());
+  add_joints(evaluator, truth);
+  add_confidence(evaluator, truth);
+  const auto failures = failures_of({evaluator.source_joints(), truth.source_joints, evaluator.joints(),
+                                     truth.joints, evaluator.rotations(), truth.rotations, c.fps});
+  const bool seen = !evaluator.source_joints().empty() && !truth.source_joints.empty(),
+             performed = !evaluator.joints().empty() && !truth.joints.empty(),
+             turned = !evaluator.rotations().empty() && !truth.rotations.empty();
+  const std::array<bool, kFailureCount> evaluated = {seen, seen, seen, seen || performed, performed, turned};
   for (const FrameFailures& frame : failures) {
     for (int f = 0; f < kFailureCount; ++f) {
-      judged_[f] += judged[f];
+      evaluated_[f] += evaluated[f];
       failures_[f] += frame[f];
       motion_failures_[motion][f] += frame[f];
     }
   }
-  if (seen) add_worst(folder, c, judge, truth, failures);
+  if (seen) add_worst(folder, c, evaluator, truth, failures);
 }
 
-void Breakdown::add_worst(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth,
-                          const std::vector<FrameFailures>& failures) {
+void Breakdown::add_worst(const std::string& folder, const Case& c, const Evaluator& evaluator,
+                          const Truth& truth, const std::vector<FrameFailures>& failures) {
   const auto worse = [](const WorstFrame& a, const WorstFrame& b) { return a.error_m > b.error_m; };
   std::vector<WorstFrame> frames;
   for (size_t t = 0; t < failures.size(); ++t) {
-    const Joints &seen = judge.source_joints()[t], &known = truth.source_joints[t];
+    const Joints &seen = evaluator.source_joints()[t], &known = truth.source_joints[t];
     frames.push_back({folder, c.name, static_cast<int64_t>(t), mean_joint_error({seen}, {known}), seen, known,
                       failures[t]});
   }
@@ -93,32 +94,32 @@ void Breakdown::add_worst(const std::string& folder, const Case& c, const Judge&
   if (worst_.size() > keep_) worst_.resize(keep_);
 }
 
-void Breakdown::add_joints(const Judge& judge, const Truth& truth) {
+void Breakdown::add_joints(const Evaluator& evaluator, const Truth& truth) {
   const auto distances = [this](const char* key, const JointSequence& p, const JointSequence& q) {
     if (p.empty() || q.empty()) return;
     for (size_t t = 0; t < p.size(); ++t)
       for (int j = 0; j < kJointCount; ++j) put(joints_[j], key, 1000 * (p[t].row(j) - q[t].row(j)).norm());
   };
-  distances("extraction_mm", judge.source_joints(), truth.source_joints);
-  distances("mpjpe_mm", judge.joints(), truth.joints);
-  if (!judge.joints().empty() && !truth.joints.empty())
-    distances("pa_mpjpe_mm", aligned_joints(judge.joints(), truth.joints), truth.joints);
-  if (judge.rotations().empty() || truth.rotations.empty()) return;
+  distances("extraction_mm", evaluator.source_joints(), truth.source_joints);
+  distances("mpjpe_mm", evaluator.joints(), truth.joints);
+  if (!evaluator.joints().empty() && !truth.joints.empty())
+    distances("pa_mpjpe_mm", aligned_joints(evaluator.joints(), truth.joints), truth.joints);
+  if (evaluator.rotations().empty() || truth.rotations.empty()) return;
   for (size_t t = 0; t < truth.rotations.size(); ++t) {
-    const Rotations p = global_rotations(judge.rotations()[t]), q = global_rotations(truth.rotations[t]);
+    const Rotations p = global_rotations(evaluator.rotations()[t]), q = global_rotations(truth.rotations[t]);
     for (int j = 0; j < kJointCount; ++j) put(joints_[j], "rot_deg", geodesic_angle(p[j], q[j]) * 180 / kPi);
   }
 }
 
-void Breakdown::add_confidence(const Judge& judge, const Truth& truth) {
-  if (judge.confidence().empty() || judge.raw_joints().empty() || truth.source_joints.empty()) return;
-  for (size_t t = 0; t < judge.confidence().size(); ++t) {
-    const Joints &seen = judge.raw_joints()[t], &known = truth.source_joints[t];
+void Breakdown::add_confidence(const Evaluator& evaluator, const Truth& truth) {
+  if (evaluator.confidence().empty() || evaluator.raw_joints().empty() || truth.source_joints.empty()) return;
+  for (size_t t = 0; t < evaluator.confidence().size(); ++t) {
+    const Joints &seen = evaluator.raw_joints()[t], &known = truth.source_joints[t];
     for (int j = 0; j < kJointCount; ++j) {
-      confidence_.confidence.push_back(judge.confidence()[t][j]);
+      confidence_.confidence.push_back(evaluator.confidence()[t][j]);
       confidence_.error.push_back((seen.row(j) - known.row(j)).norm());
     }
-    confidence_.frame_confidence.push_back(judge.confidence()[t].mean());
+    confidence_.frame_confidence.push_back(evaluator.confidence()[t].mean());
     confidence_.frame_error.push_back(mean_joint_error({seen}, {known}));
   }
 }
@@ -167,10 +168,10 @@ Json Breakdown::json() const {
     if (!joints_[j].empty()) json["joints"][kJointNames[j]] = to_json(joints_[j]);
   for (int f = 0; f < kFailureCount; ++f) {
     Json& failure = json["failures"][kFailureNames[f]];
-    failure["judged"] = judged_[f];
+    failure["evaluated"] = evaluated_[f];
     failure["frames"] = failures_[f];
     failure["share"] =
-        static_cast<double>(failures_[f]) / static_cast<double>(std::max<int64_t>(judged_[f], 1));
+        static_cast<double>(failures_[f]) / static_cast<double>(std::max<int64_t>(evaluated_[f], 1));
     for (const auto& [motion, counts] : motion_failures_)
       if (counts[f] > 0) failure["motions"][motion] = counts[f];
   }

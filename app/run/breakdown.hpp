@@ -34,16 +34,16 @@ struct ConfidenceRecord {
 Json to_json(const ConfidenceRecord& record);
 ConfidenceRecord confidence_record(const Json& json);
 
-/// Collects judged cases.
+/// Collects evaluated cases.
 class Breakdown {
  public:
   explicit Breakdown(size_t worst = 20) : keep_(worst) {}
-  /// A case with its truth, after all of its frames were judged. `folder` is the case's. Cases named
+  /// A case with its truth, after all of its frames were evaluated. `folder` is the case's. Cases named
   /// BODY_MOTION, the motion being the last tag, count for both.
-  void add(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth);
+  void add(const std::string& folder, const Case& c, const Evaluator& evaluator, const Truth& truth);
   /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
   /// {"jolt":
-  /// {"judged", "frames", "share"}}, "confidence": ConfidenceRecord::figures(),
+  /// {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(),
   /// "worst":
   /// [...]}; without what nothing is known of.
   Json json() const;
@@ -57,10 +57,10 @@ class Breakdown {
     int64_t count = 0;
   };
   using Figures = std::vector<std::pair<std::string, Mean>>;
-  void add_worst(const std::string& folder, const Case& c, const Judge& judge, const Truth& truth,
+  void add_worst(const std::string& folder, const Case& c, const Evaluator& evaluator, const Truth& truth,
                  const std::vector<FrameFailures>& failures);
-  void add_joints(const Judge& judge, const Truth& truth);
-  void add_confidence(const Judge& judge, const Truth& truth);
+  void add_joints(const Evaluator& evaluator, const Truth& truth);
+  void add_confidence(const Evaluator& evaluator, const Truth& truth);
   static void put(Figures& figures, const std::string& key, double value);
   static Json to_json(const Figures& figures);
 
@@ -68,7 +68,8 @@ class Breakdown {
   std::array<Figures, kJointCount> joints_;
   std::map<std::string, std::vector<Metrics>> motions_, bodies_;
   std::map<std::string, std::array<int64_t, kFailureCount>> motion_failures_;
-  std::array<int64_t, kFailureCount> failures_{}, judged_{};  // frames with it, and frames looked at for it
+  std::array<int64_t, kFailureCount> failures_{},
+      evaluated_{};  // frames with it, and frames looked at for it
   ConfidenceRecord confidence_;
   std::vector<WorstFrame> worst_;
 };

@@ -15,7 +15,7 @@ struct Case {
   std::string name;
   double fps = 30;
   std::string source;  ///< path
-  std::string target;  ///< path; empty: only the extraction is judged
+  std::string target;  ///< path; empty: only the extraction is evaluated
   std::string truth;   ///< path; empty: none
   std::vector<std::string> tags;
 };

@@ -36,20 +36,20 @@ constexpr int kBendFrames = 24;  // from straight to bent and back
 /// Who shows what to whom.
 struct CasePlan {
   std::string name;
-  JudgedMotion motion;
+  EvaluatedMotion motion;
   std::optional<Eigen::VectorXf> target;  // shape parameters,
   std::string dressed_target;             // or a file
   Eigen::VectorXf source;
   std::string dressed_source;  // in place of the shape, where not empty
-  size_t hindrance = 0;        // number in kHindrances, of the suite "hindered"
+  size_t occlusion = 0;        // number in kOcclusions, of the suite "occluded"
 };
 
 /// What makes people hard to see.
-struct Hindrance {
+struct Occlusion {
   const char* name;
   void (*put)(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng);
 };
-constexpr std::array<Hindrance, 6> kHindrances = {
+constexpr std::array<Occlusion, 6> kOcclusions = {
     {{"skirt", wear_skirt},
      {"coat", wear_coat},
      {"hair", wear_hair},
@@ -58,7 +58,7 @@ constexpr std::array<Hindrance, 6> kHindrances = {
      {"limbless", [](LabelledPoints& cloud, const PosedSkeleton&, Rng& rng) { lose_limb(cloud, rng); }}}};
 
 bool has_joints_only(const std::string& suite) {
-  return suite == "extraction" || suite == "hindered";
+  return suite == "extraction" || suite == "occluded";
 }
 
 /// A whole suite's data.
@@ -115,11 +115,11 @@ std::vector<CasePlan> extraction_plans(const Workshop& shop) {
     char name[8];
     std::snprintf(name, sizeof name, "b%02zu", i);
     plans.push_back({name, motions[i % motions.size()], {}, "", betas[i % betas.size()], ""});
-    if (shop.options.suite != "hindered") continue;
-    plans.back().hindrance = i % kHindrances.size();
-    // Each hindrance meets other motions and people than the ones before.
-    plans.back().motion = motions[(i + i / kHindrances.size()) % motions.size()];
-    plans.back().name += std::string("_") + kHindrances[plans.back().hindrance].name;
+    if (shop.options.suite != "occluded") continue;
+    plans.back().occlusion = i % kOcclusions.size();
+    // Each occlusion meets other motions and people than the ones before.
+    plans.back().motion = motions[(i + i / kOcclusions.size()) % motions.size()];
+    plans.back().name += std::string("_") + kOcclusions[plans.back().occlusion].name;
   }
   return plans;
 }
@@ -236,7 +236,7 @@ Points64 captured(NumpyRandom& random, const Points64& vertices, const Faces& fa
 }
 
 /// The points as they are when the person is hard to see: the same skirt, thing or side in every frame.
-Points64 hindered(const CasePlan& plan, const Points64& points, const Joints64& joints,
+Points64 occluded(const CasePlan& plan, const Points64& points, const Joints64& joints,
                   const Rotations64& local) {
   Rotations turned;
   for (size_t j = 0; j < kJointCount; ++j) turned[j] = local[j].cast<float>();
@@ -246,7 +246,7 @@ Points64 hindered(const CasePlan& plan, const Points64& points, const Joints64& 
   uint64_t seed = 0;
   for (const char c : plan.name) seed = 131 * seed + static_cast<unsigned char>(c);
   Rng same(seed);
-  kHindrances[plan.hindrance].put(cloud, truth, same);
+  kOcclusions[plan.occlusion].put(cloud, truth, same);
   return cloud.points.cast<double>();
 }
 
@@ -388,7 +388,7 @@ void make_case(Workshop& shop, const CasePlan& plan) {
     const auto count = static_cast<int64_t>(shop.options.points * shop.random.uniform(0.8, 1.2));
     const auto scan = shop.options.suite == "captured" ? captured : surface;
     Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
-    if (shop.options.suite == "hindered") points = hindered(plan, points, shown.joints[t], motion.local[t]);
+    if (shop.options.suite == "occluded") points = occluded(plan, points, shown.joints[t], motion.local[t]);
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05zu.ply", t);
     write_points((folder / "source" / name).string(),
@@ -399,14 +399,14 @@ void make_case(Workshop& shop, const CasePlan& plan) {
   if (performed) json["target"] = "target.obj";
   json["truth"] = "truth.npz";
   json["tags"] = {shop.options.suite, plan.motion.tag};
-  if (shop.options.suite == "hindered") json["tags"].push_back(kHindrances[plan.hindrance].name);
+  if (shop.options.suite == "occluded") json["tags"].push_back(kOcclusions[plan.occlusion].name);
   write_json((folder / "case.json").string(), json);
 }
 
 /// The split's motions; where it names none, the beginning of each clip of its subjects.
-std::vector<JudgedMotion> motions_of(const DataSplit& split) {
+std::vector<EvaluatedMotion> motions_of(const DataSplit& split) {
   if (!split.motions.empty()) return split.motions;
-  std::vector<JudgedMotion> motions;
+  std::vector<EvaluatedMotion> motions;
   for (const std::string& folder : split.motion_folders)
     for (const auto& entry : fs::directory_iterator(folder))
       if (entry.path().extension() == ".npz")

@@ -30,7 +30,7 @@ struct SuiteOptions {
 ///   noise, outliers, some floor
 /// bends: the naked suite's targets and four more; elbows, shoulders, knees and hips bent by 120 degrees
 /// extraction: 40 people and short clips, joints of the source only
-/// hindered: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
+/// occluded: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
 ///   without a limb (a tag tells which)
 /// Throws Error naming what is missing.
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);

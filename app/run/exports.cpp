@@ -142,7 +142,7 @@ class JointsOutput final : public FrameOutput {
   JointTable table_;
 };
 
-/// All figures as arrays, for others to judge.
+/// All figures as arrays, for others to evaluate.
 class ResultOutput final : public FrameOutput {
  public:
   ResultOutput(const std::string& path, const ExportBody& body)

@@ -22,17 +22,17 @@ Points merged(const MergedSurface& surface, const Points& of_parts) {
 
 Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Truth& truth) {
   US_CHECK(!truth.vertices.empty() && truth.frames == static_cast<int64_t>(clip.poses.size()),
-           "the truth has other frames than the file that is to be judged, or no vertices");
+           "the truth has other frames than the file that is to be evaluated, or no vertices");
   const auto began = std::chrono::steady_clock::now();
   const std::string bytes =
-      gltf_bytes(animated_character(*body.character, *body.screen, {clip}, body.file), "judged.glb");
+      gltf_bytes(animated_character(*body.character, *body.screen, {clip}, body.file), "evaluated.glb");
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  const Character written = parse_gltf_character(bytes, "judged.glb");
+  const Character written = parse_gltf_character(bytes, "evaluated.glb");
   const MergedSurface& surface = body.character->surface;
   double medl = 0, mpvd = 0, off_screen = 0;
   const auto count = static_cast<double>(truth.frames);
   for (int64_t t = 0; t < truth.frames; ++t) {
-    check_interrupt("while the file was judged");
+    check_interrupt("while the file was evaluated");
     const auto at = static_cast<float>(static_cast<double>(t) / clip.fps);
     const Points seen = merged(surface, vertices_at(written, 0, at));
     const Points in_file = surface.in_file_order(seen), right = truth.frame_vertices(t);

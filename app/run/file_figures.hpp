@@ -2,13 +2,13 @@
 #pragma once
 
 #include "app/run/case_folder.hpp"
+#include "app/run/evaluator.hpp"
 #include "app/run/exports.hpp"
-#include "app/run/judge.hpp"
 
 namespace understudy::app {
 
-/// Makes the GLB of a clip in memory, reads it back and judges the surface that it says for each frame as
-/// Judge does the screen's: file_medl_mm, file_mpvd_m; file_screen_mm is its distance to the screen's
+/// Makes the GLB of a clip in memory, reads it back and evaluates the surface that it says for each frame as
+/// Evaluator does the screen's: file_medl_mm, file_mpvd_m; file_screen_mm is its distance to the screen's
 /// surface, file_mb what it weighs, file_s how long making it took. Throws Error when the truth has no
 /// vertices, or other frames.
 Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Truth& truth);

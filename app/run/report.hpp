@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/run/judge.hpp"
+#include "app/run/evaluator.hpp"
 #include "app/run/latency.hpp"
 
 namespace understudy::app {

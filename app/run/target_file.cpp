@@ -57,13 +57,13 @@ Character read_target(const std::string& path, const std::vector<float>& betas) 
   return read_character(path);
 }
 
-std::shared_ptr<PreparedCharacter> stand_target(const TargetOptions& options) {
+std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options) {
   US_CHECK(options.rig == "auto" || options.rig == "theirs" || options.rig == "ours",
            "a rig is auto, theirs or ours, not '", options.rig, "'");
   Character character = read_target(options.path, options.betas);
   US_CHECK(character.vertex_count() > 0, options.path, ": holds no mesh");
   auto standing = std::make_shared<PreparedCharacter>(said_of(
-      options.path, [&] { return stand_character(std::move(character), character_options(options)); }));
+      options.path, [&] { return load_character(std::move(character), character_options(options)); }));
   US_CHECK(options.rig != "theirs" || standing->rigged, options.path,
            ": has no skeleton of its own that can be driven, ", standing->map.count(),
            " of 22 joints have a bone");
@@ -84,7 +84,7 @@ std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCha
 }
 
 std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks) {
-  return bind_target(stand_target(options), options, networks);
+  return bind_target(load_target(options), options, networks);
 }
 
 bool on_their_rig(const TargetOptions& options, const PreparedCharacter& character) {

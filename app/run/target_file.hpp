@@ -26,7 +26,7 @@ std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& option
 
 /// The first half of it, which asks no network: as the file has it, upright and at its size, to be looked at.
 /// Throws Error naming the file.
-std::shared_ptr<PreparedCharacter> stand_target(const TargetOptions& options);
+std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options);
 /// The second half, with the same options.
 std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> standing,
                                                      const TargetOptions& options, const Networks& networks);

@@ -15,7 +15,7 @@
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/pipeline/person_doubt.hpp"
+#include "retarget/pipeline/person_check.hpp"
 
 namespace understudy::app {
 namespace {
@@ -84,7 +84,7 @@ struct Stream {
   std::unique_ptr<SkeletonExtractor> extractor;
   std::vector<Extracted> frames;
   RecentJoints recent;
-  PersonDoubt person;
+  PersonCheck person;
 };
 
 /// A take at work.
@@ -208,7 +208,7 @@ struct Engine::Impl {
 
 /// Whether an event says something of the source's frames, which another source makes untrue.
 bool of_frames(const EngineEvent& event) {
-  return !std::holds_alternative<TakeStands>(event) && !std::holds_alternative<TakeReady>(event) &&
+  return !std::holds_alternative<TakeLoaded>(event) && !std::holds_alternative<TakeReady>(event) &&
          !std::holds_alternative<TakeFailed>(event);
 }
 
@@ -378,10 +378,10 @@ void Engine::Impl::open() {
 /// Reads a target's file and shows how it came: binding it takes longer.
 bool Engine::Impl::stand(TakeWork& take) {
   try {
-    take.standing = stand_target(take.plan.target);
+    take.standing = load_target(take.plan.target);
     auto shown = std::make_shared<Target>();
     shown->mesh = take.standing->surface.mesh;
-    tell(TakeStands{take.plan.id, std::move(shown)});
+    tell(TakeLoaded{take.plan.id, std::move(shown)});
   } catch (const std::exception& error) {
     take.failed = true;
     tell(TakeFailed{take.plan.id, error.what()});

@@ -56,9 +56,9 @@ struct SourceFrames {
   std::vector<KeptSource> frames;
 };
 /// A target's file was read: how it came, upright and at its size. What performs is still to be bound.
-struct TakeStands {
+struct TakeLoaded {
   int64_t id = 0;
-  std::shared_ptr<const Target> as_it_came;  ///< its mesh alone
+  std::shared_ptr<const Target> as_loaded;  ///< its mesh alone
 };
 struct TakeReady {
   int64_t id = 0;
@@ -79,7 +79,7 @@ struct TakeFrames {
   std::vector<FrameTimes> times;  ///< of new ones; empty when made anew
 };
 using EngineEvent =
-    std::variant<SourceOpened, SourceFailed, SourceFrames, TakeStands, TakeReady, TakeFailed, TakeFrames>;
+    std::variant<SourceOpened, SourceFailed, SourceFrames, TakeLoaded, TakeReady, TakeFailed, TakeFrames>;
 
 class Engine {
  public:

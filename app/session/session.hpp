@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/run/case_folder.hpp"
-#include "app/run/judge.hpp"
+#include "app/run/evaluator.hpp"
 #include "app/run/latency.hpp"
 #include "app/session/document.hpp"
 #include "app/session/document_file.hpp"
@@ -54,7 +54,7 @@ struct TakeState {
   /// As it was read and brought to the T-pose; of the file as it was prepared before, until it is ready.
   std::shared_ptr<const PreparedCharacter> character;
   /// The mesh as it came, upright and at its size; to be seen until `target` is there, then null.
-  std::shared_ptr<const Target> as_it_came;
+  std::shared_ptr<const Target> as_loaded;
   std::shared_ptr<const Target> target;  ///< T-pose mesh and joints (edited)
   std::shared_ptr<const SafeBinding>
       binding;                               ///< where the networks' weights are doubted; null: nowhere asked

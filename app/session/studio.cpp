@@ -261,7 +261,7 @@ void Studio::tick(double seconds) {
       camera.yaw += static_cast<float>(seconds) * session_.view.turntable_deg_s * kPi / 180;
   session_.jobs = jobs_.views();
   for (size_t k = 0; k < session_.takes.size(); ++k)
-    if (session_.takes[k].as_it_came && session_.takes[k].problem.empty() && !session_.paused)
+    if (session_.takes[k].as_loaded && session_.takes[k].problem.empty() && !session_.paused)
       session_.jobs.push_back({0, "Binding " + session_.document.takes[k].name, -1, -1, false});
   auto& notices = session_.notices;
   notices.erase(std::remove_if(notices.begin(), notices.end(),

@@ -114,9 +114,9 @@ void Studio::take_in(SourceFrames& event) {
 }
 
 template <>
-void Studio::take_in(TakeStands& event) {
+void Studio::take_in(TakeLoaded& event) {
   TakeState* const take = take_of(event.id);
-  if (take && !take->target) take->as_it_came = std::move(event.as_it_came);
+  if (take && !take->target) take->as_loaded = std::move(event.as_loaded);
 }
 
 template <>
@@ -128,7 +128,7 @@ void Studio::take_in(TakeReady& event) {
   take->character = event.character;
   take->target = event.target;
   take->binding = event.binding;
-  take->as_it_came.reset();
+  take->as_loaded.reset();
   background_->applied[event.id].deformer = event.deformer;
   apply_weights(static_cast<size_t>(take - session_.takes.data()));
   for (const std::string& warning : event.target->warnings) notify(warning, true);
@@ -211,7 +211,7 @@ void Studio::refine_dirty() {
   }
 }
 
-/// Once all frames are there, each take's surface is judged frame by frame, one take after the other.
+/// Once all frames are there, each take's surface is evaluated frame by frame, one take after the other.
 void Studio::measure_finished() {
   Background& b = *background_;
   if (session_.working || session_.paused || b.refiner.busy() || !b.dirty.empty()) return;
@@ -226,7 +226,7 @@ void Studio::measure_finished() {
 
 namespace {
 
-/// All that judging a take needs, copied for its thread.
+/// All that evaluating a take needs, copied for its thread.
 struct Measuring {
   SourceOptions source;
   ScanEdits edits;
@@ -245,12 +245,12 @@ void keep_figures(std::vector<Series>& series, size_t t, const SurfaceFigures& f
   for (size_t i = 0; i < series.size(); ++i) series[i].values[t] = static_cast<float>(values[i]);
 }
 
-void judge_all(Measuring& m, JobControl& control) {
+void evaluate_all(Measuring& m, JobControl& control) {
   const size_t count = m.shown.poses.size();
   const bool comparable = m.truth && m.truth->frames == static_cast<int64_t>(count) &&
                           m.truth->vertex_count == static_cast<int64_t>(m.character->surface.in_file.size());
   const Mesh target = m.character->target_in_file_order();
-  Judge judge(m.shown.fps, comparable ? m.truth.get() : nullptr, &target);
+  Evaluator evaluator(m.shown.fps, comparable ? m.truth.get() : nullptr, &target);
   for (const char* key : {"mpvd_m", "pa_mpvd_m", "medl_mm", "floor_mm", "self_penetration", "inside"})
     m.series.push_back(blank_series(key, count));
   SourceOptions quiet = m.source;
@@ -262,11 +262,11 @@ void judge_all(Measuring& m, JobControl& control) {
     auto scan = source->next();
     if (scan && scan->usable) scan->mesh = understudy::apply(m.edits, scan->mesh);
     const Points vertices = m.character->surface.in_file_order(m.deformer->deform(m.shown.poses[t]));
-    judge.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.raw_joints[t],
-                scan && scan->usable ? &scan->mesh : nullptr});
-    keep_figures(m.series, t, judge.last());
+    evaluator.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.raw_joints[t],
+                    scan && scan->usable ? &scan->mesh : nullptr});
+    keep_figures(m.series, t, evaluator.last());
   }
-  m.metrics = judge.metrics();
+  m.metrics = evaluator.metrics();
 }
 
 }  // namespace
@@ -290,7 +290,7 @@ void Studio::measure(size_t k) {
   const int64_t generation = take.generation;
   Background::Applied& applied = background_->applied[id];
   applied.measuring = jobs_.start(
-      "Measuring " + session_.document.takes[k].name, [m](JobControl& control) { judge_all(*m, control); },
+      "Measuring " + session_.document.takes[k].name, [m](JobControl& control) { evaluate_all(*m, control); },
       [this, id, m, generation] {
         background_->applied[id].measuring = 0;
         TakeState* const state = take_of(id);

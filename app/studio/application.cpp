@@ -186,7 +186,7 @@ std::string Application::fingerprint() const {
   for (const TakeState& take : s.takes)
     text << ' ' << take.ready << take.problem.empty() << ' ' << take.generation << ' '
          << take.shown.poses.size() << ' ' << take.performed.size() << ' ' << take.series.size() << ' '
-         << take.deformer.get() << take.as_it_came.get();
+         << take.deformer.get() << take.as_loaded.get();
   for (const JobView& job : s.jobs) text << ' ' << job.id << ' ' << static_cast<int>(job.progress * 200);
   for (const CameraState& camera : s.view.cameras) text << ' ' << camera.yaw;
   return text.str();

@@ -50,7 +50,7 @@ size_t ready_takes(const Session& session) {
 /// Those whose file has been read, whether they are bound yet or not.
 size_t seen_takes(const Session& session) {
   size_t seen = 0;
-  for (const TakeState& take : session.takes) seen += take.as_it_came || take.target;
+  for (const TakeState& take : session.takes) seen += take.as_loaded || take.target;
   return seen;
 }
 

@@ -1,4 +1,4 @@
-// A folder of people and motions, and the splits of it: what networks learn from and are judged on.
+// A folder of people and motions, and the splits of it: what networks learn from and are evaluated on.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace understudy {
 
-/// A stretch of a clip that is judged on.
-struct JudgedMotion {
+/// A stretch of a clip that is evaluated on.
+struct EvaluatedMotion {
   std::string path;  ///< AMASS-format
   int start = 0;     ///< frame
   std::string tag;   ///< what it shows
@@ -21,7 +21,7 @@ struct DataSplit {
   std::vector<Eigen::VectorXf> betas;       ///< shape parameters of its people
   std::vector<std::string> clothed;         ///< rigged, dressed T-pose meshes; may be empty
   std::vector<std::string> motion_folders;  ///< of clips
-  std::vector<JudgedMotion> motions;        ///< may be empty
+  std::vector<EvaluatedMotion> motions;     ///< may be empty
 };
 
 /// splits.json: {"dev": {"betas": {"file": "betas.npz", "rows": [first, last]}, "clothed": ["a.npz"],

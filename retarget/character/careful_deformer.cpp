@@ -16,7 +16,7 @@ namespace understudy {
 namespace {
 
 // Where a bone is this many times as far as the nearest one, a weight on it is doubted, and not believed.
-constexpr float kStrange = 2.2f, kAbsurd = 3.6f;
+constexpr float kImplausible = 2.2f, kAbsurd = 3.6f;
 
 /// [V]: the share of each vertex' weights that lies on bones far away.
 Eigen::VectorXf strayed_share(const BoneDistances& distances, const RowMatrix& weights) {
@@ -26,7 +26,7 @@ Eigen::VectorXf strayed_share(const BoneDistances& distances, const RowMatrix& w
     float strayed = 0;
     for (Eigen::Index j = 0; j < kJointCount; ++j)
       if (weights(v, j) > 0)
-        strayed += weights(v, j) * smooth_step(kStrange, kAbsurd, distances.metres(v, j) / near);
+        strayed += weights(v, j) * smooth_step(kImplausible, kAbsurd, distances.metres(v, j) / near);
     out[v] = strayed;
   }
   return out;

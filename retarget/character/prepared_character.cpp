@@ -398,7 +398,7 @@ std::vector<int> joints_of_nodes(const PreparedCharacter& c) {
   return joint_of;
 }
 
-PreparedCharacter stand_character(Character character, const CharacterOptions& options) {
+PreparedCharacter load_character(Character character, const CharacterOptions& options) {
   US_CHECK(character.vertex_count() > 0, character.called(), ": holds no mesh");
   PreparedCharacter c;
   c.character = std::move(character);
@@ -417,10 +417,10 @@ PreparedCharacter stand_character(Character character, const CharacterOptions& o
                       " of 22): its own rig is not used");
   place_in_world(c, options);
   const Stance stance = stance_of(c.surface.mesh);
-  const std::string why_not = refusal(stance), why_doubt = doubt(stance);
+  const std::string why_not = refusal(stance), why_implausible = doubt(stance);
   US_CHECK(why_not.empty() || c.rigged, c.character.called(), ": does not look like a person: ", why_not);
-  if (!(c.rigged ? why_not : why_doubt).empty())
-    c.target.warnings.push_back("the target may be no person: " + why_doubt);
+  if (!(c.rigged ? why_not : why_implausible).empty())
+    c.target.warnings.push_back("the target may be no person: " + why_implausible);
   if (c.rigged)
     turn_rig_forward(c, options);
   else if (options.yaw_deg && *options.yaw_deg != 0)
@@ -445,7 +445,7 @@ void find_t_pose(PreparedCharacter& c, SkeletonExtractor* any_pose, SkeletonExtr
 
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
                                     SkeletonExtractor* t_pose, const CharacterOptions& options) {
-  PreparedCharacter c = stand_character(std::move(character), options);
+  PreparedCharacter c = load_character(std::move(character), options);
   find_t_pose(c, any_pose, t_pose, options);
   return c;
 }

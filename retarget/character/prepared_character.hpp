@@ -54,7 +54,7 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
 
 /// The first half of it, which asks no network: size, axes, floor and bones are known, `surface` stands as
 /// the character came, with its colours; a rig faces forward. Throws Error for what is clearly no person.
-PreparedCharacter stand_character(Character character, const CharacterOptions& options = {});
+PreparedCharacter load_character(Character character, const CharacterOptions& options = {});
 /// The second half: its T-pose and joints, with the same options.
 void find_t_pose(PreparedCharacter& standing, SkeletonExtractor* any_pose, SkeletonExtractor* in_t_pose,
                  const CharacterOptions& options = {});

@@ -119,7 +119,7 @@ Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neig
                                                                                        int k) {
   US_CHECK(k <= points.rows(), k, " neighbours wanted of ", points.rows(), " points");
   const TreePoints seen{points};
-  const Tree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(/*leaf_max_size=*/16));
+  const Tree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(/*part_max_size=*/16));
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(queries.rows(), k);
   std::vector<uint32_t> found(static_cast<size_t>(k));
   std::vector<float> squared(static_cast<size_t>(k));

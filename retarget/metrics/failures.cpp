@@ -18,7 +18,7 @@ constexpr double kStands = 0.1, kSlides = 0.3;          // m/s
 constexpr float kTwist = kPi / 4, kPointing = kPi / 6;  // radians
 
 bool both(size_t predicted, size_t truth) {
-  US_CHECK(predicted == 0 || truth == 0 || predicted == truth, predicted, " frames cannot be judged by ",
+  US_CHECK(predicted == 0 || truth == 0 || predicted == truth, predicted, " frames cannot be evaluated by ",
            truth);
   return predicted > 0 && truth > 0;
 }
@@ -64,7 +64,7 @@ bool bone_twisted(const Rotations& predicted, const Rotations& truth) {
 
 }  // namespace
 
-std::vector<FrameFailures> failures_of(const JudgedSequence& s) {
+std::vector<FrameFailures> failures_of(const EvaluatedSequence& s) {
   const bool seen = both(s.seen.size(), s.seen_truth.size());
   const bool performed = both(s.performed.size(), s.performed_truth.size());
   const bool turned = both(s.rotations.size(), s.rotations_truth.size());

@@ -22,8 +22,9 @@ enum Failure : int {
 extern const std::array<const char*, kFailureCount> kFailureNames;
 using FrameFailures = std::array<bool, kFailureCount>;
 
-/// A sequence beside its truth. Pairs of which either is empty are not judged; the others are equally long.
-struct JudgedSequence {
+/// A sequence beside its truth. Pairs of which either is empty are not evaluated; the others are equally
+/// long.
+struct EvaluatedSequence {
   const JointSequence &seen, &seen_truth;                    ///< joints of the source
   const JointSequence &performed, &performed_truth;          ///< joints of the target
   const std::vector<Rotations>&rotations, &rotations_truth;  ///< local, of the target
@@ -32,6 +33,6 @@ struct JudgedSequence {
 
 /// Frame by frame; Jolt and FootSlides look at the frames just before, Jolt at the target, else at what was
 /// seen.
-std::vector<FrameFailures> failures_of(const JudgedSequence& sequence);
+std::vector<FrameFailures> failures_of(const EvaluatedSequence& sequence);
 
 }  // namespace understudy

@@ -11,7 +11,7 @@
 namespace understudy {
 namespace {
 
-constexpr int kHandPoints = 200, kJudged = 40;
+constexpr int kHandPoints = 200, kEvaluated = 40;
 
 enum Region { Trunk, Skull, Thigh, Shin, UpperArm, Forearm, Hand };
 struct Label {
@@ -115,7 +115,7 @@ HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& r
       in[part][v] = true;
     }
     hands_[s] = far_apart(rest, hand, kHandPoints);
-    judged_[s] = far_apart(rest, arm, kJudged);
+    evaluated_[s] = far_apart(rest, arm, kEvaluated);
     others_.emplace_back(rest, faces_where(faces, other));
     for (size_t p = 0; p < kTouchedParts; ++p) part_faces_[s][p] = faces_where(faces, in[p]);
   }
@@ -149,21 +149,21 @@ HandGaps HandContact::gaps(const Points& vertices) const {
 
 double HandContact::buried(const Points& vertices) const {
   int inside = 0;
-  size_t judged = 0;
+  size_t evaluated = 0;
   for (size_t s = 0; s < 2; ++s) {
     std::array<Eigen::AlignedBox3f, kTouchedParts> boxes;  // outside all of them nothing can be inside
     for (size_t p = 0; p < kTouchedParts; ++p)
       for (const int v : parts_[s][p]) boxes[p].extend(vertices.row(v).transpose());
     std::vector<int> near;
-    for (const int v : judged_[s])
+    for (const int v : evaluated_[s])
       if (std::any_of(boxes.begin(), boxes.end(),
                       [&](const auto& b) { return b.contains(vertices.row(v).transpose()); }))
         near.push_back(v);
     const std::vector<bool> around = others_[s].around(vertices, vertices(near, Eigen::all));
     inside += static_cast<int>(std::count(around.begin(), around.end(), true));
-    judged += judged_[s].size();
+    evaluated += evaluated_[s].size();
   }
-  return judged == 0 ? 0 : static_cast<double>(inside) / static_cast<double>(judged);
+  return evaluated == 0 ? 0 : static_cast<double>(inside) / static_cast<double>(evaluated);
 }
 
 void ContactsKept::add(const HandGaps& source, const HandGaps& target) {

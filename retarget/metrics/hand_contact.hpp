@@ -31,7 +31,7 @@ class HandContact {
   double buried(const Points& vertices) const;
 
  private:
-  std::array<std::vector<int>, 2> hands_, judged_;                    // vertices a side
+  std::array<std::vector<int>, 2> hands_, evaluated_;                 // vertices a side
   std::array<std::array<std::vector<int>, kTouchedParts>, 2> parts_;  // vertices
   std::array<std::array<Faces, kTouchedParts>, 2> part_faces_;
   std::vector<Windings> others_;  // a side: the body without this arm

@@ -72,7 +72,7 @@ float typical_spacing(const Points& cloud) {
 }
 
 double inside_share(const Mesh& scan, const Points& points) {
-  US_CHECK(points.rows() > 0, "no points to judge");
+  US_CHECK(points.rows() > 0, "no points to evaluate");
   int inside = 0;
   if (scan.is_cloud()) {
     const Points cloud = finite_rows(scan.vertices);

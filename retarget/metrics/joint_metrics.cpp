@@ -135,7 +135,7 @@ RotationError rotation_error(const std::vector<Rotations>& predicted, const std:
 }
 
 double bone_drift(const JointSequence& joints) {
-  US_CHECK(!joints.empty(), "no frames to judge");
+  US_CHECK(!joints.empty(), "no frames to evaluate");
   const double frames = static_cast<double>(joints.size());
   double sum = 0;
   for (int j = 1; j < kJointCount; ++j) {

@@ -56,7 +56,7 @@ double edge_length_error(const Points& p, const Points& q, int neighbours) {
 }
 
 double floor_penetration(const Points& vertices) {
-  US_CHECK(vertices.rows() > 0, "no vertices to judge");
+  US_CHECK(vertices.rows() > 0, "no vertices to evaluate");
   return std::max(0.0, -static_cast<double>(vertices.col(1).minCoeff()));
 }
 
@@ -87,22 +87,23 @@ double PartStretch::stretch(const std::vector<Edge>& edges, const Points& vertic
 SelfPenetration::SelfPenetration(const Points& rest, const Faces& faces, int samples)
     : faces_(faces), windings_(rest, faces) {
   US_CHECK(faces.rows() > 0, "self-penetration wants a surface, not a point cloud");
-  judged_ = farthest_points(rest, static_cast<int>(std::min<Eigen::Index>(samples, rest.rows())));
+  evaluated_ = farthest_points(rest, static_cast<int>(std::min<Eigen::Index>(samples, rest.rows())));
   const std::vector<bool> inside = buried(rest);
   std::vector<int> free;
-  for (size_t i = 0; i < judged_.size(); ++i)
-    if (!inside[i]) free.push_back(judged_[i]);
-  judged_ = free;
+  for (size_t i = 0; i < evaluated_.size(); ++i)
+    if (!inside[i]) free.push_back(evaluated_[i]);
+  evaluated_ = free;
 }
 
 std::vector<bool> SelfPenetration::buried(const Points& vertices) const {
   constexpr float kAbove = 0.002f;  // metres above its own skin, where only another part's inside can be
   const Points normals = vertex_normals(vertices, faces_);
-  return windings_.around(vertices, vertices(judged_, Eigen::all) + kAbove * normals(judged_, Eigen::all));
+  return windings_.around(vertices,
+                          vertices(evaluated_, Eigen::all) + kAbove * normals(evaluated_, Eigen::all));
 }
 
 double SelfPenetration::share(const Points& vertices) const {
-  if (judged_.empty()) return 0;
+  if (evaluated_.empty()) return 0;
   const std::vector<bool> inside = buried(vertices);
   return static_cast<double>(std::count(inside.begin(), inside.end(), true)) /
          static_cast<double>(inside.size());

@@ -41,20 +41,20 @@ class PartStretch {
   std::vector<Edge> hands_, head_;
 };
 
-/// Judges which vertices of a posed surface have entered another part of the same body.
+/// Evaluates which vertices of a posed surface have entered another part of the same body.
 class SelfPenetration {
  public:
-  /// `samples` vertices are judged, chosen far apart in the T-pose; those inside already in the T-pose
+  /// `samples` vertices are evaluated, chosen far apart in the T-pose; those inside already in the T-pose
   /// (layers of clothes, eyes, tongues) never count. Throws Error without faces.
   SelfPenetration(const Points& rest, const Faces& faces, int samples = 200);
-  /// Share of the judged vertices that lie inside the posed surface, 0..1.
+  /// Share of the evaluated vertices that lie inside the posed surface, 0..1.
   double share(const Points& vertices) const;
 
  private:
   std::vector<bool> buried(const Points& vertices) const;
   Faces faces_;
   Windings windings_;
-  std::vector<int> judged_;  // vertex numbers
+  std::vector<int> evaluated_;  // vertex numbers
 };
 
 }  // namespace understudy

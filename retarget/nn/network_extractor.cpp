@@ -18,8 +18,8 @@ constexpr uint64_t kThinningSeed = 20240318;
 
 class NetworkExtractor : public SkeletonExtractor {
  public:
-  NetworkExtractor(const std::string& path, const std::string& form, std::unique_ptr<LeafRefiner> leaves)
-      : form_(form), leaves_(std::move(leaves)), net_(make_skeleton_form(form)) {
+  NetworkExtractor(const std::string& path, const std::string& form, std::unique_ptr<PartRefiner> parts)
+      : form_(form), parts_(std::move(parts)), net_(make_skeleton_form(form)) {
     load_skeleton_form(path, form, *net_);
     net_->eval();
   }
@@ -32,14 +32,14 @@ class NetworkExtractor : public SkeletonExtractor {
     const torch::NoGradGuard no_grad;
     const ScanPatches patches = cut_patches(thin_scan(scan, kThinningSeed));
     Extraction seen = to_world(net_->forward(extractor_input({patches}, {recent})), patches);
-    if (leaves_) leaves_->refine(scan, seen);
+    if (parts_) parts_->refine(scan, seen);
     return seen;
   }
 
   static Extraction to_world(const ExtractorOutput& out, const ScanPatches& patches);
 
   std::string form_;
-  std::unique_ptr<LeafRefiner> leaves_;
+  std::unique_ptr<PartRefiner> parts_;
   std::shared_ptr<SkeletonForm> net_;
 };
 
@@ -64,8 +64,8 @@ Extraction NetworkExtractor::to_world(const ExtractorOutput& out, const ScanPatc
 }  // namespace
 
 std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form,
-                                                          std::unique_ptr<LeafRefiner> leaves) {
-  return std::make_unique<NetworkExtractor>(path, form, std::move(leaves));
+                                                          std::unique_ptr<PartRefiner> parts) {
+  return std::make_unique<NetworkExtractor>(path, form, std::move(parts));
 }
 
 }  // namespace understudy::nn

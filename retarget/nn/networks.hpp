@@ -39,7 +39,7 @@ RuntimeReport runtime_report();
 
 /// `understudy train ...`: everything after `train`. Returns the exit code; throws Error.
 struct TrainOptions {
-  std::string network;    ///< "skeleton", "leaf", "motion" or "deformation"
+  std::string network;    ///< "skeleton", "part", "motion" or "deformation"
   std::string data, out;  ///< the data folder, the weights file
   std::string curve;      ///< learning curve CSV; empty: out + ".csv"
   double minutes = 0;     ///< stop after this long; 0: no limit
@@ -55,7 +55,7 @@ struct TrainOptions {
   int context = 0;                  ///< motion only: frames of a sequence; 0: the paper's 30
   std::string device = "cpu";       ///< "cpu" or "cuda"
   std::string init;                 ///< weights to start from
-  double keep = 0;                  ///< share of those in what is written; skeleton and leaf only
+  double keep = 0;                  ///< share of those in what is written; skeleton and part only
   std::function<bool()> cancelled;  ///< asked between steps; the checkpoint is written before it stops
 };
 int train(const TrainOptions& options);

@@ -1,8 +1,8 @@
-us_module(nn_core SOURCES nn/scan_patches.cpp nn/leaf_crops.cpp nn/weights_layout.cpp
+us_module(nn_core SOURCES nn/scan_patches.cpp nn/part_crops.cpp nn/weights_layout.cpp
   PUBLIC understudy_core PRIVATE nlohmann_json::nlohmann_json)
 us_module(nn TORCH SOURCES
   nn/weights_file.cpp nn/skeleton_form.cpp nn/modules/skeleton_extractor.cpp nn/modules/point_transformer.cpp
-  nn/extractor_input.cpp nn/network_extractor.cpp nn/leaf_refiner.cpp nn/modules/leaf_refiner.cpp
+  nn/extractor_input.cpp nn/network_extractor.cpp nn/part_refiner.cpp nn/modules/part_refiner.cpp
   nn/network_deformer.cpp nn/modules/deformation.cpp
   nn/paper_transfer.cpp nn/modules/motion_gru.cpp nn/modules/forward_kinematics.cpp
   nn/modules/joint_tensors.cpp

@@ -6,15 +6,15 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/nn/leaf_refiner.hpp"
 #include "retarget/nn/network_deformer.hpp"
 #include "retarget/nn/network_extractor.hpp"
 #include "retarget/nn/paper_transfer.hpp"
+#include "retarget/nn/part_refiner.hpp"
 #include "retarget/nn/plugin_api.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/training/deformation_trainer.hpp"
-#include "retarget/training/leaf_trainer.hpp"
 #include "retarget/training/motion_trainer.hpp"
+#include "retarget/training/part_trainer.hpp"
 #include "retarget/training/skeleton_trainer.hpp"
 
 namespace understudy::nn {
@@ -27,13 +27,13 @@ std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, con
 }
 
 /// Null where the folder has none: weights of one's own need no second look.
-std::unique_ptr<LeafRefiner> load_leaves(const std::string& folder) {
-  const std::string path = folder + "/leaf.weights";
+std::unique_ptr<PartRefiner> load_parts(const std::string& folder) {
+  const std::string path = folder + "/part.weights";
   if (!std::filesystem::exists(path)) {
     log::warn_once(path + ": is not there; limbs and head are seen from afar only");
     return nullptr;
   }
-  return load_leaf_refiner(path);
+  return load_part_refiner(path);
 }
 
 std::unique_ptr<Deformer> load_skin(const NetworkOptions& options, const std::string& folder) {
@@ -72,7 +72,7 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
       folder + (dense ? "/skeleton.weights" : "/skeleton_" + options.extractor + ".weights");
   networks.extractor =
       load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
-                             options.extractor, dense && options.near ? load_leaves(folder) : nullptr);
+                             options.extractor, dense && options.near ? load_parts(folder) : nullptr);
   if (dense && options.extractor_file.empty())
     networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
   networks.transfer = load_transfer(options, folder);
@@ -84,9 +84,9 @@ int train_network(const TrainOptions& options) {
   if (options.network == "skeleton") return training::train_skeleton(options);
   if (options.network == "motion") return training::train_motion(options);
   if (options.network == "deformation") return training::train_deformation(options);
-  if (options.network == "leaf") return training::train_leaf(options);
+  if (options.network == "part") return training::train_part(options);
   throw Error("there is no network '" + options.network +
-              "' to train: skeleton, leaf, motion or deformation");
+              "' to train: skeleton, part, motion or deformation");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace understudy::nn {
 
 /// What a weights file says of itself.
 struct WeightsHeader {
-  std::string kind;                       ///< "skeleton", "leaf", "motion" or "deformation"
+  std::string kind;                       ///< "skeleton", "part", "motion" or "deformation"
   int version = 0;                        ///< of the network's form; another version is refused
   std::map<std::string, double> numbers;  ///< sizes and training figures
 };

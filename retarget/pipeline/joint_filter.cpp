@@ -70,10 +70,10 @@ void JointFilter::Spread::predict(float dt, float acceleration) {
   vv += dt * dt * q;
 }
 
-std::array<float, 2> JointFilter::Spread::correct(float surprise, float noise) {
-  // A surprise beyond four deviations is a real jump that the model does not know: follow it, do not lag.
+std::array<float, 2> JointFilter::Spread::correct(float innovation, float noise) {
+  // A innovation beyond four deviations is a real jump that the model does not know: follow it, do not lag.
   const float expected = 3 * (pp + noise * noise);
-  const float excess = surprise / (16 * expected);
+  const float excess = innovation / (16 * expected);
   if (excess > 1) {
     pp *= excess;
     vv *= excess;
@@ -105,11 +105,11 @@ void JointFilter::smooth(Extraction& frame, float dt) {
     Track& t = tracks_[j];
     t.position += dt * t.velocity;
     t.spread.predict(dt, j == Pelvis ? options_.root_acceleration : options_.acceleration);
-    const Vec3 surprise = measured(j) - t.position;
+    const Vec3 innovation = measured(j) - t.position;
     const auto [kp, kv] = t.spread.correct(
-        surprise.squaredNorm(), noise(frame.confidence[j], options_.noise_m, options_.weak_noise_m));
-    t.position += kp * surprise;
-    t.velocity += kv * surprise;
+        innovation.squaredNorm(), noise(frame.confidence[j], options_.noise_m, options_.weak_noise_m));
+    t.position += kp * innovation;
+    t.velocity += kv * innovation;
   }
   for (int j = 0; j < kJointCount; ++j) {
     const Vec3 base = j == Pelvis ? Vec3(Vec3::Zero()) : tracks_[Pelvis].position;
@@ -132,15 +132,15 @@ void JointFilter::smooth_turns(Extraction& frame, float dt) {
     }
     const Mat3 expected = rotation_from_axis_angle(dt * t.velocity) * t.rotation;
     t.spread.predict(dt, options_.turn_acceleration);
-    const Vec3 surprise = rotation_to_axis_angle(seen * expected.transpose());
+    const Vec3 innovation = rotation_to_axis_angle(seen * expected.transpose());
     const float deviation =
         noise(frame.confidence[static_cast<Eigen::Index>(j)], options_.turn_noise, options_.weak_turn_noise);
-    const auto [kp, kv] = t.spread.correct(surprise.squaredNorm(), deviation);
+    const auto [kp, kv] = t.spread.correct(innovation.squaredNorm(), deviation);
     // Products of rotations drift from being one.
-    t.rotation = Eigen::Quaternionf(Mat3(rotation_from_axis_angle(kp * surprise) * expected))
+    t.rotation = Eigen::Quaternionf(Mat3(rotation_from_axis_angle(kp * innovation) * expected))
                      .normalized()
                      .toRotationMatrix();
-    t.velocity += kv * surprise;
+    t.velocity += kv * innovation;
     seen = t.rotation;
   }
   turning_ = true;

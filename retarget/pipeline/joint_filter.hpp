@@ -44,8 +44,8 @@ class JointFilter {
   struct Spread {
     float pp = 0, pv = 0, vv = 0;
     void predict(float dt, float acceleration);
-    /// What share of a surprise (its squared length) goes into the value, and into its speed.
-    std::array<float, 2> correct(float surprise, float noise);
+    /// What share of a innovation (its squared length) goes into the value, and into its speed.
+    std::array<float, 2> correct(float innovation, float noise);
   };
   struct Track {
     Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();

@@ -12,7 +12,7 @@ namespace {
 using torch::Tensor;
 
 constexpr double kMillimetres = 1000;
-constexpr int kJudgedPoses = 16;
+constexpr int kEvaluatedPoses = 16;
 constexpr int kEdges = 6;  // a vertex: design of medl_mm
 
 Tensor add_offsets(const Tensor& points, const Tensor& offsets) {
@@ -54,7 +54,7 @@ DeformationLoss deformation_loss(nn::DeformationNet& net, const DeformationBatch
   return loss;
 }
 
-struct DeformationJudge::Target {
+struct DeformationEvaluator::Target {
   Tensor vertices, joints, noisy_joints, surface;  // [V, 3], [22, 3], [22, 3], [M, 3]
   Tensor weights, basis;                           // truth
   Tensor features, transforms;                     // [1, P, 189], [1, P, 22, 12]
@@ -62,14 +62,14 @@ struct DeformationJudge::Target {
   bool clothed = false;
 };
 
-DeformationJudge::DeformationJudge(const TrainingData& data) {
+DeformationEvaluator::DeformationEvaluator(const TrainingData& data) {
   Rng rng(7);
   const int people = static_cast<int>(data.betas.size());
   for (int i = 0; i < std::min(4, people); ++i) add(data, data.body.shaped(data.betas[i * people / 4]), rng);
   for (size_t i = 0; i < std::min<size_t>(3, data.dressed.size()); ++i) add(data, data.dressed[i], rng);
 }
 
-void DeformationJudge::add(const TrainingData& data, const ShapedBody& body, Rng& rng) {
+void DeformationEvaluator::add(const TrainingData& data, const ShapedBody& body, Rng& rng) {
   auto target = std::make_shared<Target>();
   target->clothed = !body.pose_dirs;
   target->vertices = tensor_of(body.vertices);
@@ -82,9 +82,9 @@ void DeformationJudge::add(const TrainingData& data, const ShapedBody& body, Rng
   target->weights = tensor_of(body.weights);
   target->basis = body.pose_dirs ? tensor_of(*body.pose_dirs).view({body.vertices.rows(), -1})
                                  : torch::zeros({body.vertices.rows(), 3 * nn::kPoseFeatureCount});
-  target->features = torch::empty({1, kJudgedPoses, nn::kPoseFeatureCount});
-  target->transforms = torch::empty({1, kJudgedPoses, kJointCount, 12});
-  for (int k = 0; k < kJudgedPoses; ++k) {
+  target->features = torch::empty({1, kEvaluatedPoses, nn::kPoseFeatureCount});
+  target->transforms = torch::empty({1, kEvaluatedPoses, kJointCount, 12});
+  for (int k = 0; k < kEvaluatedPoses; ++k) {
     const Rotations pose = random_pose(data, rng).local;
     target->features[0][k].copy_(tensor_of(pose_features(pose)).flatten());
     target->transforms[0][k].copy_(tensor_of(joint_transforms(body.joints, pose)));
@@ -102,7 +102,7 @@ void DeformationJudge::add(const TrainingData& data, const ShapedBody& body, Rng
   targets_.push_back(target);
 }
 
-DeformationScore DeformationJudge::score(nn::DeformationNet& net) const {
+DeformationScore DeformationEvaluator::score(nn::DeformationNet& net) const {
   const torch::NoGradGuard no_grad;
   DeformationScore score;
   double naked = 0, clothed = 0;

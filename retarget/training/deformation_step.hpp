@@ -20,10 +20,10 @@ struct DeformationScore {
   double noisy_mpvd_mm = 0;  ///< naked, the networks see joints that are wrong by 10 mm
 };
 
-/// Judges on a fixed choice of a split's people, outfits and poses; every vertex counts.
-class DeformationJudge {
+/// Evaluates on a fixed choice of a split's people, outfits and poses; every vertex counts.
+class DeformationEvaluator {
  public:
-  explicit DeformationJudge(const TrainingData& data);
+  explicit DeformationEvaluator(const TrainingData& data);
   DeformationScore score(nn::DeformationNet& net) const;
 
  private:

@@ -43,7 +43,7 @@ class DeformationTrainer {
   nn::TrainOptions options_;
   torch::Device device_;
   TrainingData train_, dev_;
-  DeformationJudge judge_;
+  DeformationEvaluator evaluator_;
   nn::DeformationNet net_, average_;
   std::vector<torch::Tensor> parameters_;
   std::unique_ptr<torch::optim::Adam> optimizer_;
@@ -60,7 +60,7 @@ DeformationTrainer::DeformationTrainer(const nn::TrainOptions& options)
       device_(options.device),
       train_(load_training_data(options.data, Split::Train)),
       dev_(load_training_data(options.data, Split::Dev)),
-      judge_(dev_) {
+      evaluator_(dev_) {
   US_CHECK(options_.minutes > 0 || options_.samples > 0, "training wants --minutes or --samples");
   at::set_num_threads(std::max(1, options_.threads));
   torch::manual_seed(options_.seed);
@@ -152,7 +152,7 @@ void DeformationTrainer::update_average() {
 }
 
 void DeformationTrainer::report() {
-  const DeformationScore dev = judge_.score(average_);
+  const DeformationScore dev = evaluator_.score(average_);
   const double n = std::max(1, sum_count_);
   char line[300];
   std::snprintf(line, sizeof line, "%.1f,%lld,%lld,%.6f,%.3f,%.3f,%.4f,%.3f,%.2f,%.3f,%.3f,%.3f,%.3f,%.3f",

@@ -10,7 +10,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/nn/weights_file.hpp"
-#include "retarget/training/motion_judge.hpp"
+#include "retarget/training/motion_evaluator.hpp"
 #include "retarget/training/motion_trainer.hpp"
 
 namespace understudy::training {
@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kCheckpointMinutes = 2, kReportMinutes = 0.5;
-constexpr float kJudgedNoise = 0.02f;  // metres
+constexpr float kEvaluatedNoise = 0.02f;  // metres
 
 double minutes_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count() / 60;
@@ -46,9 +46,9 @@ class Recent {
   int count_ = 0;
 };
 
-struct Judges {
-  MotionJudge clean, noisy;
-  explicit Judges(const TrainingData& dev) : clean(dev, 0), noisy(dev, kJudgedNoise) {}
+struct Evaluators {
+  MotionEvaluator clean, noisy;
+  explicit Evaluators(const TrainingData& dev) : clean(dev, 0), noisy(dev, kEvaluatedNoise) {}
 };
 
 void append_curve(const std::string& path, const MotionTrainer& trainer, const MotionStep& losses,
@@ -78,17 +78,18 @@ std::string losses_line(const MotionTrainer& trainer, const MotionStep& losses) 
 std::string figures_line(const MotionFigures& clean, const MotionFigures& noisy) {
   std::ostringstream line;
   line << std::fixed << std::setprecision(1) << "motion: dev mpjpe " << clean.mpjpe_mm << " mm, pa "
-       << clean.pa_mpjpe_mm << " mm, rotations " << clean.rot_deg << " deg; with " << 1000 * kJudgedNoise
+       << clean.pa_mpjpe_mm << " mm, rotations " << clean.rot_deg << " deg; with " << 1000 * kEvaluatedNoise
        << " mm of noise " << noisy.mpjpe_mm << " / " << noisy.pa_mpjpe_mm << " mm, " << noisy.rot_deg
        << " deg";
   return line.str();
 }
 
-/// Judges, then writes the curve's next line, the weights and the checkpoint.
-void keep(MotionTrainer& trainer, const Judges& judges, const MotionStep& losses,
+/// Evaluators, then writes the curve's next line, the weights and the checkpoint.
+void keep(MotionTrainer& trainer, const Evaluators& evaluators, const MotionStep& losses,
           const nn::TrainOptions& options) {
   const nn::MotionGruOptions form = trainer.form();
-  const MotionFigures clean = judges.clean.judge(trainer.net), noisy = judges.noisy.judge(trainer.net);
+  const MotionFigures clean = evaluators.clean.evaluate(trainer.net),
+                      noisy = evaluators.noisy.evaluate(trainer.net);
   log::info(figures_line(clean, noisy));
   append_curve(options.curve.empty() ? options.out + ".csv" : options.curve, trainer, losses, clean, noisy);
   nn::save_weights(options.out,
@@ -136,7 +137,7 @@ int train_motion(const nn::TrainOptions& options) {
   at::set_num_threads(std::max(1, options.threads));  // these matrices are small: one thread unless told
   const TrainingData dev = load_training_data(options.data, Split::Dev);
   const MotionData data(load_training_data(options.data, Split::Train));
-  const Judges judges(dev);
+  const Evaluators evaluators(dev);
   MotionTrainer trainer(trainer_options(options));
   if (const std::string checkpoint = options.out + ".checkpoint"; std::filesystem::exists(checkpoint)) {
     trainer.load_checkpoint(checkpoint);
@@ -159,13 +160,13 @@ int train_motion(const nn::TrainOptions& options) {
       reported = trainer.minutes;
     }
     if (trainer.minutes - kept > kCheckpointMinutes) {
-      keep(trainer, judges, recent.mean(), options);
+      keep(trainer, evaluators, recent.mean(), options);
       recent.clear();
       kept = trainer.minutes;
     }
     cancelled = options.cancelled && options.cancelled();
   }
-  keep(trainer, judges, recent.mean(), options);
+  keep(trainer, evaluators, recent.mean(), options);
   return cancelled ? 1 : 0;
 }
 

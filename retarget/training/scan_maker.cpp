@@ -132,7 +132,7 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose, int cou
 
 /// Wide clothes, hair, held things, one camera, lost limbs: what clips and dressed people of the data lack.
 /// The same seed, in another frame, puts on the same things.
-void ScanMaker::hinder(MadeScan& scan, uint64_t seed) {
+void ScanMaker::occlude(MadeScan& scan, uint64_t seed) {
   uint64_t kind = 0;
   const auto sometimes = [&](float share, auto&& change) {
     Rng rng(seed ^ (0xd1342543de82ef95ull * ++kind));
@@ -233,7 +233,7 @@ ScanMaker::Stream ScanMaker::start() {
 MadeScan ScanMaker::next(Stream& stream) {
   MadeScan scan = sample_posed(*stream.person, stream.poses.back(), raw_points());
   stream.poses.pop_back();
-  hinder(scan, stream.seed);
+  occlude(scan, stream.seed);
   if (options_.stretch > 0) stretch(scan);
   finish(scan, stream.captured);
   return scan;

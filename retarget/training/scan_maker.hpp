@@ -82,7 +82,7 @@ class ScanMaker {
   std::vector<Pose> clip_poses(int count);
   std::vector<Pose> make_poses(int count);
   MadeScan sample_posed(const Person& person, const Pose& pose, int count, Points* rest = nullptr);
-  void hinder(MadeScan& scan, uint64_t seed);
+  void occlude(MadeScan& scan, uint64_t seed);
   void stretch(MadeScan& scan);
   void degrade(MadeScan& scan);
   void finish(MadeScan& scan, bool captured);

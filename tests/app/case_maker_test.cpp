@@ -93,11 +93,11 @@ TEST_F(CaseMaker, BendsBendEachJointFarAndComeBack) {
   EXPECT_LT(geodesic_angle(truth.rotations[0][LeftElbow], Mat3::Identity()), 1e-3f);
 }
 
-TEST_F(CaseMaker, HinderedSourcesAreTaggedAndCoverAllKinds) {
+TEST_F(CaseMaker, OccludedSourcesAreTaggedAndCoverAllKinds) {
   options.cases = 6;
-  ASSERT_EQ(make("hindered"), 6);
+  ASSERT_EQ(make("occluded"), 6);
   EXPECT_EQ(names.front(), "b00_skirt");
-  EXPECT_EQ(made("b05_limbless").tags, (std::vector<std::string>{"hindered", "sway", "limbless"}));
+  EXPECT_EQ(made("b05_limbless").tags, (std::vector<std::string>{"occluded", "sway", "limbless"}));
   EXPECT_GT(read_mesh(made("b00_skirt").source + "/frame_00003.ply").vertices.rows(), 0);
   EXPECT_FALSE(read_truth(made("b03_held").truth).source_joints.empty());
 }

@@ -133,7 +133,7 @@ class Eval : public ShippedProgram {
   }
 };
 
-TEST_F(Eval, JudgesEachCaseAndTheMean) {
+TEST_F(Eval, EvaluatesEachCaseAndTheMean) {
   make_case("a", true);
   make_case("b", false);
   const Finished run = run_program({"eval", scratch.path("cases"), "--out", out("r.json")});

@@ -39,17 +39,17 @@ TEST_F(Measuring, EvalTellsWhereTheErrorLiesAndShowsTheWorstFrames) {
     EXPECT_TRUE(std::filesystem::exists(out("worst") + "/" + picture)) << picture;
 }
 
-TEST_F(Measuring, APeerIsJudgedInPlaceOfTheExtractor) {
+TEST_F(Measuring, ABaselineIsEvaluatedInPlaceOfTheExtractor) {
   make_suite("naked");
   const std::string cases = scratch.path("cases/naked");
-  const Finished run = run_program({"eval", cases, "--out", out("r.json"), "--peer", "fit", "--body",
+  const Finished run = run_program({"eval", cases, "--out", out("r.json"), "--baseline", "fit", "--body",
                                     scratch.path("data/body/makehuman_smplformat.npz")});
   ASSERT_EQ(run.code, 0) << run.err;
   const Json report = Json::parse(read_bytes(out("r.json")));
-  EXPECT_EQ(report["peer"], "fit");
+  EXPECT_EQ(report["baseline"], "fit");
   EXPECT_GT(report["mean"]["extraction_mpjpe_mm"], 0);
   std::filesystem::remove_all(scratch.path("out"));
-  expect_clean_failure(run_program({"eval", cases, "--peer", "fit"}), "--body");
+  expect_clean_failure(run_program({"eval", cases, "--baseline", "fit"}), "--body");
 }
 
 TEST_F(Measuring, ReportWritesAPageAndSaysWhatIsLeftOut) {
@@ -72,7 +72,7 @@ TEST_F(Measuring, ReportWritesAPageAndSaysWhatIsLeftOut) {
 TEST_F(Measuring, ReportRefusesRowsThatItDoesNotKnow) {
   std::filesystem::create_directories(scratch.path("cases"));
   write_text(scratch.path("rows.json"),
-             R"({"rows": [{"table": "peers", "name": "a", "suite": "b", "colour": 1}]})");
+             R"({"rows": [{"table": "baselines", "name": "a", "suite": "b", "colour": 1}]})");
   expect_clean_failure(run_program({"report", "--cases", scratch.path("cases"), "--rows",
                                     scratch.path("rows.json"), "--out", out("page")}),
                        "colour");

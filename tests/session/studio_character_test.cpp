@@ -62,11 +62,11 @@ TEST_F(StudioCharacter, IsSeenAsItCameBeforeAnyNetworkIsThere) {
   };
   Studio studio(std::move(slow));
   studio.run("target.add", {path("made.glb")});
-  for (int i = 0; i < 5000 && !take(studio).as_it_came; ++i) {
+  for (int i = 0; i < 5000 && !take(studio).as_loaded; ++i) {
     studio.tick(0.01);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const auto came = take(studio).as_it_came;
+  const auto came = take(studio).as_loaded;
   if (!came) loaded.set_value();
   ASSERT_NE(came, nullptr);
   EXPECT_EQ(take(studio).target, nullptr);
@@ -82,7 +82,7 @@ TEST_F(StudioCharacter, IsSeenAsItCameBeforeAnyNetworkIsThere) {
   loaded.set_value();
   studio.wait_idle(60);
   EXPECT_TRUE(take(studio).ready);
-  EXPECT_EQ(take(studio).as_it_came, nullptr);
+  EXPECT_EQ(take(studio).as_loaded, nullptr);
   EXPECT_EQ(take(studio).character->surface.mesh.vertices, came->mesh.vertices);
   EXPECT_GT((take(studio).target->mesh.vertices - came->mesh.vertices).cwiseAbs().maxCoeff(),
             0.2f);  // arms up

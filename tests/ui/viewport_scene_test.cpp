@@ -233,8 +233,8 @@ TEST_F(SceneTest, ACharacterIsSeenAsItCameUntilItIsBound) {
   came->mesh.colors = Points::Constant(stage.mesh.vertices.rows(), 3, 0.25f);
   take = {};
   EXPECT_NE(pane_hint(session, pane_of(1)), "");
-  take.as_it_came = came;
-  EXPECT_TRUE(shows_as_it_came(session, pane_of(1)));
+  take.as_loaded = came;
+  EXPECT_TRUE(shows_as_loaded(session, pane_of(1)));
   EXPECT_EQ(pane_hint(session, pane_of(1)), "");
   TargetLooks looks;
   PictureKeeper keeper;
@@ -249,7 +249,7 @@ TEST_F(SceneTest, ACharacterIsSeenAsItCameUntilItIsBound) {
   EXPECT_TRUE(made.scene.skeletons.empty());
   EXPECT_NEAR(follow_offset(session, pane_of(1)).x(), 3, 0.1f);
 
-  take.target = target, take.as_it_came = nullptr, take.ready = true;
+  take.target = target, take.as_loaded = nullptr, take.ready = true;
   keeper.update(session, *stage.cache, looks, pane_of(1));
   EXPECT_EQ(keeper.pictures().takes.size(), 1u);  // no gap: what stood there stays until the T-pose is drawn
   looks.wait();

@@ -203,7 +203,7 @@ void draw_binding(const SafeBinding& binding, Ui& ui) {
 
 void draw_target_facts(const app::TakeState& state, Ui& ui) {
   if (!state.problem.empty()) warn(ui, state.problem);
-  const auto& shown = state.target ? state.target : state.as_it_came;
+  const auto& shown = state.target ? state.target : state.as_loaded;
   if (!shown) {
     if (state.problem.empty()) hint(ui, "Being read\u2026");
     return;

@@ -83,7 +83,7 @@ std::optional<PanePictures> pictures_of(const Session& session, app::FrameCache&
 std::optional<std::shared_ptr<const TargetLook>> look_of_standing(const Session& session, TargetLooks& looks,
                                                                   const PaneContent& pane) {
   if (shows_rest(session, pane)) return looks.of(take_of(session, pane.takes[0])->target);
-  if (shows_as_it_came(session, pane)) return looks.plain_of(take_of(session, pane.takes[0])->as_it_came);
+  if (shows_as_loaded(session, pane)) return looks.plain_of(take_of(session, pane.takes[0])->as_loaded);
   return std::nullopt;
 }
 

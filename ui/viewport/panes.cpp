@@ -51,7 +51,7 @@ Vec3 rest_offset(const Session& session, const PaneContent& pane) {
   const Points& vertices = target.mesh.vertices;
   const float floor = vertices.rows() > 0 ? vertices.col(1).minCoeff() : 0;
   Vec3 offset(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
-  if (shows_as_it_came(session, pane) && vertices.rows() > 0) {  // its joints are not known yet
+  if (shows_as_loaded(session, pane) && vertices.rows() > 0) {  // its joints are not known yet
     const Vec3 middle = 0.5f * (vertices.colwise().minCoeff() + vertices.colwise().maxCoeff()).transpose();
     offset = Vec3(middle.x(), floor, middle.z());
   }
@@ -107,7 +107,7 @@ std::string pane_hint(const Session& session, const PaneContent& pane) {
     return "Drop a character here";
   if (const app::TakeState* take = pane.source ? nullptr : state_of_take(session, pane)) {
     if (!take->problem.empty()) return take->problem;
-    if (shows_as_it_came(session, pane)) return "";
+    if (shows_as_loaded(session, pane)) return "";
     if (!take->ready) return "Preparing the target\u2026";
     if (shows_rest(session, pane)) return "";
   }
@@ -129,14 +129,14 @@ bool shows_rest(const Session& session, const PaneContent& pane) {
   return edited || (take->joints.empty() && !pane.source);
 }
 
-bool shows_as_it_came(const Session& session, const PaneContent& pane) {
+bool shows_as_loaded(const Session& session, const PaneContent& pane) {
   const app::TakeState* take = state_of_take(session, pane);
-  return take != nullptr && !pane.source && take->target == nullptr && take->as_it_came != nullptr &&
+  return take != nullptr && !pane.source && take->target == nullptr && take->as_loaded != nullptr &&
          take->problem.empty();
 }
 
 std::shared_ptr<const Target> shown_target(const app::TakeState& take) {
-  return take.target != nullptr ? take.target : take.as_it_came;
+  return take.target != nullptr ? take.target : take.as_loaded;
 }
 
 const Joints* pane_joints(const Session& session, const PaneContent& pane, int frame) {
@@ -172,7 +172,7 @@ app::CameraState camera_state(const app::View& view, const PaneContent& pane) {
 }
 
 Vec3 follow_offset(const Session& session, const PaneContent& pane) {
-  if (shows_rest(session, pane) || shows_as_it_came(session, pane)) return rest_offset(session, pane);
+  if (shows_rest(session, pane) || shows_as_loaded(session, pane)) return rest_offset(session, pane);
   const int person = pane.source || pane.takes.empty() ? 0 : pane.takes[0] + 1;
   return app::follow_offset(session, person, pane_frame(session, pane));
 }

@@ -39,7 +39,7 @@ int pane_frame(const app::Session& session, const PaneContent& pane);
 /// there is a frame.
 bool shows_rest(const app::Session& session, const PaneContent& pane);
 /// Whether a pane shows the character of its take as it came: until it is bound.
-bool shows_as_it_came(const app::Session& session, const PaneContent& pane);
+bool shows_as_loaded(const app::Session& session, const PaneContent& pane);
 /// What the surface of a take is drawn with: its target, or until that is there the character as it came;
 /// null before that.
 std::shared_ptr<const Target> shown_target(const app::TakeState& take);

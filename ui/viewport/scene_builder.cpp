@@ -64,7 +64,7 @@ class Builder {
  private:
   void add_frame();
   void add_rest();
-  void add_as_it_came();
+  void add_as_loaded();
   void add_scan();
   void add_take(size_t i);
   struct Look {
@@ -99,8 +99,8 @@ PaneScene Builder::build() {
   out_.values_take = in_.pane.takes.empty() ? -1 : in_.pane.takes[0];
   if (shows_rest(session_, in_.pane))
     add_rest();
-  else if (shows_as_it_came(session_, in_.pane))
-    add_as_it_came();
+  else if (shows_as_loaded(session_, in_.pane))
+    add_as_loaded();
   else
     add_frame();
   if (in_.preview.gizmo) out_.scene.gizmos.push_back(*in_.preview.gizmo);
@@ -124,7 +124,7 @@ void Builder::add_rest() {
   out_.scene.skeletons.push_back(std::move(view));
 }
 
-void Builder::add_as_it_came() {
+void Builder::add_as_loaded() {
   if (!in_.pictures.takes.empty() && in_.pictures.takes[0] != nullptr)
     add_target_surface(0, in_.pictures.takes[0], {});
 }
@@ -299,7 +299,7 @@ void Builder::set_ground() {
   render::GroundView& ground = out_.scene.ground;
   ground.visible = layer(&app::Layers::ground);
   if (in_.theme == ThemeKind::Dark) ground.line = Vec3(0.42f, 0.45f, 0.50f), ground.shadow = 0.8f;
-  if (!shows_rest(session_, in_.pane) && !shows_as_it_came(session_, in_.pane)) return;
+  if (!shows_rest(session_, in_.pane) && !shows_as_loaded(session_, in_.pane)) return;
   const Points& rest = shown_target(*take_of(session_, in_.pane.takes[0]))->mesh.vertices;
   if (rest.rows() > 0) ground.height = rest.col(1).minCoeff();
 }

@@ -260,7 +260,7 @@ void Views::Impl::make_picture(const Frame& f, Pane& pane) {
     found.push_back(static_cast<size_t>(k) < f.session.takes.size()
                         ? looks.of(f.session.takes[static_cast<size_t>(k)].target)
                         : nullptr);
-  if (shows_as_it_came(f.session, pane.content)) found = {*look_of_standing(f.session, looks, pane.content)};
+  if (shows_as_loaded(f.session, pane.content)) found = {*look_of_standing(f.session, looks, pane.content)};
   const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.ui.theme().kind};
   pane.made = build_scene(input, &pane.colours);
   draw_picture(f, pane);
@@ -305,10 +305,10 @@ void Views::Impl::describe(const Session& session, const Pane& pane, Overlay& ov
   overlay.title = pane_title(session, pane.content);
   overlay.hint = pane_hint(session, pane.content);
   if (overlay.hint.empty()) {
-    overlay.subtitle = shows_as_it_came(session, pane.content) ? "as it came \u00b7 being bound\u2026"
-                       : rest                                  ? "T-pose"
-                       : frame >= 0                            ? "frame " + std::to_string(frame)
-                                                               : "";
+    overlay.subtitle = shows_as_loaded(session, pane.content) ? "as it came \u00b7 being bound\u2026"
+                       : rest                                 ? "T-pose"
+                       : frame >= 0                           ? "frame " + std::to_string(frame)
+                                                              : "";
     overlay.legend = pane.made.legend;
   }
   const size_t seen = static_cast<size_t>(std::max(0, frame));

@@ -238,7 +238,7 @@ Character rigged_cat(bool as_a_person) {
 }
 
 TEST(OddShapes, ACatOnARigIsRefusedAndWarnedOfWhereItsBonesAreNamedAsAPersons) {
-  const std::string complaint = error_of([] { stand_character(rigged_cat(false)); });
+  const std::string complaint = error_of([] { load_character(rigged_cat(false)); });
   EXPECT_TRUE(contains(complaint, "tom: does not look like a person: it is ")) << complaint;
   const PreparedCharacter c = prepare_character(rigged_cat(true), nullptr, nullptr);
   ASSERT_TRUE(c.rigged);

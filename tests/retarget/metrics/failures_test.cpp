@@ -17,7 +17,8 @@ Joints standing() {
   return x;
 }
 
-FrameFailures judged(const JointSequence& seen, const JointSequence& performed, const Rotations& rotations) {
+FrameFailures evaluated(const JointSequence& seen, const JointSequence& performed,
+                        const Rotations& rotations) {
   const JointSequence truth(3, standing());
   const std::vector<Rotations> turned(3, rotations), straight(3, identity_rotations());
   return failures_of({seen, truth, performed, truth, turned, straight, 30}).back();
@@ -32,7 +33,7 @@ FrameFailures expected(std::initializer_list<Failure> failures) {
 const JointSequence kStill(3, standing());
 
 TEST(Failures, FindsNoneInTheTruth) {
-  EXPECT_EQ(judged(kStill, kStill, identity_rotations()), expected({}));
+  EXPECT_EQ(evaluated(kStill, kStill, identity_rotations()), expected({}));
 }
 
 TEST(Failures, TellsSwappedLegsFromALostWrist) {
@@ -40,24 +41,24 @@ TEST(Failures, TellsSwappedLegsFromALostWrist) {
   for (const int j : {LeftHip, LeftKnee, LeftAnkle, LeftFoot})
     swapped[2].row(j).swap(swapped[2].row(kMirror[j]));
   lost[2](LeftWrist, 2) += 0.2f;
-  EXPECT_EQ(judged(swapped, kStill, identity_rotations()), expected({SidesSwapped, HeadingFlipped}));
-  EXPECT_EQ(judged(lost, kStill, identity_rotations()), expected({LimbLost}));
+  EXPECT_EQ(evaluated(swapped, kStill, identity_rotations()), expected({SidesSwapped, HeadingFlipped}));
+  EXPECT_EQ(evaluated(lost, kStill, identity_rotations()), expected({LimbLost}));
 }
 
 TEST(Failures, TellsAJoltFromASlide) {
   JointSequence jolted = kStill, sliding = kStill;
   jolted[2](Head, 1) += 0.06f;
   for (int t = 0; t < 3; ++t) sliding[t](LeftFoot, 0) += 0.02f * t;  // 0.6 m/s, evenly
-  EXPECT_EQ(judged(kStill, jolted, identity_rotations()), expected({Jolt}));
-  EXPECT_EQ(judged(kStill, sliding, identity_rotations()), expected({FootSlides}));
+  EXPECT_EQ(evaluated(kStill, jolted, identity_rotations()), expected({Jolt}));
+  EXPECT_EQ(evaluated(kStill, sliding, identity_rotations()), expected({FootSlides}));
 }
 
 TEST(Failures, TellsATwistFromABend) {
   Rotations twisted = identity_rotations(), bent = identity_rotations();
   twisted[LeftElbow] = rotation_from_axis_angle(Vec3(1, 0, 0));
   bent[LeftElbow] = rotation_from_axis_angle(Vec3(0, 1, 0));
-  EXPECT_EQ(judged(kStill, kStill, twisted), expected({BoneTwisted}));
-  EXPECT_EQ(judged(kStill, kStill, bent), expected({}));
+  EXPECT_EQ(evaluated(kStill, kStill, twisted), expected({BoneTwisted}));
+  EXPECT_EQ(evaluated(kStill, kStill, bent), expected({}));
 }
 
 TEST(Confidence, RanksAreWhatCorrelates) {

@@ -186,12 +186,12 @@ TEST(InsideShare, IgnoresRowsThatAreNotNumbers) {
 
 TEST(SelfPenetration, CountsVerticesThatEnteredAnotherPart) {
   const Mesh rest = together(box({0, 0, 0}, {1, 1, 1}), box({3, 0, 0}, {4, 1, 1}));
-  const SelfPenetration judge(rest.vertices, rest.faces, 16);
-  EXPECT_EQ(judge.share(rest.vertices), 0);
+  const SelfPenetration evaluator(rest.vertices, rest.faces, 16);
+  EXPECT_EQ(evaluator.share(rest.vertices), 0);
   Points posed = rest.vertices;
   posed.bottomRows(8).rowwise() +=
-      Eigen::RowVector3f(-2.5f, 0.4f, 0.4f);        // one box enters the other by a corner edge
-  EXPECT_NEAR(judge.share(posed), 2.0 / 16, 1e-9);  // a corner of each lies in the other
+      Eigen::RowVector3f(-2.5f, 0.4f, 0.4f);            // one box enters the other by a corner edge
+  EXPECT_NEAR(evaluator.share(posed), 2.0 / 16, 1e-9);  // a corner of each lies in the other
 }
 
 TEST(SelfPenetration, ForgivesWhatIsInsideInTheTPose) {

@@ -84,12 +84,12 @@ TEST(DeformationTraining, OverfitsOneBatch) {
   EXPECT_LT(after.weight_kl, 0.1);
 }
 
-TEST(DeformationJudge, TruthlikeNetworkScoresBetterThanRandom) {
+TEST(DeformationEvaluator, TruthlikeNetworkScoresBetterThanRandom) {
   const TrainingData data = testing::octahedron_data();
-  const DeformationJudge judge(data);
+  const DeformationEvaluator evaluator(data);
   torch::manual_seed(1);
   nn::DeformationNet net;
-  const double random = judge.score(net).mpvd_mm;
+  const double random = evaluator.score(net).mpvd_mm;
   EXPECT_GT(random, 10);
   DeformationSampler sampler(data, small_batch(), 3);
   torch::optim::Adam optimizer(net->parameters(), torch::optim::AdamOptions(1e-3));
@@ -99,7 +99,7 @@ TEST(DeformationJudge, TruthlikeNetworkScoresBetterThanRandom) {
     torch::nn::utils::clip_grad_norm_(net->parameters(), 10.0);
     optimizer.step();
   }
-  EXPECT_LT(judge.score(net).mpvd_mm, 0.6 * random);
+  EXPECT_LT(evaluator.score(net).mpvd_mm, 0.6 * random);
 }
 
 std::string bytes_of(const std::string& path) {

@@ -9,7 +9,7 @@
 #include "retarget/nn/modules/forward_kinematics.hpp"
 #include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/weights_file.hpp"
-#include "retarget/training/motion_judge.hpp"
+#include "retarget/training/motion_evaluator.hpp"
 #include "retarget/training/motion_trainer.hpp"
 #include "tests/retarget/nn/motion_support.hpp"
 
@@ -119,10 +119,10 @@ TEST_F(MotionTraining, RefusesAFileThatIsNoCheckpoint) {
   EXPECT_THROW(trainer.load_checkpoint(file("absent")), Error);
 }
 
-TEST_F(MotionTraining, TheJudgeTellsAnUntrainedNetwork) {
-  const MotionJudge judge(load_training_data(folder_.path(), Split::Dev), 0, 30);
+TEST_F(MotionTraining, TheEvaluatorRecognisesAnUntrainedNetwork) {
+  const MotionEvaluator evaluator(load_training_data(folder_.path(), Split::Dev), 0, 30);
   nn::MotionGru net(nn::MotionGruOptions{16, 1});
-  const MotionFigures figures = judge.judge(net);  // untrained
+  const MotionFigures figures = evaluator.evaluate(net);  // untrained
   EXPECT_GT(figures.rot_deg, 5);
   EXPECT_GT(figures.mpjpe_mm, figures.pa_mpjpe_mm);
 }

@@ -31,12 +31,12 @@ const ShapedBody& person(float girth, float stature = 1.70f) {
 struct Stage {
   ShapedBody source, target;
   HandContacts hands;
-  HandContact judge;
+  HandContact evaluator;
 
   Stage(ShapedBody from, ShapedBody onto)
       : source(std::move(from)),
         target(std::move(onto)),
-        judge(target.vertices, target.faces, target.joints) {
+        evaluator(target.vertices, target.faces, target.joints) {
     hands.bind(Mesh{target.vertices, target.faces}, target.joints, target.weights);
   }
   /// One frame of the source, its rotations copied, and the hands put where they belong.
@@ -52,8 +52,8 @@ struct Stage {
     for (int t = 0; t < 15; ++t) result = push(pose);
     return result;
   }
-  HandGaps gaps(const Pose& pose) const { return judge.gaps(posed_vertices(target, pose)); }
-  double buried(const Pose& pose) const { return judge.buried(posed_vertices(target, pose)); }
+  HandGaps gaps(const Pose& pose) const { return evaluator.gaps(posed_vertices(target, pose)); }
+  double buried(const Pose& pose) const { return evaluator.buried(posed_vertices(target, pose)); }
 };
 
 Pose hand_on_belly(const ShapedBody& body) {

@@ -1,4 +1,4 @@
-// A peer to compare with: a parametric body fitted to every scan by optimisation, the usual way without
+// A baseline to compare with: a parametric body fitted to every scan by optimisation, the usual way without
 // networks.
 #pragma once
 

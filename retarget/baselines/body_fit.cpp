@@ -1,4 +1,4 @@
-#include "retarget/peers/body_fit.hpp"
+#include "retarget/baselines/body_fit.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

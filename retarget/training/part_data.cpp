@@ -1,4 +1,4 @@
-#include "retarget/training/leaf_data.hpp"
+#include "retarget/training/part_data.hpp"
 
 #include <cmath>
 #include <vector>
@@ -14,8 +14,8 @@ constexpr float kRadians = kPi / 180;
 using Told = Eigen::Matrix<float, 9, 1>;
 
 struct Crops {
-  std::vector<nn::LeafCrop> crops;
-  std::vector<std::array<Told, nn::kLeafJoints>> truth, before;
+  std::vector<nn::PartCrop> crops;
+  std::vector<std::array<Told, nn::kPartJoints>> truth, before;
 };
 
 ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
@@ -25,41 +25,41 @@ ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
   return ScanMaker(data, options, seed);
 }
 
-Told told(const Mat3& rotation, const Vec3& way, const Extraction& seen, const nn::Leaf& leaf) {
+Told told(const Mat3& rotation, const Vec3& way, const Extraction& seen, const nn::Part& part) {
   Told result;
-  result << rotation_to_6d(nn::into_leaf(rotation, seen, leaf)), nn::way_into_leaf(way, seen, leaf);
+  result << rotation_to_6d(nn::into_part(rotation, seen, part)), nn::vector_into_part(way, seen, part);
   return result;
 }
 
-torch::Tensor tensor_of(const std::vector<std::array<Told, nn::kLeafJoints>>& rows) {
-  auto tensor = torch::empty({static_cast<int64_t>(rows.size()), nn::kLeafJoints, 9});
+torch::Tensor tensor_of(const std::vector<std::array<Told, nn::kPartJoints>>& rows) {
+  auto tensor = torch::empty({static_cast<int64_t>(rows.size()), nn::kPartJoints, 9});
   float* out = tensor.data_ptr<float>();
   for (const auto& row : rows)
     for (const Told& one : row) out = std::copy(one.data(), one.data() + one.size(), out);
   return tensor;
 }
 
-LeafBatch batch_of(const Crops& made) {
+PartBatch batch_of(const Crops& made) {
   const auto B = static_cast<int64_t>(made.crops.size());
-  LeafBatch batch{torch::empty({B, nn::kLeafPoints, 3}), torch::empty({B, nn::kLeafContext}),
+  PartBatch batch{torch::empty({B, nn::kPartPoints, 3}), torch::empty({B, nn::kPartContext}),
                   tensor_of(made.truth), tensor_of(made.before)};
   for (int64_t b = 0; b < B; ++b) {
-    const nn::LeafCrop& crop = made.crops[static_cast<size_t>(b)];
+    const nn::PartCrop& crop = made.crops[static_cast<size_t>(b)];
     std::copy(crop.points.data(), crop.points.data() + crop.points.size(),
               batch.points.data_ptr<float>() + b * crop.points.size());
-    std::copy(crop.context.data(), crop.context.data() + nn::kLeafContext,
-              batch.context.data_ptr<float>() + b * nn::kLeafContext);
+    std::copy(crop.context.data(), crop.context.data() + nn::kPartContext,
+              batch.context.data_ptr<float>() + b * nn::kPartContext);
   }
   return batch;
 }
 
 }  // namespace
 
-LeafSampler::LeafSampler(const TrainingData& data, uint64_t seed)
+PartSampler::PartSampler(const TrainingData& data, uint64_t seed)
     : makers_{maker(data, 2500, seed), maker(data, 5000, seed + 1), maker(data, 9000, seed + 2)},
       rng_(seed + 3) {}
 
-Extraction LeafSampler::pretend(const PosedSkeleton& truth) {
+Extraction PartSampler::pretend(const PosedSkeleton& truth) {
   Extraction seen;
   const auto turned = [this](float degrees) {
     const Vec3 axis = random_direction(rng_);
@@ -79,7 +79,7 @@ Extraction LeafSampler::pretend(const PosedSkeleton& truth) {
     seen.joints.row(row) = truth.joints.row(row) + error.row(row);
     const int p = kParents[j];
     const Eigen::Quaternionf own(truth.global[j]);
-    // What the limb suggests of the leaf on it: no bend.
+    // What the limb suggests of the part on it: no bend.
     const Eigen::Quaternionf parent(truth.global[static_cast<size_t>(p < 0 ? 0 : p)]);
     const float drawn = rng_.chance(0.6f) ? rng_.uniform() : 0.0f;
     (*seen.global)[j] = turned(10) * own.slerp(drawn, parent).toRotationMatrix();
@@ -87,34 +87,34 @@ Extraction LeafSampler::pretend(const PosedSkeleton& truth) {
   return seen;
 }
 
-LeafBatches LeafSampler::next(int scans) {
-  std::array<Crops, nn::kLeafKinds> made;
+PartBatches PartSampler::next(int scans) {
+  std::array<Crops, nn::kPartKinds> made;
   for (int n = 0; n < scans; ++n) {
     const MadeScan scan = makers_[static_cast<size_t>(rng_.below(3))].next();
     const Extraction seen = pretend(scan.truth);
-    for (const nn::Leaf& leaf : nn::kLeaves) {
-      const auto crop = nn::cut_leaf(scan.points, seen, leaf);
+    for (const nn::Part& part : nn::kCroppedParts) {
+      const auto crop = nn::cut_part(scan.points, seen, part);
       if (!crop) continue;
-      Crops& to = made[static_cast<size_t>(leaf.kind)];
-      std::array<Told, nn::kLeafJoints> truth, before;
+      Crops& to = made[static_cast<size_t>(part.kind)];
+      std::array<Told, nn::kPartJoints> truth, before;
       Told none = Told::Zero();
       none[0] = none[4] = 1;
       truth.fill(none);
       before = truth;
-      for (size_t k = 0; k < nn::kLeafJoints; ++k) {
-        if (leaf.corrects[k] < 0) continue;
-        const auto j = static_cast<size_t>(leaf.corrects[k]);
+      for (size_t k = 0; k < nn::kPartJoints; ++k) {
+        if (part.corrects[k] < 0) continue;
+        const auto j = static_cast<size_t>(part.corrects[k]);
         const Vec3 way =
-            (scan.truth.joints.row(leaf.corrects[k]) - seen.joints.row(leaf.corrects[k])).transpose();
-        truth[k] = told(scan.truth.global[j], way, seen, leaf);
-        before[k] = told((*seen.global)[j], Vec3::Zero(), seen, leaf);
+            (scan.truth.joints.row(part.corrects[k]) - seen.joints.row(part.corrects[k])).transpose();
+        truth[k] = told(scan.truth.global[j], way, seen, part);
+        before[k] = told((*seen.global)[j], Vec3::Zero(), seen, part);
       }
       to.crops.push_back(*crop);
       to.truth.push_back(truth);
       to.before.push_back(before);
     }
   }
-  LeafBatches batches;
+  PartBatches batches;
   for (size_t kind = 0; kind < made.size(); ++kind) batches[kind] = batch_of(made[kind]);
   return batches;
 }

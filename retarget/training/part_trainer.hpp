@@ -9,6 +9,6 @@ namespace understudy::training {
 /// ".checkpoint"` when it is there. Writes weights (running average) to `out`, the learning curve to `curve`.
 /// 0 when it came to the end, 1 when it was
 /// cancelled. Throws Error.
-int train_leaf(const nn::TrainOptions& options);
+int train_part(const nn::TrainOptions& options);
 
 }  // namespace understudy::training

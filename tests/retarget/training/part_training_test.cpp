@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "retarget/nn/modules/leaf_refiner.hpp"
+#include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/nn/weights_file.hpp"
-#include "retarget/training/leaf_data.hpp"
-#include "retarget/training/leaf_trainer.hpp"
+#include "retarget/training/part_data.hpp"
+#include "retarget/training/part_trainer.hpp"
 #include "tests/support/training_folder.hpp"
 
 namespace understudy::training {
@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class LeafTraining : public testing::Test {
+class PartTraining : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("understudy_leaf_" + std::to_string(getpid()));
+    folder_ = fs::temp_directory_path() / ("understudy_part_" + std::to_string(getpid()));
     fs::remove_all(folder_);
     test::write_training_folder(folder_.string());
   }
@@ -25,9 +25,9 @@ class LeafTraining : public testing::Test {
 
   nn::TrainOptions options(int64_t samples) const {
     nn::TrainOptions options;
-    options.network = "leaf";
+    options.network = "part";
     options.data = folder_.string();
-    options.out = (folder_ / "leaf.weights").string();
+    options.out = (folder_ / "part.weights").string();
     options.samples = samples;
     options.batch = 4;
     return options;
@@ -36,13 +36,13 @@ class LeafTraining : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(LeafTraining, CropsComeWithRotationsAndWaysInTheirFrame) {
+TEST_F(PartTraining, CropsComeWithRotationsAndWaysInTheirFrame) {
   const TrainingData data = load_training_data(folder_.string(), Split::Train);
-  LeafSampler a(data, 7), b(data, 7);
-  const LeafBatches batches = a.next(6), again = b.next(6);
+  PartSampler a(data, 7), b(data, 7);
+  const PartBatches batches = a.next(6), again = b.next(6);
   int64_t crops = 0;
-  for (size_t kind = 0; kind < nn::kLeafKinds; ++kind) {
-    const LeafBatch& batch = batches[kind];
+  for (size_t kind = 0; kind < nn::kPartKinds; ++kind) {
+    const PartBatch& batch = batches[kind];
     crops += batch.points.size(0);
     EXPECT_TRUE(torch::equal(batch.points, again[kind].points));
     if (batch.points.size(0) == 0) continue;
@@ -58,20 +58,20 @@ TEST_F(LeafTraining, CropsComeWithRotationsAndWaysInTheirFrame) {
   EXPECT_GT(crops, 0);
 }
 
-TEST_F(LeafTraining, WritesWeightsAndGoesOnFromItsCheckpoint) {
-  EXPECT_EQ(train_leaf(options(16)), 0);
+TEST_F(PartTraining, WritesWeightsAndGoesOnFromItsCheckpoint) {
+  EXPECT_EQ(train_part(options(16)), 0);
   const nn::WeightsHeader first = nn::read_weights_header(options(0).out);
-  EXPECT_EQ(first.kind, "leaf");
+  EXPECT_EQ(first.kind, nn::kPartFileKind);
   EXPECT_EQ(first.numbers.at("samples"), 16);
-  EXPECT_EQ(train_leaf(options(32)), 0);
+  EXPECT_EQ(train_part(options(32)), 0);
   EXPECT_EQ(nn::read_weights_header(options(0).out).numbers.at("steps"), 8);
-  nn::LeafRefinerNet net;
-  nn::load_weights(options(0).out, "leaf", nn::kLeafVersion, *net);
+  nn::PartRefinerNet net;
+  nn::load_weights(options(0).out, nn::kPartFileKind, nn::kPartVersion, *net);
   for (const auto& p : net->parameters()) EXPECT_TRUE(torch::isfinite(p).all().item<bool>());
 }
 
-TEST_F(LeafTraining, RefusesToTrainWithoutAnEnd) {
-  EXPECT_ANY_THROW(train_leaf(options(0)));
+TEST_F(PartTraining, RefusesToTrainWithoutAnEnd) {
+  EXPECT_ANY_THROW(train_part(options(0)));
 }
 
 }  // namespace

@@ -5,28 +5,28 @@
 
 #include <array>
 
-#include "retarget/nn/leaf_crops.hpp"
+#include "retarget/nn/part_crops.hpp"
 #include "retarget/training/scan_maker.hpp"
 
 namespace understudy::training {
 
-/// Of one kind of leaf.
-struct LeafBatch {
-  torch::Tensor points;   ///< [B, kLeafPoints, 3]
-  torch::Tensor context;  ///< [B, kLeafContext]
+/// Of one kind of part.
+struct PartBatch {
+  torch::Tensor points;   ///< [B, kPartPoints, 3]
+  torch::Tensor context;  ///< [B, kPartContext]
   torch::Tensor
-      truth;  ///< [B, kLeafJoints, 9] rotation and way as LeafNet tells them; what a kind lacks: none
-  torch::Tensor before;  ///< [B, kLeafJoints, 9] what would be said without looking
+      truth;  ///< [B, kPartJoints, 9] rotation and way as PartNet tells them; what a kind lacks: none
+  torch::Tensor before;  ///< [B, kPartJoints, 9] what would be said without looking
 };
-using LeafBatches = std::array<LeafBatch, nn::kLeafKinds>;
+using PartBatches = std::array<PartBatch, nn::kPartKinds>;
 
 /// Makes dense scans and pretends an extraction of them whose rotations are wrong as real ones are: partly
 /// drawn to what the limb alone suggests, partly at random.
-class LeafSampler {
+class PartSampler {
  public:
-  LeafSampler(const TrainingData& data, uint64_t seed);
+  PartSampler(const TrainingData& data, uint64_t seed);
   /// The crops of so many scans.
-  LeafBatches next(int scans);
+  PartBatches next(int scans);
 
  private:
   Extraction pretend(const PosedSkeleton& truth);

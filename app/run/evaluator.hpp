@@ -21,8 +21,8 @@ using Metrics = std::vector<std::pair<std::string, double>>;
 /// Of each joint, 0..1.
 using Confidence = Eigen::Array<float, kJointCount, 1>;
 
-/// One finished frame, as the judge sees it. What is not there is null.
-struct JudgedFrame {
+/// One finished frame, as the evaluator sees it. What is not there is null.
+struct EvaluatedFrame {
   const Points* vertices = nullptr;       ///< of the target
   const Joints* joints = nullptr;         ///< of the target
   const Rotations* rotations = nullptr;   ///< local
@@ -51,11 +51,11 @@ struct SurfaceFigures {
 /// bent_volume is the volume about elbows, knees, shoulders and hips over that in T-pose, in frames in which
 /// they are turned by more than 90 degrees; bent_volume_true is the truth's. hand_stretch and head_stretch
 /// are PartStretch's, ..._true the truth's.
-class Judge {
+class Evaluator {
  public:
   /// truth may be null; target (its T-pose) too. slow_every: frames between looks of the slow figures.
-  Judge(double fps, const Truth* truth, const Mesh* target, int slow_every = 10);
-  void push(const JudgedFrame& frame);
+  Evaluator(double fps, const Truth* truth, const Mesh* target, int slow_every = 10);
+  void push(const EvaluatedFrame& frame);
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
   /// Of the frame pushed last.
@@ -74,7 +74,7 @@ class Judge {
     int count = 0;
     void add(double value) { sum += value, ++count; }
   };
-  void push_surface(const JudgedFrame& frame);
+  void push_surface(const EvaluatedFrame& frame);
   void push_hands(const Points& vertices);
   void push_bends(const Points& vertices, const Points& true_vertices);
   void add_truth(Metrics& result) const;

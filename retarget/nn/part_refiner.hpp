@@ -10,14 +10,14 @@
 
 namespace understudy::nn {
 
-class LeafRefiner {
+class PartRefiner {
  public:
-  virtual ~LeafRefiner() = default;
+  virtual ~PartRefiner() = default;
   /// Corrects rotations, places and confidences of limbs, neck and head where the scan has points there.
   virtual void refine(const Mesh& scan, Extraction& seen) = 0;
 };
 
 /// Throws Error naming the weights file.
-std::unique_ptr<LeafRefiner> load_leaf_refiner(const std::string& path);
+std::unique_ptr<PartRefiner> load_part_refiner(const std::string& path);
 
 }  // namespace understudy::nn

@@ -1,4 +1,4 @@
-#include "app/run/judge.hpp"
+#include "app/run/evaluator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ void put(Metrics& metrics, const char* key, double value) {
 
 }  // namespace
 
-Judge::Judge(double fps, const Truth* truth, const Mesh* target, int slow_every)
+Evaluator::Evaluator(double fps, const Truth* truth, const Mesh* target, int slow_every)
     : fps_(fps), slow_every_(slow_every), truth_(truth) {
   if (target && !target->is_cloud()) penetration_.emplace(target->vertices, target->faces);
   if (target && !target->is_cloud() && truth && truth->target_joints && !truth->source_gaps.empty())
@@ -29,7 +29,7 @@ Judge::Judge(double fps, const Truth* truth, const Mesh* target, int slow_every)
     parts_.emplace(target->vertices, target->faces, *truth->target_joints);
 }
 
-void Judge::push(const JudgedFrame& frame) {
+void Evaluator::push(const EvaluatedFrame& frame) {
   US_CHECK(!truth_ || frames_ < truth_->frames, "the source has more frames than the truth's ",
            truth_->frames);
   last_ = SurfaceFigures{};
@@ -44,7 +44,7 @@ void Judge::push(const JudgedFrame& frame) {
   ++frames_;
 }
 
-void Judge::push_surface(const JudgedFrame& frame) {
+void Evaluator::push_surface(const EvaluatedFrame& frame) {
   const Points& p = *frame.vertices;
   if (truth_ && !truth_->vertices.empty()) {
     const Points q = truth_->frame_vertices(frames_);
@@ -66,7 +66,7 @@ void Judge::push_surface(const JudgedFrame& frame) {
     self_penetration_.add(last_.self_penetration = penetration_->share(p));
 }
 
-void Judge::push_hands(const Points& vertices) {
+void Evaluator::push_hands(const Points& vertices) {
   const auto t = static_cast<size_t>(frames_);
   contacts_.add(truth_->source_gaps[t], hands_->gaps(vertices));
   if (truth_->source_buried.empty()) return;
@@ -75,7 +75,7 @@ void Judge::push_hands(const Points& vertices) {
   buried_added_.add(buried - static_cast<double>(truth_->source_buried[t]));
 }
 
-void Judge::push_bends(const Points& vertices, const Points& true_vertices) {
+void Evaluator::push_bends(const Points& vertices, const Points& true_vertices) {
   const Rotations& local = truth_->rotations[static_cast<size_t>(frames_)];
   for (size_t bend = 0; bend < BentVolume::kBends.size(); ++bend) {
     const Mat3& turn = local[static_cast<size_t>(BentVolume::kBends[bend])];
@@ -87,8 +87,8 @@ void Judge::push_bends(const Points& vertices, const Points& true_vertices) {
   }
 }
 
-Metrics Judge::metrics() const {
-  US_CHECK(frames_ > 0, "there are no frames to judge");
+Metrics Evaluator::metrics() const {
+  US_CHECK(frames_ > 0, "there are no frames to evaluate");
   US_CHECK(!truth_ || frames_ == truth_->frames, "the source has ", frames_, " frames, the truth ",
            truth_ ? truth_->frames : 0);
   Metrics result;
@@ -123,7 +123,7 @@ Metrics Judge::metrics() const {
   return result;
 }
 
-void Judge::add_truth(Metrics& result) const {
+void Evaluator::add_truth(Metrics& result) const {
   if (!joints_.empty() && !truth_->joints.empty()) {
     const JointSequence aligned = aligned_joints(joints_, truth_->joints);
     put(result, "mpjpe_m", mean_joint_error(joints_, truth_->joints));
@@ -145,7 +145,7 @@ void Judge::add_truth(Metrics& result) const {
   }
 }
 
-void Judge::add_extraction(Metrics& result) const {
+void Evaluator::add_extraction(Metrics& result) const {
   if (source_joints_.empty() || truth_->source_joints.empty()) return;
   put(result, "extraction_mpjpe_mm", 1000 * mean_joint_error(source_joints_, truth_->source_joints));
   put(result, "extraction_swap_rate", swap_rate(source_joints_, truth_->source_joints));

@@ -1,4 +1,4 @@
-#include "retarget/training/motion_judge.hpp"
+#include "retarget/training/motion_evaluator.hpp"
 
 #include <algorithm>
 
@@ -65,7 +65,7 @@ MotionFigures motion_figures(const torch::Tensor& rest, const torch::Tensor& loc
   return figures;
 }
 
-MotionJudge::MotionJudge(const TrainingData& dev, float noise, int most_frames) {
+MotionEvaluator::MotionEvaluator(const TrainingData& dev, float noise, int most_frames) {
   int frames = 0;
   for (const Clip& clip : dev.clips)
     frames = std::max(frames, std::min(most_frames, longest_run(clip).count));
@@ -77,7 +77,7 @@ MotionJudge::MotionJudge(const TrainingData& dev, float noise, int most_frames) 
   std::vector<const Clip*> clips;
   for (const Clip& clip : dev.clips)
     if (frames > 1 && longest_run(clip).count >= frames) clips.push_back(&clip);
-  US_CHECK(!clips.empty(), "the dev split has no motion to judge by");
+  US_CHECK(!clips.empty(), "the dev split has no motion to evaluate by");
   const size_t every = std::max<size_t>(1, clips.size() / kCases);
   for (size_t c = 0; c < clips.size(); c += every) {
     const int first = longest_run(*clips[c]).first;
@@ -106,7 +106,7 @@ MotionJudge::MotionJudge(const TrainingData& dev, float noise, int most_frames) 
   rotations_ = torch::stack(rotations);
 }
 
-MotionFigures MotionJudge::judge(nn::MotionGru& net) const {
+MotionFigures MotionEvaluator::evaluate(nn::MotionGru& net) const {
   const torch::NoGradGuard no_grad;
   const auto device = net->parameters()[0].device();
   nn::MotionState state;

@@ -1,11 +1,11 @@
-#include "retarget/nn/leaf_refiner.hpp"
+#include "retarget/nn/part_refiner.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/smooth_step.hpp"
-#include "retarget/nn/modules/leaf_refiner.hpp"
+#include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/nn/scan_patches.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/pipeline/confidence.hpp"
@@ -34,10 +34,10 @@ Points dense_points(const Mesh& scan) {
 /// Of a joint that was seen with the confidence `whole`, then from near with `crop`.
 float confidence_of_both(float crop, float whole);
 
-class NetworkLeafRefiner final : public LeafRefiner {
+class NetworkPartRefiner final : public PartRefiner {
  public:
-  explicit NetworkLeafRefiner(const std::string& path) {
-    load_weights(path, "leaf", kLeafVersion, *net_);
+  explicit NetworkPartRefiner(const std::string& path) {
+    load_weights(path, kPartFileKind, kPartVersion, *net_);
     net_->eval();
   }
 
@@ -48,8 +48,8 @@ class NetworkLeafRefiner final : public LeafRefiner {
     const auto whole = seen.confidence;  // from the whole body
     // From the trunk outwards: a hand is looked at beside the forearm as it is known by then.
     for (int round = 0; round < kRounds; ++round)
-      for (const LeafKind kind :
-           {LeafKind::Arm, LeafKind::Hand, LeafKind::Head, LeafKind::Leg, LeafKind::Foot})
+      for (const PartKind kind :
+           {PartKind::Arm, PartKind::Hand, PartKind::Head, PartKind::Leg, PartKind::Foot})
         refine_kind(points, kind, seen);
     for (int j = 0; j < kJointCount; ++j)
       if (seen.confidence[j] != whole[j])
@@ -57,42 +57,42 @@ class NetworkLeafRefiner final : public LeafRefiner {
   }
 
  private:
-  void refine_kind(const Points& points, LeafKind kind, Extraction& seen);
-  static void correct(int slot, const Leaf& leaf, const float* said, const Extraction& before,
+  void refine_kind(const Points& points, PartKind kind, Extraction& seen);
+  static void correct(int slot, const Part& part, const float* said, const Extraction& before,
                       Extraction& seen);
 
-  LeafRefinerNet net_;
+  PartRefinerNet net_;
 };
 
-void NetworkLeafRefiner::refine_kind(const Points& points, LeafKind kind, Extraction& seen) {
-  std::vector<const Leaf*> leaves;
+void NetworkPartRefiner::refine_kind(const Points& points, PartKind kind, Extraction& seen) {
+  std::vector<const Part*> parts;
   std::vector<torch::Tensor> crops, contexts;
-  for (const Leaf& leaf : kLeaves) {
-    if (leaf.kind != kind) continue;
-    const auto crop = cut_leaf(points, seen, leaf);
+  for (const Part& part : kCroppedParts) {
+    if (part.kind != kind) continue;
+    const auto crop = cut_part(points, seen, part);
     if (!crop) continue;
-    leaves.push_back(&leaf);
-    crops.push_back(torch::from_blob(const_cast<float*>(crop->points.data()), {kLeafPoints, 3}).clone());
-    contexts.push_back(torch::from_blob(const_cast<float*>(crop->context.data()), {kLeafContext}).clone());
+    parts.push_back(&part);
+    crops.push_back(torch::from_blob(const_cast<float*>(crop->points.data()), {kPartPoints, 3}).clone());
+    contexts.push_back(torch::from_blob(const_cast<float*>(crop->context.data()), {kPartContext}).clone());
   }
-  if (leaves.empty()) return;
+  if (parts.empty()) return;
   const auto said = net_->of(kind)->forward(torch::stack(crops), torch::stack(contexts)).contiguous();
   const Extraction before = seen;
-  for (size_t i = 0; i < leaves.size(); ++i)
-    for (int k = 0; k < kLeafJoints; ++k)
-      correct(k, *leaves[i],
-              said.data_ptr<float>() + (i * kLeafJoints + static_cast<size_t>(k)) * kLeafNumbers, before,
+  for (size_t i = 0; i < parts.size(); ++i)
+    for (int k = 0; k < kPartJoints; ++k)
+      correct(k, *parts[i],
+              said.data_ptr<float>() + (i * kPartJoints + static_cast<size_t>(k)) * kPartNumbers, before,
               seen);
 }
 
-void NetworkLeafRefiner::correct(int slot, const Leaf& leaf, const float* said, const Extraction& before,
+void NetworkPartRefiner::correct(int slot, const Part& part, const float* said, const Extraction& before,
                                  Extraction& seen) {
-  const int joint = leaf.corrects[static_cast<size_t>(slot)];
+  const int joint = part.corrects[static_cast<size_t>(slot)];
   if (joint < 0) return;
   const Mat3 local = rotation_from_6d(Eigen::Map<const Vec6>(said));
-  (*seen.global)[static_cast<size_t>(joint)] = from_leaf(local, before, leaf);
-  if (slot >= leaf.moves) return;
-  const Vec3 way = way_from_leaf(Eigen::Map<const Vec3>(said + 6), before, leaf);
+  (*seen.global)[static_cast<size_t>(joint)] = from_part(local, before, part);
+  if (slot >= part.moves) return;
+  const Vec3 way = vector_from_part(Eigen::Map<const Vec3>(said + 6), before, part);
   seen.joints.row(joint) = before.joints.row(joint) + way.transpose();
   seen.confidence[joint] = confidence_for(std::exp(said[9]) * leg_length(before.joints));
 }
@@ -108,8 +108,8 @@ float confidence_of_both(float crop, float whole) {
 
 }  // namespace
 
-std::unique_ptr<LeafRefiner> load_leaf_refiner(const std::string& path) {
-  return std::make_unique<NetworkLeafRefiner>(path);
+std::unique_ptr<PartRefiner> load_part_refiner(const std::string& path) {
+  return std::make_unique<NetworkPartRefiner>(path);
 }
 
 }  // namespace understudy::nn

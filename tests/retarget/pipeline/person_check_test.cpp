@@ -1,4 +1,4 @@
-#include "retarget/pipeline/person_doubt.hpp"
+#include "retarget/pipeline/person_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,10 +23,10 @@ Extraction seen(const Joints& joints, float confidence = 0.9f) {
   return extraction;
 }
 
-TEST(PersonDoubt, PeopleOfAnySizeInAnyPoseAreNotDoubted) {
+TEST(PersonCheck, PeopleOfAnySizeInAnyPoseAreNotDoubted) {
   for (const Joints& body : {human_rest(), fixtures::other_body(), Joints(0.5f * human_rest())}) {
-    EXPECT_LT(bone_strangeness(body), 0.2f);
-    PersonDoubt person;
+    EXPECT_LT(bone_implausibility(body), 0.2f);
+    PersonCheck person;
     for (int t = 0; t < 20; ++t) {
       Pose pose = fixtures::dance(0.3f * static_cast<float>(t));
       pose.local[Pelvis] = rotation_from_axis_angle(Vec3(1.5f, 0, 0));  // on all fours
@@ -35,9 +35,9 @@ TEST(PersonDoubt, PeopleOfAnySizeInAnyPoseAreNotDoubted) {
   }
 }
 
-TEST(PersonDoubt, BonesThatAreNobodysAreToldOnce) {
-  EXPECT_GT(bone_strangeness(four_legged()), 0.25f);
-  PersonDoubt person;
+TEST(PersonCheck, BonesThatAreNobodysAreToldOnce) {
+  EXPECT_GT(bone_implausibility(four_legged()), 0.25f);
+  PersonCheck person;
   int told = 0;
   for (int t = 0; t < 10; ++t) {
     const std::string sentence = person.push(seen(four_legged()));
@@ -47,13 +47,13 @@ TEST(PersonDoubt, BonesThatAreNobodysAreToldOnce) {
   EXPECT_EQ(told, 1);
 }
 
-TEST(PersonDoubt, ABadFrameAmongGoodOnesIsNoReason) {
-  PersonDoubt person;
+TEST(PersonCheck, ABadFrameAmongGoodOnesIsNoReason) {
+  PersonCheck person;
   for (int t = 0; t < 60; ++t) EXPECT_EQ(person.push(seen(t % 3 ? human_rest() : four_legged())), "") << t;
 }
 
-TEST(PersonDoubt, AGivenSkeletonIsNotDoubted) {
-  PersonDoubt person;
+TEST(PersonCheck, AGivenSkeletonIsNotDoubted) {
+  PersonCheck person;
   Extraction given = seen(four_legged());
   given.exact = true;
   for (int t = 0; t < 10; ++t) EXPECT_EQ(person.push(given), "");

@@ -1,4 +1,4 @@
-#include "retarget/pipeline/person_doubt.hpp"
+#include "retarget/pipeline/person_check.hpp"
 
 #include <cmath>
 
@@ -7,14 +7,14 @@
 namespace understudy {
 namespace {
 
-constexpr float kStrange = 0.25f,
+constexpr float kImplausible = 0.25f,
                 kOdd = 0.17f;            // bones that are no person's, and that are unsure to be one's
 constexpr float kUnsure = 0.6f;          // confidence
 constexpr int kFewest = 3, kFirst = 60;  // frames that are looked at
 
 }  // namespace
 
-float bone_strangeness(const Joints& joints) {
+float bone_implausibility(const Joints& joints) {
   using Lengths = Eigen::Array<float, kJointCount - 1, 1>;
   const Lengths lengths = bone_lengths(joints).tail<kJointCount - 1>();
   const Lengths human = bone_lengths(human_rest()).tail<kJointCount - 1>();
@@ -22,15 +22,15 @@ float bone_strangeness(const Joints& joints) {
   return std::sqrt((ratio - ratio.mean()).square().mean());
 }
 
-std::string PersonDoubt::push(const Extraction& seen) {
+std::string PersonCheck::push(const Extraction& seen) {
   if (seen.exact || told_ || frames_ >= kFirst || !seen.joints.allFinite()) return {};
-  const float strange = bone_strangeness(seen.joints);
+  const float strange = bone_implausibility(seen.joints);
   ++frames_;
-  if (strange > kStrange || (strange > kOdd && seen.confidence.mean() < kUnsure)) ++strange_;
-  told_ = frames_ >= kFewest && strange_ * 5 >= frames_ * 4;
+  if (strange > kImplausible || (strange > kOdd && seen.confidence.mean() < kUnsure)) ++implausible_;
+  told_ = frames_ >= kFewest && implausible_ * 5 >= frames_ * 4;
   if (!told_) return {};
   return "may be no person, or one whose poses are not recognised: the bones found in " +
-         std::to_string(strange_) + " of its first " + std::to_string(frames_) + " frames are nobody's";
+         std::to_string(implausible_) + " of its first " + std::to_string(frames_) + " frames are nobody's";
 }
 
 }  // namespace understudy

@@ -18,14 +18,14 @@ struct MotionFigures {
 MotionFigures motion_figures(const torch::Tensor& rest, const torch::Tensor& local,
                              const torch::Tensor& truth);
 
-/// Sources with and without extractor-like errors, each for a target body. It judges only; nothing learns
+/// Sources with and without extractor-like errors, each for a target body. It evaluates only; nothing learns
 /// from it.
-class MotionJudge {
+class MotionEvaluator {
  public:
   /// `noise`: mean length of the errors of the source's joints, metres. Clips give `most_frames` each, or all
   /// as many as the longest of them has.
-  MotionJudge(const TrainingData& dev, float noise, int most_frames = 90);
-  MotionFigures judge(nn::MotionGru& net) const;
+  MotionEvaluator(const TrainingData& dev, float noise, int most_frames = 90);
+  MotionFigures evaluate(nn::MotionGru& net) const;
 
  private:
   nn::MotionInput input_;

@@ -1,4 +1,4 @@
-#include "retarget/training/leaf_trainer.hpp"
+#include "retarget/training/part_trainer.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -10,11 +10,11 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/nn/modules/leaf_refiner.hpp"
+#include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/checkpoint_archive.hpp"
-#include "retarget/training/leaf_data.hpp"
 #include "retarget/training/parameters.hpp"
+#include "retarget/training/part_data.hpp"
 
 namespace understudy::training {
 namespace {
@@ -43,7 +43,7 @@ torch::Tensor distances(const torch::Tensor& said, const torch::Tensor& truth) {
   return (said.narrow(2, 6, 3) - truth.narrow(2, 6, 3)).square().sum(2).add(1e-8).sqrt();
 }
 
-torch::Tensor leaf_loss(const torch::Tensor& said, const torch::Tensor& truth) {
+torch::Tensor part_loss(const torch::Tensor& said, const torch::Tensor& truth) {
   const auto turn = (said.narrow(2, 0, 6) - truth.narrow(2, 0, 6)).abs().mean();
   const auto away = distances(said, truth);
   const auto log_spread = said.select(2, 9);
@@ -61,15 +61,15 @@ std::string curve_header() {
   return header;
 }
 
-class LeafTrainer {
+class PartTrainer {
  public:
-  explicit LeafTrainer(const nn::TrainOptions& options);
+  explicit PartTrainer(const nn::TrainOptions& options);
   int run();
 
  private:
   void resume();
   void save_checkpoint();
-  void train_step(const LeafBatches& batches);
+  void train_step(const PartBatches& batches);
   void report();
   double done_share() const;
   double learning_rate() const;
@@ -77,9 +77,9 @@ class LeafTrainer {
 
   nn::TrainOptions options_;
   TrainingData train_, dev_;
-  std::unique_ptr<LeafSampler> sampler_;
-  LeafBatches dev_batches_;
-  nn::LeafRefinerNet net_, average_, first_;  // first_: what training started from
+  std::unique_ptr<PartSampler> sampler_;
+  PartBatches dev_batches_;
+  nn::PartRefinerNet net_, average_, first_;  // first_: what training started from
   std::unique_ptr<torch::optim::AdamW> optimizer_;
   int64_t step_ = 0, samples_ = 0;
   double seconds_ = 0, seconds_before_ = 0, loss_sum_ = 0;
@@ -87,18 +87,18 @@ class LeafTrainer {
   Clock::time_point started_ = Clock::now();
 };
 
-LeafTrainer::LeafTrainer(const nn::TrainOptions& options)
+PartTrainer::PartTrainer(const nn::TrainOptions& options)
     : options_(options),
       train_(load_training_data(options.data, Split::Train)),
       dev_(load_training_data(options.data, Split::Dev)),
-      sampler_(std::make_unique<LeafSampler>(train_, options.seed)),
-      dev_batches_(LeafSampler(dev_, 12345).next(kDevScans)) {
+      sampler_(std::make_unique<PartSampler>(train_, options.seed)),
+      dev_batches_(PartSampler(dev_, 12345).next(kDevScans)) {
   US_CHECK(options_.minutes > 0 || options_.samples > 0, "training wants --minutes or --samples");
   at::set_num_threads(1);
   torch::manual_seed(options_.seed);
-  net_ = nn::LeafRefinerNet();
-  average_ = nn::LeafRefinerNet();
-  if (!options_.init.empty()) nn::load_weights(options_.init, "leaf", nn::kLeafVersion, *net_);
+  net_ = nn::PartRefinerNet();
+  average_ = nn::PartRefinerNet();
+  if (!options_.init.empty()) nn::load_weights(options_.init, nn::kPartFileKind, nn::kPartVersion, *net_);
   copy_parameters(*net_, *average_);
   if (options_.keep > 0) copy_parameters(*net_, *first_);
   optimizer_ = std::make_unique<torch::optim::AdamW>(
@@ -106,7 +106,7 @@ LeafTrainer::LeafTrainer(const nn::TrainOptions& options)
   resume();
 }
 
-void LeafTrainer::resume() {
+void PartTrainer::resume() {
   if (!fs::exists(checkpoint())) return;
   TrainingProgress progress;
   read_archive(checkpoint(), c10::nullopt, [&](torch::serialize::InputArchive& archive) {
@@ -116,42 +116,43 @@ void LeafTrainer::resume() {
   samples_ = progress.samples;
   seconds_before_ = seconds_ = progress.seconds;
   // Other scans than those that were seen before.
-  sampler_ = std::make_unique<LeafSampler>(train_, options_.seed + static_cast<uint64_t>(step_) * 7919);
+  sampler_ = std::make_unique<PartSampler>(train_, options_.seed + static_cast<uint64_t>(step_) * 7919);
   log::info("resumed " + checkpoint() + " at step " + std::to_string(step_));
 }
 
-void LeafTrainer::save_checkpoint() {
+void PartTrainer::save_checkpoint() {
   torch::serialize::OutputArchive archive;
   put_training(archive, *net_, *average_, *optimizer_, {step_, samples_, seconds_});
   save_archive(archive, checkpoint());
-  nn::LeafRefinerNet kept;
+  nn::PartRefinerNet kept;
   copy_parameters(*average_, *kept);
   if (options_.keep > 0) mix_parameters(*first_, *kept, options_.keep);
   nn::save_weights(
       options_.out,
-      {"leaf", nn::kLeafVersion, {{"samples", samples_}, {"steps", step_}, {"seconds", seconds_}}}, *kept);
+      {nn::kPartFileKind, nn::kPartVersion, {{"samples", samples_}, {"steps", step_}, {"seconds", seconds_}}},
+      *kept);
 }
 
-double LeafTrainer::done_share() const {
+double PartTrainer::done_share() const {
   const double by_time = options_.minutes > 0 ? seconds_ / (60 * options_.minutes) : 0;
   const double by_samples =
       options_.samples > 0 ? static_cast<double>(samples_) / static_cast<double>(options_.samples) : 0;
   return std::max(by_time, by_samples);
 }
 
-double LeafTrainer::learning_rate() const {
+double PartTrainer::learning_rate() const {
   const double warm = std::min(1.0, static_cast<double>(step_ + 1) / kWarmUpSteps);
   return kLearningRate * warm * (0.01 + 0.99 * 0.5 * (1 + std::cos(kPi * std::min(1.0, done_share()))));
 }
 
-void LeafTrainer::train_step(const LeafBatches& batches) {
+void PartTrainer::train_step(const PartBatches& batches) {
   optimizer_->zero_grad();
   auto loss = torch::zeros({});
-  for (int kind = 0; kind < nn::kLeafKinds; ++kind) {
-    const LeafBatch& batch = batches[static_cast<size_t>(kind)];
+  for (int kind = 0; kind < nn::kPartKinds; ++kind) {
+    const PartBatch& batch = batches[static_cast<size_t>(kind)];
     if (batch.points.size(0) == 0) continue;
-    const auto said = net_->of(static_cast<nn::LeafKind>(kind))->forward(batch.points, batch.context);
-    loss = loss + leaf_loss(said, batch.truth);
+    const auto said = net_->of(static_cast<nn::PartKind>(kind))->forward(batch.points, batch.context);
+    loss = loss + part_loss(said, batch.truth);
   }
   loss.backward();
   for (auto& group : optimizer_->param_groups())
@@ -170,18 +171,18 @@ void LeafTrainer::train_step(const LeafBatches& batches) {
   seconds_ = seconds_before_ + std::chrono::duration<double>(Clock::now() - started_).count();
 }
 
-void LeafTrainer::report() {
+void PartTrainer::report() {
   const torch::NoGradGuard no_grad;
   std::string row;
   char number[64];
-  for (size_t kind = 0; kind < nn::kLeafKinds; ++kind) {
-    const LeafBatch& batch = dev_batches_[kind];
-    const auto said = average_->of(static_cast<nn::LeafKind>(kind))->forward(batch.points, batch.context);
+  for (size_t kind = 0; kind < nn::kPartKinds; ++kind) {
+    const PartBatch& batch = dev_batches_[kind];
+    const auto said = average_->of(static_cast<nn::PartKind>(kind))->forward(batch.points, batch.context);
     const auto now = distances(said, batch.truth).mean(0), was = distances(batch.before, batch.truth).mean(0);
     std::snprintf(number, sizeof number, ",%.2f,%.2f", mean_angle(batch.before, batch.truth),
                   mean_angle(said, batch.truth));
     row += number;
-    for (int64_t k = 0; k < nn::kLeafJoints; ++k) {
+    for (int64_t k = 0; k < nn::kPartJoints; ++k) {
       std::snprintf(number, sizeof number, ",%.4f,%.4f", was[k].item<double>(), now[k].item<double>());
       row += number;
     }
@@ -195,17 +196,17 @@ void LeafTrainer::report() {
   std::ofstream out(curve, std::ios::app);
   if (fresh) out << curve_header() << "\n";
   out << line << row << "\n";
-  log::info(std::string("leaf ") + line + row);
+  log::info(std::string("part ") + line + row);
 }
 
-int LeafTrainer::run() {
+int PartTrainer::run() {
   double last_checkpoint = seconds_, last_report = seconds_;
   const int scans = options_.batch > 0 ? options_.batch : kScansAStep;
   const auto make = [&] { return sampler_->next(scans); };
   // The next scans are made while the network learns from these.
   auto coming = std::async(std::launch::async, make);
   while (done_share() < 1 && !(options_.cancelled && options_.cancelled())) {
-    const LeafBatches batches = coming.get();
+    const PartBatches batches = coming.get();
     coming = std::async(std::launch::async, make);
     train_step(batches);
     samples_ += scans;
@@ -226,8 +227,8 @@ int LeafTrainer::run() {
 
 }  // namespace
 
-int train_leaf(const nn::TrainOptions& options) {
-  return LeafTrainer(options).run();
+int train_part(const nn::TrainOptions& options) {
+  return PartTrainer(options).run();
 }
 
 }  // namespace understudy::training

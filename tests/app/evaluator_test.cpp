@@ -1,4 +1,4 @@
-#include "app/run/judge.hpp"
+#include "app/run/evaluator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,55 +38,55 @@ Truth truth_of(int frames) {
 }
 
 /// The truth itself, every joint and vertex moved by `by` metres along z.
-Metrics judged(const Truth& truth, int frames, float by) {
-  Judge judge(30, &truth, nullptr);
+Metrics evaluated(const Truth& truth, int frames, float by) {
+  Evaluator evaluator(30, &truth, nullptr);
   for (int t = 0; t < frames; ++t) {
     const Eigen::RowVector3f shift(0, 0, by);
     const Points vertices = truth.frame_vertices(t).rowwise() + shift;
     const Joints joints = truth.joints[t].rowwise() + shift,
                  source = truth.source_joints[t].rowwise() + shift;
-    judge.push({&vertices, &joints, &truth.rotations[t], &source, nullptr, nullptr});
+    evaluator.push({&vertices, &joints, &truth.rotations[t], &source, nullptr, nullptr});
   }
-  return judge.metrics();
+  return evaluator.metrics();
 }
 
-TEST(Judge, FindsNoFaultWithTheTruth) {
+TEST(Evaluator, FindsNoFaultWithTheTruth) {
   const Truth truth = truth_of(4);
-  const Metrics metrics = judged(truth, 4, 0);
+  const Metrics metrics = evaluated(truth, 4, 0);
   for (const char* key :
        {"mpjpe_m", "pa_mpjpe_m", "acc", "pa_acc", "mpvd_m", "pa_mpvd_m", "medl_mm", "rot_deg", "head_deg",
         "wrist_deg", "foot_deg", "extraction_mpjpe_mm", "extraction_swap_rate", "extraction_flip_rate"})
     EXPECT_NEAR(value(metrics, key), 0, 1e-4) << key;
 }
 
-TEST(Judge, TellsAShiftInTheRightUnits) {
-  const Metrics metrics = judged(truth_of(4), 4, 0.05f);
+TEST(Evaluator, TellsAShiftInTheRightUnits) {
+  const Metrics metrics = evaluated(truth_of(4), 4, 0.05f);
   EXPECT_NEAR(value(metrics, "mpjpe_m"), 0.05, 1e-5);
   EXPECT_NEAR(value(metrics, "mpvd_m"), 0.05, 1e-5);
   EXPECT_NEAR(value(metrics, "extraction_mpjpe_mm"), 50, 1e-2);
   EXPECT_NEAR(value(metrics, "pa_mpjpe_m"), 0, 1e-5);
 }
 
-TEST(Judge, LeavesOutWhatCannotBeTold) {
-  const Metrics metrics = judged(truth_of(2), 2, 0);  // two frames have no acceleration
+TEST(Evaluator, LeavesOutWhatCannotBeTold) {
+  const Metrics metrics = evaluated(truth_of(2), 2, 0);  // two frames have no acceleration
   EXPECT_TRUE(std::isnan(value(metrics, "acc")));
   EXPECT_TRUE(std::isnan(value(metrics, "jerk")));
   EXPECT_TRUE(std::isnan(value(metrics, "inside")));
 }
 
-TEST(Judge, RefusesMissingAndSurplusFrames) {
-  EXPECT_THROW(judged(truth_of(4), 3, 0), Error);
+TEST(Evaluator, RefusesMissingAndSurplusFrames) {
+  EXPECT_THROW(evaluated(truth_of(4), 3, 0), Error);
   const Truth truth = truth_of(1);
-  Judge judge(30, &truth, nullptr);
-  judge.push({});
-  EXPECT_THROW(judge.push({}), Error);
+  Evaluator evaluator(30, &truth, nullptr);
+  evaluator.push({});
+  EXPECT_THROW(evaluator.push({}), Error);
 }
 
-TEST(Judge, WorksWithoutTruth) {
-  Judge judge(30, nullptr, nullptr);
+TEST(Evaluator, WorksWithoutTruth) {
+  Evaluator evaluator(30, nullptr, nullptr);
   const Joints joints = some_joints(0);
-  judge.push({nullptr, &joints, nullptr, &joints, nullptr, nullptr});
-  const Metrics metrics = judge.metrics();
+  evaluator.push({nullptr, &joints, nullptr, &joints, nullptr, nullptr});
+  const Metrics metrics = evaluator.metrics();
   EXPECT_EQ(value(metrics, "bone_drift"), 0);
   EXPECT_TRUE(std::isnan(value(metrics, "mpjpe_m")));
 }

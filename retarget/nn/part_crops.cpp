@@ -1,4 +1,4 @@
-#include "retarget/nn/leaf_crops.hpp"
+#include "retarget/nn/part_crops.hpp"
 
 #include <vector>
 
@@ -15,8 +15,8 @@ struct Reach {
   Vec3 middle;
   float radius;
 };
-const Reach& reach_of(LeafKind kind) {
-  static const std::array<Reach, kLeafKinds> reaches = {{{Vec3(0.085f, 0, 0), 0.18f},
+const Reach& reach_of(PartKind kind) {
+  static const std::array<Reach, kPartKinds> reaches = {{{Vec3(0.085f, 0, 0), 0.18f},
                                                          {Vec3(0, 0.11f, 0.03f), 0.23f},
                                                          {Vec3(0, -0.035f, 0.07f), 0.20f},
                                                          {Vec3(0, 0, 0), 0.28f},
@@ -30,8 +30,8 @@ Mat3 mirrored(const Mat3& R) {
   return flip.asDiagonal() * R * flip.asDiagonal();
 }
 
-const Mat3& frame_of(const Extraction& seen, const Leaf& leaf) {
-  return (*seen.global)[static_cast<size_t>(leaf.joint)];
+const Mat3& frame_of(const Extraction& seen, const Part& part) {
+  return (*seen.global)[static_cast<size_t>(part.joint)];
 }
 
 std::vector<int> points_within(const Points& scan, const Vec3& middle, float radius) {
@@ -44,52 +44,52 @@ std::vector<int> points_within(const Points& scan, const Vec3& middle, float rad
 
 }  // namespace
 
-Mat3 into_leaf(const Mat3& world, const Extraction& seen, const Leaf& leaf) {
-  const Mat3 local = frame_of(seen, leaf).transpose() * world;
-  return leaf.mirrored ? mirrored(local) : local;
+Mat3 into_part(const Mat3& world, const Extraction& seen, const Part& part) {
+  const Mat3 local = frame_of(seen, part).transpose() * world;
+  return part.mirrored ? mirrored(local) : local;
 }
 
-Mat3 from_leaf(const Mat3& local, const Extraction& seen, const Leaf& leaf) {
-  return frame_of(seen, leaf) * (leaf.mirrored ? mirrored(local) : local);
+Mat3 from_part(const Mat3& local, const Extraction& seen, const Part& part) {
+  return frame_of(seen, part) * (part.mirrored ? mirrored(local) : local);
 }
 
-Vec3 way_into_leaf(const Vec3& world, const Extraction& seen, const Leaf& leaf) {
-  const Vec3 local = frame_of(seen, leaf).transpose() * world / leg_length(seen.joints);
-  return leaf.mirrored ? Vec3(-local.x(), local.y(), local.z()) : local;
+Vec3 vector_into_part(const Vec3& world, const Extraction& seen, const Part& part) {
+  const Vec3 local = frame_of(seen, part).transpose() * world / leg_length(seen.joints);
+  return part.mirrored ? Vec3(-local.x(), local.y(), local.z()) : local;
 }
 
-Vec3 way_from_leaf(const Vec3& local, const Extraction& seen, const Leaf& leaf) {
-  const Vec3 side(leaf.mirrored ? -1.0f : 1.0f, 1, 1);
-  return frame_of(seen, leaf) * local.cwiseProduct(side) * leg_length(seen.joints);
+Vec3 vector_from_part(const Vec3& local, const Extraction& seen, const Part& part) {
+  const Vec3 side(part.mirrored ? -1.0f : 1.0f, 1, 1);
+  return frame_of(seen, part) * local.cwiseProduct(side) * leg_length(seen.joints);
 }
 
-std::optional<LeafCrop> cut_leaf(const Points& scan, const Extraction& seen, const Leaf& leaf,
+std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, const Part& part,
                                  uint32_t first) {
   const float size = leg_length(seen.joints);
-  const Mat3& R = frame_of(seen, leaf);
-  const Vec3 joint = seen.joints.row(leaf.joint).transpose(), side(leaf.mirrored ? -1.0f : 1.0f, 1, 1);
-  const Reach& reach = reach_of(leaf.kind);
+  const Mat3& R = frame_of(seen, part);
+  const Vec3 joint = seen.joints.row(part.joint).transpose(), side(part.mirrored ? -1.0f : 1.0f, 1, 1);
+  const Reach& reach = reach_of(part.kind);
   const Vec3 middle = joint + size * (R * side.cwiseProduct(reach.middle));
   const std::vector<int> near = points_within(scan, middle, size * reach.radius);
   if (static_cast<int>(near.size()) < kFewest || !(size > 1e-4f)) return std::nullopt;
-  LeafCrop crop;
-  crop.points.resize(kLeafPoints, 3);
+  PartCrop crop;
+  crop.points.resize(kPartPoints, 3);
   const size_t count = near.size();
-  for (size_t i = 0; i < kLeafPoints; ++i) {
+  for (size_t i = 0; i < kPartPoints; ++i) {
     // Spread over all of them: scans are often sorted along the body.
-    const size_t at = count > kLeafPoints ? (i * count / kLeafPoints + first) % count : i % count;
+    const size_t at = count > kPartPoints ? (i * count / kPartPoints + first) % count : i % count;
     const Vec3 x = R.transpose() * (scan.row(near[at]).transpose() - joint) / size;
     crop.points.row(static_cast<Eigen::Index>(i)) = x.cwiseProduct(side).transpose();
   }
-  const int parent = kParents[static_cast<size_t>(leaf.joint)];
+  const int parent = kParents[static_cast<size_t>(part.joint)];
   const Vec3 bone = R.transpose() * (seen.joints.row(parent).transpose() - joint) / size;
   crop.context.head<3>() = bone.cwiseProduct(side);
   crop.context.segment<6>(3) =
-      rotation_to_6d(into_leaf((*seen.global)[static_cast<size_t>(parent)], seen, leaf));
-  const int second = leaf.corrects[1] < 0 ? leaf.joint : leaf.corrects[1];
+      rotation_to_6d(into_part((*seen.global)[static_cast<size_t>(parent)], seen, part));
+  const int second = part.corrects[1] < 0 ? part.joint : part.corrects[1];
   crop.context.segment<3>(9) =
-      way_into_leaf((seen.joints.row(second) - seen.joints.row(leaf.joint)).transpose(), seen, leaf);
-  crop.context[12] = std::min(1.0f, static_cast<float>(count) / kLeafPoints);
+      vector_into_part((seen.joints.row(second) - seen.joints.row(part.joint)).transpose(), seen, part);
+  crop.context[12] = std::min(1.0f, static_cast<float>(count) / kPartPoints);
   return crop;
 }
 
