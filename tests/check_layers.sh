@@ -13,7 +13,7 @@ refuse() {
   while [ "$1" != "--" ]; do [ -d "$1" ] && folders+=("$1"); shift; done
   [ ${#folders[@]} -eq 0 ] && return 0
   hits=$(grep -rnE --include='*.hpp' --include='*.cpp' "^ *#include *[<\"]($2)" "${folders[@]}" |
-    grep -v '^retarget/nn/plugin.cpp:' || true)  # the plug-in hands all that needs LibTorch to the program
+    grep -v '^retarget/plugin/' || true)  # the plug-in hands all that needs LibTorch to the program
   [ -z "$hits" ] && return 0
   echo "A layer reaches up (${folders[*]} may not include $2):"
   echo "$hits"
@@ -22,7 +22,7 @@ refuse() {
 
 torch='torch/|ATen/|c10/'
 upper='render/|app/|ui/'
-methods='retarget/(nn|training|motion_space|marionette|style|pose2d)/'
+methods='retarget/(networks|nn|training|motion_space|marionette|style|pose2d)/'
 refuse retarget -- "$upper|GL/|EGL/|GLES|imgui"
 refuse retarget/base retarget/math retarget/geometry retarget/skeleton -- \
   "retarget/(body|formats|metrics|pipeline)/|$methods|$torch"
@@ -37,7 +37,7 @@ refuse render -- "app/|ui/|retarget/pipeline/|$methods|$torch|imgui"
 refuse app -- "$torch|retarget/(nn/modules|training)/"
 refuse app/run app/session -- "ui/|app/(cli|studio)/"
 refuse app/cli -- "ui/"
-refuse app/run -- "app/(cli|session)/|render/|retarget/nn/"
+refuse app/run -- "app/(cli|session)/|render/|retarget/(networks|nn)/"
 refuse app/session -- "app/cli/|render/|$methods|imgui|GL/"
 refuse app/studio -- "app/cli/|$methods"
 refuse ui -- "app/(cli|studio)/|$methods|$torch"

@@ -7,7 +7,7 @@
 #include "app/run/version.hpp"
 #include "render/context/context.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 
 namespace understudy::app {
 namespace {

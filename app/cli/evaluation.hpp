@@ -9,7 +9,7 @@
 #include "app/run/breakdown.hpp"
 #include "app/run/latency.hpp"
 #include "app/run/source.hpp"
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 #include "retarget/pipeline/retargeter.hpp"
 
 namespace understudy::app {

@@ -7,7 +7,7 @@
 
 #include "app/run/performer.hpp"
 #include "app/run/target_file.hpp"
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 #include "retarget/pipeline/retargeter.hpp"
 
 namespace understudy::app {

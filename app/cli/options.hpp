@@ -3,7 +3,7 @@
 
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 #include "retarget/pipeline/retargeter.hpp"
 
 namespace CLI {

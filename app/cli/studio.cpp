@@ -12,7 +12,7 @@
 #include "app/studio/recorder.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 
 namespace understudy::app {
 

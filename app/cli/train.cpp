@@ -3,7 +3,7 @@
 #include "app/cli/commands.hpp"
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 
 namespace understudy::app {
 

@@ -16,9 +16,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/panels/workspace.hpp"
 #include "ui/viewport/panes.hpp"
 #include "ui/viewport/views.hpp"
-#include "ui/workspace.hpp"
 
 namespace understudy::app {
 namespace {

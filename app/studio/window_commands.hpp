@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/session/studio.hpp"
-#include "ui/workspace.hpp"
+#include "ui/panels/workspace.hpp"
 
 namespace understudy::app {
 

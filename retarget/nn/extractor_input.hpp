@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "retarget/networks/scan_patches.hpp"
 #include "retarget/nn/modules/skeleton_extractor.hpp"
-#include "retarget/nn/scan_patches.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy::nn {

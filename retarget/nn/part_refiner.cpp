@@ -5,8 +5,8 @@
 
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/smooth_step.hpp"
+#include "retarget/networks/scan_patches.hpp"
 #include "retarget/nn/modules/part_refiner.hpp"
-#include "retarget/nn/scan_patches.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/pipeline/confidence.hpp"
 

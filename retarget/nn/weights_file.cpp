@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "retarget/base/error.hpp"
-#include "retarget/nn/weights_layout.hpp"
+#include "retarget/networks/weights_layout.hpp"
 
 namespace understudy::nn {
 namespace {

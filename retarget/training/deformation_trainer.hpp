@@ -1,7 +1,7 @@
 // Trains W_net and O_net (paper 1, section 3.2).
 #pragma once
 
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 
 namespace understudy::training {
 

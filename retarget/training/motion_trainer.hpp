@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "retarget/networks/networks.hpp"
 #include "retarget/nn/modules/motion_gru.hpp"
-#include "retarget/nn/networks.hpp"
 #include "retarget/training/motion_data.hpp"
 #include "retarget/training/motion_discriminator.hpp"
 

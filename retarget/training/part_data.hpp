@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "retarget/nn/part_crops.hpp"
+#include "retarget/networks/part_crops.hpp"
 #include "retarget/training/scan_maker.hpp"
 
 namespace understudy::training {

@@ -1,7 +1,7 @@
 // Trains the network that sees limbs and head from near.
 #pragma once
 
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 
 namespace understudy::training {
 

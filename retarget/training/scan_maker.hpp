@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "retarget/body/labelled_points.hpp"
-#include "retarget/nn/scan_patches.hpp"
+#include "retarget/networks/scan_patches.hpp"
 #include "retarget/training/training_data.hpp"
 
 namespace understudy::training {

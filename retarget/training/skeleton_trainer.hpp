@@ -1,7 +1,7 @@
 // Trains the skeleton extractor.
 #pragma once
 
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 
 namespace understudy::training {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "../render/content.hpp"
 #include "render/context/context.hpp"
 #include "render/renderer.hpp"
 #include "retarget/base/rng.hpp"
+#include "tests/render/content.hpp"
 
 namespace understudy::render {
 namespace {

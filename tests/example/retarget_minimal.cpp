@@ -6,7 +6,7 @@
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/scan_source.hpp"
-#include "retarget/nn/networks.hpp"
+#include "retarget/networks/networks.hpp"
 #include "retarget/pipeline/retargeter.hpp"
 
 int main(int argc, char** argv) {

@@ -40,7 +40,7 @@
 #include "retarget/formats/xyz.hpp"
 #include "retarget/motion/bvh.hpp"
 #include "retarget/motion/read_motion.hpp"
-#include "retarget/nn/weights_layout.hpp"
+#include "retarget/networks/weights_layout.hpp"
 
 namespace understudy::fuzz {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "content.hpp"
+#include "tests/render/content.hpp"
 
 namespace understudy::render {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "content.hpp"
 #include "render/context/context.hpp"
 #include "render/gl/object.hpp"
 #include "render/gl/scopes.hpp"
 #include "render/renderer.hpp"
 #include "retarget/base/error.hpp"
+#include "tests/render/content.hpp"
 
 namespace understudy::render {
 namespace {

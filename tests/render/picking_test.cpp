@@ -5,8 +5,8 @@
 #include <chrono>
 #include <limits>
 
-#include "content.hpp"
 #include "render/gizmo.hpp"
+#include "tests/render/content.hpp"
 
 namespace understudy::render {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "content.hpp"
 #include "render/colors.hpp"
 #include "render/floor_shadow.hpp"
 #include "render/passes/skeleton_pass.hpp"
 #include "retarget/base/error.hpp"
+#include "tests/render/content.hpp"
 
 namespace understudy::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "studio_fixture.hpp"
+#include "tests/session/studio_fixture.hpp"
 
 #include "app/session/document_file.hpp"
 #include "retarget/base/error.hpp"

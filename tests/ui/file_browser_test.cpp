@@ -1,5 +1,5 @@
 // The file browser on a folder of its own.
-#include "ui/file_browser.hpp"
+#include "ui/widgets/file_browser.hpp"
 
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "support/ui_test.hpp"
+#include "tests/ui/support/ui_test.hpp"
 
 namespace understudy::ui {
 namespace {

@@ -2,7 +2,7 @@
 #include "ui/gui/gui.hpp"
 
 #include "render/context/context.hpp"
-#include "support/ui_test.hpp"
+#include "tests/ui/support/ui_test.hpp"
 #include "ui/gui/draw_pass.hpp"
 
 namespace understudy::ui {

@@ -1,5 +1,5 @@
 // The edit panel: what each control asks for.
-#include "support/panels_test.hpp"
+#include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/edit.hpp"
 
 namespace understudy::ui {

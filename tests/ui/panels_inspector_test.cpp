@@ -1,5 +1,5 @@
 // Inspector, layers and metrics: what each control asks for.
-#include "support/panels_test.hpp"
+#include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/inspector.hpp"
 #include "ui/panels/layers.hpp"
 #include "ui/panels/metrics.hpp"

@@ -1,6 +1,6 @@
 // The section "Rig" of the inspector: which bone is which joint, and what a click on it asks for.
-#include "support/panels_test.hpp"
 #include "tests/retarget/character/characters.hpp"
+#include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/rig.hpp"
 
 namespace understudy::ui {

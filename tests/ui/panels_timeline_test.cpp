@@ -1,5 +1,5 @@
 // Timeline, log, start screen and status line.
-#include "support/panels_test.hpp"
+#include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/log.hpp"
 #include "ui/panels/rows.hpp"

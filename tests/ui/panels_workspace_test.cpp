@@ -6,7 +6,7 @@
 #include <set>
 
 #include "retarget/base/error.hpp"
-#include "support/panels_test.hpp"
+#include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/menus.hpp"
 
 namespace understudy::ui {

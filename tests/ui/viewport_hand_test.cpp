@@ -1,8 +1,8 @@
 // What the mouse does in the views: real input, a null context, and the commands that come out.
 #include "render/context/context.hpp"
 #include "render/gizmo.hpp"
-#include "support/ui_test.hpp"
-#include "support/viewport_stage.hpp"
+#include "tests/ui/support/ui_test.hpp"
+#include "tests/ui/support/viewport_stage.hpp"
 #include "ui/viewport/hand.hpp"
 #include "ui/viewport/pane_pictures.hpp"
 #include "ui/viewport/views.hpp"

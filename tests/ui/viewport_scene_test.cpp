@@ -3,7 +3,7 @@
 
 #include "app/session/follow.hpp"
 #include "render/colors.hpp"
-#include "support/viewport_stage.hpp"
+#include "tests/ui/support/viewport_stage.hpp"
 #include "ui/viewport/pane_pictures.hpp"
 #include "ui/viewport/same_picture.hpp"
 #include "ui/viewport/scene_builder.hpp"

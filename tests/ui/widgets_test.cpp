@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/ui_test.hpp"
+#include "tests/ui/support/ui_test.hpp"
 #include "ui/widgets/controls.hpp"
 #include "ui/widgets/dialogs.hpp"
 #include "ui/widgets/lists.hpp"

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "ui/theme.hpp"
+#include "ui/gui/theme.hpp"
 
 namespace understudy::ui {
 

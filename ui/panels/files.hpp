@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "ui/file_browser.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/widgets/file_browser.hpp"
 
 namespace understudy::ui {
 

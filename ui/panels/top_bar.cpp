@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/arrangement.hpp"
+#include "ui/panels/arrangement.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/menus.hpp"
 #include "ui/widgets/controls.hpp"

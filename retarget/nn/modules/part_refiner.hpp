@@ -3,7 +3,7 @@
 
 #include <torch/torch.h>
 
-#include "retarget/nn/part_crops.hpp"
+#include "retarget/networks/part_crops.hpp"
 
 namespace understudy::nn {
 

@@ -1,4 +1,4 @@
-#include "gallery.hpp"
+#include "tests/ui/support/gallery.hpp"
 
 #include <cmath>
 #include <functional>

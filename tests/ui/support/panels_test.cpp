@@ -1,4 +1,4 @@
-#include "panels_test.hpp"
+#include "tests/ui/support/panels_test.hpp"
 
 #include <cmath>
 #include <set>

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "app/session/studio.hpp"
-#include "support/ui_test.hpp"
+#include "tests/ui/support/ui_test.hpp"
 #include "ui/panels/panel.hpp"
-#include "ui/workspace.hpp"
+#include "ui/panels/workspace.hpp"
 
 namespace understudy::ui {
 

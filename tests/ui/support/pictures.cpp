@@ -1,4 +1,4 @@
-#include "pictures.hpp"
+#include "tests/ui/support/pictures.hpp"
 
 #include <array>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "ui_test.hpp"
+#include "tests/ui/support/ui_test.hpp"
 
 #include <utility>
 

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "../../render/content.hpp"
 #include "app/session/frame_cache.hpp"
 #include "app/session/session.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/skeleton/skinning.hpp"
+#include "tests/render/content.hpp"
 
 namespace understudy::ui {
 

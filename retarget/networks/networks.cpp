@@ -1,0 +1,119 @@
+#include "retarget/networks/networks.hpp"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <thread>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/networks/plugin_api.hpp"
+
+namespace understudy::nn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPluginFile = "libunderstudy_networks.so";
+
+fs::path program_folder() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  return failed ? fs::current_path() : program.parent_path();
+}
+
+/// One core is left to whoever else wants it (a window drawn in software): measured, two inference threads
+/// gain little on an idle machine and lose much on a busy one.
+int inference_threads() {
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return std::clamp(cores / 2, 1, 4);
+}
+
+/// Settings that OpenBLAS and OpenMP read when they are loaded; what the user set stays.
+void prepare_environment() {
+  // OpenBLAS 0.3.21 does not know processors newer than itself and falls back to kernels five times slower.
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512vl"))
+    setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
+  else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    setenv("OPENBLAS_CORETYPE", "Haswell", 0);
+#endif
+  // Waiting threads that spin take the cores from whoever draws or compiles.
+  setenv("OMP_WAIT_POLICY", "PASSIVE", 0);
+  setenv("OMP_NUM_THREADS", std::to_string(inference_threads()).c_str(), 0);
+}
+
+std::string plugin_path() {
+  if (const char* forced = std::getenv("UNDERSTUDY_PLUGIN")) return forced;
+  const fs::path here = program_folder();
+  for (const fs::path& folder : {here, here.parent_path(), here.parent_path() / "lib/understudy"})
+    if (fs::exists(folder / kPluginFile)) return (folder / kPluginFile).string();
+  throw Error(std::string(kPluginFile) + " is not beside the program: build the target understudy_networks");
+}
+
+const PluginApi& plugin() {
+  static const PluginApi& api = []() -> const PluginApi& {
+    prepare_environment();
+    const std::string path = plugin_path();
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) throw Error(path + ": cannot be loaded (" + dlerror() + ")");
+    const auto entry =
+        reinterpret_cast<decltype(&understudy_networks_plugin)>(dlsym(library, "understudy_networks_plugin"));
+    US_CHECK(entry, path, ": not a networks plug-in");
+    US_CHECK(entry()->version == kPluginVersion, path, ": a networks plug-in of version ", entry()->version,
+             ", not ", kPluginVersion);
+    return *entry();
+  }();
+  return api;
+}
+
+std::string existing_weights(const NetworkOptions& options) {
+  const std::string folder = weights_folder(options);
+  US_CHECK(!folder.empty(),
+           "the trained weights are missing: no folder assets/weights beside the program or above it");
+  return folder;
+}
+
+}  // namespace
+
+std::string weights_folder(const NetworkOptions& options) {
+  if (!options.weights.empty()) return options.weights;
+  if (const char* forced = std::getenv("UNDERSTUDY_WEIGHTS")) return forced;
+  for (fs::path at = program_folder(); at.has_relative_path(); at = at.parent_path())
+    if (fs::exists(at / "assets/weights/skeleton.weights")) return (at / "assets/weights").string();
+  return "";
+}
+
+Networks load_networks(const NetworkOptions& options) {
+  const std::string folder = existing_weights(options);
+  return plugin().load(options, folder);
+}
+
+std::unique_ptr<Deformer> load_deformer(const NetworkOptions& options) {
+  const std::string folder = existing_weights(options);
+  return plugin().load_deformer(options, folder);
+}
+
+RuntimeReport runtime_report() {
+  RuntimeReport report = plugin().report();
+  const auto cores = std::thread::hardware_concurrency();
+  report.threads_why = std::to_string(report.threads) + " of " + std::to_string(cores) +
+                       " cores: the rest stays free for drawing (OMP_NUM_THREADS changes it)";
+  return report;
+}
+
+int train(const TrainOptions& options) {
+  // Trainers bring their own threads: each computes alone.
+  setenv("OMP_NUM_THREADS", "1", 0);
+  const std::clock_t before = std::clock();  // of all threads
+  const int result = plugin().train(options);
+  log::info(detail::join("train ", options.network, ": ", (std::clock() - before) / CLOCKS_PER_SEC,
+                         " core-seconds in this run"));
+  return result;
+}
+
+}  // namespace understudy::nn

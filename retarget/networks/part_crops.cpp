@@ -1,0 +1,96 @@
+#include "retarget/networks/part_crops.hpp"
+
+#include <vector>
+
+#include "retarget/math/rotation.hpp"
+
+namespace understudy::nn {
+namespace {
+
+constexpr int kFewest = 16;
+
+/// Where the middle of a hand, head or foot is from its joint, T-pose axes of a left one, and how far it
+/// reaches with some room for errors of the joint; in leg lengths.
+struct Reach {
+  Vec3 middle;
+  float radius;
+};
+const Reach& reach_of(PartKind kind) {
+  static const std::array<Reach, kPartKinds> reaches = {{{Vec3(0.085f, 0, 0), 0.18f},
+                                                         {Vec3(0, 0.11f, 0.03f), 0.23f},
+                                                         {Vec3(0, -0.035f, 0.07f), 0.20f},
+                                                         {Vec3(0, 0, 0), 0.28f},
+                                                         {Vec3(0, 0, 0), 0.30f}}};
+  return reaches[static_cast<size_t>(kind)];
+}
+
+/// x to -x and back.
+Mat3 mirrored(const Mat3& R) {
+  const Vec3 flip(-1, 1, 1);
+  return flip.asDiagonal() * R * flip.asDiagonal();
+}
+
+const Mat3& frame_of(const Extraction& seen, const Part& part) {
+  return (*seen.global)[static_cast<size_t>(part.joint)];
+}
+
+std::vector<int> points_within(const Points& scan, const Vec3& middle, float radius) {
+  std::vector<int> near;
+  for (Eigen::Index i = 0; i < scan.rows(); ++i)
+    if ((scan.row(i).transpose() - middle).squaredNorm() < radius * radius)
+      near.push_back(static_cast<int>(i));
+  return near;
+}
+
+}  // namespace
+
+Mat3 into_part(const Mat3& world, const Extraction& seen, const Part& part) {
+  const Mat3 local = frame_of(seen, part).transpose() * world;
+  return part.mirrored ? mirrored(local) : local;
+}
+
+Mat3 from_part(const Mat3& local, const Extraction& seen, const Part& part) {
+  return frame_of(seen, part) * (part.mirrored ? mirrored(local) : local);
+}
+
+Vec3 vector_into_part(const Vec3& world, const Extraction& seen, const Part& part) {
+  const Vec3 local = frame_of(seen, part).transpose() * world / leg_length(seen.joints);
+  return part.mirrored ? Vec3(-local.x(), local.y(), local.z()) : local;
+}
+
+Vec3 vector_from_part(const Vec3& local, const Extraction& seen, const Part& part) {
+  const Vec3 side(part.mirrored ? -1.0f : 1.0f, 1, 1);
+  return frame_of(seen, part) * local.cwiseProduct(side) * leg_length(seen.joints);
+}
+
+std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, const Part& part,
+                                 uint32_t first) {
+  const float size = leg_length(seen.joints);
+  const Mat3& R = frame_of(seen, part);
+  const Vec3 joint = seen.joints.row(part.joint).transpose(), side(part.mirrored ? -1.0f : 1.0f, 1, 1);
+  const Reach& reach = reach_of(part.kind);
+  const Vec3 middle = joint + size * (R * side.cwiseProduct(reach.middle));
+  const std::vector<int> near = points_within(scan, middle, size * reach.radius);
+  if (static_cast<int>(near.size()) < kFewest || !(size > 1e-4f)) return std::nullopt;
+  PartCrop crop;
+  crop.points.resize(kPartPoints, 3);
+  const size_t count = near.size();
+  for (size_t i = 0; i < kPartPoints; ++i) {
+    // Spread over all of them: scans are often sorted along the body.
+    const size_t at = count > kPartPoints ? (i * count / kPartPoints + first) % count : i % count;
+    const Vec3 x = R.transpose() * (scan.row(near[at]).transpose() - joint) / size;
+    crop.points.row(static_cast<Eigen::Index>(i)) = x.cwiseProduct(side).transpose();
+  }
+  const int parent = kParents[static_cast<size_t>(part.joint)];
+  const Vec3 bone = R.transpose() * (seen.joints.row(parent).transpose() - joint) / size;
+  crop.context.head<3>() = bone.cwiseProduct(side);
+  crop.context.segment<6>(3) =
+      rotation_to_6d(into_part((*seen.global)[static_cast<size_t>(parent)], seen, part));
+  const int second = part.corrects[1] < 0 ? part.joint : part.corrects[1];
+  crop.context.segment<3>(9) =
+      vector_into_part((seen.joints.row(second) - seen.joints.row(part.joint)).transpose(), seen, part);
+  crop.context[12] = std::min(1.0f, static_cast<float>(count) / kPartPoints);
+  return crop;
+}
+
+}  // namespace understudy::nn

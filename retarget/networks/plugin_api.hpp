@@ -1,0 +1,21 @@
+// What the networks plug-in offers to the program that loads it.
+#pragma once
+
+#include "retarget/networks/networks.hpp"
+
+namespace understudy::nn {
+
+constexpr int kPluginVersion = 5;
+
+struct PluginApi {
+  int version;
+  Networks (*load)(const NetworkOptions& options, const std::string& folder);
+  std::unique_ptr<Deformer> (*load_deformer)(const NetworkOptions& options, const std::string& folder);
+  RuntimeReport (*report)();
+  int (*train)(const TrainOptions& options);
+};
+
+}  // namespace understudy::nn
+
+/// The plug-in's one exported name.
+extern "C" const understudy::nn::PluginApi* understudy_networks_plugin();

@@ -1,0 +1,99 @@
+#include <dlfcn.h>
+#include <torch/torch.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/networks/plugin_api.hpp"
+#include "retarget/nn/network_deformer.hpp"
+#include "retarget/nn/network_extractor.hpp"
+#include "retarget/nn/paper_transfer.hpp"
+#include "retarget/nn/part_refiner.hpp"
+#include "retarget/pipeline/copy_transfer.hpp"
+#include "retarget/training/deformation_trainer.hpp"
+#include "retarget/training/motion_trainer.hpp"
+#include "retarget/training/part_trainer.hpp"
+#include "retarget/training/skeleton_trainer.hpp"
+
+namespace understudy::nn {
+namespace {
+
+std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, const std::string& folder) {
+  if (options.engine == "copy") return std::make_unique<CopyTransfer>();
+  US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy or paper");
+  return load_paper_transfer(options.engine_file.empty() ? folder + "/motion.weights" : options.engine_file);
+}
+
+/// Null where the folder has none: weights of one's own need no second look.
+std::unique_ptr<PartRefiner> load_parts(const std::string& folder) {
+  const std::string path = folder + "/part.weights";
+  if (!std::filesystem::exists(path)) {
+    log::warn_once(path + ": is not there; limbs and head are seen from afar only");
+    return nullptr;
+  }
+  return load_part_refiner(path);
+}
+
+std::unique_ptr<Deformer> load_skin(const NetworkOptions& options, const std::string& folder) {
+  return load_network_deformer(folder + "/deformation.weights", options.offsets);
+}
+
+/// A name of the BLAS library that LibTorch uses, or null: only OpenBLAS has these.
+template <class Function>
+Function blas_symbol(const char* name) {
+  void* blas = dlopen("libblas.so.3", RTLD_NOLOAD | RTLD_LAZY);
+  if (!blas) return nullptr;
+  const auto function = reinterpret_cast<Function>(dlsym(blas, name));
+  dlclose(blas);  // only our count of it: LibTorch keeps it
+  return function;
+}
+
+RuntimeReport report() {
+  RuntimeReport found;
+  found.torch_version = TORCH_VERSION;
+  using Text = char* (*)();
+  const auto config = blas_symbol<Text>("openblas_get_config");
+  const auto core = blas_symbol<Text>("openblas_get_corename");
+  found.slow_blas = config == nullptr;
+  found.blas = config ? config() : "the reference BLAS";
+  found.blas_core = core ? core() : "";
+  found.threads = at::get_num_threads();
+  return found;
+}
+
+Networks load(const NetworkOptions& options, const std::string& folder) {
+  if (report().slow_blas)
+    log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
+  Networks networks;
+  const bool dense = options.extractor == "dense";
+  const std::string file =
+      folder + (dense ? "/skeleton.weights" : "/skeleton_" + options.extractor + ".weights");
+  networks.extractor =
+      load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
+                             options.extractor, dense && options.near ? load_parts(folder) : nullptr);
+  if (dense && options.extractor_file.empty())
+    networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
+  networks.transfer = load_transfer(options, folder);
+  networks.deformer = load_skin(options, folder);
+  return networks;
+}
+
+int train_network(const TrainOptions& options) {
+  if (options.network == "skeleton") return training::train_skeleton(options);
+  if (options.network == "motion") return training::train_motion(options);
+  if (options.network == "deformation") return training::train_deformation(options);
+  if (options.network == "part") return training::train_part(options);
+  throw Error("there is no network '" + options.network +
+              "' to train: skeleton, part, motion or deformation");
+}
+
+}  // namespace
+}  // namespace understudy::nn
+
+const understudy::nn::PluginApi* understudy_networks_plugin() {
+  using namespace understudy::nn;
+  static const PluginApi api{kPluginVersion, load, load_skin, report, train_network};
+  return &api;
+}

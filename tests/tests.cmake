@@ -1,5 +1,0 @@
-file(GLOB test_fragments CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/*.cmake)
-list(REMOVE_ITEM test_fragments ${CMAKE_CURRENT_LIST_FILE})
-foreach(fragment ${test_fragments})
-  include(${fragment})
-endforeach()

@@ -1,0 +1,73 @@
+// The window's content: lays the panels out around the views, and keeps what they remember.
+// Marks of its own: side.tab (.0 to .3: inspector, layers, edit, metrics), side.edge, views.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ui/panels/arrangement.hpp"
+#include "ui/panels/dialogs.hpp"
+#include "ui/panels/edit.hpp"
+#include "ui/panels/export.hpp"
+#include "ui/panels/files.hpp"
+#include "ui/panels/log.hpp"
+#include "ui/panels/metrics.hpp"
+#include "ui/panels/start.hpp"
+#include "ui/panels/timeline.hpp"
+
+namespace understudy::ui {
+
+/// What the window gets from outside.
+struct WorkspaceServices {
+  /// Draws the views inside the current window, which covers this place.
+  std::function<void(ImVec2 at, ImVec2 size)> draw_views;
+  std::vector<SampleCard> samples;
+  std::function<std::string()> about;  ///< versions and machine, asked for when the words are first shown
+};
+
+/// One a window. Draw it between Gui::begin_frame and end_frame. It writes nothing: what is to happen stands
+/// in the context's queue.
+class Workspace {
+ public:
+  explicit Workspace(WorkspaceServices services = {}) : services_(std::move(services)) {}
+
+  /// `frame_rate`: of the window, frames per second, for the status line.
+  void draw(const app::Session& session, PanelContext& context, float frame_rate = 0);
+
+  /// open, open_scan, open_motion, open_target, replace_target, open_document, save_as, export, csv, picture,
+  /// video, compare, settings, about, keys; "none" closes. Throws Error for another name.
+  void open_dialog(const app::Session& session, const std::string& name);
+  /// The dialog that is open, or ""; the file browser is "files".
+  std::string dialog() const;
+
+  SampleCard& sample(size_t i) { return services_.samples.at(i); }  ///< to give it its picture
+  FileBrowser& browser() { return files_.browser; }                 ///< to give it places and previews
+  const Rect& views() const { return places_.views; }
+
+ private:
+  void draw_centre(const app::Session& session, PanelContext& context);
+  void draw_side(const app::Session& session, PanelContext& context);
+  void draw_side_edge(PanelContext& context);
+  void draw_bottom(const app::Session& session, PanelContext& context, float frame_rate);
+  void draw_dialog(const app::Session& session, PanelContext& context);
+  void draw_question_or_browse(const app::Session& session, PanelContext& context);
+  void draw_export_dialog(const app::Session& session, PanelContext& context);
+  void follow_tabs(const app::Session& session, PanelContext& context);
+
+  WorkspaceServices services_;
+  Arrangement places_;
+  Parts parts_;
+  int tab_ = 0;
+  std::string dialog_, about_;
+  TimelineState timeline_;
+  MetricsState metrics_;
+  EditState edit_;
+  LogState log_;
+  ExportState export_;
+  CompareState compare_;
+  FilesState files_;
+  NoticesState notices_;
+};
+
+}  // namespace understudy::ui

@@ -1,0 +1,149 @@
+#include "ui/widgets/folder_listing.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cctype>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <system_error>
+#include <thread>
+
+#include "retarget/formats/scan_source.hpp"
+
+namespace understudy::ui {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kMostFrames = 10000;
+
+bool comes_before(const FolderEntry& a, const FolderEntry& b) {
+  return a.is_folder != b.is_folder ? a.is_folder : natural_less(a.name, b.name);
+}
+
+bool is_frame_format(const std::string& extension) {
+  constexpr std::array<const char*, 6> kFormats = {"ply", "obj", "off", "stl", "xyz", "pcd"};
+  return std::find(kFormats.begin(), kFormats.end(), extension) != kFormats.end();
+}
+
+std::string reason(const std::string& folder, const std::error_code& error) {
+  if (error == std::errc::permission_denied) return "You may not look into " + folder + ".";
+  if (error == std::errc::no_such_file_or_directory) return "There is no folder " + folder + ".";
+  if (error == std::errc::not_a_directory) return folder + " is not a folder.";
+  return folder + " cannot be listed: " + error.message() + ".";
+}
+
+FolderEntry entry_of(const fs::directory_entry& found) {
+  FolderEntry entry;
+  entry.name = found.path().filename().string();
+  struct stat about {};
+  if (stat(found.path().c_str(), &about) != 0) return entry;  // a link to nothing: a file of no size
+  entry.is_folder = S_ISDIR(about.st_mode);
+  entry.bytes = entry.is_folder ? 0 : static_cast<uint64_t>(about.st_size);
+  entry.changed_s = about.st_mtime;
+  return entry;
+}
+
+/// Looks into a folder for scan frames and a case; a single frame is no sequence.
+void look_inside(const fs::path& folder, FolderEntry& entry, const std::atomic<bool>& unwanted) {
+  std::error_code error;
+  std::map<std::string, int> counts;
+  int seen = 0;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end && !unwanted; at.increment(error)) {
+    const std::string name = at->path().filename().string(), extension = extension_of(name);
+    if (name == "case.json") entry.is_case = true;
+    if (is_frame_format(extension)) ++counts[extension];
+    if (++seen >= kMostFrames) break;
+  }
+  for (const auto& [extension, count] : counts)
+    if (count > 1) entry.frames = std::max(entry.frames, count);
+}
+
+}  // namespace
+
+struct FolderListing::Shared {
+  std::atomic<bool> unwanted{false};
+  std::mutex mutex;
+  std::shared_ptr<const FolderContents> newest = std::make_shared<FolderContents>();
+
+  void publish(FolderContents contents) {
+    auto next = std::make_shared<const FolderContents>(std::move(contents));
+    const std::lock_guard<std::mutex> lock(mutex);
+    newest = std::move(next);
+  }
+  void list(const std::string& folder);
+  void count_frames(const std::string& folder, FolderContents& contents);
+};
+
+void FolderListing::Shared::list(const std::string& folder) {
+  FolderContents contents;
+  std::error_code error;
+  auto wait = std::chrono::milliseconds(100);
+  auto next = Clock::now() + wait;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end && !unwanted; at.increment(error)) {
+    if (at->path().filename().string().front() == '.') continue;
+    contents.entries.push_back(entry_of(*at));
+    if (Clock::now() < next) continue;
+    std::sort(contents.entries.begin(), contents.entries.end(), comes_before);
+    publish(contents);
+    next = Clock::now() + (wait *= 2);  // each look costs more than the last
+  }
+  if (error) contents.problem = reason(folder, error);
+  std::sort(contents.entries.begin(), contents.entries.end(), comes_before);
+  publish(contents);
+  count_frames(folder, contents);
+  contents.finished = true;
+  publish(std::move(contents));
+}
+
+void FolderListing::Shared::count_frames(const std::string& folder, FolderContents& contents) {
+  auto next = Clock::now() + std::chrono::milliseconds(100);
+  for (FolderEntry& entry : contents.entries) {
+    if (!entry.is_folder || unwanted) break;  // folders come first
+    look_inside(fs::path(folder) / entry.name, entry, unwanted);
+    if (Clock::now() < next) continue;
+    publish(contents);
+    next = Clock::now() + std::chrono::milliseconds(300);
+  }
+}
+
+FolderListing::FolderListing(const std::string& folder) : shared_(std::make_shared<Shared>()) {
+  // Detached: a network drive that hangs must not hang whoever closes the browser.
+  std::thread([shared = shared_, folder] { shared->list(folder); }).detach();
+}
+
+FolderListing::~FolderListing() {
+  shared_->unwanted = true;
+}
+
+std::shared_ptr<const FolderContents> FolderListing::contents() const {
+  const std::lock_guard<std::mutex> lock(shared_->mutex);
+  return shared_->newest;
+}
+
+std::string extension_of(const std::string& name) {
+  const size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot == 0) return {};
+  std::string extension = name.substr(dot + 1);
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+std::string file_size(uint64_t bytes) {
+  constexpr std::array<const char*, 5> kUnits = {"B", "kB", "MB", "GB", "TB"};
+  auto size = static_cast<double>(bytes);
+  size_t unit = 0;
+  while (size >= 999.5 && unit + 1 < kUnits.size()) size /= 1000, ++unit;
+  char words[32];
+  std::snprintf(words, sizeof words, unit == 0 || size >= 9.95 ? "%.0f %s" : "%.1f %s", size, kUnits[unit]);
+  return words;
+}
+
+}  // namespace understudy::ui
