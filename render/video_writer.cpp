@@ -13,6 +13,7 @@ extern "C" {
 }
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::render {
 
@@ -203,10 +204,7 @@ class PngFolder final : public VideoWriter::Sink {
 };
 
 std::unique_ptr<VideoWriter::Sink> sink_for(const std::string& path, const VideoOptions& options) {
-  std::string ending = fs::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  if (ending == ".mp4") return std::make_unique<Mp4>(path, options);
+  if (file_suffix(path) == ".mp4") return std::make_unique<Mp4>(path, options);
   return std::make_unique<PngFolder>(path);
 }
 

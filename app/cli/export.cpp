@@ -18,6 +18,7 @@
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
@@ -255,8 +256,7 @@ int run_export(const ExportOptions& options) {
 
 void add_file_options(CLI::App& command, ExportOptions& options) {
   std::string formats;
-  for (const ExportFormatInfo& info : export_formats())
-    formats += std::string(formats.empty() ? "" : ", ") + info.name;
+  for (const ExportFormatInfo& info : export_formats()) append_item(formats, info.name);
   command.add_option("--format", options.format,
                      formats + " (default: by the suffix; ply and obj are folders)");
   command.add_option("--influences", options.file.influences, "bones a vertex on our rig: 4 or 8")

@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "retarget/base/text.hpp"
+
 namespace understudy::app {
 namespace {
 
@@ -17,7 +19,7 @@ namespace {
 double status_mb(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
-    if (line.rfind(key, 0) == 0) return std::stod(line.substr(key.size() + 1)) * 1024 / 1e6;
+    if (starts_with(line, key)) return std::stod(line.substr(key.size() + 1)) * 1024 / 1e6;
   return 0;
 }
 
@@ -47,7 +49,7 @@ std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   std::string name = "unknown processor";
   for (std::string line; std::getline(info, line);)
-    if (line.rfind("model name", 0) == 0) {
+    if (starts_with(line, "model name")) {
       name = line.substr(line.find(':') + 2);
       break;
     }

@@ -9,6 +9,7 @@
 #include "app/run/breakdown.hpp"
 #include "render/plot.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -271,7 +272,7 @@ void write_confidence_of_all(std::ofstream& page, const std::string& folder,
     if (std::find(counted.begin(), counted.end(), record) != counted.end()) continue;
     counted.push_back(record);
     all.append(confidence_record(record));
-    suites += (suites.empty() ? "" : ", ") + result.row.suite;
+    append_item(suites, result.row.suite);
   }
   if (all.confidence.empty()) return;
   page << "\n## Confidence in all of these together: " << suites << "\n";

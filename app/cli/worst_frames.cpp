@@ -10,6 +10,7 @@
 #include "render/renderer.hpp"
 #include "render/text.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -53,7 +54,7 @@ render::Image picture_of(render::Renderer& renderer, const render::Font& font, c
                 1000 * worst.error_m);
   std::string failures;
   for (int f = 0; f < kFailureCount; ++f)
-    if (worst.failures[f]) failures += (failures.empty() ? "" : ", ") + std::string(kFailureNames[f]);
+    if (worst.failures[f]) append_item(failures, kFailureNames[f]);
   const Vec3 ink(0.13f, 0.15f, 0.18f);
   font.draw(picture, worst.case_name + line, {8, 18}, 15, ink);
   font.draw(picture, failures, {8, 37}, 14, ink);

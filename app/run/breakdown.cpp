@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "retarget/base/text.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/metrics/confidence.hpp"
 #include "retarget/pipeline/confidence.hpp"
@@ -16,9 +17,8 @@ constexpr int64_t kApart = 10;  // frames between two of the worst
 /// BODY of a case BODY_MOTION.
 std::string body_of(const Case& c, const std::string& motion) {
   const std::string end = "_" + motion;
-  const bool ends =
-      c.name.size() > end.size() && c.name.compare(c.name.size() - end.size(), end.size(), end) == 0;
-  return ends ? c.name.substr(0, c.name.size() - end.size()) : c.name;
+  return c.name.size() > end.size() && ends_with(c.name, end) ? c.name.substr(0, c.name.size() - end.size())
+                                                              : c.name;
 }
 
 Json names_of(const FrameFailures& failures) {

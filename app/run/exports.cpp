@@ -7,6 +7,7 @@
 
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/amass_writer.hpp"
 #include "retarget/formats/bvh_writer.hpp"
 #include "retarget/formats/joint_table.hpp"
@@ -201,16 +202,6 @@ class CharacterOutput final : public MotionOutput {
   CharacterClip clip_;
 };
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-std::string with_thousands(int64_t value) {
-  std::string text = std::to_string(value);
-  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<size_t>(at), ",");
-  return text;
-}
-
 }  // namespace
 
 const std::vector<ExportFormatInfo>& export_formats() {
@@ -235,11 +226,11 @@ ExportFormat export_format(const std::string& name, const std::string& path) {
   std::string names, suffixes;
   for (const ExportFormatInfo& info : export_formats()) {
     if (info.name == name) return info.format;
-    if (name.empty() && info.format != ExportFormat::Amass && *info.suffix && ends_with(path, info.suffix))
+    if (name.empty() && info.format != ExportFormat::Amass && *info.suffix &&
+        file_suffix(path) == info.suffix)
       return info.format;
-    names += std::string(names.empty() ? "" : ", ") + info.name;
-    if (*info.suffix && info.format != ExportFormat::Amass)
-      suffixes += std::string(suffixes.empty() ? "" : ", ") + info.suffix;
+    append_item(names, info.name);
+    if (*info.suffix && info.format != ExportFormat::Amass) append_item(suffixes, info.suffix);
   }
   US_CHECK(name.empty(), path, ": there is no format '", name, "', use one of ", names);
   throw Error(path + ": this output format is not known by its name, use " + suffixes +
@@ -248,7 +239,7 @@ ExportFormat export_format(const std::string& name, const std::string& path) {
 
 void check_export(const std::string& path, ExportFormat format) {
   const ExportFormatInfo& info = info_of(format);
-  US_CHECK(!info.is_character || ends_with(path, info.suffix), path, ": a ", info.label,
+  US_CHECK(!info.is_character || file_suffix(path) == info.suffix, path, ": a ", info.label,
            " file is called something", info.suffix);
   if (*info.suffix) return check_writable(path);
   const PartFolder made_and_removed(path);
@@ -322,7 +313,7 @@ std::string sentence(const ExportCost& cost) {
     std::snprintf(text, sizeof text, "mean %.2f mm, largest %.2f mm off the screen, %.1f MB", cost.mean_mm,
                   cost.largest_mm, megabytes);
   else
-    std::snprintf(text, sizeof text, "%s frames, %.1f MB", with_thousands(cost.frames).c_str(), megabytes);
+    std::snprintf(text, sizeof text, "%s frames, %.1f MB", grouped(cost.frames).c_str(), megabytes);
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/mesh_reader.hpp"
@@ -194,7 +195,7 @@ class MovingSkeleton final : public AnimatedSource {
     set_clips(motion_.character(), motion_.clip());
     for (const std::string& note : motion_.notes()) {
       if (!options.quiet) log::info(options.path + ": " + note);
-      decision_ += (decision_.empty() ? "" : "; ") + note;
+      append_item(decision_, note, "; ");
     }
   }
   std::string decision() const override { return decision_; }
@@ -314,7 +315,7 @@ bool turn_upright(Motion& motion, const std::string& up) {
 void check_source_options(const SourceOptions& options) {
   if (!options.motion.empty()) return check_body_options(options);
   if (is_motion_file(options.path)) return check_skeletal_options(options);
-  const std::string suffix = lower_case(std::filesystem::path(options.path).extension().string());
+  const std::string suffix = file_suffix(options.path);
   std::error_code failed;
   const bool is_folder = std::filesystem::is_directory(options.path, failed);
   if (is_folder || (suffix != ".glb" && suffix != ".gltf")) check_scan_options(options);

@@ -4,16 +4,13 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/npz.hpp"
 
 namespace understudy::app {
 namespace {
-
-bool is_npz(const std::string& path) {
-  return path.size() > 4 && path.compare(path.size() - 4, 4, ".npz") == 0;
-}
 
 Eigen::VectorXf as_vector(const std::vector<float>& values) {
   return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -45,7 +42,7 @@ auto said_of(const std::string& path, Work work) {
 }  // namespace
 
 Character read_target(const std::string& path, const std::vector<float>& betas) {
-  if (is_npz(path)) {
+  if (file_suffix(path) == ".npz") {
     const Npz npz = read_npz(path);
     if (npz.count("v_template")) {
       const ShapedBody person = read_smpl_body(path).shaped(as_vector(betas));

@@ -12,6 +12,7 @@
 #include "app/session/whole_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -69,7 +70,7 @@ std::string file_name(const Owner& owner) {
 /// Whose copy a file is; none for other files, what lies beside an unfinished one ("....part") too.
 std::optional<Owner> owner_of(const std::string& name) {
   const size_t begin = std::string(kPrefix).size(), end = name.rfind(kSuffix);
-  if (name.compare(0, begin, kPrefix) != 0 || end == std::string::npos || end < begin) return {};
+  if (!starts_with(name, kPrefix) || end == std::string::npos || end < begin) return {};
   std::string words = name.substr(begin, end - begin);
   std::replace(words.begin(), words.end(), '_', ' ');
   std::istringstream in(words);
@@ -117,10 +118,6 @@ void set_aside(const std::string& file, const std::string& problem) {
   fs::rename(file, file + ".damaged", error);
   log::warn("an autosaved document cannot be read and is set aside" +
             std::string(error ? "" : " as " + file + ".damaged") + ": " + problem);
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 }  // namespace

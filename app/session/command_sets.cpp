@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 
@@ -33,7 +34,7 @@ size_t choice(const Arguments& arguments, size_t i, const char* what, const std:
   const std::string& text = word(arguments, i, what);
   const auto found = std::find(words.begin(), words.end(), text);
   std::string all;
-  for (const std::string& known : words) all += (all.empty() ? "" : ", ") + known;
+  for (const std::string& known : words) append_item(all, known);
   US_CHECK(found != words.end(), what, " is one of ", all, ", not '", text, "'");
   return static_cast<size_t>(found - words.begin());
 }

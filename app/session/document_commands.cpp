@@ -4,6 +4,7 @@
 #include "app/run/case_folder.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/npz.hpp"
@@ -109,7 +110,7 @@ void add_files(Commands& commands) {
                 }});
   commands.add({"document.save_as", "Save as", "PATH", "", false, false, [](Studio& s, const Arguments& a) {
                   std::string path = word(a, 0, "path");
-                  if (fs::path(path).extension() != ".understudy") path += ".understudy";
+                  if (file_suffix(path) != ".understudy") path += ".understudy";
                   save_document(s, path);
                 }});
   commands.add({"open", "Open", "PATH ...: a scan, target, document or case", "", false, false, open_all});
@@ -168,9 +169,9 @@ Kind kind_of_npz(const std::string& path) {
 
 /// Of what may be a character or a motion: who has a target and no source wants a motion.
 bool wanted_as_source(const Document& document, const std::string& path) {
-  if (fs::path(path).extension() == ".bvh") return true;
+  if (file_suffix(path) == ".bvh") return true;
   if (!document.source.path.empty() || document.takes.empty()) return false;
-  const std::string suffix = lower_case(fs::path(path).extension().string());
+  const std::string suffix = file_suffix(path);
   return is_motion_file(path) || ((suffix == ".glb" || suffix == ".gltf") && read_motion(path));
 }
 
@@ -179,7 +180,7 @@ Kind kind_of(const Document& document, const std::string& path) {
   US_CHECK(fs::exists(path, failed), path, ": there is no such file or folder");
   if (fs::is_directory(path, failed))
     return fs::exists(fs::path(path) / "case.json") ? Kind::Case : Kind::Scans;
-  const std::string suffix = fs::path(path).extension().string();
+  const std::string suffix = file_suffix(path);
   if (suffix == ".understudy") return Kind::Document;
   if (fs::path(path).filename() == "case.json") return Kind::Case;
   if (suffix == ".npz") return kind_of_npz(path);
@@ -237,7 +238,7 @@ void Studio::open(const std::string& path) {
     case Kind::Motion:
       // A body that is there performs it; without one its skeleton is the source.
       if (session_.document.takes.empty() ||
-          fs::path(session_.document.takes.back().target.path).extension() != ".npz")
+          file_suffix(session_.document.takes.back().target.path) != ".npz")
         return run("source.open", {whole});
       return run("source.motion", {session_.document.takes.back().target.path, whole});
     case Kind::Body:

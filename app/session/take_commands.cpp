@@ -1,8 +1,8 @@
 #include <filesystem>
-#include <sstream>
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/read_character.hpp"
 
 namespace understudy::app {
@@ -16,16 +16,14 @@ std::string target_file(const Arguments& arguments, size_t i) {
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file");
   US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
-  US_CHECK(is_character_file(path) || fs::path(path).extension() == ".npz", path,
+  US_CHECK(is_character_file(path) || file_suffix(path) == ".npz", path,
            ": is no character or mesh that is known");
   return path;
 }
 
 std::vector<float> betas(const std::string& text) {
   std::vector<float> values;
-  std::stringstream list(text);
-  std::string item;
-  while (std::getline(list, item, ','))
+  for (const std::string& item : split(text, ','))
     values.push_back(static_cast<float>(number({item}, 0, "shape parameter")));
   return values;
 }

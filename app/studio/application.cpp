@@ -15,6 +15,7 @@
 #include "render/gl/functions.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/workspace.hpp"
 #include "ui/viewport/panes.hpp"
@@ -313,7 +314,7 @@ std::vector<ui::Mark> Application::marks() const {
 
 std::optional<ui::Mark> Application::find(const std::string& name) const {
   if (const ui::Mark* found = gui_->find(name)) return *found;
-  if (name.rfind("joint.", 0) == 0)
+  if (starts_with(name, "joint."))
     for (const ui::Mark& mark : marks())
       if (mark.name == name) return mark;
   return std::nullopt;

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -101,7 +102,7 @@ std::string fact(const Session& session, const std::string& key) {
   std::string known;
   for (const auto& [name, value] : facts(session)) {
     if (name == key) return value;
-    known += (known.empty() ? "" : ", ") + name;
+    append_item(known, name);
   }
   throw Error("there is no fact " + key + " (there are " + known + ")");
 }

@@ -1,19 +1,14 @@
 #include "app/studio/key_chord.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <utility>
+
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
 
 using render::InputEvent;
 using render::Key;
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 /// Names of keys as people write them.
 std::optional<Key> key_of(const std::string& name) {
@@ -25,7 +20,7 @@ std::optional<Key> key_of(const std::string& name) {
       {"pgdn", Key::PageDown}, {"page up", Key::PageUp}, {"ins", Key::Insert},   {"page down", Key::PageDown},
   };
   for (const auto& [text, key] : kOthers)
-    if (lower(name) == text) return key;
+    if (lower_case(name) == text) return key;
   return render::key_of_name(name);
 }
 
@@ -52,7 +47,7 @@ std::optional<KeyChord> chord_of(const std::string& text) {
   while (true) {
     const size_t plus = text.find('+', begin);
     if (plus == std::string::npos || plus + 1 >= text.size()) break;
-    if (!set_modifier(chord.modifiers, lower(text.substr(begin, plus - begin)))) return std::nullopt;
+    if (!set_modifier(chord.modifiers, lower_case(text.substr(begin, plus - begin)))) return std::nullopt;
     begin = plus + 1;
   }
   const std::string name = text.substr(begin);

@@ -12,6 +12,7 @@
 #include "render/image.hpp"
 #include "render/video_writer.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/editing/pose_edits.hpp"
 #include "ui/viewport/picture.hpp"
 
@@ -131,7 +132,7 @@ void save_video(Studio& studio, const Arguments& arguments) {
   const Saving saving = saving_of(arguments, studio.session().view.active_pane);
   const std::vector<int> frames = frames_of(studio.session());
   US_CHECK(!frames.empty(), "there is nothing to show yet");
-  const std::string suffix = fs::path(saving.path).extension().string();
+  const std::string suffix = file_suffix(saving.path);
   US_CHECK(suffix.empty() || suffix == ".mp4", suffix, " is no video: .mp4, or a folder for pictures");
   const double fps = studio.session().source.fps;
   studio.jobs().start(

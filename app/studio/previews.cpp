@@ -8,6 +8,7 @@
 #include "app/run/target_file.hpp"
 #include "app/session/document_file.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/mesh_reader.hpp"
@@ -23,12 +24,6 @@ constexpr size_t kKept = 64;                // pictures
 constexpr size_t kWaiting = 4;              // what was asked for before is no longer looked at
 
 /// "12,345".
-std::string grouped(int64_t count) {
-  std::string text = std::to_string(count);
-  for (int i = static_cast<int>(text.size()) - 3; i > 0; i -= 3) text.insert(static_cast<size_t>(i), ",");
-  return text;
-}
-
 std::string described(const Mesh& mesh) {
   return mesh.is_cloud()
              ? grouped(mesh.vertices.rows()) + " points"
@@ -160,7 +155,8 @@ Previews::Content Previews::read(const std::string& path) {
   Content content;
   try {
     const fs::path at(path);
-    if (at.extension() == ".understudy") {
+    const std::string suffix = file_suffix(path);
+    if (suffix == ".understudy") {
       const SavedDocument saved = read_document(path);
       if (!saved.document.source.path.empty()) content = read(saved.document.source.path);
       const size_t takes = saved.document.takes.size();
@@ -169,10 +165,10 @@ Previews::Content Previews::read(const std::string& path) {
       return content;
     }
     if (!fs::is_directory(at)) {
-      if (!is_character_file(path) && at.extension() != ".npz" && at.extension() != ".npy") return content;
+      if (!is_character_file(path) && suffix != ".npz" && suffix != ".npy") return content;
       if (fs::file_size(at) > kLargest) return {{}, "too large to be looked at here"};
     }
-    if (!fs::is_directory(at) && at.extension() != ".npy") {
+    if (!fs::is_directory(at) && suffix != ".npy") {
       const Character character = read_target(path, {});
       MergedSurface surface = merged_surface(character, bind_pose(character).vertices);
       paint(surface, character);

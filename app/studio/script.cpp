@@ -15,6 +15,7 @@
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -447,11 +448,11 @@ void Script::expect_error(const Words& words) {
 }
 
 std::string Script::path_of(const std::string& argument) const {
-  if (argument.rfind("samples/", 0) == 0) {
+  if (starts_with(argument, "samples/")) {
     US_CHECK(!application_.studio().services().samples.empty(), "the bundled samples are missing");
     return (fs::path(application_.studio().services().samples) / argument.substr(8)).string();
   }
-  if (argument.rfind("out/", 0) == 0) {
+  if (starts_with(argument, "out/")) {
     const fs::path path = fs::absolute(fs::path(options_.out) / argument.substr(4));
     std::error_code failed;
     fs::create_directories(path.parent_path(), failed);

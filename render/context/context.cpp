@@ -4,6 +4,7 @@
 
 #include "render/context/backends.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::render {
 
@@ -38,7 +39,7 @@ std::unique_ptr<Context> first_that_works(bool debug) {
       context->make_current();
       return context;
     } catch (const Error& error) {
-      why += (why.empty() ? "" : "; ") + std::string(error.what());
+      append_item(why, error.what(), "; ");
     }
   }
   throw Error("no OpenGL 3.3 to draw with: " + why);

@@ -1,8 +1,8 @@
 #include "render/context/input_event.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "retarget/base/text.hpp"
 
 namespace understudy::render {
 namespace {
@@ -25,11 +25,6 @@ constexpr std::array<std::string_view, static_cast<size_t>(Key::Count)> kNames =
 };
 // clang-format on
 
-bool same_word(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
 }  // namespace
 
 std::string_view key_name(Key key) {
@@ -39,7 +34,7 @@ std::string_view key_name(Key key) {
 
 std::optional<Key> key_of_name(std::string_view name) {
   for (size_t i = 1; i < kNames.size(); ++i)
-    if (same_word(kNames[i], name)) return static_cast<Key>(i);
+    if (lower_case(kNames[i]) == lower_case(name)) return static_cast<Key>(i);
   return std::nullopt;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
 
 namespace understudy {
@@ -294,10 +295,10 @@ BoneMap map_by_place(const Rig& rig) {
 std::string family_of(const Character& character) {
   for (const auto& node : character.nodes) {
     const std::string& name = node.name;
-    if (name.rfind("mixamorig", 0) == 0) return "Mixamo";
-    if (name.rfind("DEF-", 0) == 0 || name.rfind("ORG-", 0) == 0) return "Rigify";
-    if (name.rfind("J_Bip_", 0) == 0) return "VRM";
-    if (name.rfind("Bip0", 0) == 0) return "biped";
+    if (starts_with(name, "mixamorig")) return "Mixamo";
+    if (starts_with(name, "DEF-") || starts_with(name, "ORG-")) return "Rigify";
+    if (starts_with(name, "J_Bip_")) return "VRM";
+    if (starts_with(name, "Bip0")) return "biped";
     if (name == "thigh_l" || name == "upperarm_l") return "Unreal";
     if (name == "LHipJoint") return "CMU";
   }
@@ -363,14 +364,14 @@ BoneName parse_bone_name(const std::string& name) {
                    "eye",   "jaw",   "hair",  "skirt",  "metacarpal", "bust",  "breast"}) &&
         !(word == "thumb" && joined == "foot"))
       return {out.side, ""};
-    if (word.size() > 5 && word.rfind("mixamorig", 0) == 0) word = word.substr(9);
+    if (starts_with(word, "mixamorig")) word = word.substr(9);
     if (const int side = side_of(word); side != 0 && out.side == 0) {
       out.side = side;
       continue;
     }
     // Poser and CMU write lShin, LHipJoint, and some Lefthand.
     for (const auto& [start, side] : {std::pair{"left", -1}, std::pair{"right", 1}})
-      if (out.side == 0 && word.size() > 5 && word.rfind(start, 0) == 0) {
+      if (out.side == 0 && word.size() > 5 && starts_with(word, start)) {
         out.side = side;
         word = word.substr(std::string(start).size());
       }

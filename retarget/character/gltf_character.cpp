@@ -9,6 +9,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/picture.hpp"
 #include "retarget/formats/gltf_file.hpp"
 
@@ -309,7 +310,7 @@ void CharacterReader::read_images() {
       file_.spend(bytes.size());
       image.bytes = std::string(bytes);
     } else {
-      const bool is_data = uri.rfind("data:", 0) == 0;
+      const bool is_data = starts_with(uri, "data:");
       if (image.name.empty() && !is_data) image.name = std::filesystem::path(uri).stem().string();
       image.bytes = is_data ? file_.uri_bytes(uri, what)
                             : picture_or_white([&] { return file_.uri_bytes(uri, what); },
@@ -336,7 +337,7 @@ void CharacterReader::keep_extensions(const Json& value, std::set<std::string>& 
     for (const auto& [key, inner] : value.items()) {
       if (key == "extensions" && inner.is_object())
         for (const auto& extension : inner.items()) found.insert(extension.key());
-      if (key.size() > 6 && key.compare(key.size() - 7, 7, "Texture") == 0 && inner.is_object())
+      if (ends_with(key, "Texture") && inner.is_object())
         check_index(inner, "index", file_.list("textures").size(), path_);
     }
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/formats/part_file.hpp"
 
@@ -349,7 +350,7 @@ std::string gltf_bytes(const Character& character, const std::string& path) {
   json buffer = {{"byteLength", chunk.bytes().size()}};
   US_CHECK(chunk.bytes().size() < 0xf0000000u, path, ": the character needs ", chunk.bytes().size(),
            " bytes, glTF holds 4 GB");
-  const bool is_text = path.size() > 5 && path.compare(path.size() - 5, 5, ".gltf") == 0;
+  const bool is_text = file_suffix(path) == ".gltf";
   if (is_text) buffer["uri"] = "data:application/octet-stream;base64," + base64(chunk.bytes());
   gltf["buffers"] = json::array({buffer});
   const std::string text = gltf.dump(is_text ? 1 : -1, ' ', false, json::error_handler_t::replace);

@@ -11,6 +11,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/picture.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
@@ -118,7 +119,7 @@ void ObjReader::line(std::string_view text) {
   const std::string_view what = words_[0];
   const auto rest = [&] {  // names may hold blanks
     const std::string_view end = text.substr(static_cast<size_t>(words_[1].data() - text.data()));
-    return std::string(end.substr(0, end.find_last_not_of(" \t\r\n") + 1));
+    return std::string(trim_end(end));
   };
   if (what == "v") {
     numbers(positions_, 3, 3);
@@ -157,7 +158,7 @@ void ObjReader::read_materials(const std::string& name) {
     split_words(whole_line, "", words);
     if (words.size() < 2) continue;
     const std::string_view end = whole_line.substr(static_cast<size_t>(words[1].data() - whole_line.data()));
-    const std::string rest(end.substr(0, end.find_last_not_of(" \t\r\n") + 1));
+    const std::string rest(trim_end(end));
     double value = 0;
     if (words[0] == "newmtl") current = &materials_[rest];
     if (current == nullptr) continue;

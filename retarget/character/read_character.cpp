@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/import_process.hpp"
 #include "retarget/character/obj_character.hpp"
@@ -14,7 +15,7 @@ namespace understudy {
 namespace {
 
 bool needs_process(const std::string& path, std::string_view bytes) {
-  const std::string suffix = lower_case(std::filesystem::path(path).extension().string());
+  const std::string suffix = file_suffix(path);
   return suffix == ".fbx" || suffix == ".dae" || bytes.substr(0, 20) == "Kaydara FBX Binary  " ||
          bytes.substr(0, 512).find("<COLLADA") != bytes.npos;
 }
@@ -22,8 +23,7 @@ bool needs_process(const std::string& path, std::string_view bytes) {
 Character read_any(const std::string& path, const ReadCharacterOptions& options) {
   const std::string bytes = read_file(path), stem = std::filesystem::path(path).stem().string();
   US_CHECK(!bytes.empty(), path, ": is empty");
-  US_CHECK(lower_case(std::filesystem::path(path).extension().string()) != ".bvh", path,
-           ": is a motion, not a character");
+  US_CHECK(file_suffix(path) != ".bvh", path, ": is a motion, not a character");
   if (needs_process(path, bytes)) return read_in_process(path, options);
   const auto content = format_of_content(bytes), suffix = format_of_suffix(path);
   const auto format = content ? content : suffix;
@@ -62,7 +62,7 @@ Character character_of_mesh(const Mesh& mesh, const std::string& name) {
 }
 
 bool is_character_file(const std::string& path) {
-  const std::string suffix = lower_case(std::filesystem::path(path).extension().string());
+  const std::string suffix = file_suffix(path);
   return suffix == ".fbx" || suffix == ".dae" || format_of_suffix(path);
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "retarget/base/error.hpp"
-#include "retarget/formats/number_text.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy {
 namespace {

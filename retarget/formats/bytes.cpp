@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -14,10 +13,6 @@ namespace understudy {
 namespace {
 
 constexpr off_t kLargestFile = off_t{4} << 30;
-
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
-}
 
 struct Descriptor {
   int fd;
@@ -104,93 +99,6 @@ int64_t whole(double value) {
   return value >= -9e15 && value <= 9e15 ? static_cast<int64_t>(value) : -1;  // false for NaN
 }
 
-bool parse_number(std::string_view text, double& value) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (stop != end || error == std::errc::invalid_argument) return false;
-  if (error == std::errc::result_out_of_range) {
-    const bool tiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
-    const double size = tiny ? 0.0 : std::numeric_limits<double>::infinity();
-    value = text.front() == '-' ? -size : size;
-  }
-  return true;
-}
-
-bool parse_integer(std::string_view text, int64_t& value) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return stop == end && error == std::errc();
-}
-
-std::string_view TextCursor::word() {
-  while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
-  const size_t begin = at_;
-  while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
-  return text_.substr(begin, at_ - begin);
-}
-
-std::string_view TextCursor::line() {
-  if (at_end()) return {};
-  const char* const begin = text_.data() + at_;
-  const void* const found = std::memchr(begin, '\n', text_.size() - at_);
-  const size_t length =
-      found ? static_cast<size_t>(static_cast<const char*>(found) - begin) : text_.size() - at_;
-  std::string_view line = text_.substr(at_, length);
-  at_ += length + (found ? 1 : 0);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return line;
-}
-
-double TextCursor::number(const char* what) {
-  const std::string_view text = word();
-  US_CHECK(!text.empty(), source_, ": ends before ", what);
-  double value = 0;
-  US_CHECK(parse_number(text, value), source_, ": '", excerpt(text), "' stands where ", what, " should be");
-  return value;
-}
-
-int64_t TextCursor::integer(const char* what) {
-  const std::string_view text = word();
-  US_CHECK(!text.empty(), source_, ": ends before ", what);
-  int64_t value = 0;
-  US_CHECK(parse_integer(text, value), source_, ": '", excerpt(text), "' stands where ", what, " should be");
-  return value;
-}
-
-void TextCursor::skip_comments() {
-  while (at_ < text_.size()) {
-    if (is_blank(text_[at_])) {
-      ++at_;
-    } else if (text_[at_] == '#') {
-      line();
-    } else {
-      return;
-    }
-  }
-}
-
-void split_words(std::string_view line, std::string_view separators, std::vector<std::string_view>& words) {
-  words.clear();
-  const auto parts = [&](char c) { return is_blank(c) || separators.find(c) != separators.npos; };
-  size_t at = 0;
-  while (true) {
-    while (at < line.size() && parts(line[at])) ++at;
-    if (at >= line.size()) return;
-    const size_t begin = at;
-    while (at < line.size() && !parts(line[at])) ++at;
-    words.push_back(line.substr(begin, at - begin));
-  }
-}
-
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
 int json_depth(std::string_view text) {
   int depth = 0, deepest = 0;
   bool quoted = false;
@@ -208,13 +116,6 @@ int json_depth(std::string_view text) {
     }
   }
   return deepest;
-}
-
-std::string excerpt(std::string_view text) {
-  std::string out(text.substr(0, 40));
-  for (char& c : out)
-    if (c < ' ' || c > '~') c = '?';
-  return text.size() > 40 ? out + "..." : out;
 }
 
 void FaceList::add(int64_t a, int64_t b, int64_t c) {

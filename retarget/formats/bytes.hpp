@@ -1,4 +1,4 @@
-// Reading bytes and text that nobody vouches for: files, numbers of any type and byte order, text cursors.
+// Reading bytes and text that nobody vouches for: files, numbers of any type and byte order, faces.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/math/types.hpp"
 
 namespace understudy {
@@ -43,44 +44,8 @@ float narrow(double value);
 /// A count or an index from a file, as a whole number; NaN, fractions' tails and the huge become -1.
 int64_t whole(double value);
 
-/// One number that fills the text exactly: what strtod takes in the C locale, less hexadecimals. False when
-/// it is not.
-bool parse_number(std::string_view text, double& value);
-/// A whole number that fills the text exactly.
-bool parse_integer(std::string_view text, int64_t& value);
-
-/// Walks over text by words and lines. The text must outlive it.
-class TextCursor {
- public:
-  TextCursor(std::string_view text, std::string source) : text_(text), source_(std::move(source)) {}
-
-  bool at_end() const { return at_ >= text_.size(); }
-  size_t position() const { return at_; }
-  size_t left() const { return text_.size() - at_; }
-  /// The next word, over line ends; empty at the end.
-  std::string_view word();
-  /// The rest of this line without its end; steps behind it.
-  std::string_view line();
-  /// The next word as a number. Throws Error naming `what` when there is none.
-  double number(const char* what);
-  int64_t integer(const char* what);
-  /// Steps over blanks, line ends and lines that start with '#'.
-  void skip_comments();
-
- private:
-  std::string_view text_;
-  std::string source_;
-  size_t at_ = 0;
-};
-
-/// The words of one line; blanks, and the extra separators given, part them.
-void split_words(std::string_view line, std::string_view separators, std::vector<std::string_view>& words);
-std::string lower_case(std::string_view text);
 /// How deep the brackets of a JSON text are nested, those in its strings left out.
 int json_depth(std::string_view text);
-/// The beginning of a text for use in a message: at most 40 printable characters.
-std::string excerpt(std::string_view text);
-
 /// Collects polygons as triangles and checks their indices at the end, when the number of vertices is known.
 class FaceList {
  public:

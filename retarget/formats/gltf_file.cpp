@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "retarget/base/text.hpp"
 #include "retarget/math/types.hpp"
 
 namespace understudy {
@@ -134,7 +135,7 @@ void GltfFile::check_version() const {
     const auto version = asset.is_object() ? asset.find(name) : asset.end();
     if (!asset.is_object() || version == asset.end()) continue;
     const std::string text = version->is_string() ? version->get<std::string>() : version->dump();
-    US_CHECK(text.rfind("2.", 0) == 0 || text == "2", path_, ": is glTF version ", excerpt(text),
+    US_CHECK(starts_with(text, "2.") || text == "2", path_, ": is glTF version ", excerpt(text),
              ", only 2 is read");
     return;
   }
@@ -213,7 +214,7 @@ std::string_view GltfFile::buffer(int64_t index) {
 }
 
 std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what) {
-  if (uri.rfind("data:", 0) == 0) {
+  if (starts_with(uri, "data:")) {
     const size_t comma = uri.find(',');
     US_CHECK(comma != uri.npos && uri.find(";base64") < comma, path_, ": the data of ", what,
              " are not base64");

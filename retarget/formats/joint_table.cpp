@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/formats/number_text.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy {
 

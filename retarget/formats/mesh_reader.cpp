@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/gltf_mesh.hpp"
 #include "retarget/formats/obj.hpp"
@@ -96,7 +96,7 @@ const char* format_name(MeshFormat format) {
 }
 
 std::optional<MeshFormat> format_of_suffix(const std::string& path) {
-  const std::string suffix = lower_case(std::filesystem::path(path).extension().string());
+  const std::string suffix = file_suffix(path);
   for (const auto& [known, format] : kSuffixes)
     if (suffix == known) return format;
   return {};

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy {
 namespace {
@@ -43,8 +44,7 @@ std::vector<int64_t> shape_of(const std::string& dict, const std::string& source
   const size_t close = open == std::string::npos ? open : dict.find(')', open);
   US_CHECK(close != std::string::npos, source, ": the array header has no shape");
   std::vector<int64_t> shape;
-  std::istringstream in(dict.substr(open + 1, close - open - 1));
-  for (std::string part; std::getline(in, part, ',');) {
+  for (const std::string& part : split(dict.substr(open + 1, close - open - 1), ',')) {
     if (part.find_first_of("0123456789") == std::string::npos) continue;
     long long extent = -1;
     US_CHECK(std::sscanf(part.c_str(), " %lld", &extent) == 1 && extent >= 0, source,
@@ -56,7 +56,7 @@ std::vector<int64_t> shape_of(const std::string& dict, const std::string& source
 }
 
 Header parse_header(const std::string& bytes, const std::string& source) {
-  US_CHECK(bytes.size() >= 10 && bytes.compare(0, 6, "\x93NUMPY") == 0, source, ": not a NumPy array");
+  US_CHECK(bytes.size() >= 10 && starts_with(bytes, "\x93NUMPY"), source, ": not a NumPy array");
   const int version = static_cast<unsigned char>(bytes[6]);
   const auto byte = [&bytes](size_t i) {
     return static_cast<uint64_t>(static_cast<unsigned char>(bytes[i]));
@@ -263,8 +263,7 @@ std::vector<std::string> npz_names(const std::string& path) {
   const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
   for (zip_int64_t i = 0; i < entries; ++i) {
     const std::string name = zip_get_name(archive.get(), i, 0);
-    if (name.size() > 4 && name.compare(name.size() - 4, 4, ".npy") == 0)
-      names.push_back(name.substr(0, name.size() - 4));
+    if (name.size() > 4 && ends_with(name, ".npy")) names.push_back(name.substr(0, name.size() - 4));
   }
   return names;
 }
@@ -278,7 +277,7 @@ Npz read_npz(const std::string& path) {
   for (zip_int64_t i = 0; i < entries; ++i) {
     const char* const entry_name = zip_get_name(archive.get(), i, 0);
     std::string name = entry_name != nullptr ? entry_name : "";
-    if (name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0) continue;
+    if (!ends_with(name, ".npy")) continue;
     name.resize(name.size() - 4);
     const std::string source = path + ": " + name;
     const std::string bytes = read_entry(archive.get(), i, archive_size, source);

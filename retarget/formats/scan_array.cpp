@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <fstream>
 
+#include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/scan_frames.hpp"
@@ -242,7 +243,7 @@ zip_int64_t find_array(const Archive& archive, const std::string& path) {
   const zip_int64_t count = zip_get_num_entries(archive.zip.get(), 0);
   for (zip_int64_t i = 0; i < count; ++i) {
     const std::string name = entry_name(archive.zip.get(), i);
-    if (name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0) continue;
+    if (!ends_with(name, ".npy")) continue;
     ZipStream stream(archive, static_cast<zip_uint64_t>(i));
     if (is_sequence(read_header(stream, path + " (" + name + ")").shape)) return i;
   }
@@ -293,7 +294,7 @@ std::unique_ptr<ScanSource::Frames> open_npz(const std::string& path) {
 }  // namespace
 
 std::unique_ptr<ScanSource::Frames> array_frames(const std::string& path) {
-  const std::string suffix = lower_case(path.size() < 4 ? path : path.substr(path.size() - 4));
+  const std::string suffix = file_suffix(path);
   return suffix == ".npy" ? open_npy(path) : open_npz(path);
 }
 

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/scan_frames.hpp"
@@ -106,7 +107,7 @@ std::vector<std::string> under(const std::string& folder, const std::vector<std:
 // The paths in a list file; none when it is no list (a .txt may be a cloud).
 std::vector<std::string> listed_files(const std::string& path) {
   const std::string bytes = read_file(path);
-  const bool surely = lower_case(fs::path(path).extension().string()) == ".lst";
+  const bool surely = file_suffix(path) == ".lst";
   std::vector<std::string> files;
   TextCursor text(bytes, path);
   std::vector<std::string_view> words;
@@ -126,7 +127,7 @@ std::vector<std::string> listed_files(const std::string& path) {
 }
 
 std::unique_ptr<ScanSource::Frames> open_file(const std::string& path) {
-  const std::string suffix = lower_case(fs::path(path).extension().string());
+  const std::string suffix = file_suffix(path);
   if (suffix == ".npy" || suffix == ".npz") return array_frames(path);
   if (suffix == ".txt" || suffix == ".lst") {
     auto files = listed_files(path);
@@ -206,7 +207,7 @@ std::vector<std::string> frame_files(const std::string& folder, const std::vecto
   for (const auto& name : names) {
     const auto format = format_of_suffix(name);
     if (!format || name[0] == '.') continue;
-    const std::string suffix = lower_case(fs::path(name).extension().string());
+    const std::string suffix = file_suffix(name);
     (suffix == ".txt" || suffix == ".csv" ? text : kinds)[*format].push_back(name);
   }
   if (kinds.empty()) kinds = std::move(text);

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "retarget/base/error.hpp"
-#include "retarget/formats/number_text.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy {
 namespace {

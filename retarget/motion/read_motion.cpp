@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/motion/amass_motion.hpp"
@@ -11,10 +12,6 @@
 
 namespace understudy {
 namespace {
-
-std::string suffix_of(const std::string& path) {
-  return lower_case(std::filesystem::path(path).extension().string());
-}
 
 bool is_amass_motion(const std::string& path) {
   const std::vector<std::string> names = npz_names(path);
@@ -27,7 +24,7 @@ bool is_amass_motion(const std::string& path) {
 }  // namespace
 
 bool is_motion_file(const std::string& path) {
-  const std::string suffix = suffix_of(path);
+  const std::string suffix = file_suffix(path);
   if (suffix != ".npz" && suffix != ".bvh" && suffix != ".fbx" && suffix != ".dae") return false;
   std::error_code failed;
   US_CHECK(std::filesystem::exists(path, failed), path, ": there is no such file");
@@ -37,7 +34,7 @@ bool is_motion_file(const std::string& path) {
 
 std::optional<Character> read_motion(const std::string& path, const ReadCharacterOptions& options) {
   std::error_code failed;
-  const std::string suffix = suffix_of(path);
+  const std::string suffix = file_suffix(path);
   const bool is_gltf = suffix == ".glb" || suffix == ".gltf";
   if (std::filesystem::is_directory(path, failed) || (!is_gltf && !is_motion_file(path))) return std::nullopt;
   const bool bones_alone = suffix == ".bvh" || suffix == ".npz";

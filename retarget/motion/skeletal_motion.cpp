@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/prepared_character.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/math/rotation.hpp"
@@ -206,7 +207,7 @@ void SkeletalMotion::Impl::say() {
   if (all.size() > 1) text += " (" + std::to_string(clip + 1) + " of " + std::to_string(all.size()) + ")";
   text += ", " + std::to_string(times.count) + " frames at " + in_words("%g frames/s", times.fps);
   // What was decided of the bind pose gives way to what is so of the motion.
-  const auto of_bind = [](const std::string& note) { return note.rfind("units: ", 0) == 0; };
+  const auto of_bind = [](const std::string& note) { return starts_with(note, "units: "); };
   c.notes.erase(std::remove_if(c.notes.begin(), c.notes.end(), of_bind), c.notes.end());
   c.notes.insert(c.notes.begin(), text);
   Eigen::Index up = 1;

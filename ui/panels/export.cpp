@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/dialogs.hpp"
@@ -44,7 +45,7 @@ void draw_format(Ui& ui, ExportState& state) {
   for (const app::ExportFormatInfo& info : app::export_formats()) labels.push_back(info.label);
   labels.push_back("Figures");
   if (const auto i = choice_row(ui, {"export.format", "Format", ""}, labels, state.format)) {
-    const bool own = !state.path.empty() && fs::path(state.path).extension() == suffix_of(state);
+    const bool own = !state.path.empty() && file_suffix(state.path) == suffix_of(state);
     state.format = *i;
     if (own) state.path = fs::path(state.path).replace_extension(suffix_of(state)).string();
   }

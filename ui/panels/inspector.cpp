@@ -1,9 +1,9 @@
 #include "ui/panels/inspector.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <sstream>
 
+#include "retarget/base/text.hpp"
 #include "ui/panels/rig.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/lists.hpp"
@@ -72,7 +72,7 @@ void draw_source_facts(const app::Session& session, Ui& ui) {
 /// Whether a file of this name may hold a skeleton that moves.
 bool may_move(const app::SourceOptions& source) {
   static const std::vector<std::string> suffixes = {".bvh", ".fbx", ".dae", ".glb", ".gltf", ".npz"};
-  const std::string suffix = std::filesystem::path(source.path).extension().string();
+  const std::string suffix = file_suffix(source.path);
   return source.motion.empty() && std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
 }
 

@@ -2,25 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "retarget/base/text.hpp"
 #include "ui/widgets/axis.hpp"
 
 namespace understudy::ui {
-namespace {
-
-template <class... Values>
-std::string printed(const char* format, Values... values) {
-  char text[96];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-bool starts(const std::string& text, const char* with) {
-  return text.rfind(with, 0) == 0;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 const std::array<ToolChoice, 6> kTools = {
     {{app::Tool::Look, "look", "Look around", Icon::Camera},
@@ -64,13 +51,6 @@ std::string file_name(const std::string& path) {
   const size_t slash = path.find_last_of('/', last);
   const size_t first = slash == std::string::npos ? 0 : slash + 1;
   return path.substr(first, last - first + 1);
-}
-
-std::string grouped(int64_t count) {
-  std::string digits = std::to_string(count);
-  for (int64_t at = static_cast<int64_t>(digits.size()) - 3; at > (count < 0 ? 1 : 0); at -= 3)
-    digits.insert(static_cast<size_t>(at), ",");
-  return digits;
 }
 
 std::string figure(double value, const std::string& unit) {
@@ -119,12 +99,12 @@ bool possible(const app::Session& session, const std::string& command) {
   if (command == "tool" || command == "select.joint") return has_document(session);
   if (command == "document.save" || command == "document.save_as") return has_document(session);
   for (const char* of_source : {"source.", "edit.crop", "edit.floor_removal", "edit.cluster"})
-    if (starts(command, of_source)) return source;
+    if (starts_with(command, of_source)) return source;
   for (const char* of_frames : {"playback.", "edit.drag", "edit.swap", "edit.skeleton_clear", "video."})
-    if (starts(command, of_frames)) return frames;
+    if (starts_with(command, of_frames)) return frames;
   for (const char* of_take : {"target.", "take.", "method.", "compare.", "edit.", "export."})
-    if (starts(command, of_take)) return take;
-  return starts(command, "view.") || starts(command, "picture.") ? has_document(session) : true;
+    if (starts_with(command, of_take)) return take;
+  return starts_with(command, "view.") || starts_with(command, "picture.") ? has_document(session) : true;
 }
 
 }  // namespace understudy::ui

@@ -36,8 +36,6 @@ std::string joint_name(int joint);
 std::string time_left(double seconds);
 /// The last part of a path, also of one that ends in a slash.
 std::string file_name(const std::string& path);
-/// "12,345".
-std::string grouped(int64_t count);
 /// With few digits and its unit: "12.4 mm".
 std::string figure(double value, const std::string& unit);
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/widgets/controls.hpp"
 #include "ui/widgets/dialogs.hpp"
@@ -52,11 +53,6 @@ std::string about(const FolderEntry& entry) {
     return std::to_string(entry.frames) + (entry.frames >= 10000 ? "+ frames" : " frames");
   if (entry.is_case) return "case";
   return entry.is_folder ? "" : file_size(entry.bytes);
-}
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 bool pressed(Key key) {
@@ -479,10 +475,10 @@ void FileBrowser::find_typed() {
     if (c < ' ' || (c == ' ' && found_.empty())) continue;
     char letter[5];
     ImTextCharToUtf8(letter, c);
-    found_ += lower(letter);
+    found_ += lower_case(letter);
     found_at_ = ImGui::GetTime();
     for (int i = 0; i < static_cast<int>(rows_.size()); ++i)
-      if (lower(contents_->entries[static_cast<size_t>(rows_[static_cast<size_t>(i)])].name)
+      if (lower_case(contents_->entries[static_cast<size_t>(rows_[static_cast<size_t>(i)])].name)
               .rfind(found_, 0) == 0) {
         select(i);
         break;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <system_error>
 #include <thread>
 
+#include "retarget/base/text.hpp"
 #include "retarget/formats/scan_source.hpp"
 
 namespace understudy::ui {
@@ -129,11 +129,8 @@ std::shared_ptr<const FolderContents> FolderListing::contents() const {
 }
 
 std::string extension_of(const std::string& name) {
-  const size_t dot = name.rfind('.');
-  if (dot == std::string::npos || dot == 0) return {};
-  std::string extension = name.substr(dot + 1);
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  const std::string suffix = file_suffix(name);
+  return suffix.empty() ? suffix : suffix.substr(1);
 }
 
 std::string file_size(uint64_t bytes) {

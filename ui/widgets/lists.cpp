@@ -1,21 +1,16 @@
 #include "ui/widgets/lists.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
 
+#include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
 namespace {
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 struct ListState {
   std::string search;
@@ -52,8 +47,8 @@ bool draw_item(Ui& ui, const std::string& name, const ListItem& item, bool selec
 }  // namespace
 
 bool matches(const std::string& text, const std::string& search) {
-  const std::string all = lower(text);
-  std::istringstream words(lower(search));
+  const std::string all = lower_case(text);
+  std::istringstream words(lower_case(search));
   for (std::string word; words >> word;)
     if (all.find(word) == std::string::npos) return false;
   return true;
