@@ -23,7 +23,6 @@ constexpr uintmax_t kLargest = 256u << 20;  // bytes of a file that is read only
 constexpr size_t kKept = 64;                // pictures
 constexpr size_t kWaiting = 4;              // what was asked for before is no longer looked at
 
-/// "12,345".
 std::string described(const Mesh& mesh) {
   return mesh.is_cloud()
              ? grouped(mesh.vertices.rows()) + " points"
