@@ -1,52 +1,54 @@
 #!/bin/bash
-# Fails when a layer includes a higher one: retarget core <- pipeline <- nn, training; core <- render;
-# core, pipeline <- app/run <- app/session <- ui <- app/studio; app/main.cpp knows all. LibTorch only in nn and
-# training.
-# check_layers.sh [ROOT]: the tree to check, by default the one that this script is in.
+# Fails when a file includes what its folder's row in layers.txt does not allow.
+# check_layers.sh [ROOT [TABLE]]: the tree to check, by default the one that this script is in.
 set -euo pipefail
-cd "${1:-$(dirname "$0")/..}"
-status=0
-
-# refuse FOLDER... -- REGEX: no file in the folders may include what the regex matches.
-refuse() {
-  local folders=() hits
-  while [ "$1" != "--" ]; do [ -d "$1" ] && folders+=("$1"); shift; done
-  [ ${#folders[@]} -eq 0 ] && return 0
-  hits=$(grep -rnE --include='*.hpp' --include='*.cpp' "^ *#include *[<\"]($2)" "${folders[@]}" |
-    grep -v '^retarget/plugin/' || true)  # the plug-in hands all that needs LibTorch to the program
-  [ -z "$hits" ] && return 0
-  echo "A layer reaches up (${folders[*]} may not include $2):"
-  echo "$hits"
-  status=1
-}
-
-torch='torch/|ATen/|c10/'
-upper='render/|app/|ui/'
-methods='retarget/(networks|nn|training|motion_space|marionette|style|pose2d)/'
-refuse retarget -- "$upper|GL/|EGL/|GLES|imgui"
-refuse retarget/base retarget/math retarget/geometry retarget/skeleton -- \
-  "retarget/(body|formats|metrics|pipeline)/|$methods|$torch"
-refuse retarget/base -- "retarget/(math|geometry|skeleton)/|Eigen/"
-refuse retarget/math -- "retarget/(geometry|skeleton)/"
-refuse retarget/geometry -- "retarget/skeleton/"
-refuse retarget/body retarget/formats retarget/metrics -- "retarget/pipeline/|$methods|$torch"
-refuse retarget/pipeline -- "$methods|$torch"
-refuse retarget/editing -- "retarget/(body|formats|metrics)/|$methods|$torch"
-refuse retarget/nn -- "retarget/training/"
-refuse render -- "app/|ui/|retarget/pipeline/|$methods|$torch|imgui"
-refuse app -- "$torch|retarget/(nn/modules|training)/"
-refuse app/run app/session -- "ui/|app/(cli|studio)/"
-refuse app/cli -- "ui/"
-refuse app/run -- "app/(cli|session)/|render/|retarget/(networks|nn)/"
-refuse app/session -- "app/cli/|render/|$methods|imgui|GL/"
-refuse app/studio -- "app/cli/|$methods"
-refuse ui -- "app/(cli|studio)/|$methods|$torch"
-# A header that makes its includers compile LibTorch belongs in nn/modules or training.
-headers=$(grep -rlE --include='*.hpp' "^ *#include *[<\"]($torch)" retarget | grep -vE '^retarget/(nn/modules/|nn/weights_file|training/)' || true)
-if [ -n "$headers" ]; then
-  echo "These headers make their includers compile LibTorch:"
-  echo "$headers"
-  status=1
-fi
-[ $status -eq 0 ] && echo "Layers are clean."
-exit $status
+here=$(dirname "$(readlink -f "$0")")
+cd "${1:-$here/..}"
+folders=()
+for folder in retarget render ui app; do [ -d $folder ] && folders+=("$folder"); done
+grep -rnE --include='*.hpp' --include='*.cpp' '^ *#include *[<"]' "${folders[@]}" | awk -v table="${2:-$here/layers.txt}" '
+  function row(path) {  # the longest folder of the table that the path lies in, "" if none
+    while (sub("/[^/]*$", "", path)) if (path in floor) return path
+    return ""
+  }
+  function library(path) {
+    if (path ~ /^(torch|ATen|c10)\//) return "torch"
+    if (path ~ /^imgui/) return "imgui"
+    if (path ~ /^(GL|EGL|GLES[0-9]*|GLFW)\//) return "gl"
+    return ""
+  }
+  function refused(from, path,    to, i) {  # why a file of folder from may not include the path, "" when it may
+    for (i = 1; i <= count[from]; ++i) if (index(path, except[from, i]) == 1) return "may not include " except[from, i]
+    if (library(path) != "" && !((from, library(path)) in may)) return "may not include " library(path)
+    if (path !~ /^(retarget|render|ui|app)\//) return ""
+    to = row(path)
+    if (to == "") return "includes a folder without a row in the table"
+    if (to == from) return ""
+    if (floor[to] >= floor[from]) return "is on floor " floor[from] ", " to " on floor " floor[to]
+    if (reach[from] != "-" && to ~ /^retarget/ && floor[to] > reach[from]) return "reaches no higher than floor " reach[from]
+    if ((to, "torch") in may && !((from, "torch") in may)) return "is free of LibTorch, " to " is not"
+    return ""
+  }
+  BEGIN {
+    while ((getline line < table) > 0) {
+      if (line ~ /^#/ || line ~ /^ *$/) continue
+      n = split(line, word, " ")
+      floor[word[1]] = word[2] + 0
+      reach[word[1]] = word[3]
+      for (i = 4; i <= n; ++i) {
+        if (word[i] ~ /^\+/) may[word[1], substr(word[i], 2)]
+        else except[word[1], ++count[word[1]]] = substr(word[i], 2)
+      }
+    }
+  }
+  {
+    file = $0
+    sub(":.*", "", file)
+    path = $0
+    sub("^[^<\"]*[<\"]", "", path)
+    sub("[>\"].*", "", path)
+    from = row(file)
+    why = from == "" ? "has no row in the table" : refused(from, path)
+    if (why != "") { print file " includes " path ": " (from == "" ? "its folder" : from) " " why; bad = 1 }
+  }
+  END { if (!bad) print "Layers are clean."; exit bad }'
