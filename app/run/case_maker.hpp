@@ -19,20 +19,18 @@ struct SuiteOptions {
   uint32_t seed = 0;  ///< the same options give the same files
 };
 
-/// Writes the cases of a suite; tells the name of each as it is done. Gives their number. Truth is the same
+/// Writes the cases of a suite; tells the name of each as it is done. Returns their number. Truth is the same
 /// local rotations on the target, its path the source's from where it starts, scaled by leg length and put on
-/// the floor; every case is turned to a random heading. naked: 4 targets (the tallest, shortest, heaviest,
-/// slimmest of the split) x 4 motions, sources undressed, points
-///   drawn evenly on their surface
-/// clothed: the same with 4 dressed targets
-/// captured: the naked suite's targets; dressed sources as a rig of cameras would see them: uneven density,
-/// holes,
-///   noise, outliers, some floor
-/// bends: the naked suite's targets and four more; elbows, shoulders, knees and hips bent by 120 degrees
-/// extraction: 40 people and short clips, joints of the source only
-/// occluded: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
-///   without a limb (a tag tells which)
-/// Throws Error naming what is missing.
+/// the floor; every case is turned to a random heading. Throws Error naming what is missing. The suites:
+///   naked: 4 targets (the tallest, shortest, heaviest, slimmest of the split) x 4 motions, sources undressed,
+///     points drawn evenly on their surface
+///   clothed: the same with 4 dressed targets
+///   captured: the naked suite's targets; dressed sources as a rig of cameras would see them: uneven density,
+///     holes, noise, outliers, some floor
+///   bends: the naked suite's targets and four more; elbows, shoulders, knees and hips bent by 120 degrees
+///   extraction: 40 people and short clips, joints of the source only
+///   occluded: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
+///     without a limb (a tag tells which)
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 
 }  // namespace understudy::app

@@ -1,15 +1,17 @@
-// Scripts: named commands and a user's doings, line by line. Pictures, tests, recordings and bug reports are
+// Scripts: named commands and what a user does, line by line. Pictures, tests, recordings and bug reports are
 // all written in it.
 //
 // Every command of the registry by its name, and:
-//   wait [SECONDS]                until all is made and shown            wait_frames N   until N frames are
-//   made wait_value KEY [= != >= <=] VALUE    until a fact is so              frames N        draws N frames
-//   of 1/60 s screenshot FILE.png [WxH]     the whole window                       resize W H      log TEXT
-//   click NAME | X Y   double_click ...   right_click ...   hover ...    (options: ctrl shift alt)
-//   drag NAME DX DY | X Y X2 Y2   drag_to NAME NAME2   scroll NAME | X Y  NOTCHES     (the same options)
-//   type "text"   key Ctrl+Z   drop PATH...   close
+//   wait [SECONDS]                        until everything is made and shown
+//   wait_frames N                         until N frames are made
+//   wait_value KEY [= != >= <=] VALUE     until a fact is so
+//   frames N                              draws N frames of 1/60 s
+//   screenshot FILE.png [WxH]             the whole window
+//   click NAME | X Y                      also double_click, right_click, hover; options: ctrl shift alt
+//   drag NAME DX DY | X Y X2 Y2   drag_to NAME NAME2   scroll NAME | X Y  NOTCHES     the same options
+//   resize W H   log TEXT   type "text"   key Ctrl+Z   drop PATH...   close
 //   expect NAME   expect_no NAME   expect_text TEXT   expect_value KEY [= != >= <=] VALUE   expect_error TEXT
-//   event ...                     one recorded input event
+//   event ...                             one recorded input event
 // Places are pixels from the top left. A NAME is a widget's mark; NAME@0.2,0.9 another place in it than its
 // middle. Paths: samples/... are the bundled samples, out/... the folder for results; other relative ones are
 // in the working folder, those of screenshot in the folder for results.

@@ -7,8 +7,7 @@ namespace understudy::training {
 
 /// Trains until the time or the samples (scans) of the options are used up; resumes from `out +
 /// ".checkpoint"` when it is there. Writes weights (running average) to `out`, the learning curve to `curve`.
-/// 0 when it came to the end, 1 when it was
-/// cancelled. Throws Error.
+/// 0 when it came to the end, 1 when it was cancelled. Throws Error.
 int train_part(const nn::TrainOptions& options);
 
 }  // namespace understudy::training
