@@ -83,11 +83,10 @@ Points diverging_colors(const Eigen::VectorXf& values, float most) {
 }
 
 Points category_colors(const std::vector<int>& indices) {
-  const int count = static_cast<int>(kCategories.size());
-  Points colors(static_cast<Eigen::Index>(indices.size()), 3);
+  const int count = kCategories.size();
+  Points colors(indices.size(), 3);
   for (size_t i = 0; i < indices.size(); ++i)
-    colors.row(static_cast<Eigen::Index>(i)) =
-        kCategories[static_cast<size_t>((indices[i] % count + count) % count)];
+    colors.row(i) = kCategories[(indices[i] % count + count) % count];
   return colors;
 }
 

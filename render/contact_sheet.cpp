@@ -41,9 +41,9 @@ Points outline(const Points& vertices, const std::optional<Joints>& joints) {
     if ((vertices.row(i).array() >= low.array()).all() && (vertices.row(i).array() <= high.array()).all())
       kept.push_back(i);
   const bool with_joints = joints && joints->allFinite();
-  Points points(static_cast<Eigen::Index>(kept.size()) + (with_joints ? kJointCount : 0), 3);
+  Points points(kept.size() + (with_joints ? kJointCount : 0), 3);
   if (with_joints) points.bottomRows(kJointCount) = *joints;
-  for (size_t i = 0; i < kept.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = vertices.row(kept[i]);
+  for (size_t i = 0; i < kept.size(); ++i) points.row(i) = vertices.row(kept[i]);
   return points;
 }
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "retarget/base/index.hpp"
+
 namespace understudy::render {
 namespace {
 
@@ -95,7 +97,7 @@ Grid blurred_once(const Grid& sharp, const std::vector<float>& bell) {
     std::copy_n(sharp.data() + y * kSide, kSide, row.data() + kMost);
     std::array<float, kSide> sum;
     for (int x = 0; x < kSide; ++x) sum[x] = bell[0] * row[kMost + x];
-    for (int i = 1; i < static_cast<int>(bell.size()); ++i)
+    for (int i = 1; i < ssize(bell); ++i)
       for (int x = 0; x < kSide; ++x) sum[x] += bell[i] * (row[kMost + x - i] + row[kMost + x + i]);
     for (int x = 0; x < kSide; ++x) result(x, y) = sum[x];
   }
@@ -114,9 +116,9 @@ void add_casters(LowestHeights& heights, const Scene& scene) {
   }
   for (const auto& cloud : scene.clouds) heights.add(cloud.positions);
   for (const auto& skeleton : scene.skeletons)
-    for (size_t j = 0; j < skeleton.parents.size() && j < static_cast<size_t>(skeleton.joints.rows()); ++j)
+    for (int j = 0; j < ssize(skeleton.parents) && j < skeleton.joints.rows(); ++j)
       if (const int parent = skeleton.parents[j]; parent >= 0 && parent < skeleton.joints.rows())
-        heights.add_line(skeleton.joints.row(static_cast<Eigen::Index>(j)), skeleton.joints.row(parent));
+        heights.add_line(skeleton.joints.row(j), skeleton.joints.row(parent));
 }
 
 }  // namespace
@@ -133,8 +135,7 @@ FloorShadow floor_shadow(const Scene& scene) {
   const Grid body = blurred(0.75f * (-heights.heights() / 0.9f).max(-60.f).exp(), 0.08f * cells);
   const Grid dark = 1 - (1 - 0.75f * contact) * (1 - 0.75f * body);
   for (int i = 0; i < kSide * kSide; ++i)
-    shadow.dark[static_cast<size_t>(i)] =
-        static_cast<uint8_t>(std::clamp(255 * dark.data()[i] + 0.5f, 0.f, 255.f));
+    shadow.dark[i] = static_cast<uint8_t>(std::clamp(255 * dark.data()[i] + 0.5f, 0.f, 255.f));
   return shadow;
 }
 

@@ -24,7 +24,7 @@ std::optional<SurfaceHit> surface_under(const Ray& ray, const Points& vertices, 
     if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
     const float distance = ac.dot(q) / determinant;
     if (!(distance > 0 && distance < hit.distance)) continue;
-    hit.face = static_cast<int>(f);
+    hit.face = f;
     hit.distance = distance;
     hit.barycentric = Vec3(1 - u - v, u, v);
   }
@@ -67,7 +67,7 @@ std::optional<int> point_near(const Points& points, const Ray& ray, float radius
     const float along = from.dot(ray.direction), away = from.squaredNorm() - along * along;
     if (!(along > 0 && away <= nearest)) continue;
     nearest = away;
-    best = static_cast<int>(i);
+    best = i;
   }
   return best;
 }

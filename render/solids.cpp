@@ -10,8 +10,8 @@ namespace {
 constexpr int kAround = 12;  // corners of a ring
 
 Points rows(const std::vector<Vec3>& from) {
-  Points to(static_cast<Eigen::Index>(from.size()), 3);
-  for (size_t i = 0; i < from.size(); ++i) to.row(static_cast<Eigen::Index>(i)) = from[i];
+  Points to(from.size(), 3);
+  for (size_t i = 0; i < from.size(); ++i) to.row(i) = from[i];
   return to;
 }
 
@@ -37,7 +37,7 @@ void Solids::add(const std::vector<Ring>& rings, const Vec3& axis, const Vec3& c
   const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
   int before = -1;
   for (const Ring& ring : rings) {
-    const int first = static_cast<int>(positions_.size());
+    const int first = positions_.size();
     for (int k = 0; k < kAround; ++k) {
       const float angle = 2 * kPi * static_cast<float>(k) / kAround;
       const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
@@ -77,7 +77,7 @@ void Solids::add_torus(const Vec3& center, const Vec3& axis, float radius, float
   for (int i = 0; i < kLong; ++i) {
     const float angle = 2 * kPi * static_cast<float>(i) / kLong;
     const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
-    circles.push_back(static_cast<int>(positions_.size()));
+    circles.push_back(positions_.size());
     for (int k = 0; k < kSection; ++k) {
       const float turn = 2 * kPi * static_cast<float>(k) / kSection;
       const Vec3 normal = std::cos(turn) * out - std::sin(turn) * axis;
@@ -104,8 +104,8 @@ MeshView Solids::mesh() const {
   view.vertices = rows(positions_);
   view.normals = rows(normals_);
   view.colors = rows(colors_);
-  Faces faces(static_cast<Eigen::Index>(faces_.size()), 3);
-  for (size_t f = 0; f < faces_.size(); ++f) faces.row(static_cast<Eigen::Index>(f)) = faces_[f];
+  Faces faces(faces_.size(), 3);
+  for (size_t f = 0; f < faces_.size(); ++f) faces.row(f) = faces_[f];
   view.faces = std::move(faces);
   view.two_sided = false;
   return view;

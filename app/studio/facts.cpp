@@ -57,7 +57,7 @@ size_t seen_takes(const Session& session) {
 
 /// Per cent of the selected take's surface; "none" before it is bound, and where it keeps its own skin.
 std::string bound_by_shape(const Session& session) {
-  const size_t k = static_cast<size_t>(session.selected_take);
+  const size_t k = session.selected_take;
   if (k >= session.takes.size() || !session.takes[k].binding || session.takes[k].binding->doubt.size() == 0)
     return "none";
   return std::to_string(100 * session.takes[k].binding->doubt.mean());

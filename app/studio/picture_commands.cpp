@@ -119,8 +119,7 @@ std::vector<int> frames_of(const Session& session) {
   std::set<int> kept;
   if (!session.document.takes.empty())
     for (const int frame :
-         kept_frames(session.document.takes[static_cast<size_t>(session.selected_take)].pose_edits,
-                     frame_count(session)))
+         kept_frames(session.document.takes[session.selected_take].pose_edits, frame_count(session)))
       kept.insert(frame);
   std::vector<int> frames;
   for (int frame = range.first; frame <= range.last; ++frame)

@@ -12,6 +12,7 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "ui/panels/panel.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::app {

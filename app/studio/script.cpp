@@ -60,7 +60,7 @@ std::vector<char32_t> characters_of(const std::string& text) {
   for (size_t i = 0; i < text.size();) {
     const auto lead = static_cast<unsigned char>(text[i++]);
     const int more = lead < 0x80 ? 0 : lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : -1;
-    US_CHECK(more >= 0 && i + static_cast<size_t>(more) <= text.size(), "the text is no UTF-8");
+    US_CHECK(more >= 0 && i + more <= text.size(), "the text is no UTF-8");
     char32_t character = more == 0 ? lead : lead & (0x3F >> more);
     for (int k = 0; k < more; ++k)
       character = (character << 6) | (static_cast<unsigned char>(text[i++]) & 0x3F);

@@ -35,7 +35,7 @@ Vec3 color_of(const SkeletonView& view, size_t joint) {
 }
 
 void check(const SkeletonView& view) {
-  const size_t joints = static_cast<size_t>(view.joints.rows());
+  const size_t joints = view.joints.rows();
   US_CHECK(view.parents.size() == joints, "a skeleton of ", joints, " joints has ", view.parents.size(),
            " parents");
   US_CHECK(view.sides.empty() || view.sides.size() == joints, "a skeleton of ", joints, " joints has ",
@@ -51,7 +51,7 @@ MeshView skeleton_solids(const SkeletonView& view) {
   check(view);
   Solids solids;
   for (size_t j = 0; j < view.parents.size(); ++j) {
-    const Vec3 here = view.joints.row(static_cast<Eigen::Index>(j));
+    const Vec3 here = view.joints.row(j);
     if (!here.allFinite()) continue;
     const Vec3 color = color_of(view, j);
     solids.add_ball(here, kBallRadius * view.thickness, color);

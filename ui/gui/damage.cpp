@@ -27,7 +27,7 @@ bool same_order(const Lists& before, const Lists& now) {
     const auto is_it = [&](const auto& other) { return other.owner == list.owner; };
     const auto found = std::find_if(before.begin(), before.end(), is_it);
     if (found == before.end()) continue;
-    const auto at = static_cast<size_t>(found - before.begin());
+    const size_t at = found - before.begin();
     if (at < from) return false;
     from = at + 1;
   }

@@ -80,7 +80,7 @@ QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) 
   QuestionAnswer answer;
   for (size_t i = 0; i < session.question->missing.size(); ++i) {
     const std::string& path = session.question->missing[i];
-    const IdScope id(static_cast<int>(i));
+    const IdScope id(i);
     const float width = ui.px(80);
     ImGui::AlignTextToFramePadding();
     text_cut(ui, path, ImGui::GetContentRegionAvail().x - width - ui.px(10));

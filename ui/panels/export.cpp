@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/rows.hpp"
@@ -28,8 +29,8 @@ constexpr int kLargest = 16384;
 /// Null: the figures.
 const app::ExportFormatInfo* format_of(const ExportState& state) {
   const auto& formats = app::export_formats();
-  const bool is_motion = state.format >= 0 && state.format < static_cast<int>(formats.size());
-  return is_motion ? &formats[static_cast<size_t>(state.format)] : nullptr;
+  const bool is_motion = state.format >= 0 && state.format < ssize(formats);
+  return is_motion ? &formats[state.format] : nullptr;
 }
 
 /// A name that any file system takes.
@@ -66,7 +67,7 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, 
   if (const auto i = choice_row(
           ui, {"export.morphs", "Morph targets", "Bends and bulges that bones alone cannot do; larger files"},
           {"None", "4", "8", "16"}, static_cast<int>(shapes - kShapes.begin())))
-    file.shapes = kShapes[static_cast<size_t>(*i)];
+    file.shapes = kShapes[*i];
   if (const auto mm = typed_number_row(
           ui, {"export.reduce", "Leave out keys, mm", "While no vertex moves further than this; 0: all stay"},
           static_cast<double>(file.reduce_mm), 1))
@@ -82,7 +83,7 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, 
 
 /// The takes that go into the file, one clip each.
 std::vector<size_t> clips_of(const app::Session& session, const ExportState& state) {
-  const size_t selected = static_cast<size_t>(session.selected_take);
+  const size_t selected = session.selected_take;
   const app::ExportFormatInfo* const format = format_of(state);
   if (!state.all_takes || format == nullptr || !format->is_character ||
       selected >= session.document.takes.size())
@@ -103,13 +104,13 @@ std::string word_for_take(const app::Document& document, size_t k) {
 
 std::string frames_words(const app::Session& session, size_t k) {
   if (k >= session.takes.size()) return "";
-  const int made = static_cast<int>(session.takes[k].shown.poses.size());
+  const int made = session.takes[k].shown.poses.size();
   const auto frames = kept_frames(session.document.takes[k].pose_edits, made).size();
   return grouped(static_cast<int64_t>(frames)) + " frames";
 }
 
 void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
-  const auto takes = takes_of_one_body(session.document, static_cast<size_t>(session.selected_take));
+  const auto takes = takes_of_one_body(session.document, session.selected_take);
   if (takes.size() < 2) return;
   if (const auto on = toggle_row(
           ui, {"export.all_takes", "All takes as clips", "Of this target, in one file, a clip each"},
@@ -150,7 +151,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     if (const auto on = toggle_row(ui, {"export.in_place", "In place", "Without the path over the floor"},
                                    state.choice.file.in_place))
       state.choice.file.in_place = *on;
-    hint(ui, frames_words(session, static_cast<size_t>(session.selected_take)) + ", " +
+    hint(ui, frames_words(session, session.selected_take) + ", " +
                  figure(frames_per_second(session), "frames/s"));
   }
   hint(ui, format != nullptr ? format->words : "Every figure of every frame, as a table.");
@@ -176,14 +177,13 @@ void draw_size_rows(Ui& ui, ExportState& state) {
   std::vector<std::string> labels;
   int chosen = -1;
   for (const Size& size : kSizes) {
-    if (size.width == state.width && size.height == state.height) chosen = static_cast<int>(labels.size());
+    if (size.width == state.width && size.height == state.height) chosen = labels.size();
     labels.push_back(size.label);
   }
-  if (chosen < 0) chosen = static_cast<int>(labels.size()), labels.push_back("Another");
+  if (chosen < 0) chosen = labels.size(), labels.push_back("Another");
   row(ui, "Size");
-  if (dropdown(ui, "export.size", labels, chosen) && chosen < static_cast<int>(kSizes.size()))
-    state.width = kSizes[static_cast<size_t>(chosen)].width,
-    state.height = kSizes[static_cast<size_t>(chosen)].height;
+  if (dropdown(ui, "export.size", labels, chosen) && chosen < ssize(kSizes))
+    state.width = kSizes[chosen].width, state.height = kSizes[chosen].height;
   const auto whole = [](double value) { return static_cast<int>(std::clamp(value, 16.0, double{kLargest})); };
   if (const auto w = typed_number_row(ui, {"export.width", "Width", "Pixels"}, state.width, 0))
     state.width = whole(*w);
@@ -245,7 +245,7 @@ bool file_is_there(const std::string& path) {
 }  // namespace
 
 int figures_format() {
-  return static_cast<int>(app::export_formats().size());
+  return app::export_formats().size();
 }
 
 void begin_export(ExportState& state, ExportKind kind, int format) {

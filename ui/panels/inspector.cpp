@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/panels/rig.hpp"
 #include "ui/panels/rows.hpp"
@@ -38,10 +39,10 @@ void draw_import(PanelContext& context, const std::string& group, const ImportOp
   };
   if (const auto i =
           choice_row(ui, {group + ".units", "Units", "Of the file"}, kUnits, index_of(kUnits, import.units)))
-    ask("units", kUnits[static_cast<size_t>(*i)]);
+    ask("units", kUnits[*i]);
   if (const auto i = choice_row(ui, {group + ".up", "Up", "The file's axis that points up"}, kAxes,
                                 index_of(kAxes, import.up)))
-    ask("up", kAxes[static_cast<size_t>(*i)]);
+    ask("up", kAxes[*i]);
 }
 
 void draw_target_yaw(const app::TargetOptions& target, PanelContext& context, const std::string& k) {
@@ -60,8 +61,8 @@ void draw_source_facts(const app::Session& session, Ui& ui) {
   const std::string made = grouped(static_cast<int64_t>(source.frames.size()));
   row_text(ui, "Frames", source.count ? made + " of " + grouped(*source.count) : made);
   const int frame = app::shown_frame(session);
-  if (frame >= 0 && frame < static_cast<int>(source.frames.size())) {
-    const app::KeptSource& kept = source.frames[static_cast<size_t>(frame)];
+  if (frame >= 0 && frame < ssize(source.frames)) {
+    const app::KeptSource& kept = source.frames[frame];
     row_text(ui, "Points", grouped(kept.points) + (source.has_faces ? ", with faces" : ""));
     row_text(ui, "Confidence", figure(100 * kept.confidence, "%"));
     if (kept.flagged) warn(ui, kept.reason);

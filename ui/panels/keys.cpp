@@ -55,9 +55,8 @@ bool draw_keys(const app::Session& session, PanelContext& context) {
   close.width = -1;
   bool stays = !button(ui, "keys.close", "Close", close);
   stays &= ImGui::IsWindowAppearing() || !key_pressed(render::Key::Escape, false);
-  if (chosen >= 0 && !lines[static_cast<size_t>(chosen)].command.empty()) {
-    ask_or_open(session, context, lines[static_cast<size_t>(chosen)].command,
-                lines[static_cast<size_t>(chosen)].arguments);
+  if (chosen >= 0 && !lines[chosen].command.empty()) {
+    ask_or_open(session, context, lines[chosen].command, lines[chosen].arguments);
     stays = false;
   }
   if (!stays) ImGui::CloseCurrentPopup();

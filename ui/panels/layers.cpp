@@ -53,11 +53,11 @@ void draw_colour(PanelContext& context, const std::string& pane, const Colour (&
   int chosen = -1;
   for (size_t i = 0; i < N; ++i) {
     labels.push_back(colours[i].label);
-    if (colours[i].colouring == now) chosen = static_cast<int>(i);
+    if (colours[i].colouring == now) chosen = i;
   }
   row(context.ui, "Colour", "What the surface's colour tells");
   if (dropdown(context.ui, "layers." + pane + ".colour", labels, chosen))
-    context.ask("view.colour", {pane, colours[static_cast<size_t>(chosen)].argument});
+    context.ask("view.colour", {pane, colours[chosen].argument});
 }
 
 /// Switches in two columns.

@@ -46,10 +46,10 @@ void draw_log(const app::Session& session, PanelContext& context, LogState& stat
   if (ImGui::BeginChild("##lines")) {
     const bool at_end = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;
     ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(lines.size()));
+    clipper.Begin(lines.size());
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const app::LogLine& line = *lines[static_cast<size_t>(i)];
+        const app::LogLine& line = *lines[i];
         const ColorScope words(ImGuiCol_Text, line.warning ? ui.theme().warning : ui.theme().text);
         text_cut(ui, line.text);
       }

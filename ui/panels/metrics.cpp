@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/session/frame_figures.hpp"
+#include "retarget/base/index.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/lists.hpp"
 #include "ui/widgets/plot.hpp"
@@ -18,7 +19,7 @@ std::vector<Series> overlaid(const app::Session& session, const app::Series& of_
     all.push_back(
         {named ? session.document.takes[take].name : "", series.values, static_cast<int>(take % 8)});
   };
-  const size_t selected = static_cast<size_t>(session.selected_take);
+  const size_t selected = session.selected_take;
   add(selected, of_selected);
   for (size_t k = 0; k < session.takes.size(); ++k)
     if (const app::Series* same =
@@ -92,9 +93,9 @@ void draw_figures(const app::Session& session, Ui& ui) {
 void draw_stages(const app::Latency& latency, Ui& ui) {
   Table table(ui, "metrics.stages", {{"Stage", 0, false}, {"p50, ms", 72, true}, {"p95, ms", 72, true}});
   if (!table.open()) return;
-  for (int stage = 0; stage < static_cast<int>(app::Latency::kStages.size()); ++stage) {
+  for (int stage = 0; stage < ssize(app::Latency::kStages); ++stage) {
     table.row(false, false);
-    table.cell(app::Latency::kStages[static_cast<size_t>(stage)]);
+    table.cell(app::Latency::kStages[stage]);
     table.cell(latency.quantile(stage, 0.5));
     table.cell(latency.quantile(stage, 0.95));
   }
@@ -107,8 +108,7 @@ void follow_latency(const app::Latency& latency, int take, MetricsState& state) 
   constexpr int kCount = 256;
   state.durations.resize(kCount);
   for (int i = 0; i < kCount; ++i)
-    state.durations[static_cast<size_t>(i)] =
-        static_cast<float>(latency.quantile(state.stage, 0.99 * (i + 0.5) / kCount));
+    state.durations[i] = static_cast<float>(latency.quantile(state.stage, 0.99 * (i + 0.5) / kCount));
 }
 
 void draw_latency(const app::Session& session, PanelContext& context, MetricsState& state) {

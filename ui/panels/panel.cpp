@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/widgets/axis.hpp"
 
@@ -29,13 +30,13 @@ std::string on_off(bool on) {
 
 std::string joint_label(int joint) {
   if (joint < 0 || joint >= kJointCount) return "all joints";
-  std::string label = kJointNames[static_cast<size_t>(joint)];
+  std::string label = kJointNames[joint];
   std::replace(label.begin(), label.end(), '_', ' ');
   return label;
 }
 
 std::string joint_name(int joint) {
-  return joint < 0 || joint >= kJointCount ? "all" : kJointNames[static_cast<size_t>(joint)];
+  return joint < 0 || joint >= kJointCount ? "all" : kJointNames[joint];
 }
 
 std::string time_left(double seconds) {
@@ -58,13 +59,11 @@ std::string figure(double value, const std::string& unit) {
 }
 
 const app::Take* selected_take(const app::Session& session) {
-  const size_t k = static_cast<size_t>(session.selected_take);
-  return k < session.document.takes.size() ? &session.document.takes[k] : nullptr;
+  return at_or_null(session.document.takes, session.selected_take);
 }
 
 const app::TakeState* selected_state(const app::Session& session) {
-  const size_t k = static_cast<size_t>(session.selected_take);
-  return k < session.takes.size() ? &session.takes[k] : nullptr;
+  return at_or_null(session.takes, session.selected_take);
 }
 
 bool has_document(const app::Session& session) {
@@ -72,7 +71,7 @@ bool has_document(const app::Session& session) {
 }
 
 int known_frames(const app::Session& session) {
-  const int made = std::max(app::frame_count(session), static_cast<int>(session.source.frames.size()));
+  const int made = std::max<int>(app::frame_count(session), session.source.frames.size());
   const int64_t told = session.source.count.value_or(0);
   return std::max(made, static_cast<int>(std::min<int64_t>(told, 100'000'000)));
 }

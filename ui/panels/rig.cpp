@@ -15,13 +15,13 @@ std::vector<int> bones_of(const PreparedCharacter& character) {
   const bool skinned = !character.character.skins.empty();
   for (size_t n = 0; n < character.character.nodes.size(); ++n)
     if (!character.character.nodes[n].name.empty() && (!skinned || character.bind.is_bone[n]))
-      bones.push_back(static_cast<int>(n));
+      bones.push_back(n);
   return bones;
 }
 
 std::string bone_name(const PreparedCharacter& character, int node) {
   if (node < 0) return "\u2013";
-  const std::string& name = character.character.nodes[static_cast<size_t>(node)].name;
+  const std::string& name = character.character.nodes[node].name;
   return name.empty() ? "node " + std::to_string(node) : name;
 }
 
@@ -39,7 +39,7 @@ void draw_choice(const app::Take& take, PanelContext& context, const std::string
                                 {"rig.choice", "Performs on",
                                  "Its own bones and weights, or the 22 joints with weights found here"},
                                 {"Auto", "Its own", "Ours"}, static_cast<int>(at - kRigs.begin())))
-    context.ask("target.rig", {k, kRigs[static_cast<size_t>(*i)]});
+    context.ask("target.rig", {k, kRigs[*i]});
 }
 
 void draw_facts(const PreparedCharacter& character, Ui& ui) {
@@ -58,7 +58,7 @@ void draw_table(const app::Session& session, const app::Take& take, const Prepar
   Table table(context.ui, "rig.joint", {{"Joint"}, {"Bone"}, {"", 56}}, context.ui.px(230));
   if (!table.open()) return;
   for (size_t j = 0; j < kJointCount; ++j) {
-    const int joint = static_cast<int>(j);
+    const int joint = j;
     if (table.row(joint == session.selected_joint))
       context.ask("select.joint", {joint == session.selected_joint ? "none" : joint_name(joint)});
     table.cell(joint_label(joint));
@@ -80,15 +80,13 @@ void draw_bones(const app::Session& session, const PreparedCharacter& character,
   for (const int node : bones) {
     ListItem item{bone_name(character, node), ""};
     for (int other = 0; other < kJointCount; ++other)
-      if (character.map.node[static_cast<size_t>(other)] == node) item.note = joint_label(other);
-    if (character.map.node[static_cast<size_t>(joint)] == node) selected = static_cast<int>(items.size());
+      if (character.map.node[other] == node) item.note = joint_label(other);
+    if (character.map.node[joint] == node) selected = items.size();
     items.push_back(std::move(item));
   }
   const int chosen = searchable_list(ui, "rig.bone", items, selected, ui.px(150));
   if (chosen < 0) return;
-  const std::string bone = chosen == 0   ? "auto"
-                           : chosen == 1 ? "none"
-                                         : items[static_cast<size_t>(chosen)].text;
+  const std::string bone = chosen == 0 ? "auto" : chosen == 1 ? "none" : items[chosen].text;
   context.ask("target.bone", {k, joint_name(joint), bone});
 }
 

@@ -14,7 +14,7 @@ void draw_scale(const app::Settings& settings, PanelContext& context) {
   std::vector<std::string> labels;
   int chosen = -1;
   for (const float scale : kScales) {
-    if (scale == settings.scale) chosen = static_cast<int>(labels.size());
+    if (scale == settings.scale) chosen = labels.size();
     labels.push_back(scale == 0 ? "As the screen" : std::to_string(std::lround(100 * scale)) + " %");
   }
   row(context.ui, "Scale", "Of text and controls");

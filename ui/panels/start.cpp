@@ -53,7 +53,7 @@ void draw_samples(PanelContext& context, const std::vector<SampleCard>& samples)
   const float card = std::min(ui.px(kCard), std::max(1.f, width));
   const int a_line = std::max(1, static_cast<int>((width + gap) / (card + gap)));
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (i % static_cast<size_t>(a_line) != 0) ImGui::SameLine(0, gap);
+    if (i % a_line != 0) ImGui::SameLine(0, gap);
     if (draw_card(ui, "start.sample." + std::to_string(i), samples[i], card))
       context.ask("open", samples[i].paths);
   }

@@ -83,11 +83,10 @@ void draw_rate(const app::Session& session, PanelContext& context) {
   std::vector<std::string> labels;
   int chosen = -1;
   for (const double rate : kRates) {
-    if (std::abs(rate - session.playback.rate) < 1e-6) chosen = static_cast<int>(labels.size());
+    if (std::abs(rate - session.playback.rate) < 1e-6) chosen = labels.size();
     labels.push_back(argument(rate) + " \u00d7");
   }
-  if (chosen < 0)
-    chosen = static_cast<int>(labels.size()), labels.push_back(argument(session.playback.rate) + " \u00d7");
+  if (chosen < 0) chosen = labels.size(), labels.push_back(argument(session.playback.rate) + " \u00d7");
   if (!dropdown(context.ui, "timeline.rate", labels, chosen) || chosen >= static_cast<int>(std::size(kRates)))
     return;
   context.ask("playback.rate", {argument(kRates[chosen])});
@@ -97,11 +96,11 @@ void draw_metric(PanelContext& context, const std::vector<Metric>& metrics, cons
   std::vector<std::string> labels;
   int chosen = -1;
   for (const Metric& metric : metrics) {
-    if (metric.key == key) chosen = static_cast<int>(labels.size());
+    if (metric.key == key) chosen = labels.size();
     labels.push_back(metric.label);
   }
   if (dropdown(context.ui, "timeline.metric", labels, chosen))
-    context.ask("view.metric", {metrics[static_cast<size_t>(chosen)].key});
+    context.ask("view.metric", {metrics[chosen].key});
 }
 
 /// "12 / 240" and "0:00.40", both to type into.
@@ -179,7 +178,7 @@ void TimelineState::follow(const app::Session& session) {
 std::string TimelineState::why(int frame) const {
   const auto found = std::lower_bound(bad_numbers.begin(), bad_numbers.end(), frame);
   if (found == bad_numbers.end() || *found != frame) return "";
-  return bad[static_cast<size_t>(found - bad_numbers.begin())].why;
+  return bad[found - bad_numbers.begin()].why;
 }
 
 void draw_timeline(const app::Session& session, PanelContext& context, TimelineState& state) {

@@ -113,7 +113,7 @@ void draw_layouts(const app::Session& session, PanelContext& context, const Rect
                            ? segmented(context.ui, "top.layout", kLayouts, chosen)
                            : dropdown(context.ui, "top.layout", kLayouts, chosen);
   ImGui::EndChild();
-  if (changed) context.ask("view.layout", {kLayoutArguments[static_cast<size_t>(chosen)]});
+  if (changed) context.ask("view.layout", {kLayoutArguments[chosen]});
 }
 
 void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_one) {

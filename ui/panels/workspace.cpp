@@ -110,12 +110,11 @@ void Workspace::draw_side(const app::Session& session, PanelContext& context) {
   const Pane pane(ui, "##side", places_.side, {12, 8}, ui.theme().panel);
   int tab = tab_;
   if (segmented(ui, "side.tab", {"Inspector", "Layers", "Edit", "Metrics"}, tab)) {
-    context.ask("panel.show", {kTabs[static_cast<size_t>(tab)], "on"});
+    context.ask("panel.show", {kTabs[tab], "on"});
     tab_ = tab;
   }
   ImGui::Dummy({0, ui.px(2)});
-  if (ImGui::BeginChild(kTabs[static_cast<size_t>(tab_)], {0, 0}, false,
-                        ImGuiWindowFlags_AlwaysVerticalScrollbar)) {
+  if (ImGui::BeginChild(kTabs[tab_], {0, 0}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar)) {
     if (tab_ == 0) draw_inspector(session, context);
     if (tab_ == 1) draw_layers(session, context);
     if (tab_ == 2) draw_edit(session, context, edit_);
@@ -150,10 +149,9 @@ void Workspace::draw_bottom(const app::Session& session, PanelContext& context, 
 void Workspace::follow_tabs(const app::Session& session, PanelContext& context) {
   int turned_on = -1;
   for (size_t i = 0; i < kTabs.size(); ++i)
-    if (tab_on(session, i) && static_cast<int>(i) != tab_) turned_on = static_cast<int>(i);
+    if (tab_on(session, i) && static_cast<int>(i) != tab_) turned_on = i;
   if (turned_on < 0) return;
-  if (tab_on(session, static_cast<size_t>(tab_)))
-    context.ask("panel.show", {kTabs[static_cast<size_t>(tab_)], "off"});
+  if (tab_on(session, static_cast<size_t>(tab_))) context.ask("panel.show", {kTabs[tab_], "off"});
   tab_ = turned_on;
   const char* side = places_.narrow ? "side_over" : "side";
   if (!panel_shown(session, side)) context.ask("panel.show", {side, "on"});

@@ -5,6 +5,7 @@
 
 #include "app/session/follow.hpp"
 #include "render/gizmo.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/skeleton/skinning.hpp"
 #include "ui/panels/panel.hpp"
@@ -24,14 +25,12 @@ constexpr double kSettleSeconds = 1.5;      // an edit shows within this time, o
 constexpr Eigen::Index kMostPosed = 60000;  // vertices posed for a preview on the thread that draws
 
 const app::TakeState* take_of(const Session& session, int k) {
-  return k >= 0 && static_cast<size_t>(k) < session.takes.size() ? &session.takes[static_cast<size_t>(k)]
-                                                                 : nullptr;
+  return at_or_null(session.takes, k);
 }
 
 const Pose* pose_of(const Session& session, int take, int frame) {
   const app::TakeState* state = take_of(session, take);
-  const size_t f = static_cast<size_t>(frame);
-  return state != nullptr && frame >= 0 && f < state->shown.poses.size() ? &state->shown.poses[f] : nullptr;
+  return state != nullptr ? at_or_null(state->shown.poses, frame) : nullptr;
 }
 
 app::Arguments& operator<<(app::Arguments& words, const Vec3& v) {
@@ -45,7 +44,7 @@ int axis_of(GizmoHandle handle) {
 
 /// The pose with one bone turned in its own frame.
 Pose turned(Pose pose, int joint, const Vec3& axis_angle) {
-  Mat3& R = pose.local[static_cast<size_t>(joint)];
+  Mat3& R = pose.local[joint];
   R = R * rotation_from_axis_angle(axis_angle);
   return pose;
 }
@@ -73,7 +72,7 @@ std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
   if (subject.grip == Grip::Joint) subject.take = -1;
   const Pose* pose = subject.grip == Grip::Bone ? pose_of(session, subject.take, frame) : nullptr;
   if (pose != nullptr && take->target != nullptr && joint >= 0)
-    subject.axes = forward_kinematics(take->target->joints, *pose).global[static_cast<size_t>(joint)];
+    subject.axes = forward_kinematics(take->target->joints, *pose).global[joint];
   return subject;
 }
 
@@ -233,10 +232,8 @@ Joints Hand::moved_joints(const HandPlace& place) const {
   }
   std::array<bool, kJointCount> moves{};
   for (int j = 0; j < kJointCount; ++j) {  // parents come first
-    moves[static_cast<size_t>(j)] =
-        j == joint_ || (session.drag_children && kParents[static_cast<size_t>(j)] >= 0 &&
-                        moves[static_cast<size_t>(kParents[static_cast<size_t>(j)])]);
-    if (moves[static_cast<size_t>(j)]) joints.row(j) += offset_.transpose();
+    moves[j] = j == joint_ || (session.drag_children && kParents[j] >= 0 && moves[kParents[j]]);
+    if (moves[j]) joints.row(j) += offset_.transpose();
   }
   return joints;
 }

@@ -29,7 +29,7 @@ std::optional<Met> met_scan(const app::Session& session, const Pane& pane, const
 std::optional<Met> met_take(const app::Session& session, const Pane& pane, const render::Ray& ray) {
   const auto& takes = pane.keeper.pictures().takes;
   if (takes.empty() || takes[0] == nullptr || pane.content.takes.empty()) return std::nullopt;
-  const size_t k = static_cast<size_t>(pane.content.takes[0]);
+  const size_t k = pane.content.takes[0];
   if (k >= session.takes.size() || session.takes[k].target == nullptr) return std::nullopt;
   const Mesh& mesh = session.takes[k].target->mesh;
   if (mesh.is_cloud() || mesh.vertices.rows() != takes[0]->vertices.rows()) return std::nullopt;
@@ -39,11 +39,11 @@ std::optional<Met> met_take(const app::Session& session, const Pane& pane, const
 }
 
 std::string weight_words(const app::Session& session, const Pane& pane, int vertex) {
-  const auto& weights = session.takes[static_cast<size_t>(pane.content.takes[0])].weights;
+  const auto& weights = session.takes[pane.content.takes[0]].weights;
   if (weights == nullptr || vertex >= weights->rows()) return "";
   Eigen::Index joint = 0;
   const float most = weights->row(vertex).maxCoeff(&joint);
-  return joint_label(static_cast<int>(joint)) + "  " + figure(static_cast<double>(most), "");
+  return joint_label(joint) + "  " + figure(static_cast<double>(most), "");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "retarget/base/index.hpp"
+
 namespace understudy::ui {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr size_t kAsked = 3;  // frames asked for that may still be shown when t
 constexpr int kAhead = 4;     // frames made before playback comes to them
 
 const app::TakeState* take_of(const Session& session, int k) {
-  return static_cast<size_t>(k) < session.takes.size() ? &session.takes[static_cast<size_t>(k)] : nullptr;
+  return at_or_null(session.takes, k);
 }
 
 bool wants_scan(const Session& session, const PaneContent& pane) {
@@ -21,7 +23,7 @@ bool wants_scan(const Session& session, const PaneContent& pane) {
 bool wants_take(const Session& session, int k, int frame) {
   const app::TakeState* take = take_of(session, k);
   return take != nullptr && take->ready && session.view.take.surface &&
-         static_cast<size_t>(frame) < take->joints.size();
+         at_or_null(take->joints, frame) != nullptr;
 }
 
 app::FrameCache::Wanted wanted(const Session& session, int k, int frame) {
@@ -32,9 +34,9 @@ app::FrameCache::Wanted wanted(const Session& session, int k, int frame) {
 }
 
 int frames_of(const Session& session, const PaneContent& pane) {
-  if (pane.source || pane.takes.empty()) return static_cast<int>(session.source.frames.size());
+  if (pane.source || pane.takes.empty()) return session.source.frames.size();
   const app::TakeState* take = take_of(session, pane.takes[0]);
-  return take != nullptr ? static_cast<int>(take->joints.size()) : 0;
+  return take != nullptr ? ssize(take->joints) : 0;
 }
 
 std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCache& cache,

@@ -6,6 +6,7 @@
 
 #include "app/session/follow.hpp"
 #include "render/picking.hpp"
+#include "retarget/base/index.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -15,12 +16,12 @@ using app::Layout;
 using app::Session;
 
 int clamped_take(const Session& session, int take) {
-  return std::clamp(take, 0, static_cast<int>(session.takes.size()) - 1);
+  return std::clamp<int>(take, 0, session.takes.size() - 1);
 }
 
 PaneContent overlay(const Session& session) {
   PaneContent pane = pane_of(0);
-  const int takes = static_cast<int>(session.takes.size());
+  const int takes = session.takes.size();
   if (takes > 0) pane.takes.push_back(clamped_take(session, session.selected_take));
   for (int k = 0; k < takes; ++k)
     if (k != pane.takes.front()) pane.takes.push_back(k);
@@ -35,14 +36,13 @@ std::string method_words(const app::Method& method) {
 }
 
 const app::TakeState* state_of_take(const Session& session, const PaneContent& pane) {
-  const bool there = !pane.takes.empty() && static_cast<size_t>(pane.takes[0]) < session.takes.size();
-  return there ? &session.takes[static_cast<size_t>(pane.takes[0])] : nullptr;
+  return pane.takes.empty() ? nullptr : at_or_null(session.takes, pane.takes[0]);
 }
 
 int frames_of(const Session& session, const PaneContent& pane) {
-  if (pane.source) return static_cast<int>(session.source.frames.size());
+  if (pane.source) return session.source.frames.size();
   const app::TakeState* take = state_of_take(session, pane);
-  return take != nullptr ? static_cast<int>(take->joints.size()) : 0;
+  return take != nullptr ? ssize(take->joints) : 0;
 }
 
 /// The T-pose is seen where the person would be.
@@ -64,7 +64,7 @@ Vec3 rest_offset(const Session& session, const PaneContent& pane) {
 }  // namespace
 
 std::vector<PaneContent> panes_of(const Session& session) {
-  const int takes = static_cast<int>(session.takes.size());
+  const int takes = session.takes.size();
   switch (session.view.layout) {
     case Layout::Single:
       return {pane_of(std::clamp(session.view.active_pane, 0, takes))};
@@ -93,17 +93,17 @@ PaneContent pane_of(int number) {
 std::string pane_title(const Session& session, const PaneContent& pane) {
   std::string title = pane.source ? session.source.name : "";
   for (const int k : pane.takes) {
-    if (static_cast<size_t>(k) >= session.document.takes.size()) continue;
-    const app::Take& take = session.document.takes[static_cast<size_t>(k)];
-    title += (title.empty() ? "" : "  +  ") + take.name;
-    if (pane.takes.size() == 1 && !pane.source) title += "  \u00b7  " + method_words(take.method);
+    const app::Take* take = at_or_null(session.document.takes, k);
+    if (take == nullptr) continue;
+    title += (title.empty() ? "" : "  +  ") + take->name;
+    if (pane.takes.size() == 1 && !pane.source) title += "  \u00b7  " + method_words(take->method);
   }
   return title;
 }
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {
   if (pane.source && session.document.source.path.empty()) return "Drop a scan folder or a motion here";
-  if (pane.empty() || (!pane.source && static_cast<size_t>(pane.takes[0]) >= session.takes.size()))
+  if (pane.empty() || (!pane.source && state_of_take(session, pane) == nullptr))
     return "Drop a character here";
   if (const app::TakeState* take = pane.source ? nullptr : state_of_take(session, pane)) {
     if (!take->problem.empty()) return take->problem;
@@ -166,7 +166,7 @@ int camera_index(const app::View& view, const PaneContent& pane) {
 }
 
 app::CameraState camera_state(const app::View& view, const PaneContent& pane) {
-  const size_t index = static_cast<size_t>(camera_index(view, pane));
+  const size_t index = camera_index(view, pane);
   if (index < view.cameras.size()) return view.cameras[index];
   return view.cameras.empty() ? app::CameraState{} : view.cameras[0];
 }

@@ -5,6 +5,7 @@
 
 #include "render/text.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/viewport/pane_pictures.hpp"
 
@@ -73,14 +74,14 @@ Image PictureMaker::picture(const Session& session, app::FrameCache& cache, cons
   US_CHECK(size.width >= 16 && size.height >= 16 && size.width <= 16384 && size.height <= 16384,
            "a picture cannot be ", size.width, " x ", size.height, " pixels");
   if (options.pane >= 0) {
-    US_CHECK(static_cast<size_t>(options.pane) <= session.takes.size(), "there is no view ", options.pane);
+    US_CHECK(options.pane <= ssize(session.takes), "there is no view ", options.pane);
     const PaneContent pane = pane_of(options.pane);
     return impl_->one(session, cache, pane, pane_camera(session, pane), options);
   }
   const std::vector<PaneContent> panes = panes_of(session);
   if (session.view.layout == app::Layout::Wipe && panes.size() == 2)
     return impl_->wiped(session, cache, panes, options);
-  const int count = static_cast<int>(panes.size());
+  const int count = panes.size();
   Image all(size.width, size.height);
   if (options.transparent)
     all.alpha.assign(static_cast<size_t>(size.width) * static_cast<size_t>(size.height), 0);
@@ -88,7 +89,7 @@ Image PictureMaker::picture(const Session& session, app::FrameCache& cache, cons
     const int left = size.width * i / count, right = size.width * (i + 1) / count;
     PictureOptions part = options;
     part.size.width = right - left;
-    const PaneContent& pane = panes[static_cast<size_t>(i)];
+    const PaneContent& pane = panes[i];
     put(all, impl_->one(session, cache, pane, pane_camera(session, pane), part), left, 0);
   }
   return all;
@@ -97,10 +98,10 @@ Image PictureMaker::picture(const Session& session, app::FrameCache& cache, cons
 Image PictureMaker::Impl::one(const Session& session, app::FrameCache& cache, const PaneContent& pane,
                               const render::Camera& camera, const PictureOptions& options) {
   std::vector<std::shared_ptr<const TargetLook>> found;
-  for (const int k : pane.takes) looks.of(session.takes[static_cast<size_t>(k)].target);
+  for (const int k : pane.takes) looks.of(session.takes[k].target);
   look_of_standing(session, looks, pane);
   looks.wait();
-  for (const int k : pane.takes) found.push_back(looks.of(session.takes[static_cast<size_t>(k)].target));
+  for (const int k : pane.takes) found.push_back(looks.of(session.takes[k].target));
   PanePictures pictures;
   const auto standing = look_of_standing(session, looks, pane);
   if (!standing)

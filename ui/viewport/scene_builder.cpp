@@ -7,6 +7,7 @@
 
 #include "app/session/follow.hpp"
 #include "render/colors.hpp"
+#include "retarget/base/index.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -28,7 +29,7 @@ std::shared_ptr<const Part> part_of(const std::shared_ptr<const Whole>& whole, c
 }
 
 const app::TakeState* take_of(const Session& session, int k) {
-  return static_cast<size_t>(k) < session.takes.size() ? &session.takes[static_cast<size_t>(k)] : nullptr;
+  return at_or_null(session.takes, k);
 }
 
 template <class Array>
@@ -47,7 +48,7 @@ SharedPoints scale_colors(const SurfaceValues& surface) {
 }
 
 Vec3 trail_color(int joint, ThemeKind theme) {
-  const size_t j = static_cast<size_t>(joint);
+  const size_t j = joint;
   const Vec3 side = kMirror[j] == joint        ? Vec3(0.52f, 0.56f, 0.62f)
                     : kJointNames[j][0] == 'l' ? render::kLeftColor
                                                : render::kRightColor;
@@ -212,7 +213,7 @@ void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int 
                                                                    {Vec3(1, 1, 1), 0},
                                                                    {Vec3(0, 0, 0), 0.45f},
                                                                    {Vec3(0.55f, 0.2f, 0.6f), 0.5f}}};
-    std::tie(view.tint, view.tint_share) = kShades[person == 0 ? 0 : 1 + static_cast<size_t>(person - 1) % 3];
+    std::tie(view.tint, view.tint_share) = kShades[person == 0 ? 0 : 1 + (person - 1) % 3];
   }
   view.x_ray = layers.x_ray;
   out_.scene.skeletons.push_back(std::move(view));
@@ -257,8 +258,8 @@ void Builder::add_trail(int person, int joint) {
     for (int f = now - step * reach; f != now + step; f += step)
       if (const Joints* joints = app::pane_joints(session_, person, f)) path.push_back(joints->row(joint));
     if (path.size() < 2) continue;
-    Points points(static_cast<Eigen::Index>(path.size()), 3);
-    for (size_t i = 0; i < path.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = path[i];
+    Points points(path.size(), 3);
+    for (size_t i = 0; i < path.size(); ++i) points.row(i) = path[i];
     render::LinesView line = render::trail(points, color, step == 1 ? 3.f : 1.5f);
     line.x_ray = true;
     out_.scene.lines.push_back(std::move(line));
@@ -324,8 +325,8 @@ const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<cons
     now.kept = {posed, in_.pictures.reference, session_.truth};
     now.settings.push_back(frame);
   }
-  const size_t f = static_cast<size_t>(std::max(0, in_.pictures.frame));
-  if (colouring == Colouring::Confidence && f < session_.source.frames.size() && f < take.joints.size()) {
+  const int f = std::max(0, in_.pictures.frame);
+  if (colouring == Colouring::Confidence && f < ssize(session_.source.frames) && f < ssize(take.joints)) {
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, take.joints[f]);
   }
@@ -340,10 +341,10 @@ const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<cons
 
 const ColourMemory::Made& Builder::scan_colors() {
   ColourMemory::Made now;
-  const size_t f = static_cast<size_t>(std::max(0, in_.pictures.frame));
+  const int f = std::max(0, in_.pictures.frame);
   now.kept = {in_.pictures.scan};
   now.settings = {static_cast<float>(session_.view.source.colouring)};
-  if (f < session_.source.frames.size()) {
+  if (f < ssize(session_.source.frames)) {
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, session_.source.frames[f].joints);
   }
@@ -380,7 +381,7 @@ Vec3 face_centre(const Box& box, int face) {
 Vec3 take_color(int k) {
   static const std::array<Vec3, 4> kTints = {Vec3(0.77f, 0.74f, 0.71f), Vec3(0.66f, 0.75f, 0.69f),
                                              Vec3(0.72f, 0.68f, 0.78f), Vec3(0.79f, 0.69f, 0.64f)};
-  return kTints[static_cast<size_t>(std::max(0, k)) % kTints.size()];
+  return kTints[std::max(0, k) % kTints.size()];
 }
 
 render::BackgroundView background_of(ThemeKind theme) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/colors.hpp"
+#include "retarget/base/index.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -49,7 +50,7 @@ SurfaceValues weights(const Session& session, const app::TakeState& take) {
   }
   out.legend.title = "Skin weights";
   for (int j = 0; j < kJointCount; ++j)
-    out.legend.categories.push_back({joint_label(j), render::kCategories[static_cast<size_t>(j)]});
+    out.legend.categories.push_back({joint_label(j), render::kCategories[j]});
   return out;
 }
 
@@ -74,14 +75,13 @@ SurfaceValues error(const Session& session, const Points& vertices, int frame) {
   return errors(session, title, distances_mm(vertices, truth.frame_vertices(frame)));
 }
 
-SurfaceValues confidence(const Session& session, const Points& points, const std::optional<Joints>& joints,
-                         int frame) {
+SurfaceValues confidence(const Session& session, const Points& points, const Joints* joints, int frame) {
   const char* const title = "Confidence";
-  if (!joints || frame < 0 || static_cast<size_t>(frame) >= session.source.frames.size())
+  if (joints == nullptr || frame < 0 || frame >= ssize(session.source.frames))
     return missing(title, "not ready yet");
   SurfaceValues out;
   out.legend = scale(title, "", 1);
-  const app::KeptSource& seen = session.source.frames[static_cast<size_t>(frame)];
+  const app::KeptSource& seen = session.source.frames[frame];
   out.values = std::make_shared<const Eigen::VectorXf>(of_nearest_joint(points, *joints, seen.confidence_of));
   return out;
 }
@@ -104,8 +104,8 @@ int weights_joint(const Session& session) {
 }
 
 SurfaceValues take_values(const Session& session, int k, const PanePictures& pictures, const Picture& posed) {
-  if (posed == nullptr || static_cast<size_t>(k) >= session.takes.size()) return {};
-  const app::TakeState& take = session.takes[static_cast<size_t>(k)];
+  if (posed == nullptr || k < 0 || k >= ssize(session.takes)) return {};
+  const app::TakeState& take = session.takes[k];
   const Colouring colouring = take_colouring(session);
   if (take.target == nullptr && colouring != Colouring::Plain)
     return missing("Colours", "the target is not bound yet");
@@ -128,20 +128,16 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
         return missing("Difference", "the first take is of another mesh");
       return errors(session, "Difference", distances_mm(posed->vertices, pictures.reference->vertices));
     case Colouring::Confidence:
-      const size_t f = static_cast<size_t>(std::max(0, pictures.frame));
-      return confidence(session, posed->vertices,
-                        f < take.joints.size() ? std::optional(take.joints[f]) : std::nullopt,
-                        pictures.frame);
+      return confidence(session, posed->vertices, at_or_null(take.joints, pictures.frame), pictures.frame);
   }
   return {};
 }
 
 SurfaceValues scan_values(const Session& session, const PanePictures& pictures) {
   if (session.view.source.colouring != Colouring::Confidence || pictures.scan == nullptr) return {};
-  const size_t f = static_cast<size_t>(std::max(0, pictures.frame));
-  const bool seen = f < session.source.frames.size();
-  return confidence(session, pictures.scan->mesh.vertices,
-                    seen ? std::optional(session.source.frames[f].joints) : std::nullopt, pictures.frame);
+  const app::KeptSource* seen = at_or_null(session.source.frames, pictures.frame);
+  return confidence(session, pictures.scan->mesh.vertices, seen != nullptr ? &seen->joints : nullptr,
+                    pictures.frame);
 }
 
 Eigen::VectorXf distances_mm(const Points& a, const Points& b) {

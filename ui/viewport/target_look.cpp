@@ -52,7 +52,7 @@ bool is_ready(const std::future<Look>& look) {
 
 bool is_closed(const Faces& faces) {
   std::vector<uint64_t> edges;
-  edges.reserve(static_cast<size_t>(faces.size()));
+  edges.reserve(faces.size());
   for (Eigen::Index f = 0; f < faces.rows(); ++f)
     for (int k = 0; k < 3; ++k) {
       const auto a = static_cast<uint64_t>(faces(f, k)), b = static_cast<uint64_t>(faces(f, (k + 1) % 3));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "retarget/base/index.hpp"
 #include "ui/gui/draw_pass.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/panel.hpp"
@@ -153,7 +154,7 @@ void Views::Impl::prepare(const Frame& f, size_t count) {
 }
 
 void Views::Impl::draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
-  const auto rects = cells(area, static_cast<int>(contents.size()), f.ui.px(kGap));
+  const auto rects = cells(area, contents.size(), f.ui.px(kGap));
   for (size_t i = 0; i < contents.size(); ++i) {
     if (rects[i].width() < kLeastSide || rects[i].height() < kLeastSide) continue;
     Pane& pane = *panes[i];
@@ -256,10 +257,10 @@ void Views::Impl::make_picture(const Frame& f, Pane& pane) {
   if (const auto turned = hand.turned_picture(place); turned != nullptr && !pictures.takes.empty())
     pictures.takes[0] = turned;
   std::vector<std::shared_ptr<const TargetLook>> found;
-  for (const int k : pane.content.takes)
-    found.push_back(static_cast<size_t>(k) < f.session.takes.size()
-                        ? looks.of(f.session.takes[static_cast<size_t>(k)].target)
-                        : nullptr);
+  for (const int k : pane.content.takes) {
+    const app::TakeState* take = at_or_null(f.session.takes, k);
+    found.push_back(take != nullptr ? looks.of(take->target) : nullptr);
+  }
   if (shows_as_loaded(f.session, pane.content)) found = {*look_of_standing(f.session, looks, pane.content)};
   const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.ui.theme().kind};
   pane.made = build_scene(input, &pane.colours);
@@ -311,12 +312,12 @@ void Views::Impl::describe(const Session& session, const Pane& pane, Overlay& ov
                                                               : "";
     overlay.legend = pane.made.legend;
   }
-  const size_t seen = static_cast<size_t>(std::max(0, frame));
+  const size_t seen = std::max(0, frame);
   if (frame >= 0 && seen < session.source.frames.size() && session.source.frames[seen].flagged)
     overlay.warning = session.source.frames[seen].reason;
   const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
   const Joints* joints = pane_joints(session, pane.content, frame);
-  if (rest) joints = &session.takes[static_cast<size_t>(pane.content.takes[0])].target->joints;
+  if (rest) joints = &session.takes[pane.content.takes[0]].target->joints;
   const auto& moved = pane.content.source ? pane.preview.source_joints : pane.preview.take_joints;
   if (moved) joints = &*moved;
   const int selected = pane.preview.gizmo ? session.selected_joint : -1;
@@ -341,10 +342,10 @@ void Views::Impl::draw_brush(const Frame& f, const Pane& pane) {
     if (const auto seen = pane.view.project(at)) circle.push_back(*seen);
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddPolyline(circle.data(), static_cast<int>(circle.size()), color(ImVec4(0, 0, 0, 0.5f)),
-                   ImDrawFlags_Closed, f.ui.px(3));
-  list.AddPolyline(circle.data(), static_cast<int>(circle.size()), color(ImVec4(1, 1, 1, 0.9f)),
-                   ImDrawFlags_Closed, f.ui.px(1.5f));
+  list.AddPolyline(circle.data(), circle.size(), color(ImVec4(0, 0, 0, 0.5f)), ImDrawFlags_Closed,
+                   f.ui.px(3));
+  list.AddPolyline(circle.data(), circle.size(), color(ImVec4(1, 1, 1, 0.9f)), ImDrawFlags_Closed,
+                   f.ui.px(1.5f));
 }
 
 /// Following says how the camera goes on: what is seen now stays as it is.

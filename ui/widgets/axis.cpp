@@ -19,15 +19,14 @@ void finish_stroke(ImDrawList& list, ImU32 color, float thickness) {
 }  // namespace
 
 std::vector<Range> reduce(const Values& values, double first, double last, int columns) {
-  std::vector<Range> reduced(static_cast<size_t>(std::max(columns, 0)));
+  std::vector<Range> reduced(std::max(columns, 0));
   const double span = std::max(last - first, 1e-9);
   const int from = std::max(0, static_cast<int>(std::floor(first))),
             to = std::min(values.size - 1, static_cast<int>(std::ceil(last)));
   for (int i = from; i <= to; ++i) {
     const double at = (i - first) / span * columns;
     if (at < 0 || at > columns) continue;
-    if (columns > 0)
-      reduced[static_cast<size_t>(std::min(static_cast<int>(at), columns - 1))].include(values.data[i]);
+    if (columns > 0) reduced[std::min(static_cast<int>(at), columns - 1)].include(values.data[i]);
   }
   return reduced;
 }
@@ -89,7 +88,7 @@ void draw_curve(ImDrawList& list, const FrameAxis& axis, const Values& values, c
   } else {
     const std::vector<Range> reduced = reduce(values, axis.first, axis.last, columns);
     for (int c = 0; c < columns; ++c) {
-      const Range& column = reduced[static_cast<size_t>(c)];
+      const Range& column = reduced[c];
       const float x = axis.area.min.x + static_cast<float>(c) + 0.5f;
       if (column.empty()) {
         finish_stroke(list, color, thickness);

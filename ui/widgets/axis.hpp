@@ -16,7 +16,7 @@ struct Values {
   int size = 0;
   Values() = default;
   Values(const float* values, int count) : data(values), size(count) {}
-  Values(const std::vector<float>& values) : data(values.data()), size(static_cast<int>(values.size())) {}
+  Values(const std::vector<float>& values) : data(values.data()), size(values.size()) {}
   float at(int i) const { return i >= 0 && i < size ? data[i] : std::numeric_limits<float>::quiet_NaN(); }
 };
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/index.hpp"
+
 namespace understudy::ui {
 namespace {
 
@@ -158,7 +160,7 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
   const Rect all{at, {at.x + width, at.y + height}};
   fill(all, t.field, rounding());
   bool changed = false;
-  for (int i = 0; i < static_cast<int>(choices.size()); ++i) {
+  for (int i = 0; i < ssize(choices); ++i) {
     const float each = width / static_cast<float>(choices.size()), left = at.x + each * static_cast<float>(i);
     ImGui::SetCursorScreenPos({left, at.y});
     const Press p = press(ui, std::to_string(i), {each, height}, name + "." + std::to_string(i));
@@ -167,10 +169,7 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
                      {std::round(left + each - inset), at.y + height - inset}};
     const bool on = chosen == i;
     if (on || p.hovered) fill(inner, on ? t.accent : t.field_hover, rounding() * 0.75f);
-    write_centered(inner, choices[static_cast<size_t>(i)],
-                   on          ? t.on_accent
-                   : p.hovered ? t.text
-                               : t.text_dim);
+    write_centered(inner, choices[i], on ? t.on_accent : p.hovered ? t.text : t.text_dim);
   }
   ui.mark(name, all);
   return changed;
@@ -178,14 +177,13 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
 
 bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen) {
   const Theme& t = ui.theme();
-  const bool known = chosen >= 0 && chosen < static_cast<int>(choices.size());
+  const bool known = chosen >= 0 && chosen < ssize(choices);
   const float width = width_left(0), height = ImGui::GetFrameHeight(), arrow = ui.px(14);
   const Press p = press(ui, name, {width, height}, name);
   const std::string popup = name + ".list";
   const float padding = ImGui::GetStyle().FramePadding.x;
   fill(p.rect, p.held ? t.field_active : p.hovered ? t.field_hover : t.field, rounding());
-  const std::string shown =
-      cut_to(known ? choices[static_cast<size_t>(chosen)] : "", width - 2 * padding - arrow);
+  const std::string shown = cut_to(known ? choices[chosen] : "", width - 2 * padding - arrow);
   ImGui::GetWindowDrawList()->AddText(
       {p.rect.min.x + padding, p.rect.min.y + ImGui::GetStyle().FramePadding.y}, color(t.text),
       shown.c_str());
@@ -199,10 +197,9 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
   ImGui::SetNextWindowSizeConstraints({width, 0}, {std::max(width, ui.px(480)), ui.px(360)});
   bool changed = false;
   if (ImGui::BeginPopup(popup.c_str())) {
-    for (int i = 0; i < static_cast<int>(choices.size()); ++i) {
+    for (int i = 0; i < ssize(choices); ++i) {
       const IdScope id(i);
-      if (ImGui::Selectable(choices[static_cast<size_t>(i)].c_str(), i == chosen))
-        changed = chosen != i, chosen = i;
+      if (ImGui::Selectable(choices[i].c_str(), i == chosen)) changed = chosen != i, chosen = i;
       ui.mark(name + "." + std::to_string(i));
     }
     ImGui::EndPopup();

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/widgets/controls.hpp"
@@ -113,8 +114,7 @@ void FileBrowser::refresh() {
 }
 
 const FileFilter& FileBrowser::filter() const {
-  return request_
-      .filters[static_cast<size_t>(std::clamp(filter_, 0, static_cast<int>(request_.filters.size()) - 1))];
+  return request_.filters[std::clamp<int>(filter_, 0, request_.filters.size() - 1)];
 }
 
 bool FileBrowser::can_choose(const FolderEntry& entry) const {
@@ -127,15 +127,14 @@ std::string FileBrowser::path_of(const FolderEntry& entry) const {
 
 const FolderEntry* FileBrowser::selected() const {
   for (const int row : rows_)
-    if (const FolderEntry& entry = contents_->entries[static_cast<size_t>(row)]; entry.name == selected_name_)
-      return &entry;
+    if (const FolderEntry& entry = contents_->entries[row]; entry.name == selected_name_) return &entry;
   return nullptr;
 }
 
 void FileBrowser::select(int row) {
   if (rows_.empty()) return;
-  const auto at = static_cast<size_t>(std::clamp(row, 0, static_cast<int>(rows_.size()) - 1));
-  const FolderEntry& entry = contents_->entries[static_cast<size_t>(rows_[at])];
+  const size_t at = std::clamp<int>(row, 0, rows_.size() - 1);
+  const FolderEntry& entry = contents_->entries[rows_[at]];
   selected_name_ = entry.name;
   scroll_to_selected_ = true;
   if (request_.save && !entry.is_folder) name_ = entry.name;
@@ -148,8 +147,8 @@ std::optional<std::string> FileBrowser::draw(Ui& ui) {
     contents_ = std::move(newest), rows_of_filter_ = filter_;
     rows_.clear();
     const auto& extensions = filter().extensions;
-    for (int i = 0; i < static_cast<int>(contents_->entries.size()); ++i) {
-      const FolderEntry& entry = contents_->entries[static_cast<size_t>(i)];
+    for (int i = 0; i < ssize(contents_->entries); ++i) {
+      const FolderEntry& entry = contents_->entries[i];
       const bool fits = extensions.empty() || std::find(extensions.begin(), extensions.end(),
                                                         extension_of(entry.name)) != extensions.end();
       if (entry.is_folder || fits) rows_.push_back(i);
@@ -336,9 +335,8 @@ void FileBrowser::draw_list(Ui& ui) {
   const float height = ImGui::GetTextLineHeight() + ui.px(8);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
   int wanted = -1;
-  for (int i = 0; scroll_to_selected_ && i < static_cast<int>(rows_.size()); ++i)
-    if (contents_->entries[static_cast<size_t>(rows_[static_cast<size_t>(i)])].name == selected_name_)
-      wanted = i;
+  for (int i = 0; scroll_to_selected_ && i < ssize(rows_); ++i)
+    if (contents_->entries[rows_[i]].name == selected_name_) wanted = i;
   if (wanted >= 0) {
     const float y = ImGui::GetCursorPosY() + height * static_cast<float>(wanted), top = ImGui::GetScrollY(),
                 view = ImGui::GetWindowHeight() - ui.px(20);
@@ -347,7 +345,7 @@ void FileBrowser::draw_list(Ui& ui) {
     scroll_to_selected_ = false;
   }
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(rows_.size()), height);
+  clipper.Begin(rows_.size(), height);
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) draw_entry(ui, i);
   ImGui::PopStyleVar();
@@ -356,7 +354,7 @@ void FileBrowser::draw_list(Ui& ui) {
 }
 
 void FileBrowser::draw_entry(Ui& ui, int row_number) {
-  const FolderEntry& entry = contents_->entries[static_cast<size_t>(rows_[static_cast<size_t>(row_number)])];
+  const FolderEntry& entry = contents_->entries[rows_[row_number]];
   const IdScope id(entry.name);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetTextLineHeight() + ui.px(8);
@@ -451,9 +449,8 @@ void FileBrowser::draw_overwrite(Ui& ui) {
 void FileBrowser::take_keys() {
   if (ImGui::GetIO().WantTextInput || ImGui::IsWindowAppearing()) return;
   if (pressed(Key::Escape)) open_ = false;
-  const auto at = std::find_if(rows_.begin(), rows_.end(), [&](int i) {
-    return contents_->entries[static_cast<size_t>(i)].name == selected_name_;
-  });
+  const auto at = std::find_if(rows_.begin(), rows_.end(),
+                               [&](int i) { return contents_->entries[i].name == selected_name_; });
   const int row_number = at == rows_.end() ? -1 : static_cast<int>(at - rows_.begin());
   if (key_pressed(Key::Down)) select(row_number + 1);
   if (key_pressed(Key::Up)) select(std::max(0, row_number - 1));
@@ -477,9 +474,8 @@ void FileBrowser::find_typed() {
     ImTextCharToUtf8(letter, c);
     found_ += lower_case(letter);
     found_at_ = ImGui::GetTime();
-    for (int i = 0; i < static_cast<int>(rows_.size()); ++i)
-      if (lower_case(contents_->entries[static_cast<size_t>(rows_[static_cast<size_t>(i)])].name)
-              .rfind(found_, 0) == 0) {
+    for (int i = 0; i < ssize(rows_); ++i)
+      if (lower_case(contents_->entries[rows_[i]].name).rfind(found_, 0) == 0) {
         select(i);
         break;
       }

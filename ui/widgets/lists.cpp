@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/widgets/controls.hpp"
@@ -19,9 +20,8 @@ struct ListState {
 
 std::vector<int> matching(const std::vector<ListItem>& items, const std::string& search) {
   std::vector<int> found;
-  for (int i = 0; i < static_cast<int>(items.size()); ++i)
-    if (matches(items[static_cast<size_t>(i)].text + " " + items[static_cast<size_t>(i)].note, search))
-      found.push_back(i);
+  for (int i = 0; i < ssize(items); ++i)
+    if (matches(items[i].text + " " + items[i].note, search)) found.push_back(i);
   return found;
 }
 
@@ -60,21 +60,18 @@ int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>
   if (text_field(ui, name + ".search", state.search, "Search")) state.cursor = 0;
   const bool typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
   const std::vector<int> shown = matching(items, state.search);
-  const int last = static_cast<int>(shown.size()) - 1;
+  const int last = shown.size() - 1;
   if (typing && key_pressed(render::Key::Down)) state.cursor = std::min(state.cursor + 1, last);
   if (typing && key_pressed(render::Key::Up)) state.cursor = state.cursor - 1;
   state.cursor = std::clamp(state.cursor, 0, std::max(0, last));
-  int chosen = typing && last >= 0 && key_pressed(render::Key::Enter, false)
-                   ? shown[static_cast<size_t>(state.cursor)]
-                   : -1;
+  int chosen = typing && last >= 0 && key_pressed(render::Key::Enter, false) ? shown[state.cursor] : -1;
   if (ImGui::BeginChild((name + ".items").c_str(), {0, height})) {
     ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(shown.size()),
-                  ImGui::GetTextLineHeight() + ui.px(8) + ImGui::GetStyle().ItemSpacing.y);
+    clipper.Begin(shown.size(), ImGui::GetTextLineHeight() + ui.px(8) + ImGui::GetStyle().ItemSpacing.y);
     while (clipper.Step())
       for (int k = clipper.DisplayStart; k < clipper.DisplayEnd; ++k) {
-        const int i = shown[static_cast<size_t>(k)];
-        if (draw_item(ui, name + "." + std::to_string(i), items[static_cast<size_t>(i)], i == selected,
+        const int i = shown[k];
+        if (draw_item(ui, name + "." + std::to_string(i), items[i], i == selected,
                       typing && k == state.cursor))
           chosen = i;
       }
@@ -89,7 +86,7 @@ Table::Table(Ui& ui, const std::string& name, std::vector<Column> columns, float
   ImGuiTableFlags flags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable |
                           ImGuiTableFlags_PadOuterX | ImGuiTableFlags_NoSavedSettings;
   if (height > 0) flags |= ImGuiTableFlags_ScrollY;
-  open_ = ImGui::BeginTable(name.c_str(), static_cast<int>(columns_.size()), flags, {0, height});
+  open_ = ImGui::BeginTable(name.c_str(), columns_.size(), flags, {0, height});
   if (!open_) return;
   if (height > 0) ImGui::TableSetupScrollFreeze(0, 1);
   for (const Column& column : columns_)
@@ -101,7 +98,7 @@ Table::Table(Ui& ui, const std::string& name, std::vector<Column> columns, float
   const FontScope small(ui.fonts().small);
   const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
   for (size_t i = 0; i < columns_.size(); ++i) {
-    ImGui::TableSetColumnIndex(static_cast<int>(i));
+    ImGui::TableSetColumnIndex(i);
     const std::string& title = columns_[i].title;
     const float left = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(title.c_str()).x;
     if (columns_[i].number && left > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
@@ -127,7 +124,7 @@ bool Table::row(bool selected, bool selectable) {
 
 void Table::cell(const std::string& text) {
   if (column_ != ImGui::TableGetColumnIndex()) ImGui::TableSetColumnIndex(column_);
-  const auto at = static_cast<size_t>(std::min(column_++, static_cast<int>(columns_.size()) - 1));
+  const size_t at = std::min<int>(column_++, columns_.size() - 1);
   const float left = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
   if (columns_[at].number && left > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
   text_cut(ui_, text);

@@ -22,7 +22,7 @@ struct Plot {
   ImU32 color_of(size_t k) const {
     const auto& colors = ui.theme().series;
     const int wanted = series[k].color >= 0 ? series[k].color : static_cast<int>(k);
-    return color(colors[static_cast<size_t>(wanted) % colors.size()]);
+    return color(colors[wanted % colors.size()]);
   }
 };
 
@@ -177,11 +177,11 @@ void histogram(Ui& ui, const std::string& name, const Values& values, const Hist
   for (int i = 0; i < values.size; ++i) range.include(values.data[i]);
   if (range.empty()) return list.AddText(at, color(ui.theme().text_dim), "No values yet.");
   if (range.high == range.low) range.high += 1;
-  std::vector<int> counts(static_cast<size_t>(std::max(1, options.bins)));
+  std::vector<int> counts(std::max(1, options.bins));
   for (int i = 0; i < values.size; ++i)
     if (std::isfinite(values.data[i])) {
-      const auto bin = static_cast<size_t>((values.data[i] - range.low) / (range.high - range.low) *
-                                           static_cast<float>(counts.size()));
+      const size_t bin =
+          (values.data[i] - range.low) / (range.high - range.low) * static_cast<float>(counts.size());
       ++counts[std::min(bin, counts.size() - 1)];
     }
   const float line = ImGui::GetTextLineHeight(),
