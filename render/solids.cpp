@@ -21,7 +21,7 @@ int Solids::add_vertex(const Vec3& position, const Vec3& normal, const Vec3& col
   positions_.push_back(position);
   normals_.push_back(normal);
   colors_.push_back(color);
-  return static_cast<int>(positions_.size()) - 1;
+  return positions_.size() - 1;
 }
 
 /// Joins two circles of vertices, the second further along the axis.

@@ -40,7 +40,7 @@ double seconds_since(Clock::time_point from) {
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
+  return values[q * static_cast<double>(values.size() - 1) + 0.5];
 }
 
 // What is shown: the bundled samples, brought to the sizes asked for.
@@ -51,7 +51,7 @@ Mesh subdivided(const Mesh& mesh) {
   std::vector<Vec3> vertices;
   for (int v = 0; v < mesh.vertices.rows(); ++v) vertices.emplace_back(mesh.vertices.row(v));
   const auto middle = [&](int a, int b) {
-    const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
+    const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), vertices.size());
     if (is_new) {
       const Vec3 between = 0.5f * (mesh.vertices.row(a) + mesh.vertices.row(b)).transpose();
       vertices.push_back(between);
@@ -65,16 +65,15 @@ Mesh subdivided(const Mesh& mesh) {
     const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
     finer.faces.middleRows(4 * f, 4) << a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca;
   }
-  finer.vertices.resize(static_cast<Eigen::Index>(vertices.size()), 3);
-  for (size_t v = 0; v < vertices.size(); ++v)
-    finer.vertices.row(static_cast<Eigen::Index>(v)) = vertices[v].transpose();
+  finer.vertices.resize(vertices.size(), 3);
+  for (size_t v = 0; v < vertices.size(); ++v) finer.vertices.row(v) = vertices[v].transpose();
   return finer;
 }
 
 /// Exactly `count` vertices: faces cut into four while they are too few, then into three one by one.
 Mesh with_vertices(Mesh mesh, int count) {
   while (mesh.vertices.rows() + mesh.faces.rows() < count) mesh = subdivided(mesh);
-  const int first = static_cast<int>(mesh.vertices.rows()), faces = static_cast<int>(mesh.faces.rows());
+  const int first = mesh.vertices.rows(), faces = mesh.faces.rows();
   const int more = std::max(0, count - first);
   mesh.vertices.conservativeResize(first + more, 3);
   mesh.faces.conservativeResize(faces + 2 * more, 3);
@@ -103,8 +102,7 @@ void write_scan(const std::string& path, const Points& points) {
   Rng rng(1);
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> dense(kScanPoints, 3);
   for (int i = 0; i < kScanPoints; ++i) {
-    const auto from =
-        static_cast<Eigen::Index>(i) < points.rows() ? i : rng.below(static_cast<int>(points.rows()));
+    const auto from = static_cast<Eigen::Index>(i) < points.rows() ? i : rng.below(points.rows());
     for (int axis = 0; axis < 3; ++axis)
       dense(i, axis) = points(from, axis) + (i < points.rows() ? 0 : 0.004f * rng.normal());
   }

@@ -180,7 +180,7 @@ void preview_file(const ExportOptions& options, const Performance& done) {
   for (size_t i = 0; i < shown; ++i) {
     const size_t at = shown == 1 ? 0 : i * (clip.poses.size() - 1) / (shown - 1);
     render::SheetMoment moment;
-    moment.frame = static_cast<int>(at);
+    moment.frame = at;
     moment.seconds = static_cast<double>(at) / clip.fps;
     moment.source = rest;
     moment.source_joints = Joints(joints * turn.transpose());

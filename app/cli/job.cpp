@@ -39,7 +39,7 @@ constexpr int kSkeletonMoments = 60, kSkeletonColumns = 12;
 
 render::SheetMoment source_moment(const PerformedFrame& frame, int64_t index, double fps) {
   render::SheetMoment moment;
-  moment.frame = static_cast<int>(index);
+  moment.frame = index;
   moment.seconds = static_cast<double>(index) / fps;
   moment.source = frame.scan.mesh;
   moment.source_joints = frame.source_joints;

@@ -25,7 +25,7 @@ void PreviewMoments::add(int64_t index, render::SheetMoment moment) {
 
 std::vector<render::SheetMoment> PreviewMoments::take() {
   std::vector<render::SheetMoment> shown;
-  const size_t count = std::min<size_t>(static_cast<size_t>(shown_), kept_.size());
+  const size_t count = std::min<size_t>(shown_, kept_.size());
   for (size_t i = 0; i < count; ++i) {
     const size_t at = count == 1 ? 0 : i * (kept_.size() - 1) / (count - 1);
     shown.push_back(std::move(kept_[at].second));

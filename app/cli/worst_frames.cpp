@@ -69,10 +69,10 @@ void write_worst_frames(const std::string& folder, const std::vector<WorstFrame>
   const auto context = render::make_offscreen_context();
   render::Renderer renderer;
   const render::Font font = render::Font::system();
-  const int count = static_cast<int>(frames.size()), columns = std::min(kColumns, count);
+  const int count = frames.size(), columns = std::min(kColumns, count);
   render::Image sheet(columns * 2 * kWidth, (count + columns - 1) / columns * (kHeight + kCaption));
   for (int i = 0; i < count; ++i) {
-    const render::Image picture = picture_of(renderer, font, frames[static_cast<size_t>(i)]);
+    const render::Image picture = picture_of(renderer, font, frames[i]);
     char name[32];
     std::snprintf(name, sizeof name, "/worst_%02d.png", i + 1);
     render::write_png(folder + name, picture);

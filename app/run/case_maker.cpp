@@ -99,10 +99,10 @@ std::array<std::pair<std::string, Eigen::VectorXf>, kTargets> extremes(const Wor
     girths.push_back(girth(person, heights.back()));
   }
   const auto most = [&](const std::vector<double>& of) {
-    return shop.split.betas[static_cast<size_t>(std::max_element(of.begin(), of.end()) - of.begin())];
+    return shop.split.betas[std::max_element(of.begin(), of.end()) - of.begin()];
   };
   const auto least = [&](const std::vector<double>& of) {
-    return shop.split.betas[static_cast<size_t>(std::min_element(of.begin(), of.end()) - of.begin())];
+    return shop.split.betas[std::min_element(of.begin(), of.end()) - of.begin()];
   };
   return {
       {{"tall", most(heights)}, {"short", least(heights)}, {"heavy", most(girths)}, {"slim", least(girths)}}};
@@ -164,15 +164,14 @@ std::vector<CasePlan> performance_plans(const Workshop& shop) {
 
 /// Points drawn evenly on a surface.
 Points64 surface(NumpyRandom& random, const Points64& vertices, const Faces& faces, int64_t count) {
-  std::vector<double> share(static_cast<size_t>(faces.rows()));
+  std::vector<double> share(faces.rows());
   double all = 0;
   const auto corner = [&](int64_t f, int c) { return Vector3d(vertices.row(faces(f, c))); };
   for (int64_t f = 0; f < faces.rows(); ++f)
-    share[static_cast<size_t>(f)] = all +=
-        (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm();
+    share[f] = all += (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm();
   US_CHECK(all > 0, "a person without surface cannot be scanned");
   for (double& s : share) s /= all;
-  std::vector<int64_t> drawn(static_cast<size_t>(count));
+  std::vector<int64_t> drawn(count);
   for (int64_t& f : drawn)
     f = std::upper_bound(share.begin(), share.end() - 1, random.random()) - share.begin();
   Eigen::VectorXd u(count), w(count);
@@ -180,15 +179,15 @@ Points64 surface(NumpyRandom& random, const Points64& vertices, const Faces& fac
   for (double& x : w) x = random.random();
   Points64 points(count, 3);
   for (int64_t i = 0; i < count; ++i) {
-    const int64_t f = drawn[static_cast<size_t>(i)];
+    const int64_t f = drawn[i];
     points.row(i) = (1 - u[i]) * corner(f, 0) + u[i] * (1 - w[i]) * corner(f, 1) + u[i] * w[i] * corner(f, 2);
   }
   return points;
 }
 
 Points64 rows_of(const Points64& points, const std::vector<int64_t>& rows) {
-  Points64 picked(static_cast<Eigen::Index>(rows.size()), 3);
-  for (size_t i = 0; i < rows.size(); ++i) picked.row(static_cast<Eigen::Index>(i)) = points.row(rows[i]);
+  Points64 picked(rows.size(), 3);
+  for (size_t i = 0; i < rows.size(); ++i) picked.row(i) = points.row(rows[i]);
   return picked;
 }
 
@@ -198,15 +197,14 @@ Points64 seen(NumpyRandom& random, const Points64& points) {
   for (double& x : view) x = random.normal();
   view.normalize();
   const Eigen::RowVector3d mean = points.colwise().mean();
-  std::vector<bool> keep(static_cast<size_t>(points.rows()));
+  std::vector<bool> keep(points.rows());
   for (int64_t i = 0; i < points.rows(); ++i)
-    keep[static_cast<size_t>(i)] =
-        random.random() < 0.35 + 0.65 / (1 + std::exp(-6 * (points.row(i) - mean).dot(view)));
+    keep[i] = random.random() < 0.35 + 0.65 / (1 + std::exp(-6 * (points.row(i) - mean).dot(view)));
   for (int64_t hole = random.integers(1, 5); hole > 0; --hole) {
     const Eigen::RowVector3d centre = points.row(random.integers(0, points.rows()));
     const double radius = random.uniform(0.03, 0.10);
     for (int64_t i = 0; i < points.rows(); ++i)
-      if ((points.row(i) - centre).norm() <= radius) keep[static_cast<size_t>(i)] = false;
+      if ((points.row(i) - centre).norm() <= radius) keep[i] = false;
   }
   std::vector<int64_t> rows;
   for (size_t i = 0; i < keep.size(); ++i)
@@ -307,7 +305,7 @@ ExactMotion bending_motion() {
   motion.local.assign(motion.root.size(), standing);
   for (int t = 0; t < kMoves * kBendFrames; ++t) {
     const double sine = std::sin(M_PI * (t % kBendFrames) / kBendFrames), bend = far * sine * sine;
-    Rotations64& local = motion.local[static_cast<size_t>(t)];
+    Rotations64& local = motion.local[t];
     const int move = t / kBendFrames;
     for (const bool left : {true, false}) {
       const double side = left ? 1 : -1;
@@ -428,14 +426,13 @@ int make_suite(const SuiteOptions& options, const std::function<void(const std::
   std::vector<CasePlan> plans = has_joints_only(options.suite) ? extraction_plans(shop)
                                 : options.suite == "bends"     ? bend_plans(shop)
                                                                : performance_plans(shop);
-  if (options.cases > 0 && plans.size() > static_cast<size_t>(options.cases))
-    plans.resize(static_cast<size_t>(options.cases));
+  if (options.cases > 0 && plans.size() > static_cast<size_t>(options.cases)) plans.resize(options.cases);
   for (const CasePlan& plan : plans) {
     check_interrupt("before case " + plan.name);
     make_case(shop, plan);
     done(plan.name);
   }
-  return static_cast<int>(plans.size());
+  return plans.size();
 }
 
 }  // namespace understudy::app

@@ -67,7 +67,7 @@ void Evaluator::push_surface(const EvaluatedFrame& frame) {
 }
 
 void Evaluator::push_hands(const Points& vertices) {
-  const auto t = static_cast<size_t>(frames_);
+  const size_t t = frames_;
   contacts_.add(truth_->source_gaps[t], hands_->gaps(vertices));
   if (truth_->source_buried.empty()) return;
   const double buried = hands_->buried(vertices);
@@ -76,9 +76,9 @@ void Evaluator::push_hands(const Points& vertices) {
 }
 
 void Evaluator::push_bends(const Points& vertices, const Points& true_vertices) {
-  const Rotations& local = truth_->rotations[static_cast<size_t>(frames_)];
+  const Rotations& local = truth_->rotations[frames_];
   for (size_t bend = 0; bend < BentVolume::kBends.size(); ++bend) {
-    const Mat3& turn = local[static_cast<size_t>(BentVolume::kBends[bend])];
+    const Mat3& turn = local[BentVolume::kBends[bend]];
     if (geodesic_angle(turn, Mat3::Identity()) < kBent) continue;
     const double kept = bends_->kept(bend, vertices), should = bends_->kept(bend, true_vertices);
     if (!std::isfinite(kept) || !std::isfinite(should)) continue;
@@ -168,7 +168,7 @@ Metrics mean_metrics(const std::vector<Metrics>& all) {
         counts.push_back(1);
       } else {
         known->second += value;
-        ++counts[static_cast<size_t>(known - mean.begin())];
+        ++counts[known - mean.begin()];
       }
     }
   for (size_t i = 0; i < mean.size(); ++i) mean[i].second /= counts[i];

@@ -13,8 +13,7 @@ namespace {
 /// Vertices of a file's parts as the vertices of the surface that they were made of.
 Points merged(const MergedSurface& surface, const Points& of_parts) {
   Points out(surface.mesh.vertices.rows(), 3);
-  for (Eigen::Index v = 0; v < of_parts.rows(); ++v)
-    out.row(surface.map[static_cast<size_t>(v)]) = of_parts.row(v);
+  for (Eigen::Index v = 0; v < of_parts.rows(); ++v) out.row(surface.map[v]) = of_parts.row(v);
   return out;
 }
 
@@ -38,7 +37,7 @@ Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Tr
     const Points in_file = surface.in_file_order(seen), right = truth.frame_vertices(t);
     medl += edge_length_error(in_file, right) / count;
     mpvd += mean_vertex_error(in_file, right) / count;
-    off_screen += mean_vertex_error(seen, body.screen->deform(clip.poses[static_cast<size_t>(t)])) / count;
+    off_screen += mean_vertex_error(seen, body.screen->deform(clip.poses[t])) / count;
   }
   return {{"file_medl_mm", 1000 * medl},
           {"file_mpvd_m", mpvd},

@@ -13,7 +13,7 @@ constexpr double kFirstMs = 1e-3, kRatio = 1.01;
 
 void Histogram::add(double ms) {
   const double place = std::floor(std::log(std::max(ms, kFirstMs) / kFirstMs) / std::log(kRatio));
-  ++buckets_[static_cast<size_t>(std::min(place, static_cast<double>(buckets_.size() - 1)))];
+  ++buckets_[std::min(place, static_cast<double>(buckets_.size() - 1))];
   ++count_;
   total_ms_ += ms;
 }

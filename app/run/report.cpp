@@ -10,6 +10,7 @@
 
 #include "app/run/version.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -46,8 +47,7 @@ Json to_json(const Metrics& metrics) {
 
 Json to_json(const Latency& latency, double quantile) {
   Json json = Json::object();
-  for (int i = 0; i < static_cast<int>(Latency::kStages.size()); ++i)
-    json[Latency::kStages[i]] = latency.quantile(i, quantile);
+  for (int i = 0; i < ssize(Latency::kStages); ++i) json[Latency::kStages[i]] = latency.quantile(i, quantile);
   return json;
 }
 

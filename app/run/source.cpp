@@ -278,7 +278,7 @@ std::unique_ptr<Source> as_scan(Character character, const SourceOptions& option
   US_CHECK(character.vertex_count() > 0, options.path,
            ": holds no surface that could be looked at as a scan");
   const int clip = chosen_clip(character, options.clip);
-  const ClipTimes times = clip_times(character.animations[static_cast<size_t>(clip)], options.fps);
+  const ClipTimes times = clip_times(character.animations[clip], options.fps);
   return std::make_unique<ScannedCharacter>(std::move(character), clip, times, options);
 }
 

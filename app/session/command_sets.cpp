@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
@@ -66,8 +67,8 @@ Vec3 vector_argument(const Arguments& arguments, size_t i, const char* what) {
 
 Take& take_argument(Session& session, const Arguments& arguments, size_t i) {
   const int k = whole_number(arguments, i, "take");
-  US_CHECK(k >= 0 && k < static_cast<int>(session.document.takes.size()), "there is no take ", k);
-  return session.document.takes[static_cast<size_t>(k)];
+  US_CHECK(k >= 0 && k < ssize(session.document.takes), "there is no take ", k);
+  return session.document.takes[k];
 }
 
 bool has_word(const Arguments& arguments, size_t from, const std::string& wanted) {

@@ -166,7 +166,7 @@ struct Painting {
 
 Painting painting(Studio& studio, const Arguments& a) {
   Take& take = take_argument(studio.session(), a, 0);
-  const TakeState& state = studio.session().takes[static_cast<size_t>(whole_number(a, 0, "take"))];
+  const TakeState& state = studio.session().takes[whole_number(a, 0, "take")];
   US_CHECK(state.target && state.weights, "the target is still being prepared");
   return {take, state};
 }
@@ -200,8 +200,7 @@ void add_target_edits(Commands& commands) {
                   US_CHECK(brush.mode == Brush::Mode::Smooth || s.session().selected_joint >= 0,
                            "choose the joint to paint first");
                   brush.joint = std::max(0, s.session().selected_joint);
-                  const Neighbours& neighbours =
-                      s.neighbours(static_cast<size_t>(whole_number(a, 0, "take")));
+                  const Neighbours& neighbours = s.neighbours(whole_number(a, 0, "take"));
                   keep(p, stroke(*p.state.weights, {p.state.target->mesh.vertices, neighbours},
                                  vector_argument(a, 1, "place"), brush));
                 }});
@@ -220,9 +219,7 @@ void add_weight_tools(Commands& commands) {
                 [](Studio& s, const Arguments& a) {
                   Painting p = painting(s, a);
                   const float strength = std::clamp(static_cast<float>(number(a, 1, "strength")), 0.f, 1.f);
-                  keep(p,
-                       smoothed(*p.state.weights,
-                                s.neighbours(static_cast<size_t>(whole_number(a, 0, "take"))), {}, strength));
+                  keep(p, smoothed(*p.state.weights, s.neighbours(whole_number(a, 0, "take")), {}, strength));
                 }});
   commands.add(
       {"edit.weights_clear", "Clear painted weights", "TAKE", "", true, false,

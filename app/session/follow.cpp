@@ -11,7 +11,7 @@ constexpr double kSmoothing = 0.25;  // standard deviation, seconds
 }  // namespace
 
 const Joints* pane_joints(const Session& session, int pane, int frame) {
-  const size_t f = static_cast<size_t>(frame), k = static_cast<size_t>(pane - 1);
+  const size_t f = frame, k = pane - 1;
   if (frame < 0) return nullptr;
   if (pane == 0) return f < session.source.frames.size() ? &session.source.frames[f].joints : nullptr;
   return k < session.takes.size() && f < session.takes[k].joints.size() ? &session.takes[k].joints[f]

@@ -307,7 +307,7 @@ void FrameCache::Impl::prefetch(Request request) {
 
 /// Nothing where there is no such frame. A take of another generation forgets what was made of it before.
 std::optional<Request> FrameCache::Impl::posed_request(const TakeState& take, const Wanted& wanted) {
-  const size_t frame = static_cast<size_t>(wanted.frame);
+  const size_t frame = wanted.frame;
   if (!take.deformer || !take.target || wanted.frame < 0 || frame >= take.shown.poses.size()) return {};
   const auto now = std::make_pair(take.generation, take.deformer);
   auto& known = takes[wanted.take];

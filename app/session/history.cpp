@@ -19,7 +19,7 @@ void History::clear() {
 
 void History::set_depth(int depth) {
   depth_ = std::max(depth, 1);
-  const size_t most = static_cast<size_t>(depth_);
+  const size_t most = depth_;
   if (past_.size() > most) past_.erase(past_.begin(), past_.end() - depth_);
 }
 

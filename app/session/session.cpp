@@ -41,9 +41,9 @@ Eigen::Array<float, kJointCount, 1> usual_lengths(const std::vector<KeptSource>&
 }  // namespace
 
 int frame_count(const Session& session) {
-  const size_t selected = static_cast<size_t>(session.selected_take);
-  if (selected < session.takes.size()) return static_cast<int>(session.takes[selected].shown.poses.size());
-  return static_cast<int>(session.source.frames.size());
+  const size_t selected = session.selected_take;
+  if (selected < session.takes.size()) return session.takes[selected].shown.poses.size();
+  return session.source.frames.size();
 }
 
 int shown_frame(const Session& session) {

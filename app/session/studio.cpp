@@ -8,6 +8,7 @@
 #include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 
 namespace understudy::app {
@@ -23,7 +24,7 @@ std::vector<int> matched_takes(const std::vector<Take>& before, const std::vecto
   const auto pass = [&](const auto& alike) {
     for (size_t k = 0; k < now.size(); ++k)
       for (size_t i = 0; match[k] < 0 && i < before.size(); ++i)
-        if (!used[i] && alike(before[i], now[k])) match[k] = static_cast<int>(i), used[i] = true;
+        if (!used[i] && alike(before[i], now[k])) match[k] = i, used[i] = true;
   };
   const auto same_target = [](const Take& a, const Take& b) {
     return target_key(a.target) == target_key(b.target);
@@ -138,15 +139,13 @@ void Studio::follow_document() {
   std::vector<TakeState> takes;
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const int old = match[k];
-    ids.push_back(old >= 0 ? b.take_ids[static_cast<size_t>(old)] : b.next_id++);
-    takes.push_back(old >= 0 ? std::move(session_.takes[static_cast<size_t>(old)]) : TakeState{});
-    if (old >= 0)
-      forget_outdated(takes.back(), b.followed.takes[static_cast<size_t>(old)], document.takes[k]);
+    ids.push_back(old >= 0 ? b.take_ids[old] : b.next_id++);
+    takes.push_back(old >= 0 ? std::move(session_.takes[old]) : TakeState{});
+    if (old >= 0) forget_outdated(takes.back(), b.followed.takes[old], document.takes[k]);
   }
   session_.takes = std::move(takes);
   b.take_ids = ids;
-  if (session_.selected_take >= static_cast<int>(ids.size()))
-    session_.selected_take = std::max(0, static_cast<int>(ids.size()) - 1);
+  if (session_.selected_take >= ssize(ids)) session_.selected_take = std::max<int>(0, ids.size() - 1);
   follow_source();
   follow_edits();
   b.followed = document;
@@ -241,8 +240,7 @@ void Studio::tick(double seconds) {
   take_in_results();
   const bool takes = !session_.takes.empty();
   const PoseEdits none;
-  const PoseEdits& edits =
-      takes ? session_.document.takes[static_cast<size_t>(session_.selected_take)].pose_edits : none;
+  const PoseEdits& edits = takes ? session_.document.takes[session_.selected_take].pose_edits : none;
   const int count = frame_count(session_);
   if (session_.playback.live && !session_.playback.playing) session_.playback.frame = count - 1;
   Playback trimmed = session_.playback;

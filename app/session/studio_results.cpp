@@ -15,7 +15,7 @@ constexpr double kRefineEvery = 0.4;  // seconds between two passes over a resul
 /// Puts `frames` at `first`, over what is there and behind it. True when earlier ones were replaced.
 template <class Frame>
 bool put(std::vector<Frame>& all, int first, std::vector<Frame> frames) {
-  const size_t at = static_cast<size_t>(first);
+  const size_t at = first;
   const bool replaces = at < all.size();
   if (at + frames.size() > all.size()) all.resize(at + frames.size());
   std::move(frames.begin(), frames.end(), all.begin() + first);
@@ -26,11 +26,11 @@ bool put(std::vector<Frame>& all, int first, std::vector<Frame> frames) {
 void append_shown(TakeState& take, int first, double fps) {
   take.shown.fps = static_cast<float>(fps);
   const size_t count = take.performed.size();
-  if (static_cast<size_t>(first) > take.shown.poses.size()) first = static_cast<int>(take.shown.poses.size());
+  if (static_cast<size_t>(first) > take.shown.poses.size()) first = take.shown.poses.size();
   take.shown.poses.resize(count);
   take.shown.flags.resize(count);
   take.joints.resize(count);
-  for (size_t t = static_cast<size_t>(first); t < count; ++t) {
+  for (size_t t = first; t < count; ++t) {
     take.shown.poses[t] = take.performed[t].pose;
     take.shown.flags[t] = take.performed[t].flagged;
     take.joints[t] = forward_kinematics(take.target->joints, take.shown.poses[t]).joints;
@@ -75,7 +75,7 @@ std::string pose_key(const PoseEdits& edits) {
 TakeState* Studio::take_of(int64_t id) {
   const auto& ids = background_->take_ids;
   const auto found = std::find(ids.begin(), ids.end(), id);
-  return found == ids.end() ? nullptr : &session_.takes[static_cast<size_t>(found - ids.begin())];
+  return found == ids.end() ? nullptr : &session_.takes[found - ids.begin()];
 }
 
 template <>
@@ -130,7 +130,7 @@ void Studio::take_in(TakeReady& event) {
   take->binding = event.binding;
   take->as_loaded.reset();
   background_->applied[event.id].deformer = event.deformer;
-  apply_weights(static_cast<size_t>(take - session_.takes.data()));
+  apply_weights(take - session_.takes.data());
   for (const std::string& warning : event.target->warnings) notify(warning, true);
 }
 
@@ -149,7 +149,7 @@ void Studio::take_in(TakeFrames& event) {
   if (!take || !take->target) return;
   const bool redone = put(take->performed, event.first, std::move(event.frames));
   for (const FrameTimes& times : event.times) take->latency.add(times);
-  const size_t k = static_cast<size_t>(take - session_.takes.data());
+  const size_t k = take - session_.takes.data();
   if (redone) ++take->generation;
   if (session_.document.takes[k].pose_edits.empty() || !redone)
     append_shown(*take, event.first, session_.source.fps);
@@ -163,7 +163,7 @@ void Studio::take_in_refined() {
     if (!take) continue;
     if (!refined.problem.empty()) fail(refined.problem);
     const size_t count = refined.shown.poses.size();
-    const size_t k = static_cast<size_t>(take - session_.takes.data());
+    const size_t k = take - session_.takes.data();
     const bool edited =
         !session_.document.takes[k].pose_edits.empty() ||
         !std::equal(take->joints.begin(),
@@ -194,7 +194,7 @@ void Studio::refine_dirty() {
       continue;
     }
     if (take && !take->performed.empty()) {
-      const size_t k = static_cast<size_t>(take - session_.takes.data());
+      const size_t k = take - session_.takes.data();
       RefineRequest request{
           *id,           {}, session_.document.takes[k].pose_edits, take->target, session_.source.frames,
           session_.truth};

@@ -99,8 +99,7 @@ void add_rig(Commands& commands) {
                 [](Studio& s, const Arguments& a) {
                   choice(a, 1, "rig", {"auto", "theirs", "ours"});
                   Take& take = take_argument(s.session(), a, 0);
-                  const auto& character =
-                      s.session().takes[static_cast<size_t>(whole_number(a, 0, "take"))].character;
+                  const auto& character = s.session().takes[whole_number(a, 0, "take")].character;
                   US_CHECK(a[1] != "theirs" || !character || character->rigged, take.name,
                            " has no skeleton of its own whose bones are known");
                   take.target.rig = a[1];
@@ -108,13 +107,13 @@ void add_rig(Commands& commands) {
   commands.add({"target.bone", "Bone of a joint", "TAKE JOINT BONE|none|auto", "", true, false,
                 [](Studio& s, const Arguments& a) {
                   BoneChoices& bones = take_argument(s.session(), a, 0).target.bones;
-                  const std::string joint = kJointNames[static_cast<size_t>(joint_argument(a, 1))];
+                  const std::string joint = kJointNames[joint_argument(a, 1)];
                   const std::string& bone = word(a, 2, "bone");
                   if (bone == "auto")
                     bones.erase(joint);
                   else
                     bones[joint] = bone == "none" ? "" : bone;
-                  check_bones(s, static_cast<size_t>(whole_number(a, 0, "take")));
+                  check_bones(s, whole_number(a, 0, "take"));
                 }});
   commands.add(
       {"target.bones_clear", "Bones as they were found", "TAKE", "", true, false,

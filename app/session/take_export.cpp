@@ -50,8 +50,8 @@ void add_clip(ExportInput& out, const Session& session, size_t k, const std::str
   const Take& take = session.document.takes[k];
   const TakeState& state = session.takes[k];
   CharacterClip clip{name, session.source.fps, {}};
-  for (const int frame : kept_frames(take.pose_edits, static_cast<int>(state.shown.poses.size()))) {
-    const size_t t = static_cast<size_t>(frame);
+  for (const int frame : kept_frames(take.pose_edits, state.shown.poses.size())) {
+    const size_t t = frame;
     clip.poses.push_back(state.shown.poses[t]);
     const auto& frames = session.source.frames;
     out.source_joints.push_back(t < frames.size() ? frames[t].joints : Joints::Zero());

@@ -4,6 +4,7 @@
 #include "app/session/command_sets.hpp"
 #include "app/session/follow.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 
 namespace understudy::app {
 namespace {
@@ -17,7 +18,7 @@ CameraState& camera(Session& session, int pane) {
   const CameraState first = view.cameras.empty() ? CameraState{} : view.cameras[0];
   if (static_cast<size_t>(pane) >= view.cameras.size())
     view.cameras.resize(static_cast<size_t>(pane) + 1, first);
-  return view.cameras[static_cast<size_t>(pane)];
+  return view.cameras[pane];
 }
 
 CameraState& active_camera(Studio& studio) {
@@ -82,15 +83,15 @@ Joints rest_as_shown(const Target& target) {
 std::vector<Joints> shown_joints(const Session& session) {
   std::vector<Joints> all;
   const int frame = shown_frame(session);
-  for (int pane = 0; pane <= static_cast<int>(session.takes.size()); ++pane) {
+  for (int pane = 0; pane <= ssize(session.takes); ++pane) {
     const Joints* const joints = pane_joints(session, pane, frame);
     const Vec3 offset = follow_offset(session, pane, frame);
     if (joints)
       all.push_back(joints->rowwise() - offset.transpose());
-    else if (pane > 0 && session.takes[static_cast<size_t>(pane - 1)].target)
-      all.push_back(session.takes[static_cast<size_t>(pane - 1)].target->joints);
+    else if (pane > 0 && session.takes[pane - 1].target)
+      all.push_back(session.takes[pane - 1].target->joints);
   }
-  const size_t selected = static_cast<size_t>(session.selected_take);
+  const size_t selected = session.selected_take;
   if (session.tool == Tool::TargetJoints && selected < session.takes.size() && session.takes[selected].target)
     all.push_back(rest_as_shown(*session.takes[selected].target));
   return all;
@@ -117,7 +118,7 @@ void fit(Studio& studio) {
   }
   high.y() += kTitle * (high.y() - low.y() + 2 * kBody);
   c.target = 0.5f * (low + high);
-  const int panes = std::max(1, pane_count(session.view, static_cast<int>(session.takes.size())));
+  const int panes = std::max(1, pane_count(session.view, session.takes.size()));
   const float aspect = kViewsAspect / static_cast<float>(panes);
   const float tall = 0.5f * (high.y() - low.y()) + kBody;
   const float wide = 0.5f * std::hypot(high.x() - low.x(), high.z() - low.z()) + kBody;
@@ -220,8 +221,7 @@ void add_panes(Commands& commands) {
                 [](Studio& s, const Arguments& a) {
                   Session& session = s.session();
                   const int pane = whole_number(a, 0, "pane");
-                  US_CHECK(pane >= 0 && pane <= static_cast<int>(session.document.takes.size()),
-                           "there is no view ", pane);
+                  US_CHECK(pane >= 0 && pane <= ssize(session.document.takes), "there is no view ", pane);
                   session.view.active_pane = pane;
                   if (pane > 0) session.selected_take = pane - 1;
                 }});

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "retarget/base/index.hpp"
+
 namespace understudy {
 
 /// The number of elements, signed: C++20's std::ssize.
@@ -14,7 +16,7 @@ constexpr std::ptrdiff_t ssize(const Container& container) {
 /// Pointer to the element at an index of any sign; null outside of the container.
 template <class Container>
 constexpr auto at_or_null(Container& container, std::ptrdiff_t index) -> decltype(&container[0]) {
-  return index >= 0 && index < ssize(container) ? &container[static_cast<std::size_t>(index)] : nullptr;
+  return index >= 0 && index < ssize(container) ? &container[index] : nullptr;
 }
 
 }  // namespace understudy

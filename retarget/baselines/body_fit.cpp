@@ -23,10 +23,9 @@ Points thinned(const Points& scan, int count) {
   for (Eigen::Index i = 0; i < scan.rows(); ++i)
     if (scan.row(i).allFinite()) good.push_back(i);
   US_CHECK(good.size() >= 32, "the scan has ", good.size(), " usable points");
-  const size_t kept = std::min(good.size(), static_cast<size_t>(count));
-  Points points(static_cast<Eigen::Index>(kept), 3);
-  for (size_t i = 0; i < kept; ++i)
-    points.row(static_cast<Eigen::Index>(i)) = scan.row(good[i * good.size() / kept]);
+  const size_t kept = std::min<size_t>(good.size(), count);
+  Points points(kept, 3);
+  for (size_t i = 0; i < kept; ++i) points.row(i) = scan.row(good[i * good.size() / kept]);
   return points;
 }
 
@@ -41,8 +40,8 @@ Rotations arms(float down) {
 
 FitBody::FitBody(const Body& body, int count) {
   const Points& all = body.template_vertices;
-  const auto kept = farthest_points(all, std::min<int>(count, static_cast<int>(all.rows())));
-  const auto n = static_cast<Eigen::Index>(kept.size());
+  const auto kept = farthest_points(all, std::min<int>(count, all.rows()));
+  const Eigen::Index n = kept.size();
   const Points all_normals = vertex_normals(all, body.faces);
   vertices.resize(n, 3);
   normals.resize(n, 3);
@@ -50,7 +49,7 @@ FitBody::FitBody(const Body& body, int count) {
   shape_dirs.resize(3 * n, body.shape_dirs.cols());
   if (body.pose_dirs) pose_dirs.resize(3 * n, body.pose_dirs->cols());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Index v = kept[static_cast<size_t>(i)];
+    const Eigen::Index v = kept[i];
     vertices.row(i) = all.row(v);
     normals.row(i) = all_normals.row(v);
     weights.row(i) = body.weights.row(v);
@@ -93,8 +92,7 @@ BodyFit::Posed BodyFit::posed(const State& state) const {
   flat += b.shape_dirs.leftCols(state.betas.size()) * state.betas;
   if (b.pose_dirs.size() > 0) flat += b.pose_dirs * pose_features(state.pose.local);
   p.rest = b.joints;
-  for (Eigen::Index k = 0; k < state.betas.size(); ++k)
-    p.rest += state.betas[k] * b.joint_dirs[static_cast<size_t>(k)];
+  for (Eigen::Index k = 0; k < state.betas.size(); ++k) p.rest += state.betas[k] * b.joint_dirs[k];
   p.skeleton = forward_kinematics(p.rest, state.pose);
   p.vertices = Points::Zero(rest.rows(), 3);
   p.normals = Points::Zero(rest.rows(), 3);
@@ -161,11 +159,10 @@ BodyFit::Equations BodyFit::data_equations(const State& state, const Posed& p, c
   std::vector<Points> lever(p.by_bone, p.by_bone + kJointCount);
   RowMatrix carried = body_->weights;
   for (int j = kJointCount - 1; j > 0; --j) {
-    lever[static_cast<size_t>(kParents[j])] += lever[static_cast<size_t>(j)];
+    lever[kParents[j]] += lever[j];
     carried.col(kParents[j]) += carried.col(j);
   }
-  for (int j = 0; j < kJointCount; ++j)
-    lever[static_cast<size_t>(j)] -= carried.col(j) * p.skeleton.joints.row(j);
+  for (int j = 0; j < kJointCount; ++j) lever[j] -= carried.col(j) * p.skeleton.joints.row(j);
   std::vector<Points> swelling;  // how each shape parameter moves each vertex
   for (int b = 0; b < shapes; ++b) {
     State more = state;
@@ -185,10 +182,8 @@ BodyFit::Equations BodyFit::data_equations(const State& state, const Posed& p, c
       r[row] = axis.dot(pairs[i].to - Vec3(p.vertices.row(v)));
       J.block<1, 3>(row, 0) = axis.transpose();
       for (int j = 0; j < kJointCount; ++j)
-        if (carried(v, j) > 0)
-          J.block<1, 3>(row, 3 + 3 * j) = Vec3(lever[static_cast<size_t>(j)].row(v)).cross(axis).transpose();
-      for (int b = 0; b < shapes; ++b)
-        J(row, 3 + kTurns + b) = swelling[static_cast<size_t>(b)].row(v).dot(axis);
+        if (carried(v, j) > 0) J.block<1, 3>(row, 3 + 3 * j) = Vec3(lever[j].row(v)).cross(axis).transpose();
+      for (int b = 0; b < shapes; ++b) J(row, 3 + kTurns + b) = swelling[b].row(v).dot(axis);
     }
   return {J.transpose() * J, J.transpose() * r};
 }

@@ -20,7 +20,7 @@ std::vector<int> folded_joints(const NpyArray& tree, const std::string& path) {
   for (int64_t j = 0; j < joints; ++j) {
     const float parent = tree.values[j];
     if (j < kJointCount) {
-      owner[j] = static_cast<int>(j);
+      owner[j] = j;
       US_CHECK(j == 0 || parent == static_cast<float>(kParents[j]), path, ": joint ", j, " hangs on joint ",
                parent, ", in SMPL's order it hangs on ", kParents[j]);
       continue;

@@ -94,7 +94,7 @@ class Performer {
     for (const Vec3& v : step.via) points.push_back(v * unit_ + Vec3(0, gap_, 0));
     points.push_back(to + Vec3(0, .10f * unit_, 0));
     points.push_back(to);
-    const int last = static_cast<int>(points.size()) - 1;
+    const int last = points.size() - 1;
     const float x = std::clamp(s, 0.0f, 1.0f) * static_cast<float>(last);
     const int i = std::min(static_cast<int>(x), last - 1);
     const float f = x - static_cast<float>(i);
@@ -233,7 +233,7 @@ Motion perform(const MotionPlan& plan, const Joints& rest, float fps) {
 
 float keyed(float t, std::initializer_list<std::pair<float, float>> keys) {
   const auto* k = keys.begin();
-  const int last = static_cast<int>(keys.size()) - 1;
+  const int last = keys.size() - 1;
   if (t <= k[0].first) return k[0].second;
   if (t >= k[last].first) return k[last].second;
   int i = 0;

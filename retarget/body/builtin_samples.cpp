@@ -59,7 +59,7 @@ std::string ply_bytes(const Points& points) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                       std::to_string(points.rows()) +
                       "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  append(bytes, points.data(), static_cast<size_t>(points.size()));
+  append(bytes, points.data(), points.size());
   return bytes;
 }
 
@@ -95,8 +95,8 @@ std::string glb_bytes(const Points& vertices, const Faces& faces, const std::str
   bytes += "JSON" + json;
   word(bytes, position_bytes + index_bytes);
   bytes += std::string("BIN\0", 4);
-  append(bytes, vertices.data(), static_cast<size_t>(vertices.size()));
-  append(bytes, faces.data(), static_cast<size_t>(faces.size()));
+  append(bytes, vertices.data(), vertices.size());
+  append(bytes, faces.data(), faces.size());
   return bytes;
 }
 
@@ -118,7 +118,7 @@ void write_scan(const ScanSample& sample, Written& written) {
   const int first = static_cast<int>(sample.from * kFps), count = static_cast<int>(sample.seconds * kFps);
   uint64_t hash = kFnvStart;
   for (int i = 0; i < count; ++i) {
-    const Pose& pose = motion.poses.at(static_cast<size_t>(first + i));
+    const Pose& pose = motion.poses.at(first + i);
     const Points vertices = linear_blend_skinning(body.vertices, body.weights, body.joints,
                                                   forward_kinematics(body.joints, pose));
     char name[32];

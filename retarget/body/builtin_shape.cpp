@@ -194,7 +194,7 @@ Joints mapped_joints(const Proportions& p) {
 Loft::Loft(int axis, std::vector<Section> s, float cap_low, float cap_high, float exponent)
     : axis_(axis), low_(s.front().t), high_(s.back().t), exponent_(exponent) {
   const auto field = [&s](int i, int k) { return (&s[i].t)[k]; };
-  const int last = static_cast<int>(s.size()) - 1;
+  const int last = s.size() - 1;
   const auto slope = [&](int i, int k) {
     const int a = std::max(i - 1, 0), b = std::min(i + 1, last);
     return (field(b, k) - field(a, k)) / (s[b].t - s[a].t);
@@ -290,7 +290,7 @@ void PersonShape::loft(Part part, Region region, int axis, const std::vector<Lof
   }
   if (mapped.front().t > mapped.back().t) std::reverse(mapped.begin(), mapped.end());
   primitive.blend = caps_exponent_blend[3];
-  primitive.loft = static_cast<int>(lofts_.size());
+  primitive.loft = lofts_.size();
   lofts_.emplace_back(axis, std::move(mapped), caps_exponent_blend[0] * thick, caps_exponent_blend[1] * thick,
                       caps_exponent_blend[2]);
   add(part, primitive);

@@ -186,7 +186,7 @@ class MarchingTetrahedra {
     const Corner& low = a.node < b.node ? a : b;
     const Corner& high = a.node < b.node ? b : a;
     const uint64_t key = static_cast<uint64_t>(low.node) << 32 | high.node;
-    const auto [found, is_new] = numbers_.try_emplace(key, static_cast<int>(soup.vertices.size()));
+    const auto [found, is_new] = numbers_.try_emplace(key, soup.vertices.size());
     if (is_new) {
       const float s = std::clamp(low.value / (low.value - high.value), 0.15f, 0.85f);
       soup.vertices.push_back(position(low) * (1 - s) + position(high) * s);
@@ -248,8 +248,8 @@ class Remesher {
     around_.resize(v_.size());
     for (auto& list : around_) list.clear();
     for (size_t f = 0; f < f_.size(); ++f)
-      if (alive(static_cast<int>(f)))
-        for (int v : f_[f]) around_[v].push_back(static_cast<int>(f));
+      if (alive(f))
+        for (int v : f_[f]) around_[v].push_back(f);
     size_.resize(v_.size());
     for (size_t v = 0; v < v_.size(); ++v) size_[v] = solid_.edge_length * solid_.detail(v_[v]);
   }
@@ -361,8 +361,7 @@ class Remesher {
   void flip_edges() {
     rebuild();
     std::vector<int> valence(v_.size());
-    for (size_t v = 0; v < v_.size(); ++v)
-      valence[v] = static_cast<int>(neighbours(static_cast<int>(v)).size());
+    for (size_t v = 0; v < v_.size(); ++v) valence[v] = neighbours(v).size();
     for (const Edge& e : edges()) try_flip(e.a, e.b, valence);
   }
 
@@ -416,9 +415,9 @@ class Remesher {
     rebuild();
     std::vector<Vec3> next = v_;
     for (size_t v = 0; v < v_.size(); ++v) {
-      const std::vector<int> ring = neighbours(static_cast<int>(v));
+      const std::vector<int> ring = neighbours(v);
       if (ring.empty()) continue;
-      const bool plane = on_plane(static_cast<int>(v));
+      const bool plane = on_plane(v);
       Vec3 middle = Vec3::Zero(), n = Vec3::Zero();
       int count = 0;
       for (int r : ring)
@@ -447,7 +446,7 @@ class Remesher {
       if (t[0] < 0) continue;
       for (int& v : t) {
         if (number[v] < 0) {
-          number[v] = static_cast<int>(result.vertices.size());
+          number[v] = result.vertices.size();
           result.vertices.push_back(v_[v]);
         }
         v = number[v];
@@ -465,7 +464,7 @@ class Remesher {
 };
 
 Mesh with_mirror_image(const TriangleSoup& half) {
-  const int count = static_cast<int>(half.vertices.size());
+  const int count = half.vertices.size();
   std::vector<int> image(count);
   int total = count;
   for (int v = 0; v < count; ++v) image[v] = half.vertices[v].x() > 0 ? total++ : v;

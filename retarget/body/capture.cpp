@@ -118,8 +118,7 @@ struct Hole {
 std::vector<Hole> holes(const Points& vertices, int count, Rng& rng) {
   std::vector<Hole> result;
   for (int i = 0; i < count; ++i)
-    result.push_back(
-        {vertices.row(rng.below(static_cast<int>(vertices.rows()))).transpose(), rng.uniform(.03f, .07f)});
+    result.push_back({vertices.row(rng.below(vertices.rows())).transpose(), rng.uniform(.03f, .07f)});
   return result;
 }
 
@@ -176,13 +175,12 @@ Mesh simulated_capture(const Points& vertices, const Faces& faces, int frame, co
     const Vec3 side(rng.normal(), rng.normal(), rng.normal());
     points.push_back(s.point + options.noise * rng.normal() * s.ray + 0.3f * options.noise * side);
   }
-  add_clutter(centre, size, static_cast<int>(points.size()), options, rng, points);
-  for (int i = static_cast<int>(points.size()) - 1; i > 0; --i)
-    std::swap(points[i], points[rng.below(i + 1)]);
+  add_clutter(centre, size, points.size(), options, rng, points);
+  for (int i = points.size() - 1; i > 0; --i) std::swap(points[i], points[rng.below(i + 1)]);
 
   Mesh cloud;
-  cloud.vertices.resize(static_cast<int>(points.size()), 3);
-  for (size_t i = 0; i < points.size(); ++i) cloud.vertices.row(static_cast<int>(i)) = points[i].transpose();
+  cloud.vertices.resize(points.size(), 3);
+  for (size_t i = 0; i < points.size(); ++i) cloud.vertices.row(i) = points[i].transpose();
   return cloud;
 }
 

@@ -83,8 +83,8 @@ Skirt::Skirt(const LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) 
   for (Eigen::Index i = 0; i < cloud.points.rows(); ++i) {
     const Vec3 x = cloud.points.row(i);
     const float d = down(x);
-    if (d < 0 || d >= 1 || !is_under_skirt(cloud.parts[static_cast<size_t>(i)])) continue;
-    auto& ring = reach_[static_cast<size_t>(d * kRings)];
+    if (d < 0 || d >= 1 || !is_under_skirt(cloud.parts[i])) continue;
+    auto& ring = reach_[d * kRings];
     for (size_t k = 0; k < kWays; ++k) {
       const float turn = kTurn * static_cast<float>(k) / kWays;
       ring[k] = std::max(ring[k], (x - top_).dot(std::cos(turn) * front_ + std::sin(turn) * side_));
@@ -127,7 +127,7 @@ void Skirt::sample(LabelledPoints& cloud, const PosedSkeleton& truth, float per_
     points.push_back(top_ + d * length_ * axis_ + r * (std::cos(turn) * front_ + std::sin(turn) * side_));
   }
   Points rows(points.size(), 3);
-  for (size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+  for (size_t i = 0; i < points.size(); ++i) rows.row(i) = points[i].transpose();
   std::vector<int> parts = nearest_parts(rows, truth.joints);
   for (int& part : parts)
     if (!is_under_skirt(part)) part = Pelvis;
@@ -166,21 +166,20 @@ void wear_skirt(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) {
   const float per_square_metre = density(cloud, truth);
   const Skirt skirt(cloud, truth, rng);
   if (!skirt.fits()) return;
-  keep_where(cloud, [&](int i) {
-    return !is_under_skirt(cloud.parts[static_cast<size_t>(i)]) || !skirt.hides(cloud.points.row(i));
-  });
+  keep_where(cloud,
+             [&](int i) { return !is_under_skirt(cloud.parts[i]) || !skirt.hides(cloud.points.row(i)); });
   skirt.sample(cloud, truth, per_square_metre, rng);
 }
 
 void wear_coat(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) {
   const float thick = rng.uniform(0.01f, 0.06f);
   for (Eigen::Index i = 0; i < cloud.points.rows(); ++i) {
-    const int part = cloud.parts[static_cast<size_t>(i)];
+    const int part = cloud.parts[i];
     if (!is_coated(part)) continue;
     const Vec3 x = cloud.points.row(i), from = at(truth, part);
     // Away from the bone, which leads along the T-pose's x in arms and y in the trunk.
     const bool is_arm = part >= LeftCollar;
-    const Vec3 bone = truth.global[static_cast<size_t>(part)].col(is_arm ? 0 : 1);
+    const Vec3 bone = truth.global[part].col(is_arm ? 0 : 1);
     const Vec3 way = (x - from) - (x - from).dot(bone) * bone;
     if (way.norm() > 1e-4f) cloud.points.row(i) += (thick * way.normalized()).transpose();
   }
@@ -207,7 +206,7 @@ void wear_hair(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) {
     points.erase(std::remove_if(points.begin(), points.end(), in_face), points.end());
     keep_where(cloud, [&](int i) {
       const Vec3 x = cloud.points.row(i), own = (head.transpose() * (x - centre)).cwiseQuotient(axes);
-      return cloud.parts[static_cast<size_t>(i)] != Head || in_face(x) || own.norm() > 1;
+      return cloud.parts[i] != Head || in_face(x) || own.norm() > 1;
     });
   }
   append(cloud, points, std::vector<int>(points.size(), Head));
@@ -216,7 +215,7 @@ void wear_hair(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) {
 void hold_thing(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) {
   const bool left = rng.chance(0.5f);
   const int wrist = left ? LeftWrist : RightWrist;
-  const Mat3& hand = truth.global[static_cast<size_t>(wrist)];
+  const Mat3& hand = truth.global[wrist];
   const float size = leg_length(truth.joints) / 0.85f;
   const Vec3 palm = at(truth, wrist) + size * hand * Vec3(left ? 0.08f : -0.08f, -0.02f, 0);
   std::vector<Vec3> points;

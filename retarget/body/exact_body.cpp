@@ -54,7 +54,7 @@ PosedPerson posed(const ExactPerson& person, const Rotations64& local, const Vec
 double percentile(std::vector<double> values, double percent) {
   std::sort(values.begin(), values.end());
   const double at = percent / 100 * static_cast<double>(values.size() - 1);
-  const size_t below = static_cast<size_t>(at), above = std::min(below + 1, values.size() - 1);
+  const size_t below = at, above = std::min(below + 1, values.size() - 1);
   return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
@@ -127,7 +127,7 @@ ExactMotion read_exact_motion(const std::string& path, int start, int frames) {
   const double step = std::max(1.0, frame_rate(npz, path) / 30);
   ExactMotion motion;
   for (int i = 0; i < frames; ++i) {
-    const auto t = static_cast<Eigen::Index>(std::lround((start + i) * step));
+    const Eigen::Index t = std::lround((start + i) * step);
     if (t >= angles.rows()) break;
     Rotations64 local;
     for (int j = 0; j < kJointCount; ++j)

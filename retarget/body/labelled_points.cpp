@@ -10,8 +10,8 @@ void keep_rows(LabelledPoints& cloud, const std::vector<int>& kept) {
   Points points(kept.size(), 3);
   std::vector<int> parts(kept.size());
   for (size_t i = 0; i < kept.size(); ++i) {
-    points.row(static_cast<Eigen::Index>(i)) = cloud.points.row(kept[i]);
-    parts[i] = cloud.parts[static_cast<size_t>(kept[i])];
+    points.row(i) = cloud.points.row(kept[i]);
+    parts[i] = cloud.parts[kept[i]];
   }
   cloud.points = std::move(points);
   cloud.parts = std::move(parts);
@@ -26,17 +26,17 @@ bool is_last(int joint) {
 }  // namespace
 
 std::vector<int> nearest_parts(const Points& points, const Joints& joints) {
-  std::vector<int> parts(static_cast<size_t>(points.rows()), Pelvis);
+  std::vector<int> parts(points.rows(), Pelvis);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     float nearest = std::numeric_limits<float>::max();
     for (int j = 1; j < kJointCount; ++j) {
-      const int p = kParents[static_cast<size_t>(j)];
+      const int p = kParents[j];
       const Vec3 point = points.row(i), upper = joints.row(p), lower = joints.row(j);
       const float along = along_segment(point, upper, lower);
       const float squared = (point - upper - along * (lower - upper)).squaredNorm();
       if (squared >= nearest) continue;
       nearest = squared;
-      parts[static_cast<size_t>(i)] = along >= 1 && is_last(j) ? j : p;
+      parts[i] = along >= 1 && is_last(j) ? j : p;
     }
   }
   return parts;

@@ -49,11 +49,11 @@ void lose_limb(LabelledPoints& cloud, Rng& rng) {
   constexpr std::array<int, 8> kFirst = {LeftElbow, RightElbow, LeftWrist, RightWrist,
                                          LeftKnee,  RightKnee,  LeftAnkle, RightAnkle};
   std::array<bool, kJointCount + 1> lost{};
-  lost[static_cast<size_t>(kFirst[static_cast<size_t>(rng.below(kFirst.size()))])] = true;
-  for (size_t j = 1; j < kJointCount; ++j) lost[j] = lost[j] || lost[static_cast<size_t>(kParents[j])];
+  lost[kFirst[rng.below(kFirst.size())]] = true;
+  for (size_t j = 1; j < kJointCount; ++j) lost[j] = lost[j] || lost[kParents[j]];
   std::vector<int> kept;
   for (size_t i = 0; i < cloud.parts.size(); ++i)
-    if (!lost[static_cast<size_t>(cloud.parts[i])]) kept.push_back(static_cast<int>(i));
+    if (!lost[cloud.parts[i]]) kept.push_back(i);
   if (kept.size() >= kLeast) keep_rows(cloud, kept);
 }
 

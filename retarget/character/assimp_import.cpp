@@ -68,10 +68,10 @@ void AssimpConverter::add_nodes() {
 }
 
 void AssimpConverter::add_skin(const aiMesh& mesh, CharacterPart& part) {
-  const auto [entry, is_new] = skin_of_node_.try_emplace(part.node, static_cast<int>(out_.skins.size()));
+  const auto [entry, is_new] = skin_of_node_.try_emplace(part.node, out_.skins.size());
   if (is_new) out_.skins.emplace_back();
   part.skin = entry->second;
-  CharacterSkin& skin = out_.skins[static_cast<size_t>(part.skin)];
+  CharacterSkin& skin = out_.skins[part.skin];
   std::vector<std::vector<std::pair<float, int>>> influences(mesh.mNumVertices);
   for (unsigned b = 0; b < mesh.mNumBones; ++b) {
     const aiBone& bone = *mesh.mBones[b];
@@ -99,8 +99,8 @@ void AssimpConverter::add_skin(const aiMesh& mesh, CharacterPart& part) {
     float sum = 0;
     for (size_t k = 0; k < std::min<size_t>(8, list.size()); ++k) sum += list[k].first;
     for (size_t k = 0; k < std::min<size_t>(8, list.size()); ++k) {
-      part.joints(v, static_cast<int>(k)) = list[k].second;
-      part.weights(v, static_cast<int>(k)) = list[k].first / sum;
+      part.joints(v, k) = list[k].second;
+      part.weights(v, k) = list[k].first / sum;
     }
     if (list.empty()) part.weights(v, 0) = 1;
   }
@@ -138,7 +138,7 @@ void AssimpConverter::add_part(const aiMesh& mesh, int node) {
   for (unsigned s = 0; s < mesh.mNumAnimMeshes; ++s)
     if (mesh.mAnimMeshes[s]->HasPositions() && mesh.mAnimMeshes[s]->mNumVertices == mesh.mNumVertices)
       part.shapes.push_back(rows_of(mesh.mAnimMeshes[s]->mVertices, mesh.mNumVertices) - part.vertices);
-  auto& weights = out_.nodes[static_cast<size_t>(node)].shape_weights;
+  auto& weights = out_.nodes[node].shape_weights;
   weights.resize(std::max(weights.size(), part.shapes.size()), 0.0f);
   if (mesh.HasBones()) add_skin(mesh, part);
   out_.parts.push_back(std::move(part));
@@ -157,7 +157,7 @@ std::string AssimpConverter::texture_bytes(const std::string& name) const {
 }
 
 int AssimpConverter::add_texture(const std::string& name) {
-  const auto [entry, is_new] = texture_by_name_.try_emplace(name, static_cast<int>(out_.textures.size()));
+  const auto [entry, is_new] = texture_by_name_.try_emplace(name, out_.textures.size());
   if (!is_new) return entry->second;
   CharacterImage image;
   image.name = std::filesystem::path(name).stem().string();
@@ -237,8 +237,7 @@ Character AssimpConverter::convert() {
   for (unsigned m = 0; m < scene_.mNumMaterials; ++m) add_material(*scene_.mMaterials[m]);
   add_nodes();
   for (size_t n = 0; n < nodes_.size(); ++n)
-    for (unsigned m = 0; m < nodes_[n]->mNumMeshes; ++m)
-      add_part(*scene_.mMeshes[nodes_[n]->mMeshes[m]], static_cast<int>(n));
+    for (unsigned m = 0; m < nodes_[n]->mNumMeshes; ++m) add_part(*scene_.mMeshes[nodes_[n]->mMeshes[m]], n);
   for (unsigned a = 0; a < scene_.mNumAnimations; ++a) add_animation(*scene_.mAnimations[a]);
   // A node has one skin: meshes without bones beside others with bones follow the first.
   for (auto& part : out_.parts) {

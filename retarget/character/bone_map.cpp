@@ -72,7 +72,7 @@ struct Rig {
   std::vector<Vec3> place;              // of each node in the bind pose
   std::vector<bool> is_bone;            // may be mapped
   std::vector<std::vector<int>> below;  // children
-  int parent(int n) const { return character.nodes[static_cast<size_t>(n)].parent; }
+  int parent(int n) const { return character.nodes[n].parent; }
   bool is_above(int a, int n) const {
     for (; n >= 0; n = parent(n))
       if (n == a) return true;
@@ -98,11 +98,10 @@ Rig make_rig(const Character& character, const std::vector<Mat4>& bind) {
   rig.below.resize(bind.size());
   for (size_t n = 0; n < bind.size(); ++n) {
     rig.place.push_back(bind[n].topRightCorner<3, 1>());
-    if (rig.parent(static_cast<int>(n)) >= 0)
-      rig.below[static_cast<size_t>(rig.parent(static_cast<int>(n)))].push_back(static_cast<int>(n));
+    if (rig.parent(n) >= 0) rig.below[rig.parent(n)].push_back(n);
   }
   for (const auto& skin : character.skins)
-    for (const int joint : skin.joints) rig.is_bone[static_cast<size_t>(joint)] = true;
+    for (const int joint : skin.joints) rig.is_bone[joint] = true;
   return rig;
 }
 
@@ -115,7 +114,7 @@ NamedBones named_bones(const Rig& rig) {
   for (size_t n = 0; n < rig.place.size(); ++n) {
     if (!rig.is_bone[n]) continue;
     const BoneName name = parse_bone_name(rig.character.nodes[n].name);
-    if (!name.what.empty()) found.emplace(std::make_pair(name.side, name.what), static_cast<int>(n));
+    if (!name.what.empty()) found.emplace(std::make_pair(name.side, name.what), n);
   }
   return found;
 }
@@ -129,8 +128,8 @@ int find(const NamedBones& bones, int side, std::initializer_list<const char*> n
 void put(BoneMap& map, int joint, int node, float confidence) {
   if (node < 0 || map.has(joint)) return;
   if (std::find(map.node.begin(), map.node.end(), node) != map.node.end()) return;
-  map.node[static_cast<size_t>(joint)] = node;
-  map.confidence[static_cast<size_t>(joint)] = confidence;
+  map.node[joint] = node;
+  map.confidence[joint] = confidence;
 }
 
 void map_limbs_by_name(const NamedBones& bones, BoneMap& map) {
@@ -151,7 +150,7 @@ void map_limbs_by_name(const NamedBones& bones, BoneMap& map) {
 }
 
 int node_of(const BoneMap& map, int joint) {
-  return map.node[static_cast<size_t>(joint)];
+  return map.node[joint];
 }
 
 /// Pelvis, spine and neck from where limbs and head hang, whatever they are called.
@@ -181,11 +180,10 @@ void map_trunk(const Rig& rig, float confidence, BoneMap& map) {
   for (int next = top; next >= 0;) {
     top = next;
     next = -1;
-    for (const int child : rig.below[static_cast<size_t>(top)]) {
+    for (const int child : rig.below[top]) {
       const bool is_arm =
           rig.is_above(child, node_of(map, LeftShoulder)) || rig.is_above(child, node_of(map, RightShoulder));
-      if (rig.is_bone[static_cast<size_t>(child)] && !is_arm &&
-          (next < 0 || rig.place[static_cast<size_t>(child)].y() > rig.place[static_cast<size_t>(next)].y()))
+      if (rig.is_bone[child] && !is_arm && (next < 0 || rig.place[child].y() > rig.place[next].y()))
         next = child;
     }
   }
@@ -199,10 +197,10 @@ void map_trunk(const Rig& rig, float confidence, BoneMap& map) {
 
 void trust_hierarchy(const Rig& rig, BoneMap& map) {
   for (int j = 0; j < kJointCount; ++j) {
-    int p = kParents[static_cast<size_t>(j)];
-    while (p >= 0 && !map.has(p)) p = kParents[static_cast<size_t>(p)];
+    int p = kParents[j];
+    while (p >= 0 && !map.has(p)) p = kParents[p];
     if (map.has(j) && (p < 0 || rig.is_above(node_of(map, p), node_of(map, j))))
-      map.confidence[static_cast<size_t>(j)] = std::min(1.0f, map.confidence[static_cast<size_t>(j)] * 1.25f);
+      map.confidence[j] = std::min(1.0f, map.confidence[j] * 1.25f);
   }
 }
 
@@ -210,9 +208,7 @@ void trust_hierarchy(const Rig& rig, BoneMap& map) {
 // much shorter than the next two is the collar.
 void map_arm(const Rig& rig, int chest, int end, int right, BoneMap& map) {
   std::vector<int> chain = rig.path(chest, end);
-  const auto length = [&](size_t i) {
-    return (rig.place[static_cast<size_t>(chain[i + 1])] - rig.place[static_cast<size_t>(chain[i])]).norm();
-  };
+  const auto length = [&](size_t i) { return (rig.place[chain[i + 1]] - rig.place[chain[i]]).norm(); };
   if (chain.size() >= 4 && length(0) < 0.75f * length(1)) {
     put(map, LeftCollar + right, chain[0], 0.5f);
     chain.erase(chain.begin());
@@ -223,9 +219,7 @@ void map_arm(const Rig& rig, int chest, int end, int right, BoneMap& map) {
 
 void map_leg(const Rig& rig, int pelvis, int end, int right, BoneMap& map) {
   std::vector<int> chain = rig.path(pelvis, end);
-  const auto drop = [&](size_t i) {
-    return rig.place[static_cast<size_t>(chain[i])].y() - rig.place[static_cast<size_t>(chain[i + 1])].y();
-  };
+  const auto drop = [&](size_t i) { return rig.place[chain[i]].y() - rig.place[chain[i + 1]].y(); };
   if (chain.size() >= 4 && drop(0) < 0.4f * drop(1)) chain.erase(chain.begin());  // a link to the hip
   for (size_t i = 0; i < std::min<size_t>(4, chain.size()); ++i)
     put(map, std::array<int, 4>{LeftHip, LeftKnee, LeftAnkle, LeftFoot}[i] + right, chain[i], 0.5f);
@@ -234,10 +228,10 @@ void map_leg(const Rig& rig, int pelvis, int end, int right, BoneMap& map) {
 /// The horizontal direction that the bones spread most in: across the body.
 Vec3 across(const Rig& rig, const std::vector<int>& bones) {
   Vec3 mean = Vec3::Zero();
-  for (const int n : bones) mean += rig.place[static_cast<size_t>(n)] / static_cast<float>(bones.size());
+  for (const int n : bones) mean += rig.place[n] / static_cast<float>(bones.size());
   Eigen::Matrix2f spread = Eigen::Matrix2f::Zero();
   for (const int n : bones) {
-    const Vec3 d = rig.place[static_cast<size_t>(n)] - mean;
+    const Vec3 d = rig.place[n] - mean;
     const Eigen::Vector2f flat(d.x(), d.z());
     spread += flat * flat.transpose();
   }
@@ -249,9 +243,7 @@ Vec3 across(const Rig& rig, const std::vector<int>& bones) {
 int furthest(const Rig& rig, const std::vector<int>& bones, const Vec3& direction) {
   int best = -1;
   for (const int n : bones)
-    if (best < 0 || rig.place[static_cast<size_t>(n)].dot(direction) >
-                        rig.place[static_cast<size_t>(best)].dot(direction))
-      best = n;
+    if (best < 0 || rig.place[n].dot(direction) > rig.place[best].dot(direction)) best = n;
   return best;
 }
 
@@ -260,24 +252,22 @@ BoneMap map_by_place(const Rig& rig) {
   std::vector<int> bones, ends;
   for (size_t n = 0; n < rig.place.size(); ++n) {
     if (!rig.is_bone[n]) continue;
-    bones.push_back(static_cast<int>(n));
+    bones.push_back(n);
     const auto& below = rig.below[n];
-    if (std::none_of(below.begin(), below.end(), [&](int c) { return rig.is_bone[static_cast<size_t>(c)]; }))
-      ends.push_back(static_cast<int>(n));
+    if (std::none_of(below.begin(), below.end(), [&](int c) { return rig.is_bone[c]; })) ends.push_back(n);
   }
   if (ends.size() < 5) return map;
   const Vec3 side = across(rig, bones);
   Vec3 mean = Vec3::Zero();
-  for (const int n : bones) mean += rig.place[static_cast<size_t>(n)] / static_cast<float>(bones.size());
+  for (const int n : bones) mean += rig.place[n] / static_cast<float>(bones.size());
   std::vector<int> a, b;  // ends on both sides
-  for (const int n : ends) (side.dot(rig.place[static_cast<size_t>(n)] - mean) > 0 ? a : b).push_back(n);
+  for (const int n : ends) (side.dot(rig.place[n] - mean) > 0 ? a : b).push_back(n);
   std::array<int, 2> foot = {furthest(rig, a, -Vec3::UnitY()), furthest(rig, b, -Vec3::UnitY())};
   std::array<int, 2> hand = {furthest(rig, a, side), furthest(rig, b, -side)};
   if (foot[0] < 0 || foot[1] < 0) return map;
   // Toes lie before the ankles: which way the rig looks, and so which side is its left.
   Vec3 toes = Vec3::Zero();
-  for (const int f : foot)
-    toes += rig.place[static_cast<size_t>(f)] - rig.place[static_cast<size_t>(std::max(0, rig.parent(f)))];
+  for (const int f : foot) toes += rig.place[f] - rig.place[std::max(0, rig.parent(f))];
   if (Vec3::UnitY().cross(toes).dot(side) < 0) {  // up x forward points to the left
     std::swap(foot[0], foot[1]);
     std::swap(hand[0], hand[1]);
@@ -285,8 +275,8 @@ BoneMap map_by_place(const Rig& rig) {
   const int pelvis = rig.common(foot[0], foot[1]), chest = rig.common(hand[0], hand[1]);
   if (pelvis < 0 || chest < 0 || !rig.is_above(pelvis, chest)) return map;
   for (const int right : {0, 1}) {
-    map_leg(rig, pelvis, foot[static_cast<size_t>(right)], right, map);
-    map_arm(rig, chest, hand[static_cast<size_t>(right)], right, map);
+    map_leg(rig, pelvis, foot[right], right, map);
+    map_arm(rig, chest, hand[right], right, map);
   }
   map_trunk(rig, 0.5f, map);
   return map;
@@ -310,12 +300,12 @@ void apply_choices(const Rig& rig, const BoneChoices& choices, BoneMap& map) {
     const auto at = std::find(kJointNames.begin(), kJointNames.end(), joint);
     US_CHECK(at != kJointNames.end(), rig.character.called(), ": the map names a joint '", excerpt(joint),
              "', which does not exist");
-    const auto j = static_cast<size_t>(at - kJointNames.begin());
+    const size_t j = at - kJointNames.begin();
     map.node[j] = -1;
     map.confidence[j] = 0;
     if (bone.empty()) continue;
     for (size_t n = 0; n < rig.place.size() && map.node[j] < 0; ++n)
-      if (rig.character.nodes[n].name == bone) map.node[j] = static_cast<int>(n);
+      if (rig.character.nodes[n].name == bone) map.node[j] = n;
     US_CHECK(map.node[j] >= 0, rig.character.called(), ": the map names a bone '", excerpt(bone),
              "', which the character does not have");
     map.confidence[j] = 1;
@@ -326,8 +316,7 @@ void apply_choices(const Rig& rig, const BoneChoices& choices, BoneMap& map) {
       if (map.node[a] < 0 || map.node[a] != map.node[b]) continue;
       const bool both = choices.count(kJointNames[a]) > 0 && choices.count(kJointNames[b]) > 0;
       US_CHECK(!both, rig.character.called(), ": the map gives the bone '",
-               rig.character.nodes[static_cast<size_t>(map.node[a])].name, "' to both ", kJointNames[a],
-               " and ", kJointNames[b]);
+               rig.character.nodes[map.node[a]].name, "' to both ", kJointNames[a], " and ", kJointNames[b]);
       const size_t loser = choices.count(kJointNames[a]) > 0 ? b : a;  // what the user chose stands
       map.node[loser] = -1;
       map.confidence[loser] = 0;
@@ -408,7 +397,7 @@ std::string to_table(const BoneMap& map, const Character& character) {
   std::string out = "joint            bone                             sure   (" + map.how + ")\n";
   for (size_t j = 0; j < kJointCount; ++j) {
     const int n = map.node[j];
-    std::string name = n < 0 ? "-" : character.nodes[static_cast<size_t>(n)].name;
+    std::string name = n < 0 ? "-" : character.nodes[n].name;
     if (n >= 0 && name.empty()) name = "node " + std::to_string(n);
     char line[160];
     std::snprintf(line, sizeof line, "%-16s %-32.60s %3.0f %%\n", kJointNames[j], name.c_str(),

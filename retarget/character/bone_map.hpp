@@ -20,7 +20,7 @@ struct BoneMap {
     node.fill(-1);
     confidence.fill(0);
   }
-  bool has(int joint) const { return node[static_cast<size_t>(joint)] >= 0; }
+  bool has(int joint) const { return node[joint] >= 0; }
   int count() const;
   /// Both hips, knees, shoulders and elbows: enough to drive the rig.
   bool usable() const;

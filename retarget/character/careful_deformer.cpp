@@ -91,7 +91,7 @@ SafeBinding safe_binding(const Mesh& mesh, const Joints& joints, const RowMatrix
   const std::vector<bool> rigid = keep_parts_rigid(mesh, distances.leg, out.weights);
   const auto kept = std::count(rigid.begin(), rigid.end(), true);
   for (size_t v = 0; v < rigid.size(); ++v)
-    if (rigid[v]) out.hard[static_cast<Eigen::Index>(v)] = 1;
+    if (rigid[v]) out.hard[v] = 1;
   if (kept > 0)
     out.note += (out.note.empty() ? "" : "; ") +
                 std::to_string(std::max(

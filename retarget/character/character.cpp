@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -63,29 +64,29 @@ Mat4 bind_to_world(const Mat4& root_world, const Mat4& inverse_bind, const Mat4*
 // Where the bones of one skin were bound; `placed` knows those of the skins before it.
 void place_skin(const Character& character, int skin_index, const std::vector<Mat4>& world,
                 std::vector<bool>& placed, std::vector<Mat4>& bind) {
-  const CharacterSkin& skin = character.skins[static_cast<size_t>(skin_index)];
+  const CharacterSkin& skin = character.skins[skin_index];
   const Mat4* mesh_world = nullptr;
   for (const auto& part : character.parts)
-    if (part.skin == skin_index) mesh_world = &world[static_cast<size_t>(part.node)];
+    if (part.skin == skin_index) mesh_world = &world[part.node];
   int root = -1;
   Mat4 B = Mat4::Identity();
   bool known = false;
   for (size_t j = 0; j < skin.joints.size() && !known; ++j) {
     if (!invertible(skin.inverse_bind[j])) continue;
-    const auto node = static_cast<size_t>(skin.joints[j]);
+    const size_t node = skin.joints[j];
     if (placed[node]) {
       B = bind[node] * skin.inverse_bind[j];
       known = true;
     }
-    if (root < 0 || skin.joints[j] < skin.joints[static_cast<size_t>(root)]) root = static_cast<int>(j);
+    if (root < 0 || skin.joints[j] < skin.joints[root]) root = j;
   }
   if (!known && root >= 0) {
-    const auto j = static_cast<size_t>(root);
-    const Mat4& root_world = world[static_cast<size_t>(skin.joints[j])];
+    const size_t j = root;
+    const Mat4& root_world = world[skin.joints[j]];
     if (invertible(root_world)) B = bind_to_world(root_world, skin.inverse_bind[j], mesh_world);
   }
   for (size_t j = 0; j < skin.joints.size(); ++j) {
-    const auto node = static_cast<size_t>(skin.joints[j]);
+    const size_t node = skin.joints[j];
     if (placed[node]) continue;
     placed[node] = true;
     bind[node] = invertible(skin.inverse_bind[j]) ? Mat4(B * skin.inverse_bind[j].inverse()) : world[node];
@@ -99,7 +100,7 @@ std::vector<float> track_at(const CharacterTrack& track, float seconds, size_t w
   const auto key = [&](size_t i) { return track.values.data() + i * step + skip; };
   const size_t last = track.times.size() - 1;
   const auto above = std::upper_bound(track.times.begin(), track.times.end(), seconds);
-  const auto next = static_cast<size_t>(above - track.times.begin());
+  const size_t next = above - track.times.begin();
   if (next == 0) return {key(0), key(0) + width};
   if (next > last || track.interpolation == TrackInterpolation::Step)
     return {key(next - 1), key(next - 1) + width};
@@ -130,19 +131,18 @@ Points part_in_world(const Character& character, const CharacterPart& part, cons
       if ((*shape_weights)[s] != 0) rest += (*shape_weights)[s] * part.shapes[s];
   Points out(rest.rows(), 3);
   if (part.skin < 0) {
-    const Mat4& M = world[static_cast<size_t>(part.node)];
+    const Mat4& M = world[part.node];
     out = (rest * M.topLeftCorner<3, 3>().transpose()).rowwise() + M.topRightCorner<3, 1>().transpose();
     return out;
   }
-  const CharacterSkin& skin = character.skins[static_cast<size_t>(part.skin)];
+  const CharacterSkin& skin = character.skins[part.skin];
   std::vector<Mat4> bones;
   for (size_t j = 0; j < skin.joints.size(); ++j)
-    bones.push_back(world[static_cast<size_t>(skin.joints[j])] * skin.inverse_bind[j]);
+    bones.push_back(world[skin.joints[j]] * skin.inverse_bind[j]);
   for (Eigen::Index v = 0; v < rest.rows(); ++v) {
     Eigen::Matrix<float, 3, 4> M = Eigen::Matrix<float, 3, 4>::Zero();
     for (Eigen::Index k = 0; k < part.joints.cols(); ++k)
-      if (part.weights(v, k) > 0)
-        M += part.weights(v, k) * bones[static_cast<size_t>(part.joints(v, k))].topRows<3>();
+      if (part.weights(v, k) > 0) M += part.weights(v, k) * bones[part.joints(v, k)].topRows<3>();
     out.row(v) = (M.leftCols<3>() * rest.row(v).transpose() + M.col(3)).transpose();
   }
   return out;
@@ -151,11 +151,10 @@ Points part_in_world(const Character& character, const CharacterPart& part, cons
 void check_part(const Character& character, const CharacterPart& part, const std::string& path) {
   const Eigen::Index count = part.vertices.rows();
   const auto fits = [&](Eigen::Index rows) { return rows == 0 || rows == count; };
-  US_CHECK(part.node >= 0 && part.node < static_cast<int>(character.nodes.size()), path, ": the part '",
-           part.name, "' is on no node");
-  US_CHECK(part.skin < static_cast<int>(character.skins.size()) &&
-               part.material < static_cast<int>(character.materials.size()),
-           path, ": the part '", part.name, "' names a skin or material that is not there");
+  US_CHECK(part.node >= 0 && part.node < ssize(character.nodes), path, ": the part '", part.name,
+           "' is on no node");
+  US_CHECK(part.skin < ssize(character.skins) && part.material < ssize(character.materials), path,
+           ": the part '", part.name, "' names a skin or material that is not there");
   US_CHECK(part.vertices.allFinite(), path, ": a vertex of the part '", part.name, "' is not finite");
   US_CHECK(fits(part.normals.rows()) && fits(part.tangents.rows()) && fits(part.colors.rows()), path,
            ": the part '", part.name, "' has more or fewer normals, tangents or colours than vertices");
@@ -168,7 +167,7 @@ void check_part(const Character& character, const CharacterPart& part, const std
   US_CHECK(part.faces.rows() == 0 || (part.faces.minCoeff() >= 0 && part.faces.maxCoeff() < count), path,
            ": a face of the part '", part.name, "' names a vertex that is not there");
   if (part.skin < 0) return;
-  const auto bones = static_cast<int>(character.skins[static_cast<size_t>(part.skin)].joints.size());
+  const auto bones = static_cast<int>(character.skins[part.skin].joints.size());
   US_CHECK(part.joints.rows() == count && part.weights.rows() == count &&
                part.joints.cols() == part.weights.cols() && part.joints.cols() <= kMaxInfluences,
            path, ": the skin of the part '", part.name, "' does not fit its vertices");
@@ -218,7 +217,7 @@ std::vector<Mat4> Character::world() const {
   std::vector<Mat4> out;
   for (const auto& node : nodes) {
     const Mat4 local = node.local.matrix();
-    out.push_back(node.parent < 0 ? local : Mat4(out[static_cast<size_t>(node.parent)] * local));
+    out.push_back(node.parent < 0 ? local : Mat4(out[node.parent] * local));
   }
   return out;
 }
@@ -228,7 +227,7 @@ void check_character(const Character& character, const std::string& path) {
   for (size_t n = 0; n < character.nodes.size(); ++n) {
     const CharacterNode& node = character.nodes[n];
     US_CHECK(node.parent < static_cast<int>(n), path, ": its nodes are not in order");
-    depth.push_back(node.parent < 0 ? 1 : depth[static_cast<size_t>(node.parent)] + 1);
+    depth.push_back(node.parent < 0 ? 1 : depth[node.parent] + 1);
     US_CHECK(depth.back() <= kMaxDepth, path, ": its nodes are more than ", kMaxDepth, " levels deep");
     US_CHECK(node.local.matrix().allFinite(), path, ": the transform of the node '", node.name,
              "' is not finite");
@@ -237,8 +236,8 @@ void check_character(const Character& character, const std::string& path) {
     US_CHECK(!skin.joints.empty() && skin.inverse_bind.size() == skin.joints.size(), path, ": the skin '",
              skin.name, "' has no joints, or another number of bind matrices");
     for (const int joint : skin.joints)
-      US_CHECK(joint >= 0 && joint < static_cast<int>(character.nodes.size()), path, ": the skin '",
-               skin.name, "' names a node that is not there");
+      US_CHECK(joint >= 0 && joint < ssize(character.nodes), path, ": the skin '", skin.name,
+               "' names a node that is not there");
     for (const Mat4& matrix : skin.inverse_bind)
       US_CHECK(matrix.allFinite(), path, ": a bind matrix of the skin '", skin.name, "' is not finite");
   }
@@ -252,7 +251,7 @@ Points posed_vertices(const Character& character, const std::vector<Mat4>& world
   Points out(character.vertex_count(), 3);
   Eigen::Index at = 0;
   for (const auto& part : character.parts) {
-    const auto* weights = shape_weights.empty() ? nullptr : &shape_weights[static_cast<size_t>(part.node)];
+    const auto* weights = shape_weights.empty() ? nullptr : &shape_weights[part.node];
     out.middleRows(at, part.vertices.rows()) = part_in_world(character, part, world, weights);
     at += part.vertices.rows();
   }
@@ -265,11 +264,10 @@ PosedNodes nodes_at(const Character& character, int animation, float seconds) {
   std::vector<std::vector<float>> shapes;
   for (const auto& node : character.nodes) shapes.push_back(node.shape_weights);
   if (animation >= 0) {
-    US_CHECK(animation < static_cast<int>(character.animations.size()), "there is no animation number ",
-             animation);
-    for (const auto& track : character.animations[static_cast<size_t>(animation)].tracks) {
-      Transform& local = posed.nodes[static_cast<size_t>(track.node)].local;
-      std::vector<float>& weights = shapes[static_cast<size_t>(track.node)];
+    US_CHECK(animation < ssize(character.animations), "there is no animation number ", animation);
+    for (const auto& track : character.animations[animation].tracks) {
+      Transform& local = posed.nodes[track.node].local;
+      std::vector<float>& weights = shapes[track.node];
       if (track.path == TrackPath::Shapes) {
         weights = track_at(track, seconds, weights.size());
       } else if (track.path == TrackPath::Rotation) {
@@ -294,13 +292,12 @@ BindPose bind_pose(const Character& character) {
   BindPose out;
   out.is_bone.assign(character.nodes.size(), false);
   out.nodes = world;
-  for (size_t s = 0; s < character.skins.size(); ++s)
-    place_skin(character, static_cast<int>(s), world, out.is_bone, out.nodes);
+  for (size_t s = 0; s < character.skins.size(); ++s) place_skin(character, s, world, out.is_bone, out.nodes);
   std::vector<bool> moved = out.is_bone;
   for (size_t n = 0; n < character.nodes.size(); ++n) {  // what hangs on a bone goes with it
     const int p = character.nodes[n].parent;
-    if (moved[n] || p < 0 || !moved[static_cast<size_t>(p)]) continue;
-    out.nodes[n] = out.nodes[static_cast<size_t>(p)] * character.nodes[n].local.matrix();
+    if (moved[n] || p < 0 || !moved[p]) continue;
+    out.nodes[n] = out.nodes[p] * character.nodes[n].local.matrix();
     moved[n] = true;
   }
   out.vertices = posed_vertices(character, out.nodes);
@@ -310,8 +307,8 @@ BindPose bind_pose(const Character& character) {
 Points MergedSurface::in_file_order(const Points& rows) const {
   US_CHECK(rows.rows() == mesh.vertices.rows(), "the surface has ", mesh.vertices.rows(), " vertices, not ",
            rows.rows());
-  Points out(static_cast<Eigen::Index>(in_file.size()), 3);
-  for (size_t i = 0; i < in_file.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = rows.row(in_file[i]);
+  Points out(in_file.size(), 3);
+  for (size_t i = 0; i < in_file.size(); ++i) out.row(i) = rows.row(in_file[i]);
   return out;
 }
 
@@ -320,8 +317,8 @@ MergedSurface merged_surface(const Character& character, const Points& positions
            " positions for ", character.vertex_count(), " vertices");
   MergedSurface out;
   std::unordered_map<std::string, int> known;
-  known.reserve(static_cast<size_t>(positions.rows()));
-  out.map.reserve(static_cast<size_t>(positions.rows()));
+  known.reserve(positions.rows());
+  out.map.reserve(positions.rows());
   std::vector<Eigen::Index> first;  // of each merged vertex, the row it came from
   std::vector<int> corners;
   Eigen::Index at = 0;
@@ -333,16 +330,16 @@ MergedSurface merged_surface(const Character& character, const Points& positions
       const int mover = part.skin < 0 ? -1 - part.node : part.skin;
       key.append(reinterpret_cast<const char*>(&mover), sizeof mover);
       if (part.skin >= 0) {
-        const auto k = static_cast<size_t>(part.joints.cols());
+        const size_t k = part.joints.cols();
         key.append(reinterpret_cast<const char*>(part.joints.row(v).data()), k * sizeof(int));
         key.append(reinterpret_cast<const char*>(part.weights.row(v).data()), k * sizeof(float));
       }
-      const auto [entry, is_new] = known.try_emplace(std::move(key), static_cast<int>(first.size()));
+      const auto [entry, is_new] = known.try_emplace(std::move(key), first.size());
       if (is_new) first.push_back(at + v);
       out.map.push_back(entry->second);
     }
     for (Eigen::Index f = 0; f < part.faces.size(); ++f)
-      corners.push_back(out.map[static_cast<size_t>(at + part.faces.data()[f])]);
+      corners.push_back(out.map[at + part.faces.data()[f]]);
     at += part.vertices.rows();
   }
   out.in_file = out.map;
@@ -351,11 +348,10 @@ MergedSurface merged_surface(const Character& character, const Points& positions
     US_CHECK(numbers.size() == out.map.size(), character.called(), ": has ", out.map.size(),
              " vertices, but ", numbers.size(), " numbers of them");
     out.in_file.assign(static_cast<size_t>(*std::max_element(numbers.begin(), numbers.end())) + 1, 0);
-    for (size_t i = 0; i < numbers.size(); ++i) out.in_file[static_cast<size_t>(numbers[i])] = out.map[i];
+    for (size_t i = 0; i < numbers.size(); ++i) out.in_file[numbers[i]] = out.map[i];
   }
-  out.mesh.vertices.resize(static_cast<Eigen::Index>(first.size()), 3);
-  for (size_t i = 0; i < first.size(); ++i)
-    out.mesh.vertices.row(static_cast<Eigen::Index>(i)) = positions.row(first[i]);
+  out.mesh.vertices.resize(first.size(), 3);
+  for (size_t i = 0; i < first.size(); ++i) out.mesh.vertices.row(i) = positions.row(first[i]);
   out.mesh.faces = Eigen::Map<const Faces>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
   return out;
 }

@@ -36,8 +36,7 @@ Mat3 turned_to_t_pose(const PreparedCharacter& c, Eigen::Index vertex) {
   if (c.pose_weights.rows() == 0) return Mat3::Identity();
   Mat3 turned = Mat3::Zero();
   for (int j = 0; j < kJointCount; ++j)
-    if (c.pose_weights(vertex, j) > 0)
-      turned += c.pose_weights(vertex, j) * c.pose.to_rest[static_cast<size_t>(j)];
+    if (c.pose_weights(vertex, j) > 0) turned += c.pose_weights(vertex, j) * c.pose.to_rest[j];
   return turned;
 }
 
@@ -47,18 +46,17 @@ std::vector<Mat3> to_t_pose_maps(const PreparedCharacter& c, const CharacterPart
   const Mat3 world = c.to_world.scale * c.to_world.R;
   std::vector<Mat3> bones;
   if (part.skin >= 0) {
-    const CharacterSkin& skin = c.character.skins[static_cast<size_t>(part.skin)];
+    const CharacterSkin& skin = c.character.skins[part.skin];
     for (size_t j = 0; j < skin.joints.size(); ++j)
-      bones.push_back(
-          (nodes[static_cast<size_t>(skin.joints[j])] * skin.inverse_bind[j]).topLeftCorner<3, 3>());
+      bones.push_back((nodes[skin.joints[j]] * skin.inverse_bind[j]).topLeftCorner<3, 3>());
   }
   std::vector<Mat3> out;
   for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
     Mat3 bound = Mat3::Zero();
-    if (part.skin < 0) bound = nodes[static_cast<size_t>(part.node)].topLeftCorner<3, 3>();
+    if (part.skin < 0) bound = nodes[part.node].topLeftCorner<3, 3>();
     for (Eigen::Index k = 0; k < part.joints.cols(); ++k)
-      if (part.weights(v, k) > 0) bound += part.weights(v, k) * bones[static_cast<size_t>(part.joints(v, k))];
-    out.push_back(turned_to_t_pose(c, c.surface.map[static_cast<size_t>(first + v)]) * world * bound);
+      if (part.weights(v, k) > 0) bound += part.weights(v, k) * bones[part.joints(v, k)];
+    out.push_back(turned_to_t_pose(c, c.surface.map[first + v]) * world * bound);
   }
   return out;
 }
@@ -111,7 +109,7 @@ CharacterAnimation animation_of(const std::string& name, const Sampled& sampled,
   CharacterAnimation animation;
   animation.name = name;
   for (size_t at = 0; at < sampled.nodes.size(); ++at) {
-    const Transform& still = out.nodes[static_cast<size_t>(sampled.nodes[at])].local;
+    const Transform& still = out.nodes[sampled.nodes[at]].local;
     if (travel(sampled, at, still) > kStill)
       animation.tracks.push_back(track_of(sampled, at, TrackPath::Translation));
     animation.tracks.push_back(track_of(sampled, at, TrackPath::Rotation));
@@ -121,7 +119,7 @@ CharacterAnimation animation_of(const std::string& name, const Sampled& sampled,
     const size_t own = out.nodes[n].shape_weights.size(), added = sampled.shapes[0].size();
     if (own < added) continue;  // a node without parts
     CharacterTrack track;
-    track.node = static_cast<int>(n);
+    track.node = n;
     track.path = TrackPath::Shapes;
     track.times = sampled.times;
     for (const auto& weights : sampled.shapes) {
@@ -161,8 +159,8 @@ class TheirRig final : public Animator {
     const std::vector<Mat3> maps = to_t_pose_maps(source_, part, first, source_.bind.nodes);
     Points out(part.vertices.rows(), 3);
     for (Eigen::Index v = 0; v < out.rows(); ++v) {
-      const Vec3 d = shape.row(source_.surface.map[static_cast<size_t>(first + v)]).transpose();
-      const Mat3& M = maps[static_cast<size_t>(v)];
+      const Vec3 d = shape.row(source_.surface.map[first + v]).transpose();
+      const Mat3& M = maps[v];
       out.row(v) =
           (std::abs(M.determinant()) > 1e-30f ? Vec3(M.inverse() * d) : Vec3(Vec3::Zero())).transpose();
     }
@@ -195,12 +193,12 @@ void add_root(Character& character, const Similarity& to_world) {
 void lift_skinned_nodes(Character& character) {
   std::vector<bool> is_needed(character.nodes.size(), false);
   for (const auto& node : character.nodes)
-    if (node.parent >= 0) is_needed[static_cast<size_t>(node.parent)] = true;
+    if (node.parent >= 0) is_needed[node.parent] = true;
   for (const auto& skin : character.skins)
-    for (const int joint : skin.joints) is_needed[static_cast<size_t>(joint)] = true;
+    for (const int joint : skin.joints) is_needed[joint] = true;
   for (const auto& part : character.parts) {
-    if (part.skin < 0 || is_needed[static_cast<size_t>(part.node)]) continue;
-    CharacterNode& node = character.nodes[static_cast<size_t>(part.node)];
+    if (part.skin < 0 || is_needed[part.node]) continue;
+    CharacterNode& node = character.nodes[part.node];
     node.parent = -1;
     node.local = Transform();
   }
@@ -217,7 +215,7 @@ Character TheirRig::still() {
   // The bind pose becomes the pose that the file is opened in.
   for (size_t n = 0; n < out.nodes.size(); ++n) {
     const int p = out.nodes[n].parent;
-    const Mat4& above = p < 0 ? Mat4(Mat4::Identity()) : source_.bind.nodes[static_cast<size_t>(p)];
+    const Mat4& above = p < 0 ? Mat4(Mat4::Identity()) : source_.bind.nodes[p];
     const Mat4 local = above.inverse() * source_.bind.nodes[n];
     if (!local.isApprox(out.nodes[n].local.matrix(), 1e-6f)) out.nodes[n].local = Transform::from(local);
   }
@@ -242,9 +240,9 @@ Sampled TheirRig::sample(const CharacterClip& clip) const {
   const Joints about = moved_bind_joints(source_.pose, rest);
   for (size_t n = 0; n < driver_.size(); ++n) {
     if (driver_[n] < 0) continue;
-    out.nodes.push_back(static_cast<int>(n));
-    const Mat3 above = parent_[n] < 0 ? Mat3(Mat3::Identity())
-                                      : Mat3(bind_[static_cast<size_t>(parent_[n])].topLeftCorner<3, 3>());
+    out.nodes.push_back(n);
+    const Mat3 above =
+        parent_[n] < 0 ? Mat3(Mat3::Identity()) : Mat3(bind_[parent_[n]].topLeftCorner<3, 3>());
     out.metres.push_back(std::cbrt(std::abs(above.determinant())));
   }
   std::vector<Mat4> world(bind_.size());
@@ -253,13 +251,13 @@ Sampled TheirRig::sample(const CharacterClip& clip) const {
     std::vector<Transform> frame;
     for (size_t n = 0; n < bind_.size(); ++n) {
       const int p = parent_[n], j = driver_[n];
-      const Mat4 above = p < 0 ? Mat4(Mat4::Identity()) : world[static_cast<size_t>(p)];
-      const Mat4 above_bind = p < 0 ? Mat4(Mat4::Identity()) : bind_[static_cast<size_t>(p)];
+      const Mat4 above = p < 0 ? Mat4(Mat4::Identity()) : world[p];
+      const Mat4 above_bind = p < 0 ? Mat4(Mat4::Identity()) : bind_[p];
       if (j < 0) {
         world[n] = above * above_bind.inverse() * bind_[n];
         continue;
       }
-      const Mat3 R = posed.global[static_cast<size_t>(j)] * source_.pose.to_rest[static_cast<size_t>(j)];
+      const Mat3 R = posed.global[j] * source_.pose.to_rest[j];
       const Vec3 t = posed.joints.row(j).transpose() - R * about.row(j).transpose();
       world[n] = rigid(R, t) * bind_[n];
       frame.push_back(Transform::from(above.inverse() * world[n]));
@@ -277,8 +275,7 @@ class OurRig final : public Animator {
   Sampled sample(const CharacterClip& clip) const override;
   Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const override {
     Points out(part.vertices.rows(), 3);
-    for (Eigen::Index v = 0; v < out.rows(); ++v)
-      out.row(v) = shape.row(source_.surface.map[static_cast<size_t>(first + v)]);
+    for (Eigen::Index v = 0; v < out.rows(); ++v) out.row(v) = shape.row(source_.surface.map[first + v]);
     return out;
   }
 
@@ -290,9 +287,8 @@ class OurRig final : public Animator {
 void OurRig::to_t_pose(CharacterPart& part, Eigen::Index first) const {
   const std::vector<Mat3> maps = to_t_pose_maps(source_, part, first, source_.bind.nodes);
   for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
-    const Mat3& M = maps[static_cast<size_t>(v)];
-    part.vertices.row(v) =
-        source_.target.mesh.vertices.row(source_.surface.map[static_cast<size_t>(first + v)]);
+    const Mat3& M = maps[v];
+    part.vertices.row(v) = source_.target.mesh.vertices.row(source_.surface.map[first + v]);
     if (part.normals.rows() > 0) {
       const Mat3 N = std::abs(M.determinant()) > 1e-30f ? Mat3(M.inverse().transpose()) : M;
       part.normals.row(v) = (N * part.normals.row(v).transpose()).normalized().transpose();
@@ -311,14 +307,14 @@ void OurRig::add_skin(CharacterPart& part, Eigen::Index first) const {
   part.joints.setZero(part.vertices.rows(), influences_);
   part.weights.setZero(part.vertices.rows(), influences_);
   for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
-    const auto row = weights.row(source_.surface.map[static_cast<size_t>(first + v)]);
+    const auto row = weights.row(source_.surface.map[first + v]);
     std::array<int, kJointCount> order;
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return row[a] > row[b]; });
     for (int k = 0; k < influences_; ++k) {
-      const float w = std::max(0.0f, row[order[static_cast<size_t>(k)]]);
+      const float w = std::max(0.0f, row[order[k]]);
       if (w < 1e-5f && k > 0) break;
-      part.joints(v, k) = order[static_cast<size_t>(k)];
+      part.joints(v, k) = order[k];
       part.weights(v, k) = w;
     }
     part.weights.row(v) /= part.weights.row(v).sum();
@@ -341,13 +337,13 @@ Character OurRig::still() {
   const Joints rest = moved_.value_or(source_.target.joints);
   const Pose back = source_.pose.back();
   for (int j = 0; j < kJointCount; ++j) {
-    const int p = kParents[static_cast<size_t>(j)];
+    const int p = kParents[j];
     CharacterNode node;
-    node.name = kJointNames[static_cast<size_t>(j)];
+    node.name = kJointNames[j];
     node.parent = p;
     node.local.translation =
         p < 0 ? Vec3(rest.row(Pelvis).transpose()) : Vec3((rest.row(j) - rest.row(p)).transpose());
-    node.local.rotation = Eigen::Quaternionf(back.local[static_cast<size_t>(j)]).normalized();
+    node.local.rotation = Eigen::Quaternionf(back.local[j]).normalized();
     out.nodes.push_back(node);
     skin.joints.push_back(j);
     skin.inverse_bind.push_back(rigid(Mat3::Identity(), -rest.row(j).transpose()));
@@ -356,11 +352,11 @@ Character OurRig::still() {
   std::map<int, int> node_of;
   Eigen::Index first = 0;
   for (CharacterPart part : from.parts) {
-    const auto [entry, is_new] = node_of.try_emplace(part.node, static_cast<int>(out.nodes.size()));
+    const auto [entry, is_new] = node_of.try_emplace(part.node, out.nodes.size());
     if (is_new) {
       CharacterNode node;
-      node.name = from.nodes[static_cast<size_t>(part.node)].name;
-      node.shape_weights = from.nodes[static_cast<size_t>(part.node)].shape_weights;
+      node.name = from.nodes[part.node].name;
+      node.shape_weights = from.nodes[part.node].shape_weights;
       out.nodes.push_back(node);
     }
     to_t_pose(part, first);
@@ -380,10 +376,10 @@ Sampled OurRig::sample(const CharacterClip& clip) const {
   for (size_t i = 0; i < clip.poses.size(); ++i) {
     std::vector<Transform> frame(kJointCount);
     for (int j = 0; j < kJointCount; ++j) {
-      const int p = kParents[static_cast<size_t>(j)];
-      Transform& local = frame[static_cast<size_t>(j)];
+      const int p = kParents[j];
+      Transform& local = frame[j];
       local.translation = p < 0 ? clip.poses[i].root : Vec3((rest.row(j) - rest.row(p)).transpose());
-      local.rotation = Eigen::Quaternionf(clip.poses[i].local[static_cast<size_t>(j)]).normalized();
+      local.rotation = Eigen::Quaternionf(clip.poses[i].local[j]).normalized();
     }
     out.local.push_back(std::move(frame));
     out.times.push_back(static_cast<float>(static_cast<double>(i) / clip.fps));
@@ -439,9 +435,9 @@ void add_shapes(const CorrectiveShapes& shapes, const Animator& animator, const 
   std::vector<bool> seen(out.nodes.size(), false);
   for (size_t p = 0; p < out.parts.size(); ++p) {
     CharacterPart& part = out.parts[p];
-    std::vector<float>& weights = out.nodes[static_cast<size_t>(part.node)].shape_weights;
-    if (!seen[static_cast<size_t>(part.node)]) weights.resize(weights.size() + shapes.shapes.size(), 0.0f);
-    seen[static_cast<size_t>(part.node)] = true;
+    std::vector<float>& weights = out.nodes[part.node].shape_weights;
+    if (!seen[part.node]) weights.resize(weights.size() + shapes.shapes.size(), 0.0f);
+    seen[part.node] = true;
     part.shapes.resize(weights.size() - shapes.shapes.size(), Points::Zero(part.vertices.rows(), 3));
     for (const Points& shape : shapes.shapes)
       part.shapes.push_back(animator.shape_of_part(shape, source.character.parts[p], first));
@@ -473,10 +469,9 @@ void reduce_animation(const CharacterAnimation& full, float metres, float lever_
                       const std::vector<float>& metres_of, CharacterAnimation& out) {
   out.tracks.clear();
   for (const auto& track : full.tracks) {
-    const float tolerance = track.path == TrackPath::Rotation ? metres / lever_m
-                            : track.path == TrackPath::Translation
-                                ? metres / metres_of[static_cast<size_t>(track.node)]
-                                : 0.002f;
+    const float tolerance = track.path == TrackPath::Rotation      ? metres / lever_m
+                            : track.path == TrackPath::Translation ? metres / metres_of[track.node]
+                                                                   : 0.002f;
     out.tracks.push_back(reduced(track, tolerance));
   }
 }
@@ -487,7 +482,7 @@ void reduce_keys(const PreparedCharacter& source, float limit_mm, Character& out
   for (const Mat4& M : out.world())
     metres_of.push_back(std::cbrt(std::abs(M.topLeftCorner<3, 3>().determinant())));
   for (size_t n = out.nodes.size(); n-- > 0;)
-    metres_of[n] = out.nodes[n].parent < 0 ? 1.0f : metres_of[static_cast<size_t>(out.nodes[n].parent)];
+    metres_of[n] = out.nodes[n].parent < 0 ? 1.0f : metres_of[out.nodes[n].parent];
   const Character full = out;
   float tolerance = 0.5f * limit_mm / 1000;
   for (int round = 0; round < 8; ++round) {
@@ -498,8 +493,7 @@ void reduce_keys(const PreparedCharacter& source, float limit_mm, Character& out
       const auto& times = full.animations[a].tracks[0].times;
       const size_t step = std::max<size_t>(1, times.size() / kCompared);
       for (size_t i = 0; i < times.size(); i += step) {
-        const Points difference = vertices_at(out, static_cast<int>(a), times[i]) -
-                                  vertices_at(full, static_cast<int>(a), times[i]);
+        const Points difference = vertices_at(out, a, times[i]) - vertices_at(full, a, times[i]);
         worst = std::max(worst, 1000 * difference.rowwise().norm().maxCoeff());
       }
     }
@@ -529,12 +523,10 @@ ExportCost measure(const Character& written, const PreparedCharacter& source, co
         progress((static_cast<float>(a) + static_cast<float>(i) / static_cast<float>(poses.size())) /
                  static_cast<float>(clips.size()));
       const Points shown = screen.deform(poses[i]);
-      const Points seen = vertices_at(written, static_cast<int>(a),
-                                      static_cast<float>(static_cast<double>(i) / clips[a].fps));
+      const Points seen = vertices_at(written, a, static_cast<float>(static_cast<double>(i) / clips[a].fps));
       for (Eigen::Index v = 0; v < seen.rows(); ++v) {
         const double mm =
-            1000.0 *
-            static_cast<double>((seen.row(v) - shown.row(source.surface.map[static_cast<size_t>(v)])).norm());
+            1000.0 * static_cast<double>((seen.row(v) - shown.row(source.surface.map[v])).norm());
         sum += mm;
         ++count;
         cost.largest_mm = std::max(cost.largest_mm, mm);

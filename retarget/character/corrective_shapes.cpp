@@ -18,11 +18,10 @@ Eigen::Map<const Eigen::VectorXf> flat(const Points& points) {
 
 /// Directions in which the offsets differ, of unit length, the largest first.
 std::vector<Points> principal(const std::vector<Points>& seen, int count) {
-  const auto n = static_cast<Eigen::Index>(seen.size());
+  const Eigen::Index n = seen.size();
   Eigen::MatrixXf gram(n, n);  // O O^T with the offsets as rows of O
   for (Eigen::Index a = 0; a < n; ++a)
-    for (Eigen::Index b = 0; b <= a; ++b)
-      gram(a, b) = gram(b, a) = flat(seen[static_cast<size_t>(a)]).dot(flat(seen[static_cast<size_t>(b)]));
+    for (Eigen::Index b = 0; b <= a; ++b) gram(a, b) = gram(b, a) = flat(seen[a]).dot(flat(seen[b]));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(gram);
   const float least = std::max(1e-10f, 1e-6f * solver.eigenvalues()[n - 1]);
   std::vector<Points> out;
@@ -30,7 +29,7 @@ std::vector<Points> principal(const std::vector<Points>& seen, int count) {
     const Eigen::Index at = n - 1 - k;  // largest last
     if (solver.eigenvalues()[at] < least) break;
     Points shape = Points::Zero(seen[0].rows(), 3);
-    for (Eigen::Index i = 0; i < n; ++i) shape += solver.eigenvectors()(i, at) * seen[static_cast<size_t>(i)];
+    for (Eigen::Index i = 0; i < n; ++i) shape += solver.eigenvectors()(i, at) * seen[i];
     out.push_back(shape / std::sqrt(solver.eigenvalues()[at]));
   }
   return out;

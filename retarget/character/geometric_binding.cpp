@@ -39,9 +39,7 @@ using Segments = std::array<std::vector<std::pair<Vec3, Vec3>>, kJointCount>;
 Segments bones_of(const Joints& joints) {
   Segments out;
   const auto at = [&](int j) -> Vec3 { return joints.row(j).transpose(); };
-  const auto add = [&](int j, const Vec3& from, const Vec3& to) {
-    out[static_cast<size_t>(j)].emplace_back(from, to);
-  };
+  const auto add = [&](int j, const Vec3& from, const Vec3& to) { out[j].emplace_back(from, to); };
   const float leg = leg_length(joints);
   for (const int j : {LeftHip, RightHip, LeftKnee, RightKnee, LeftAnkle, RightAnkle})
     add(j, at(j), at(j + 3));
@@ -97,7 +95,7 @@ MiddleCut cut_between(const Mesh& mesh, const Legs& legs) {
   MiddleCut cut;
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
     std::array<Vec3, 3> p;
-    for (int c = 0; c < 3; ++c) p[static_cast<size_t>(c)] = mesh.vertices.row(mesh.faces(f, c)).transpose();
+    for (int c = 0; c < 3; ++c) p[c] = mesh.vertices.row(mesh.faces(f, c)).transpose();
     const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
     if (!(std::abs(normal.z()) > 0.55f)) continue;  // the inner sides of thighs look sideways
     float low = 1e9f, high = -1e9f, z = 0;
@@ -116,8 +114,7 @@ MiddleCut cut_between(const Mesh& mesh, const Legs& legs) {
     cut.faces.push_back(f);
     auto& side = z / static_cast<float>(crossings) > legs.depth ? cut.front : cut.back;
     const int first = std::max(0, static_cast<int>(legs.slice(high)));
-    for (int s = first; s < kSlices && static_cast<float>(s) <= legs.slice(low); ++s)
-      side[static_cast<size_t>(s)] = true;
+    for (int s = first; s < kSlices && static_cast<float>(s) <= legs.slice(low); ++s) side[s] = true;
   }
   return cut;
 }
@@ -128,20 +125,20 @@ std::vector<bool> cloth_of(const Mesh& mesh, const Legs& legs, const MiddleCut& 
     const float y = mesh.vertices(v, 1);
     return y > hem - 0.03f * legs.length && y < legs.top + 0.06f * legs.length;
   };
-  std::vector<bool> cloth(static_cast<size_t>(mesh.vertices.rows()), false);
+  std::vector<bool> cloth(mesh.vertices.rows(), false);
   for (const Eigen::Index f : cut.faces)
     for (int c = 0; c < 3; ++c)
-      if (in_band(mesh.faces(f, c))) cloth[static_cast<size_t>(mesh.faces(f, c))] = true;
+      if (in_band(mesh.faces(f, c))) cloth[mesh.faces(f, c)] = true;
   for (bool grown = true; grown;) {
     grown = false;
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
       int marked = 0;
-      for (int c = 0; c < 3; ++c) marked += cloth[static_cast<size_t>(mesh.faces(f, c))] ? 1 : 0;
+      for (int c = 0; c < 3; ++c) marked += cloth[mesh.faces(f, c)] ? 1 : 0;
       if (marked == 0 || marked == 3) continue;
       for (int c = 0; c < 3; ++c) {
         const int v = mesh.faces(f, c);
-        if (cloth[static_cast<size_t>(v)] || !in_band(v)) continue;
-        cloth[static_cast<size_t>(v)] = grown = true;
+        if (cloth[v] || !in_band(v)) continue;
+        cloth[v] = grown = true;
       }
     }
   }
@@ -152,17 +149,16 @@ std::vector<bool> cloth_of(const Mesh& mesh, const Legs& legs, const MiddleCut& 
     radius = std::hypot(x, z);
     const int angle = static_cast<int>((std::atan2(z, x) / (2 * kPi) + 0.5f) * kAngles) % kAngles;
     const int slice = std::clamp(static_cast<int>(legs.slice(mesh.vertices(v, 1))) + 4, 0, kSlices + 7);
-    return outermost[static_cast<size_t>(slice)][static_cast<size_t>(angle)];
+    return outermost[slice][angle];
   };
   float radius = 0;
   for (int v = 0; v < mesh.vertices.rows(); ++v)
-    if (cloth[static_cast<size_t>(v)]) {
+    if (cloth[v]) {
       float& known = bin(v, radius);
       known = std::max(known, radius);
     }
   for (int v = 0; v < mesh.vertices.rows(); ++v)
-    if (cloth[static_cast<size_t>(v)] && bin(v, radius) * 0.7f > radius)
-      cloth[static_cast<size_t>(v)] = false;
+    if (cloth[v] && bin(v, radius) * 0.7f > radius) cloth[v] = false;
   return cloth;
 }
 
@@ -175,25 +171,25 @@ bool lies_along_one_bone(const Eigen::Ref<const Eigen::RowVectorXf>& weights) {
 
 /// Ways along the edges from one vertex, [V]; what is not joined with it is out of reach.
 std::vector<float> surface_ways(const Mesh& mesh, int from) {
-  std::vector<std::vector<int>> next(static_cast<size_t>(mesh.vertices.rows()));
+  std::vector<std::vector<int>> next(mesh.vertices.rows());
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
     for (int c = 0; c < 3; ++c) {
-      next[static_cast<size_t>(mesh.faces(f, c))].push_back(mesh.faces(f, (c + 1) % 3));
-      next[static_cast<size_t>(mesh.faces(f, (c + 1) % 3))].push_back(mesh.faces(f, c));
+      next[mesh.faces(f, c)].push_back(mesh.faces(f, (c + 1) % 3));
+      next[mesh.faces(f, (c + 1) % 3)].push_back(mesh.faces(f, c));
     }
   std::vector<float> way(next.size(), kFar);
   using Entry = std::pair<float, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  way[static_cast<size_t>(from)] = 0;
+  way[from] = 0;
   open.push({0.0f, from});
   while (!open.empty()) {
     const auto [here, v] = open.top();
     open.pop();
-    if (here > way[static_cast<size_t>(v)]) continue;
-    for (const int n : next[static_cast<size_t>(v)]) {
+    if (here > way[v]) continue;
+    for (const int n : next[v]) {
       const float there = here + (mesh.vertices.row(n) - mesh.vertices.row(v)).norm();
-      if (there >= way[static_cast<size_t>(n)]) continue;
-      way[static_cast<size_t>(n)] = there;
+      if (there >= way[n]) continue;
+      way[n] = there;
       open.push({there, n});
     }
   }
@@ -210,7 +206,7 @@ struct Slice {
 /// Slices from `top` down, `step` apart, of what lies no further than `reach` from the plane x = middle.
 std::vector<Slice> slices_down(const Mesh& mesh, float top, float step, int count, float middle,
                                float reach) {
-  std::vector<Slice> out(static_cast<size_t>(count));
+  std::vector<Slice> out(count);
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
     for (int c = 0; c < 3; ++c) {
       Vec3 a = mesh.vertices.row(mesh.faces(f, c)).transpose();
@@ -222,7 +218,7 @@ std::vector<Slice> slices_down(const Mesh& mesh, float top, float step, int coun
            k < count && top - step * static_cast<float>(k) >= b.y(); ++k) {
         const Vec3 at = a + (a.y() - top + step * static_cast<float>(k)) / (a.y() - b.y()) * (b - a);
         if (std::abs(at.x() - middle) > reach) continue;
-        Slice& slice = out[static_cast<size_t>(k)];
+        Slice& slice = out[k];
         slice.low_x = std::min(slice.low_x, at.x());
         slice.high_x = std::max(slice.high_x, at.x());
         slice.low_z = std::min(slice.low_z, at.z());
@@ -260,7 +256,7 @@ std::optional<HeadAndNeck> find_big_head(const Mesh& mesh, const Joints& joints)
   float largest = 0, smallest = kFar, wide = 0;
   Slice head;
   for (int k = 1; k < count; ++k) {
-    const Slice& slice = slices[static_cast<size_t>(k)];
+    const Slice& slice = slices[k];
     if (neck >= 0 && slice.size() > 1.25f * smallest) break;  // the shoulders
     largest = std::max(largest, slice.size());
     if (neck < 0 && slice.width() > wide) {
@@ -274,7 +270,7 @@ std::optional<HeadAndNeck> find_big_head(const Mesh& mesh, const Joints& joints)
   const float across = 0.8f * std::abs(joints(LeftElbow, 0) - joints(RightElbow, 0));
   if (neck < 0 || wide < kBigHead * leg || step * static_cast<float>(neck) < kBigHead * leg || wide > across)
     return std::nullopt;
-  const Slice& at = slices[static_cast<size_t>(neck)];
+  const Slice& at = slices[neck];
   const Vec3 middle(0.5f * (at.low_x + at.high_x), top - step * static_cast<float>(neck),
                     0.5f * (at.low_z + at.high_z));
   return HeadAndNeck{crown, middle, head.low_x, head.high_x};
@@ -314,13 +310,11 @@ Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody
       plain[j] = std::min(plain[j], from_segment(p, s.first, s.second).norm());
     }
   }
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return straight[static_cast<size_t>(a)] < straight[static_cast<size_t>(b)];
-  });
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return straight[a] < straight[b]; });
   Eigen::Matrix<float, 1, kJointCount> out;
   float nearest = kFar;
   for (const int joint : order) {
-    const auto j = static_cast<size_t>(joint);
+    const size_t j = joint;
     float detour = 0;
     // Ways along a grid are longer than straight ones by a tenth at most.
     if (nearest == kFar || straight[j] < kBeyond * (nearest + 0.06f * leg))
@@ -332,8 +326,7 @@ Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody
 }
 
 int root_of(std::vector<int>& parent, int v) {
-  while (parent[static_cast<size_t>(v)] != v)
-    v = parent[static_cast<size_t>(v)] = parent[static_cast<size_t>(parent[static_cast<size_t>(v)])];
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
   return v;
 }
 
@@ -347,8 +340,7 @@ BoneDistances bone_distances(const VoxelBody& body, const Joints& joints, const 
   const Segments bones = bones_of(joints);
   Ways ways;
   in_halves(kJointCount, [&](Eigen::Index first, Eigen::Index last) {
-    for (auto j = static_cast<size_t>(first); j < static_cast<size_t>(last); ++j)
-      ways[j] = body.ways_from(bones[j]);
+    for (size_t j = first; j < static_cast<size_t>(last); ++j) ways[j] = body.ways_from(bones[j]);
   });
   BoneDistances out;
   out.leg = leg_length(joints);
@@ -366,7 +358,7 @@ std::optional<Skirt> find_skirt(const Mesh& mesh, const Joints& joints) {
   const MiddleCut cut = cut_between(mesh, legs);
   int last = 2;
   const auto closed = [&](int s, bool both) {
-    const bool front = cut.front[static_cast<size_t>(s)], back = cut.back[static_cast<size_t>(s)];
+    const bool front = cut.front[s], back = cut.back[s];
     return both ? front && back : front || back;
   };
   while (last < kSlices && closed(last, last < 0.12f * kSlices)) ++last;
@@ -378,11 +370,11 @@ std::optional<Skirt> find_skirt(const Mesh& mesh, const Joints& joints) {
   // Where the cloth is wide, from one thigh to the other is far.
   float widest = 1.3f * legs.half_width;
   for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v)
-    if (cloth[static_cast<size_t>(v)]) widest = std::max(widest, std::abs(mesh.vertices(v, 0) - legs.middle));
+    if (cloth[v]) widest = std::max(widest, std::abs(mesh.vertices(v, 0) - legs.middle));
   skirt.share = Eigen::VectorXf::Zero(mesh.vertices.rows());
   skirt.weights = RowMatrix::Zero(mesh.vertices.rows(), kJointCount);
   for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
-    if (!cloth[static_cast<size_t>(v)]) continue;
+    if (!cloth[v]) continue;
     const float down = (legs.top - mesh.vertices(v, 1)) / legs.length;
     const float thighs = 0.9f * smooth_step(-0.02f, 0.28f, down);
     const float lower =
@@ -408,10 +400,9 @@ Eigen::VectorXf big_head(const Mesh& mesh, const Joints& joints) {
   for (Eigen::Index v = 0; v < share.size(); ++v)
     if ((mesh.vertices.row(v) - head->neck.transpose()).norm() < 6 * step &&
         std::abs(mesh.vertices(v, 1) - head->neck.y()) < step)
-      at_neck = std::min(at_neck, way[static_cast<size_t>(v)]);
+      at_neck = std::min(at_neck, way[v]);
   for (Eigen::Index v = 0; v < share.size(); ++v) {
-    if (at_neck < kFar)
-      share[v] = 1 - smooth_step(at_neck - 1.5f * step, at_neck, way[static_cast<size_t>(v)]);
+    if (at_neck < kFar) share[v] = 1 - smooth_step(at_neck - 1.5f * step, at_neck, way[v]);
     if (mesh.vertices(v, 0) > head->low_x && mesh.vertices(v, 0) < head->high_x)
       share[v] =
           std::max(share[v], smooth_step(head->neck.y(), head->neck.y() + 1.5f * step, mesh.vertices(v, 1)));
@@ -490,7 +481,7 @@ RowMatrix geometric_weights(const Mesh& mesh, const Joints& joints) {
 
 SurfaceParts surface_parts(const Mesh& mesh) {
   SurfaceParts parts;
-  const auto count = static_cast<size_t>(mesh.vertices.rows());
+  const size_t count = mesh.vertices.rows();
   std::vector<int> parent(count);
   std::iota(parent.begin(), parent.end(), 0);
   const float extent = (mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff()).maxCoeff();
@@ -499,26 +490,23 @@ SurfaceParts surface_parts(const Mesh& mesh) {
   places.reserve(count);
   for (size_t v = 0; v < count; ++v) {
     GridPlace key{};
-    for (int a = 0; a < 3; ++a)
-      key[static_cast<size_t>(a)] = std::llround(mesh.vertices(static_cast<Eigen::Index>(v), a) / same);
-    const auto [at, fresh] = places.try_emplace(key, static_cast<int>(v));
-    if (!fresh)
-      parent[static_cast<size_t>(root_of(parent, static_cast<int>(v)))] = root_of(parent, at->second);
+    for (int a = 0; a < 3; ++a) key[a] = std::llround(mesh.vertices(v, a) / same);
+    const auto [at, fresh] = places.try_emplace(key, v);
+    if (!fresh) parent[root_of(parent, v)] = root_of(parent, at->second);
   }
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
     for (int c = 0; c < 2; ++c)
-      parent[static_cast<size_t>(root_of(parent, mesh.faces(f, c)))] = root_of(parent, mesh.faces(f, c + 1));
+      parent[root_of(parent, mesh.faces(f, c))] = root_of(parent, mesh.faces(f, c + 1));
   std::map<int, int> number;
   std::vector<Vec3> low, high;
   for (size_t v = 0; v < count; ++v) {
-    const auto [at, fresh] =
-        number.try_emplace(root_of(parent, static_cast<int>(v)), static_cast<int>(number.size()));
-    const Vec3 p = mesh.vertices.row(static_cast<Eigen::Index>(v)).transpose();
+    const auto [at, fresh] = number.try_emplace(root_of(parent, v), number.size());
+    const Vec3 p = mesh.vertices.row(v).transpose();
     if (fresh) {
       low.push_back(p);
       high.push_back(p);
     }
-    const auto n = static_cast<size_t>(at->second);
+    const size_t n = at->second;
     low[n] = low[n].cwiseMin(p);
     high[n] = high[n].cwiseMax(p);
     parts.of.push_back(at->second);
@@ -528,8 +516,7 @@ SurfaceParts surface_parts(const Mesh& mesh) {
     const Vec3 a = mesh.vertices.row(mesh.faces(f, 0)).transpose(),
                b = mesh.vertices.row(mesh.faces(f, 1)).transpose(),
                c = mesh.vertices.row(mesh.faces(f, 2)).transpose();
-    parts.area[static_cast<size_t>(parts.of[static_cast<size_t>(mesh.faces(f, 0))])] +=
-        0.5f * (b - a).cross(c - a).norm();
+    parts.area[parts.of[mesh.faces(f, 0)]] += 0.5f * (b - a).cross(c - a).norm();
   }
   for (size_t n = 0; n < low.size(); ++n) parts.size.push_back((high[n] - low[n]).norm());
   // Triangles that hang together nowhere are no parts.
@@ -543,13 +530,12 @@ std::vector<bool> keep_parts_rigid(const Mesh& mesh, float leg, RowMatrix& weigh
   std::vector<bool> rigid(parts.of.size(), false);
   const size_t count = parts.size.size();
   if (parts.torn || count < 2) return rigid;
-  RowMatrix sums = RowMatrix::Zero(static_cast<Eigen::Index>(count), kJointCount);
-  for (size_t v = 0; v < parts.of.size(); ++v)
-    sums.row(parts.of[v]) += weights.row(static_cast<Eigen::Index>(v));
+  RowMatrix sums = RowMatrix::Zero(count, kJointCount);
+  for (size_t v = 0; v < parts.of.size(); ++v) sums.row(parts.of[v]) += weights.row(v);
   std::vector<bool> along_one(count, false), keep(count, false);
   float area = 0, area_along_one = 0;
   for (size_t n = 0; n < count; ++n) {
-    auto row = sums.row(static_cast<Eigen::Index>(n));
+    auto row = sums.row(n);
     row /= std::max(1e-6f, row.sum());
     along_one[n] = lies_along_one_bone(row);
     area += parts.area[n];
@@ -558,7 +544,7 @@ std::vector<bool> keep_parts_rigid(const Mesh& mesh, float leg, RowMatrix& weigh
   const bool pieces =
       count >= 6 && area_along_one > 0.8f * area;  // of hard parts, nothing reaches over a joint
   for (size_t n = 0; n < count; ++n) {
-    auto row = sums.row(static_cast<Eigen::Index>(n));
+    auto row = sums.row(n);
     Eigen::Index top = 0;
     const float share = row.maxCoeff(&top);
     keep[n] = (pieces && along_one[n]) || parts.size[n] < 0.1f * leg ||
@@ -566,10 +552,10 @@ std::vector<bool> keep_parts_rigid(const Mesh& mesh, float leg, RowMatrix& weigh
     if ((pieces && along_one[n]) || share > 0.8f) row = Eigen::RowVectorXf::Unit(kJointCount, top);
   }
   for (size_t v = 0; v < parts.of.size(); ++v) {
-    const auto n = static_cast<size_t>(parts.of[v]);
+    const size_t n = parts.of[v];
     if (!keep[n]) continue;
     rigid[v] = true;
-    weights.row(static_cast<Eigen::Index>(v)) = sums.row(static_cast<Eigen::Index>(n));
+    weights.row(v) = sums.row(n);
   }
   return rigid;
 }

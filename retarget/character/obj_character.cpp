@@ -118,7 +118,7 @@ void ObjReader::line(std::string_view text) {
   if (words_.empty()) return;
   const std::string_view what = words_[0];
   const auto rest = [&] {  // names may hold blanks
-    const std::string_view end = text.substr(static_cast<size_t>(words_[1].data() - text.data()));
+    const std::string_view end = text.substr(words_[1].data() - text.data());
     return std::string(trim_end(end));
   };
   if (what == "v") {
@@ -157,15 +157,14 @@ void ObjReader::read_materials(const std::string& name) {
     const std::string_view whole_line = text.line();
     split_words(whole_line, "", words);
     if (words.size() < 2) continue;
-    const std::string_view end = whole_line.substr(static_cast<size_t>(words[1].data() - whole_line.data()));
+    const std::string_view end = whole_line.substr(words[1].data() - whole_line.data());
     const std::string rest(trim_end(end));
     double value = 0;
     if (words[0] == "newmtl") current = &materials_[rest];
     if (current == nullptr) continue;
     if (words[0] == "Kd")
       for (size_t i = 1; i < std::min<size_t>(4, words.size()); ++i)
-        if (parse_number(words[i], value))
-          current->color[static_cast<Eigen::Index>(i - 1)] = std::clamp(narrow(value), 0.0f, 1.0f);
+        if (parse_number(words[i], value)) current->color[i - 1] = std::clamp(narrow(value), 0.0f, 1.0f);
     if (words[0] == "d" && parse_number(words[1], value))
       current->alpha = std::clamp(narrow(value), 0.0f, 1.0f);
     if (words[0] == "map_Kd") current->picture = words[1][0] == '-' ? std::string(words.back()) : rest;
@@ -175,7 +174,7 @@ void ObjReader::read_materials(const std::string& name) {
 int ObjReader::texture(const std::string& name, Character& out) {
   const auto file = beside(path_, name);
   US_CHECK(file, path_, ": a picture is outside of its folder (", excerpt(name), ")");
-  const auto [entry, is_new] = textures_.try_emplace(*file, static_cast<int>(out.textures.size()));
+  const auto [entry, is_new] = textures_.try_emplace(*file, out.textures.size());
   if (!is_new) return entry->second;
   CharacterImage image;
   image.name = std::filesystem::path(*file).stem().string();
@@ -198,7 +197,7 @@ int ObjReader::material(const std::string& name, Character& out) {
   if (from.alpha < 1) object["alphaMode"] = "BLEND";
   object["pbrMetallicRoughness"] = pbr;
   out.materials.push_back(object.dump(-1, ' ', false, json::error_handler_t::replace));
-  return static_cast<int>(out.materials.size()) - 1;
+  return out.materials.size() - 1;
 }
 
 void ObjReader::finish_group(const std::string& name, const Group& group, Character& out) {
@@ -211,30 +210,30 @@ void ObjReader::finish_group(const std::string& name, const Group& group, Charac
   std::vector<int> faces;
   bool has_uvs = true, has_normals = true;
   for (const Corner& corner : group.corners) {
-    const auto [entry, is_new] = known.try_emplace(corner, static_cast<int>(corners.size()));
+    const auto [entry, is_new] = known.try_emplace(corner, corners.size());
     if (is_new) corners.push_back(corner);
     faces.push_back(entry->second);
     has_uvs = has_uvs && corner[1] >= 0;
     has_normals = has_normals && corner[2] >= 0;
   }
   corners.insert(corners.end(), group.loose.begin(), group.loose.end());
-  const auto count = static_cast<Eigen::Index>(corners.size());
+  const Eigen::Index count = corners.size();
   part.vertices.resize(count, 3);
   if (has_normals) part.normals.resize(count, 3);
   if (has_uvs) part.uvs.emplace_back(count, 2);
   const bool colored = colors_.size() == positions_.size();
   if (colored) part.colors = RowMatrix::Ones(count, 4);
   for (Eigen::Index v = 0; v < count; ++v) {
-    const Corner& c = corners[static_cast<size_t>(v)];
+    const Corner& c = corners[v];
     for (Eigen::Index i = 0; i < 3; ++i) {
-      part.vertices(v, i) = positions_[static_cast<size_t>(3 * c[0] + i)];
-      if (has_normals) part.normals(v, i) = c[2] < 0 ? (i == 1) : normals_[static_cast<size_t>(3 * c[2] + i)];
-      if (colored) part.colors(v, i) = to_linear(colors_[static_cast<size_t>(3 * c[0] + i)]);
+      part.vertices(v, i) = positions_[3 * c[0] + i];
+      if (has_normals) part.normals(v, i) = c[2] < 0 ? (i == 1) : normals_[3 * c[2] + i];
+      if (colored) part.colors(v, i) = to_linear(colors_[3 * c[0] + i]);
     }
     out.file_vertices.push_back(static_cast<int>(c[0]));
     if (has_uvs && c[1] < 0) part.uvs[0].row(v).setZero();
     if (has_uvs && c[1] >= 0)  // OBJ counts v from below, glTF from above
-      part.uvs[0].row(v) << uvs_[static_cast<size_t>(2 * c[1])], 1 - uvs_[static_cast<size_t>(2 * c[1] + 1)];
+      part.uvs[0].row(v) << uvs_[2 * c[1]], 1 - uvs_[2 * c[1] + 1];
   }
   part.faces = Eigen::Map<const Faces>(faces.data(), static_cast<Eigen::Index>(faces.size() / 3), 3);
   out.parts.push_back(std::move(part));
@@ -244,7 +243,7 @@ void ObjReader::finish_group(const std::string& name, const Group& group, Charac
 void ObjReader::add_loose() {
   std::vector<bool> used(positions_.size() / 3, false);
   for (const auto& [name, group] : groups_)
-    for (const Corner& corner : group.corners) used[static_cast<size_t>(corner[0])] = true;
+    for (const Corner& corner : group.corners) used[corner[0]] = true;
   if (groups_.empty()) groups_[""];
   const auto has_faces = [](const auto& entry) { return !entry.second.corners.empty(); };
   auto first = std::find_if(groups_.begin(), groups_.end(), has_faces);

@@ -13,12 +13,12 @@ constexpr float kSame = 1e-5f;
 
 /// The bone that stands for a joint: its own, or that of the next joint above that has one.
 int bone_of_joint(const PreparedCharacter& c, int joint) {
-  for (int j = joint; j >= 0; j = kParents[static_cast<size_t>(j)])
-    if (c.map.has(j)) return c.map.node[static_cast<size_t>(j)];
+  for (int j = joint; j >= 0; j = kParents[j])
+    if (c.map.has(j)) return c.map.node[j];
   const auto pelvis = std::find(c.driver.begin(), c.driver.end(), static_cast<int>(Pelvis));
   if (pelvis != c.driver.end()) return static_cast<int>(pelvis - c.driver.begin());
   for (int j = 0; j < kJointCount; ++j)
-    if (c.map.has(j)) return c.map.node[static_cast<size_t>(j)];
+    if (c.map.has(j)) return c.map.node[j];
   throw Error(c.character.name + ": has no bone that paint could go to");
 }
 
@@ -26,7 +26,7 @@ class Painter {
  public:
   Painter(const PreparedCharacter& character, const RowMatrix& weights, int most, Character& out)
       : c_(character), weights_(weights), most_(most), out_(out), joint_of_(joints_of_nodes(character)) {
-    for (int j = 0; j < kJointCount; ++j) bone_of_[static_cast<size_t>(j)] = bone_of_joint(c_, j);
+    for (int j = 0; j < kJointCount; ++j) bone_of_[j] = bone_of_joint(c_, j);
   }
 
   void paint_all() {
@@ -44,7 +44,7 @@ class Painter {
  private:
   using Pulls = std::map<int, float>;  // of bones of a skin at one vertex
 
-  Eigen::Index row_of(Eigen::Index vertex) const { return c_.surface.map[static_cast<size_t>(vertex)]; }
+  Eigen::Index row_of(Eigen::Index vertex) const { return c_.surface.map[vertex]; }
   bool is_painted(Eigen::Index vertex) const {
     const Eigen::Index row = row_of(vertex);
     return (weights_.row(row) - c_.weights.row(row)).cwiseAbs().maxCoeff() > kSame;
@@ -53,12 +53,12 @@ class Painter {
   /// All parts that a node carries are skinned to it: they move as before.
   void give_skin(int node) {
     CharacterSkin skin;
-    skin.name = out_.nodes[static_cast<size_t>(node)].name;
+    skin.name = out_.nodes[node].name;
     skin.joints = {node};
     skin.inverse_bind = {Mat4::Identity()};
     for (auto& part : out_.parts) {
       if (part.node != node || part.skin >= 0) continue;
-      part.skin = static_cast<int>(out_.skins.size());
+      part.skin = out_.skins.size();
       part.joints.setZero(part.vertices.rows(), 1);
       part.weights.setOnes(part.vertices.rows(), 1);
     }
@@ -69,10 +69,10 @@ class Painter {
   int joint_in_skin(CharacterSkin& skin, int node) {
     const auto found = std::find(skin.joints.begin(), skin.joints.end(), node);
     if (found != skin.joints.end()) return static_cast<int>(found - skin.joints.begin());
-    const Mat4 to_bind = c_.bind.nodes[static_cast<size_t>(skin.joints[0])] * skin.inverse_bind[0];
-    skin.inverse_bind.push_back(c_.bind.nodes[static_cast<size_t>(node)].inverse() * to_bind);
+    const Mat4 to_bind = c_.bind.nodes[skin.joints[0]] * skin.inverse_bind[0];
+    skin.inverse_bind.push_back(c_.bind.nodes[node].inverse() * to_bind);
     skin.joints.push_back(node);
-    return static_cast<int>(skin.joints.size()) - 1;
+    return skin.joints.size() - 1;
   }
 
   Pulls pulls_of(const CharacterPart& part, Eigen::Index v, CharacterSkin& skin, Eigen::Index row) {
@@ -86,20 +86,20 @@ class Painter {
       }
     for (const auto& [bone, weight] : before) {
       const size_t j = joint_of(skin, bone);
-      after[bone] = weight / of_joint[j] * weights_(row, static_cast<Eigen::Index>(j));
+      after[bone] = weight / of_joint[j] * weights_(row, j);
     }
     for (size_t j = 0; j < kJointCount; ++j)
-      if (const float wanted = weights_(row, static_cast<Eigen::Index>(j)); wanted > 0 && of_joint[j] <= 0)
+      if (const float wanted = weights_(row, j); wanted > 0 && of_joint[j] <= 0)
         after[joint_in_skin(skin, bone_of_[j])] += wanted;
     return after;
   }
 
   size_t joint_of(const CharacterSkin& skin, int bone) const {
-    return static_cast<size_t>(joint_of_[static_cast<size_t>(skin.joints[static_cast<size_t>(bone)])]);
+    return static_cast<size_t>(joint_of_[skin.joints[bone]]);
   }
 
   void paint(CharacterPart& part, Eigen::Index first) {
-    CharacterSkin& skin = out_.skins[static_cast<size_t>(part.skin)];
+    CharacterSkin& skin = out_.skins[part.skin];
     const Eigen::Index had = part.joints.cols(), columns = std::max<Eigen::Index>(most_, had);
     part.joints.conservativeResize(Eigen::NoChange, columns);
     part.weights.conservativeResize(Eigen::NoChange, columns);
@@ -113,9 +113,9 @@ class Painter {
       std::stable_sort(order.begin(), order.end(), [](auto& a, auto& b) { return a.first > b.first; });
       part.joints.row(v).setZero();
       part.weights.row(v).setZero();
-      for (size_t k = 0; k < std::min(order.size(), static_cast<size_t>(columns)); ++k) {
-        part.weights(v, static_cast<Eigen::Index>(k)) = order[k].first;
-        part.joints(v, static_cast<Eigen::Index>(k)) = order[k].second;
+      for (size_t k = 0; k < std::min<size_t>(order.size(), columns); ++k) {
+        part.weights(v, k) = order[k].first;
+        part.joints(v, k) = order[k].second;
       }
       part.weights.row(v) /= part.weights.row(v).sum();
     }

@@ -58,12 +58,11 @@ Pixels size_in_header(std::string_view bytes) {
   if (bytes.size() >= (1ull << 31)) return out;
   int channels = 0;
   largest_piece = kTables;
-  const bool read = type == "image/webp"
-                        ? WebPGetInfo(data(bytes), bytes.size(), &out.width, &out.height) != 0
-                    : type == "image/png" || type == "image/jpeg"
-                        ? stbi_info_from_memory(data(bytes), static_cast<int>(bytes.size()), &out.width,
-                                                &out.height, &channels) != 0
-                        : false;
+  const bool read =
+      type == "image/webp" ? WebPGetInfo(data(bytes), bytes.size(), &out.width, &out.height) != 0
+      : type == "image/png" || type == "image/jpeg"
+          ? stbi_info_from_memory(data(bytes), bytes.size(), &out.width, &out.height, &channels) != 0
+          : false;
   if (!read || out.width <= 0 || out.height <= 0) out.width = out.height = 0;
   return out;
 }
@@ -93,8 +92,7 @@ Pixels decode_picture(std::string_view bytes) {
   if (picture_type(bytes) == "image/webp")
     out.rgb = {WebPDecodeRGB(data(bytes), bytes.size(), &out.width, &out.height), WebPFree};
   else
-    out.rgb = {stbi_load_from_memory(data(bytes), static_cast<int>(bytes.size()), &out.width, &out.height,
-                                     &channels, 3),
+    out.rgb = {stbi_load_from_memory(data(bytes), bytes.size(), &out.width, &out.height, &channels, 3),
                stbi_image_free};
   US_CHECK(out.rgb, "it cannot be decoded");
   return out;

@@ -26,9 +26,7 @@ constexpr float kRoughSpreadDeg = 1.5f;  // the same of what both legs say toget
 
 /// The axis that a rig's spine points along, where that is not y.
 std::string up_of_rig(const BoneMap& map, const BindPose& bind) {
-  const auto place = [&](int joint) -> Vec3 {
-    return bind.nodes[static_cast<size_t>(map.node[static_cast<size_t>(joint)])].topRightCorner<3, 1>();
-  };
+  const auto place = [&](int joint) -> Vec3 { return bind.nodes[map.node[joint]].topRightCorner<3, 1>(); };
   const Vec3 up =
       0.5f * (place(LeftShoulder) + place(RightShoulder)) - 0.5f * (place(LeftKnee) + place(RightKnee));
   Eigen::Index axis = 1;
@@ -43,20 +41,19 @@ std::vector<int> drivers(const PreparedCharacter& c) {
   std::vector<int> driver(nodes.size(), -1);
   std::vector<bool> carries(nodes.size(), false);
   for (size_t j = 0; j < kJointCount; ++j)
-    if (c.map.node[j] >= 0) driver[static_cast<size_t>(c.map.node[j])] = static_cast<int>(j);
+    if (c.map.node[j] >= 0) driver[c.map.node[j]] = j;
   for (const auto& part : c.character.parts) {
-    if (part.skin < 0) carries[static_cast<size_t>(part.node)] = true;
+    if (part.skin < 0) carries[part.node] = true;
     for (Eigen::Index i = 0; i < part.joints.size(); ++i)
       if (part.weights.data()[i] > 0)
-        carries[static_cast<size_t>(c.character.skins[static_cast<size_t>(part.skin)]
-                                        .joints[static_cast<size_t>(part.joints.data()[i])])] = true;
+        carries[c.character.skins[part.skin].joints[part.joints.data()[i]]] = true;
   }
   std::vector<bool> moves(nodes.size(), false);
   for (size_t n = 0; n < nodes.size(); ++n) {
     const int p = nodes[n].parent;
     // What bears on the body but hangs on no mapped bone goes with the pelvis.
-    if (driver[n] < 0 && carries[n] && (p < 0 || !moves[static_cast<size_t>(p)])) driver[n] = Pelvis;
-    moves[n] = driver[n] >= 0 || (p >= 0 && moves[static_cast<size_t>(p)]);
+    if (driver[n] < 0 && carries[n] && (p < 0 || !moves[p])) driver[n] = Pelvis;
+    moves[n] = driver[n] >= 0 || (p >= 0 && moves[p]);
   }
   return driver;
 }
@@ -70,11 +67,9 @@ RowMatrix gathered_weights(const PreparedCharacter& c) {
     for (Eigen::Index v = 0; v < part.vertices.rows(); ++v, ++at) {
       auto row = weights.row(c.surface.map[at]);
       row.setZero();
-      if (part.skin < 0) row[joint_of[static_cast<size_t>(part.node)]] = 1;
+      if (part.skin < 0) row[joint_of[part.node]] = 1;
       for (Eigen::Index k = 0; k < part.joints.cols(); ++k)
-        row[joint_of[static_cast<size_t>(c.character.skins[static_cast<size_t>(part.skin)]
-                                             .joints[static_cast<size_t>(part.joints(v, k))])]] +=
-            part.weights(v, k);
+        row[joint_of[c.character.skins[part.skin].joints[part.joints(v, k)]]] += part.weights(v, k);
       row /= row.sum();
     }
   return weights;
@@ -90,18 +85,18 @@ Joints complete_joints(const BoneMap& map, const Joints& known) {
                                 (human.row(LeftShoulder) - human.row(LeftHip)).norm();
   for (int j = 1; j < kJointCount; ++j) {
     if (map.has(j)) continue;
-    const int p = kParents[static_cast<size_t>(j)];
+    const int p = kParents[j];
     const auto step = [&](int a, int b) { return (human.row(b) - human.row(a)).norm(); };
     int next = -1;  // the nearest mapped joint below
     for (int d = j + 1; d < kJointCount && next < 0; ++d) {
       if (!map.has(d)) continue;
-      for (int a = d; a >= 0; a = kParents[static_cast<size_t>(a)])
+      for (int a = d; a >= 0; a = kParents[a])
         if (a == j) next = d;
     }
     if (next >= 0) {
       const float t = step(p, j) / (step(p, j) + step(j, next));
       out.row(j) = (1 - t) * out.row(p) + t * known.row(next);
-    } else if (const int pp = kParents[static_cast<size_t>(p)]; j == LeftWrist || j == RightWrist) {
+    } else if (const int pp = kParents[p]; j == LeftWrist || j == RightWrist) {
       out.row(j) = out.row(p) + (out.row(p) - out.row(pp)) * step(p, j) / step(pp, p);
     } else {
       out.row(j) = out.row(p) + scale * (human.row(j) - human.row(p));
@@ -131,10 +126,7 @@ Eigen::RowVector3f pelvis_between(const Joints& known, bool has_own) {
 Joints rig_joints(const PreparedCharacter& c) {
   Points places = Points::Zero(kJointCount, 3);
   for (int j = 0; j < kJointCount; ++j)
-    if (c.map.has(j))
-      places.row(j) = c.bind.nodes[static_cast<size_t>(c.map.node[static_cast<size_t>(j)])]
-                          .topRightCorner<3, 1>()
-                          .transpose();
+    if (c.map.has(j)) places.row(j) = c.bind.nodes[c.map.node[j]].topRightCorner<3, 1>().transpose();
   const Points moved = c.to_world.apply(places);
   Joints known = moved;
   if (!on_our_joints(c.character)) known.row(Pelvis) = pelvis_between(known, c.map.has(Pelvis));
@@ -383,7 +375,7 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
 Joints moved_bind_joints(const RestPose& pose, const Joints& rest) {
   Joints out;
   for (int j = 0; j < kJointCount; ++j)  // in the axes of the bind pose
-    out.row(j) = pose.bind.row(j) + (rest.row(j) - pose.rest.row(j)) * pose.to_rest[static_cast<size_t>(j)];
+    out.row(j) = pose.bind.row(j) + (rest.row(j) - pose.rest.row(j)) * pose.to_rest[j];
   return out;
 }
 
@@ -391,9 +383,7 @@ std::vector<int> joints_of_nodes(const PreparedCharacter& c) {
   std::vector<int> joint_of(c.character.nodes.size(), Pelvis);
   for (size_t n = 0; n < joint_of.size(); ++n) {
     const int p = c.character.nodes[n].parent;
-    joint_of[n] = c.driver[n] >= 0 ? c.driver[n]
-                  : p >= 0         ? joint_of[static_cast<size_t>(p)]
-                                   : static_cast<int>(Pelvis);
+    joint_of[n] = c.driver[n] >= 0 ? c.driver[n] : p >= 0 ? joint_of[p] : static_cast<int>(Pelvis);
   }
   return joint_of;
 }
@@ -453,17 +443,16 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
 Mesh PreparedCharacter::target_in_file_order() const {
   Mesh out;
   out.vertices = surface.in_file_order(target.mesh.vertices);
-  std::vector<int> file_of(static_cast<size_t>(target.mesh.vertices.rows()), 0);
-  for (size_t i = surface.in_file.size(); i-- > 0;)
-    file_of[static_cast<size_t>(surface.in_file[i])] = static_cast<int>(i);
-  out.faces = target.mesh.faces.unaryExpr([&](int v) { return file_of[static_cast<size_t>(v)]; });
+  std::vector<int> file_of(target.mesh.vertices.rows(), 0);
+  for (size_t i = surface.in_file.size(); i-- > 0;) file_of[surface.in_file[i]] = i;
+  out.faces = target.mesh.faces.unaryExpr([&](int v) { return file_of[v]; });
   if (target.mesh.colors.rows() > 0) out.colors = surface.in_file_order(target.mesh.colors);
   return out;
 }
 
 FoldingTransfer::FoldingTransfer(std::unique_ptr<MotionTransfer> inner, const BoneMap& map)
     : inner_(std::move(inner)) {
-  for (int j = 0; j < kJointCount; ++j) mapped_[static_cast<size_t>(j)] = map.has(j);
+  for (int j = 0; j < kJointCount; ++j) mapped_[j] = map.has(j);
 }
 
 Rotations FoldingTransfer::push(const Extraction& source, float dt) {
@@ -471,8 +460,8 @@ Rotations FoldingTransfer::push(const Extraction& source, float dt) {
   Rotations wanted, folded;
   for (size_t j = 0; j < kJointCount; ++j) {
     const int p = kParents[j];
-    wanted[j] = p < 0 ? local[j] : Mat3(wanted[static_cast<size_t>(p)] * local[j]);
-    folded[j] = mapped_[j] || p < 0 ? wanted[j] : folded[static_cast<size_t>(p)];
+    wanted[j] = p < 0 ? local[j] : Mat3(wanted[p] * local[j]);
+    folded[j] = mapped_[j] || p < 0 ? wanted[j] : folded[p];
   }
   return local_rotations(folded);
 }

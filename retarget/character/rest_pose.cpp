@@ -30,12 +30,10 @@ void place_rest(RestPose& pose) {
   pose.rest.row(Pelvis) = pose.bind.row(Pelvis);
   pose.largest_deg = 0;
   for (int j = 0; j < kJointCount; ++j) {
-    const int p = kParents[static_cast<size_t>(j)];
-    const Mat3& Q = pose.to_rest[static_cast<size_t>(j)];
+    const int p = kParents[j];
+    const Mat3& Q = pose.to_rest[j];
     pose.largest_deg = std::max(pose.largest_deg, geodesic_angle(Mat3::Identity(), Q) * 180 / kPi);
-    if (p >= 0)
-      pose.rest.row(j) =
-          pose.rest.row(p) + (pose.to_rest[static_cast<size_t>(p)] * bone(pose.bind, p, j)).transpose();
+    if (p >= 0) pose.rest.row(j) = pose.rest.row(p) + (pose.to_rest[p] * bone(pose.bind, p, j)).transpose();
   }
 }
 
@@ -83,8 +81,7 @@ void spread_legs(RestPose& pose, float tolerance_deg) {
   if (std::abs(turn) * 180 / kPi <= tolerance_deg) return;
   for (const int right : {0, 1}) {
     const Mat3 R = Eigen::AngleAxisf(right == 1 ? -turn : turn, Vec3::UnitZ()).toRotationMatrix();
-    for (const int j : {LeftHip + right, LeftKnee + right})
-      pose.to_rest[static_cast<size_t>(j)] = R * pose.to_rest[static_cast<size_t>(j)];
+    for (const int j : {LeftHip + right, LeftKnee + right}) pose.to_rest[j] = R * pose.to_rest[j];
   }
   place_rest(pose);
 }

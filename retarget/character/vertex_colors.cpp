@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/character/pixels.hpp"
 
@@ -76,12 +77,10 @@ class Looks {
   Look made(int material) {
     Look look;
     if (material < 0) return look;
-    const json pbr =
-        member(object_of(character_.materials[static_cast<size_t>(material)]), "pbrMetallicRoughness");
+    const json pbr = member(object_of(character_.materials[material]), "pbrMetallicRoughness");
     const json factor = member(pbr, "baseColorFactor");
     for (size_t i = 0; factor.is_array() && i < std::min<size_t>(3, factor.size()); ++i)
-      if (factor[i].is_number())
-        look.factor[static_cast<Eigen::Index>(i)] = std::clamp(factor[i].get<float>(), 0.0f, 1.0f);
+      if (factor[i].is_number()) look.factor[i] = std::clamp(factor[i].get<float>(), 0.0f, 1.0f);
     add_texture(member(pbr, "baseColorTexture"), look);
     return look;
   }
@@ -168,12 +167,12 @@ void paint(MergedSurface& surface, const Character& character) {
   surface.mesh.colors.resize(0, 3);
   const Points colors = vertex_colors(character);
   if (colors.rows() == 0) return;
-  US_CHECK(colors.rows() == static_cast<Eigen::Index>(surface.map.size()), character.called(), ": has ",
-           colors.rows(), " vertices, its surface ", surface.map.size());
+  US_CHECK(colors.rows() == ssize(surface.map), character.called(), ": has ", colors.rows(),
+           " vertices, its surface ", surface.map.size());
   surface.mesh.colors = Points::Zero(surface.mesh.vertices.rows(), 3);
   Eigen::VectorXf corners = Eigen::VectorXf::Zero(surface.mesh.vertices.rows());
   for (size_t i = 0; i < surface.map.size(); ++i) {
-    surface.mesh.colors.row(surface.map[i]) += colors.row(static_cast<Eigen::Index>(i));
+    surface.mesh.colors.row(surface.map[i]) += colors.row(i);
     ++corners[surface.map[i]];
   }
   surface.mesh.colors.array().colwise() /= corners.array();

@@ -39,7 +39,7 @@ float spacing_of(const Points& points) {
   const Eigen::Index stride = std::max<Eigen::Index>(1, points.rows() / 500);
   Points some((points.rows() + stride - 1) / stride, 3);
   for (Eigen::Index i = 0; i < some.rows(); ++i) some.row(i) = points.row(i * stride);
-  const int k = static_cast<int>(std::min<Eigen::Index>(4, points.rows()));
+  const int k = std::min<Eigen::Index>(4, points.rows());
   const auto near = nearest_neighbours(points, some, k);
   std::vector<float> gaps;
   for (Eigen::Index i = 0; i < some.rows(); ++i)
@@ -72,16 +72,14 @@ void VoxelBody::lay_grid(const Points& vertices, int resolution) {
   size_ = std::max(1e-6f, (high - low).maxCoeff() / static_cast<float>(std::max(8, resolution)));
   origin_ = low.array() - static_cast<float>(kBorder) * size_;
   for (int a = 0; a < 3; ++a)
-    dims_[static_cast<size_t>(a)] =
-        static_cast<int>(std::floor((high[a] - low[a]) / size_)) + 1 + 2 * kBorder;
+    dims_[a] = static_cast<int>(std::floor((high[a] - low[a]) / size_)) + 1 + 2 * kBorder;
 }
 
 std::array<int, 3> VoxelBody::place(const Vec3& point) const {
   std::array<int, 3> at{};
   for (int a = 0; a < 3; ++a) {
     const float along = (point[a] - origin_[a]) / size_;
-    at[static_cast<size_t>(a)] =
-        static_cast<int>(std::clamp(along, 0.0f, static_cast<float>(dims_[static_cast<size_t>(a)] - 1)));
+    at[a] = static_cast<int>(std::clamp(along, 0.0f, static_cast<float>(dims_[a] - 1)));
   }
   return at;
 }
@@ -92,7 +90,7 @@ void VoxelBody::mark_surface(const Mesh& mesh, std::vector<char>& state) const {
     for (int z = std::max(0, at[2] - reach); z <= std::min(dims_[2] - 1, at[2] + reach); ++z)
       for (int y = std::max(0, at[1] - reach); y <= std::min(dims_[1] - 1, at[1] + reach); ++y)
         for (int x = std::max(0, at[0] - reach); x <= std::min(dims_[0] - 1, at[0] + reach); ++x)
-          state[static_cast<size_t>(grid_index(x, y, z))] = kSurface;
+          state[grid_index(x, y, z)] = kSurface;
   };
   const bool cloud = mesh.is_cloud();
   const int reach =
@@ -125,10 +123,10 @@ void VoxelBody::mark_reached(std::vector<char>& state) const {
     for (size_t a = 0; a < 3; ++a)
       for (const int d : {-1, 1}) {
         if (p[a] + d < 0 || p[a] + d >= dims_[a]) continue;
-        const auto next = static_cast<size_t>(at + d * stride[a]);
+        const size_t next = at + d * stride[a];
         if (state[next] != 0) continue;
         state[next] = kReached;
-        open.push_back(static_cast<int>(next));
+        open.push_back(next);
       }
   }
 }
@@ -145,7 +143,7 @@ void VoxelBody::mark_enclosed(std::vector<char>& state) const {
         for (const bool back : {false, true}) {
           char hit = 0;
           for (int i = 0; i < dims_[a]; ++i) {
-            const auto at = static_cast<size_t>(start + (back ? dims_[a] - 1 - i : i) * stride[a]);
+            const size_t at = start + (back ? dims_[a] - 1 - i : i) * stride[a];
             seen[at] = static_cast<char>(seen[at] + hit);
             if ((state[at] & kSurface) != 0) hit = 1;
           }
@@ -160,13 +158,13 @@ void VoxelBody::number_cells(const std::vector<char>& state) {
   cell_of_.assign(state.size(), -1);
   for (size_t i = 0; i < state.size(); ++i) {
     if ((state[i] & (kSurface | kEnclosed)) == 0) continue;
-    cell_of_[i] = static_cast<int>(cells_.size());
-    cells_.push_back(static_cast<int>(i));
+    cell_of_[i] = cells_.size();
+    cells_.push_back(i);
   }
 }
 
 Vec3 VoxelBody::centre(int cell) const {
-  const int at = cells_[static_cast<size_t>(cell)];
+  const int at = cells_[cell];
   const Vec3 p(static_cast<float>(at % dims_[0]), static_cast<float>(at / dims_[0] % dims_[1]),
                static_cast<float>(at / (dims_[0] * dims_[1])));
   return origin_ + size_ * (p.array() + 0.5f).matrix();
@@ -175,9 +173,9 @@ Vec3 VoxelBody::centre(int cell) const {
 int VoxelBody::cell_at(const Vec3& point) const {
   if (((point - origin_).array() < 0).any()) return -1;
   for (int a = 0; a < 3; ++a)
-    if (point[a] - origin_[a] >= size_ * static_cast<float>(dims_[static_cast<size_t>(a)])) return -1;
+    if (point[a] - origin_[a] >= size_ * static_cast<float>(dims_[a])) return -1;
   const auto at = place(point);
-  return cell_of_[static_cast<size_t>(grid_index(at[0], at[1], at[2]))];
+  return cell_of_[grid_index(at[0], at[1], at[2])];
 }
 
 int VoxelBody::nearest_cell(const Vec3& point) const {
@@ -202,12 +200,12 @@ std::vector<int> VoxelBody::label_parts() const {
     part[first] = parts;
     open = {static_cast<int>(first)};
     while (!open.empty()) {
-      const int at = cells_[static_cast<size_t>(open.back())];
+      const int at = cells_[open.back()];
       open.pop_back();
       for (const Step& s : steps()) {
-        const int next = cell_of_[static_cast<size_t>(at + grid_index(s.x, s.y, s.z))];
-        if (next < 0 || part[static_cast<size_t>(next)] >= 0) continue;
-        part[static_cast<size_t>(next)] = parts;
+        const int next = cell_of_[at + grid_index(s.x, s.y, s.z)];
+        if (next < 0 || part[next] >= 0) continue;
+        part[next] = parts;
         open.push_back(next);
       }
     }
@@ -224,7 +222,7 @@ void VoxelBody::join_parts() {
   std::vector<int> source(cell_of_.size(), -1), distance(cell_of_.size(), 0);
   std::queue<int> open;
   for (size_t c = 0; c < cells_.size(); ++c) {
-    source[static_cast<size_t>(cells_[c])] = static_cast<int>(c);
+    source[cells_[c]] = c;
     open.push(cells_[c]);
   }
   std::map<std::pair<int, int>, std::vector<Bridge>> meetings;
@@ -232,21 +230,20 @@ void VoxelBody::join_parts() {
     const int at = open.front();
     open.pop();
     const std::array<int, 3> p = {at % dims_[0], at / dims_[0] % dims_[1], at / (dims_[0] * dims_[1])};
-    const int own = source[static_cast<size_t>(at)];
+    const int own = source[at];
     for (const Step& s : steps()) {
       if (std::abs(s.x) + std::abs(s.y) + std::abs(s.z) != 1) continue;
       if (p[0] + s.x < 0 || p[0] + s.x >= dims_[0] || p[1] + s.y < 0 || p[1] + s.y >= dims_[1] ||
           p[2] + s.z < 0 || p[2] + s.z >= dims_[2])
         continue;
-      const auto next = static_cast<size_t>(at + grid_index(s.x, s.y, s.z));
+      const size_t next = at + grid_index(s.x, s.y, s.z);
       const int other = source[next];
       if (other < 0) {
         source[next] = own;
-        distance[next] = distance[static_cast<size_t>(at)] + 1;
-        open.push(static_cast<int>(next));
-      } else if (part[static_cast<size_t>(other)] > part[static_cast<size_t>(own)]) {
-        meetings[{part[static_cast<size_t>(own)], part[static_cast<size_t>(other)]}].push_back(
-            {own, other, (centre(own) - centre(other)).norm()});
+        distance[next] = distance[at] + 1;
+        open.push(next);
+      } else if (part[other] > part[own]) {
+        meetings[{part[own], part[other]}].push_back({own, other, (centre(own) - centre(other)).norm()});
       }
     }
   }
@@ -256,8 +253,8 @@ void VoxelBody::join_parts() {
     for (const Bridge& b : found) least = std::min(least, b.length);
     for (const Bridge& b : found) {
       if (b.length > least + 1.5f * size_) continue;
-      bridges_[static_cast<size_t>(b.a)].push_back(b);
-      bridges_[static_cast<size_t>(b.b)].push_back({b.b, b.a, b.length});
+      bridges_[b.a].push_back(b);
+      bridges_[b.b].push_back({b.b, b.a, b.length});
     }
   }
 }
@@ -266,9 +263,9 @@ std::vector<float> VoxelBody::ways_from(const std::vector<std::pair<Vec3, Vec3>>
   std::vector<float> way(cells_.size(), kFar);
   std::vector<std::vector<int>> buckets(1);  // a cube wide each: no way within one is shorter than a step
   const auto reach = [&](int cell, float length) {
-    if (length >= way[static_cast<size_t>(cell)]) return;
-    way[static_cast<size_t>(cell)] = length;
-    const auto bucket = static_cast<size_t>(length / size_);
+    if (length >= way[cell]) return;
+    way[cell] = length;
+    const size_t bucket = length / size_;
     if (bucket >= buckets.size()) buckets.resize(bucket + 1);
     buckets[bucket].push_back(cell);
   };
@@ -287,16 +284,15 @@ std::vector<float> VoxelBody::ways_from(const std::vector<std::pair<Vec3, Vec3>>
   for (size_t b = 0; b < buckets.size(); ++b)
     for (size_t i = 0; i < buckets[b].size(); ++i) {
       const int cell = buckets[b][i];
-      const float here = way[static_cast<size_t>(cell)];
+      const float here = way[cell];
       if (static_cast<size_t>(here / size_) != b) continue;  // a shorter way was found since
-      const int at = cells_[static_cast<size_t>(cell)];
+      const int at = cells_[cell];
       for (const Step& s : steps()) {
-        const int next = cell_of_[static_cast<size_t>(at + grid_index(s.x, s.y, s.z))];
+        const int next = cell_of_[at + grid_index(s.x, s.y, s.z)];
         if (next >= 0) reach(next, here + s.length * size_);
       }
       if (!bridges_.empty())
-        for (const Bridge& bridge : bridges_[static_cast<size_t>(cell)])
-          reach(bridge.b, here + std::max(bridge.length, size_));
+        for (const Bridge& bridge : bridges_[cell]) reach(bridge.b, here + std::max(bridge.length, size_));
     }
   return way;
 }
@@ -308,14 +304,14 @@ float VoxelBody::at(const std::vector<float>& ways, const Vec3& point) const {
     const int x = std::min(dims_[0] - 1, low[0] + (corner & 1)),
               y = std::min(dims_[1] - 1, low[1] + (corner >> 1 & 1)),
               z = std::min(dims_[2] - 1, low[2] + (corner >> 2));
-    const int cell = cell_of_[static_cast<size_t>(grid_index(x, y, z))];
-    if (cell < 0 || ways[static_cast<size_t>(cell)] == kFar) continue;
+    const int cell = cell_of_[grid_index(x, y, z)];
+    if (cell < 0 || ways[cell] == kFar) continue;
     const Vec3 off = (centre(cell) - point).cwiseAbs() / size_;
     const float weight = std::max(1e-4f, (1 - off.x()) * (1 - off.y()) * (1 - off.z()));
-    sum += weight * ways[static_cast<size_t>(cell)];
+    sum += weight * ways[cell];
     total += weight;
   }
-  return total > 0 ? sum / total : ways[static_cast<size_t>(nearest_cell(point))];
+  return total > 0 ? sum / total : ways[nearest_cell(point)];
 }
 
 }  // namespace understudy

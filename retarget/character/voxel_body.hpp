@@ -17,8 +17,8 @@ class VoxelBody {
   /// resolution: cubes along the longest side. Throws Error without a finite vertex.
   explicit VoxelBody(const Mesh& mesh, int resolution = 128);
 
-  float size() const { return size_; }                           ///< of a cube, metres
-  int count() const { return static_cast<int>(cells_.size()); }  ///< of cubes in the solid
+  float size() const { return size_; }         ///< of a cube, metres
+  int count() const { return cells_.size(); }  ///< of cubes in the solid
   Vec3 centre(int cell) const;
   /// The cube of the solid that a point lies in, -1 for none.
   int cell_at(const Vec3& point) const;

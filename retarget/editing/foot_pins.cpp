@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/index.hpp"
 #include "retarget/editing/pose_edits.hpp"
 #include "retarget/skeleton/leg_ik.hpp"
 
@@ -21,7 +22,7 @@ struct Foot {
   std::vector<float> clearance;        // [T] of the lowest of the sole over the floor; 0 without soles
   std::vector<char> on_ball, on_heel;  // [T] in contact
   std::vector<Vec3> offset;            // [T] added to the ankle
-  bool stands(int t) const { return on_ball[static_cast<size_t>(t)] || on_heel[static_cast<size_t>(t)]; }
+  bool stands(int t) const { return on_ball[t] || on_heel[t]; }
 };
 
 float smoothstep(float x) {
@@ -50,7 +51,7 @@ Sole sole_of(const EditedBody& body, const Leg& leg) {
   float lowest = 1e9f, rearmost = 1e9f;
   for (size_t i = 0; i < body.soles.joint.size(); ++i) {
     const int j = body.soles.joint[i];
-    const Vec3 offset = body.soles.offset.row(static_cast<Eigen::Index>(i)).transpose();
+    const Vec3 offset = body.soles.offset.row(i).transpose();
     if ((j != leg.ankle && j != leg.ball) || offset.isZero()) continue;  // the joints themselves are no sole
     sole.points.push_back(i);
     lowest = std::min(lowest, body.rest(j, 1) + offset.y());
@@ -68,7 +69,7 @@ Foot observed(const Motion& motion, const EditedBody& body, int side) {
   std::vector<float> heights, heel_heights;
   for (const Pose& pose : motion.poses) {
     const PosedSkeleton posed = forward_kinematics(body.rest, pose);
-    const Mat3& R = posed.global[static_cast<size_t>(foot.leg.ankle)];
+    const Mat3& R = posed.global[foot.leg.ankle];
     foot.ankle.push_back(posed.joints.row(foot.leg.ankle).transpose());
     foot.ball.push_back(posed.joints.row(foot.leg.ball).transpose());
     foot.heel.push_back(foot.ankle.back() + R * sole.heel);
@@ -77,8 +78,8 @@ Foot observed(const Motion& motion, const EditedBody& body, int side) {
     float lowest = 1e9f;
     for (const size_t i : sole.points) {
       const int j = body.soles.joint[i];
-      const Vec3 offset = body.soles.offset.row(static_cast<Eigen::Index>(i)).transpose();
-      lowest = std::min(lowest, posed.joints(j, 1) + (posed.global[static_cast<size_t>(j)] * offset).y());
+      const Vec3 offset = body.soles.offset.row(i).transpose();
+      lowest = std::min(lowest, posed.joints(j, 1) + (posed.global[j] * offset).y());
     }
     foot.clearance.push_back(lowest);
   }
@@ -107,7 +108,7 @@ void drop_short_spans(std::vector<char>& on, char value, int shortest) {
 /// Contact of one point by the hysteresis in both directions of time: either sees the whole of it.
 std::vector<char> contacts(const std::vector<Vec3>& point, float level, const PinEdit& edit, float leg_m,
                            float fps) {
-  const int count = static_cast<int>(point.size());
+  const int count = point.size();
   std::vector<char> on(point.size(), 0);
   ContactSwitch forward(edit.contact, leg_m), backward(edit.contact, leg_m);
   for (int t = 0; t < count; ++t) {
@@ -129,7 +130,7 @@ Vec3 over_floor(const Vec3& v) {
 void hold_stance(Foot& foot, int begin, int end, float max_lift) {
   Vec3 offset = Vec3::Zero(), mean = Vec3::Zero();
   for (int t = begin; t < end; ++t) {
-    const auto now = static_cast<size_t>(t);
+    const size_t now = t;
     if (t > begin) {
       const bool rolls_on_ball = foot.on_ball[now] && (foot.on_ball[now - 1] || !foot.on_heel[now]);
       const auto& pivot = rolls_on_ball ? foot.ball : foot.heel;
@@ -142,7 +143,7 @@ void hold_stance(Foot& foot, int begin, int end, float max_lift) {
   const float clearance = quantile({foot.clearance.begin() + begin, foot.clearance.begin() + end}, 0.5f);
   const float lift = std::clamp(-clearance, -max_lift, max_lift);
   for (int t = begin; t < end; ++t) {
-    const auto now = static_cast<size_t>(t);
+    const size_t now = t;
     foot.offset[now] -= mean;
     foot.offset[now].y() = lift;
   }
@@ -150,15 +151,15 @@ void hold_stance(Foot& foot, int begin, int end, float max_lift) {
 
 /// Between stances the correction goes over from one to the next, or to none and back in a long gap.
 void blend_gap(Foot& foot, int begin, int end, float blend_frames) {
-  const int count = static_cast<int>(foot.offset.size());
-  const Vec3 before = begin > 0 ? foot.offset[static_cast<size_t>(begin - 1)] : Vec3(Vec3::Zero());
-  const Vec3 after = end < count ? foot.offset[static_cast<size_t>(end)] : Vec3(Vec3::Zero());
+  const int count = foot.offset.size();
+  const Vec3 before = begin > 0 ? foot.offset[begin - 1] : Vec3(Vec3::Zero());
+  const Vec3 after = end < count ? foot.offset[end] : Vec3(Vec3::Zero());
   const float gap = static_cast<float>(end - begin + 1);
   const bool both = begin > 0 && end < count && gap <= 2 * blend_frames;
   const float reach = std::min(blend_frames, gap);
   for (int t = begin; t < end; ++t) {
     const float since = static_cast<float>(t - begin + 1), until = static_cast<float>(end - t);
-    auto& offset = foot.offset[static_cast<size_t>(t)];
+    auto& offset = foot.offset[t];
     if (both)
       offset = before + smoothstep(since / gap) * (after - before);
     else
@@ -167,7 +168,7 @@ void blend_gap(Foot& foot, int begin, int end, float blend_frames) {
 }
 
 void find_offsets(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
-  const int count = static_cast<int>(foot.offset.size());
+  const int count = foot.offset.size();
   const auto span_end = [&](int begin) {
     int end = begin;
     while (end < count && foot.stands(end) == foot.stands(begin)) ++end;
@@ -191,11 +192,11 @@ void find_offsets(Foot& foot, const PinEdit& edit, float leg_m, float fps) {
 std::vector<float> pelvis_drops(const Motion& motion, const Joints& rest, const std::vector<Foot>& feet,
                                 float limit) {
   constexpr float kReach = 0.992f;  // share of the leg's length; beyond it the leg straightens softly
-  const int count = static_cast<int>(motion.poses.size());
+  const int count = motion.poses.size();
   std::vector<float> needed(motion.poses.size(), 0.0f), widest = needed, drops = needed;
   for (int t = 0; t < count; ++t)
     for (const Foot& foot : feet) {
-      const auto now = static_cast<size_t>(t);
+      const size_t now = t;
       if (!foot.stands(t)) continue;
       const PosedSkeleton posed = forward_kinematics(rest, motion.poses[now]);
       const Vec3 hip = posed.joints.row(foot.leg.hip).transpose();
@@ -206,13 +207,10 @@ std::vector<float> pelvis_drops(const Motion& motion, const Joints& rest, const 
     }
   const int w = std::max(1, static_cast<int>(std::lround(0.1f * motion.fps)));
   for (int t = 0; t < count; ++t)
-    for (int k = -w; k <= w; ++k)
-      widest[static_cast<size_t>(t)] = std::max(widest[static_cast<size_t>(t)],
-                                                needed[static_cast<size_t>(std::clamp(t + k, 0, count - 1))]);
+    for (int k = -w; k <= w; ++k) widest[t] = std::max(widest[t], needed[std::clamp(t + k, 0, count - 1)]);
   for (int t = 0; t < count; ++t)
     for (int k = -w; k <= w; ++k)
-      drops[static_cast<size_t>(t)] +=
-          widest[static_cast<size_t>(std::clamp(t + k, 0, count - 1))] / static_cast<float>(2 * w + 1);
+      drops[t] += widest[std::clamp(t + k, 0, count - 1)] / static_cast<float>(2 * w + 1);
   return drops;
 }
 
@@ -227,7 +225,7 @@ void settle(Motion& motion, std::vector<Foot>& feet, float limit) {
   std::vector<float> standing;
   for (const Foot& foot : feet)
     for (size_t t = 0; t < motion.poses.size(); ++t)
-      if (foot.stands(static_cast<int>(t))) standing.push_back(foot.clearance[t]);
+      if (foot.stands(t)) standing.push_back(foot.clearance[t]);
   if (standing.empty()) return;
   const float lift = std::clamp(-quantile(standing, 0.5f), -limit, limit);
   const Vec3 up(0, lift, 0);
@@ -255,8 +253,7 @@ std::vector<std::array<bool, 2>> foot_contacts(const PinEdit& edit, const Motion
   std::vector<std::array<bool, 2>> result;
   if (motion.poses.empty()) return result;
   const std::vector<Foot> feet = observed_feet(edit, motion, body);
-  for (int t = 0; t < static_cast<int>(motion.poses.size()); ++t)
-    result.push_back({feet[0].stands(t), feet[1].stands(t)});
+  for (int t = 0; t < ssize(motion.poses); ++t) result.push_back({feet[0].stands(t), feet[1].stands(t)});
   return result;
 }
 

@@ -21,11 +21,11 @@ class PointGrid {
   }
   /// Number of the cell among those with points, -1 where there are none.
   int find(const Cell& cell) const;
-  int cells() const { return static_cast<int>(cell_.size()); }
-  const Cell& cell(int number) const { return cell_[static_cast<size_t>(number)]; }
+  int cells() const { return cell_.size(); }
+  const Cell& cell(int number) const { return cell_[number]; }
   /// The points in a cell, ascending.
-  const int* begin(int number) const { return order_.data() + start_[static_cast<size_t>(number)]; }
-  const int* end(int number) const { return order_.data() + start_[static_cast<size_t>(number) + 1]; }
+  const int* begin(int number) const { return order_.data() + start_[number]; }
+  const int* end(int number) const { return order_.data() + start_[number + 1]; }
 
   /// Index of the nearest point within `reach`, -1 where there is none; of equals the first.
   int nearest(const Vec3& query, float reach) const;

@@ -14,7 +14,7 @@ namespace {
 using Quat = Eigen::Quaternionf;
 
 int frames(const Motion& motion) {
-  return static_cast<int>(motion.poses.size());
+  return motion.poses.size();
 }
 
 /// Half a Gaussian: weights at 0, 1, 2 ... frames away, up to three standard deviations.
@@ -29,17 +29,17 @@ std::vector<float> half_gaussian(float sigma_frames) {
 /// moves evenly keeps moving so. T: with + and *.
 template <class T>
 std::vector<T> filtered(const std::vector<T>& in, const std::vector<float>& half, const T& zero) {
-  const int count = static_cast<int>(in.size()), reach = static_cast<int>(half.size()) - 1;
+  const int count = in.size(), reach = static_cast<int>(half.size()) - 1;
   std::vector<T> out(in.size(), zero);
   for (int t = 0; t < count; ++t) {
     const int r = std::min({reach, t, count - 1 - t});
-    T sum = half[0] * in[static_cast<size_t>(t)];
+    T sum = half[0] * in[t];
     float total = half[0];
     for (int k = 1; k <= r; ++k) {
-      sum += half[static_cast<size_t>(k)] * (in[static_cast<size_t>(t - k)] + in[static_cast<size_t>(t + k)]);
-      total += 2 * half[static_cast<size_t>(k)];
+      sum += half[k] * (in[t - k] + in[t + k]);
+      total += 2 * half[k];
     }
-    out[static_cast<size_t>(t)] = sum / total;
+    out[t] = sum / total;
   }
   return out;
 }
@@ -48,14 +48,14 @@ void smooth_joint(int joint, const std::vector<float>& half, Motion& motion) {
   std::vector<Eigen::Vector4f> q;
   q.reserve(motion.poses.size());
   for (const Pose& pose : motion.poses) {
-    const Eigen::Vector4f now = Quat(pose.local[static_cast<size_t>(joint)]).coeffs();
+    const Eigen::Vector4f now = Quat(pose.local[joint]).coeffs();
     const bool far = !q.empty() && q.back().dot(now) < 0;  // q and -q are one rotation: keep to the nearer
     q.push_back(far ? Eigen::Vector4f(-now) : now);
   }
   const auto mean = filtered<Eigen::Vector4f>(q, half, Eigen::Vector4f::Zero());
   for (size_t t = 0; t < q.size(); ++t)
     if (mean[t].norm() > 1e-3f)  // opposite rotations have no mean
-      motion.poses[t].local[static_cast<size_t>(joint)] = Quat(mean[t].normalized()).toRotationMatrix();
+      motion.poses[t].local[joint] = Quat(mean[t].normalized()).toRotationMatrix();
 }
 
 double mean_acceleration(const std::vector<Joints>& x, float fps) {
@@ -96,7 +96,7 @@ void rotate(const RotateEdit& edit, Motion& motion) {
   for (int t = 0; t < frames(motion); ++t) {
     const long long distance = std::llabs(static_cast<long long>(t) - edit.frame);
     if (distance > std::max(edit.falloff, 0)) continue;
-    auto& R = motion.poses[static_cast<size_t>(t)].local[static_cast<size_t>(edit.joint)];
+    auto& R = motion.poses[t].local[edit.joint];
     const float amount = falloff_weight(static_cast<int>(distance), edit.falloff);
     R = R * rotation_from_axis_angle(amount * edit.axis_angle);
   }
@@ -155,8 +155,8 @@ Motion apply(const PoseEdits& edits, const Motion& motion, const EditedBody& bod
   Motion all = apply_poses(edits, motion, body), result;
   result.fps = all.fps;
   for (const int t : kept_frames(edits, frames(all))) {
-    result.poses.push_back(all.poses[static_cast<size_t>(t)]);
-    if (!all.flags.empty()) result.flags.push_back(all.flags[static_cast<size_t>(t)]);
+    result.poses.push_back(all.poses[t]);
+    if (!all.flags.empty()) result.flags.push_back(all.flags[t]);
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/editing/point_grid.hpp"
 
 namespace understudy {
@@ -34,13 +35,13 @@ void check(const ScanEdits& edits) {
 std::vector<int> indices(const Kept& kept) {
   std::vector<int> result;
   for (size_t i = 0; i < kept.size(); ++i)
-    if (kept[i]) result.push_back(static_cast<int>(i));
+    if (kept[i]) result.push_back(i);
   return result;
 }
 
 Points rows(const Points& points, const std::vector<int>& which) {
-  Points result(static_cast<Eigen::Index>(which.size()), 3);
-  for (size_t i = 0; i < which.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = points.row(which[i]);
+  Points result(which.size(), 3);
+  for (size_t i = 0; i < which.size(); ++i) result.row(i) = points.row(which[i]);
   return result;
 }
 
@@ -76,31 +77,29 @@ void cut_floor(const FloorCut& cut, const Points& all, Kept& kept) {
   // One stray point above the floor is noise; a foot has several.
   constexpr int kEnough = 3;
   for (size_t i = 0; i < low.size(); ++i) {
-    const Vec3 at = point(lows, static_cast<int>(i));
+    const Vec3 at = point(lows, i);
     int near = 0;
     grid.around(at, cut.sole_radius_m, [&](int k) {
       near += (point(aboves, k) - at).squaredNorm() <= cut.sole_radius_m * cut.sole_radius_m;
     });
-    if (near < kEnough) kept[static_cast<size_t>(low[i])] = 0;
+    if (near < kEnough) kept[low[i]] = 0;
   }
 }
 
 class UnionFind {
  public:
-  explicit UnionFind(int count) : parent_(static_cast<size_t>(count)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
+  explicit UnionFind(int count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
   int root(int i) {
-    while (parent_[static_cast<size_t>(i)] != i) {
-      int& p = parent_[static_cast<size_t>(i)];
-      p = parent_[static_cast<size_t>(p)];
+    while (parent_[i] != i) {
+      int& p = parent_[i];
+      p = parent_[p];
       i = p;
     }
     return i;
   }
   void join(int a, int b) {
     a = root(a), b = root(b);
-    parent_[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+    parent_[std::max(a, b)] = std::min(a, b);
   }
 
  private:
@@ -149,33 +148,33 @@ void keep_largest(const Mesh& scan, float gap, Kept& kept) {
   const std::vector<int> which = indices(kept);
   if (which.empty()) return;
   const Points points = rows(scan.vertices, which);
-  UnionFind sets(static_cast<int>(which.size()));
+  UnionFind sets(which.size());
   join_near(points, gap, sets);
 
   std::vector<int> position(kept.size(), -1);
-  for (size_t i = 0; i < which.size(); ++i) position[static_cast<size_t>(which[i])] = static_cast<int>(i);
+  for (size_t i = 0; i < which.size(); ++i) position[which[i]] = i;
   for (Eigen::Index f = 0; f < scan.faces.rows(); ++f) {
-    const int a = position[static_cast<size_t>(scan.faces(f, 0))];
+    const int a = position[scan.faces(f, 0)];
     for (int k = 1; k < 3; ++k) {
-      const int b = position[static_cast<size_t>(scan.faces(f, k))];
+      const int b = position[scan.faces(f, k)];
       if (a >= 0 && b >= 0) sets.join(a, b);
     }
   }
 
   std::vector<int> size(which.size(), 0);
-  for (size_t i = 0; i < which.size(); ++i) ++size[static_cast<size_t>(sets.root(static_cast<int>(i)))];
+  for (size_t i = 0; i < which.size(); ++i) ++size[sets.root(i)];
   const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
   for (size_t i = 0; i < which.size(); ++i)
-    if (sets.root(static_cast<int>(i)) != largest) kept[static_cast<size_t>(which[i])] = 0;
+    if (sets.root(i) != largest) kept[which[i]] = 0;
 }
 
 Kept kept_flags(const ScanEdits& edits, const Mesh& scan) {
   check(edits);
-  Kept kept(static_cast<size_t>(scan.vertices.rows()), 1);
+  Kept kept(scan.vertices.rows(), 1);
   if (edits.empty()) return kept;
-  for (int i = 0; i < static_cast<int>(kept.size()); ++i) {
+  for (int i = 0; i < ssize(kept); ++i) {
     const Vec3 p = point(scan.vertices, i);
-    kept[static_cast<size_t>(i)] = p.allFinite() && (!edits.crop || edits.crop->contains(p));
+    kept[i] = p.allFinite() && (!edits.crop || edits.crop->contains(p));
   }
   if (edits.floor) cut_floor(*edits.floor, scan.vertices, kept);
   if (edits.largest_cluster) keep_largest(scan, edits.cluster_gap_m, kept);
@@ -220,8 +219,7 @@ std::optional<FloorPlane> detect_floor(const Points& all) {
   if (finite.size() < 32) return std::nullopt;
   Rng rng(1);
   std::vector<int> looked;
-  for (int i = 0; i < kLooked; ++i)
-    looked.push_back(finite[static_cast<size_t>(rng.below(static_cast<int>(finite.size())))]);
+  for (int i = 0; i < kLooked; ++i) looked.push_back(finite[rng.below(finite.size())]);
   const Points points = rows(all, looked);
 
   FloorPlane best;
@@ -252,8 +250,7 @@ Mesh apply(const ScanEdits& edits, const Mesh& scan) {
   if (edits.empty()) return scan;
   Kept kept = kept_flags(edits, scan);
   const auto stays = [&](Eigen::Index f) {
-    return kept[static_cast<size_t>(scan.faces(f, 0))] && kept[static_cast<size_t>(scan.faces(f, 1))] &&
-           kept[static_cast<size_t>(scan.faces(f, 2))];
+    return kept[scan.faces(f, 0)] && kept[scan.faces(f, 1)] && kept[scan.faces(f, 2)];
   };
   std::vector<Eigen::Index> faces;
   for (Eigen::Index f = 0; f < scan.faces.rows(); ++f)
@@ -261,21 +258,19 @@ Mesh apply(const ScanEdits& edits, const Mesh& scan) {
   if (!scan.is_cloud()) {
     Kept used(kept.size(), 0);
     for (const Eigen::Index f : faces)
-      for (int k = 0; k < 3; ++k) used[static_cast<size_t>(scan.faces(f, k))] = 1;
+      for (int k = 0; k < 3; ++k) used[scan.faces(f, k)] = 1;
     kept = used;
   }
 
   const std::vector<int> which = indices(kept);
   std::vector<int> renumbered(kept.size(), -1);
-  for (size_t i = 0; i < which.size(); ++i) renumbered[static_cast<size_t>(which[i])] = static_cast<int>(i);
+  for (size_t i = 0; i < which.size(); ++i) renumbered[which[i]] = i;
   Mesh result;
   result.vertices = rows(scan.vertices, which);
   if (scan.colors.rows() == scan.vertices.rows()) result.colors = rows(scan.colors, which);
-  result.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  result.faces.resize(faces.size(), 3);
   for (size_t f = 0; f < faces.size(); ++f)
-    for (int k = 0; k < 3; ++k)
-      result.faces(static_cast<Eigen::Index>(f), k) =
-          renumbered[static_cast<size_t>(scan.faces(faces[f], k))];
+    for (int k = 0; k < 3; ++k) result.faces(f, k) = renumbered[scan.faces(faces[f], k)];
   return result;
 }
 

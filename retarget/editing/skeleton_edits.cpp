@@ -13,7 +13,7 @@ namespace {
 constexpr float kBelieved = 0.9f;  // above the joint filter's threshold for repairing sides
 
 bool in_subtree(int joint, int top) {
-  while (joint > top) joint = kParents[static_cast<size_t>(joint)];
+  while (joint > top) joint = kParents[joint];
   return joint == top;
 }
 
@@ -21,7 +21,7 @@ bool in_subtree(int joint, int top) {
 int only_child(int joint) {
   int child = -1;
   for (int j = 1; j < kJointCount; ++j)
-    if (kParents[static_cast<size_t>(j)] == joint) {
+    if (kParents[j] == joint) {
       if (child >= 0) return -1;
       child = j;
     }
@@ -45,7 +45,7 @@ void follow_bone(const Joints& before, int joint, Extraction& seen) {
   const Vec3 from = (before.row(child) - before.row(joint)).transpose();
   const Vec3 to = (seen.joints.row(child) - seen.joints.row(joint)).transpose();
   if (from.norm() < 1e-4f || to.norm() < 1e-4f) return;
-  auto& R = (*seen.global)[static_cast<size_t>(joint)];
+  auto& R = (*seen.global)[joint];
   R = rotation_between(from, to) * R;
 }
 
@@ -57,7 +57,7 @@ void edit_frame(const DragEdit& edit, float amount, Extraction& seen) {
       seen.confidence[j] = std::max(seen.confidence[j], amount);
     }
   if (!seen.global) return;
-  const int parent = kParents[static_cast<size_t>(edit.joint)];
+  const int parent = kParents[edit.joint];
   if (parent >= 0) follow_bone(before, parent, seen);
   if (!edit.with_children) follow_bone(before, edit.joint, seen);
 }
@@ -66,7 +66,7 @@ void edit_frame(const SwapEdit& edit, float, Extraction& seen) {
   using Limbs = SwapEdit::Limbs;
   const auto exchange = [&seen](std::initializer_list<int> left) {
     for (const int j : left) {
-      const int other = kMirror[static_cast<size_t>(j)];
+      const int other = kMirror[j];
       seen.joints.row(j).swap(seen.joints.row(other));
       std::swap(seen.confidence[j], seen.confidence[other]);
       for (const int k : {j, other}) seen.confidence[k] = std::max(seen.confidence[k], kBelieved);

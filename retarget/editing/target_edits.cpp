@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/editing/point_grid.hpp"
 
 namespace understudy {
@@ -28,7 +29,7 @@ Row normalised(const Row& row, const Row& otherwise) {
 
 Row mirrored(const Row& row) {
   Row result;
-  for (int j = 0; j < kJointCount; ++j) result[kMirror[static_cast<size_t>(j)]] = row[j];
+  for (int j = 0; j < kJointCount; ++j) result[kMirror[j]] = row[j];
   return result;
 }
 
@@ -42,8 +43,8 @@ class RowCollector {
   WeightRows finish() const {
     WeightRows result;
     result.vertex = vertex_;
-    result.rows.resize(static_cast<Eigen::Index>(rows_.size()), kJointCount);
-    for (size_t i = 0; i < rows_.size(); ++i) result.rows.row(static_cast<Eigen::Index>(i)) = rows_[i];
+    result.rows.resize(rows_.size(), kJointCount);
+    for (size_t i = 0; i < rows_.size(); ++i) result.rows.row(i) = rows_[i];
     return result;
   }
 
@@ -67,8 +68,8 @@ Pairs edges(const Faces& faces, int vertices) {
 
 /// Joins vertices at one place: exporters split them where textures have seams.
 void add_seams(const Points& vertices, Pairs& pairs) {
-  std::vector<int> order(static_cast<size_t>(vertices.rows()));
-  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::vector<int> order(vertices.rows());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto key = [&](int v) {
     return std::array<float, 3>{vertices(v, 0), vertices(v, 1), vertices(v, 2)};
   };
@@ -120,25 +121,24 @@ std::vector<std::pair<int, float>> hanging_together(const PaintSurface& surface,
   (p.rowwise() - hit.transpose()).rowwise().squaredNorm().minCoeff(&seed);
   const auto from_hit = [&](int v) { return (p.row(v).transpose() - hit).norm(); };
 
-  std::vector<float> length(static_cast<size_t>(p.rows()), std::numeric_limits<float>::infinity());
+  std::vector<float> length(p.rows(), std::numeric_limits<float>::infinity());
   using Entry = std::pair<float, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   std::vector<std::pair<int, float>> found;
-  const float start = from_hit(static_cast<int>(seed));
+  const float start = from_hit(seed);
   if (!(start < radius)) return found;
-  length[static_cast<size_t>(seed)] = start;
+  length[seed] = start;
   open.push({start, static_cast<int>(seed)});
   while (!open.empty()) {
     const auto [d, v] = open.top();
     open.pop();
-    if (d > length[static_cast<size_t>(v)]) continue;
+    if (d > length[v]) continue;
     found.emplace_back(v, d);
-    for (int k = surface.neighbours.start[static_cast<size_t>(v)];
-         k < surface.neighbours.start[static_cast<size_t>(v) + 1]; ++k) {
-      const int n = surface.neighbours.index[static_cast<size_t>(k)];
+    for (int k = surface.neighbours.start[v]; k < surface.neighbours.start[v + 1]; ++k) {
+      const int n = surface.neighbours.index[k];
       const float next = d + (p.row(n) - p.row(v)).norm();
-      if (next >= reach || next >= length[static_cast<size_t>(n)] || from_hit(n) >= radius) continue;
-      length[static_cast<size_t>(n)] = next;
+      if (next >= reach || next >= length[n] || from_hit(n) >= radius) continue;
+      length[n] = next;
       open.push({next, n});
     }
   }
@@ -147,11 +147,10 @@ std::vector<std::pair<int, float>> hanging_together(const PaintSurface& surface,
 }
 
 Row neighbours_mean(const RowMatrix& weights, const Neighbours& neighbours, int v) {
-  const int begin = neighbours.start[static_cast<size_t>(v)],
-            end = neighbours.start[static_cast<size_t>(v) + 1];
+  const int begin = neighbours.start[v], end = neighbours.start[v + 1];
   if (begin == end) return weights.row(v);
   Row sum = Row::Zero();
-  for (int k = begin; k < end; ++k) sum += weights.row(neighbours.index[static_cast<size_t>(k)]);
+  for (int k = begin; k < end; ++k) sum += weights.row(neighbours.index[k]);
   return sum / static_cast<float>(end - begin);
 }
 
@@ -162,7 +161,7 @@ Row with_weight(const Row& row, int j, float wanted) {
   if (others > 1e-6f)
     result *= (1 - wanted) / others;
   else
-    result[j == Pelvis ? static_cast<int>(Spine1) : kParents[static_cast<size_t>(j)]] = 1 - wanted;
+    result[j == Pelvis ? static_cast<int>(Spine1) : kParents[j]] = 1 - wanted;
   result[j] = wanted;
   return normalised(result, row);
 }
@@ -205,11 +204,10 @@ Joints apply(const std::vector<JointMove>& moves, const Joints& rest) {
   for (const JointMove& move : moves) {
     US_CHECK(move.joint >= 0 && move.joint < kJointCount, "joint ", move.joint, " of ", kJointCount,
              " cannot be moved");
-    US_CHECK(move.position.allFinite(), kJointNames[static_cast<size_t>(move.joint)],
-             " is moved to a place that is not finite");
+    US_CHECK(move.position.allFinite(), kJointNames[move.joint], " is moved to a place that is not finite");
     joints.row(move.joint) = move.position.transpose();
     if (!move.mirror) continue;
-    const int other = kMirror[static_cast<size_t>(move.joint)];
+    const int other = kMirror[move.joint];
     const float x = other == move.joint ? centre : 2 * centre - move.position.x();
     joints.row(other) << x, move.position.y(), move.position.z();
   }
@@ -218,15 +216,13 @@ Joints apply(const std::vector<JointMove>& moves, const Joints& rest) {
 
 void apply(const WeightRows& edit, RowMatrix& weights) {
   if (edit.empty()) return;
-  US_CHECK(
-      edit.rows.cols() == weights.cols() && edit.rows.rows() == static_cast<Eigen::Index>(edit.vertex.size()),
-      "painted weights of ", edit.rows.rows(), " x ", edit.rows.cols(), " do not fit ", edit.vertex.size(),
-      " vertices and ", weights.cols(), " joints");
+  US_CHECK(edit.rows.cols() == weights.cols() && edit.rows.rows() == ssize(edit.vertex),
+           "painted weights of ", edit.rows.rows(), " x ", edit.rows.cols(), " do not fit ",
+           edit.vertex.size(), " vertices and ", weights.cols(), " joints");
   for (const int v : edit.vertex)
     US_CHECK(v >= 0 && v < weights.rows(), "weights were painted at vertex ", v, " of a target with ",
              weights.rows());
-  for (size_t i = 0; i < edit.vertex.size(); ++i)
-    weights.row(edit.vertex[i]) = edit.rows.row(static_cast<Eigen::Index>(i));
+  for (size_t i = 0; i < edit.vertex.size(); ++i) weights.row(edit.vertex[i]) = edit.rows.row(i);
 }
 
 WeightRows merged(const WeightRows& older, const WeightRows& newer) {
@@ -237,10 +233,10 @@ WeightRows merged(const WeightRows& older, const WeightRows& newer) {
         i == older.vertex.size() || (k < newer.vertex.size() && newer.vertex[k] <= older.vertex[i]);
     if (from_newer) {
       if (i < older.vertex.size() && older.vertex[i] == newer.vertex[k]) ++i;
-      rows.add(newer.vertex[k], newer.rows.row(static_cast<Eigen::Index>(k)));
+      rows.add(newer.vertex[k], newer.rows.row(k));
       ++k;
     } else {
-      rows.add(older.vertex[i], older.rows.row(static_cast<Eigen::Index>(i)));
+      rows.add(older.vertex[i], older.rows.row(i));
       ++i;
     }
   }
@@ -252,12 +248,12 @@ WeightRows changed_rows(const RowMatrix& before, const RowMatrix& after) {
   check_weights(before, after.rows());
   RowCollector rows;
   for (Eigen::Index v = 0; v < after.rows(); ++v)
-    if (before.row(v) != after.row(v)) rows.add(static_cast<int>(v), after.row(v));
+    if (before.row(v) != after.row(v)) rows.add(v, after.row(v));
   return rows.finish();
 }
 
 Neighbours Neighbours::from(const Mesh& mesh) {
-  const int count = static_cast<int>(mesh.vertices.rows());
+  const int count = mesh.vertices.rows();
   US_CHECK(mesh.vertices.allFinite(), "a vertex of the target is not finite");
   Pairs pairs = mesh.is_cloud() ? nearest_pairs(mesh.vertices) : edges(mesh.faces, count);
   if (!mesh.is_cloud()) add_seams(mesh.vertices, pairs);
@@ -267,7 +263,7 @@ Neighbours Neighbours::from(const Mesh& mesh) {
   result.start.assign(static_cast<size_t>(count) + 1, 0);
   result.index.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
-    ++result.start[static_cast<size_t>(a) + 1];
+    ++result.start[a + 1];
     result.index.push_back(b);
   }
   for (size_t v = 1; v < result.start.size(); ++v) result.start[v] += result.start[v - 1];
@@ -324,9 +320,8 @@ WeightRows mirrored_weights(const RowMatrix& weights, const Points& vertices, Bo
   for (int v = 0; v < vertices.rows(); ++v)
     if (sign * (vertices(v, 0) - centre) > -middle) sources.push_back(v);
   if (sources.empty()) return rows.finish();
-  Points places(static_cast<Eigen::Index>(sources.size()), 3);
-  for (size_t i = 0; i < sources.size(); ++i)
-    places.row(static_cast<Eigen::Index>(i)) = vertices.row(sources[i]);
+  Points places(sources.size(), 3);
+  for (size_t i = 0; i < sources.size(); ++i) places.row(i) = vertices.row(sources[i]);
   const PointGrid grid(places, cell);
 
   for (int v = 0; v < vertices.rows(); ++v) {
@@ -339,7 +334,7 @@ WeightRows mirrored_weights(const RowMatrix& weights, const Points& vertices, Bo
       const Vec3 image(2 * centre - vertices(v, 0), vertices(v, 1), vertices(v, 2));
       int nearest = -1;
       for (float reach = 0.25f * cell; nearest < 0; reach *= 2) nearest = grid.nearest(image, reach);
-      row = mirrored(weights.row(sources[static_cast<size_t>(nearest)]));
+      row = mirrored(weights.row(sources[nearest]));
     }
     row = normalised(row, weights.row(v));
     if (row != weights.row(v)) rows.add(v, row);

@@ -41,7 +41,7 @@ struct Neighbours {
   std::vector<int> start;  ///< [V + 1]: those of v are index[start[v]] .. index[start[v + 1]]
   std::vector<int> index;
   static Neighbours from(const Mesh& mesh);
-  int vertices() const { return static_cast<int>(start.size()) - 1; }
+  int vertices() const { return start.size() - 1; }
 };
 
 struct Brush {

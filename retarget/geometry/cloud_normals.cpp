@@ -16,18 +16,16 @@ namespace {
 class Cubes {
  public:
   Cubes(const Points& points, float side) : low_(points.colwise().minCoeff()), side_(side) {
-    order_.reserve(static_cast<size_t>(points.rows()));
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
-      order_.emplace_back(key_of(points.row(i)), static_cast<int>(i));
+    order_.reserve(points.rows());
+    for (Eigen::Index i = 0; i < points.rows(); ++i) order_.emplace_back(key_of(points.row(i)), i);
     std::sort(order_.begin(), order_.end());
     sorted_.resize(points.rows(), 3);
-    for (size_t k = 0; k < order_.size(); ++k)
-      sorted_.row(static_cast<Eigen::Index>(k)) = points.row(order_[k].second);
+    for (size_t k = 0; k < order_.size(); ++k) sorted_.row(k) = points.row(order_[k].second);
   }
 
   size_t size() const { return order_.size(); }
   int point(size_t k) const { return order_[k].second; }  ///< the k-th in order, as the caller counts
-  Vec3 position(size_t k) const { return sorted_.row(static_cast<Eigen::Index>(k)); }
+  Vec3 position(size_t k) const { return sorted_.row(k); }
   /// One past the last point that shares a cube with the k-th.
   size_t cube_end(size_t k) const {
     const uint64_t key = order_[k].first;

@@ -7,8 +7,8 @@ namespace understudy {
 std::vector<int> far_apart(const Points& points, const std::vector<int>& of, int count) {
   if (of.empty()) return {};
   std::vector<int> result;
-  for (const int i : farthest_points(points(of, Eigen::all), std::min(count, static_cast<int>(of.size()))))
-    result.push_back(of[static_cast<size_t>(i)]);
+  for (const int i : farthest_points(points(of, Eigen::all), std::min<int>(count, of.size())))
+    result.push_back(of[i]);
   return result;
 }
 

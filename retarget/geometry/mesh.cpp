@@ -87,7 +87,7 @@ std::vector<int> farthest_points(const Points& points, int count, int first) {
   std::vector<int> chosen(count);
   Eigen::Index current = first;
   for (int i = 0; i < count; ++i) {
-    chosen[i] = static_cast<int>(current);
+    chosen[i] = current;
     distance =
         distance.min((x - x[current]).square() + (y - y[current]).square() + (z - z[current]).square());
     distance.maxCoeff(&current);
@@ -101,9 +101,7 @@ namespace {
 struct TreePoints {
   const Points& points;
   size_t kdtree_get_point_count() const { return static_cast<size_t>(points.rows()); }
-  float kdtree_get_pt(size_t i, size_t axis) const {
-    return points(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis));
-  }
+  float kdtree_get_pt(size_t i, size_t axis) const { return points(i, axis); }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
@@ -121,11 +119,11 @@ Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neig
   const TreePoints seen{points};
   const Tree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(/*part_max_size=*/16));
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(queries.rows(), k);
-  std::vector<uint32_t> found(static_cast<size_t>(k));
-  std::vector<float> squared(static_cast<size_t>(k));
+  std::vector<uint32_t> found(k);
+  std::vector<float> squared(k);
   for (Eigen::Index q = 0; q < queries.rows(); ++q) {
     tree.knnSearch(queries.row(q).data(), found.size(), found.data(), squared.data());
-    for (int i = 0; i < k; ++i) result(q, i) = static_cast<int>(found[static_cast<size_t>(i)]);
+    for (int i = 0; i < k; ++i) result(q, i) = static_cast<int>(found[i]);
   }
   return result;
 }

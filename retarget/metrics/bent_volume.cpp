@@ -14,9 +14,9 @@ namespace {
 using Edge = std::array<int, 2>;
 
 float reach_of(const Joints& joints, int joint) {
-  float shortest = (joints.row(joint) - joints.row(kParents[static_cast<size_t>(joint)])).norm();
+  float shortest = (joints.row(joint) - joints.row(kParents[joint])).norm();
   for (int child = 0; child < kJointCount; ++child)
-    if (kParents[static_cast<size_t>(child)] == joint)
+    if (kParents[child] == joint)
       shortest = std::min(shortest, (joints.row(child) - joints.row(joint)).norm());
   return 0.5f * shortest;
 }

@@ -78,7 +78,7 @@ TouchedPart part_for(int side, const Label& label) {
 Faces faces_where(const Faces& faces, const std::vector<bool>& in) {
   Faces result(faces.rows(), 3);
   Eigen::Index count = 0;
-  const auto has = [&](int v) { return in[static_cast<size_t>(v)]; };
+  const auto has = [&](int v) { return in[v]; };
   for (Eigen::Index f = 0; f < faces.rows(); ++f)
     if (has(faces(f, 0)) && has(faces(f, 1)) && has(faces(f, 2))) result.row(count++) = faces.row(f);
   return result.topRows(count);
@@ -93,12 +93,11 @@ float squared_to_box(const Vec3& p, const Eigen::AlignedBox3f& box) {
 HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& rest_joints) {
   US_CHECK(faces.rows() > 0, "what hands touch wants a surface, not a point cloud");
   const std::vector<Piece> pieces = pieces_of(rest_joints);
-  const auto count = static_cast<size_t>(rest.rows());
+  const size_t count = rest.rows();
   std::vector<Label> labels(count);
-  for (size_t v = 0; v < count; ++v)
-    labels[v] = label_of(rest.row(static_cast<Eigen::Index>(v)).transpose(), pieces);
+  for (size_t v = 0; v < count; ++v) labels[v] = label_of(rest.row(v).transpose(), pieces);
   for (int side = 0; side < 2; ++side) {
-    const auto s = static_cast<size_t>(side);
+    const size_t s = side;
     std::vector<int> hand, arm;
     std::vector<bool> other(count);
     std::array<std::vector<bool>, kTouchedParts> in;
@@ -106,12 +105,12 @@ HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& r
     for (size_t v = 0; v < count; ++v) {
       const Label& label = labels[v];
       const bool mine = label.side == side;
-      if (mine && label.region == Hand) hand.push_back(static_cast<int>(v));
-      if (mine && (label.region == Hand || label.region == Forearm)) arm.push_back(static_cast<int>(v));
+      if (mine && label.region == Hand) hand.push_back(v);
+      if (mine && (label.region == Hand || label.region == Forearm)) arm.push_back(v);
       other[v] = !(mine && (label.region == Hand || label.region == Forearm || label.region == UpperArm));
       const TouchedPart part = part_for(side, label);
       if (part == kTouchedParts) continue;
-      parts_[s][part].push_back(static_cast<int>(v));
+      parts_[s][part].push_back(v);
       in[part][v] = true;
     }
     hands_[s] = far_apart(rest, hand, kHandPoints);
@@ -124,11 +123,11 @@ HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& r
 HandGaps HandContact::gaps(const Points& vertices) const {
   HandGaps result;
   for (size_t s = 0; s < 2; ++s) {
-    Eigen::Matrix3Xf hand(3, static_cast<Eigen::Index>(hands_[s].size()));
+    Eigen::Matrix3Xf hand(3, hands_[s].size());
     Eigen::AlignedBox3f box;
     for (size_t i = 0; i < hands_[s].size(); ++i) {
-      hand.col(static_cast<Eigen::Index>(i)) = vertices.row(hands_[s][i]).transpose();
-      box.extend(hand.col(static_cast<Eigen::Index>(i)));
+      hand.col(i) = vertices.row(hands_[s][i]).transpose();
+      box.extend(hand.col(i));
     }
     for (size_t p = 0; p < kTouchedParts; ++p) {
       float nearest = kFarGap * kFarGap;

@@ -38,7 +38,7 @@ double aligned_vertex_error(const Points& p, const Points& q) {
 double edge_length_error(const Points& p, const Points& q, int neighbours) {
   check_same_size(p, q);
   // One more than wanted: the vertex finds itself, though not first where vertices coincide.
-  const int wanted = static_cast<int>(std::min<Eigen::Index>(neighbours + 1, q.rows()));
+  const int wanted = std::min<Eigen::Index>(neighbours + 1, q.rows());
   const auto near = nearest_neighbours(q, q, wanted);
   double sum = 0;
   int64_t edges = 0;
@@ -87,7 +87,7 @@ double PartStretch::stretch(const std::vector<Edge>& edges, const Points& vertic
 SelfPenetration::SelfPenetration(const Points& rest, const Faces& faces, int samples)
     : faces_(faces), windings_(rest, faces) {
   US_CHECK(faces.rows() > 0, "self-penetration wants a surface, not a point cloud");
-  evaluated_ = farthest_points(rest, static_cast<int>(std::min<Eigen::Index>(samples, rest.rows())));
+  evaluated_ = farthest_points(rest, std::min<Eigen::Index>(samples, rest.rows()));
   const std::vector<bool> inside = buried(rest);
   std::vector<int> free;
   for (size_t i = 0; i < evaluated_.size(); ++i)

@@ -22,7 +22,7 @@ void group(const Points& middles, std::vector<int>& order, int first, int last, 
     return;
   }
   Eigen::AlignedBox3f box;
-  for (int i = first; i < last; ++i) box.extend(middles.row(order[static_cast<size_t>(i)]).transpose());
+  for (int i = first; i < last; ++i) box.extend(middles.row(order[i]).transpose());
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const int half = first + (last - first) / 2;
@@ -45,11 +45,11 @@ Windings::Windings(const Points& rest, Faces faces) : faces_(faces.rows(), 3) {
   Points middles(faces.rows(), 3);
   for (Eigen::Index f = 0; f < faces.rows(); ++f)
     middles.row(f) = (rest.row(faces(f, 0)) + rest.row(faces(f, 1)) + rest.row(faces(f, 2))) / 3;
-  std::vector<int> order(static_cast<size_t>(faces.rows()));
+  std::vector<int> order(faces.rows());
   std::iota(order.begin(), order.end(), 0);
-  group(middles, order, 0, static_cast<int>(faces.rows()), first_);
-  first_.push_back(static_cast<int>(faces.rows()));
-  for (size_t i = 0; i < order.size(); ++i) faces_.row(static_cast<Eigen::Index>(i)) = faces.row(order[i]);
+  group(middles, order, 0, faces.rows(), first_);
+  first_.push_back(faces.rows());
+  for (size_t i = 0; i < order.size(); ++i) faces_.row(i) = faces.row(order[i]);
 }
 
 std::vector<bool> Windings::around(const Points& vertices, const Points& points) const {

@@ -23,14 +23,14 @@ Character read_amass_character(const std::string& path) {
   for (size_t t = 0; t < times.size(); ++t)
     times[t] = static_cast<float>(static_cast<double>(t) / static_cast<double>(motion.fps));
   for (size_t j = 0; j < kJointCount; ++j) {
-    const auto row = static_cast<Eigen::Index>(j);
+    const Eigen::Index row = j;
     CharacterNode node;
     node.name = kJointNames[j];
     node.parent = kParents[j];
     if (node.parent >= 0) node.local.translation = (rest.row(row) - rest.row(node.parent)).transpose();
     out.nodes.push_back(node);
     CharacterTrack turn;
-    turn.node = static_cast<int>(j);
+    turn.node = j;
     turn.times = times;
     for (const Pose& pose : motion.poses) {
       const Eigen::Quaternionf q(pose.local[j]);

@@ -45,7 +45,7 @@ void add_bone_shapes(Character& character, const BoneChoices& choices) {
   CharacterSkin skin;
   skin.name = "bones";
   for (size_t n = 0; n < world.size(); ++n) {
-    skin.joints.push_back(static_cast<int>(n));
+    skin.joints.push_back(n);
     skin.inverse_bind.push_back(world[n].inverse());
   }
   character.skins.push_back(std::move(skin));
@@ -56,9 +56,9 @@ void add_bone_shapes(Character& character, const BoneChoices& choices) {
   Shapes shapes;
   for (size_t n = 0; n < character.nodes.size(); ++n) {
     const int p = character.nodes[n].parent;
-    in_body[n] = static_cast<int>(n) == map.node[Pelvis] || (p >= 0 && in_body[static_cast<size_t>(p)]);
+    in_body[n] = static_cast<int>(n) == map.node[Pelvis] || (p >= 0 && in_body[p]);
     if (!in_body[n] || static_cast<int>(n) == map.node[Pelvis]) continue;
-    const Vec3 from = place(static_cast<size_t>(p)), to = place(n);
+    const Vec3 from = place(p), to = place(n);
     if ((to - from).norm() > 1e-6f * (1 + to.norm())) add_octahedron(shapes, p, from, to);
   }
   US_CHECK(!shapes.vertices.empty(), character.called(), ": none of its bones has a length");
@@ -66,15 +66,15 @@ void add_bone_shapes(Character& character, const BoneChoices& choices) {
   carrier.name = "bones";
   CharacterPart part;
   part.name = "bones";
-  part.node = static_cast<int>(character.nodes.size());
+  part.node = character.nodes.size();
   part.skin = static_cast<int>(character.skins.size()) - 1;
-  const auto count = static_cast<Eigen::Index>(shapes.vertices.size());
+  const Eigen::Index count = shapes.vertices.size();
   part.vertices.resize(count, 3);
   part.joints.setZero(count, 4);
   part.weights.setZero(count, 4);
   for (Eigen::Index v = 0; v < count; ++v) {
-    part.vertices.row(v) = shapes.vertices[static_cast<size_t>(v)].transpose();
-    part.joints(v, 0) = shapes.bone[static_cast<size_t>(v)];
+    part.vertices.row(v) = shapes.vertices[v].transpose();
+    part.joints(v, 0) = shapes.bone[v];
     part.weights(v, 0) = 1;
   }
   part.faces =

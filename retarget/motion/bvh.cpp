@@ -119,13 +119,12 @@ int BvhReader::add_node(const std::string& name, int parent) {
   node.name = name;
   node.parent = parent;
   out_.nodes.push_back(node);
-  return static_cast<int>(out_.nodes.size()) - 1;
+  return out_.nodes.size() - 1;
 }
 
 void BvhReader::read_offset(int node) {
   for (int axis = 0; axis < 3; ++axis)
-    out_.nodes[static_cast<size_t>(node)].local.translation[axis] =
-        static_cast<float>(words_.number("an offset"));
+    out_.nodes[node].local.translation[axis] = static_cast<float>(words_.number("an offset"));
 }
 
 void BvhReader::read_channels(int node) {
@@ -157,7 +156,7 @@ void BvhReader::read_hierarchy() {
       words_.expect("{");
     } else if (word == "end" && !open.empty()) {
       words_.name();  // "Site"
-      const std::string name = out_.nodes[static_cast<size_t>(open.back())].name + "_end";
+      const std::string name = out_.nodes[open.back()].name + "_end";
       open.push_back(add_node(name, open.back()));
       words_.expect("{");
     } else if (word == "offset" && !open.empty()) {
@@ -201,7 +200,7 @@ void BvhReader::read_frames(int64_t frames, double seconds) {
 }
 
 void BvhReader::add_tracks(int64_t frames, double seconds) {
-  std::vector<float> times(static_cast<size_t>(frames));
+  std::vector<float> times(frames);
   for (size_t f = 0; f < times.size(); ++f) times[f] = static_cast<float>(static_cast<double>(f) * seconds);
   CharacterAnimation animation;
   animation.name = out_.name;
@@ -211,7 +210,7 @@ void BvhReader::add_tracks(int64_t frames, double seconds) {
     while (end < channels_.size() && channels_[end].node == node) ++end;
     const Vec3 offset = out_.nodes[node].local.translation;
     CharacterTrack place, turn;
-    place.node = turn.node = static_cast<int>(node);
+    place.node = turn.node = node;
     place.path = TrackPath::Translation;
     bool moves = false, turns = false;
     for (int64_t f = 0; f < frames; ++f) {
@@ -219,7 +218,7 @@ void BvhReader::add_tracks(int64_t frames, double seconds) {
       Eigen::Quaternionf q = Eigen::Quaternionf::Identity();
       for (size_t c = first; c < end; ++c) {
         const int what = channels_[c].what;
-        const float value = values_(f, static_cast<Eigen::Index>(c));
+        const float value = values_(f, c);
         (what < 3 ? moves : turns) = true;
         if (what < 3)
           position[what] = value;
@@ -232,8 +231,7 @@ void BvhReader::add_tracks(int64_t frames, double seconds) {
     // Positions stand for the offset; below the root a few programs write how far they are from it instead.
     const Vec3 begin(place.values[0], place.values[1], place.values[2]);
     if (moves && out_.nodes[node].parent >= 0 && begin.norm() < 0.5f * offset.norm())
-      for (size_t i = 0; i < place.values.size(); ++i)
-        place.values[i] += offset[static_cast<Eigen::Index>(i % 3)];
+      for (size_t i = 0; i < place.values.size(); ++i) place.values[i] += offset[i % 3];
     if (moves) place.times = times, animation.tracks.push_back(std::move(place));
     if (turns) turn.times = times, animation.tracks.push_back(std::move(turn));
     first = end;

@@ -68,8 +68,7 @@ int chosen_clip(const Character& character, const std::string& clip) {
   for (size_t i = 0; i < animations.size(); ++i) {
     if (!clip.empty() && (animations[i].name == clip || std::to_string(i + 1) == clip))
       return static_cast<int>(i);
-    if (animations[i].duration() > animations[static_cast<size_t>(longest)].duration())
-      longest = static_cast<int>(i);
+    if (animations[i].duration() > animations[longest].duration()) longest = i;
     if (i < 20) names += (i > 0 ? ", " : "") + std::to_string(i + 1) + " " + excerpt(animations[i].name);
   }
   US_CHECK(clip.empty(), character.called(), ": has no animation '", excerpt(clip), "', only ", names);

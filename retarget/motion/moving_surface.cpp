@@ -8,8 +8,7 @@ MovingSurface::MovingSurface(const Character& character)
 Mesh MovingSurface::at(const PosedNodes& posed) const {
   const Points all = posed_vertices(character_, posed.world, posed.shape_weights);
   Mesh mesh = merged_.mesh;
-  for (Eigen::Index v = 0; v < all.rows(); ++v)
-    mesh.vertices.row(merged_.map[static_cast<size_t>(v)]) = all.row(v);
+  for (Eigen::Index v = 0; v < all.rows(); ++v) mesh.vertices.row(merged_.map[v]) = all.row(v);
   return mesh;
 }
 

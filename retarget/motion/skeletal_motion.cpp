@@ -28,8 +28,7 @@ Character in_first_frame(Character character, int clip, const ClipTimes& times) 
   const std::vector<Mat4> world = nodes_at(character, clip, times.at(0)).world;
   for (size_t n = 0; n < world.size(); ++n) {
     const int p = character.nodes[n].parent;
-    character.nodes[n].local =
-        Transform::from(p < 0 ? world[n] : Mat4(world[static_cast<size_t>(p)].inverse() * world[n]));
+    character.nodes[n].local = Transform::from(p < 0 ? world[n] : Mat4(world[p].inverse() * world[n]));
   }
   return character;
 }
@@ -116,7 +115,7 @@ struct SkeletalMotion::Impl {
 
 SkeletalMotion::Impl::Impl(Character character, const SkeletalMotionOptions& options)
     : clip(chosen_clip(character, options.clip)),
-      times(clip_times(character.animations[static_cast<size_t>(clip)], options.fps)),
+      times(clip_times(character.animations[clip], options.fps)),
       c(in_bind_pose(character, clip, times, options)),
       surface(c.character),
       support(SupportPoints::from(c.target.mesh.vertices, c.target.joints)),
@@ -130,10 +129,10 @@ SkeletalMotion::Impl::Impl(Character character, const SkeletalMotionOptions& opt
 void SkeletalMotion::Impl::bear_joints() {
   for (int j = 0; j < kJointCount; ++j) {
     int above = j;
-    while (above >= 0 && !c.map.has(above)) above = kParents[static_cast<size_t>(above)];
-    const int node = c.map.node[static_cast<size_t>(std::max(0, above))];
-    bearer[static_cast<size_t>(j)] = node;
-    from_bind[static_cast<size_t>(j)] = linear(c.bind.nodes[static_cast<size_t>(node)]).inverse();
+    while (above >= 0 && !c.map.has(above)) above = kParents[above];
+    const int node = c.map.node[std::max(0, above)];
+    bearer[j] = node;
+    from_bind[j] = linear(c.bind.nodes[node]).inverse();
   }
 }
 
@@ -143,9 +142,7 @@ std::string SkeletalMotion::Impl::up_of_motion() const {
   const int64_t step = std::max<int64_t>(1, times.count / kLookedAt);
   for (int64_t f = 0; f < times.count; f += step) {
     const PosedNodes nodes = posed(f);
-    const auto at = [&](int j) {
-      return place(nodes.world[static_cast<size_t>(bearer[static_cast<size_t>(j)])]);
-    };
+    const auto at = [&](int j) { return place(nodes.world[bearer[j]]); };
     sum += (at(LeftShoulder) + at(RightShoulder) - at(LeftHip) - at(RightHip)).normalized();
   }
   Eigen::Index axis = 1;
@@ -186,24 +183,24 @@ PosedSkeleton SkeletalMotion::Impl::joints(const PosedNodes& nodes) const {
   Points places(kJointCount, 3);
   std::array<Mat3, kJointCount> moved;  // from the bind pose in the program's world to now
   for (size_t j = 0; j < kJointCount; ++j) {
-    const Mat4& node = nodes.world[static_cast<size_t>(bearer[j])];
+    const Mat4& node = nodes.world[bearer[j]];
     moved[j] = axes * nearest_rotation(linear(node) * from_bind[j]) * c.to_world.R.transpose();
     out.global[j] = moved[j] * c.pose.to_rest[j].transpose();
-    places.row(static_cast<Eigen::Index>(j)) = place(node).transpose();
+    places.row(j) = place(node).transpose();
   }
   out.joints = to_world(places);
   for (int j = 1; j < kJointCount; ++j) {
-    const int p = kParents[static_cast<size_t>(j)];
+    const int p = kParents[j];
     if (!c.map.has(j))  // fixed to what is above it
-      out.joints.row(j) = out.joints.row(p) + (c.pose.bind.row(j) - c.pose.bind.row(p)) *
-                                                  moved[static_cast<size_t>(j)].transpose();
+      out.joints.row(j) =
+          out.joints.row(p) + (c.pose.bind.row(j) - c.pose.bind.row(p)) * moved[j].transpose();
   }
   return out;
 }
 
 void SkeletalMotion::Impl::say() {
   const auto& all = c.character.animations;
-  std::string text = "animation '" + excerpt(all[static_cast<size_t>(clip)].name) + "'";
+  std::string text = "animation '" + excerpt(all[clip].name) + "'";
   if (all.size() > 1) text += " (" + std::to_string(clip + 1) + " of " + std::to_string(all.size()) + ")";
   text += ", " + std::to_string(times.count) + " frames at " + in_words("%g frames/s", times.fps);
   // What was decided of the bind pose gives way to what is so of the motion.

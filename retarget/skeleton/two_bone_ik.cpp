@@ -24,12 +24,12 @@ float softened(float wanted, float now, float length) {
 Vec3 hinge_axis(const Joints& rest, const TwoBones& limb, const Pose& pose, const PosedSkeleton& posed) {
   constexpr float kSure = 0.15f;  // radians of bend that outweigh the T-pose's axis
   const Vec3 lower = (rest.row(limb.end) - rest.row(limb.hinge)).transpose().normalized();
-  const Vec3 bent = pose.local[static_cast<size_t>(limb.hinge)] * lower;
+  const Vec3 bent = pose.local[limb.hinge] * lower;
   const Vec3 c = lower.cross(bent);  // leaves out the twist about the lower bone
   const float angle = std::atan2(c.norm(), lower.dot(bent));
   const Vec3 bend = c.norm() > 1e-6f ? Vec3(c.normalized() * angle) : Vec3(Vec3::Zero());
   const Vec3 axis = bend + kSure * limb.axis;
-  return (posed.global[static_cast<size_t>(limb.upper)] * (axis.norm() > 1e-3f ? axis : bend)).normalized();
+  return (posed.global[limb.upper] * (axis.norm() > 1e-3f ? axis : bend)).normalized();
 }
 
 }  // namespace
@@ -57,13 +57,10 @@ Vec3 place_end(const Joints& rest, const TwoBones& limb, const Vec3& wanted, Pos
   const Vec3 to = wanted - top, bent = u + bend * s;
   const Mat3 aim = to.norm() > 1e-6f ? rotation_between(bent, to) : Mat3(Mat3::Identity());
   Rotations global = posed.global;
-  global[static_cast<size_t>(limb.upper)] = aim * global[static_cast<size_t>(limb.upper)];
-  global[static_cast<size_t>(limb.hinge)] = aim * bend * global[static_cast<size_t>(limb.hinge)];
-  const int above = kParents[static_cast<size_t>(limb.upper)];
-  const auto set_local = [&](int j, int parent) {
-    pose.local[static_cast<size_t>(j)] =
-        global[static_cast<size_t>(parent)].transpose() * global[static_cast<size_t>(j)];
-  };
+  global[limb.upper] = aim * global[limb.upper];
+  global[limb.hinge] = aim * bend * global[limb.hinge];
+  const int above = kParents[limb.upper];
+  const auto set_local = [&](int j, int parent) { pose.local[j] = global[parent].transpose() * global[j]; };
   set_local(limb.upper, above);
   set_local(limb.hinge, limb.upper);
   set_local(limb.end, limb.hinge);  // its world rotation stays

@@ -151,7 +151,7 @@ void Workspace::follow_tabs(const app::Session& session, PanelContext& context) 
   for (size_t i = 0; i < kTabs.size(); ++i)
     if (tab_on(session, i) && static_cast<int>(i) != tab_) turned_on = i;
   if (turned_on < 0) return;
-  if (tab_on(session, static_cast<size_t>(tab_))) context.ask("panel.show", {kTabs[tab_], "off"});
+  if (tab_on(session, tab_)) context.ask("panel.show", {kTabs[tab_], "off"});
   tab_ = turned_on;
   const char* side = places_.narrow ? "side_over" : "side";
   if (!panel_shown(session, side)) context.ask("panel.show", {side, "on"});
