@@ -1,6 +1,5 @@
 // The edit panel: what each control asks for.
 #include "tests/ui/support/panels_test.hpp"
-#include "ui/panels/edit.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -10,11 +9,10 @@ using Lines = std::vector<std::string>;
 class EditPanel : public PanelsTest {
  protected:
   EditPanel() {
-    panel([this] { draw_edit(session, context, state); });
+    panel("edit");
     for (const char* closed : {"edit.target", "edit.weights"}) click(closed);
     frame(2);
   }
-  EditState state;
 };
 
 TEST_F(EditPanel, OfTheScan) {

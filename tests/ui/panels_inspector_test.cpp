@@ -1,7 +1,5 @@
 // Inspector, layers and metrics: what each control asks for.
 #include "tests/ui/support/panels_test.hpp"
-#include "ui/panels/inspector.hpp"
-#include "ui/panels/layers.hpp"
 #include "ui/panels/metrics.hpp"
 
 namespace understudy::ui {
@@ -11,9 +9,7 @@ using Lines = std::vector<std::string>;
 
 class Inspector : public PanelsTest {
  protected:
-  Inspector() {
-    panel([this] { draw_inspector(session, context); });
-  }
+  Inspector() { panel("inspector"); }
 };
 
 TEST_F(Inspector, ButtonsAskForTheirCommands) {
@@ -119,9 +115,7 @@ TEST_F(Inspector, WithNothingOpenOnlyOpeningIsOffered) {
 
 class LayersPanel : public PanelsTest {
  protected:
-  LayersPanel() {
-    panel([this] { draw_layers(session, context); });
-  }
+  LayersPanel() { panel("layers"); }
 };
 
 TEST_F(LayersPanel, EverySwitchOfBothPanesAsksForItsLayer) {
@@ -165,12 +159,8 @@ TEST_F(LayersPanel, Cameras) {
 
 class MetricsPanel : public PanelsTest {
  protected:
-  MetricsPanel() {
-    timeline.follow(session);
-    panel([this] { draw_metrics(session, context, state, timeline); });
-  }
-  MetricsState state;
-  TimelineState timeline;
+  MetricsPanel() { panel("metrics"); }
+  MetricsState& state = panel_state<MetricsState>(context);
 };
 
 TEST_F(MetricsPanel, AClickInACurveGoesToItsFrame) {

@@ -1,7 +1,7 @@
 // Timeline, log, start screen and status line.
+#include "retarget/base/text.hpp"
 #include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/bindings.hpp"
-#include "ui/panels/log.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/panels/status.hpp"
 #include "ui/panels/timeline.hpp"
@@ -15,9 +15,9 @@ class Timeline : public PanelsTest {
  protected:
   Timeline() {
     input.size = {1280, 140};
-    panel([this] { draw_timeline(session, context, state); });
+    panel("timeline");
   }
-  TimelineState state;
+  TimelineState& state = panel_state<TimelineState>(context);
 };
 
 TEST_F(Timeline, TransportAsksForItsCommands) {
@@ -95,7 +95,7 @@ TEST_F(Timeline, ManyDigitsFitTheirFields) {
   for (int i = 48; i < 2000; ++i) session.source.frames.push_back(session.source.frames[1]);
   float frame_words = 0, time_words = 0;
   in_window([&](Ui&) {
-    draw_timeline(session, context, state);
+    panel_of("timeline").draw(session, context);
     const float padding = 2 * ImGui::GetStyle().FramePadding.x;
     frame_words = ImGui::CalcTextSize("99999").x + padding;
     time_words = ImGui::CalcTextSize("59:59.99").x + padding;
@@ -112,9 +112,8 @@ class Log : public PanelsTest {
  protected:
   Log() {
     input.size = {700, 300};
-    panel([this] { draw_log(session, context, state); });
+    panel("log");
   }
-  LogState state;
 };
 
 TEST_F(Log, CopiesClearsFiltersAndCloses) {

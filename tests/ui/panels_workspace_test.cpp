@@ -7,6 +7,7 @@
 
 #include "retarget/base/error.hpp"
 #include "tests/ui/support/panels_test.hpp"
+#include "ui/panels/bindings.hpp"
 #include "ui/panels/menus.hpp"
 
 namespace understudy::ui {
@@ -18,15 +19,23 @@ using render::Key;
 const std::vector<std::pair<render::PixelSize, float>> kSizes = {
     {{1280, 800}, 1}, {{400, 300}, 1}, {{400, 300}, 3}, {{1280, 800}, 3}, {{3840, 2160}, 3},
     {{760, 430}, 1},  {{200, 120}, 1}, {{60, 40}, 2},   {{1, 1}, 1},      {{2000, 90}, 1}};
-constexpr const char* kTabs[] = {"inspector", "layers", "edit", "metrics"};
+
+std::vector<Panel> panels_at(Panel::Dock place) {
+  std::vector<Panel> found;
+  for (const Panel& panel : panels())
+    if (panel.dock == place) found.push_back(panel);
+  return found;
+}
+const std::vector<Panel> kTabs = panels_at(Panel::Dock::Side);
 
 TEST_F(WorkspaceTest, DrawsAtAnySizeWithAndWithoutAnythingOpen) {
   for (const bool loaded : {true, false}) {
     if (!loaded) session = app::Session();
     for (const auto& [size, scale] : kSizes)
-      for (const char* tab : kTabs) {
+      for (const Panel& tab : kTabs) {
         input.size = size, input.scale = scale;
-        session.settings.panels = {{tab, true}, {"log", true}, {"side_over", true}};
+        session.settings.panels = {{tab.name, true}, {"side_over", true}};
+        for (const Panel& below : panels_at(Panel::Dock::Below)) session.settings.panels[below.name] = true;
         frame(3);
         EXPECT_FALSE(gui.marks().empty()) << size.width << " x " << size.height;
       }
@@ -69,12 +78,12 @@ TEST_F(WorkspaceTest, EveryDialogCanBeClosedInASmallWindow) {
 
 TEST_F(WorkspaceTest, PartsNeitherOverlapNorLeaveTheWindow) {
   Parts parts;
-  parts.log = true;
+  parts.below = true;
   for (int width = 1; width < 2000; width += 37)
     for (int height = 1; height < 1300; height += 41)
       for (const float scale : {1.f, 2.f, 3.f}) {
         const Arrangement a = arrange({static_cast<float>(width), static_cast<float>(height)}, scale, parts);
-        std::vector<Rect> rects = {a.top, a.views, a.log, a.timeline, a.status, a.side_edge};
+        std::vector<Rect> rects = {a.top, a.views, a.below, a.timeline, a.status, a.side_edge};
         if (!a.narrow) rects.push_back(a.side);
         for (size_t i = 0; i < rects.size(); ++i) {
           if (rects[i].empty()) continue;
@@ -105,13 +114,12 @@ TEST_F(WorkspaceTest, ASmallWindowKeepsTheViewsAndThePlayButton) {
 }
 
 TEST_F(WorkspaceTest, TabsAndPanelsFollowTheirCommands) {
-  for (int i = 1; i < 4; ++i) {
+  for (size_t i = 1; i < kTabs.size(); ++i) {
     click("side.tab." + std::to_string(i));
     frame(2);
   }
   int on = 0;
-  for (const char* tab : kTabs)
-    on += session.settings.panels.count(tab) > 0 && session.settings.panels.at(tab) ? 1 : 0;
+  for (const Panel& tab : kTabs) on += panel_shown(session, tab.name) ? 1 : 0;
   EXPECT_EQ(on, 1) << "one tab is on at a time";
   session.settings.panels["side"] = false;
   frame(2);
@@ -122,6 +130,34 @@ TEST_F(WorkspaceTest, TabsAndPanelsFollowTheirCommands) {
   session.settings.panels["timeline"] = false;
   frame(2);
   EXPECT_FALSE(shown("timeline.play"));
+}
+
+TEST_F(WorkspaceTest, EveryPanelHasAMenuEntryAKeyAndAPlace) {
+  const std::vector<Menu> all = menus(session);
+  const auto window = std::find_if(all.begin(), all.end(), [](const Menu& m) { return m.name == "window"; });
+  std::set<std::string> names, keys;
+  for (const Panel& panel : panels()) {
+    names.insert(panel.name), keys.insert(panel.keys);
+    const auto is_entry = [&](const MenuItem& item) {
+      return item.label == panel.title && item.arguments.front() == panel.name;
+    };
+    EXPECT_TRUE(std::any_of(window->items.begin(), window->items.end(), is_entry)) << panel.name;
+    EXPECT_EQ(keys_of(studio.commands(), "panel.show", {panel.name, "on"}), panel.keys);
+  }
+  EXPECT_EQ(names.size(), panels().size());
+  EXPECT_EQ(keys.size(), panels().size());
+  EXPECT_THROW(panel_of("nothing"), Error);
+}
+
+TEST_F(WorkspaceTest, KeysShowAndHidePanels) {
+  frame(2);
+  key(Key::L, {false, false, true});
+  EXPECT_EQ(take_log(), Lines{"panel.show log on"});
+  key(Key::L, {false, false, true});
+  EXPECT_EQ(take_log(), Lines{"panel.show log off"});
+  key(Key::Digit2, {false, false, true});
+  frame(2);
+  EXPECT_TRUE(shown("layers.source.surface"));
 }
 
 TEST_F(WorkspaceTest, TheSidePanelsWidthIsDragged) {
@@ -512,12 +548,9 @@ TEST_F(WorkspaceTest, WordsOfFixedPlacesFit) {
   const auto fits = [&](const std::string& name, const char* words) {
     EXPECT_GE(mark(name).rect.width(), ImGui::CalcTextSize(words).x + padding) << words;
   };
-  const char* const tabs[] = {"Inspector", "Layers", "Edit", "Metrics"};
   const char* const layouts[] = {"Side by side", "Single", "Overlay", "Wipe"};
-  for (int i = 0; i < 4; ++i) {
-    fits("side.tab." + std::to_string(i), tabs[i]);
-    fits("top.layout." + std::to_string(i), layouts[i]);
-  }
+  for (int i = 0; i < 4; ++i) fits("top.layout." + std::to_string(i), layouts[i]);
+  for (size_t i = 0; i < kTabs.size(); ++i) fits("side.tab." + std::to_string(i), kTabs[i].title);
 }
 
 }  // namespace

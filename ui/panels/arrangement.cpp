@@ -51,8 +51,8 @@ Arrangement arrange(const ImVec2& display, float scale, const Parts& parts) {
   const float timeline = high >= 430 ? kTimelineHeight : kTransportHeight;
   if (parts.timeline && high >= 190) places.timeline = cut_bottom(places.views, timeline * scale);
   if (parts.side) place_side(places, scale, parts);
-  const float log = std::min(parts.log_height * scale, 0.5f * places.views.height());
-  if (parts.log && log >= 50 * scale) places.log = cut_bottom(places.views, log);
+  const float below = std::min(parts.below_height * scale, 0.5f * places.views.height());
+  if (parts.below && below >= 50 * scale) places.below = cut_bottom(places.views, below);
   return places;
 }
 

@@ -7,13 +7,13 @@ namespace understudy::ui {
 
 /// What there is to place. Sizes at scale 1.
 struct Parts {
-  bool side = true, timeline = true, log = false;
-  float side_width = 328, log_height = 150;
+  bool side = true, timeline = true, below = false;
+  float side_width = 328, below_height = 150;
 };
 
 /// Pixels. Parts that are hidden, or for which there is no room, are empty.
 struct Arrangement {
-  Rect top, views, log, side, timeline, status;
+  Rect top, views, below, side, timeline, status;
   Rect side_edge;       ///< where the side panel's width is dragged
   bool narrow = false;  ///< the side panel lies over the views
 };

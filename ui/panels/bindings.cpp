@@ -6,6 +6,7 @@
 #include <array>
 
 #include "ui/gui/gui.hpp"
+#include "ui/panels/panels.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -58,6 +59,12 @@ Chord parse(const std::string& keys) {
   return chord;
 }
 
+/// Whether keys with these arguments do, or undo, what `asked` does.
+bool same_or_toggles(const app::Arguments& keys, const app::Arguments& asked) {
+  return keys == asked ||
+         (keys.size() == 2 && asked.size() == 2 && keys[0] == asked[0] && keys[1] == "toggle");
+}
+
 /// The dialog that asks for what a command without arguments misses; null where nothing is missing.
 const char* dialog_for(const app::Session& session, const std::string& command) {
   if (command == "document.save") return session.path.empty() ? "save_as" : nullptr;
@@ -90,6 +97,8 @@ std::vector<Binding> bindings(const app::Commands& commands) {
     const auto last = all.begin() + static_cast<std::ptrdiff_t>(registered);
     if (std::none_of(all.begin(), last, taken)) all.push_back(binding);
   }
+  for (const Panel& panel : panels())
+    all.push_back({panel.keys, "panel.show", {panel.name, "toggle"}, std::string("Panel: ") + panel.title});
   return all;
 }
 
@@ -105,7 +114,7 @@ std::string keys_of(const app::Commands& commands, const std::string& command,
     if (found != nullptr && !found->shortcut.empty()) return found->shortcut;
   }
   for (const Binding& binding : bindings(commands))
-    if (binding.command == command && binding.arguments == arguments) return binding.keys;
+    if (binding.command == command && same_or_toggles(binding.arguments, arguments)) return binding.keys;
   return "";
 }
 
@@ -120,6 +129,10 @@ bool pressed(const std::string& keys) {
 void ask_or_open(const app::Session& session, PanelContext& context, const std::string& command,
                  const app::Arguments& arguments) {
   if (!possible(session, command)) return;
+  if (command == "panel.show" && arguments.size() == 2 && arguments[1] == "toggle") {
+    const bool tab = panel_of(arguments[0]).dock == Panel::Dock::Side;  // tabs are only ever turned on
+    return context.ask(command, {arguments[0], on_off(tab || !panel_shown(session, arguments[0]))});
+  }
   const char* dialog = arguments.empty() ? dialog_for(session, command) : nullptr;
   if (dialog != nullptr)
     context.ask("dialog.open", {dialog});

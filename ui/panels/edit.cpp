@@ -1,13 +1,26 @@
-#include "ui/panels/edit.hpp"
-
+// What the user changes: the scan, the skeleton, the result, the target. All of it can be undone.
+// Sections: edit.scan, edit.skeleton, edit.result, edit.target, edit.weights. Marks: edit.crop,
+// edit.crop_tool, edit.crop.LOW|HIGH.AXIS (edit.crop.low.x), edit.floor_removal, edit.floor_height,
+// edit.cluster; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
+// edit.skeleton.K (one made before), edit.skeleton_clear; edit.bones_tool, edit.bone_falloff, edit.pin,
+// edit.smooth, edit.floor_offset, edit.heading, edit.trim, edit.trim_off, edit.skip, edit.rotation.K,
+// edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
+// edit.brush_radius, edit.brush_strength, edit.brush_mode, edit.weights_mirror.left, .right,
+// edit.weights_smooth, edit.weights_clear.
 #include <algorithm>
 #include <cmath>
 
 #include "ui/panels/bindings.hpp"
+#include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
 
 namespace understudy::ui {
 namespace {
+
+struct EditState {
+  int swap_first = -1, swap_last = -1;  ///< -1: the loop marks, or the frame shown
+  int swap_limbs = 2;                   ///< arms, legs, both
+};
 
 std::string plural(size_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -133,7 +146,8 @@ void edit_line(PanelContext& context, const std::string& name, const std::string
     context.ask("edit.remove", removal);
 }
 
-void draw_swap(const app::Session& session, PanelContext& context, EditState& state) {
+void draw_swap(const app::Session& session, PanelContext& context) {
+  auto& state = panel_state<EditState>(context);
   Ui& ui = context.ui;
   const app::FrameRange range = app::play_range(session.playback, app::frame_count(session));
   const bool marked = session.playback.in >= 0 || session.playback.out >= 0;
@@ -157,7 +171,7 @@ void draw_swap(const app::Session& session, PanelContext& context, EditState& st
   state.swap_first = state.swap_last = -1;
 }
 
-void draw_skeleton(const app::Session& session, PanelContext& context, EditState& state) {
+void draw_skeleton(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "edit.skeleton", "Extracted skeleton")) return;
   const DisabledScope disabled(!possible(session, "edit.swap"));
@@ -167,7 +181,7 @@ void draw_skeleton(const app::Session& session, PanelContext& context, EditState
           toggle_row(ui, {"edit.children", "Whole limb", "What hangs on a dragged joint moves along"},
                      session.drag_children))
     context.ask("tool.children", {on_off(*on)});
-  draw_swap(session, context, state);
+  draw_swap(session, context);
   const auto& edits = session.document.skeleton_edits;
   for (size_t i = edits.size() > 50 ? edits.size() - 50 : 0; i < edits.size(); ++i)
     edit_line(context, "edit.skeleton." + std::to_string(i), describe(edits[i]), frame_of(edits[i]),
@@ -316,9 +330,9 @@ void draw_weights(const app::Session& session, PanelContext& context) {
 
 }  // namespace
 
-void draw_edit(const app::Session& session, PanelContext& context, EditState& state) {
+void draw_edit(const app::Session& session, PanelContext& context) {
   draw_scan(session, context);
-  draw_skeleton(session, context, state);
+  draw_skeleton(session, context);
   draw_result(session, context);
   draw_target(session, context);
   draw_weights(session, context);

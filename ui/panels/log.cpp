@@ -1,9 +1,15 @@
-#include "ui/panels/log.hpp"
-
+// The log: what the program told, newest last.
+// Marks: log.warnings (filter), log.copy, log.clear, log.close, log.lines.
+#include "ui/panels/panels.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
 namespace {
+
+struct LogState {
+  bool warnings_only = false;
+  size_t seen = 0;  ///< lines drawn last, to stay at the end as it grows
+};
 
 std::vector<const app::LogLine*> shown_lines(const app::Session& session, const LogState& state) {
   std::vector<const app::LogLine*> lines;
@@ -37,8 +43,9 @@ void draw_head(const app::Session& session, PanelContext& context, LogState& sta
 
 }  // namespace
 
-void draw_log(const app::Session& session, PanelContext& context, LogState& state) {
+void draw_log(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
+  auto& state = panel_state<LogState>(context);
   draw_head(session, context, state);
   const auto lines = shown_lines(session, state);
   const bool grew = lines.size() != state.seen;

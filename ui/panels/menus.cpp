@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ui/panels/panels.hpp"
+
 namespace understudy::ui {
 namespace {
 
@@ -134,15 +136,14 @@ Items tools_menu(const app::Session& session) {
 
 Items window_menu(const app::Session& session) {
   Items items;
-  for (const char* tab : {"inspector", "layers", "edit", "metrics"}) {
-    std::string label = tab;
-    label[0] = static_cast<char>(label[0] - 'a' + 'A');
-    items.push_back({label, "panel.show", {tab, "on"}, false, {}});
-  }
+  for (const Panel& panel : panels())
+    if (panel.dock == Panel::Dock::Side)
+      items.push_back({panel.title, "panel.show", {panel.name, "on"}, false, {}});
   items.push_back(line());
   items.push_back(flag("Side panel", "panel.show", panel_shown(session, "side"), {"side"}));
-  items.push_back(flag("Timeline", "panel.show", panel_shown(session, "timeline"), {"timeline"}));
-  items.push_back(flag("Log", "panel.show", panel_shown(session, "log"), {"log"}));
+  for (const Panel& panel : panels())
+    if (panel.dock != Panel::Dock::Side)
+      items.push_back(flag(panel.title, "panel.show", panel_shown(session, panel.name), {panel.name}));
   items.push_back(line());
   items.push_back({"Dark", "settings.theme", {"dark"}, session.settings.dark, {}});
   items.push_back({"Light", "settings.theme", {"light"}, !session.settings.dark, {}});

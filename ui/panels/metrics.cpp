@@ -4,7 +4,9 @@
 
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/index.hpp"
+#include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
+#include "ui/panels/timeline.hpp"
 #include "ui/widgets/lists.hpp"
 #include "ui/widgets/plot.hpp"
 
@@ -132,9 +134,10 @@ void draw_latency(const app::Session& session, PanelContext& context, MetricsSta
 
 }  // namespace
 
-void draw_metrics(const app::Session& session, PanelContext& context, MetricsState& state,
-                  const TimelineState& timeline) {
+void draw_metrics(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
+  auto& timeline = panel_state<TimelineState>(context);
+  timeline.follow(session);
   const app::TakeState* take = selected_state(session);
   ButtonOptions csv;
   csv.width = -1, csv.disabled = take == nullptr || take->series.empty();
@@ -146,7 +149,8 @@ void draw_metrics(const app::Session& session, PanelContext& context, MetricsSta
     if (button(ui, "metrics.csv", "Export CSV\u2026", csv)) context.ask("dialog.open", {"csv"});
   }
   if (section(ui, "metrics.table", "Whole sequence")) draw_figures(session, ui);
-  if (section(ui, "metrics.latency", "Latency")) draw_latency(session, context, state);
+  if (section(ui, "metrics.latency", "Latency"))
+    draw_latency(session, context, panel_state<MetricsState>(context));
 }
 
 }  // namespace understudy::ui

@@ -7,9 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "ui/panels/panel.hpp"
-#include "ui/panels/timeline.hpp"
-
 namespace understudy::ui {
 
 struct MetricsState {
@@ -19,8 +16,5 @@ struct MetricsState {
   int of_stage = -1, of_take = -1;
   std::vector<float> durations;
 };
-
-void draw_metrics(const app::Session& session, PanelContext& context, MetricsState& state,
-                  const TimelineState& timeline);
 
 }  // namespace understudy::ui

@@ -5,10 +5,10 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "ui/panels/panels.hpp"
 #include "ui/widgets/axis.hpp"
 
 namespace understudy::ui {
-namespace {}  // namespace
 
 const std::array<ToolChoice, 6> kTools = {
     {{app::Tool::Look, "look", "Look around", Icon::Camera},
@@ -82,7 +82,10 @@ double frames_per_second(const app::Session& session) {
 
 bool panel_shown(const app::Session& session, const std::string& panel) {
   const auto found = session.settings.panels.find(panel);
-  return found != session.settings.panels.end() ? found->second : panel != "log" && panel != "side_over";
+  if (found != session.settings.panels.end()) return found->second;
+  for (const Panel& one : panels())
+    if (panel == one.name) return one.shown;
+  return panel != "side_over";
 }
 
 bool possible(const app::Session& session, const std::string& command) {

@@ -48,8 +48,8 @@ bool has_document(const app::Session& session);
 int known_frames(const app::Session& session);
 double frames_per_second(const app::Session& session);
 
-/// Whether a part of the window is to be seen: "side", "timeline", "log"; "side_over": the side panel where
-/// it lies over the views for want of room.
+/// Whether a part of the window is to be seen: a panel (for those in the side panel: its tab), "side", or
+/// "side_over", the side panel where it lies over the views for want of room.
 bool panel_shown(const app::Session& session, const std::string& panel);
 
 /// The tools as they are offered.

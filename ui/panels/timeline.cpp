@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ui/panels/bindings.hpp"
+#include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/timeline_track.hpp"
 
@@ -181,8 +182,10 @@ std::string TimelineState::why(int frame) const {
   return bad[found - bad_numbers.begin()].why;
 }
 
-void draw_timeline(const app::Session& session, PanelContext& context, TimelineState& state) {
+/// Without the track where there is no room for it.
+void draw_timeline(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
+  auto& state = panel_state<TimelineState>(context);
   state.follow(session);
   const std::vector<Metric> metrics = carried_metrics(session, state);
   const float width = ImGui::GetContentRegionAvail().x, wide = width / ui.scale(),

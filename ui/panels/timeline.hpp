@@ -28,7 +28,4 @@ struct TimelineState {
 /// Heights at scale 1: with the track, and the transport alone.
 constexpr float kTimelineHeight = 128, kTransportHeight = 44;
 
-/// Fills the current window; without the track where there is no room for it.
-void draw_timeline(const app::Session& session, PanelContext& context, TimelineState& state);
-
 }  // namespace understudy::ui

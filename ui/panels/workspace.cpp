@@ -3,14 +3,14 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/bindings.hpp"
-#include "ui/panels/inspector.hpp"
 #include "ui/panels/keys.hpp"
-#include "ui/panels/layers.hpp"
+#include "ui/panels/panels.hpp"
 #include "ui/panels/settings.hpp"
 #include "ui/panels/status.hpp"
 #include "ui/panels/top_bar.hpp"
@@ -19,13 +19,20 @@
 namespace understudy::ui {
 namespace {
 
-constexpr std::array<const char*, 4> kTabs = {"inspector", "layers", "edit", "metrics"};
+/// Those of one dock; of the strip below the views those that are shown.
+std::vector<const Panel*> panels_in(Panel::Dock dock, const app::Session& session) {
+  std::vector<const Panel*> found;
+  for (const Panel& panel : panels())
+    if (panel.dock == dock && (dock != Panel::Dock::Below || panel_shown(session, panel.name)))
+      found.push_back(&panel);
+  return found;
+}
 
 /// A window without any decoration that fills a place.
-class Pane {
+class Frame {
  public:
-  Pane(Ui& ui, const char* name, const Rect& place, ImVec2 padding, const ImVec4& background,
-       bool scrolls = false) {
+  Frame(Ui& ui, const char* name, const Rect& place, ImVec2 padding, const ImVec4& background,
+        bool scrolls = false) {
     ImGui::SetNextWindowPos(place.min);
     ImGui::SetNextWindowSize({place.width(), place.height()});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(padding.x), ui.px(padding.y)});
@@ -40,15 +47,10 @@ class Pane {
     ImGui::Begin(name, nullptr, flags);
     ImGui::PopStyleVar(4);
   }
-  ~Pane() { ImGui::End(); }
-  Pane(const Pane&) = delete;
-  Pane& operator=(const Pane&) = delete;
+  ~Frame() { ImGui::End(); }
+  Frame(const Frame&) = delete;
+  Frame& operator=(const Frame&) = delete;
 };
-
-bool tab_on(const app::Session& session, size_t tab) {
-  const auto found = session.settings.panels.find(kTabs[tab]);
-  return found != session.settings.panels.end() && found->second;
-}
 
 /// Menus and lists close by Escape; dialogs do so themselves.
 void close_menu_by_escape() {
@@ -71,11 +73,12 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   const bool open = has_document(session), narrow = is_narrow(display.x, context.ui.scale());
   parts_.side = open && panel_shown(session, narrow ? "side_over" : "side");
   parts_.timeline = open && panel_shown(session, "timeline");
-  parts_.log = panel_shown(session, "log");
+  parts_.below = !panels_in(Panel::Dock::Below, session).empty();
   places_ = arrange(display, context.ui.scale(), parts_);
   follow_tabs(session, context);
   if (!places_.top.empty()) draw_top_bar(session, context, places_.top);
   draw_centre(session, context);
+  draw_below(session, context);
   draw_bottom(session, context, frame_rate);
   draw_side(session, context);
   close_menu_by_escape();
@@ -84,13 +87,13 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   ask_for_keys(session, context);
 }
 
-/// The views, or the start screen, and the log below.
+/// The views, or the start screen.
 void Workspace::draw_centre(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!places_.views.empty()) {
     const bool open = has_document(session);
-    const Pane pane(ui, "##views", places_.views, open ? ImVec2(0, 0) : ImVec2(16, 8), ui.theme().backdrop,
-                    !open);
+    const Frame frame(ui, "##views", places_.views, open ? ImVec2(0, 0) : ImVec2(16, 8), ui.theme().backdrop,
+                      !open);
     ImGui::BringWindowToDisplayBack(ImGui::GetCurrentWindow());  // the side panel may lie over it
     ui.mark("views", places_.views);
     if (!open)
@@ -98,37 +101,40 @@ void Workspace::draw_centre(const app::Session& session, PanelContext& context) 
     else if (services_.draw_views)
       services_.draw_views(places_.views.min, {places_.views.width(), places_.views.height()});
   }
-  if (places_.log.empty()) return;
-  const Pane pane(ui, "##log", places_.log, {12, 6}, ui.theme().panel);
-  draw_log(session, context, log_);
+}
+
+/// The panels of the strip below the views, side by side.
+void Workspace::draw_below(const app::Session& session, PanelContext& context) {
+  if (places_.below.empty()) return;
+  const auto shown = panels_in(Panel::Dock::Below, session);
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const auto edge = [&](size_t k) {
+      return std::round(places_.below.at(static_cast<float>(k) / static_cast<float>(shown.size()), 0).x);
+    };
+    const Rect place{{edge(i), places_.below.min.y}, {edge(i + 1), places_.below.max.y}};
+    const Frame frame(context.ui, shown[i]->name, place, {12, 6}, context.ui.theme().panel);
+    shown[i]->draw(session, context);
+  }
 }
 
 void Workspace::draw_side(const app::Session& session, PanelContext& context) {
   if (places_.side.empty()) return;
   Ui& ui = context.ui;
   draw_side_edge(context);
-  const Pane pane(ui, "##side", places_.side, {12, 8}, ui.theme().panel);
-  int tab = tab_;
-  if (segmented(ui, "side.tab", {"Inspector", "Layers", "Edit", "Metrics"}, tab)) {
-    context.ask("panel.show", {kTabs[tab], "on"});
-    tab_ = tab;
-  }
+  const Frame frame(ui, "##side", places_.side, {12, 8}, ui.theme().panel);
+  const auto tabs = panels_in(Panel::Dock::Side, session);
+  std::vector<std::string> titles;
+  for (const Panel* panel : tabs) titles.push_back(panel->title);
+  if (segmented(ui, "side.tab", titles, tab_)) context.ask("panel.show", {tabs[tab_]->name, "on"});
   ImGui::Dummy({0, ui.px(2)});
-  if (ImGui::BeginChild(kTabs[tab_], {0, 0}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar)) {
-    if (tab_ == 0) draw_inspector(session, context);
-    if (tab_ == 1) draw_layers(session, context);
-    if (tab_ == 2) draw_edit(session, context, edit_);
-    if (tab_ == 3) {
-      timeline_.follow(session);
-      draw_metrics(session, context, metrics_, timeline_);
-    }
-  }
+  if (ImGui::BeginChild(tabs[tab_]->name, {0, 0}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar))
+    tabs[tab_]->draw(session, context);
   ImGui::EndChild();
 }
 
 void Workspace::draw_side_edge(PanelContext& context) {
   if (places_.side_edge.empty()) return;
-  const Pane pane(context.ui, "##edge", places_.side_edge, {0, 0}, context.ui.theme().panel);
+  const Frame frame(context.ui, "##edge", places_.side_edge, {0, 0}, context.ui.theme().panel);
   SplitterOptions options;
   options.reversed = true, options.min = 260, options.max = 640;
   splitter(context.ui, "side.edge", parts_.side_width, options);
@@ -137,21 +143,22 @@ void Workspace::draw_side_edge(PanelContext& context) {
 void Workspace::draw_bottom(const app::Session& session, PanelContext& context, float frame_rate) {
   Ui& ui = context.ui;
   if (!places_.timeline.empty()) {
-    const Pane pane(ui, "##timeline", places_.timeline, {12, 8}, ui.theme().panel);
-    draw_timeline(session, context, timeline_);
+    const Frame frame(ui, "##timeline", places_.timeline, {12, 8}, ui.theme().panel);
+    for (const Panel* panel : panels_in(Panel::Dock::Timeline, session)) panel->draw(session, context);
   }
   if (places_.status.empty()) return;
-  const Pane pane(ui, "##status", places_.status, {12, 3}, ui.theme().raised);
+  const Frame frame(ui, "##status", places_.status, {12, 3}, ui.theme().raised);
   draw_status(session, context, frame_rate);
 }
 
 /// The tab that is on; where another was turned on (by a script, the menu), that one. Only one stays on.
 void Workspace::follow_tabs(const app::Session& session, PanelContext& context) {
+  const auto tabs = panels_in(Panel::Dock::Side, session);
   int turned_on = -1;
-  for (size_t i = 0; i < kTabs.size(); ++i)
-    if (tab_on(session, i) && static_cast<int>(i) != tab_) turned_on = i;
+  for (int i = 0; i < ssize(tabs); ++i)
+    if (i != tab_ && panel_shown(session, tabs[i]->name)) turned_on = i;
   if (turned_on < 0) return;
-  if (tab_on(session, tab_)) context.ask("panel.show", {kTabs[tab_], "off"});
+  if (panel_shown(session, tabs[tab_]->name)) context.ask("panel.show", {tabs[tab_]->name, "off"});
   tab_ = turned_on;
   const char* side = places_.narrow ? "side_over" : "side";
   if (!panel_shown(session, side)) context.ask("panel.show", {side, "on"});

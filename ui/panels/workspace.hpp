@@ -1,5 +1,5 @@
 // The window's content: lays the panels out around the views, and keeps what they remember.
-// Marks of its own: side.tab (.0 to .3: inspector, layers, edit, metrics), side.edge, views.
+// Marks of its own: side.tab (.K: the K-th panel of the side), side.edge, views.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,9 @@
 
 #include "ui/panels/arrangement.hpp"
 #include "ui/panels/dialogs.hpp"
-#include "ui/panels/edit.hpp"
 #include "ui/panels/export.hpp"
 #include "ui/panels/files.hpp"
-#include "ui/panels/log.hpp"
-#include "ui/panels/metrics.hpp"
 #include "ui/panels/start.hpp"
-#include "ui/panels/timeline.hpp"
 
 namespace understudy::ui {
 
@@ -49,6 +45,7 @@ class Workspace {
   void draw_centre(const app::Session& session, PanelContext& context);
   void draw_side(const app::Session& session, PanelContext& context);
   void draw_side_edge(PanelContext& context);
+  void draw_below(const app::Session& session, PanelContext& context);
   void draw_bottom(const app::Session& session, PanelContext& context, float frame_rate);
   void draw_dialog(const app::Session& session, PanelContext& context);
   void draw_question_or_browse(const app::Session& session, PanelContext& context);
@@ -60,10 +57,6 @@ class Workspace {
   Parts parts_;
   int tab_ = 0;
   std::string dialog_, about_;
-  TimelineState timeline_;
-  MetricsState metrics_;
-  EditState edit_;
-  LogState log_;
   ExportState export_;
   CompareState compare_;
   FilesState files_;

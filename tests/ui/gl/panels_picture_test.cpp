@@ -24,7 +24,8 @@ class Pictures : public WorkspaceTest {
 };
 
 TEST_F(Pictures, OfEveryTab) {
-  for (const char* name : {"inspector", "layers", "edit", "metrics"}) {
+  for (const Panel& panel : panels()) {
+    const char* name = panel.name;
     tab(name);
     keep(name);
     for (const Rect& letter : cut_letters(frame(), gui.atlas()))

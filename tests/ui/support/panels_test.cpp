@@ -104,6 +104,10 @@ void PanelsTest::panel(std::function<void()> draw) {
   queue.clear();
 }
 
+void PanelsTest::panel(const std::string& name) {
+  panel([this, draw = panel_of(name).draw] { draw(session, context); });
+}
+
 void PanelsTest::expect_known(const std::string& command) const {
   static const std::set<std::string> kOfTheWindow = {"dialog.open", "help.keys", "picture.save",
                                                      "video.save"};

@@ -8,6 +8,7 @@
 #include "app/session/studio.hpp"
 #include "tests/ui/support/ui_test.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/panels/panels.hpp"
 #include "ui/panels/workspace.hpp"
 
 namespace understudy::ui {
@@ -27,6 +28,8 @@ class PanelsTest : public UiTest {
 
   /// Shows one panel in a window that covers the display.
   void panel(std::function<void()> draw);
+  /// The panel of this name in the table.
+  void panel(const std::string& name);
   /// A failure unless there is such a command.
   void expect_known(const std::string& command) const;
   /// What was asked for since the last call, as lines of a script.

@@ -1,0 +1,32 @@
+#include "ui/panels/panels.hpp"
+
+#include <algorithm>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy::ui {
+
+// Each in the file of its name.
+using DrawPanel = void(const app::Session&, PanelContext&);
+DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_timeline, draw_log;
+
+const std::vector<Panel>& panels() {
+  using Dock = Panel::Dock;
+  static const std::vector<Panel> kPanels = {
+      {"inspector", "Inspector", "Alt+1", Dock::Side, false, draw_inspector},
+      {"layers", "Layers", "Alt+2", Dock::Side, false, draw_layers},
+      {"edit", "Edit", "Alt+3", Dock::Side, false, draw_edit},
+      {"metrics", "Metrics", "Alt+4", Dock::Side, false, draw_metrics},
+      {"timeline", "Timeline", "Alt+T", Dock::Timeline, true, draw_timeline},
+      {"log", "Log", "Alt+L", Dock::Below, false, draw_log},
+  };
+  return kPanels;
+}
+
+const Panel& panel_of(const std::string& name) {
+  for (const Panel& panel : panels())
+    if (name == panel.name) return panel;
+  throw Error("there is no panel " + name);
+}
+
+}  // namespace understudy::ui
