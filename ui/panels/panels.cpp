@@ -8,7 +8,7 @@ namespace understudy::ui {
 
 // Each in the file of its name.
 using DrawPanel = void(const app::Session&, PanelContext&);
-DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_timeline, draw_log;
+DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_timeline, draw_log, draw_bad_frames;
 
 const std::vector<Panel>& panels() {
   using Dock = Panel::Dock;
@@ -19,6 +19,7 @@ const std::vector<Panel>& panels() {
       {"metrics", "Metrics", "Alt+4", Dock::Side, false, draw_metrics},
       {"timeline", "Timeline", "Alt+T", Dock::Timeline, true, draw_timeline},
       {"log", "Log", "Alt+L", Dock::Below, false, draw_log},
+      {"bad_frames", "Bad frames", "Alt+B", Dock::Below, false, draw_bad_frames},
   };
   return kPanels;
 }
