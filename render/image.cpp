@@ -3,12 +3,11 @@
 #include <png.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/part_file.hpp"
 
 namespace understudy::render {
 namespace {
@@ -83,21 +82,13 @@ void write_png(const std::string& path, const Image& image) {
   US_CHECK(image.alpha.empty() || 3 * image.alpha.size() == image.pixels.size(), path, ": ",
            image.alpha.size(), " alpha values for ", image.pixels.size() / 3, " pixels");
   const auto bytes = png_bytes(path, image);
-  const std::string part = path + ".part";
-  std::ofstream out(part, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) std::remove(part.c_str());
-  US_CHECK(out, path, ": cannot be written");
-  std::error_code why;
-  std::filesystem::rename(part, path, why);
-  if (why) std::remove(part.c_str());
-  US_CHECK(!why, path, ": cannot be written, ", why.message());
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 Image read_png(const std::string& path) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
+  check_file(path);
   US_CHECK(png_image_begin_read_from_file(&png, path.c_str()) != 0, path, ": ", png.message);
   const bool has_alpha = (png.format & PNG_FORMAT_FLAG_ALPHA) != 0;
   png.format = has_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/base/log.hpp"
 
 #define STB_TRUETYPE_IMPLEMENTATION
@@ -71,10 +71,9 @@ void blend(Image& image, const Glyph& glyph, int left, int top, const Vec3& colo
 }  // namespace
 
 Font::Font(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  US_CHECK(in, path, ": cannot be read");
+  const std::string bytes = read_file(path);
   auto face = std::make_shared<Face>();
-  face->bytes.assign(std::istreambuf_iterator<char>(in), {});
+  face->bytes.assign(bytes.begin(), bytes.end());
   const bool tables = face->bytes.size() > 12 && stbtt_GetFontOffsetForIndex(face->bytes.data(), 0) == 0;
   US_CHECK(tables && stbtt_InitFont(&face->info, face->bytes.data(), 0) != 0, path, ": not a font");
   face_ = std::move(face);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 extern "C" {
@@ -13,6 +12,7 @@ extern "C" {
 }
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::render {
@@ -51,22 +51,12 @@ using Owned = std::unique_ptr<T, Free>;
 class Mp4 final : public VideoWriter::Sink {
  public:
   Mp4(std::string path, const VideoOptions& options)
-      : path_(std::move(path)), part_(path_ + ".part"), width_(options.width), height_(options.height) {
+      : path_(std::move(path)), file_(path_), width_(options.width), height_(options.height) {
     av_log_set_level(AV_LOG_FATAL);  // what goes wrong is told by our own sentences
     open_encoder(options);
-    try {
-      open_file();
-    } catch (...) {
-      remove_part();
-      throw;
-    }
+    open_file();
     open_picture();
   }
-  ~Mp4() override {
-    format_.reset();  // closes the file
-    if (!finished_) remove_part();
-  }
-
   void push(const Image& image, int frame) override {
     check(av_frame_make_writable(picture_.get()), "picture");
     const std::vector<uint8_t> rgb = padded(image);
@@ -82,17 +72,13 @@ class Mp4 final : public VideoWriter::Sink {
     check(av_write_trailer(format_.get()), "end");
     const int closed = avio_closep(&format_->pb);
     check(closed, "end");
-    std::error_code why;
-    fs::rename(part_, path_, why);
-    US_CHECK(!why, path_, ": cannot be written, ", why.message());
-    finished_ = true;
+    file_.finish();
   }
 
  private:
   void check(int code, const char* what) const {
     US_CHECK(code >= 0, path_, ": the film's ", what, " cannot be written, ", words_of(code));
   }
-  void remove_part() const noexcept { std::remove(part_.c_str()); }
 
   void open_encoder(const VideoOptions& options) {
     const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
@@ -119,14 +105,14 @@ class Mp4 final : public VideoWriter::Sink {
 
   void open_file() {
     AVFormatContext* format = nullptr;
-    check(avformat_alloc_output_context2(&format, nullptr, "mp4", part_.c_str()), "file");
+    check(avformat_alloc_output_context2(&format, nullptr, "mp4", file_.part().c_str()), "file");
     format_.reset(format);
     stream_ = avformat_new_stream(format_.get(), nullptr);
     US_CHECK(stream_ != nullptr, path_, ": no memory for a film");
     stream_->time_base = encoder_->time_base;
     stream_->avg_frame_rate = encoder_->framerate;
     check(avcodec_parameters_from_context(stream_->codecpar, encoder_.get()), "format");
-    const int opened = avio_open(&format_->pb, part_.c_str(), AVIO_FLAG_WRITE);
+    const int opened = avio_open(&format_->pb, file_.part().c_str(), AVIO_FLAG_WRITE);
     US_CHECK(opened >= 0, path_, ": cannot be written, ", words_of(opened));
     AVDictionary* options = nullptr;
     av_dict_set(&options, "movflags", "+faststart", 0);
@@ -174,9 +160,9 @@ class Mp4 final : public VideoWriter::Sink {
     }
   }
 
-  std::string path_, part_;
+  std::string path_;
+  PartFile file_;
   int width_, height_;
-  bool finished_ = false;
   Owned<AVCodecContext> encoder_;
   Owned<AVFormatContext> format_;
   AVStream* stream_ = nullptr;  // the format's
@@ -193,9 +179,7 @@ class PngFolder final : public VideoWriter::Sink {
     US_CHECK(!why && fs::is_directory(path_), path_, ": is no folder and cannot be made one");
   }
   void push(const Image& image, int frame) override {
-    char name[32];
-    std::snprintf(name, sizeof name, "frame_%05d.png", frame);
-    write_png((fs::path(path_) / name).string(), image);
+    write_png((fs::path(path_) / printed("frame_%05d.png", frame)).string(), image);
   }
   void finish() override {}
 

@@ -5,6 +5,7 @@
 #include "app/cli/evaluation.hpp"
 #include "app/cli/options.hpp"
 #include "app/cli/worst_frames.hpp"
+#include "retarget/base/part_file.hpp"
 
 namespace understudy::app {
 namespace {

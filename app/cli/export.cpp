@@ -18,6 +18,7 @@
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"

@@ -12,6 +12,7 @@
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/pipeline/person_check.hpp"
 
 namespace understudy::app {

@@ -9,6 +9,7 @@
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
 
 namespace understudy::app {

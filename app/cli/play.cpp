@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 
@@ -9,6 +8,7 @@
 #include "app/studio/application.hpp"
 #include "app/studio/script.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 
 namespace understudy::app {
 namespace {
@@ -39,10 +39,7 @@ OffscreenSurface::Options surface_options(const PlayOptions& options) {
 
 std::string script_text(const std::string& path) {
   if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
-  US_CHECK(!fs::is_directory(path), path, ": is a folder, not a script");
-  std::ifstream file(path, std::ios::binary);
-  US_CHECK(file, path, ": there is no such script");
-  return {std::istreambuf_iterator<char>(file), {}};
+  return read_file(path);
 }
 
 int play(const PlayOptions& options) {

@@ -3,7 +3,6 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
@@ -11,6 +10,7 @@
 #include "app/cli/worst_frames.hpp"
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 
 namespace understudy::app {
 namespace {
@@ -71,8 +71,7 @@ std::string file_of(const ReportOptions& options, const ReportRow& row) {
 }
 
 Json read_json(const std::string& path) {
-  std::ifstream in(path);
-  return in ? Json::parse(in, nullptr, false) : Json();
+  return fs::exists(path) ? Json::parse(read_file(path), nullptr, false) : Json();
 }
 
 ReportResult result_of(const ReportOptions& options, ReportRow row) {

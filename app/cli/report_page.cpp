@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
+#include <sstream>
 
 #include "app/run/breakdown.hpp"
 #include "render/plot.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
@@ -121,19 +122,19 @@ std::string name_of(const ReportRow& row) {
   return row.name + (context > 0 ? ", " + std::to_string(context) + " frames" : "");
 }
 
-void write_line(std::ofstream& page, const std::vector<std::string>& cells) {
+void write_line(std::ostream& page, const std::vector<std::string>& cells) {
   for (const std::string& cell : cells) page << "| " << cell << ' ';
   page << "|\n";
 }
 
-void write_head(std::ofstream& page, const std::vector<std::string>& cells) {
+void write_head(std::ostream& page, const std::vector<std::string>& cells) {
   write_line(page, cells);
   for (size_t i = 0; i < cells.size(); ++i) page << "|---";
   page << "|\n";
 }
 
 /// `tell_lost`: also the rows that have no figures.
-void write_table(std::ofstream& page, const Table& table, const std::vector<ReportResult>& results,
+void write_table(std::ostream& page, const Table& table, const std::vector<ReportResult>& results,
                  bool tell_lost) {
   bool begun = false;
   std::string lost;
@@ -163,7 +164,7 @@ void write_table(std::ofstream& page, const Table& table, const std::vector<Repo
 }
 
 /// One curve an engine over the contexts, when there are two or more.
-void plot_contexts(std::ofstream& page, const std::string& folder, const std::vector<ReportResult>& results) {
+void plot_contexts(std::ostream& page, const std::string& folder, const std::vector<ReportResult>& results) {
   std::map<std::string, render::Curve> curves;
   for (const ReportResult& result : results)
     if (result.row.table == "contexts" && result.lost.empty() &&
@@ -187,7 +188,7 @@ double number_of(const Json& json, const char* key) {
   return json[key].is_number() ? json[key].get<double>() : std::nan("");
 }
 
-void write_confidence(std::ofstream& page, const std::string& folder, const std::string& suite,
+void write_confidence(std::ostream& page, const std::string& folder, const std::string& suite,
                       const Json& confidence) {
   char text[300];
   std::snprintf(
@@ -217,7 +218,7 @@ void write_confidence(std::ofstream& page, const std::string& folder, const std:
 }
 
 /// Figures by name: joints, motions, bodies.
-void write_groups(std::ofstream& page, const char* what, const Json& groups,
+void write_groups(std::ostream& page, const char* what, const Json& groups,
                   const std::vector<Column>& columns) {
   if (groups.empty()) return;
   std::vector<std::string> head = {what};
@@ -231,7 +232,7 @@ void write_groups(std::ofstream& page, const char* what, const Json& groups,
   }
 }
 
-void write_breakdown(std::ofstream& page, const std::string& folder, const ReportResult& result) {
+void write_breakdown(std::ostream& page, const std::string& folder, const ReportResult& result) {
   const Json& breakdown = result.report["breakdown"];
   page << "\n## " << result.row.suite << ", `" << result.row.name << "`: where the error lies\n";
   write_groups(page, "joint", breakdown["joints"],
@@ -261,7 +262,7 @@ void write_breakdown(std::ofstream& page, const std::string& folder, const Repor
 }
 
 /// Whoever looks at a scan does not know of which suite it is.
-void write_confidence_of_all(std::ofstream& page, const std::string& folder,
+void write_confidence_of_all(std::ostream& page, const std::string& folder,
                              const std::vector<ReportResult>& results) {
   ConfidenceRecord all;
   std::string suites;
@@ -283,8 +284,7 @@ void write_confidence_of_all(std::ofstream& page, const std::string& folder,
 
 void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
                        const std::string& command, const std::string& note) {
-  const std::string path = folder + "/report.md", part = path + ".part";
-  std::ofstream page(part);
+  std::ostringstream page;
   page << "# Comparison\n\nMade by `" << command
        << "`.\nTruth copies rotations between bodies of one family, so figures of other protocols do not "
           "compare.\n"
@@ -298,8 +298,7 @@ void write_report_page(const std::string& folder, const std::vector<ReportResult
   for (const ReportResult& result : results)
     if (result.lost.empty() && result.row.breakdown) write_breakdown(page, folder, result);
   write_confidence_of_all(page, folder, results);
-  page.close();
-  US_CHECK(page && std::rename(part.c_str(), path.c_str()) == 0, path, ": cannot be written");
+  write_file(folder + "/report.md", page.str());
 }
 
 }  // namespace understudy::app

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 
 namespace understudy::app {
 namespace {
@@ -65,9 +65,7 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
 }  // namespace
 
 ReportPlan read_report_plan(const std::string& path) {
-  std::ifstream in(path);
-  US_CHECK(in, path, ": cannot be read");
-  const Json json = Json::parse(in, nullptr, false);
+  const Json json = Json::parse(read_file(path), nullptr, false);
   US_CHECK(json.is_object() && json.contains("rows") && json["rows"].is_array(), path,
            ": not a JSON object with \"rows\"");
   ReportPlan plan;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/formats/npz.hpp"
 
 namespace understudy::app {
@@ -67,9 +67,7 @@ std::vector<std::string> case_folders(const std::string& cases) {
 Case read_case(const std::string& folder) {
   const fs::path root(folder);
   const std::string path = (root / "case.json").string();
-  std::ifstream file(path);
-  US_CHECK(file, path, ": cannot be read");
-  const auto json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  const auto json = nlohmann::json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
   US_CHECK(json.is_object(), path, ": not a JSON object");
   const auto text = [&](const char* key) -> std::string {
     if (!json.contains(key)) return {};

@@ -7,6 +7,7 @@
 
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/amass_writer.hpp"
 #include "retarget/formats/bvh_writer.hpp"

@@ -3,28 +3,21 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "app/run/version.hpp"
-#include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
 
 std::string checksum(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  US_CHECK(file, path.string(), ": cannot be read");
-  std::vector<char> block(1 << 16);
-  uLong crc = crc32(0, nullptr, 0);
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(block.data()), static_cast<uInt>(file.gcount()));
-  char text[16];
-  std::snprintf(text, sizeof text, "%08lx", crc);
-  return text;
+  const std::string bytes = read_file(path.string());
+  return printed("%08lx", crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 Json report_header(const std::string& weights_folder) {
@@ -52,24 +45,7 @@ Json to_json(const Latency& latency, double quantile) {
 }
 
 void write_json(const std::string& path, const Json& json) {
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file << json.dump(1) << '\n';
-  file.close();
-  if (!file || std::rename(part.c_str(), path.c_str()) != 0) {
-    std::remove(part.c_str());
-    throw Error(path + ": cannot be written");
-  }
-}
-
-void check_writable(const std::string& path) {
-  if (path.empty()) return;
-  US_CHECK(!fs::is_directory(path), path, ": is a folder, not a file");
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
-  US_CHECK(file, path, ": cannot be written");
-  file.close();
-  std::remove(part.c_str());
+  write_file(path, json.dump(1) + '\n');
 }
 
 }  // namespace understudy::app

@@ -22,7 +22,4 @@ Json to_json(const Latency& latency, double quantile);
 /// Writes beside the path, then renames. Throws Error naming the path.
 void write_json(const std::string& path, const Json& json);
 
-/// Throws Error at once when a file could not be made at the path, before hours of work are done for it.
-void check_writable(const std::string& path);
-
 }  // namespace understudy::app

@@ -9,9 +9,9 @@
 
 #include "app/session/document_file.hpp"
 #include "app/session/document_text.hpp"
-#include "app/session/whole_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
@@ -130,7 +130,7 @@ void write_autosave(const std::string& folder, const SavedDocument& saved, const
                   {"document_path", document_path},
                   {"time", local_time()},
                   {"document", to_json(saved, "")}};
-  write_whole_file((fs::path(folder) / file_name(myself())).string(), document_text(json));
+  write_file((fs::path(folder) / file_name(myself())).string(), document_text(json));
 }
 
 void remove_autosave(const std::string& folder) {

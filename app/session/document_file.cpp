@@ -4,8 +4,9 @@
 #include <filesystem>
 
 #include "app/session/document_text.hpp"
-#include "app/session/whole_file.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/part_file.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -79,11 +80,11 @@ nlohmann::ordered_json parse_document(const std::string& text, const std::string
 }
 
 nlohmann::ordered_json read_document_json(const std::string& path) {
-  return parse_document(read_whole_file(path, kLargestDocument), path);
+  return parse_document(read_file(path, kLargestDocument), path);
 }
 
 void write_document(const std::string& path, const SavedDocument& saved) {
-  write_whole_file(path, document_text(to_json(saved, folder_of(path))));
+  write_file(path, document_text(to_json(saved, folder_of(path))));
 }
 
 SavedDocument read_document(const std::string& path) {

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "app/session/whole_file.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 
 namespace understudy::app {
 namespace {
@@ -52,7 +52,7 @@ void write_csv(const std::string& path, const std::vector<Series>& series, doubl
     }
     text += '\n';
   }
-  write_whole_file(path, text);
+  write_file(path, text);
 }
 
 }  // namespace understudy::app

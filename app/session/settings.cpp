@@ -8,9 +8,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/session/whole_file.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/part_file.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -127,7 +128,7 @@ Settings read_settings(const std::string& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};  // the first run
   try {
-    const Json json = Json::parse(read_whole_file(path, kLargestFile), nullptr, /*allow_exceptions=*/false);
+    const Json json = Json::parse(read_file(path, kLargestFile), nullptr, /*allow_exceptions=*/false);
     US_CHECK(json.is_object(), path, ": holds no settings");
     return from_json(json);
   } catch (const Error& error) {
@@ -146,7 +147,7 @@ void write_settings(const std::string& path, const Settings& settings) {
   json["last_folder"] = kept.last_folder;
   std::error_code ignored;  // what is wrong with the folder, the writing says
   fs::create_directories(fs::path(path).parent_path(), ignored);
-  write_whole_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
+  write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 void remember(std::vector<std::string>& recent, const std::string& path) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <sstream>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "render/gl/functions.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/workspace.hpp"
@@ -330,9 +330,7 @@ void Application::write_marks() {
   }
   if (text.str() == marks_) return;
   marks_ = text.str();
-  const std::string part = options_.marks_file + ".part";
-  std::ofstream(part) << marks_;
-  std::rename(part.c_str(), options_.marks_file.c_str());
+  write_file(options_.marks_file, marks_, /*synced=*/false);
 }
 
 }  // namespace understudy::app

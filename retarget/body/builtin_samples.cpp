@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/body/capture.hpp"
@@ -35,19 +35,6 @@ void make_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   US_CHECK(fs::is_directory(folder, failed), folder.string(), ": the folder cannot be made");
-}
-
-void write_file(const fs::path& path, const std::string& bytes) {
-  const std::string part = path.string() + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code failed;
-  if (file) fs::rename(part, path, failed);
-  if (!file || failed) {
-    fs::remove(part, failed);
-    throw Error(path.string() + ": cannot be written");
-  }
 }
 
 template <class T>

@@ -1,10 +1,10 @@
 #include "retarget/body/data_folder.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/formats/npz.hpp"
 
 namespace understudy {
@@ -48,9 +48,7 @@ bool all_below(const RowMatrix& values, Eigen::Index count) {
 
 DataSplit read_split(const std::string& folder, const std::string& name) {
   const fs::path path = fs::path(folder) / "splits.json";
-  std::ifstream in(path);
-  US_CHECK(in, path.string(), ": cannot be opened");
-  const json all = json::parse(in, nullptr, false);
+  const json all = json::parse(read_file(path.string()), nullptr, false);
   US_CHECK(!all.is_discarded(), path.string(), ": not JSON");
   US_CHECK(all.is_object() && all.contains(name), path.string(), ": has no split \"", name, "\"");
   try {

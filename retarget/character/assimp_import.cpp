@@ -255,6 +255,7 @@ Character AssimpConverter::convert() {
 }  // namespace
 
 Character import_by_assimp(const std::string& path) {
+  check_file(path);
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

@@ -5,11 +5,11 @@
 #include <numeric>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/character/corrective_shapes.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/key_reduction.hpp"
 #include "retarget/character/painted_skin.hpp"
-#include "retarget/formats/part_file.hpp"
 
 namespace understudy {
 namespace {
@@ -576,9 +576,7 @@ ExportCost export_character(const std::string& path, const PreparedCharacter& ch
   ExportCost cost = measure(written, character, screen, wanted, part_of(options.progress, 0.6f, 1));
   for (const auto& clip : wanted) cost.keys_before += static_cast<int64_t>(clip.poses.size());
   cost.bytes = static_cast<int64_t>(bytes.size());
-  PartFile file(path);
-  file.write(bytes);
-  file.finish();
+  write_file(path, bytes);
   return cost;
 }
 

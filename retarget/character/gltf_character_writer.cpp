@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
-#include "retarget/formats/part_file.hpp"
 
 namespace understudy {
 namespace {
@@ -358,10 +358,7 @@ std::string gltf_bytes(const Character& character, const std::string& path) {
 }
 
 void write_gltf_character(const std::string& path, const Character& character) {
-  const std::string bytes = gltf_bytes(character, path);
-  PartFile file(path);
-  file.write(bytes);
-  file.finish();
+  write_file(path, gltf_bytes(character, path));
 }
 
 }  // namespace understudy

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "retarget/formats/part_file.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy {

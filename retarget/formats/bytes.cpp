@@ -1,50 +1,10 @@
 #include "retarget/formats/bytes.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <limits>
 
 namespace understudy {
-namespace {
-
-constexpr off_t kLargestFile = off_t{4} << 30;
-
-struct Descriptor {
-  int fd;
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-};
-
-}  // namespace
-
-std::string read_file(const std::string& path) {
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  US_CHECK(file.fd >= 0, path, ": cannot be opened (", std::strerror(errno), ")");
-  struct stat about {};
-  US_CHECK(::fstat(file.fd, &about) == 0, path, ": cannot be read (", std::strerror(errno), ")");
-  US_CHECK(!S_ISDIR(about.st_mode), path, ": is a folder, not a file");
-  US_CHECK(S_ISREG(about.st_mode), path, ": is not an ordinary file");
-  US_CHECK(about.st_size <= kLargestFile, path, ": is larger than 4 GiB");
-
-  std::string bytes(static_cast<size_t>(about.st_size), '\0');
-  size_t have = 0;
-  while (have < bytes.size()) {
-    const ssize_t got = ::read(file.fd, bytes.data() + have, bytes.size() - have);
-    if (got < 0 && errno == EINTR) continue;
-    US_CHECK(got >= 0, path, ": cannot be read (", std::strerror(errno), ")");
-    if (got == 0) break;  // it shrank meanwhile
-    have += static_cast<size_t>(got);
-  }
-  bytes.resize(have);
-  return bytes;
-}
-
 size_t size_of(NumberType type) {
   switch (type) {
     case NumberType::I8:

@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/math/types.hpp"
 
 namespace understudy {
-
-/// The whole file, 4 GiB at most. Throws Error with the system's reason (no such file, no permission, a
-/// folder, ...).
-std::string read_file(const std::string& path);
 
 enum class NumberType { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
 /// Bytes of one number.

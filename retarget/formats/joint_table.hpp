@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "retarget/formats/part_file.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy {

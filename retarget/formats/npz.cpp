@@ -8,12 +8,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
-#include <sstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy {
@@ -150,15 +150,6 @@ std::vector<float> reordered(const std::vector<float>& values, const std::vector
   return result;
 }
 
-std::string read_whole(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  US_CHECK(in, path, ": cannot be opened");
-  std::ostringstream out;
-  out << in.rdbuf();
-  US_CHECK(!in.bad(), path, ": cannot be read");
-  return out.str();
-}
-
 struct ZipCloser {
   void operator()(zip_t* archive) const { zip_discard(archive); }
 };
@@ -167,15 +158,11 @@ using Zip = std::unique_ptr<zip_t, ZipCloser>;
 constexpr uint64_t kLargestArray = uint64_t{8} << 30;  // bytes of one array: above it the header lies
 
 Zip open_archive(const std::string& path) {
+  US_CHECK(check_file(path) > 0, path, ": is empty");
   int code = 0;
   Zip archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
-  if (archive) return archive;
-  std::error_code failed;
-  US_CHECK(!std::filesystem::is_directory(path, failed), path, ": is a folder, not a file");
-  std::ifstream probe(path);
-  US_CHECK(probe, path, ": cannot be opened");
-  US_CHECK(probe.peek() != std::ifstream::traits_type::eof(), path, ": is empty");
-  throw Error(path + ": not an .npz archive");
+  US_CHECK(archive, path, ": not an .npz archive");
+  return archive;
 }
 
 std::string read_entry(zip_t* archive, zip_int64_t index, uint64_t archive_size, const std::string& source) {
@@ -254,7 +241,7 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source) {
 }
 
 NpyArray read_npy(const std::string& path) {
-  return parse_npy(read_whole(path), path);
+  return parse_npy(read_file(path, kLargestArray), path);
 }
 
 std::vector<std::string> npz_names(const std::string& path) {
@@ -294,9 +281,9 @@ const NpyArray& require(const Npz& npz, const std::string& name, const std::stri
 }
 
 void write_npz(const std::string& path, const Npz& npz) {
-  const std::string part = path + ".part";
+  PartFile file(path);
   int code = 0;
-  Zip archive(zip_open(part.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code));
+  Zip archive(zip_open(file.part().c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code));
   US_CHECK(archive, path, ": cannot be written");
   std::vector<std::string> kept;  // libzip reads the buffers when it closes
   kept.reserve(npz.size());
@@ -308,13 +295,9 @@ void write_npz(const std::string& path, const Npz& npz) {
     zip_file_set_mtime(archive.get(), index, 315532800,
                        0);  // a fixed date: the same arrays give the same bytes
   }
-  if (zip_close(archive.get()) != 0) {
-    const std::string why = zip_strerror(archive.get());
-    std::remove(part.c_str());
-    throw Error(path + ": cannot be written (" + why + ")");
-  }
+  US_CHECK(zip_close(archive.get()) == 0, path, ": cannot be written (", zip_strerror(archive.get()), ")");
   archive.release();
-  US_CHECK(std::rename(part.c_str(), path.c_str()) == 0, path, ": cannot be written");
+  file.finish();
 }
 
 }  // namespace understudy

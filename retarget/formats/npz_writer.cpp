@@ -2,9 +2,6 @@
 
 #include <zip.h>
 
-#include <cstdio>
-#include <memory>
-
 #include "retarget/base/error.hpp"
 
 namespace understudy {
@@ -36,17 +33,15 @@ std::string frames_header(int64_t frames, std::vector<int64_t> shape) {
 
 /// An archive that is given up unless it is closed.
 struct Archive {
-  explicit Archive(const std::string& path) : part(path + ".part") {
+  explicit Archive(const std::string& path) : file(path) {
     int code = 0;
-    zip = zip_open(part.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
+    zip = zip_open(file.part().c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
     US_CHECK(zip, path, ": cannot be written");
   }
   ~Archive() {
-    if (!zip) return;
-    zip_discard(zip);
-    std::remove(part.c_str());
+    if (zip) zip_discard(zip);
   }
-  std::string part;
+  PartFile file;
   zip_t* zip = nullptr;
 };
 
@@ -60,40 +55,20 @@ void add_entry(Archive& archive, const std::string& name, zip_source_t* source, 
 
 }  // namespace
 
-NpzWriter::~NpzWriter() {
-  remove_parts();
-}
-
-void NpzWriter::remove_parts() {
-  for (Array& array : arrays_) {
-    if (!array.bytes.empty()) continue;
-    array.file.close();
-    std::remove(part_path(array).c_str());
-  }
-  arrays_.clear();
-}
-
-std::string NpzWriter::part_path(const Array& array) const {
-  return path_ + "." + array.name + ".part";
-}
-
 size_t NpzWriter::add_frames(const std::string& name, const std::vector<int64_t>& frame_shape) {
   Array array;
   array.name = name;
   array.frame_shape = frame_shape;
   for (const int64_t n : frame_shape) array.frame_size *= n;
-  array.file.open(part_path(array), std::ios::binary);
-  US_CHECK(array.file, path_, ": cannot be written");
-  array.file << frames_header(0, frame_shape);
+  array.file = std::make_unique<PartFile>(path_ + "." + name);
+  array.file->write(frames_header(0, frame_shape));
   arrays_.push_back(std::move(array));
   return arrays_.size() - 1;
 }
 
 void NpzWriter::push(size_t index, const float* values) {
   Array& array = arrays_[index];
-  array.file.write(reinterpret_cast<const char*>(values),
-                   array.frame_size * static_cast<int64_t>(sizeof(float)));
-  US_CHECK(array.file, path_, ": writing failed, the disk may be full");
+  array.file->write(values, static_cast<size_t>(array.frame_size) * sizeof(float));
   ++array.frames;
 }
 
@@ -117,23 +92,18 @@ void NpzWriter::add(const std::string& name, const std::string& text) {
 void NpzWriter::finish() {
   Archive archive(path_);
   for (Array& array : arrays_) {
-    if (!array.bytes.empty()) {
+    if (!array.file) {
       add_entry(archive, array.name,
                 zip_source_buffer(archive.zip, array.bytes.data(), array.bytes.size(), 0), path_);
       continue;
     }
-    array.file.seekp(0);
-    array.file << frames_header(array.frames, array.frame_shape);
-    array.file.close();
-    US_CHECK(array.file, path_, ": writing failed, the disk may be full");
-    add_entry(archive, array.name, zip_source_file(archive.zip, part_path(array).c_str(), 0, -1), path_);
+    array.file->rewrite(0, frames_header(array.frames, array.frame_shape));
+    add_entry(archive, array.name, zip_source_file(archive.zip, array.file->part().c_str(), 0, -1), path_);
   }
   US_CHECK(zip_close(archive.zip) == 0, path_, ": writing failed (", zip_strerror(archive.zip), ")");
   archive.zip = nullptr;
-  remove_parts();
-  if (std::rename(archive.part.c_str(), path_.c_str()) == 0) return;
-  std::remove(archive.part.c_str());
-  throw Error(path_ + ": cannot be written");
+  arrays_.clear();
+  archive.file.finish();
 }
 
 }  // namespace understudy

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "retarget/base/part_file.hpp"
 
 namespace understudy {
 
@@ -13,7 +15,6 @@ namespace understudy {
 class NpzWriter {
  public:
   explicit NpzWriter(const std::string& path) : path_(path) {}
-  ~NpzWriter();
   NpzWriter(const NpzWriter&) = delete;
   NpzWriter& operator=(const NpzWriter&) = delete;
 
@@ -33,11 +34,9 @@ class NpzWriter {
     std::string name;
     std::vector<int64_t> frame_shape;
     int64_t frame_size = 1, frames = 0;
-    std::ofstream file;
-    std::string bytes;  // of a whole one
+    std::unique_ptr<PartFile> file;  // none: a whole one
+    std::string bytes;               // of that
   };
-  std::string part_path(const Array& array) const;
-  void remove_parts();
 
   std::string path_;
   std::vector<Array> arrays_;

@@ -26,12 +26,10 @@ class ByteStream {
 
 class FileStream : public ByteStream {
  public:
-  explicit FileStream(const std::string& path) : file_(path, std::ios::binary | std::ios::ate) {
-    US_CHECK(file_.good(), path, ": cannot be opened (", std::strerror(errno), ")");
-    const auto end = file_.tellg();
-    US_CHECK(end >= 0, path, ": cannot be read");
-    size = static_cast<uint64_t>(end);
-    file_.seekg(0);
+  explicit FileStream(const std::string& path) {
+    size = check_file(path);
+    file_.open(path, std::ios::binary);
+    US_CHECK(file_, path, ": cannot be opened (", std::strerror(errno), ")");
   }
   size_t read(char* to, size_t count) override {
     file_.read(to, static_cast<std::streamsize>(count));

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "retarget/formats/part_file.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/math/types.hpp"
 
 namespace understudy {

@@ -1,13 +1,12 @@
 #include "retarget/nn/weights_file.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/networks/weights_layout.hpp"
 
 namespace understudy::nn {
@@ -19,14 +18,6 @@ template <class Visit>
 void each_tensor(const torch::nn::Module& module, Visit visit) {
   for (const auto& item : module.named_parameters()) visit(item.key(), item.value());
   for (const auto& item : module.named_buffers()) visit(item.key(), item.value());
-}
-
-std::string whole_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  US_CHECK(in, path, ": the weights are missing or cannot be opened");
-  std::ostringstream all;
-  all << in.rdbuf();
-  return all.str();
 }
 
 WeightsHeader header_of(const StoredWeights& stored) {
@@ -57,16 +48,16 @@ void save_weights(const std::string& path, const WeightsHeader& header, const to
       {"numbers", header.numbers},
       {"tensors", tensors}}.dump();
   const auto length = static_cast<uint32_t>(description.size());
-  const std::string part = path + ".part";
-  std::ofstream out(part, std::ios::binary);
-  out.write(kWeightsMagic, 8).write(reinterpret_cast<const char*>(&length), 4) << description << bytes;
-  out.close();
-  US_CHECK(out, path, ": cannot be written");
-  US_CHECK(std::rename(part.c_str(), path.c_str()) == 0, path, ": cannot be written");
+  PartFile out(path);
+  out.write(kWeightsMagic, 8);
+  out.write(&length, 4);
+  out.write(description);
+  out.write(bytes);
+  out.finish();
 }
 
 WeightsHeader read_weights_header(const std::string& path) {
-  const std::string bytes = whole_file(path);
+  const std::string bytes = read_file(path);
   return header_of(parse_weights(bytes, path));
 }
 
@@ -82,7 +73,7 @@ int64_t header_size(const std::string& path, const WeightsHeader& header, const 
 
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,
                            torch::nn::Module& module) {
-  const std::string bytes = whole_file(path);
+  const std::string bytes = read_file(path);
   const StoredWeights stored = parse_weights(bytes, path);
   US_CHECK(stored.kind == kind, path, ": holds weights for '", stored.kind, "', not for '", kind, "'");
   US_CHECK(stored.version == version, path, ": weights of version ", stored.version,

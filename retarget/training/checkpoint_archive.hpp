@@ -3,10 +3,11 @@
 
 #include <torch/torch.h>
 
-#include <cstdio>
 #include <string>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/part_file.hpp"
 
 namespace understudy::training {
 
@@ -37,22 +38,20 @@ inline torch::Tensor number_from(torch::serialize::InputArchive& archive, const 
 
 /// Written beside the path, then renamed. Throws Error when it cannot be; nothing is left beside it then.
 inline void save_archive(torch::serialize::OutputArchive& archive, const std::string& path) {
-  const std::string part = path + ".part";
-  bool written = true;
+  PartFile file(path);
   try {
-    archive.save_to(part);
+    archive.save_to(file.part());
   } catch (const c10::Error&) {
-    written = false;
+    throw Error(path + ": cannot be written");
   }
-  if (written && std::rename(part.c_str(), path.c_str()) == 0) return;
-  std::remove(part.c_str());
-  throw Error(path + ": cannot be written");
+  file.finish();
 }
 
 /// read(archive) takes the parts, which come to `device`, or to the one that they were saved from. Throws
 /// Error naming the file when it is no such checkpoint.
 template <class Read>
 void read_archive(const std::string& path, const c10::optional<torch::Device>& device, Read read) {
+  check_file(path);
   try {
     torch::serialize::InputArchive archive;
     archive.load_from(path, device);

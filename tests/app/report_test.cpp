@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "tests/app/program.hpp"
 
 namespace understudy::app {

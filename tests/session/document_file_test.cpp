@@ -203,7 +203,7 @@ TEST(DocumentFile, WhatIsNoDocumentSaysSo) {
   const std::string path = scratch.path("a.understudy");
   EXPECT_EQ(problem_of(path), path + ": there is no such file");
   EXPECT_EQ(problem_of(scratch.path("")), scratch.path("") + ": is a folder, not a file");
-  EXPECT_EQ(problem_of("/dev/zero"), "/dev/zero: is a device, not a file");
+  EXPECT_EQ(problem_of("/dev/zero"), "/dev/zero: is a pipe or a device, not a file");
   write(path, "");
   EXPECT_EQ(problem_of(path), path + ": is empty");
   write(path, "{\"a\": }");

@@ -26,7 +26,6 @@ Character written_and_read(const Character& character, const std::string& name) 
   const TempFolder folder;
   const std::string path = folder.path(name);
   write_gltf_character(path, character);
-  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
   return read_character(path);
 }
 
@@ -160,7 +159,7 @@ TEST(CharacterFile, AMissingBufferIsToldWithBothFiles) {
   json gltf = broken_base();
   gltf["buffers"][0]["uri"] = "gone.bin";
   const std::string complaint = complaint_about(gltf);
-  EXPECT_TRUE(contains(complaint, "broken.gltf: buffer 0, gone.bin: cannot be opened")) << complaint;
+  EXPECT_TRUE(contains(complaint, "broken.gltf: buffer 0, gone.bin: there is no such file")) << complaint;
 }
 
 TEST(CharacterFile, PicturesThatOnlyExtensionsNameAreKeptAsTheyCame) {

@@ -1,16 +1,18 @@
-// Files that appear whole: written beside their path, renamed at the end.
+// Files that appear whole: written beside their path, synced and renamed at the end.
 #pragma once
 
-#include <fstream>
+#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace understudy {
 
-/// Until finish() what was at the path stays; without it nothing is left behind.
+/// Until finish() what was at the path stays; without it nothing is left behind. A link is followed: what it
+/// leads to is replaced. A file that was there hands its permissions on. Nobody else's file is touched: the
+/// one beside the path has a name of its own, PATH.PROCESS.part.
 class PartFile {
  public:
-  /// Throws Error naming the path when it cannot be written.
+  /// Throws Error naming the path and the reason: a folder, a pipe or device, read-only, no such folder.
   explicit PartFile(const std::string& path);
   ~PartFile();
   PartFile(const PartFile&) = delete;
@@ -21,15 +23,26 @@ class PartFile {
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Over what was written at this place.
   void rewrite(size_t at, std::string_view text);
-  /// Throws Error; then the file that was there is as it was.
-  void finish();
+  /// Synced, so that a power cut leaves the old file or the new one, where nobody says that speed counts
+  /// more. Throws Error; then the file that was there is as it was.
+  void finish(bool synced = true);
   const std::string& path() const { return path_; }
+  /// Where libraries write that open files by name; all that was written so far is in it.
+  const std::string& part();
 
  private:
-  std::string path_, part_;
-  std::ofstream file_;
-  bool finished_ = false;
+  void open_part();
+  void check(bool good) const;
+
+  std::string path_, target_, part_;
+  std::FILE* file_ = nullptr;
+  int mode_ = -1;  // of the file that is replaced
 };
+
+/// The whole file at once. Throws Error as PartFile does.
+void write_file(const std::string& path, std::string_view bytes, bool synced = true);
+/// Throws Error when a file cannot be written there; changes nothing. An empty path is good.
+void check_writable(const std::string& path);
 
 /// The same of a folder of frames: `FOLDER.part` takes the place of `FOLDER` at the end. A folder that is
 /// there already is replaced only where it is empty or holds nothing but frames written so before.

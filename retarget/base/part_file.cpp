@@ -1,7 +1,14 @@
-#include "retarget/formats/part_file.hpp"
+#include "retarget/base/part_file.hpp"
 
-#include <cstdio>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 
@@ -43,34 +50,78 @@ void check_replaceable(const std::string& path, const std::string& part) {
 
 }  // namespace
 
-PartFile::PartFile(const std::string& path) : path_(path), part_(path + ".part") {
-  US_CHECK(!fs::is_directory(path), path, ": is a folder, not a file");
-  file_.open(part_, std::ios::binary);
-  US_CHECK(file_, path_, ": cannot be written");
+PartFile::PartFile(const std::string& path) : path_(path), target_(path) {
+  US_CHECK(!path.empty(), "a file without a name cannot be written");
+  std::error_code error;
+  if (fs::is_symlink(path, error)) target_ = fs::weakly_canonical(path, error).string();
+  if (error) target_ = path;
+  struct stat old {};
+  if (::stat(target_.c_str(), &old) == 0) {
+    US_CHECK(!S_ISDIR(old.st_mode), path, ": is a folder, not a file");
+    US_CHECK(S_ISREG(old.st_mode), path, ": is a pipe or a device, not a file");
+    US_CHECK(::access(target_.c_str(), W_OK) == 0, path, ": is read-only");
+    mode_ = static_cast<int>(old.st_mode & 07777);
+  }
+  open_part();
+}
+
+void PartFile::open_part() {
+  int handle = -1;
+  for (int n = 0; handle < 0; ++n) {
+    part_ = target_ + "." + std::to_string(::getpid()) + (n > 0 ? "-" + std::to_string(n) : "") + ".part";
+    handle = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    check(handle >= 0 || (errno == EEXIST && n < 1000));
+  }
+  file_ = ::fdopen(handle, "wb");
 }
 
 PartFile::~PartFile() {
-  if (finished_) return;
-  file_.close();
-  std::remove(part_.c_str());
+  if (file_ != nullptr) std::fclose(file_);
+  if (!part_.empty()) std::remove(part_.c_str());
+}
+
+void PartFile::check(bool good) const {
+  US_CHECK(good, path_, ": cannot be written (", std::strerror(errno), ")");
 }
 
 void PartFile::write(const void* data, size_t size) {
-  file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-  US_CHECK(file_, path_, kFull);
+  check(std::fwrite(data, 1, size, file_) == size);
 }
 
 void PartFile::rewrite(size_t at, std::string_view text) {
-  file_.seekp(static_cast<std::streamoff>(at));
+  check(std::fseek(file_, static_cast<long>(at), SEEK_SET) == 0);
   write(text);
-  file_.seekp(0, std::ios::end);
+  check(std::fseek(file_, 0, SEEK_END) == 0);
 }
 
-void PartFile::finish() {
-  file_.close();
-  US_CHECK(file_, path_, kFull);
-  US_CHECK(std::rename(part_.c_str(), path_.c_str()) == 0, path_, ": cannot be written");
-  finished_ = true;
+const std::string& PartFile::part() {
+  check(std::fflush(file_) == 0);
+  return part_;
+}
+
+void PartFile::finish(bool synced) {
+  check(std::fclose(std::exchange(file_, nullptr)) == 0);
+  const int handle =
+      ::open(part_.c_str(), O_RDONLY | O_CLOEXEC);  // a library may have put a file of its own here
+  check(handle >= 0);
+  const bool good =
+      (mode_ < 0 || ::fchmod(handle, static_cast<mode_t>(mode_)) == 0) &&
+      (!synced || ::fsync(handle) == 0 || errno == EINVAL);  // a disk may only now find that it is full
+  const int why = errno;
+  ::close(handle);
+  errno = why;
+  check(good && std::rename(part_.c_str(), target_.c_str()) == 0);
+  part_.clear();
+}
+
+void write_file(const std::string& path, std::string_view bytes, bool synced) {
+  PartFile file(path);
+  file.write(bytes);
+  file.finish(synced);
+}
+
+void check_writable(const std::string& path) {
+  if (!path.empty()) const PartFile made_and_removed(path);
 }
 
 PartFolder::PartFolder(const std::string& path) : path_(folder_name(path)), part_(path_ + ".part") {
