@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/math/types.hpp"
 
 namespace understudy::render {
@@ -13,6 +14,10 @@ struct PixelSize {
   int width = 0, height = 0;
   float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
 };
+template <class V, class S>
+FieldsOf<S, PixelSize> fields(V& visit, S& size) {
+  unnamed(visit, size.width, size.height);
+}
 
 struct Camera {
   Vec3 target = Vec3(0, 0.9f, 0);  ///< metres; what it turns about and looks at
@@ -22,6 +27,10 @@ struct Camera {
   float fov = 0.5f;     ///< vertical, radians
   bool orthographic = false;  ///< shows as much as the perspective does at the target's distance
 };
+template <class V, class S>
+FieldsOf<S, Camera> fields(V& visit, S& c) {
+  unnamed(visit, c.target, c.yaw, c.pitch, c.distance, c.fov, c.orthographic);
+}
 
 /// The camera's axes in the world as columns: right, up, back (towards the viewer).
 Mat3 axes(const Camera& camera);

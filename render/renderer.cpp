@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string>
 
 #include "render/gizmo.hpp"
 #include "render/gl/debug.hpp"
@@ -35,7 +36,7 @@ class Canvas {
   bool resize(PixelSize size) {
     US_CHECK(size.width > 0 && size.height > 0 && size.width <= 16384 && size.height <= 16384,
              "a picture cannot be ", size.width, " x ", size.height, " pixels");
-    if (size.width == size_.width && size.height == size_.height) return false;
+    if (same(size, size_)) return false;
     size_ = size;
     attach_color(still_, still_color_, samples_);
     attach_color(plain_, plain_color_, 1);
@@ -130,38 +131,6 @@ class Canvas {
   gl::Texture color_texture_, depth_texture_;
 };
 
-/// All that the still part of a picture depends on.
-std::vector<float> still_key(const Scene& scene, const Camera& camera, PixelSize size) {
-  const auto& [target, yaw, pitch, distance, fov, orthographic] = camera;
-  const BackgroundView& b = scene.background;
-  const GroundView& g = scene.ground;
-  const auto number = [](auto value) { return static_cast<float>(value); };
-  return {target.x(),
-          target.y(),
-          target.z(),
-          yaw,
-          pitch,
-          distance,
-          fov,
-          number(orthographic),
-          number(size.width),
-          number(size.height),
-          b.top.x(),
-          b.top.y(),
-          b.top.z(),
-          b.bottom.x(),
-          b.bottom.y(),
-          b.bottom.z(),
-          number(b.transparent),
-          number(g.visible),
-          g.height,
-          g.spacing,
-          g.radius,
-          g.line.x(),
-          g.line.y(),
-          g.line.z()};
-}
-
 /// A person's folds are shallow: they want more than occlusion from depths does to be seen as well.
 float ambient_strength(const Scene& scene) {
   return std::min(1.f, 1.6f * scene.occlusion);
@@ -238,7 +207,7 @@ struct Renderer::Parts {
 
   RendererOptions options;
   Canvas canvas;
-  std::vector<float> still;  ///< the still_key() of what the canvas keeps
+  std::string still;  ///< key of what the canvas keeps
   gl::Store store;
   FrameBlock frame;
   BackgroundPass background;
@@ -253,7 +222,7 @@ struct Renderer::Parts {
 
 /// Background and grid, drawn anew only when the view or they have changed.
 void Renderer::Parts::draw_still(const Scene& scene, const Camera& camera, PixelSize size) {
-  std::vector<float> key = still_key(scene, camera, size);
+  std::string key = key_of(camera, size, scene.background, scene.ground);
   if (key != still) {
     const gl::TargetScope target(canvas.still(), size.width, size.height);
     background.draw(scene.background);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/shared.hpp"
+#include "retarget/base/fields.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -27,6 +28,10 @@ struct MeshView {
   bool two_sided =
       true;  ///< show the inside, lit like the outside (scans have holes); a closed one draws faster without
 };
+template <class V, class S>
+FieldsOf<S, MeshView> fields(V& visit, S& m) {
+  unnamed(visit, m.vertices, m.faces, m.normals, m.colors, m.ambient, m.color, m.opacity, m.two_sided);
+}
 
 /// Points as lit round discs.
 struct PointsView {
@@ -36,6 +41,10 @@ struct PointsView {
   Vec3 color = Vec3(0.60f, 0.66f, 0.72f);
   float radius = 0.008f;  ///< metres
 };
+template <class V, class S>
+FieldsOf<S, PointsView> fields(V& visit, S& p) {
+  unnamed(visit, p.positions, p.normals, p.colors, p.color, p.radius);
+}
 
 enum class Side : int { Middle, Left, Right };
 
@@ -49,6 +58,10 @@ struct SkeletonView {
   float thickness = 1;       ///< of bones and balls, 1 fits an adult
   bool x_ray = true;         ///< seen through everything else
 };
+template <class V, class S>
+FieldsOf<S, SkeletonView> fields(V& visit, S& s) {
+  unnamed(visit, s.joints, s.parents, s.sides, s.tint, s.tint_share, s.thickness, s.x_ray);
+}
 
 /// Lines in space: trails, boxes.
 struct LinesView {
@@ -61,6 +74,10 @@ struct LinesView {
   float width = 2;     ///< pixels
   bool x_ray = false;  ///< seen through everything else
 };
+template <class V, class S>
+FieldsOf<S, LinesView> fields(V& visit, S& l) {
+  unnamed(visit, l.positions, l.connected, l.colors, l.opacities, l.color, l.opacity, l.width, l.x_ray);
+}
 
 enum class GizmoHandle : int { None, AxisX, AxisY, AxisZ, PlaneYz, PlaneZx, PlaneXy, Centre };
 
@@ -74,6 +91,10 @@ struct GizmoView {
   float size = 0.13f;                       ///< of an arrow, as a share of the picture's height
   GizmoHandle hovered = GizmoHandle::None;  ///< drawn bright
 };
+template <class V, class S>
+FieldsOf<S, GizmoView> fields(V& visit, S& g) {
+  unnamed(visit, g.kind, g.position, g.axes, g.size, g.hovered);
+}
 
 /// The floor: a grid that fades out, and soft shadows of all that stands above it.
 struct GroundView {
@@ -84,6 +105,10 @@ struct GroundView {
   float shadow = 0.55f;  ///< 0 none .. 1 black
   Vec3 line = Vec3(0.52f, 0.55f, 0.60f);
 };
+template <class V, class S>
+FieldsOf<S, GroundView> fields(V& visit, S& g) {
+  unnamed(visit, g.visible, g.height, g.spacing, g.radius, g.shadow, g.line);
+}
 
 /// Light that moves with the camera, and the sky's and the floor's that does not.
 struct LightView {
@@ -95,12 +120,20 @@ struct LightView {
   Vec3 floor = Vec3(0.17f, 0.16f, 0.15f);
   float shine = 0.10f;
 };
+template <class V, class S>
+FieldsOf<S, LightView> fields(V& visit, S& l) {
+  unnamed(visit, l.key_direction, l.fill_direction, l.key, l.fill, l.sky, l.floor, l.shine);
+}
 
 struct BackgroundView {
   Vec3 top = Vec3(0.885f, 0.905f, 0.925f);
   Vec3 bottom = Vec3(0.970f, 0.973f, 0.976f);
   bool transparent = false;  ///< nothing there: pictures with an alpha channel
 };
+template <class V, class S>
+FieldsOf<S, BackgroundView> fields(V& visit, S& b) {
+  unnamed(visit, b.top, b.bottom, b.transparent);
+}
 
 struct Scene {
   std::vector<MeshView> meshes;
@@ -113,6 +146,11 @@ struct Scene {
   BackgroundView background;
   float occlusion = 0.6f;  ///< strength of ambient occlusion on meshes, 0 off: see Quality
 };
+template <class V, class S>
+FieldsOf<S, Scene> fields(V& visit, S& s) {
+  unnamed(visit, s.meshes, s.clouds, s.skeletons, s.lines, s.gizmos, s.ground, s.light, s.background,
+          s.occlusion);
+}
 
 /// The 22 joints with sides.
 SkeletonView skeleton_view(const Joints& joints);

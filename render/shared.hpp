@@ -4,6 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include "retarget/base/fields.hpp"
+
 namespace understudy::render {
 
 /// An array that never changes once it is in here, so that copies share it and the renderer uploads it once:
@@ -24,6 +26,10 @@ class Shared {
   /// Null for the empty array.
   const std::shared_ptr<const T>& pointer() const { return value_; }
   const void* identity() const { return value_.get(); }
+  /// Whether both are one array; of small ones, which are often made anew, whether they hold the same.
+  friend bool operator==(const Shared& a, const Shared& b) {
+    return a.value_ == b.value_ || (a->rows() <= 64 && same(*a, *b));
+  }
 
  private:
   static const T& empty() {

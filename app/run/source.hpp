@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/character/bone_map.hpp"
 #include "retarget/character/character.hpp"
 #include "retarget/formats/import.hpp"
@@ -28,6 +29,18 @@ struct SourceOptions {
   BoneChoices bones;     ///< of a skeletal motion, as the user wants them
   bool quiet = false;    ///< tell nothing: another source has told it all
 };
+/// What documents hold of it: `follow` and `quiet` belong to one run.
+template <class V, class S>
+FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
+  visit("path", source.path, FilePath{});
+  visit("motion", source.motion, FilePath{});
+  visit("betas", source.betas);
+  visit("fps", source.fps, Within<double>{0, 1e6});
+  visit("import", source.import);
+  visit("as_scan", source.as_scan);
+  visit("clip", source.clip);
+  visit("bones", source.bones);
+}
 
 /// A scan, or what a skeleton looks like, and then the skeleton itself.
 struct SourceFrame : ScanFrame {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/character/prepared_character.hpp"
 #include "retarget/formats/import.hpp"
 
@@ -18,6 +19,15 @@ struct TargetOptions {
   std::string rig = "auto";  ///< theirs: its own bones and skin; ours: the 22 joints; auto: its own, if any
   BoneChoices bones;         ///< the user's corrections of which bone is which joint
 };
+template <class V, class S>
+FieldsOf<S, TargetOptions> fields(V& visit, S& target) {
+  visit("path", target.path, FilePath{});
+  visit("betas", target.betas);
+  visit("import", target.import);
+  visit("forward", target.forward);
+  visit("rig", target.rig);
+  visit("bones", target.bones);
+}
 
 /// The target as the retargeter wants it. The networks' extractors look at what has no rig; they are only
 /// used during the call. Says what it decided through the log. Throws Error naming the file: it cannot be

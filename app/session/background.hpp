@@ -18,7 +18,7 @@ struct Studio::Background {
   struct Applied {
     std::shared_ptr<const Deformer> deformer;   // with the networks' weights
     std::shared_ptr<const WeightRows> weights;  // the user's, put over them
-    std::string poses;                          // pose_key of the edits of the result
+    PoseEdits poses;                            // the edits of the result
     double refined_at = -1e9;                   // Session::time
     size_t refined_frames = 0;
     std::shared_ptr<const Target> neighbours_of;  // the target that `neighbours` are of
@@ -48,7 +48,7 @@ struct Studio::Background {
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };
 
-/// Equal texts: the result looks the same.
-std::string pose_key(const PoseEdits& edits);
+/// Whether both give the same poses: trim and skip only change what plays.
+bool same_poses(PoseEdits a, PoseEdits b);
 
 }  // namespace understudy::app

@@ -8,6 +8,7 @@
 
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
+#include "retarget/base/fields.hpp"
 #include "retarget/editing/pose_edits.hpp"
 #include "retarget/editing/scan_edits.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
@@ -25,6 +26,17 @@ struct Method {
   bool lock_feet = true;                                               ///< feet that stand do not slide
   RootMode root = RootMode::Scaled;
 };
+template <class V, class S>
+FieldsOf<S, Method> fields(V& visit, S& method) {
+  visit("engine", method.engine);
+  visit("extractor", method.extractor);
+  visit("offsets", method.offsets);
+  visit("repair_swaps", method.repair_swaps);
+  visit("smooth_joints", method.smooth_joints);
+  visit("fix_lengths", method.fix_lengths);
+  visit("lock_feet", method.lock_feet);
+  visit("root", method.root, kRootNames);
+}
 
 /// What the user changed of a target.
 struct TargetEdits {
@@ -32,6 +44,11 @@ struct TargetEdits {
   std::shared_ptr<const WeightRows>
       weights;  ///< null: none; shared, so that a copy of a document costs nothing
 };
+template <class V, class S>
+FieldsOf<S, TargetEdits> fields(V& visit, S& edits) {
+  visit("joints", edits.joints);
+  visit("weights", edits.weights);
+}
 
 /// One target that performs the source, in one way. Two takes of one target compare two methods.
 struct Take {
@@ -41,6 +58,14 @@ struct Take {
   TargetEdits target_edits;
   PoseEdits pose_edits;
 };
+template <class V, class S>
+FieldsOf<S, Take> fields(V& visit, S& take) {
+  visit("name", take.name);
+  visit("target", take.target);
+  visit("method", take.method);
+  visit("target_edits", take.target_edits);
+  visit("pose_edits", take.pose_edits);
+}
 
 struct Document {
   SourceOptions source;  ///< path empty: none yet
@@ -49,18 +74,13 @@ struct Document {
   std::vector<SkeletonEdit> skeleton_edits;
   std::vector<Take> takes;
 };
-
-/// Whether both would give the same result and are saved as the same text.
-bool same(const Document& a, const Document& b);
-/// The same of its parts: what has to be done again after a change.
-bool same(const SourceOptions& a, const SourceOptions& b);  ///< `quiet` is no matter
-bool same(const ScanEdits& a, const ScanEdits& b);
-bool same(const SkeletonEdit& a, const SkeletonEdit& b);
-bool same(const std::vector<SkeletonEdit>& a, const std::vector<SkeletonEdit>& b);
-bool same(const Take& a, const Take& b);
-bool same(const TargetOptions& a, const TargetOptions& b);
-bool same(const Method& a, const Method& b);
-bool same(const TargetEdits& a, const TargetEdits& b);
-bool same(const PoseEdits& a, const PoseEdits& b);
+template <class V, class S>
+FieldsOf<S, Document> fields(V& visit, S& document) {
+  visit("source", document.source);
+  visit("truth", document.truth, FilePath{});
+  visit("scan_edits", document.scan_edits);
+  visit("skeleton_edits", document.skeleton_edits);
+  visit("takes", document.takes);
+}
 
 }  // namespace understudy::app

@@ -8,6 +8,7 @@
 #include "app/session/document.hpp"
 #include "app/session/playback.hpp"
 #include "app/session/view.hpp"
+#include "retarget/base/fields.hpp"
 
 namespace understudy::app {
 
@@ -20,6 +21,13 @@ struct SavedDocument {
   Playback playback;
   std::string weights;  ///< the networks' checksums when it was saved
 };
+template <class V, class S>
+FieldsOf<S, SavedDocument> fields(V& visit, S& saved) {
+  visit("weights", saved.weights);
+  fields(visit, saved.document);
+  visit("view", saved.view);
+  visit("playback", saved.playback);
+}
 
 nlohmann::ordered_json to_json(const SavedDocument& saved, const std::string& folder);
 /// Throws Error naming `path` and the member that is not what it should be.

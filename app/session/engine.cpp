@@ -7,7 +7,6 @@
 #include <map>
 #include <mutex>
 #include <new>
-#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -22,29 +21,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr int kReplayChunk = 200;  // frames made anew between two looks at the plan
-
-void write_import(std::ostream& out, const ImportOptions& import) {
-  out << import.units << '|' << import.up << '|' << import.yaw_deg << '|' << import.floor.value_or(-1e9f)
-      << '|';
-}
-
-std::string skeleton_key(const std::vector<SkeletonEdit>& edits) {
-  std::ostringstream out;
-  for (const SkeletonEdit& edit : edits)
-    if (const auto* drag = std::get_if<DragEdit>(&edit))
-      out << 'd' << drag->frame << ' ' << drag->joint << ' ' << drag->offset.transpose() << ' '
-          << drag->falloff << ' ' << drag->with_children << ';';
-    else if (const auto* swap = std::get_if<SwapEdit>(&edit))
-      out << 's' << swap->first << ' ' << swap->last << ' ' << static_cast<int>(swap->limbs) << ';';
-  return out.str();
-}
-
-std::string joints_key(const std::vector<JointMove>& moves) {
-  std::ostringstream out;
-  for (const JointMove& move : moves)
-    out << move.joint << ' ' << move.position.transpose() << ' ' << move.mirror << ';';
-  return out.str();
-}
 
 JointFilterOptions filter_options(const Method& method) {
   JointFilterOptions options;
@@ -112,48 +88,6 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
   }
   if (!plan.takes.empty()) plan.extractor = plan.takes[0].method.extractor;
   return plan;
-}
-
-std::string source_key(const SourceOptions& source, const ScanEdits& edits) {
-  std::ostringstream out;
-  out << source.path << '|' << source.motion << '|' << source.fps << '|' << source.as_scan << '|'
-      << source.clip << '|';
-  for (const auto& [joint, bone] : source.bones) out << joint << '=' << bone.size() << ':' << bone << '|';
-  write_import(out, source.import);
-  for (const float beta : source.betas) out << beta << ' ';
-  if (edits.crop) out << "|crop " << edits.crop->low.transpose() << ' ' << edits.crop->high.transpose();
-  if (edits.floor) {
-    out << "|floor " << edits.floor->height_m << ' ' << edits.floor->tolerance_m;
-    if (edits.floor->plane)
-      out << ' ' << edits.floor->plane->normal.transpose() << ' ' << edits.floor->plane->height_m;
-  }
-  if (edits.largest_cluster) out << "|cluster " << edits.cluster_gap_m;
-  return out.str();
-}
-
-std::string target_key(const TargetOptions& target) {
-  std::ostringstream out;
-  out << target.path << '|' << target.rig << '|' << target.forward << '|';
-  write_import(out, target.import);
-  for (const auto& [joint, bone] : target.bones) out << joint << '=' << bone.size() << ':' << bone << '|';
-  for (const float beta : target.betas) out << beta << ' ';
-  return out.str();
-}
-
-std::string method_key(const Method& method) {
-  std::ostringstream out;
-  out << method.engine << ' ' << method.extractor << ' ' << method.offsets << method.repair_swaps
-      << method.smooth_joints << method.fix_lengths << method.lock_feet << static_cast<int>(method.root);
-  return out.str();
-}
-
-std::string plan_key(const Plan& plan) {
-  std::string key = source_key(plan.source, plan.scan_edits) + '\n' + plan.extractor + '\n' +
-                    skeleton_key(plan.skeleton_edits);
-  for (const Plan::TakePlan& take : plan.takes)
-    key += '\n' + std::to_string(take.id) + ' ' + target_key(take.target) + ' ' + method_key(take.method) +
-           ' ' + joints_key(take.joints);
-  return key;
 }
 
 struct Engine::Impl {
@@ -281,12 +215,12 @@ void Engine::Impl::give_up(const std::string& problem) {
 
 /// Brings the thread's state in line with what is wanted; what still fits stays.
 void Engine::Impl::adopt(Plan wanted) {
-  const std::string source_wanted = source_key(wanted.source, wanted.scan_edits);
+  const std::string source_wanted = key_of(wanted.source, wanted.scan_edits);
   if (source_wanted != source_is) {
     close_source();
     source_is = source_wanted;
   }
-  const std::string skeleton_wanted = skeleton_key(wanted.skeleton_edits);
+  const std::string skeleton_wanted = key_of(wanted.skeleton_edits);
   const bool shown_anew = wanted.extractor != plan.extractor;
   if (skeleton_wanted != skeleton_is || shown_anew) {
     told = 0;
@@ -310,8 +244,8 @@ void Engine::Impl::adopt(Plan wanted) {
 }
 
 void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
-  const std::string target_wanted = target_key(wanted.target), method_wanted = method_key(wanted.method),
-                    joints_wanted = joints_key(wanted.joints);
+  const std::string target_wanted = key_of(wanted.target), method_wanted = key_of(wanted.method),
+                    joints_wanted = key_of(wanted.joints);
   if (target_wanted != take.target_is) take.character.reset(), take.standing.reset();
   if (target_wanted != take.target_is || method_wanted != take.method_is) take.told_new = 0;
   if (target_wanted != take.target_is || method_wanted != take.method_is ||
@@ -568,7 +502,7 @@ void Engine::set_plan(Plan plan, bool afresh) {
   {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->next_is_afresh = impl_->next_is_afresh || afresh;  // the plan before may not have been seen yet
-    impl_->change_source(source_key(plan.source, plan.scan_edits), afresh);
+    impl_->change_source(key_of(plan.source, plan.scan_edits), afresh);
     impl_->next_plan = std::move(plan);
     impl_->busy = true;
   }

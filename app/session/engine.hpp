@@ -28,11 +28,21 @@ struct Plan {
   std::vector<TakePlan> takes;
 };
 Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids);
-/// Equal texts: nothing to redo.
-std::string source_key(const SourceOptions& source, const ScanEdits& edits);
-std::string target_key(const TargetOptions& target);
-std::string method_key(const Method& method);
-std::string plan_key(const Plan& plan);
+template <class V, class S>
+FieldsOf<S, Plan::TakePlan> fields(V& visit, S& take) {
+  visit("id", take.id);
+  visit("target", take.target);
+  visit("method", take.method);
+  visit("joints", take.joints);
+}
+template <class V, class S>
+FieldsOf<S, Plan> fields(V& visit, S& plan) {
+  visit("source", plan.source);
+  visit("extractor", plan.extractor);
+  visit("scan_edits", plan.scan_edits);
+  visit("skeleton_edits", plan.skeleton_edits);
+  visit("takes", plan.takes);
+}
 
 // What the engine tells, in order.
 

@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "retarget/base/fields.hpp"
+
 namespace understudy::app {
 
 struct Playback {
@@ -13,6 +15,14 @@ struct Playback {
   double frame = 0;       ///< fractional while playing; shown_frame() is what is seen
   int in = -1, out = -1;  ///< loop marks, both inside; -1: from the first, to the last
 };
+template <class V, class S>
+FieldsOf<S, Playback> fields(V& visit, S& playback) {
+  visit("loop", playback.loop);
+  visit("rate", playback.rate, Clamped<double>{0.1, 4});
+  visit("frame", playback.frame, Clamped<double>{0, kFrameNumbers.high});
+  visit("in", playback.in, Clamped<int>{-1, kFrameNumbers.high});
+  visit("out", playback.out, Clamped<int>{-1, kFrameNumbers.high});
+}
 
 /// The range that plays: the marks, or all of the `count` frames.
 struct FrameRange {

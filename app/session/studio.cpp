@@ -26,11 +26,9 @@ std::vector<int> matched_takes(const std::vector<Take>& before, const std::vecto
       for (size_t i = 0; match[k] < 0 && i < before.size(); ++i)
         if (!used[i] && alike(before[i], now[k])) match[k] = i, used[i] = true;
   };
-  const auto same_target = [](const Take& a, const Take& b) {
-    return target_key(a.target) == target_key(b.target);
-  };
+  const auto same_target = [](const Take& a, const Take& b) { return same(a.target, b.target); };
   pass([&](const Take& a, const Take& b) {
-    return same_target(a, b) && method_key(a.method) == method_key(b.method) && a.name == b.name;
+    return same_target(a, b) && same(a.method, b.method) && a.name == b.name;
   });
   pass([&](const Take& a, const Take& b) { return same_target(a, b); });
   pass([&](const Take& a, const Take& b) { return a.target.path == b.target.path; });
@@ -150,7 +148,7 @@ void Studio::follow_document() {
   follow_edits();
   b.followed = document;
   Plan plan = plan_of(document, ids);
-  const std::string key = plan_key(plan);
+  const std::string key = key_of(plan);
   if (key == b.plan_key) return;
   b.plan_key = key;
   b.engine.set_plan(std::move(plan));
@@ -160,20 +158,20 @@ void Studio::follow_document() {
 /// A take made in another way has other times, and what failed may work. Of a target prepared in another way
 /// only the file is the same.
 void Studio::forget_outdated(TakeState& state, const Take& before, const Take& now) {
-  if (target_key(before.target) != target_key(now.target)) {
+  if (!same(before.target, now.target)) {
     TakeState fresh;
     fresh.character = std::move(state.character);
     fresh.generation = state.generation + 1;
     state = std::move(fresh);
     return;
   }
-  if (method_key(before.method) != method_key(now.method)) state.problem.clear(), state.latency = {};
+  if (!same(before.method, now.method)) state.problem.clear(), state.latency = {};
 }
 
 void Studio::follow_source() {
   Background& b = *background_;
   const Document& document = session_.document;
-  const std::string key = source_key(document.source, document.scan_edits);
+  const std::string key = key_of(document.source, document.scan_edits);
   if (key != b.source_key) {
     b.source_key = key;
     cache_.set_source(document.source, document.scan_edits);
@@ -202,9 +200,8 @@ void Studio::follow_edits() {
     const Take& take = session_.document.takes[k];
     Background::Applied& applied = b.applied[b.take_ids[k]];
     if (take.target_edits.weights != applied.weights) apply_weights(k);
-    const std::string key = pose_key(take.pose_edits);
-    if (key == applied.poses) continue;
-    applied.poses = key;
+    if (same_poses(take.pose_edits, applied.poses)) continue;
+    applied.poses = take.pose_edits;
     b.dirty.insert(b.take_ids[k]);
   }
 }

@@ -1,6 +1,5 @@
 // What the background has finished, taken into the session.
 #include <algorithm>
-#include <sstream>
 
 #include "app/session/background.hpp"
 #include "app/session/frame_figures.hpp"
@@ -59,17 +58,9 @@ void merge_series(std::vector<Series>& into, std::vector<Series> newer) {
 
 }  // namespace
 
-std::string pose_key(const PoseEdits& edits) {
-  std::ostringstream out;
-  for (const RotateEdit& rotate : edits.rotate)
-    out << rotate.frame << ' ' << rotate.joint << ' ' << rotate.axis_angle.transpose() << ' '
-        << rotate.falloff << ';';
-  if (edits.smooth) out << "smooth " << edits.smooth->strength;
-  if (edits.floor) out << "floor " << edits.floor->offset_m;
-  if (edits.pin)
-    out << "pin " << edits.pin->left << edits.pin->right << edits.pin->keep_soles_up << edits.pin->blend_s;
-  if (edits.heading) out << "heading " << edits.heading->yaw_deg;
-  return out.str();  // trim and skip change what plays, not the poses
+bool same_poses(PoseEdits a, PoseEdits b) {
+  for (PoseEdits* edits : {&a, &b}) edits->trim.reset(), edits->skip.clear();
+  return same(a, b);
 }
 
 TakeState* Studio::take_of(int64_t id) {

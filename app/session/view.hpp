@@ -1,11 +1,11 @@
 // What is shown and how: saved with the document, but no part of its result and not undone.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
-#include "retarget/math/types.hpp"
+#include "retarget/base/fields.hpp"
+#include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::app {
 
@@ -15,6 +15,7 @@ enum class Layout {
   Overlay,     ///< source and takes in one space
   Wipe         ///< the first take left of a line, the second right of it, in one pane
 };
+constexpr Names<4> kLayoutNames{"side-by-side", "single", "overlay", "wipe"};
 
 /// What colours a surface.
 enum class Colouring {
@@ -26,6 +27,8 @@ enum class Colouring {
   Confidence,  ///< extraction confidence of the nearest joint (the source's scan)
   Doubt        ///< how far a vertex is bound by the shape alone, %
 };
+constexpr Names<7> kColouringNames{"plain",      "weights",    "offsets", "error",
+                                   "difference", "confidence", "doubt"};
 
 /// An orbit camera, as render's: yaw and pitch in radians, distance in metres.
 struct CameraState {
@@ -33,6 +36,15 @@ struct CameraState {
   float yaw = 0.55f, pitch = 0.18f, distance = 4.2f, fov = 0.5f;
   bool orthographic = false;
 };
+template <class V, class S>
+FieldsOf<S, CameraState> fields(V& visit, S& camera) {
+  visit("target", camera.target);
+  visit("yaw", camera.yaw, Clamped<float>{});
+  visit("pitch", camera.pitch, Clamped<float>{});
+  visit("distance", camera.distance, Clamped<float>{1e-3f, 1e6f});
+  visit("fov", camera.fov, Clamped<float>{0.01f, 3});
+  visit("orthographic", camera.orthographic);
+}
 
 /// What a pane draws.
 struct Layers {
@@ -46,6 +58,18 @@ struct Layers {
   bool ghosts = false;  ///< past and coming frames, faint
   Colouring colouring = Colouring::Plain;
 };
+template <class V, class S>
+FieldsOf<S, Layers> fields(V& visit, S& layers) {
+  visit("surface", layers.surface);
+  visit("as_points", layers.as_points);
+  visit("skeleton", layers.skeleton);
+  visit("x_ray", layers.x_ray);
+  visit("joint_names", layers.joint_names);
+  visit("ground", layers.ground);
+  visit("trails", layers.trails);
+  visit("ghosts", layers.ghosts);
+  visit("colouring", layers.colouring, kColouringNames);
+}
 
 struct View {
   Layout layout = Layout::SideBySide;
@@ -62,6 +86,24 @@ struct View {
   float wipe = 0.5f;                      ///< the wipe's line, share of the width
   std::string metric = "confidence";      ///< the one in the timeline
 };
+template <class V, class S>
+FieldsOf<S, View> fields(V& visit, S& view) {
+  visit("layout", view.layout, kLayoutNames);
+  visit("linked", view.linked);
+  visit("cameras", view.cameras);
+  visit("follow", view.follow);
+  visit("turntable_deg_s", view.turntable_deg_s, Clamped<float>{-3600, 3600});
+  visit("source", view.source);
+  visit("take", view.take);
+  visit("active_pane", view.active_pane, Clamped<int>{0, 10000});
+  visit("weights_joint", view.weights_joint, Clamped<int>{-1, kJointCount - 1});
+  visit("trail_joints", view.trail_joints, Within<int>{0, kJointCount - 1});
+  visit("ghost_count", view.ghost_count, Clamped<int>{0, 100});
+  visit("ghost_step", view.ghost_step, Clamped<int>{1, kFrameNumbers.high});
+  visit("error_scale_mm", view.error_scale_mm, Clamped<float>{1e-3f, 1e6f});
+  visit("wipe", view.wipe, Clamped<float>{0, 1});
+  visit("metric", view.metric);
+}
 
 /// Pane by pane: the source and the takes, as the layout says.
 int pane_count(const View& view, int takes);

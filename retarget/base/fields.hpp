@@ -2,8 +2,8 @@
 // struct:
 //   template <class V, class S>
 //   FieldsOf<S, Trim> fields(V& visit, S& trim) {
-//     visit("first", trim.first, kFrames);
-//     visit("last", trim.last, kFrames);
+//     visit("first", trim.first, kFrameNumbers);
+//     visit("last", trim.last, kFrameNumbers);
 //   }
 // A visitor is called as visit(name, value, rule...), with at most one rule; value is const where the struct
 // is.
@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +27,12 @@ namespace understudy {
 template <class S, class T>
 using FieldsOf = std::enable_if_t<std::is_same_v<std::remove_const_t<S>, T>>;
 
+/// Members that are compared but never written need no names.
+template <class V, class... M>
+void unnamed(V& visit, M&... members) {
+  (visit("", members), ...);
+}
+
 // Rules: what a value must be, beside its type. Floats without a rule are any finite number.
 
 /// A number from low to high; others are refused.
@@ -36,10 +43,10 @@ struct Within {
 /// The same of what is only shown: others are brought into the range.
 template <class Number>
 struct Clamped {
-  Number low, high;
+  Number low = std::numeric_limits<Number>::lowest(), high = std::numeric_limits<Number>::max();
 };
 /// Numbers of frames.
-constexpr Within<int> kFrames{0, 1000000000};
+constexpr Within<int> kFrameNumbers{0, 1000000000};
 /// The names of an enum's values, in their order.
 template <size_t N>
 using Names = std::array<const char*, N>;

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/skeleton/foot_contact.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -19,17 +20,32 @@ struct RotateEdit {
   Vec3 axis_angle = Vec3::Zero();  ///< radians, in the joint's own frame, applied after its rotation
   int falloff = 5;                 ///< frames to each side that follow
 };
+template <class V, class S>
+FieldsOf<S, RotateEdit> fields(V& visit, S& edit) {
+  visit("frame", edit.frame, kFrameNumbers);
+  visit("joint", edit.joint, Within<int>{0, kJointCount - 1});
+  visit("axis_angle", edit.axis_angle);
+  visit("falloff", edit.falloff, kFrameNumbers);
+}
 
 /// Rotations and root over time through a Gaussian that looks both ways (no delay).
 struct SmoothEdit {
   float strength = 0.5f;  ///< 0 nothing .. 1 a Gaussian of kSmoothestSeconds standard deviation
 };
+template <class V, class S>
+FieldsOf<S, SmoothEdit> fields(V& visit, S& edit) {
+  visit("strength", edit.strength, Within<float>{0, 1});
+}
 constexpr float kSmoothestSeconds = 0.2f;
 
 /// The whole motion moved up or down.
 struct FloorEdit {
   float offset_m = 0;
 };
+template <class V, class S>
+FieldsOf<S, FloorEdit> fields(V& visit, S& edit) {
+  visit("offset_m", edit.offset_m);
+}
 
 /// Feet on the floor stay where they are: the legs follow by inverse kinematics. The body is put onto the
 /// floor y = 0 by its soles, where these are known; a foot may roll from heel to ball but not slide.
@@ -42,16 +58,35 @@ struct PinEdit {
       true;  ///< the body is moved so that standing soles are at y = 0, not only held where they are
   float max_drop_m = 0.04f;  ///< how far the pelvis may sink where a leg is too short (leg 0.8 m)
 };
+template <class V, class S>
+FieldsOf<S, PinEdit> fields(V& visit, S& edit) {
+  visit("left", edit.left);
+  visit("right", edit.right);
+  visit("contact", edit.contact);
+  visit("blend_s", edit.blend_s);
+  visit("keep_soles_up", edit.keep_soles_up);
+  visit("to_floor", edit.to_floor);
+  visit("max_drop_m", edit.max_drop_m);
+}
 
 /// The motion turned about the vertical through its first pelvis.
 struct HeadingEdit {
   float yaw_deg = 0;  ///< takes +z towards +x
 };
+template <class V, class S>
+FieldsOf<S, HeadingEdit> fields(V& visit, S& edit) {
+  visit("yaw_deg", edit.yaw_deg);
+}
 
 /// What stays for playback and export. Frames are those of the motion before any edit.
 struct Trim {
   int first = 0, last = 0;  ///< both inside
 };
+template <class V, class S>
+FieldsOf<S, Trim> fields(V& visit, S& trim) {
+  visit("first", trim.first, kFrameNumbers);
+  visit("last", trim.last, kFrameNumbers);
+}
 
 struct PoseEdits {
   std::vector<RotateEdit> rotate;
@@ -63,6 +98,16 @@ struct PoseEdits {
   std::set<int> skip;  ///< frames left out, original numbers
   bool empty() const;
 };
+template <class V, class S>
+FieldsOf<S, PoseEdits> fields(V& visit, S& edits) {
+  visit("rotate", edits.rotate);
+  visit("smooth", edits.smooth);
+  visit("floor", edits.floor);
+  visit("pin", edits.pin);
+  visit("heading", edits.heading);
+  visit("trim", edits.trim);
+  visit("skip", edits.skip, kFrameNumbers);
+}
 
 /// The target in T-pose, as far as edits of its poses must know it.
 struct EditedBody {

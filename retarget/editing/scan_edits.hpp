@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
@@ -15,6 +16,11 @@ struct Box {
     return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
   }
 };
+template <class V, class S>
+FieldsOf<S, Box> fields(V& visit, S& box) {
+  visit("low", box.low);
+  visit("high", box.high);
+}
 
 /// The points x with normal . x = height; normal has unit length and points up.
 struct FloorPlane {
@@ -22,6 +28,11 @@ struct FloorPlane {
   float height_m = 0;
   float above(const Vec3& point) const { return normal.dot(point) - height_m; }
 };
+template <class V, class S>
+FieldsOf<S, FloorPlane> fields(V& visit, S& plane) {
+  visit("normal", plane.normal);
+  visit("height_m", plane.height_m);
+}
 
 /// The floor under a body, in a scan that shows some of it: a nearly level plane with hardly a point below,
 /// larger than soles are. Nothing when the scan has no such plane. Deterministic; finds tilts up to 15
@@ -36,6 +47,14 @@ struct FloorCut {
   float sole_radius_m = 0.025f;  ///< floor-high points this near, seen from above, to a body's are its soles
   float sole_band_m = 0.12f;     ///< up to this high a point is the body's that soles are under
 };
+template <class V, class S>
+FieldsOf<S, FloorCut> fields(V& visit, S& cut) {
+  visit("height_m", cut.height_m);
+  visit("plane", cut.plane);
+  visit("tolerance_m", cut.tolerance_m);
+  visit("sole_radius_m", cut.sole_radius_m);
+  visit("sole_band_m", cut.sole_band_m);
+}
 
 struct ScanEdits {
   std::optional<Box> crop;
@@ -44,6 +63,13 @@ struct ScanEdits {
   float cluster_gap_m = 0.08f;   ///< parts further apart than this are not one
   bool empty() const { return !crop && !floor && !largest_cluster; }
 };
+template <class V, class S>
+FieldsOf<S, ScanEdits> fields(V& visit, S& edits) {
+  visit("crop", edits.crop);
+  visit("floor", edits.floor);
+  visit("largest_cluster", edits.largest_cluster);
+  visit("cluster_gap_m", edits.cluster_gap_m);
+}
 
 /// Indices of the vertices that stay, ascending: crop, then floor, then cluster. Vertices that are not finite
 /// go with any edit. Throws Error for a crop box with no inside or sizes that are not positive.

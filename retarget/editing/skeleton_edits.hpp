@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy {
@@ -20,6 +21,14 @@ struct DragEdit {
   int falloff = 5;             ///< frames to each side that follow
   bool with_children = false;  ///< the joints further out move along, rigidly; otherwise they were seen right
 };
+template <class V, class S>
+FieldsOf<S, DragEdit> fields(V& visit, S& drag) {
+  visit("frame", drag.frame, kFrameNumbers);
+  visit("joint", drag.joint, Within<int>{0, kJointCount - 1});
+  visit("offset", drag.offset);
+  visit("falloff", drag.falloff, kFrameNumbers);
+  visit("with_children", drag.with_children);
+}
 
 /// Left and right were taken for each other from frame `first` to frame `last`.
 struct SwapEdit {
@@ -27,6 +36,13 @@ struct SwapEdit {
   int first = 0, last = 0;  ///< both inside
   Limbs limbs = Limbs::Both;
 };
+constexpr Names<3> kLimbNames{"arms", "legs", "both"};
+template <class V, class S>
+FieldsOf<S, SwapEdit> fields(V& visit, S& swap) {
+  visit("first", swap.first, kFrameNumbers);
+  visit("last", swap.last, kFrameNumbers);
+  visit("limbs", swap.limbs, kLimbNames);
+}
 
 using SkeletonEdit = std::variant<DragEdit, SwapEdit>;
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -14,6 +15,12 @@ struct JointMove {
   Vec3 position = Vec3::Zero();  ///< metres, in the T-pose
   bool mirror = true;            ///< the other side's joint follows; a joint of the spine stays in the middle
 };
+template <class V, class S>
+FieldsOf<S, JointMove> fields(V& visit, S& move) {
+  visit("joint", move.joint, Within<int>{0, kJointCount - 1});
+  visit("position", move.position);
+  visit("mirror", move.mirror);
+}
 
 /// x of the plane that a body in T-pose is symmetric about: the mean over joints and their mirror images.
 float symmetry_centre(const Joints& rest);
@@ -27,6 +34,11 @@ struct WeightRows {
   RowMatrix rows{0, kJointCount};  ///< [vertex.size(), 22], not negative, sums 1
   bool empty() const { return vertex.empty(); }
 };
+template <class V, class S>
+FieldsOf<S, WeightRows> fields(V& visit, S& edit) {
+  visit("vertex", edit.vertex);
+  visit("rows", edit.rows);
+}
 
 /// Puts the rows in. Throws Error when a vertex is outside or the columns differ.
 void apply(const WeightRows& edit, RowMatrix& weights);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
@@ -15,6 +16,13 @@ struct ImportOptions {
   float yaw_deg = 0;  ///< turns the scan about y at the end, from +z towards +x
   std::optional<float> floor;  ///< height of the floor in the file, in metres; none: the lowest points
 };
+template <class V, class S>
+FieldsOf<S, ImportOptions> fields(V& visit, S& import) {
+  visit("units", import.units);
+  visit("up", import.up);
+  visit("yaw_deg", import.yaw_deg);
+  visit("floor_m", import.floor);
+}
 
 /// How to bring every frame of a sequence into the program's world; decided from its first frame alone.
 struct ImportDecision {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 #include "retarget/pipeline/running_median.hpp"
@@ -13,6 +14,7 @@
 namespace understudy {
 
 enum class RootMode { Scaled, Original, InPlace };
+constexpr Names<3> kRootNames{"scaled", "original", "in-place"};
 
 struct RootPathOptions {
   RootMode mode = RootMode::Scaled;  ///< the path over the floor; heights are scaled in every mode

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy {
@@ -13,6 +14,13 @@ struct FootContactOptions {
   float begin_height_m = 0.03f, end_height_m = 0.05f;  ///< over where the foot stands
   float begin_speed = 0.6f, end_speed = 1.0f;          ///< m/s
 };
+template <class V, class S>
+FieldsOf<S, FootContactOptions> fields(V& visit, S& contact) {
+  visit("begin_height_m", contact.begin_height_m);
+  visit("end_height_m", contact.end_height_m);
+  visit("begin_speed", contact.begin_speed);
+  visit("end_speed", contact.end_speed);
+}
 
 /// Hysteresis for one point of a foot.
 class ContactSwitch {

@@ -66,6 +66,16 @@ TEST(DocumentFile, GivesBackAllThatWasSaved) {
   EXPECT_EQ(scratch.files().size(), 1u);
 }
 
+/// Saved when documents still held whether the source's folder was being written.
+TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
+  const std::string text = read_bytes(US_SOURCE_DIR "/tests/session/saved_before.understudy");
+  const SavedDocument read = from_json(parse_document(text, "doc"), "/a/documents", "doc");
+  EXPECT_TRUE(same(read.document, full_document("/a").document));
+  std::string without = text;
+  without.erase(without.find("  \"follow\": true,\n", without.find("floor_m")), 18);
+  EXPECT_EQ(document_text(to_json(read, "/a/documents")), without);
+}
+
 /// Each member of what is saved but not undone: none is forgotten on one of both ways.
 TEST(DocumentFile, ViewAndPlaybackDifferFromTheirDefaultsInEachMember) {
   const Json full = to_json(full_document("/a"), "/a"), plain = to_json(SavedDocument{}, "/a");

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
 
+#include "app/session/background.hpp"
 #include "app/session/history.hpp"
 #include "retarget/base/error.hpp"
 #include "tests/session/full_document.hpp"
@@ -52,7 +54,6 @@ const Changes& document_changes() {
       CHANGE(source.import.yaw_deg += 1),
       CHANGE(source.import.floor.reset()),
       CHANGE(source.import.floor = 0),
-      CHANGE(source.follow = false),
       CHANGE(source.as_scan = true),
       CHANGE(source.clip += "x"),
       CHANGE(source.bones.clear()),
@@ -138,7 +139,7 @@ const Changes& document_changes() {
   return changes;
 }
 
-/// Does not compile once a member is added: then it belongs into same(), fields() and the changes above, too.
+/// Does not compile once a member is added: then it belongs into fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones,
@@ -197,10 +198,47 @@ TEST(Document, SameAreThoseWithTheSameText) {
   }
 }
 
-TEST(Document, WhoTellsIsNoMatter) {
+TEST(Document, WhatBelongsToOneRunIsNoMatter) {
   Document a, b;
-  b.source.quiet = true;
+  b.source.quiet = b.source.follow = true;
   EXPECT_TRUE(same(a, b));
+}
+
+/// The document without what needs no new frames.
+Document made_anew(Document document) {
+  document.truth.clear();
+  for (Take& take : document.takes)
+    take.name.clear(), take.target_edits.weights.reset(), take.pose_edits = {};
+  return document;
+}
+
+TEST(Document, EachChangeThatNeedsNewFramesGivesAnotherPlan) {
+  const Document before = full_document("/a").document;
+  std::set<std::string> keys{key_of(before)};
+  for (const auto& [name, change] : document_changes()) {
+    SavedDocument after = full_document("/a");
+    change(after);
+    const Document& now = after.document;
+    EXPECT_TRUE(keys.insert(key_of(now)).second) << name;
+    EXPECT_EQ(key_of(plan_of(before, {1, 2})) == key_of(plan_of(now, {1, 2})),
+              same(made_anew(before), made_anew(now)))
+        << name;
+    EXPECT_EQ(key_of(before.source, before.scan_edits) == key_of(now.source, now.scan_edits),
+              same(before.source, now.source) && same(before.scan_edits, now.scan_edits))
+        << name;
+  }
+}
+
+TEST(Document, EachEditOfTheResultGivesOtherPosesButTrimAndSkip) {
+  const PoseEdits before = full_document("/a").document.takes[0].pose_edits;
+  for (const auto& [name, change] : document_changes()) {
+    SavedDocument after = full_document("/a");
+    change(after);
+    const PoseEdits& now = after.document.takes[0].pose_edits;
+    const bool only_plays =
+        std::string(name).rfind("trim", 0) == 0 || std::string(name).rfind("skip", 0) == 0;
+    EXPECT_EQ(same_poses(before, now), only_plays || same(before, now)) << name;
+  }
 }
 
 TEST(Document, NoWeightsAreAsGoodAsNone) {

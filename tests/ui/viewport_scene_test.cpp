@@ -5,7 +5,6 @@
 #include "render/colors.hpp"
 #include "tests/ui/support/viewport_stage.hpp"
 #include "ui/viewport/pane_pictures.hpp"
-#include "ui/viewport/same_picture.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::ui {
@@ -156,9 +155,9 @@ TEST_F(SceneTest, NothingChangedIsTheSamePicture) {
   session.view.take.colouring = app::Colouring::Weights;
   session.view.take.trails = true;
   const render::Scene first = scene(1).scene;
-  EXPECT_TRUE(same_picture(first, scene(1).scene));
+  EXPECT_TRUE(same(first, scene(1).scene));
   session.playback.frame = 11;
-  EXPECT_FALSE(same_picture(first, scene(1).scene));
+  EXPECT_FALSE(same(first, scene(1).scene));
 }
 
 TEST_F(SceneTest, WhatIsNotThereYetIsLeftOut) {

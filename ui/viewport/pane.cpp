@@ -3,7 +3,6 @@
 #include "render/gl/scopes.hpp"
 #include "render/picking.hpp"
 #include "ui/panels/panel.hpp"
-#include "ui/viewport/same_picture.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -50,13 +49,12 @@ std::string weight_words(const app::Session& session, const Pane& pane, int vert
 
 bool PaneCanvas::shows(const render::Scene& scene, const render::Camera& camera,
                        render::PixelSize size) const {
-  return drawn_ && size.width == size_.width && size.height == size_.height &&
-         same_picture(camera, camera_) && same_picture(scene, scene_);
+  return drawn_ && same(size, size_) && same(camera, camera_) && same(scene, scene_);
 }
 
 void PaneCanvas::draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
                       render::PixelSize size, bool fine) {
-  if (size.width != size_.width || size.height != size_.height) resize(size);
+  if (!same(size, size_)) resize(size);
   renderer.draw(scene, camera, {framebuffer_.name(), size});
   scene_ = scene, camera_ = camera;
   drawn_ = true, fine_ = fine;

@@ -19,7 +19,7 @@ struct Inner {
 template <class V, class S>
 FieldsOf<S, Inner> fields(V& visit, S& inner) {
   visit("x", inner.x);
-  visit("frame", inner.frame, kFrames);
+  visit("frame", inner.frame, kFrameNumbers);
 }
 
 struct Outer {
