@@ -53,21 +53,24 @@ install_node_packages() {
   fi
 }
 
-# build [TARGET...]: configures the release preset when it never was, then builds. Quiet when nothing is to do.
+# build PRESET [TARGET...]: configures the preset when it never was, then builds; with STRICT=ON in the environment
+# warnings are errors. Quiet when nothing is to do.
 build() {
-  local launcher=()
+  local preset=$1 folder=build-$1 launcher=()
+  shift
+  [ "$preset" = release ] && folder=build
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  if [ ! -f build/build.ninja ]; then
-    echo "Configuring (build/)"
-    mkdir -p build
-    cmake --preset release "${launcher[@]}" >build/configure.log 2>&1 || {
-      cat build/configure.log >&2
-      rm -f build/build.ninja
+  if [ ! -f $folder/build.ninja ] || [ -n "${STRICT:-}" ]; then
+    echo "Configuring ($folder/)"
+    mkdir -p $folder
+    cmake --preset "$preset" -DSTRICT="${STRICT:-OFF}" "${launcher[@]}" >$folder/configure.log 2>&1 || {
+      cat $folder/configure.log >&2
+      rm -f $folder/build.ninja
       exit 1
     }
   fi
   echo "Building"
-  cmake --build build -- "$@" || { echo "The build failed." >&2; exit 1; }
+  cmake --build $folder -- "$@" || { echo "The build failed." >&2; exit 1; }
 }
 
 # take_options ARGUMENT...: understands --no-install in first place; leaves the others in ARGUMENTS.

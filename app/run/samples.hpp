@@ -5,7 +5,7 @@
 
 namespace understudy::app {
 
-/// The folder assets/samples beside the program or above it. Throws Error when there is none.
+/// The folder of the bundled samples (see program_files). Throws Error when there is none.
 std::string samples_folder();
 
 }  // namespace understudy::app

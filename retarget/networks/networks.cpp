@@ -10,6 +10,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/program_files.hpp"
 #include "retarget/networks/plugin_api.hpp"
 
 namespace understudy::nn {
@@ -18,12 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPluginFile = "libunderstudy_networks.so";
-
-fs::path program_folder() {
-  std::error_code failed;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  return failed ? fs::current_path() : program.parent_path();
-}
 
 /// One core is left to whoever else wants it (a window drawn in software): measured, two inference threads
 /// gain little on an idle machine and lose much on a busy one.
@@ -52,7 +47,7 @@ std::string plugin_path() {
   const fs::path here = program_folder();
   for (const fs::path& folder : {here, here.parent_path(), here.parent_path() / "lib/understudy"})
     if (fs::exists(folder / kPluginFile)) return (folder / kPluginFile).string();
-  throw Error(std::string(kPluginFile) + " is not beside the program: build the target understudy_networks");
+  throw Error(std::string(kPluginFile) + " is neither beside the program nor in ../lib/understudy");
 }
 
 const PluginApi& plugin() {
@@ -74,7 +69,8 @@ const PluginApi& plugin() {
 std::string existing_weights(const NetworkOptions& options) {
   const std::string folder = weights_folder(options);
   US_CHECK(!folder.empty(),
-           "the trained weights are missing: no folder assets/weights beside the program or above it");
+           "the trained weights are missing: no folder assets/weights beside the program or above "
+           "it, nor ../share/understudy/weights");
   return folder;
 }
 
@@ -83,9 +79,7 @@ std::string existing_weights(const NetworkOptions& options) {
 std::string weights_folder(const NetworkOptions& options) {
   if (!options.weights.empty()) return options.weights;
   if (const char* forced = std::getenv("UNDERSTUDY_WEIGHTS")) return forced;
-  for (fs::path at = program_folder(); at.has_relative_path(); at = at.parent_path())
-    if (fs::exists(at / "assets/weights/skeleton.weights")) return (at / "assets/weights").string();
-  return "";
+  return program_files("weights").string();
 }
 
 Networks load_networks(const NetworkOptions& options) {

@@ -12,10 +12,10 @@
 namespace understudy::nn {
 
 struct NetworkOptions {
-  std::string weights;          ///< folder of the weights; empty: beside the program, then the source tree's
-  std::string engine = "copy";  ///< motion transfer: "copy" or "paper"
-  bool offsets = true;          ///< pose-corrective offsets (paper 1, eq. 3) on or off
-  bool near = true;             ///< of "dense": limbs and head are looked at again from near
+  std::string weights;                      ///< folder of the weights; empty: the program's own
+  std::string engine = "copy";              ///< motion transfer: "copy" or "paper"
+  bool offsets = true;                      ///< pose-corrective offsets (paper 1, eq. 3) on or off
+  bool near = true;                         ///< of "dense": limbs and head are looked at again from near
   std::string extractor = "dense";          ///< "dense" or "paper"
   std::string engine_file, extractor_file;  ///< weights in place of the folder's; empty: the folder's
 };
