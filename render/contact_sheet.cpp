@@ -15,11 +15,11 @@ namespace {
 constexpr int kGap = 6, kMargin = 26, kGutter = 34, kTitle = 58, kHeader = 40, kBandGap = 26;  // pixels
 const Vec3 kPaper(0.992f, 0.993f, 0.994f), kInk(0.13f, 0.15f, 0.18f), kFaintInk(0.46f, 0.49f, 0.53f);
 
-struct View {
+struct ViewAngle {
   const char* name;
   float yaw;  // from the person's heading; to the person's right, so that motion goes left to right
 };
-constexpr View kViews[] = {{"front", -0.58f}, {"side", -kPi / 2}};
+constexpr ViewAngle kViews[] = {{"front", -0.58f}, {"side", -kPi / 2}};
 
 /// One picture of a sheet before it is drawn.
 struct Cell {
@@ -219,7 +219,7 @@ std::vector<Cell> target_cells(const std::vector<SheetMoment>& moments, const Sh
 std::vector<Row> rows_of(std::vector<Cell>& sources, std::vector<Cell>& targets,
                          const SheetOptions& options) {
   std::vector<Row> rows;
-  for (const View& view : kViews) {
+  for (const ViewAngle& view : kViews) {
     const float yaw = options.heading + view.yaw;
     if (!sources.empty())
       rows.push_back({options.source_caption + " \xC2\xB7 " + view.name, yaw, &sources, 0.5f, {}});

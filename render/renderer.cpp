@@ -5,9 +5,9 @@
 #include <string>
 
 #include "render/gizmo.hpp"
+#include "render/gl/array_cache.hpp"
 #include "render/gl/debug.hpp"
 #include "render/gl/scopes.hpp"
-#include "render/gl/store.hpp"
 #include "render/passes/background_pass.hpp"
 #include "render/passes/ground_pass.hpp"
 #include "render/passes/lines_pass.hpp"
@@ -200,7 +200,7 @@ struct Renderer::Parts {
   explicit Parts(const RendererOptions& o) : options(o), canvas(o.samples) {}
 
   void draw_still(const Scene& scene, const Camera& camera, PixelSize size);
-  void show(const Scene& scene, const Camera& camera, const Target& target);
+  void show(const Scene& scene, const Camera& camera, const RenderTarget& target);
   void draw_solid(const Scene& scene);
   void draw_over(const Scene& scene, const Camera& camera);
   void draw_lines(const Scene& scene, bool x_ray);
@@ -208,11 +208,11 @@ struct Renderer::Parts {
   RendererOptions options;
   Canvas canvas;
   std::string still;  ///< key of what the canvas keeps
-  gl::Store store;
+  gl::ArrayCache arrays;
   FrameBlock frame;
   BackgroundPass background;
-  MeshPass meshes{store};
-  PointsPass points{store};
+  MeshPass meshes{arrays};
+  PointsPass points{arrays};
   SkeletonPass skeletons;
   OcclusionPass occlusion;
   GroundPass ground;
@@ -269,7 +269,7 @@ void Renderer::Parts::draw_over(const Scene& scene, const Camera& camera) {
 }
 
 /// Into the target: the samples' means, or one sample with its edges smoothed afterwards.
-void Renderer::Parts::show(const Scene& scene, const Camera& camera, const Target& target) {
+void Renderer::Parts::show(const Scene& scene, const Camera& camera, const RenderTarget& target) {
   canvas.resolve_color(target.framebuffer);
   if (canvas.samples() > 1 || !options.smooth) return;
   const float margin = 4 + 0.04f / metres_a_pixel(camera, target.size, camera.target);  // bones, discs
@@ -295,7 +295,7 @@ void Renderer::set_options(const RendererOptions& options) {
   parts_->options = options;
 }
 
-void Renderer::draw(const Scene& scene, const Camera& camera, const Target& target) {
+void Renderer::draw(const Scene& scene, const Camera& camera, const RenderTarget& target) {
   Parts& p = *parts_;
   for (const auto& mesh : scene.meshes) check(mesh);
   if (p.canvas.resize(target.size)) p.still.clear();
@@ -310,7 +310,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera, const Target& targ
     p.draw_over(scene, camera);
   }
   p.show(scene, camera, target);
-  p.store.next_picture();
+  p.arrays.next_picture();
   gl::check_debug();
 }
 

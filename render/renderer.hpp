@@ -23,7 +23,7 @@ struct RendererOptions {
 };
 
 /// Where to draw: a framebuffer (0: the window's) and its size.
-struct Target {
+struct RenderTarget {
   unsigned framebuffer = 0;
   PixelSize size;
 };
@@ -43,7 +43,7 @@ class Renderer {
 
   /// Draws the scene over all of the target. Throws Error when the scene's arrays do not fit together, and,
   /// where the context's complaints are fatal, the first of them.
-  void draw(const Scene& scene, const Camera& camera, const Target& target);
+  void draw(const Scene& scene, const Camera& camera, const RenderTarget& target);
   /// Draws into a picture of its own and reads it back.
   Image render_image(const Scene& scene, const Camera& camera, PixelSize size);
 

@@ -116,7 +116,7 @@ std::unique_ptr<ui::Workspace> Application::make_workspace() {
   if (const std::string& samples = studio_->services().samples; !samples.empty())
     workspace->browser().places.push_back({"Samples", samples, ui::Icon::Person});
   workspace->browser().preview = [this](const std::string& path) {
-    const Preview& preview = previews_->of({path}, {320, 320}, session().settings.dark);
+    const FilePreview& preview = previews_->of({path}, {320, 320}, session().settings.dark);
     return ui::FilePreview{preview.texture, static_cast<float>(preview.width),
                            static_cast<float>(preview.height), preview.text};
   };
@@ -237,7 +237,7 @@ void Application::draw(double dt, const std::vector<InputEvent>& events) {
   for (const InputEvent& event : events) handle(event);
   frames_wanted_ = events.empty() ? std::max(0, frames_wanted_ - 1) : kSettling;
   take_log();
-  const render::Target target = surface_->target();
+  const render::RenderTarget target = surface_->target();
   if (target.size.width > 0 && target.size.height > 0) draw_interface(dt, events);
   on_screen_ = fingerprint();
   drawing_took_s_ = seconds_between(drawn_at_, Clock::now());
@@ -247,7 +247,7 @@ void Application::draw(double dt, const std::vector<InputEvent>& events) {
 
 void Application::draw_interface(double dt, const std::vector<InputEvent>& events) {
   const Session& s = session();
-  const render::Target target = surface_->target();
+  const render::RenderTarget target = surface_->target();
   if (dt > 0) frame_rate_ += 0.1f * (static_cast<float>(1 / dt) - frame_rate_);
   ui::FrameInput input;
   input.size = target.size;

@@ -98,7 +98,7 @@ Previews::~Previews() {
   thread_.join();
 }
 
-const Preview& Previews::of(const std::vector<std::string>& paths, render::PixelSize size, bool dark) {
+const FilePreview& Previews::of(const std::vector<std::string>& paths, render::PixelSize size, bool dark) {
   std::string key = std::to_string(size.width) + "x" + std::to_string(size.height) + (dark ? "d\n" : "l\n");
   for (const std::string& path : paths) key += path + '\n';
   const auto [at, is_new] = pictures_.try_emplace(key);

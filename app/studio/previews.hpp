@@ -18,7 +18,7 @@
 namespace understudy::app {
 
 /// One picture, drawn once and kept.
-struct Preview {
+struct FilePreview {
   ImTextureID texture = nullptr;  ///< null: there is no picture (yet)
   int width = 0, height = 0;      ///< pixels
   std::string text;               ///< "87 frames, 4,202 points"; or why there is no picture
@@ -35,7 +35,7 @@ class Previews {
 
   /// The picture of the scans, targets and documents in these paths beside each other. Empty while it is
   /// being made. Never waits.
-  const Preview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark);
+  const FilePreview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark);
   /// Draws what has been read, one picture at most. True when there is a new one.
   bool update();
   /// Whether something is still to be read or drawn.
@@ -55,7 +55,7 @@ class Previews {
     std::vector<Content> contents;
   };
   struct Picture {
-    Preview preview;
+    FilePreview preview;
     std::unique_ptr<render::gl::Texture> texture;
     int64_t used = 0;
   };

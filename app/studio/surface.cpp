@@ -69,7 +69,7 @@ WindowSurface::WindowSurface(const render::WindowOptions& options) : window_(opt
   window_.set_handler([this](render::InputEvent event) { waiting_.push_back(std::move(event)); });
 }
 
-render::Target WindowSurface::target() {
+render::RenderTarget WindowSurface::target() {
   const auto [width, height] = window_.size();
   return {0, {width, height}};
 }

@@ -22,7 +22,7 @@ class Surface {
   virtual ~Surface() = default;
   virtual render::Context& context() = 0;
   /// Where to draw; 0 x 0 while minimised.
-  virtual render::Target target() = 0;
+  virtual render::RenderTarget target() = 0;
   /// How large text should be: 1 usual, 2 on a screen of twice the density.
   virtual float content_scale() const = 0;
   /// What has happened since the last call; sleeps up to `seconds` until something does.
@@ -53,7 +53,7 @@ class OffscreenSurface final : public Surface {
   render::Image picture();
 
   render::Context& context() override { return *context_; }
-  render::Target target() override { return {framebuffer_->name(), {width_, height_}}; }
+  render::RenderTarget target() override { return {framebuffer_->name(), {width_, height_}}; }
   float content_scale() const override { return content_scale_; }
   std::vector<render::InputEvent> events(double seconds) override;
   void present() override;
@@ -82,7 +82,7 @@ class WindowSurface final : public Surface {
   explicit WindowSurface(const render::WindowOptions& options);
 
   render::Context& context() override { return window_.context(); }
-  render::Target target() override;
+  render::RenderTarget target() override;
   float content_scale() const override { return window_.content_scale(); }
   std::vector<render::InputEvent> events(double seconds) override;
   void present() override { window_.swap(); }

@@ -55,24 +55,24 @@ void check(const MeshView& view) {
   check_rows("ambient values", view.ambient->rows(), view.vertices->rows());
 }
 
-MeshPass::MeshPass(gl::Store& store) : store_(store), program_("mesh", kVertex, kFragment) {}
+MeshPass::MeshPass(gl::ArrayCache& arrays) : arrays_(arrays), program_("mesh", kVertex, kFragment) {}
 
 void MeshPass::bind(const MeshView& view) {
-  gl::use_attribute(0, store_.of(view.vertices), 3);
+  gl::use_attribute(0, arrays_.of(view.vertices), 3);
   gl::use_attribute(
       1,
-      store_.of(view.normals->rows() > 0 ? view.normals
-                                         : SharedPoints(vertex_normals(view.vertices, view.faces))),
+      arrays_.of(view.normals->rows() > 0 ? view.normals
+                                          : SharedPoints(vertex_normals(view.vertices, view.faces))),
       3);
   if (view.colors->rows() > 0)
-    gl::use_attribute(2, store_.of(view.colors), 3);
+    gl::use_attribute(2, arrays_.of(view.colors), 3);
   else
     gl::use_constant_attribute(2, view.color);
   if (view.ambient->rows() > 0)
-    gl::use_attribute(3, store_.of(view.ambient), 1);
+    gl::use_attribute(3, arrays_.of(view.ambient), 1);
   else
     gl::use_constant_attribute(3, Vec3::Ones());
-  gl::api().BindBuffer(GL_ELEMENT_ARRAY_BUFFER, store_.of(view.faces).name());
+  gl::api().BindBuffer(GL_ELEMENT_ARRAY_BUFFER, arrays_.of(view.faces).name());
 }
 
 void MeshPass::draw(const MeshView& view, float occlusion) {

@@ -1,23 +1,23 @@
 // Lit smooth surfaces.
 #pragma once
 
+#include "render/gl/array_cache.hpp"
 #include "render/gl/program.hpp"
-#include "render/gl/store.hpp"
 #include "render/scene.hpp"
 
 namespace understudy::render {
 
 class MeshPass {
  public:
-  /// `store` outlives the pass.
-  explicit MeshPass(gl::Store& store);
+  /// `arrays` outlives the pass.
+  explicit MeshPass(gl::ArrayCache& arrays);
   /// The view has passed check(). occlusion: how much its ambient values count, 0..1.
   void draw(const MeshView& view, float occlusion);
 
  private:
   void bind(const MeshView& view);
 
-  gl::Store& store_;
+  gl::ArrayCache& arrays_;
   gl::Program program_;
   gl::Uniform<float> opacity_{program_, "u_opacity"}, occlusion_{program_, "u_occlusion"};
   gl::Uniform<int> two_sided_{program_, "u_two_sided"};

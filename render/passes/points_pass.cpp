@@ -76,8 +76,8 @@ void main() {
 PointsPass::Kind::Kind(const char* name, const std::string& vertex, const std::string& fragment)
     : program(name, vertex, fragment) {}
 
-PointsPass::PointsPass(gl::Store& store)
-    : store_(store),
+PointsPass::PointsPass(gl::ArrayCache& arrays)
+    : arrays_(arrays),
       discs_("discs", kDiscVertex, kDiscFragment),
       balls_("balls", kBallVertex, kBallFragment) {}
 
@@ -92,10 +92,10 @@ void PointsPass::draw(const PointsView& view, bool multisampled) {
   const gl::VertexArrayScope array((flat ? disc_array_ : ball_array_).name());
   const gl::CapabilityScope size(GL_PROGRAM_POINT_SIZE, true),
       coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, multisampled), whole(GL_SAMPLE_ALPHA_TO_ONE, multisampled);
-  gl::use_attribute(0, store_.of(view.positions), 3);
-  if (flat) gl::use_attribute(1, store_.of(view.normals), 3);
+  gl::use_attribute(0, arrays_.of(view.positions), 3);
+  if (flat) gl::use_attribute(1, arrays_.of(view.normals), 3);
   if (view.colors->rows() > 0)
-    gl::use_attribute(2, store_.of(view.colors), 3);
+    gl::use_attribute(2, arrays_.of(view.colors), 3);
   else
     gl::use_constant_attribute(2, view.color);
   kind.radius.set(view.radius);

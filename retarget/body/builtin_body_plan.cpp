@@ -33,9 +33,9 @@ struct FootState {
   float follows_shin = 0;  ///< 0: held level as planned, 1: hangs from the shin
 };
 
-class Performer {
+class PlanPlayer {
  public:
-  Performer(const MotionPlan& plan, const Joints& rest)
+  PlanPlayer(const MotionPlan& plan, const Joints& rest)
       : plan_(plan), rest_(rest), unit_(leg_length(rest) / 0.8f) {
     // The sole lies under the ball of the foot by about a quarter of the way from ankle to ball.
     gap_ = 0.235f * (rest(LeftAnkle, 1) - rest(LeftFoot, 1));
@@ -228,7 +228,7 @@ class Performer {
 }  // namespace
 
 Motion perform(const MotionPlan& plan, const Joints& rest, float fps) {
-  return Performer(plan, rest).run(fps);
+  return PlanPlayer(plan, rest).run(fps);
 }
 
 float keyed(float t, std::initializer_list<std::pair<float, float>> keys) {

@@ -41,11 +41,11 @@ std::vector<Camera> rig(const Vec3& centre, const CaptureOptions& options) {
 }
 
 /// What one camera sees: the nearest surface in each of its pixels, thinned where it is seen at a slant.
-class View {
+class DepthView {
  public:
   static constexpr int kPixels = 200;
 
-  View(const Camera& camera, const Points& vertices, const Faces& faces, float size)
+  DepthView(const Camera& camera, const Points& vertices, const Faces& faces, float size)
       : camera_(camera),
         scale_(kPixels / (1.15f * size)),
         depth_(kPixels * kPixels, 1e9f),
@@ -164,7 +164,7 @@ Mesh simulated_capture(const Points& vertices, const Faces& faces, int frame, co
 
   std::vector<Sighting> seen;
   for (const Camera& camera : rig(Vec3(centre.x(), centre.y(), centre.z()), options))
-    View(camera, vertices, faces, size).sightings(rng.uniform(.75f, 1.0f), rng, seen);
+    DepthView(camera, vertices, faces, size).sightings(rng.uniform(.75f, 1.0f), rng, seen);
   const std::vector<Hole> spots = holes(vertices, options.holes, rng);
 
   const float keep = static_cast<float>(options.points) * rng.uniform(.84f, 1.16f) /

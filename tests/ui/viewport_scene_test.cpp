@@ -21,7 +21,7 @@ struct SceneTest : testing::Test {
     stage.cache->wait();
     return pictures_of(session, *stage.cache, content, pane_frame(session, content)).value();
   }
-  PaneScene scene(int pane, const Preview& preview = {}) {
+  PaneScene scene(int pane, const EditPreview& preview = {}) {
     last = pictures(pane);
     return build_scene({session, pane_of(pane), last, {}, preview, ThemeKind::Dark}, &memory);
   }
@@ -208,7 +208,7 @@ TEST_F(SceneTest, ANewCropBoxHoldsThePersonInAllFrames) {
 }
 
 TEST_F(SceneTest, APreviewStandsInForTheJoints) {
-  Preview preview;
+  EditPreview preview;
   preview.take_joints = Joints::Ones();
   EXPECT_EQ(scene(1, preview).scene.skeletons[0].joints, Points(Joints::Ones()));
 }

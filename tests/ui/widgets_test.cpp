@@ -204,7 +204,7 @@ TEST_F(Widgets, NoticesGoAwayAndStayUnderThePointer) {
 TEST_F(Widgets, QuestionsAreAnsweredByButtonsAndKeys) {
   Answer answer = Answer::None;
   bool asking = true;
-  Question question{"Unsaved changes", "Save walk.understudy before closing?", "Save", "Don't save"};
+  QuestionWords question{"Unsaved changes", "Save walk.understudy before closing?", "Save", "Don't save"};
   content = [&](Ui& ui) {
     if (!asking) return;
     answer = ask(ui, "unsaved", question);

@@ -61,7 +61,7 @@ DrawPass::DrawPass() : program_("interface", kVertex, kFragment), to_clip_(progr
   describe_vertices();
 }
 
-void DrawPass::draw(const ImDrawData& data, const ImFontAtlas& atlas, const render::Target& target) {
+void DrawPass::draw(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target) {
   if (data.TotalIdxCount == 0 || target.size.width <= 0 || target.size.height <= 0) return;
   upload_atlas(atlas);
   const render::gl::TargetScope canvas(target.framebuffer, target.size.width, target.size.height);
@@ -69,7 +69,7 @@ void DrawPass::draw(const ImDrawData& data, const ImFontAtlas& atlas, const rend
   render::gl::check_debug();
 }
 
-void DrawPass::present(const ImDrawData& data, const ImFontAtlas& atlas, const render::Target& target,
+void DrawPass::present(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target,
                        const ImVec4& backdrop) {
   if (target.size.width <= 0 || target.size.height <= 0) return;
   const bool new_letters = atlas.TexPixelsRGBA32 != atlas_pixels_;

@@ -24,10 +24,10 @@ class DrawPass {
  public:
   DrawPass();
   /// Draws over what is in the target, colours as they are (sRGB).
-  void draw(const ImDrawData& data, const ImFontAtlas& atlas, const render::Target& target);
+  void draw(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target);
   /// Makes the target show the frame over `backdrop`, by drawing only what differs from the frame presented
   /// before. Pictures other than the atlas count as different each time.
-  void present(const ImDrawData& data, const ImFontAtlas& atlas, const render::Target& target,
+  void present(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target,
                const ImVec4& backdrop);
 
  private:

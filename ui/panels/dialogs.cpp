@@ -27,7 +27,7 @@ bool finish(bool stays) {
 }
 
 QuestionAnswer draw_unsaved(const app::Session& session, PanelContext& context) {
-  Question question;
+  QuestionWords question;
   question.title = "Unsaved changes";
   question.sentence = session.question->text.empty() ? "Save the changes first?" : session.question->text;
   question.yes = session.path.empty() ? "Save\u2026" : "Save", question.no = "Don't save";

@@ -219,7 +219,7 @@ bool draw_path(const app::Session& session, Ui& ui, ExportState& state) {
 }
 
 ExportAnswer draw_overwrite(const app::Session& session, PanelContext& context, ExportState& state) {
-  Question question;
+  QuestionWords question;
   question.title = "Replace the file?";
   question.sentence = file_name(state.path) + " is already there.";
   question.yes = "Replace", question.dangerous = true;

@@ -14,8 +14,8 @@ namespace understudy::ui {
 namespace {
 
 /// The same figure of all takes, the selected one first.
-std::vector<Series> overlaid(const app::Session& session, const app::Series& of_selected) {
-  std::vector<Series> all;
+std::vector<Curve> overlaid(const app::Session& session, const app::Series& of_selected) {
+  std::vector<Curve> all;
   const auto add = [&](size_t take, const app::Series& series) {
     const bool named = take < session.document.takes.size();
     all.push_back(

@@ -238,8 +238,8 @@ Joints Hand::moved_joints(const HandPlace& place) const {
   return joints;
 }
 
-Preview Hand::preview(const HandPlace& place) const {
-  Preview preview;
+EditPreview Hand::preview(const HandPlace& place) const {
+  EditPreview preview;
   const Session& session = place.session;
   auto subject = subject_of(place);
   if (shown_in(place)) {

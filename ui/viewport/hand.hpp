@@ -35,7 +35,7 @@ class Hand {
   const PaneContent& pane() const { return pane_; }
 
   /// What is to be shown in the pane of what is under way, or has just been asked for.
-  Preview preview(const HandPlace& place) const;
+  EditPreview preview(const HandPlace& place) const;
   /// The first take's picture with the bone turned; null where it is as it was.
   std::shared_ptr<const app::PosedPicture> turned_picture(const HandPlace& place) const;
 

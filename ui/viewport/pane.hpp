@@ -39,7 +39,7 @@ struct Pane {
   PictureKeeper keeper;
   ColourMemory colours;
   PaneScene made;
-  Preview preview;
+  EditPreview preview;
   PaneCanvas canvas;
 };
 

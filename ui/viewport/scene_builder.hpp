@@ -14,7 +14,7 @@
 namespace understudy::ui {
 
 /// What the hand is doing just now, shown before it is asked for.
-struct Preview {
+struct EditPreview {
   std::optional<Joints> source_joints;  ///< in place of the extracted ones
   std::optional<Joints> take_joints;    ///< in place of those of the pane's first take (or of its T-pose)
   std::optional<Box> crop;              ///< in place of the document's
@@ -39,7 +39,7 @@ struct SceneInput {
   const PaneContent& pane;
   const PanePictures& pictures;
   const std::vector<std::shared_ptr<const TargetLook>>& looks;  ///< as pane.takes; null: not there yet
-  const Preview& preview;
+  const EditPreview& preview;
   ThemeKind theme = ThemeKind::Dark;
 };
 
@@ -57,7 +57,7 @@ PaneScene build_scene(const SceneInput& input, ColourMemory* memory = nullptr);
 
 /// The box that the crop tool shows: the document's, or one around the person in all frames so far.
 Box crop_box(const app::Session& session, const PanePictures& pictures);
-/// The middle of a face of a box, numbered as Preview::crop_face.
+/// The middle of a face of a box, numbered as EditPreview::crop_face.
 Vec3 face_centre(const Box& box, int face);
 /// The plain surface of a take.
 Vec3 take_color(int k);

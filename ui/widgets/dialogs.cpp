@@ -62,7 +62,7 @@ void Notices::draw(Ui& ui, const Rect& over) {
   const float room = std::max(ui.px(120), std::min(ui.px(420), area.width() - ui.px(20)));
   float top = area.min.y + ui.px(10);
   for (size_t k = notices_.size(); k-- > 0;) {
-    Notice& notice = notices_[k];
+    Toast& notice = notices_[k];
     const std::string name = "notice." + std::to_string(notices_.size() - 1 - k);
     ImGui::SetNextWindowPos({area.max.x - ui.px(10), top}, ImGuiCond_Always, {1, 0});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {room, FLT_MAX});
@@ -87,7 +87,7 @@ void Notices::draw(Ui& ui, const Rect& over) {
     ImGui::PopStyleVar();
   }
   notices_.erase(
-      std::remove_if(notices_.begin(), notices_.end(), [](const Notice& n) { return n.seconds_left <= 0; }),
+      std::remove_if(notices_.begin(), notices_.end(), [](const Toast& n) { return n.seconds_left <= 0; }),
       notices_.end());
 }
 
@@ -113,7 +113,7 @@ void end_dialog() {
   ImGui::EndPopup();
 }
 
-Answer ask(Ui& ui, const std::string& name, const Question& question) {
+Answer ask(Ui& ui, const std::string& name, const QuestionWords& question) {
   if (!begin_dialog(ui, name, question.title, 420)) return Answer::None;
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(question.sentence.c_str());

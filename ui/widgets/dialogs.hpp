@@ -21,17 +21,17 @@ class Notices {
   bool empty() const { return notices_.empty(); }
 
  private:
-  struct Notice {
+  struct Toast {
     std::string sentence;
     NoticeKind kind;
     float seconds_left;
   };
-  std::vector<Notice> notices_;
+  std::vector<Toast> notices_;
 };
 
 enum class Answer { None, Yes, No, Cancel };
 
-struct Question {
+struct QuestionWords {
   std::string title;
   std::string sentence;
   std::string yes = "OK";
@@ -41,7 +41,7 @@ struct Question {
 };
 /// Call every frame from when the question is to be asked until it answers; outside any window. Enter is yes,
 /// Escape is cancel. Buttons are marked NAME.yes, NAME.no, NAME.cancel.
-Answer ask(Ui& ui, const std::string& name, const Question& question);
+Answer ask(Ui& ui, const std::string& name, const QuestionWords& question);
 
 /// An error as one sentence, with "Copy details". Call every frame until it returns true: closed. Marked
 /// NAME.close and NAME.copy.

@@ -12,7 +12,7 @@ namespace {
 /// Everything one plot's drawing needs.
 struct Plot {
   Ui& ui;
-  const std::vector<Series>& series;
+  const std::vector<Curve>& series;
   const PlotOptions& options;
   ImDrawList& list;
   Rect all;
@@ -35,10 +35,10 @@ double tick_step(const std::vector<double>& ticks) {
 }
 
 /// The values' range with some air, or what was asked for.
-Range value_range(const std::vector<Series>& series, const PlotOptions& options, double first, double last) {
+Range value_range(const std::vector<Curve>& series, const PlotOptions& options, double first, double last) {
   if (!options.range.empty()) return options.range;
   Range range;
-  for (const Series& one : series)
+  for (const Curve& one : series)
     for (int i = std::max(0, static_cast<int>(first));
          i <= std::min(one.values.size - 1, static_cast<int>(last)); ++i)
       range.include(one.values.data[i]);
@@ -118,15 +118,15 @@ void draw_hover(Plot& p, int frame) {
   ImGui::PopStyleVar();
 }
 
-int frame_count(const std::vector<Series>& series) {
+int frame_count(const std::vector<Curve>& series) {
   int count = 0;
-  for (const Series& one : series) count = std::max(count, one.values.size);
+  for (const Curve& one : series) count = std::max(count, one.values.size);
   return count;
 }
 
 }  // namespace
 
-PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<Series>& series,
+PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<Curve>& series,
                 const PlotOptions& options) {
   const FontScope small(ui.fonts().small);
   const ImVec2 at = ImGui::GetCursorScreenPos(),

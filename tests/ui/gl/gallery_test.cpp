@@ -151,12 +151,12 @@ TEST_P(Gallery, PresentingTheDifferencesLooksLikeDrawingAll) {
     draw_gallery(gui.ui(), state);
     const ImDrawData& data = gui.end_frame();
     const auto backdrop = gui.ui().theme().backdrop;
-    const auto all = picture(input.size, [&](const render::Target& target) {
+    const auto all = picture(input.size, [&](const render::RenderTarget& target) {
       render::gl::api().ClearColor(backdrop.x, backdrop.y, backdrop.z, 1);
       render::gl::api().Clear(GL_COLOR_BUFFER_BIT);
       everything.draw(data, gui.atlas(), target);
     });
-    const auto presented = picture(input.size, [&](const render::Target& target) {
+    const auto presented = picture(input.size, [&](const render::RenderTarget& target) {
       differences.present(data, gui.atlas(), target, backdrop);
     });
     ASSERT_TRUE(all.pixels == presented.pixels) << "step " << i;

@@ -50,7 +50,7 @@ std::vector<Rect> cut_letters(const ImDrawData& data, const ImFontAtlas& atlas) 
   return cut;
 }
 
-render::Image picture(render::PixelSize size, const std::function<void(const render::Target&)>& draw) {
+render::Image picture(render::PixelSize size, const std::function<void(const render::RenderTarget&)>& draw) {
   namespace gl = render::gl;
   const gl::Framebuffer framebuffer;
   const gl::Texture texture;
@@ -72,7 +72,7 @@ render::Image picture(render::PixelSize size, const std::function<void(const ren
 
 render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas& atlas,
                       render::PixelSize size) {
-  return picture(size, [&](const render::Target& target) { pass.draw(data, atlas, target); });
+  return picture(size, [&](const render::RenderTarget& target) { pass.draw(data, atlas, target); });
 }
 
 }  // namespace understudy::ui

@@ -17,7 +17,7 @@ namespace understudy::ui {
 std::vector<Rect> cut_letters(const ImDrawData& data, const ImFontAtlas& atlas);
 
 /// A black picture after `draw` has drawn into it with the current context.
-render::Image picture(render::PixelSize size, const std::function<void(const render::Target&)>& draw);
+render::Image picture(render::PixelSize size, const std::function<void(const render::RenderTarget&)>& draw);
 /// The frame on a black picture.
 render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas& atlas,
                       render::PixelSize size);

@@ -1,4 +1,4 @@
-#include "render/gl/store.hpp"
+#include "render/gl/array_cache.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace {
 constexpr int kPictures = 4;  // two or three views take turns
 }
 
-const Buffer& Store::find(const std::shared_ptr<const void>& array, const void* data, size_t bytes) {
+const Buffer& ArrayCache::find(const std::shared_ptr<const void>& array, const void* data, size_t bytes) {
   Entry* free = nullptr;
   for (const auto& entry : entries_) {
     if (entry->array == array && array != nullptr) {
@@ -23,7 +23,7 @@ const Buffer& Store::find(const std::shared_ptr<const void>& array, const void* 
   return free->buffer;
 }
 
-void Store::next_picture() {
+void ArrayCache::next_picture() {
   for (const auto& entry : entries_)
     if (++entry->unused > kPictures) entry->array.reset();
   // Freed ones wait for new arrays a while, then go.

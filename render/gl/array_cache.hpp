@@ -10,7 +10,7 @@
 namespace understudy::render::gl {
 
 /// Uploads each shared array once. Use with one context, on its thread.
-class Store {
+class ArrayCache {
  public:
   /// The buffer that holds this array's rows; uploads it unless that is so already.
   template <class T>
