@@ -201,9 +201,17 @@ struct Renderer::Parts {
 
   void draw_still(const Scene& scene, const Camera& camera, PixelSize size);
   void show(const Scene& scene, const Camera& camera, const RenderTarget& target);
-  void draw_solid(const Scene& scene);
-  void draw_over(const Scene& scene, const Camera& camera);
+  void draw_shadow(const Scene& scene);
+  void draw_meshes(const Scene& scene, bool opaque);
+  void draw_skeletons(const Scene& scene, bool x_ray);
+  void draw_occlusion(const Scene& scene);
+  void draw_points(const Scene& scene);
   void draw_lines(const Scene& scene, bool x_ray);
+  void draw_x_ray(const Scene& scene);
+  void draw_gizmos(const Scene& scene, const Camera& camera);
+
+  using Pass = void (*)(Parts&, const Scene&, const Camera&);
+  static const Pass kPasses[];
 
   RendererOptions options;
   Canvas canvas;
@@ -232,17 +240,28 @@ void Renderer::Parts::draw_still(const Scene& scene, const Camera& camera, Pixel
   canvas.copy_still();
 }
 
-void Renderer::Parts::draw_solid(const Scene& scene) {
+void Renderer::Parts::draw_shadow(const Scene& scene) {
+  if (scene.ground.visible && scene.ground.shadow > 0) ground.draw_shadow(scene);
+}
+
+void Renderer::Parts::draw_meshes(const Scene& scene, bool opaque) {
   for (const auto& mesh : scene.meshes)
-    if (mesh.opacity >= 1) meshes.draw(mesh, ambient_strength(scene));
+    if ((mesh.opacity >= 1) == opaque) meshes.draw(mesh, ambient_strength(scene));
+}
+
+void Renderer::Parts::draw_skeletons(const Scene& scene, bool x_ray) {
   for (const auto& skeleton : scene.skeletons)
-    if (!skeleton.x_ray) skeletons.draw(meshes, skeleton);
-  if (options.quality == Quality::Best && scene.occlusion > 0 && !scene.meshes.empty()) {
-    canvas.resolve_depth();
-    occlusion.draw(canvas.depth_texture(), frame.size(), scene.occlusion);
-  }
-  for (const auto& cloud : scene.clouds)  // too rough for occlusion from depth
-    points.draw(cloud, canvas.samples() > 1);
+    if (skeleton.x_ray == x_ray) skeletons.draw(meshes, skeleton);
+}
+
+void Renderer::Parts::draw_occlusion(const Scene& scene) {
+  if (options.quality != Quality::Best || scene.occlusion <= 0 || scene.meshes.empty()) return;
+  canvas.resolve_depth();
+  occlusion.draw(canvas.depth_texture(), frame.size(), scene.occlusion);
+}
+
+void Renderer::Parts::draw_points(const Scene& scene) {
+  for (const auto& cloud : scene.clouds) points.draw(cloud, canvas.samples() > 1);
 }
 
 void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
@@ -250,23 +269,37 @@ void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
     if (view.x_ray == x_ray) lines.draw(view);
 }
 
-/// What lies over the opaque part: see-through meshes, lines, then what shows through everything.
-void Renderer::Parts::draw_over(const Scene& scene, const Camera& camera) {
-  draw_lines(scene, false);
-  for (const auto& mesh : scene.meshes)
-    if (mesh.opacity < 1) meshes.draw(mesh, ambient_strength(scene));
+void Renderer::Parts::draw_x_ray(const Scene& scene) {
   const auto x_ray = [](const auto& view) { return view.x_ray; };
-  if (std::any_of(scene.skeletons.begin(), scene.skeletons.end(), x_ray) ||
-      std::any_of(scene.lines.begin(), scene.lines.end(), x_ray)) {
-    gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-    for (const auto& skeleton : scene.skeletons)
-      if (skeleton.x_ray) skeletons.draw(meshes, skeleton);
-    draw_lines(scene, true);
-  }
-  if (scene.gizmos.empty()) return;
+  if (std::none_of(scene.skeletons.begin(), scene.skeletons.end(), x_ray) &&
+      std::none_of(scene.lines.begin(), scene.lines.end(), x_ray))
+    return;
   gl::api().Clear(GL_DEPTH_BUFFER_BIT);
+  draw_skeletons(scene, true);
+  draw_lines(scene, true);
+}
+
+void Renderer::Parts::draw_gizmos(const Scene& scene, const Camera& camera) {
+  if (!scene.gizmos.empty()) gl::api().Clear(GL_DEPTH_BUFFER_BIT);
   for (const auto& gizmo : scene.gizmos) meshes.draw(gizmo_solids(gizmo, camera), 0);
 }
+
+/// What is drawn over the still background, in this order. A new pass is a file of passes/ with its shader
+/// beside it, a row here and a golden picture.
+const Renderer::Parts::Pass Renderer::Parts::kPasses[] = {
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_shadow(s); },
+    // What is opaque; points are too rough for occlusion from depth.
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_meshes(s, true); },
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_skeletons(s, false); },
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_occlusion(s); },
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_points(s); },
+    // What lies over it.
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_lines(s, false); },
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_meshes(s, false); },
+    // What shows through everything.
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_x_ray(s); },
+    [](Parts& p, const Scene& s, const Camera& c) { p.draw_gizmos(s, c); },
+};
 
 /// Into the target: the samples' means, or one sample with its edges smoothed afterwards.
 void Renderer::Parts::show(const Scene& scene, const Camera& camera, const RenderTarget& target) {
@@ -305,9 +338,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera, const RenderTarget
     p.frame.set(camera, scene.light, target.size);
     p.draw_still(scene, camera, target.size);
     gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-    if (scene.ground.visible && scene.ground.shadow > 0) p.ground.draw_shadow(scene);
-    p.draw_solid(scene);
-    p.draw_over(scene, camera);
+    for (const Parts::Pass pass : Parts::kPasses) pass(p, scene, camera);
   }
   p.show(scene, camera, target);
   p.arrays.next_picture();
