@@ -109,14 +109,14 @@ bool is_newer(const Json& copy) {
 /// The document in a copy. Throws Error.
 SavedDocument document_in(const Json& copy, const std::string& file) {
   US_CHECK(copy.is_object() && text_in(copy, "format") == kFormat && copy.contains("document"), file,
-           ": is no autosaved document");
+           ": is not an autosaved document");
   return from_json(copy["document"], "", file);
 }
 
 void set_aside(const std::string& file, const std::string& problem) {
   std::error_code error;
   fs::rename(file, file + ".damaged", error);
-  log::warn("an autosaved document cannot be read and is set aside" +
+  log::warn("an autosaved document cannot be read and was set aside" +
             std::string(error ? "" : " as " + file + ".damaged") + ": " + problem);
 }
 

@@ -35,8 +35,8 @@ void ask_for_missing(Session& session) {
   if (missing.empty()) return;
   Question question;
   question.kind = Question::Kind::MissingFiles;
-  question.text = missing.size() == 1 ? "A file of this document is not where it was."
-                                      : "Some files of this document are not where they were.";
+  question.text = missing.size() == 1 ? "A file of this document is missing."
+                                      : "Some files of this document are missing.";
   question.missing = missing;
   session.question = question;
 }
@@ -64,7 +64,7 @@ void save_document(Studio& studio, const std::string& path) {
 
 void answer(Studio& studio, const std::string& how) {
   Session& session = studio.session();
-  US_CHECK(session.question, "nothing was asked");
+  US_CHECK(session.question, "there is no question to answer");
   const Question question = *session.question;
   if (how == "save") {
     US_CHECK(!session.path.empty(), "the document has no file yet: save it under a name first");

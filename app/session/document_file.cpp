@@ -75,7 +75,7 @@ nlohmann::ordered_json parse_document(const std::string& text, const std::string
   } catch (const nlohmann::json::parse_error& error) {
     throw Error(path + ": is damaged at byte " + std::to_string(error.byte));
   } catch (const nlohmann::json::exception&) {
-    throw Error(path + ": holds a number that is none");
+    throw Error(path + ": holds something that is not a number");
   }
 }
 

@@ -336,7 +336,7 @@ nlohmann::ordered_json to_json(const SavedDocument& saved, const std::string& fo
 SavedDocument from_json(const nlohmann::ordered_json& json, const std::string& folder,
                         const std::string& path) {
   const bool named = json.is_object() && json.contains("format") && json["format"] == kFormat;
-  US_CHECK(named, path, ": is no Understudy document");
+  US_CHECK(named, path, ": is not an Understudy document");
   Reader reader(json, folder, path + ": ");
   int version = 0;
   reader("version", version, Within<int>{1, kFrameNumbers.high});

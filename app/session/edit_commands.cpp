@@ -191,7 +191,7 @@ void add_target_edits(Commands& commands) {
                   moves.push_back(move);
                 }});
   commands.add(
-      {"edit.target_joints_clear", "Put the target's joints back", "TAKE", "", true, false,
+      {"edit.target_joints_clear", "Reset the target's joints", "TAKE", "", true, false,
        [](Studio& s, const Arguments& a) { take_argument(s.session(), a, 0).target_edits.joints.clear(); }});
   commands.add({"edit.paint", "Paint weights", "TAKE X Y Z: a place on the T-pose's surface", "", true, true,
                 [](Studio& s, const Arguments& a) {

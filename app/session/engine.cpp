@@ -191,7 +191,7 @@ bool Engine::Impl::advance(std::optional<Plan> wanted, bool afresh) {
     if (wanted) adopt(std::move(*wanted));
     return step();
   } catch (const std::bad_alloc&) {
-    give_up("there is not enough memory to go on");
+    give_up("there is not enough memory to continue");
   } catch (const std::exception& error) {
     give_up(error.what());
   }

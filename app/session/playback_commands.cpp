@@ -31,12 +31,12 @@ void add_transport(Commands& commands) {
                 [](Studio& s, const Arguments&) { play(s.session(), true); }});
   commands.add({"playback.pause", "Pause", "", "", false, false,
                 [](Studio& s, const Arguments&) { play(s.session(), false); }});
-  commands.add(
-      {"playback.step", "Step", "N: frames on, or back", "", false, false, [](Studio& s, const Arguments& a) {
-         Session& session = s.session();
-         session.playback.playing = false;
-         go_to(session, shown_frame(session) + whole_number(a, 0, "number of frames"));
-       }});
+  commands.add({"playback.step", "Step", "N: frames forward; negative: back", "", false, false,
+                [](Studio& s, const Arguments& a) {
+                  Session& session = s.session();
+                  session.playback.playing = false;
+                  go_to(session, shown_frame(session) + whole_number(a, 0, "number of frames"));
+                }});
   commands.add({"playback.step_on", "Next frame", "", "Right", false, false,
                 [](Studio& s, const Arguments&) { s.run("playback.step", {"1"}); }});
   commands.add({"playback.step_back", "Previous frame", "", "Left", false, false,

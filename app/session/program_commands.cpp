@@ -68,7 +68,7 @@ void add_brush(Commands& commands) {
 void add_work(Commands& commands) {
   commands.add({"work.pause", "Pause retargeting", "", "", false, false,
                 [](Studio& s, const Arguments&) { s.pause_work(true); }});
-  commands.add({"work.resume", "Go on retargeting", "", "", false, false,
+  commands.add({"work.resume", "Continue retargeting", "", "", false, false,
                 [](Studio& s, const Arguments&) { s.pause_work(false); }});
   commands.add({"work.restart", "Retarget again", "", "Ctrl+R", false, false,
                 [](Studio& s, const Arguments&) { s.restart_work(); }});
@@ -85,7 +85,7 @@ void add_work(Commands& commands) {
                   Session& session = s.session();
                   if (session.changed) {
                     session.question = Question{};
-                    session.question->text = "Save the changes before you go?";
+                    session.question->text = "Save the changes before you quit?";
                     session.question->then = "app.quit";
                     return;
                   }
@@ -128,8 +128,8 @@ void add_settings(Commands& commands) {
                       std::clamp(static_cast<float>(number(a, 0, "factor")), 0.2f, 4.f);
                   s.save_settings();
                 }});
-  commands.add({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000, from the next start", "", false,
-                false, [](Studio& s, const Arguments& a) {
+  commands.add({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000; takes effect at the next start", "",
+                false, false, [](Studio& s, const Arguments& a) {
                   s.session().settings.undo_depth = std::clamp(whole_number(a, 0, "number"), 10, 1000);
                   s.save_settings();
                 }});

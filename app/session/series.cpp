@@ -34,7 +34,7 @@ const Series* find(const std::vector<Series>& series, const std::string& key) {
 }
 
 void write_csv(const std::string& path, const std::vector<Series>& series, double fps) {
-  US_CHECK(fps > 0 && std::isfinite(fps), path, ": seconds cannot be told at ", fps, " frames/s");
+  US_CHECK(fps > 0 && std::isfinite(fps), path, ": no time can be given at ", fps, " frames/s");
   size_t frames = 0;
   std::string text = "frame,seconds";
   for (const Series& one : series) {

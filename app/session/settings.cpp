@@ -132,7 +132,7 @@ Settings read_settings(const std::string& path) {
     US_CHECK(json.is_object(), path, ": holds no settings");
     return from_json(json);
   } catch (const Error& error) {
-    log::warn(std::string(error.what()) + "; the settings are the first ones again");
+    log::warn(std::string(error.what()) + "; the settings are back to their defaults");
   }
   return {};
 }

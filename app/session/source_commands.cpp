@@ -105,15 +105,16 @@ void add_skeletal(Commands& commands) {
                   source.clip = wanted;
                   set_skeletal(s, std::move(source));
                 }});
-  commands.add({"source.as_scan", "Look at an animated source as a scan", "on|off", "", true, false,
+  commands.add({"source.as_scan", "Use an animated source as a scan", "on|off", "", true, false,
                 [](Studio& s, const Arguments& a) {
                   choice(a, 0, "switch", {"on", "off"});
                   SourceOptions source = s.session().document.source;
                   source.as_scan = a[0] == "on";
                   set_skeletal(s, std::move(source));
                 }});
-  commands.add({"source.bone", "Bone of the source for a joint", "JOINT BONE; auto: as it is found; none", "",
-                true, false, [](Studio& s, const Arguments& a) {
+  commands.add({"source.bone", "Bone of the source for a joint",
+                "JOINT BONE|auto|none; auto: the bone found for it", "", true, false,
+                [](Studio& s, const Arguments& a) {
                   SourceOptions source = s.session().document.source;
                   const std::string joint = word(a, 0, "joint"), bone = word(a, 1, "bone");
                   US_CHECK(std::find(kJointNames.begin(), kJointNames.end(), joint) != kJointNames.end(),

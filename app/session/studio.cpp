@@ -78,7 +78,7 @@ void Studio::ask_about_autosaves() {
   if (found.empty()) return;
   Question question;
   question.kind = Question::Kind::Recover;
-  question.text = "The studio was not closed properly. Unsaved work was kept.";
+  question.text = "The studio was not closed properly. Unsaved work was saved.";
   question.autosaves = found;
   session_.question = question;
 }
@@ -292,7 +292,7 @@ void Studio::autosave_ended() {
   state.running = false;
   if (!state.problem.empty() && state.problem != background_->autosave_problem) {
     log::warn(state.problem);
-    notify("The work cannot be kept for recovery: " + state.problem, true);
+    notify("Unsaved work cannot be saved for recovery: " + state.problem, true);
   }
   background_->autosave_problem = state.problem;
 }

@@ -17,7 +17,7 @@ std::string target_file(const Arguments& arguments, size_t i) {
   US_CHECK(fs::exists(path, failed), path, ": there is no such file");
   US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
   US_CHECK(is_character_file(path) || file_suffix(path) == ".npz", path,
-           ": is no character or mesh that is known");
+           ": is not a known character or mesh format");
   return path;
 }
 
@@ -116,7 +116,7 @@ void add_rig(Commands& commands) {
                   check_bones(s, whole_number(a, 0, "take"));
                 }});
   commands.add(
-      {"target.bones_clear", "Bones as they were found", "TAKE", "", true, false,
+      {"target.bones_clear", "Reset to the bones found", "TAKE", "", true, false,
        [](Studio& s, const Arguments& a) { take_argument(s.session(), a, 0).target.bones.clear(); }});
 }
 

@@ -202,7 +202,7 @@ void add_layers(Commands& commands) {
                   s.session().view.ghost_count = std::clamp(whole_number(a, 0, "count"), 0, 10);
                   s.session().view.ghost_step = std::clamp(whole_number(a, 1, "step"), 1, 1000);
                 }});
-  commands.add({"view.error_scale", "Error scale", "MM: the upper end", "", false, false,
+  commands.add({"view.error_scale", "Error scale", "MM: the upper end of the scale", "", false, false,
                 [](Studio& s, const Arguments& a) {
                   s.session().view.error_scale_mm =
                       std::clamp(static_cast<float>(number(a, 0, "scale")), 0.1f, 1e4f);

@@ -12,7 +12,7 @@ float number_of(const std::string& text) {
   float value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   US_CHECK(error == std::errc() && end == text.data() + text.size() && std::isfinite(value), text,
-           " is no number");
+           " is not a number");
   return value;
 }
 
@@ -48,7 +48,7 @@ render::Modifiers modifiers_from(const Arguments& words, size_t first) {
     else if (words[i] == "super")
       modifiers.super = true;
     else
-      US_CHECK(words[i] == "repeat", words[i], " is no modifier: ctrl, shift, alt, super");
+      US_CHECK(words[i] == "repeat", words[i], " is not a modifier: ctrl, shift, alt, super");
   }
   return modifiers;
 }
@@ -63,7 +63,7 @@ InputEvent button_of(const Arguments& words) {
   event.kind = Kind::MouseButton;
   size_t which = 0;
   while (which < kButtons.size() && words[1] != kButtons[which]) ++which;
-  US_CHECK(which < kButtons.size(), words[1], " is no button of a mouse");
+  US_CHECK(which < kButtons.size(), words[1], " is not a mouse button");
   event.button = static_cast<render::MouseButton>(which);
   event.pressed = words[2] == "down";
   place_from(event, words, 3);
@@ -75,7 +75,7 @@ InputEvent key_of(const Arguments& words) {
   InputEvent event;
   event.kind = Kind::Key;
   const auto key = render::key_of_name(words[1]);
-  US_CHECK(key, words[1], " is no key");
+  US_CHECK(key, words[1], " is not a key");
   event.key = *key;
   event.pressed = words[2] == "down";
   event.modifiers = modifiers_from(words, 3);

@@ -110,7 +110,7 @@ std::string fact(const Session& session, const std::string& key) {
 bool holds(const std::string& value, const std::string& comparison, const std::string& wanted) {
   if (comparison == "=" || comparison.empty()) return value == wanted;
   if (comparison == "!=") return value != wanted;
-  US_CHECK(comparison == ">=" || comparison == "<=", comparison, " is no comparison: =, !=, >=, <=");
+  US_CHECK(comparison == ">=" || comparison == "<=", comparison, " is not a comparison: =, !=, >=, <=");
   const double a = std::atof(value.c_str()), b = std::atof(wanted.c_str());
   return comparison == ">=" ? a >= b : a <= b;
 }

@@ -132,7 +132,7 @@ void save_video(Studio& studio, const Arguments& arguments) {
   const std::vector<int> frames = frames_of(studio.session());
   US_CHECK(!frames.empty(), "there is nothing to show yet");
   const std::string suffix = file_suffix(saving.path);
-  US_CHECK(suffix.empty() || suffix == ".mp4", suffix, " is no video: .mp4, or a folder for pictures");
+  US_CHECK(suffix.empty() || suffix == ".mp4", suffix, " is not a video: .mp4, or a folder for pictures");
   const double fps = studio.session().source.fps;
   studio.jobs().start(
       "Saving " + file_name(saving.path),

@@ -166,7 +166,7 @@ Previews::Content Previews::read(const std::string& path) {
     }
     if (!fs::is_directory(at)) {
       if (!is_character_file(path) && suffix != ".npz" && suffix != ".npy") return content;
-      if (fs::file_size(at) > kLargest) return {{}, "too large to be looked at here"};
+      if (fs::file_size(at) > kLargest) return {{}, "too large for a preview"};
     }
     if (!fs::is_directory(at) && suffix != ".npy") {
       const Character character = read_target(path, {});

@@ -36,7 +36,7 @@ bool is_number(const std::string& text) {
 /// "1920x1080".
 render::PixelSize size_of(const std::string& text) {
   const size_t x = text.find('x');
-  US_CHECK(x != std::string::npos, text, " is no size: WIDTHxHEIGHT");
+  US_CHECK(x != std::string::npos, text, " is not a size: WIDTHxHEIGHT");
   return {static_cast<int>(number_of(text.substr(0, x))), static_cast<int>(number_of(text.substr(x + 1)))};
 }
 
@@ -60,7 +60,7 @@ std::vector<char32_t> characters_of(const std::string& text) {
   for (size_t i = 0; i < text.size();) {
     const auto lead = static_cast<unsigned char>(text[i++]);
     const int more = lead < 0x80 ? 0 : lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : -1;
-    US_CHECK(more >= 0 && i + more <= text.size(), "the text is no UTF-8");
+    US_CHECK(more >= 0 && i + more <= text.size(), "the text is not UTF-8");
     char32_t character = more == 0 ? lead : lead & (0x3F >> more);
     for (int k = 0; k < more; ++k)
       character = (character << 6) | (static_cast<unsigned char>(text[i++]) & 0x3F);
@@ -208,7 +208,7 @@ void Script::until(const std::function<bool()>& done, const std::string& what, d
   const auto began = std::chrono::steady_clock::now();
   while (!done()) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
-    US_CHECK(passed.count() < timeout_s, what, " has not come after ", timeout_s, " s");
+    US_CHECK(passed.count() < timeout_s, what, " has not arrived after ", timeout_s, " s");
     US_CHECK(!application_.session().quit, "the studio was closed");
     draw();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -281,7 +281,7 @@ ImVec2 Script::place_of(const std::string& name) {
     application_.gui().ui().reveal(mark);
     draw(4);
     found = application_.find(mark);
-    US_CHECK(found && !found->visible.empty(), mark, " is not to be seen");
+    US_CHECK(found && !found->visible.empty(), mark, " is not visible");
   }
   US_CHECK(found->enabled, mark, " is greyed out");
   if (at == std::string::npos) return found->visible.at(0.5f, 0.5f);
@@ -382,7 +382,7 @@ void Script::type(const Words& words) {
 
 void Script::key(const Words& words) {
   const auto chord = chord_of(words[1]);
-  US_CHECK(chord, words[1], " is no key");
+  US_CHECK(chord, words[1], " is not a key");
   send(key_events(*chord));
 }
 

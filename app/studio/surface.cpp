@@ -47,7 +47,7 @@ void OffscreenSurface::resize(int width, int height) {
   gl::api().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_->name());
   gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_->name(), 0);
   US_CHECK(gl::api().CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
-           "OpenGL makes no picture of ", width, " x ", height, " pixels");
+           "OpenGL cannot make a picture of ", width, " x ", height, " pixels");
   width_ = width, height_ = height;
 }
 

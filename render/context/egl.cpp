@@ -39,7 +39,7 @@ class EglContext final : public Context {
                              debug ? EGL_TRUE : EGL_FALSE,
                              EGL_NONE};
     context_ = egl_.CreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
-    US_CHECK(context_ != EGL_NO_CONTEXT, "EGL makes no OpenGL 3.3 core context");
+    US_CHECK(context_ != EGL_NO_CONTEXT, "EGL cannot make an OpenGL 3.3 core context");
   }
 
   // The display stays open: it is one for the whole process, and other contexts may be using it.
@@ -54,7 +54,7 @@ class EglContext final : public Context {
   void make_current() override {
     egl_.BindAPI(EGL_OPENGL_API);
     US_CHECK(egl_.MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE,
-             "EGL does not make its context current");
+             "EGL cannot make its context current");
     if (functions_.Clear == nullptr)
       functions_ = gl::load_functions(
           [this](const char* name) { return reinterpret_cast<void*>(egl_.GetProcAddress(name)); });

@@ -29,7 +29,7 @@ class OsMesaContext final : public Context {
     const int wanted[] = {kFormat, GL_RGBA, kDepthBits, 0, kProfile, kCoreProfile,
                           kMajor,  3,       kMinor,     3, 0,        0};
     context_ = osmesa_.create(wanted, nullptr);
-    US_CHECK(context_ != nullptr, "OSMesa makes no OpenGL 3.3 core context");
+    US_CHECK(context_ != nullptr, "OSMesa cannot make an OpenGL 3.3 core context");
   }
 
   ~OsMesaContext() override {
@@ -42,7 +42,7 @@ class OsMesaContext final : public Context {
 
   void make_current() override {
     US_CHECK(osmesa_.make_current(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSize, kSize) == GL_TRUE,
-             "OSMesa does not make its context current");
+             "OSMesa cannot make its context current");
     if (functions_.Clear == nullptr)
       functions_ = gl::load_functions([this](const char* name) { return osmesa_.address(name); });
     gl::set_api(&functions_);

@@ -117,14 +117,14 @@ TEST_F(ApplicationTest, ComplaintsNameScriptLineAndProblem) {
   EXPECT_NE(complaint("click no.widget").find("test.us:1: nothing on the screen is called no.widget"),
             std::string::npos);
   EXPECT_NE(complaint("# all right\n\nclick").find("test.us:3: click wants"), std::string::npos);
-  EXPECT_NE(complaint("frames many").find("many is no number"), std::string::npos);
-  EXPECT_NE(complaint("key Hyper+X").find("is no key"), std::string::npos);
+  EXPECT_NE(complaint("frames many").find("many is not a number"), std::string::npos);
+  EXPECT_NE(complaint("key Hyper+X").find("is not a key"), std::string::npos);
   EXPECT_NE(complaint("type \"not closed").find("a quote is not closed"), std::string::npos);
   EXPECT_NE(complaint("expect_value frames 7").find("frames is \"0\", not \"7\""), std::string::npos);
   EXPECT_NE(complaint("expect_error \"sky\"").find("no error is shown"), std::string::npos);
   EXPECT_NE(complaint("playback.frame x").find("test.us:1: "), std::string::npos);
   EXPECT_NE(complaint("screenshot a.png 0x0").find("test.us:1: "), std::string::npos);
-  EXPECT_NE(complaint("event move one 2").find("one is no number"), std::string::npos);
+  EXPECT_NE(complaint("event move one 2").find("one is not a number"), std::string::npos);
 }
 
 TEST_F(ApplicationTest, FitsSmallWindowsAndLargeText) {

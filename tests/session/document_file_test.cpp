@@ -220,14 +220,14 @@ TEST(DocumentFile, WhatIsNoDocumentSaysSo) {
   EXPECT_EQ(problem_of(path), path + ": is damaged at byte 7");
   for (const char* text : {"{}", "[1, 2]", "3", "{\"format\": 1}", "{\"format\": \"gltf\"}"}) {
     write(path, text);
-    EXPECT_EQ(problem_of(path), path + ": is no Understudy document") << text;
+    EXPECT_EQ(problem_of(path), path + ": is not an Understudy document") << text;
   }
   write(path, "{\"format\": \"understudy document\", \"version\": 2, \"source\": 4}");
   EXPECT_EQ(problem_of(path), path +
                                   ": was saved by a newer Understudy (version 2 of documents, this program "
                                   "knows 1)");
   write(path, "{\"format\": \"understudy document\", \"version\": 1, \"source\": {\"fps\": 1e999}}");
-  EXPECT_EQ(problem_of(path), path + ": holds a number that is none");
+  EXPECT_EQ(problem_of(path), path + ": holds something that is not a number");
   write(path, std::string(1 << 20, '['));
   EXPECT_NE(problem_of(path).find("damaged"), std::string::npos);
 }

@@ -68,7 +68,7 @@ TEST_F(Inspector, AnimationsOfAFileAreListedAndChosenByAClick) {
 }
 
 TEST_F(Inspector, SaysWhereTheShapeBinds) {
-  EXPECT_FALSE(shown("target.binding"));  // it keeps its own skin
+  EXPECT_FALSE(shown("target.binding"));  // it uses its own skin weights
   auto binding = std::make_shared<SafeBinding>();
   session.takes[0].binding = binding;
   frame(3);

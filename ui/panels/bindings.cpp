@@ -13,16 +13,17 @@ namespace {
 
 // Keys of commands that ask for a file first, of dialogs, and second keys.
 const std::vector<Binding>& built_in() {
-  static const std::vector<Binding> kBuiltIn = {{"Ctrl+O", "open", {}, "Open"},
-                                                {"Ctrl+S", "document.save", {}, "Save"},
-                                                {"Ctrl+Shift+S", "document.save_as", {}, "Save as"},
-                                                {"Ctrl+E", "dialog.open", {"export"}, "Export"},
-                                                {"Ctrl+,", "dialog.open", {"settings"}, "Settings"},
-                                                {"Ctrl+Y", "edit.redo", {}, "Redo"},
-                                                {"Shift+Left", "playback.step", {"-10"}, "Ten frames back"},
-                                                {"Shift+Right", "playback.step", {"10"}, "Ten frames on"},
-                                                {"H", "help.keys", {}, "All keys"},
-                                                {"?", "help.keys", {}, "All keys"}};
+  static const std::vector<Binding> kBuiltIn = {
+      {"Ctrl+O", "open", {}, "Open"},
+      {"Ctrl+S", "document.save", {}, "Save"},
+      {"Ctrl+Shift+S", "document.save_as", {}, "Save as"},
+      {"Ctrl+E", "dialog.open", {"export"}, "Export"},
+      {"Ctrl+,", "dialog.open", {"settings"}, "Settings"},
+      {"Ctrl+Y", "edit.redo", {}, "Redo"},
+      {"Shift+Left", "playback.step", {"-10"}, "Ten frames back"},
+      {"Shift+Right", "playback.step", {"10"}, "Ten frames forward"},
+      {"H", "help.keys", {}, "All keys"},
+      {"?", "help.keys", {}, "All keys"}};
   return kBuiltIn;
 }
 

@@ -59,7 +59,7 @@ QuestionAnswer draw_recover(const app::Session& session, PanelContext& context) 
     ButtonRow buttons(2);
     ButtonOptions recover, discard;
     recover.look = i == 0 ? ButtonLook::Main : ButtonLook::Plain;
-    discard.tooltip = "Forgets this work for good";
+    discard.tooltip = "Deletes this work for good";
     if (buttons.add(ui, "recover." + std::to_string(i), "Recover", recover))
       context.ask("document.recover", {copy.file});
     if (buttons.add(ui, "discard." + std::to_string(i), "Discard", discard))
@@ -67,7 +67,7 @@ QuestionAnswer draw_recover(const app::Session& session, PanelContext& context) 
   }
   ButtonOptions later;
   later.look = ButtonLook::Quiet, later.width = -1,
-  later.tooltip = "It is kept, and asked about at the next start";
+  later.tooltip = "Keeps it and asks again at the next start";
   if (!finish(!button(ui, "recover.later", "Decide later", later)))
     context.ask("question.answer", {"cancel"});
   return {};
@@ -90,8 +90,9 @@ QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) 
     if (button(ui, "missing." + std::to_string(i), "Find\u2026", find)) answer.look_for = path;
   }
   ButtonOptions leave;
-  leave.look = ButtonLook::Quiet, leave.width = -1, leave.tooltip = "What is there is opened";
-  const bool stays = finish(!button(ui, "missing.leave", "Go on without them", leave));
+  leave.look = ButtonLook::Quiet, leave.width = -1,
+  leave.tooltip = "Opens the document with the files that are there";
+  const bool stays = finish(!button(ui, "missing.leave", "Continue without them", leave));
   if (!stays) context.ask("question.answer", {"cancel"});
   return answer;
 }

@@ -45,7 +45,7 @@ void tool_button(const app::Session& session, PanelContext& context, const std::
 void clear_button(PanelContext& context, const std::string& name, const std::string& command, bool any,
                   const app::Arguments& arguments = {}) {
   ButtonOptions options;
-  options.width = -1, options.disabled = !any, options.tooltip = "Takes these edits back; can be undone";
+  options.width = -1, options.disabled = !any, options.tooltip = "Clears these edits; can be undone";
   if (button(context.ui, name, "Clear", options)) context.ask(command, arguments);
 }
 
@@ -60,7 +60,7 @@ void draw_crop(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const std::optional<Box>& crop = session.document.scan_edits.crop;
   if (const auto on =
-          toggle_row(ui, {"edit.crop", "Crop", "Only what is inside a box is looked at"}, crop.has_value())) {
+          toggle_row(ui, {"edit.crop", "Crop", "Uses only the points inside a box"}, crop.has_value())) {
     if (*on)
       context.ask("edit.crop", {"on"});
     else
@@ -94,25 +94,25 @@ void draw_scan(const app::Session& session, PanelContext& context) {
   draw_crop(session, context);
   const ScanEdits& edits = session.document.scan_edits;
   if (const auto on = toggle_row(
-          ui, {"edit.floor_removal", "Remove floor", "Points of the floor are taken out, the soles stay"},
+          ui, {"edit.floor_removal", "Remove floor", "Removes the points of the floor but keeps the soles"},
           edits.floor.has_value()))
     context.ask("edit.floor_removal", {on_off(*on)});
   if (edits.floor && !edits.floor->plane) {
     NumberOptions height{-5, 5, 0.002f, "%.3f m", 0, true};
-    if (const auto h =
-            number_row(ui, {"edit.floor_height", "Floor at", "Height of the floor that is taken out"},
-                       edits.floor->height_m, height))
+    if (const auto h = number_row(ui, {"edit.floor_height", "Floor at", "Height of the floor to remove"},
+                                  edits.floor->height_m, height))
       context.ask("edit.floor_removal", {"on", argument(*h)});
   }
-  if (const auto on = toggle_row(ui, {"edit.cluster", "Largest part only", "A second person or a prop goes"},
-                                 edits.largest_cluster))
+  if (const auto on =
+          toggle_row(ui, {"edit.cluster", "Largest part only", "Removes a second person or a prop"},
+                     edits.largest_cluster))
     context.ask("edit.cluster", {on_off(*on)});
 }
 
 void draw_falloff(const app::Session& session, PanelContext& context, const std::string& name) {
   NumberOptions frames{0, 120, 0.1f, "\u00b1 %.0f frames", 5, true};
   if (const auto n =
-          number_row(context.ui, {name, "Falloff", "So many frames to each side follow less and less"},
+          number_row(context.ui, {name, "Falloff", "How many frames to each side follow, less and less"},
                      static_cast<float>(session.falloff), frames))
     context.ask("tool.falloff", {argument(std::round(*n))});
 }
@@ -154,12 +154,12 @@ void draw_swap(const app::Session& session, PanelContext& context) {
   const int shown = std::max(0, app::shown_frame(session));
   const int first = state.swap_first >= 0 ? state.swap_first : marked ? range.first : shown;
   const int last = std::max(first, state.swap_last >= 0 ? state.swap_last : marked ? range.last : shown);
-  hint(ui, "Left and right were taken for each other:");
-  if (const auto f =
-          typed_number_row(ui, {"edit.swap.first", "From frame", "The loop's start, unless typed"}, first, 0))
+  hint(ui, "Swap left and right in these frames:");
+  if (const auto f = typed_number_row(
+          ui, {"edit.swap.first", "From frame", "The loop's start unless you type one"}, first, 0))
     state.swap_first = static_cast<int>(std::max(0.0, *f));
   if (const auto f =
-          typed_number_row(ui, {"edit.swap.last", "To frame", "The loop's end, unless typed"}, last, 0))
+          typed_number_row(ui, {"edit.swap.last", "To frame", "The loop's end unless you type one"}, last, 0))
     state.swap_last = static_cast<int>(std::max(0.0, *f));
   row(ui, "Limbs");
   segmented(ui, "edit.swap.limbs", {"Arms", "Legs", "Both"}, state.swap_limbs);
@@ -178,7 +178,7 @@ void draw_skeleton(const app::Session& session, PanelContext& context) {
   tool_button(session, context, "edit.joints_tool", app::Tool::Joints);
   draw_falloff(session, context, "edit.falloff");
   if (const auto on =
-          toggle_row(ui, {"edit.children", "Whole limb", "What hangs on a dragged joint moves along"},
+          toggle_row(ui, {"edit.children", "Whole limb", "The children of a dragged joint move with it"},
                      session.drag_children))
     context.ask("tool.children", {on_off(*on)});
   draw_swap(session, context);
@@ -192,7 +192,7 @@ void draw_skeleton(const app::Session& session, PanelContext& context) {
 void draw_cost(const app::TakeState* state, Ui& ui) {
   if (state == nullptr || state->cost.max_displacement_m <= 0) return;
   const EditCost& cost = state->cost;
-  hint(ui, "These edits take the acceleration from " + figure(cost.acceleration_before, "") + " to " +
+  hint(ui, "These edits change the acceleration from " + figure(cost.acceleration_before, "") + " to " +
                figure(cost.acceleration_after, "m/s\u00b2") + " and move joints by " +
                figure(100 * cost.mean_displacement_m, "cm") + ", " +
                figure(100 * cost.max_displacement_m, "cm") + " at most.");
@@ -200,20 +200,20 @@ void draw_cost(const app::TakeState* state, Ui& ui) {
 
 void draw_amounts(const PoseEdits& edits, PanelContext& context, const std::string& k) {
   Ui& ui = context.ui;
-  if (const auto on = toggle_row(ui, {"edit.pin", "Pin feet", "Feet on the floor stay where they are"},
+  if (const auto on = toggle_row(ui, {"edit.pin", "Pin feet", "Keeps feet that stand on the floor in place"},
                                  edits.pin.has_value()))
     context.ask("edit.pin", {k, on_off(*on)});
   NumberOptions strength{0, 1, 0.005f, "%.2f", 0, true};
-  if (const auto s = number_row(ui, {"edit.smooth", "Smooth", "0 nothing, 1 very much"},
+  if (const auto s = number_row(ui, {"edit.smooth", "Smooth", "0: not at all, 1: strongly"},
                                 edits.smooth ? edits.smooth->strength : 0, strength))
     context.ask("edit.smooth", {k, argument(*s)});
   NumberOptions floor{-1, 1, 0.001f, "%.3f m", 0, true};
-  if (const auto m = number_row(ui, {"edit.floor_offset", "Raise by", "The whole motion goes up or down"},
+  if (const auto m = number_row(ui, {"edit.floor_offset", "Raise by", "Moves the whole motion up or down"},
                                 edits.floor ? edits.floor->offset_m : 0, floor))
     context.ask("edit.floor_offset", {k, argument(*m)});
   NumberOptions heading{-180, 180, 0.5f, "%.1f\u00b0", 0, true};
   if (const auto deg =
-          number_row(ui, {"edit.heading", "Turn by", "The whole motion turns about the vertical"},
+          number_row(ui, {"edit.heading", "Turn by", "Turns the whole motion about the vertical axis"},
                      edits.heading ? edits.heading->yaw_deg : 0, heading))
     context.ask("edit.heading", {k, argument(*deg)});
 }
@@ -226,7 +226,8 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
   ButtonOptions trim, off;
   const bool marked = session.playback.in >= 0 || session.playback.out >= 0;
   trim.disabled = !marked || range.empty();
-  trim.tooltip = marked ? "Keeps what is between the loop marks" : "Set the loop marks first (In, Out)";
+  trim.tooltip =
+      marked ? "Keeps only the frames between the loop marks" : "Set the loop marks first (In, Out)";
   if (buttons.add(ui, "edit.trim", "Trim to marks", trim))
     context.ask("edit.trim", {k, std::to_string(range.first), std::to_string(range.last)});
   off.disabled = !edits.trim;
@@ -236,9 +237,8 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
   if (buttons.add(ui, "edit.trim_off", "Untrim", off)) context.ask("edit.trim", {k, "off"});
   const int frame = app::shown_frame(session);
   const DisabledScope disabled(frame < 0);
-  if (const auto on =
-          toggle_row(ui, {"edit.skip", "Skip this frame", "It is left out when playing and exporting"},
-                     edits.skip.count(frame) > 0))
+  if (const auto on = toggle_row(ui, {"edit.skip", "Skip this frame", "Playback and export leave it out"},
+                                 edits.skip.count(frame) > 0))
     context.ask("edit.skip", {k, std::to_string(frame), on_off(*on)});
 }
 
@@ -285,16 +285,16 @@ void draw_target(const app::Session& session, PanelContext& context) {
 
 void draw_brush(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
-  row(ui, "Joint", "The one whose weights are painted");
+  row(ui, "Joint", "The joint whose weights you paint");
   std::vector<std::string> joints;
   for (int j = 0; j < kJointCount; ++j) joints.push_back(joint_label(j));
   int joint = session.selected_joint;
   if (dropdown(ui, "edit.joint", joints, joint)) context.ask("select.joint", {joint_name(joint)});
   NumberOptions radius{0.005f, 0.5f, 0.0005f, "%.3f m"}, strength{0.01f, 1, 0.005f, "%.2f"};
-  if (const auto r = number_row(ui, {"edit.brush_radius", "Radius", "Of the brush on the surface"},
+  if (const auto r = number_row(ui, {"edit.brush_radius", "Radius", "Radius of the brush on the surface"},
                                 session.brush.radius_m, radius))
     context.ask("tool.brush_radius", {argument(*r)});
-  if (const auto s = number_row(ui, {"edit.brush_strength", "Strength", "Of one dab at its centre"},
+  if (const auto s = number_row(ui, {"edit.brush_strength", "Strength", "Strength of one dab at its centre"},
                                 session.brush.strength, strength))
     context.ask("tool.brush_strength", {argument(*s)});
   constexpr const char* kModes[] = {"add", "subtract", "smooth"};
@@ -313,8 +313,8 @@ void draw_weights(const app::Session& session, PanelContext& context) {
   draw_brush(session, context);
   ButtonRow buttons(2);
   ButtonOptions left, right, smooth;
-  left.tooltip = "The right side becomes the left one's mirror image";
-  right.tooltip = "The left side becomes the right one's mirror image";
+  left.tooltip = "Makes the right side a mirror image of the left";
+  right.tooltip = "Makes the left side a mirror image of the right";
   if (buttons.add(ui, "edit.weights_mirror.left", "Mirror left", left))
     context.ask("edit.weights_mirror", {k, "left"});
   if (buttons.add(ui, "edit.weights_mirror.right", "Mirror right", right))

@@ -56,28 +56,30 @@ void draw_format(Ui& ui, ExportState& state) {
 void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, ExportState& state) {
   CharacterExportOptions& file = state.choice.file;
   if (on_own_bones)
-    if (const auto i = choice_row(ui, {"export.rig", "Skeleton", "Which bones the file moves"},
+    if (const auto i = choice_row(ui, {"export.rig", "Skeleton", "Which bones the file animates"},
                                   {"Its own", "22 joints"}, state.choice.theirs.value_or(true) ? 0 : 1))
       state.choice.theirs = *i == 0;
-  if (const auto i = choice_row(ui, {"export.influences", "Bones a vertex", "Old engines read four only"},
+  if (const auto i = choice_row(ui, {"export.influences", "Bones a vertex", "Older engines read only four"},
                                 {"4", "8"}, file.influences == 8 ? 1 : 0))
     file.influences = *i == 1 ? 8 : 4;
   constexpr std::array<int, 4> kShapes = {0, 4, 8, 16};
   const auto shapes = std::find(kShapes.begin(), kShapes.end(), file.shapes);
   if (const auto i = choice_row(
-          ui, {"export.morphs", "Morph targets", "Bends and bulges that bones alone cannot do; larger files"},
+          ui, {"export.morphs", "Morph targets", "Deformations that bones alone cannot make; the file grows"},
           {"None", "4", "8", "16"}, static_cast<int>(shapes - kShapes.begin())))
     file.shapes = kShapes[*i];
-  if (const auto mm = typed_number_row(
-          ui, {"export.reduce", "Leave out keys, mm", "While no vertex moves further than this; 0: all stay"},
-          static_cast<double>(file.reduce_mm), 1))
+  if (const auto mm = typed_number_row(ui,
+                                       {"export.reduce", "Leave out keys, mm",
+                                        "Removes keys that move no vertex further than this; 0 keeps all"},
+                                       static_cast<double>(file.reduce_mm), 1))
     file.reduce_mm = static_cast<float>(std::clamp(*mm, 0.0, 1000.0));
-  if (const auto on =
-          toggle_row(ui, {"export.t_pose", "T-pose first", "As a clip of its own"}, file.t_pose_clip))
+  if (const auto on = toggle_row(ui, {"export.t_pose", "T-pose first", "Adds the T-pose as its own clip"},
+                                 file.t_pose_clip))
     file.t_pose_clip = *on;
   if (!on_own_bones || !take.character || take.character->character.animations.empty()) return;
-  if (const auto on = toggle_row(ui, {"export.keep_clips", "Its own clips", "Stay in the file, after ours"},
-                                 file.keep_clips))
+  if (const auto on =
+          toggle_row(ui, {"export.keep_clips", "Its own clips", "Keeps the file's own clips, after ours"},
+                     file.keep_clips))
     file.keep_clips = *on;
 }
 
@@ -113,7 +115,8 @@ void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
   const auto takes = takes_of_one_body(session.document, session.selected_take);
   if (takes.size() < 2) return;
   if (const auto on = toggle_row(
-          ui, {"export.all_takes", "All takes as clips", "Of this target, in one file, a clip each"},
+          ui,
+          {"export.all_takes", "All takes as clips", "All takes of this target in one file, one clip each"},
           state.all_takes))
     state.all_takes = *on;
   if (!state.all_takes) return;
@@ -148,7 +151,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     const bool own_bones = made->character && on_their_rig(take->target, *made->character);
     if (format->is_character) draw_clip_rows(session, ui, state);
     if (format->is_character) draw_character_rows(ui, *made, own_bones, state);
-    if (const auto on = toggle_row(ui, {"export.in_place", "In place", "Without the path over the floor"},
+    if (const auto on = toggle_row(ui, {"export.in_place", "In place", "Leaves out the path over the floor"},
                                    state.choice.file.in_place))
       state.choice.file.in_place = *on;
     hint(ui, frames_words(session, session.selected_take) + ", " +
@@ -197,11 +200,11 @@ void draw_picture_rows(Ui& ui, ExportState& state) {
           choice_row(ui, {"export.all", "What", ""}, {"All views", "Active view"}, state.all ? 0 : 1))
     state.all = *i == 0;
   if (state.kind == ExportKind::Picture) {
-    if (const auto on = toggle_row(ui, {"export.transparent", "Transparent", "Nothing behind the bodies"},
+    if (const auto on = toggle_row(ui, {"export.transparent", "Transparent", "Leaves out the background"},
                                    state.transparent))
       state.transparent = *on;
   } else {
-    hint(ui, "A name with .mp4 gives a film, any other a folder of PNG pictures.");
+    hint(ui, "A name ending in .mp4 gives a film, any other name a folder of PNG pictures.");
   }
 }
 

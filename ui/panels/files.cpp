@@ -8,7 +8,7 @@ namespace fs = std::filesystem;
 namespace {
 
 FileFilter everything_known() {
-  FileFilter all{"Everything that opens", {"understudy"}, true};
+  FileFilter all{"All supported files", {"understudy"}, true};
   for (const FileFilter& filter : {scan_filter(), target_filter(), motion_filter(), case_filter()})
     for (const std::string& extension : filter.extensions)
       if (std::find(all.extensions.begin(), all.extensions.end(), extension) == all.extensions.end())
@@ -38,7 +38,7 @@ BrowseRequest request_for(FilePurpose purpose) {
     case FilePurpose::SaveDocument:
       return {"Save document", "Save", true, {document_filter()}, "", ""};
     case FilePurpose::Relocate:
-      return {"Find what is missing", "Here it is", false, {any_filter()}, "", ""};
+      return {"Find a missing file", "Use this file", false, {any_filter()}, "", ""};
     case FilePurpose::Export:
       return {"Where to", "Choose", true, {{"All files", {}, false}}, "", ""};
     default:

@@ -44,7 +44,7 @@ void draw_import(PanelContext& context, const std::string& group, const ImportOp
   if (const auto i =
           choice_row(ui, {group + ".units", "Units", "Of the file"}, kUnits, index_of(kUnits, import.units)))
     ask("units", kUnits[*i]);
-  if (const auto i = choice_row(ui, {group + ".up", "Up", "The file's axis that points up"}, kAxes,
+  if (const auto i = choice_row(ui, {group + ".up", "Up", "The axis of the file that points up"}, kAxes,
                                 index_of(kAxes, import.up)))
     ask("up", kAxes[*i]);
 }
@@ -123,8 +123,8 @@ void draw_animation_fields(const app::SourceState& state, const app::SourceOptio
   else if (const auto text =
                text_row(ui, {"source.clip", "Animation", "Its name or number, or longest"}, clip))
     context.ask("source.clip", {text->empty() ? "longest" : *text});
-  if (const auto on = toggle_row(
-          ui, {"source.as_scan", "As a scan", "Its surface is looked at, not its skeleton"}, source.as_scan))
+  if (const auto on = toggle_row(ui, {"source.as_scan", "As a scan", "Uses its surface, not its skeleton"},
+                                 source.as_scan))
     context.ask("source.as_scan", {*on ? "on" : "off"});
 }
 
@@ -192,7 +192,7 @@ void draw_takes(const app::Session& session, PanelContext& context) {
   ButtonRow buttons(2);
   if (buttons.add(ui, "take.add", "Add target\u2026")) context.ask("dialog.open", {"open_target"});
   ButtonOptions remove;
-  remove.disabled = !any, remove.tooltip = "Takes the selected take away; can be undone";
+  remove.disabled = !any, remove.tooltip = "Removes the selected take; can be undone";
   if (buttons.add(ui, "take.remove", "Remove", remove))
     context.ask("target.remove", {std::to_string(session.selected_take)});
 }
@@ -210,7 +210,7 @@ void draw_target_facts(const app::TakeState& state, Ui& ui) {
   if (!state.problem.empty()) warn(ui, state.problem);
   const auto& shown = state.target ? state.target : state.as_loaded;
   if (!shown) {
-    if (state.problem.empty()) hint(ui, "Being read\u2026");
+    if (state.problem.empty()) hint(ui, "Reading\u2026");
     return;
   }
   const Mesh& mesh = shown->mesh;
@@ -221,7 +221,7 @@ void draw_target_facts(const app::TakeState& state, Ui& ui) {
     row_text(ui, "Height", figure(y.maxCoeff() - y.minCoeff(), "m"));
   }
   if (!state.target) {
-    if (state.problem.empty()) hint(ui, "Its joints and skin weights are being found\u2026");
+    if (state.problem.empty()) hint(ui, "Finding its joints and skin weights\u2026");
     return;
   }
   row_text(ui, "Joints", std::to_string(kJointCount) + " found in the T-pose");
@@ -260,12 +260,10 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
     bool on;
   };
   const Switch switches[] = {
-      {"swaps", "Repair swaps", "Left and right that were taken for each other are put right",
-       method.repair_swaps},
-      {"smooth", "Smooth joints", "Noise of the extracted joints is smoothed as they come",
-       method.smooth_joints},
-      {"lengths", "Fix lengths", "Bones keep their length", method.fix_lengths},
-      {"feet", "Lock feet", "Feet that stand do not slide", method.lock_feet}};
+      {"swaps", "Repair swaps", "Corrects limbs whose left and right were swapped", method.repair_swaps},
+      {"smooth", "Smooth joints", "Smooths noise in the extracted joints", method.smooth_joints},
+      {"lengths", "Fix lengths", "Keeps bones at one length", method.fix_lengths},
+      {"feet", "Lock feet", "Keeps standing feet from sliding", method.lock_feet}};
   for (const Switch& s : switches)
     if (const auto on =
             toggle_row(context.ui, {std::string("method.") + s.name, s.label, s.explanation}, s.on))
@@ -277,12 +275,13 @@ void draw_work(const app::Session& session, PanelContext& context) {
   ButtonRow buttons(2);
   ButtonOptions pause, restart;
   pause.disabled = !possible(session, "work.pause") && !session.paused;
-  pause.tooltip = session.paused ? "Goes on making frames" : "Stops making frames for now";
-  if (buttons.add(ui, session.paused ? "work.resume" : "work.pause", session.paused ? "Go on" : "Pause",
+  pause.tooltip =
+      session.paused ? "Continues with the remaining frames" : "Stops making frames until you continue";
+  if (buttons.add(ui, session.paused ? "work.resume" : "work.pause", session.paused ? "Continue" : "Pause",
                   pause))
     context.ask(session.paused ? "work.resume" : "work.pause");
   restart.disabled = !possible(session, "work.restart");
-  restart.tooltip = "Makes all frames again";
+  restart.tooltip = "Computes all frames again";
   if (buttons.add(ui, "work.restart", "Again", restart)) context.ask("work.restart");
 }
 
@@ -292,8 +291,9 @@ void draw_method(const app::Session& session, PanelContext& context) {
   if (take == nullptr || !section(ui, "inspector.method", "Method")) return;
   const std::string k = std::to_string(session.selected_take);
   const app::Method& method = take->method;
-  if (const auto i = choice_row(ui, {"method.engine", "Transfer", "How the motion is brought to the target"},
-                                {"Copy", "Paper"}, method.engine == "paper" ? 1 : 0))
+  if (const auto i =
+          choice_row(ui, {"method.engine", "Transfer", "The method that transfers the motion to the target"},
+                     {"Copy", "Paper"}, method.engine == "paper" ? 1 : 0))
     context.ask("method.engine", {k, *i == 1 ? "paper" : "copy"});
   if (const auto i = choice_row(ui, {"method.extractor", "Extractor", "The network that finds the joints"},
                                 {"Dense", "Paper"}, method.extractor == "paper" ? 1 : 0))
@@ -304,12 +304,12 @@ void draw_method(const app::Session& session, PanelContext& context) {
   constexpr const char* kRoots[] = {"scaled", "original", "in-place"};
   if (const auto i = choice_row(
           ui,
-          {"method.root", "Path", "Over the floor: scaled by the legs' lengths, the source's own, or none"},
+          {"method.root", "Path", "The path over the floor: scaled by leg length, the source's own, or none"},
           {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
     context.ask("method.root", {k, kRoots[*i]});
   draw_filter(method, context, k);
   ButtonOptions compare;
-  compare.width = -1, compare.tooltip = "A second take of this target, made another way";
+  compare.width = -1, compare.tooltip = "Adds a second take of this target, made with another method";
   if (button(ui, "method.compare", "Compare with\u2026", compare)) context.ask("dialog.open", {"compare"});
   draw_work(session, context);
 }

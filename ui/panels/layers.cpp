@@ -24,8 +24,8 @@ struct Layer {
 
 constexpr Layer kLayers[] = {
     {"skeleton", "Skeleton", "The extracted joints, or those of the target", &app::Layers::skeleton},
-    {"x_ray", "X-ray", "The skeleton shines through the surface", &app::Layers::x_ray},
-    {"joint_names", "Names", "The names of all joints; the one under the mouse always has its name",
+    {"x_ray", "X-ray", "Shows the skeleton through the surface", &app::Layers::x_ray},
+    {"joint_names", "Names", "Names all joints; the joint under the mouse always shows its name",
      &app::Layers::joint_names},
     {"ground", "Ground", "The grid on the floor, with a soft shadow", &app::Layers::ground},
     {"trails", "Trails", "The paths of the joints chosen below", &app::Layers::trails},
@@ -40,7 +40,7 @@ constexpr Colour kSourceColours[] = {{Colouring::Plain, "plain", "Plain"},
                                      {Colouring::Confidence, "confidence", "Confidence"}};
 constexpr Colour kTakeColours[] = {{Colouring::Plain, "plain", "Plain"},
                                    {Colouring::Weights, "weights", "Skin weights"},
-                                   {Colouring::Doubt, "doubt", "Binding doubt, %"},
+                                   {Colouring::Doubt, "doubt", "Binding uncertainty, %"},
                                    {Colouring::Offsets, "offsets", "Corrective offsets, mm"},
                                    {Colouring::Error, "error", "Error to the truth, mm"},
                                    {Colouring::Difference, "difference", "Difference to take 1, mm"}};
@@ -59,7 +59,7 @@ void draw_colour(PanelContext& context, const std::string& pane, const Colour (&
     labels.push_back(colours[i].label);
     if (colours[i].colouring == now) chosen = i;
   }
-  row(context.ui, "Colour", "What the surface's colour tells");
+  row(context.ui, "Colour", "What the surface's colour shows");
   if (dropdown(context.ui, "layers." + pane + ".colour", labels, chosen))
     context.ask("view.colour", {pane, colours[chosen].argument});
 }
@@ -94,7 +94,7 @@ void draw_pane(const app::Session& session, PanelContext& context, bool source) 
   add("surface", source ? "Scan" : "Mesh", source ? "The scan of this frame" : "The target's surface",
       layers.surface);
   if (source && session.source.has_faces)
-    add("as_points", "As points", "The scan's points without its faces", layers.as_points);
+    add("as_points", "As points", "Shows the scan's points without its faces", layers.as_points);
   for (const Layer& layer : kLayers) add(layer.name, layer.label, layer.explanation, layers.*layer.on);
   if (source)
     draw_colour(context, pane, kSourceColours, layers.colouring);
@@ -106,7 +106,7 @@ void draw_trails(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   std::vector<std::string> names;
   for (int j = 0; j < kJointCount; ++j) names.push_back(joint_label(j));
-  row(ui, "Trail of", "Adds the path of a joint, or takes it away");
+  row(ui, "Trail of", "Adds or removes the path of a joint");
   int chosen = -1;
   const auto& joints = session.view.trail_joints;
   const auto is_on = [&](int j) { return std::find(joints.begin(), joints.end(), j) != joints.end(); };
@@ -116,7 +116,7 @@ void draw_trails(const app::Session& session, PanelContext& context) {
     if (j < 0 || j >= kJointCount) continue;
     row(ui, "");
     ButtonOptions options;
-    options.look = ButtonLook::Quiet, options.tooltip = "Takes this trail away";
+    options.look = ButtonLook::Quiet, options.tooltip = "Removes this trail";
     if (button(ui, "layers.trail." + joint_name(j), joint_label(j) + "  \u00d7", options))
       context.ask("view.trail_joint", {joint_name(j), "off"});
   }
@@ -125,7 +125,7 @@ void draw_trails(const app::Session& session, PanelContext& context) {
 void draw_colours(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "layers.colours", "Weights, trails, ghosts")) return;
-  row(ui, "Weights of", "All joints: a colour each; one joint: from none to all");
+  row(ui, "Weights of", "All joints: one colour each; one joint: its weight from 0 to 1");
   int joint = session.view.weights_joint + 1;
   if (dropdown(ui, "layers.weights_joint", joints_and_all(), joint))
     context.ask("view.weights_joint", {joint_name(joint - 1)});
@@ -142,7 +142,7 @@ void draw_colours(const app::Session& session, PanelContext& context) {
                                     static_cast<float>(apart), step))
     ghost(static_cast<float>(ghosts), *every);
   NumberOptions scale{1, 1000, 0.5f, "%.0f mm", 50, true};
-  if (const auto mm = number_row(ui, {"layers.error_scale", "Scale to", "The upper end of scales of errors"},
+  if (const auto mm = number_row(ui, {"layers.error_scale", "Scale to", "Upper end of the error scales"},
                                  session.view.error_scale_mm, scale))
     context.ask("view.error_scale", {argument(*mm)});
 }
@@ -170,15 +170,16 @@ void draw_camera(const app::Session& session, PanelContext& context) {
   if (button(ui, "layers.fit", "Fit", fit)) context.ask("view.fit");
   const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
   SwitchGrid grid(context);
-  if (const auto on = grid.add("layers.ortho", "Orthographic", "Without perspective", ortho))
+  if (const auto on = grid.add("layers.ortho", "Orthographic", "Turns perspective off", ortho))
     context.ask("view.ortho", {on_off(*on)});
-  if (const auto on = grid.add("layers.linked", "Linked", "All views share one camera", session.view.linked))
+  if (const auto on =
+          grid.add("layers.linked", "Linked", "Uses one camera for all views", session.view.linked))
     context.ask("view.link", {on_off(*on)});
   if (const auto on =
-          grid.add("layers.follow", "Follow", "The camera goes with the person", session.view.follow))
+          grid.add("layers.follow", "Follow", "Moves the camera with the person", session.view.follow))
     context.ask("view.follow", {on_off(*on)});
   NumberOptions speed{-180, 180, 0.5f, "%.0f\u00b0/s", 0, true};
-  if (const auto deg = number_row(ui, {"layers.turntable", "Turntable", "The camera turns by itself"},
+  if (const auto deg = number_row(ui, {"layers.turntable", "Turntable", "Turns the camera on its own"},
                                   session.view.turntable_deg_s, speed))
     context.ask("view.turntable", {argument(*deg)});
 }

@@ -34,7 +34,7 @@ void draw_head(const app::Session& session, PanelContext& context, LogState& sta
     ImGui::SetClipboardText(all.c_str());
   }
   ImGui::SameLine(0, ui.px(3));
-  if (icon_button(ui, "log.clear", Icon::Trash, {"Forget all lines", "", false, session.log.empty(), 28}))
+  if (icon_button(ui, "log.clear", Icon::Trash, {"Clear the log", "", false, session.log.empty(), 28}))
     context.ask("log.clear");
   ImGui::SameLine(0, ui.px(3));
   if (icon_button(ui, "log.close", Icon::Close, {"Hide the log", "", false, false, 28}))

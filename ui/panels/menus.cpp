@@ -64,14 +64,14 @@ Items edit_menu(const app::Session& session) {
   return {{undo.empty() ? "Undo" : "Undo " + undo, "edit.undo", {}, false, {}},
           {redo.empty() ? "Redo" : "Redo " + redo, "edit.redo", {}, false, {}},
           line(),
-          {"Clear edits of the skeleton", "edit.skeleton_clear", {}, false, {}},
-          {"Clear edits of the result", "edit.poses_clear", {k}, false, {}},
+          {"Clear skeleton edits", "edit.skeleton_clear", {}, false, {}},
+          {"Clear result edits", "edit.poses_clear", {k}, false, {}},
           {"Clear moved joints", "edit.target_joints_clear", {k}, false, {}},
           {"Clear painted weights", "edit.weights_clear", {k}, false, {}},
           line(),
-          {"Pause the work", "work.pause", {}, false, {}},
-          {"Go on with the work", "work.resume", {}, false, {}},
-          {"Make all frames again", "work.restart", {}, false, {}}};
+          {"Pause working", "work.pause", {}, false, {}},
+          {"Continue working", "work.resume", {}, false, {}},
+          {"Redo all frames", "work.restart", {}, false, {}}};
 }
 
 MenuItem layouts(const app::Session& session) {
@@ -147,7 +147,7 @@ Items window_menu(const app::Session& session) {
   items.push_back(line());
   items.push_back({"Dark", "settings.theme", {"dark"}, session.settings.dark, {}});
   items.push_back({"Light", "settings.theme", {"light"}, !session.settings.dark, {}});
-  Items scales = {{"As the screen", "settings.scale", {"auto"}, session.settings.scale == 0, {}}};
+  Items scales = {{"Automatic", "settings.scale", {"auto"}, session.settings.scale == 0, {}}};
   for (const int percent : {100, 125, 150, 200, 300})
     scales.push_back({std::to_string(percent) + " %",
                       "settings.scale",

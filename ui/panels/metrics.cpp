@@ -77,7 +77,7 @@ std::string words_of(const std::string& key) {
 void draw_figures(const app::Session& session, Ui& ui) {
   const std::vector<std::string> keys = figure_keys(session);
   if (keys.empty()) {
-    hint(ui, session.working ? "Known when all frames are made." : "Nothing to compare yet.");
+    hint(ui, session.working ? "Shown once all frames are made." : "Nothing to compare yet.");
     return;
   }
   std::vector<Column> columns = {{"Figure", 0, false}};
@@ -122,7 +122,7 @@ void draw_latency(const app::Session& session, PanelContext& context, MetricsSta
   }
   draw_stages(take->latency, ui);
   std::vector<std::string> stages(app::Latency::kStages.begin(), app::Latency::kStages.end());
-  row(ui, "Histogram of", "How often a frame took so long; without the slowest 1 %");
+  row(ui, "Histogram of", "How the time per frame is distributed, without the slowest 1 %");
   dropdown(ui, "metrics.stage", stages, state.stage);
   follow_latency(take->latency, session.selected_take, state);
   HistogramOptions options;
@@ -141,7 +141,7 @@ void draw_metrics(const app::Session& session, PanelContext& context) {
   const app::TakeState* take = selected_state(session);
   ButtonOptions csv;
   csv.width = -1, csv.disabled = take == nullptr || take->series.empty();
-  csv.tooltip = "Every figure of every frame, as a table for other programs";
+  csv.tooltip = "Exports every figure of every frame as a table for other programs";
   if (section(ui, "metrics.curves", "Over time")) {
     if (take == nullptr || take->series.empty()) hint(ui, "Figures appear as frames are made.");
     if (take != nullptr)

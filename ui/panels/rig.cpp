@@ -107,7 +107,7 @@ void draw_rig(const app::Session& session, PanelContext& context) {
   draw_bones(session, character, context, k);
   ButtonOptions reset;
   reset.width = -1, reset.disabled = take->target.bones.empty();
-  reset.tooltip = "All joints get the bones that were found; can be undone";
+  reset.tooltip = "Gives every joint the bone found for it; can be undone";
   if (button(ui, "rig.reset", "Reset", reset)) context.ask("target.bones_clear", {k});
 }
 

@@ -15,9 +15,9 @@ void draw_scale(const app::Settings& settings, PanelContext& context) {
   int chosen = -1;
   for (const float scale : kScales) {
     if (scale == settings.scale) chosen = labels.size();
-    labels.push_back(scale == 0 ? "As the screen" : std::to_string(std::lround(100 * scale)) + " %");
+    labels.push_back(scale == 0 ? "Automatic" : std::to_string(std::lround(100 * scale)) + " %");
   }
-  row(context.ui, "Scale", "Of text and controls");
+  row(context.ui, "Scale", "Size of text and controls");
   if (dropdown(context.ui, "settings.scale", labels, chosen))
     context.ask("settings.scale", {chosen == 0 ? "auto" : argument(kScales[chosen])});
 }
@@ -30,24 +30,24 @@ void draw_rows(const app::Settings& settings, PanelContext& context) {
   draw_scale(settings, context);
   const int samples = settings.samples >= 4 ? 2 : settings.samples >= 2 ? 1 : 0;
   if (const auto i =
-          choice_row(ui, {"settings.samples", "Antialiasing", "Samples of a pixel; fewer are faster"},
+          choice_row(ui, {"settings.samples", "Antialiasing", "Samples per pixel; fewer are faster"},
                      {"Off", "2", "4"}, samples))
     context.ask("settings.samples", {std::to_string(1 << *i)});
   NumberOptions mouse{0.2f, 4, 0.01f, "%.2f \u00d7", 1, true};
-  if (const auto x = number_row(ui, {"settings.mouse", "Mouse", "How fast dragging turns the views"},
+  if (const auto x = number_row(ui, {"settings.mouse", "Mouse", "How fast the views turn when you drag"},
                                 settings.mouse_sensitivity, mouse))
     context.ask("settings.mouse", {argument(*x)});
-  if (const auto mb =
-          typed_number_row(ui, {"settings.cache", "Frames kept, MB", "Memory for frames that were looked at"},
-                           settings.cache_mb, 0))
+  if (const auto mb = typed_number_row(
+          ui, {"settings.cache", "Frames kept, MB", "Memory for frames already shown"}, settings.cache_mb, 0))
     context.ask("settings.cache_mb", {argument(std::round(*mb))});
-  if (const auto s =
-          typed_number_row(ui, {"settings.autosave", "Autosave, s", "Unsaved work is put aside this often"},
-                           settings.autosave_s, 0))
+  if (const auto s = typed_number_row(
+          ui, {"settings.autosave", "Autosave, s", "How often unsaved work is saved for recovery"},
+          settings.autosave_s, 0))
     context.ask("settings.autosave_s", {argument(*s)});
-  if (const auto n = typed_number_row(
-          ui, {"settings.undo_depth", "Undo steps", "As many can be taken back; from the next start"},
-          settings.undo_depth, 0))
+  if (const auto n = typed_number_row(ui,
+                                      {"settings.undo_depth", "Undo steps",
+                                       "How many steps can be undone; takes effect at the next start"},
+                                      settings.undo_depth, 0))
     context.ask("settings.undo_depth", {argument(std::round(*n))});
 }
 

@@ -58,8 +58,8 @@ void draw_marks(const app::Session& session, PanelContext& context) {
   const bool disabled = !possible(session, "playback.loop");
   ImGui::SameLine(0, ui.px(10));
   if (icon_button(ui, "timeline.loop", Icon::Loop,
-                  {"Play again from the start", keys_of(context.commands, "playback.loop"), playback.loop,
-                   disabled, 28}))
+                  {"Loops from the end to the start", keys_of(context.commands, "playback.loop"),
+                   playback.loop, disabled, 28}))
     context.ask("playback.loop", {on_off(!playback.loop)});
   const auto word = [&](const char* name, const char* label, const char* command, const char* tip) {
     ImGui::SameLine(0, ui.px(3));
@@ -76,7 +76,7 @@ void draw_marks(const app::Session& session, PanelContext& context) {
     context.ask("playback.clear_marks");
   ImGui::SameLine(0, ui.px(3));
   if (icon_button(ui, "timeline.live", Icon::Clock,
-                  {"Show the newest frame while they are made", "", playback.live, disabled, 28}))
+                  {"Shows the newest frame while frames are made", "", playback.live, disabled, 28}))
     context.ask("playback.follow_live");
 }
 

@@ -55,9 +55,9 @@ SurfaceValues weights(const Session& session, const app::TakeState& take) {
 }
 
 SurfaceValues doubt(const app::TakeState& take, Eigen::Index vertices) {
-  const char* const title = "Binding doubt";
+  const char* const title = "Binding uncertainty";
   if (take.binding == nullptr || take.binding->doubt.size() != vertices)
-    return missing(title, "it keeps its own skin");
+    return missing(title, "it uses its own skin weights");
   SurfaceValues out;
   out.legend = scale(title, "%", 100);
   out.legend.scale = Legend::Scale::Doubt;

@@ -306,7 +306,7 @@ void Views::Impl::describe(const Session& session, const Pane& pane, Overlay& ov
   overlay.title = pane_title(session, pane.content);
   overlay.hint = pane_hint(session, pane.content);
   if (overlay.hint.empty()) {
-    overlay.subtitle = shows_as_loaded(session, pane.content) ? "as it came \u00b7 being bound\u2026"
+    overlay.subtitle = shows_as_loaded(session, pane.content) ? "as loaded \u00b7 binding\u2026"
                        : rest                                 ? "T-pose"
                        : frame >= 0                           ? "frame " + std::to_string(frame)
                                                               : "";

@@ -350,7 +350,7 @@ void FileBrowser::draw_list(Ui& ui) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) draw_entry(ui, i);
   ImGui::PopStyleVar();
   if (rows_.empty() && problem.empty())
-    hint(ui, contents_->finished ? "Nothing here for \u201c" + filter().label + "\u201d." : "Looking\u2026");
+    hint(ui, contents_->finished ? "Nothing matches \u201c" + filter().label + "\u201d." : "Looking\u2026");
 }
 
 void FileBrowser::draw_entry(Ui& ui, int row_number) {

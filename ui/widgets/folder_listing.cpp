@@ -34,7 +34,7 @@ bool is_frame_format(const std::string& extension) {
 }
 
 std::string reason(const std::string& folder, const std::error_code& error) {
-  if (error == std::errc::permission_denied) return "You may not look into " + folder + ".";
+  if (error == std::errc::permission_denied) return "You have no permission to open " + folder + ".";
   if (error == std::errc::no_such_file_or_directory) return "There is no folder " + folder + ".";
   if (error == std::errc::not_a_directory) return folder + " is not a folder.";
   return folder + " cannot be listed: " + error.message() + ".";
