@@ -1,4 +1,4 @@
-// An orbit camera: what it is, its matrices, and how to make it see all of something.
+// An orbit camera: its state, its matrices, and fitting it to a scene.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ FieldsOf<S, PixelSize> fields(V& visit, S& size) {
 }
 
 struct Camera {
-  Vec3 target = Vec3(0, 0.9f, 0);  ///< metres; what it turns about and looks at
+  Vec3 target = Vec3(0, 0.9f, 0);  ///< metres; the point it looks at and turns about
   float yaw = 0;        ///< radians about +y; 0 looks along -z, at the front of a T-pose; +90 deg from +x
   float pitch = 0.15f;  ///< radians above the horizon
   float distance = 4;   ///< metres from the target
@@ -61,8 +61,8 @@ Camera panned(Camera camera, const Eigen::Vector2f& share_of_height);
 /// Distance times `factor`, kept between 5 cm and 500 m.
 Camera zoomed(Camera camera, float factor);
 
-/// The camera, its direction and lens kept, moved to see all the points as large as can be. `margin` is the
-/// share of the picture left free on each side. No points: the camera unchanged.
+/// The camera moved, with its direction and lens kept, so that it sees all points as large as possible.
+/// `margin` is the share of the picture left free on each side. No points: the camera unchanged.
 Camera fitted(Camera camera, const Points& points, float aspect, float margin = 0.05f);
 /// The least distance from which all points are seen with the target where it is. Perspective and
 /// orthographic.

@@ -22,7 +22,7 @@ struct SheetMoment {
 struct SheetOptions {
   std::string title;
   int width = 1800;   ///< pixels; the height follows from the people shown
-  int columns = 6;    ///< moments in a row; more of them go on below
+  int columns = 6;    ///< moments in a row; more continue below
   float heading = 0;  ///< radians about +y that the person faces, 0 is +z; the sheet looks from there
   float source_floor = 0, target_floor = 0;  ///< heights of the floors, metres
   bool target_skeleton = false;              ///< show it in the target too

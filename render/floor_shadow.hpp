@@ -1,4 +1,4 @@
-// How much of the sky each place of the floor has lost.
+// Soft shadows on the floor: how much of the sky each place has lost.
 #pragma once
 
 #include <array>

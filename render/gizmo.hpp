@@ -1,5 +1,4 @@
-// Handles to move or turn something with: their shape, which of them is under the pointer, and what a drag
-// does.
+// Handles to move or turn something: their shape, which one is under the pointer, and what a drag does.
 #pragma once
 
 #include "render/camera.hpp"

@@ -1,4 +1,4 @@
-// What is under the pointer. Pure functions of plain arrays.
+// Finds what is under the pointer. Pure functions of plain arrays.
 #pragma once
 
 #include <optional>

@@ -42,7 +42,7 @@ class Renderer {
   void set_options(const RendererOptions& options);
 
   /// Draws the scene over all of the target. Throws Error when the scene's arrays do not fit together, and,
-  /// where the context's complaints are fatal, the first of them.
+  /// where the context's messages are fatal, with the first of them.
   void draw(const Scene& scene, const Camera& camera, const RenderTarget& target);
   /// Draws into a picture of its own and reads it back.
   Image render_image(const Scene& scene, const Camera& camera, PixelSize size);

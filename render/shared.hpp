@@ -8,7 +8,7 @@
 
 namespace understudy::render {
 
-/// An array that never changes once it is in here, so that copies share it and the renderer uploads it once:
+/// An immutable array: copies share it and the renderer uploads it once:
 /// the same array (identity()) means the same contents. Cheap to copy, usable from any thread.
 template <class T>
 class Shared {

@@ -1,4 +1,4 @@
-// Words on pictures.
+// Text on pictures.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace understudy::render {
 
-/// A font file, or none: then every word is invisible and no width, and nobody has to ask.
+/// A font file, or none: then all text is invisible and has no width.
 class Font {
  public:
   /// Inter, else DejaVu Sans, where Debian puts them; tells once in the log when neither is there.

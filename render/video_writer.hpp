@@ -1,4 +1,4 @@
-// Films: MP4 (H.264) and folders of pictures.
+// Videos: MP4 (H.264) and folders of pictures.
 #pragma once
 
 #include <memory>

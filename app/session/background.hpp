@@ -1,4 +1,4 @@
-// What works behind a Studio, and what it was last told.
+// The background workers of a Studio and the requests they last got.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace understudy::app {
 struct Studio::Background {
   explicit Background(Engine::NetworksOf networks) : engine(std::move(networks)) {}
 
-  /// What a take in the session was made of.
+  /// The inputs from which a take in the session was made.
   struct Applied {
     std::shared_ptr<const Deformer> deformer;   // with the networks' weights
     std::shared_ptr<const WeightRows> weights;  // the user's, put over them
@@ -43,7 +43,7 @@ struct Studio::Background {
   std::map<int64_t, Applied> applied;
   std::set<int64_t> dirty;  // takes whose result is to be refined
   std::string plan_key, source_key, truth_path;
-  std::string autosave_problem;  // that was told
+  std::string autosave_problem;  // the last one reported
   double since_autosave = 0;
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };

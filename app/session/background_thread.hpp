@@ -1,4 +1,4 @@
-// Threads that must not take the processor from the one that draws.
+// Background threads run at lower priority than the thread that draws.
 #pragma once
 
 #include <sys/resource.h>
@@ -7,7 +7,7 @@
 
 namespace understudy::app {
 
-/// Lowers the calling thread's priority: input and pictures come first, frames in the making second.
+/// Lowers the calling thread's priority, so that input and drawing come first.
 inline void yield_to_drawing() {
   constexpr int kNice = 3;
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);  // a thread of its own, on Linux

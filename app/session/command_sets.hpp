@@ -1,4 +1,4 @@
-// The commands, a file a family.
+// The commands, one file per family.
 #pragma once
 
 #include "app/session/studio.hpp"
@@ -15,7 +15,7 @@ void add_export_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 
-// What arguments say. Each throws Error naming the command's word that is wrong.
+// Parsed arguments. Each function throws Error naming the argument that is wrong.
 
 double number(const Arguments& arguments, size_t i, const char* what);
 int whole_number(const Arguments& arguments, size_t i, const char* what);
@@ -23,12 +23,12 @@ bool on_off(const Arguments& arguments, size_t i);
 /// "on", "off" or "toggle" of what is `now`.
 bool switched(const Arguments& arguments, size_t i, bool now);
 const std::string& word(const Arguments& arguments, size_t i, const char* what);
-/// One of the words; gives its index.
+/// The index of the argument among `words`.
 size_t choice(const Arguments& arguments, size_t i, const char* what, const std::vector<std::string>& words);
 /// A joint by name ("left_wrist") or number.
 int joint_argument(const Arguments& arguments, size_t i);
 Vec3 vector_argument(const Arguments& arguments, size_t i, const char* what);
-/// The take of that number.
+/// The take with that number.
 Take& take_argument(Session& session, const Arguments& arguments, size_t i);
 bool has_word(const Arguments& arguments, size_t from, const std::string& word);
 

@@ -37,8 +37,8 @@ class Commands {
 /// What panels push; run in order after the frame.
 using CommandQueue = std::vector<std::pair<std::string, Arguments>>;
 
-/// Splits a line of a script: words apart by blanks, "quoted words" whole, # starts a comment. Throws Error
-/// for a quote that is not closed.
+/// Splits a line of a script at blanks; "quoted words" stay whole, # starts a comment. Throws Error for a
+/// quote that is not closed.
 Arguments split_line(const std::string& line);
 /// The reverse, for recordings.
 std::string join_line(const std::string& name, const Arguments& arguments);

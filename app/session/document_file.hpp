@@ -14,7 +14,7 @@ namespace understudy::app {
 
 constexpr int kDocumentVersion = 1;
 
-/// What the file holds.
+/// The contents of the file.
 struct SavedDocument {
   Document document;
   View view;
@@ -30,18 +30,19 @@ FieldsOf<S, SavedDocument> fields(V& visit, S& saved) {
 }
 
 nlohmann::ordered_json to_json(const SavedDocument& saved, const std::string& folder);
-/// Throws Error naming `path` and the member that is not what it should be.
+/// Throws Error naming `path` and the member that is wrong.
 SavedDocument from_json(const nlohmann::ordered_json& json, const std::string& folder,
                         const std::string& path);
 
-/// Written beside and renamed: when the disk is full the old document survives. Throws Error naming the path.
+/// Writes beside the file, then renames: when the disk is full the old document survives. Throws Error naming
+/// the path.
 void write_document(const std::string& path, const SavedDocument& saved);
-/// Throws Error, one sentence: no such file, no document, damaged, from a newer version.
+/// Throws Error when the file is missing, no document, damaged or from a newer version.
 SavedDocument read_document(const std::string& path);
 
-/// Files and folders that the document names and that are not there.
+/// Files and folders that the document names and that are missing.
 std::vector<std::string> missing_files(const Document& document);
-/// The document with every path under `from` moved to the same place under `to` (or `from` itself to `to`).
+/// The document with `from`, and every path under it, replaced by `to`.
 Document relocated(Document document, const std::string& from, const std::string& to);
 
 /// A copy of unsaved work, for after a crash.
@@ -50,11 +51,11 @@ struct Autosave {
   std::string document_path;  ///< where the document was saved; empty: never
   std::string time;           ///< local, "2024-05-01 14:03"
 };
-/// Writes the copy of this process into `folder`, beside and renamed. Throws Error.
+/// Writes the copy of this process into `folder` (beside the file, then renames). Throws Error.
 void write_autosave(const std::string& folder, const SavedDocument& saved, const std::string& document_path);
 /// Removes the copy of this process.
 void remove_autosave(const std::string& folder);
-/// Copies left by processes that no longer run; damaged ones are set aside (.damaged) with a warning.
+/// Copies left by processes that no longer run. Renames damaged ones to .damaged, with a warning.
 std::vector<Autosave> found_autosaves(const std::string& folder);
 /// The document in a copy. Throws Error.
 SavedDocument read_autosave(const Autosave& autosave);

@@ -13,7 +13,7 @@
 
 namespace understudy::app {
 
-/// What is to be made; a copy of the parts of the document that matter to it.
+/// What the engine makes: a copy of the parts of the document that it depends on.
 struct Plan {
   struct TakePlan {
     int64_t id = 0;  ///< stays with a take while others come and go
@@ -44,9 +44,9 @@ FieldsOf<S, Plan> fields(V& visit, S& plan) {
   visit("takes", plan.takes);
 }
 
-// What the engine tells, in order.
+// The engine's events, in order.
 
-/// A source was opened: everything before is gone.
+/// A source was opened; all earlier frames are invalid.
 struct SourceOpened {
   std::string name;
   std::optional<int64_t> count;
@@ -54,11 +54,11 @@ struct SourceOpened {
   std::vector<SourceClip> clips;
   int clip = -1;
 };
-/// The source cannot be opened, or broke off.
+/// The source cannot be opened, or reading it failed.
 struct SourceFailed {
   std::string sentence;
 };
-/// Frames first .. of the source, new or made anew.
+/// Frames of the source from `first` on, new or redone.
 struct SourceFrames {
   int first = 0;
   bool has_faces = false;
@@ -81,12 +81,12 @@ struct TakeFailed {
   int64_t id = 0;
   std::string sentence;
 };
-/// Frames first .. of a take, new or made anew.
+/// Frames of a take from `first` on, new or redone.
 struct TakeFrames {
   int64_t id = 0;
   int first = 0;
   std::vector<KeptFrame> frames;
-  std::vector<FrameTimes> times;  ///< of new ones; empty when made anew
+  std::vector<FrameTimes> times;  ///< of new frames; empty when redone
 };
 using EngineEvent =
     std::variant<SourceOpened, SourceFailed, SourceFrames, TakeLoaded, TakeReady, TakeFailed, TakeFrames>;
@@ -95,13 +95,13 @@ class Engine {
  public:
   using NetworksOf = std::function<Networks(const Method&)>;
   explicit Engine(NetworksOf networks);
-  ~Engine();  ///< stops after the frame at hand
+  ~Engine();  ///< finishes the current frame, then stops
 
-  /// From now on this is made. Never waits.
+  /// Makes this plan from now on. Never waits.
   /// `afresh`: nothing of what was made before is kept, not even what would fit.
   void set_plan(Plan plan, bool afresh = false);
   void pause(bool paused);
-  /// Everything that has happened since the last call.
+  /// The events since the last call.
   std::vector<EngineEvent> drain();
   /// Whether frames are still to be made (paused or not).
   bool working() const;

@@ -1,4 +1,4 @@
-// Where a camera that goes with the person looks.
+// The offset of a camera that follows the person.
 #pragma once
 
 #include "app/session/session.hpp"

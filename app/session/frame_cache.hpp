@@ -1,5 +1,5 @@
-// Frames ready to be drawn, made in the background when they are asked for: scans read again, targets posed
-// again. Bounded: what was looked at longest ago goes first.
+// Frames ready to draw, made in the background on request: scans read again, targets posed again. Bounded:
+// drops the least recently used frames first.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace understudy::app {
 
-/// A scan as it is drawn: edited, with normals.
+/// An edited scan with normals, ready to draw.
 struct ScanPicture {
   Mesh mesh;            ///< metres, y up, after the scan edits
   Points normals;       ///< [V, 3], of the faces, or estimated
-  Points cropped_away;  ///< [N, 3], what the crop box took
+  Points cropped_away;  ///< [N, 3], the points that the crop box removed
   float spacing = 0;    ///< metres between neighbouring points
   bool usable = true;
   std::string problem;
 };
 
-/// A target in one frame. Without vertices where it cannot be posed; the log says why.
+/// A target in one frame. Has no vertices where posing failed; the log says why.
 struct PosedPicture {
   Points vertices;  ///< [V, 3]
   Points normals;   ///< [V, 3]; empty for a cloud
@@ -36,28 +36,28 @@ class FrameCache {
   explicit FrameCache(int64_t limit_mb = 512, Open open = open_source);
   ~FrameCache();  ///< waits for the one frame that is being made
 
-  /// From now on scans are read from this source with these edits; a change forgets those made before.
+  /// Reads scans from this source with these edits from now on; a change drops the frames made before.
   void set_source(const SourceOptions& source, const ScanEdits& edits);
-  /// The newest four frames are kept whatever their size: one drawn picture needs several.
+  /// Keeps the newest four frames whatever their size: one picture needs several.
   void set_limit(int64_t limit_mb);
 
-  /// The scan of a frame, or null: it is being made now.
+  /// The scan of a frame; null while it is being made.
   std::shared_ptr<const ScanPicture> scan(int frame);
-  /// A take in a frame, or null: it is being made now. Take and frame are found again by the take's
-  /// generation.
+  /// A take in a frame; null while it is being made. The take's generation tells whether a frame is still
+  /// valid.
   struct Wanted {
     int take = 0, frame = 0;
     bool offsets = false;
   };
   std::shared_ptr<const PosedPicture> posed(const TakeState& take, const Wanted& wanted);
-  /// Frames that will be wanted soon, made when there is nothing else to do.
+  /// Frames that will be needed soon; made when nothing else waits.
   void prefetch_scan(int frame);
   void prefetch_posed(const TakeState& take, const Wanted& wanted);
-  /// Waits until all that was asked for (not only prefetched) is there; for pictures, video and tests.
+  /// Waits until every requested (not prefetched) frame is made; for pictures, video and tests.
   void wait() const;
 
-  int64_t bytes() const;  ///< held now
-  bool busy() const;      ///< prefetching too
+  int64_t bytes() const;  ///< in use
+  bool busy() const;      ///< also while prefetching
 
  private:
   struct Impl;

@@ -1,4 +1,4 @@
-// Figures of each frame from joints and poses alone: what can be plotted at once.
+// Figures of each frame that need joints and poses alone, so they can be plotted at once.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace understudy::app {
 
-/// What the figures are of; all sequences equally long or longer than `shown`.
+/// The inputs of the figures; every sequence is at least as long as `shown`.
 struct FigureInput {
   const Motion& shown;
   const std::vector<Joints>& joints;  ///< of the target
@@ -23,7 +23,7 @@ std::vector<Series> joint_figures(const FigureInput& input);
 
 /// The order, names and units of every series there is; values empty.
 const std::vector<Series>& known_series();
-/// Figures of a whole sequence that no frame has by itself; without values.
+/// Figures that only a whole sequence has; without values.
 const std::vector<Series>& known_totals();
 /// A series of `known_series` by key, with `count` values NaN.
 Series blank_series(const std::string& key, size_t count);

@@ -14,15 +14,15 @@ class History {
   using Time = std::chrono::steady_clock::time_point;
   explicit History(int depth = 200) { set_depth(depth); }
   void clear();
-  /// At least 1; what is older is forgotten.
+  /// At least 1; drops older steps.
   void set_depth(int depth);
-  /// Remembers `before`, the state that `label` ("Drag left wrist") has changed. A step with the same `merge`
+  /// Keeps `before`, the state that `label` ("Drag left wrist") changed. A step with the same `merge`
   /// within a second of the last one becomes one with it (the dragging of a slider); empty: never.
   void add(const Document& before, const std::string& label, const std::string& merge = "",
            Time now = std::chrono::steady_clock::now());
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
-  /// What undo() would take back, redo() bring back; "" for nothing.
+  /// The step that undo() would undo and redo() redo; "" for none.
   std::string undo_label() const, redo_label() const;
   /// Goes back: gives the document before the last step; `now` is kept for redo(). Throws Error when there is
   /// nothing.

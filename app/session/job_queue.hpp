@@ -1,4 +1,4 @@
-// Work in the background: one thread a job, progress, an honest time left, cancel; results come back on the
+// Background jobs: one thread per job, progress, an estimate of the time left, cancel; results arrive on the
 // UI thread.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace understudy::app {
 
-/// What a job sees of the outside.
+/// A job's interface to the queue.
 class JobControl {
  public:
   virtual ~JobControl() = default;
@@ -30,13 +30,13 @@ class JobQueue {
   using Done = std::function<void()>;
   JobQueue();
   ~JobQueue();  ///< cancels and waits
-  /// `done` runs on the UI thread in drain() when the work ended without throwing.
+  /// Calls `done` on the UI thread, in drain(), when the work ended without throwing.
   int64_t start(const std::string& name, Work work, Done done = {});
   void cancel(int64_t id);
   /// Whether any job runs, or waits for drain().
   bool running() const;
-  /// On the UI thread: runs what is done and gives what failed (Error's sentence; a cancelled job fails
-  /// silently).
+  /// On the UI thread: calls `done` of finished jobs and returns the sentences of those that failed (none for
+  /// cancelled ones).
   std::vector<std::string> drain();
   std::vector<JobView> views() const;
 

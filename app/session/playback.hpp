@@ -1,4 +1,4 @@
-// The playhead: what frame is shown, and how time moves it.
+// The playhead: which frame is shown, and how time moves it.
 #pragma once
 
 #include <set>
@@ -32,7 +32,7 @@ struct FrameRange {
 FrameRange play_range(const Playback& playback, int count);
 /// The frame to show, -1 when there is none.
 int shown_frame(const Playback& playback, int count);
-/// Time goes on by `seconds`. `skipped`: frames that are left out. At the end it loops or stops.
+/// Advances by `seconds`, leaving out the `skipped` frames. Loops or stops at the end.
 void advance(Playback& playback, double seconds, double fps, int count, const std::set<int>& skipped);
 
 }  // namespace understudy::app

@@ -1,4 +1,4 @@
-// Applies the user's edits of a result and measures it, in the background: the newest request of a take wins.
+// Applies the user's edits to a result and measures it, in the background: a take's newest request wins.
 #pragma once
 
 #include <memory>

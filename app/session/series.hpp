@@ -1,4 +1,4 @@
-// Figures over time: a value a frame, for plots, the table and CSV.
+// Figures over time: one value per frame, for plots, the table and CSV.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace understudy::app {
 
-/// One figure, NaN where it says nothing.
+/// One figure; NaN where it has no value.
 struct Series {
   std::string key;    ///< as in design's reports: "pa_mpjpe_m"
   std::string label;  ///< for people: "PA-MPJPE"
@@ -15,10 +15,10 @@ struct Series {
   std::vector<float> values;
 };
 
-/// Finds a series by key; null when it is not there.
+/// The series with this key; null when there is none.
 const Series* find(const std::vector<Series>& series, const std::string& key);
 
-/// A frame a row: frame, seconds, then each series. Written beside and renamed. Throws Error naming the path.
+/// One row per frame: frame, seconds, then each series. Throws Error naming the path.
 void write_csv(const std::string& path, const std::vector<Series>& series, double fps);
 
 }  // namespace understudy::app

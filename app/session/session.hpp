@@ -1,4 +1,4 @@
-// All that the studio knows at one moment: plain data that panels read. Only the UI thread touches it.
+// The studio's whole state: plain data that panels read. Only the UI thread touches it.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace understudy::app {
 
-/// What is kept of a frame of the source: under 1 kB.
+/// The data kept of each frame of the source: under 1 kB.
 struct KeptSource {
   Joints raw = Joints::Zero();  ///< as extracted, before the user's edits
   Eigen::Array<float, kJointCount, 1> confidence_of =
@@ -34,7 +34,7 @@ struct KeptSource {
   int points = 0;      ///< in the scan
 };
 
-/// The source as far as it has been read.
+/// The source, as far as it has been read.
 struct SourceState {
   std::string name;              ///< for people
   std::optional<int64_t> count;  ///< frames in all, where known
@@ -50,7 +50,7 @@ struct SourceState {
 /// A take as far as it has been performed.
 struct TakeState {
   bool ready = false;   ///< target, weights and joints below are there
-  std::string problem;  ///< why it never will be, one sentence; empty: fine
+  std::string problem;  ///< why it cannot become ready, one sentence; empty: no problem
   /// As it was read and brought to the T-pose; of the file as it was prepared before, until it is ready.
   std::shared_ptr<const PreparedCharacter> character;
   /// The mesh as it came, upright and at its size; to be seen until `target` is there, then null.
@@ -60,7 +60,7 @@ struct TakeState {
       binding;                               ///< where the networks' weights are doubted; null: nowhere asked
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
-  std::vector<KeptFrame> performed;          ///< as the engine gave them
+  std::vector<KeptFrame> performed;          ///< the engine's frames
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
   std::vector<Joints> joints;  ///< of `shown`
   std::vector<Series> series;  ///< as many values as frames shown
@@ -79,13 +79,13 @@ struct JobView {
   bool cancellable = true;
 };
 
-/// Something to tell. Dialogs wait for the user; notices go by themselves.
+/// A message. Dialogs wait for the user; notices disappear after a while.
 struct Notice {
   enum class Kind { Info, Warning, Error };
   Kind kind = Kind::Info;
   std::string text;     ///< one sentence
   std::string details;  ///< for "copy details": the command and the versions
-  double until = 0;     ///< seconds of Session::time at which a notice goes
+  double until = 0;     ///< Session::time at which a notice disappears
 };
 
 struct LogLine {
@@ -93,13 +93,13 @@ struct LogLine {
   std::string text;
 };
 
-/// A question that the studio waits to have answered before it goes on.
+/// A question that the user must answer before the studio continues.
 struct Question {
   enum class Kind { UnsavedChanges, Recover, MissingFiles };
   Kind kind = Kind::UnsavedChanges;
   std::string text;
-  std::string then;                  ///< the command to go on with ("app.quit", "document.open PATH")
-  std::vector<std::string> missing;  ///< MissingFiles: what is not there
+  std::string then;                  ///< the command to continue with ("app.quit", "document.open PATH")
+  std::vector<std::string> missing;  ///< MissingFiles: the missing paths
   std::vector<Autosave> autosaves;   ///< Recover
 };
 
@@ -120,7 +120,7 @@ struct Session {
   std::vector<TakeState> takes;        ///< beside document.takes
   std::shared_ptr<const Truth> truth;  ///< null: none
   bool working = false;                ///< frames are still being made
-  bool paused = false;                 ///< the user stopped the making of frames
+  bool paused = false;                 ///< the user paused the making of frames
 
   std::vector<JobView> jobs;
   std::deque<LogLine> log;  ///< the newest 2,000
@@ -138,13 +138,13 @@ struct Session {
   bool drag_children = false, mirror_joint = true;
 };
 
-/// Frames that can be shown: of the selected take, of the source where there is no take.
+/// The number of frames that can be shown: of the selected take, or of the source where there is no take.
 int frame_count(const Session& session);
 /// The frame shown, -1 without one.
 int shown_frame(const Session& session);
-/// Around the person in all good frames of the source, metres; none before the first.
+/// The box around the person in all good frames of the source, metres; none before the first.
 std::optional<Box> person_box(const Session& session);
-/// Frames to mark as bad, with why ("frame 12: low confidence").
+/// Frames to mark as bad, with the reason ("low confidence").
 struct BadFrame {
   int frame;
   std::string why;

@@ -1,4 +1,4 @@
-// What the program remembers of a user between two runs, as JSON in the user's configuration folder.
+// The user's settings between runs, as JSON in the user's configuration folder.
 #pragma once
 
 #include <map>
@@ -27,10 +27,10 @@ std::string config_folder();
 /// $XDG_STATE_HOME/understudy or ~/.local/state/understudy; UNDERSTUDY_STATE overrides it.
 std::string state_folder();
 
-/// What is out of range is brought into it, what is missing or of another type stays the default. A file that
-/// is no JSON gives the defaults and a warning.
+/// Clamps values that are out of range; a missing value, or one of another type, stays the default. A file
+/// that is not JSON gives the defaults and a warning.
 Settings read_settings(const std::string& path);
-/// Written beside and renamed. Throws Error naming the path.
+/// Writes beside the file, then renames. Throws Error naming the path.
 void write_settings(const std::string& path, const Settings& settings);
 /// Puts `path` first in a recent list.
 void remember(std::vector<std::string>& recent, const std::string& path);

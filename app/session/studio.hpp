@@ -1,4 +1,4 @@
-// The studio without its window: the session, the commands that change it, and what works in the background.
+// The studio without its window: the session, the commands that change it and the background workers.
 #pragma once
 
 #include <functional>
@@ -12,12 +12,12 @@
 
 namespace understudy::app {
 
-/// Where the networks come from; the program plugs the trained ones in, tests their own.
+/// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
   std::function<Networks(const Method&)> networks;  ///< called off the UI thread
   std::function<std::string()> weights;             ///< checksums, for documents; called off the UI thread
   std::string samples;                              ///< folder of the bundled samples; empty: none
-  std::string settings_file;                        ///< empty: nothing is remembered
+  std::string settings_file;                        ///< empty: settings are not kept
   std::string autosave_folder;                      ///< empty: no autosave
 };
 
@@ -34,39 +34,39 @@ class Studio {
   FrameCache& cache() { return cache_; }
   const StudioServices& services() const { return services_; }
 
-  /// Runs one command. Throws Error: the sentence for the user.
+  /// Runs one command. Throws Error with a sentence for the user.
   void run(const std::string& name, const Arguments& arguments = {});
   /// The same; a failure becomes a dialog.
   void try_run(const std::string& name, const Arguments& arguments = {});
   void run_all(CommandQueue& queue);
 
-  /// Once a drawn frame: takes in what the background has finished, moves the playhead by `seconds`.
+  /// Once per drawn frame: collects what the background has finished and moves the playhead by `seconds`.
   void tick(double seconds);
-  /// Ticks until all frames are made and nothing is to do; throws Error after `timeout_s`. For scripts and
-  /// tests.
+  /// Ticks until all frames are made and nothing is left to do. Throws Error after `timeout_s`. For scripts
+  /// and tests.
   void wait_idle(double timeout_s = 600);
 
-  /// Opens what was dropped or chosen: a scan, a target, a motion, a document, a case folder.
+  /// Opens dropped or chosen files: a scan, a target, a motion, a document, a case folder.
   void open(const std::string& path);
-  /// Whether nothing works in the background.
+  /// Whether no background work is left.
   bool idle() const;
-  /// Whether every frame is made and edited; figures may still be taken.
+  /// Whether every frame is made and edited; figures may still be missing.
   bool made() const;
   /// Shows a sentence in a dialog; details are for "copy details".
   void fail(const std::string& sentence, const std::string& details = "");
   /// Shows a sentence for some seconds.
   void notify(const std::string& sentence, bool warning = false);
-  /// What would be written now.
+  /// The document as it would be saved now.
   SavedDocument saved_document() const;
-  /// A new, an opened or a recovered document takes the place of the open one.
+  /// Replaces the open document by a new, an opened or a recovered one.
   void replace_document(SavedDocument saved, const std::string& path);
   void save_settings();
-  /// Nothing is unsaved any more: the copy kept for recovery goes, one that is being written too.
+  /// Removes the copy kept for recovery, also one that is being written: nothing is unsaved any more.
   void drop_autosave();
-  /// Which vertices of a take's target are joined; made on first use.
+  /// The neighbouring vertices of a take's target; made on first use.
   const Neighbours& neighbours(size_t take);
   void pause_work(bool paused);
-  /// Makes every frame anew.
+  /// Redoes every frame.
   void restart_work();
 
  private:

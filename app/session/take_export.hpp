@@ -1,4 +1,4 @@
-// What an export needs of a take: the same for the studio and for a document on the command line.
+// What an export needs from a take: shared by the studio and the command line.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace understudy::app {
 
-/// A format and its options, as commands say them.
+/// A format and its options, as commands name them.
 struct ExportChoice {
   ExportFormat format = ExportFormat::Glb;
   CharacterExportOptions file;
@@ -23,8 +23,8 @@ struct ExportChoice {
 /// suffix decides. Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 
-/// The take of that name, or else of that number, counted from `first`. Throws Error, which lists them: there
-/// is none, or the name is that of several.
+/// The take with that name, or else with that number, counted from `first`. Throws Error, listing the takes,
+/// when there is none or several have the name.
 size_t take_called(const Document& document, const std::string& name, int first = 0);
 
 /// Takes that can be clips of one file with this one, itself too: the same target with the same joints and

@@ -1,4 +1,4 @@
-// What is shown and how: saved with the document, but no part of its result and not undone.
+// What is shown and how: saved with the document, but not part of its result and not undone.
 #pragma once
 
 #include <string>
@@ -74,9 +74,9 @@ FieldsOf<S, Layers> fields(V& visit, S& layers) {
 struct View {
   Layout layout = Layout::SideBySide;
   bool linked = true;                               ///< panes share camera 0
-  std::vector<CameraState> cameras{CameraState{}};  ///< one a pane; missing ones are like the first
-  bool follow = true;                               ///< the camera goes with the pelvis over the floor
-  float turntable_deg_s = 0;                        ///< degrees a second that the camera turns by itself
+  std::vector<CameraState> cameras{CameraState{}};  ///< one per pane; missing ones are like the first
+  bool follow = true;                               ///< the camera follows the pelvis over the floor
+  float turntable_deg_s = 0;                        ///< degrees per second that the camera turns on its own
   Layers source, take;
   int active_pane = 0;                    ///< 0 the source, k the take k - 1
   int weights_joint = -1;                 ///< -1: all joints
@@ -84,7 +84,7 @@ struct View {
   int ghost_count = 3, ghost_step = 8;    ///< to each side; frames between two
   float error_scale_mm = 50;              ///< upper end of the scales of errors, offsets and differences
   float wipe = 0.5f;                      ///< the wipe's line, share of the width
-  std::string metric = "confidence";      ///< the one in the timeline
+  std::string metric = "confidence";      ///< plotted in the timeline
 };
 template <class V, class S>
 FieldsOf<S, View> fields(V& visit, S& view) {

@@ -1,4 +1,4 @@
-// The studio with its face: session, interface and views on one surface.
+// The studio with its interface: session, panels and views on one surface.
 #pragma once
 
 #include <chrono>
@@ -24,19 +24,19 @@ namespace understudy::app {
 struct ApplicationOptions {
   std::string marks_file;      ///< written whenever it changes: places of widgets and facts; empty: none
   bool remember_size = false;  ///< of the window, in the settings
-  bool echo_log = true;        ///< messages go to where they went before, too
+  bool echo_log = true;        ///< also pass messages on to the previous log
 };
 
-/// What a recording wants to know.
+/// The events that a recording gets.
 struct Observer {
   virtual ~Observer() = default;
-  /// Before each frame: what happened since the last. Also called without events.
+  /// Before each frame: the input since the last one. Also called without events.
   virtual void input(double dt, const std::vector<render::InputEvent>& events, const Session& session) = 0;
-  /// A command that the interface asked for.
+  /// A command that the interface pushed.
   virtual void command(const std::string& name, const Arguments& arguments) = 0;
 };
 
-/// One thread. While it lives the log goes to Session::log.
+/// Use from one thread. While it lives, log messages go to Session::log.
 class Application {
  public:
   Application(StudioServices services, std::unique_ptr<Surface> surface, ApplicationOptions options = {});
@@ -52,13 +52,13 @@ class Application {
   /// Places that the pointer may go to: named widgets, and joints in the views (joint.PANE.NAME).
   std::vector<ui::Mark> marks() const;
   std::optional<ui::Mark> find(const std::string& name) const;
-  /// Whether the screen still misses something that is being made.
+  /// Whether something on the screen is still being made.
   bool waiting() const;
   void observe(Observer* observer) { observer_ = observer; }
 
-  /// Takes input, runs what it asks for, and draws, `dt` seconds after the last one.
+  /// Takes input, runs the commands it leads to and draws, `dt` seconds after the last step.
   void frame(double dt);
-  /// Sleeps until there is something to do or show, then does it. For windows.
+  /// Sleeps until there is something to do or show, then takes a step. For windows.
   void step();
   /// Steps until the user quits.
   void run();
@@ -101,7 +101,7 @@ class Application {
   float frame_rate_ = 0;
   std::string on_screen_;  ///< fingerprint of what was drawn last
   std::string marks_;      ///< what the marks file holds
-  int frames_wanted_ = 3;  ///< until widgets have come to rest
+  int frames_wanted_ = 3;  ///< until the widgets have settled
   int64_t drawn_ = 0;
 };
 

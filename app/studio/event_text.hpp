@@ -1,4 +1,4 @@
-// Input events as lines of a script, and back: what recordings are made of.
+// Input events as lines of a script, and back: the lines of a recording.
 #pragma once
 
 #include "app/session/commands.hpp"
@@ -6,7 +6,7 @@
 
 namespace understudy::app {
 
-/// A finite number as scripts write it. Throws Error when the text is none.
+/// A finite number. Throws Error when the text is not one.
 float number_of(const std::string& text);
 
 /// "move 12 30", "button left down 12 30 ctrl shift", "scroll 0 -1 12 30", "key Z down ctrl", "char 97",

@@ -1,4 +1,4 @@
-// What scripts and tests may ask the session: named values as text.
+// Named values of the session, as text, for scripts and tests.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@ namespace understudy::app {
 
 /// All of them: {"frames", "87"}, {"undo_label", "Drag left wrist"}, ...
 std::vector<std::pair<std::string, std::string>> facts(const Session& session);
-/// One of them. Throws Error when there is none of that name.
+/// One of them. Throws Error when none has that name.
 std::string fact(const Session& session, const std::string& key);
-/// Whether a fact is what is wanted: "VALUE", or "= VALUE", "!= VALUE", ">= NUMBER", "<= NUMBER". Throws
+/// Whether a fact fulfils a condition: "VALUE", or "= VALUE", "!= VALUE", ">= NUMBER", "<= NUMBER". Throws
 /// Error for another comparison.
 bool holds(const std::string& value, const std::string& comparison, const std::string& wanted);
 

@@ -1,4 +1,4 @@
-// picture.save and video.save: jobs that draw apart from the window.
+// The commands picture.save and video.save: jobs that draw off screen.
 #pragma once
 
 #include "app/session/studio.hpp"

@@ -1,4 +1,4 @@
-// Small pictures of what is in files: for the file browser and the start screen.
+// Small pictures of files' contents, for the file browser and the start screen.
 #pragma once
 
 #include <condition_variable>
@@ -17,14 +17,14 @@
 
 namespace understudy::app {
 
-/// One picture, drawn once and kept.
+/// One picture: drawn once, then kept.
 struct FilePreview {
-  ImTextureID texture = nullptr;  ///< null: there is no picture (yet)
+  ImTextureID texture = nullptr;  ///< null: no picture (yet)
   int width = 0, height = 0;      ///< pixels
   std::string text;               ///< "87 frames, 4,202 points"; or why there is no picture
 };
 
-/// Files are read by a thread of its own; the pictures are drawn in update(). Make, use and destroy it with
+/// Reads files in a thread of its own and draws the pictures in update(). Make, use and destroy it with
 /// one context current.
 class Previews {
  public:
@@ -33,16 +33,16 @@ class Previews {
   Previews(const Previews&) = delete;
   Previews& operator=(const Previews&) = delete;
 
-  /// The picture of the scans, targets and documents in these paths beside each other. Empty while it is
-  /// being made. Never waits.
+  /// One picture of the scans, targets and documents at these paths, side by side. Empty while it is being
+  /// made. Never waits.
   const FilePreview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark);
-  /// Draws what has been read, one picture at most. True when there is a new one.
+  /// Draws at most one picture from what has been read. True when there is a new one.
   bool update();
   /// Whether something is still to be read or drawn.
   bool busy() const;
 
  private:
-  /// What a path holds, in metres or whatever its unit is.
+  /// The contents of a path, in metres or the file's own unit.
   struct Content {
     Mesh mesh;
     std::string text;

@@ -1,4 +1,4 @@
-// Writes down what a user does as a script that can be played again.
+// Records the user's input as a script that can be played again.
 #pragma once
 
 #include <fstream>
@@ -8,11 +8,11 @@
 
 namespace understudy::app {
 
-/// Input as `event` lines, the time between as `frames`, and `wait_frames` so that a slower machine has made
-/// as many frames before the input comes. The commands that came of it are comments.
+/// Writes input as `event` lines, the time between as `frames`, and `wait_frames` so that a slower machine
+/// makes as many frames before the input comes. Writes the resulting commands as comments.
 class Recorder final : public Observer {
  public:
-  /// Begins with the window's size and look. Throws Error when the file cannot be written.
+  /// Writes the window's size and theme first. Throws Error when the file cannot be written.
   Recorder(const std::string& path, Application& application);
   void input(double dt, const std::vector<render::InputEvent>& events, const Session& session) override;
   void command(const std::string& name, const Arguments& arguments) override;

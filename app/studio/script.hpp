@@ -1,10 +1,9 @@
-// Scripts: named commands and what a user does, line by line. Pictures, tests, recordings and bug reports are
-// all written in it.
+// Scripts: named commands and a user's input, line by line; for pictures, tests, recordings and bug reports.
 //
 // Every command of the registry by its name, and:
 //   wait [SECONDS]                        until everything is made and shown
 //   wait_frames N                         until N frames are made
-//   wait_value KEY [= != >= <=] VALUE     until a fact is so
+//   wait_value KEY [= != >= <=] VALUE     until the fact holds
 //   frames N                              draws N frames of 1/60 s
 //   screenshot FILE.png [WxH]             the whole window
 //   click NAME | X Y                      also double_click, right_click, hover; options: ctrl shift alt
@@ -12,9 +11,9 @@
 //   resize W H   log TEXT   type "text"   key Ctrl+Z   drop PATH...   close
 //   expect NAME   expect_no NAME   expect_text TEXT   expect_value KEY [= != >= <=] VALUE   expect_error TEXT
 //   event ...                             one recorded input event
-// Places are pixels from the top left. A NAME is a widget's mark; NAME@0.2,0.9 another place in it than its
-// middle. Paths: samples/... are the bundled samples, out/... the folder for results; other relative ones are
-// in the working folder, those of screenshot in the folder for results.
+// Places are pixels from the top left. A NAME is a widget's mark and stands for its middle; NAME@0.2,0.9 is
+// another place in it. Paths: samples/... are the bundled samples, out/... is the folder for results; other
+// relative paths are in the working folder, those of screenshot in the folder for results.
 #pragma once
 
 #include <functional>
@@ -26,7 +25,7 @@
 namespace understudy::app {
 
 struct ScriptOptions {
-  std::string name = "script";  ///< for complaints: "tour.us"
+  std::string name = "script";  ///< for error messages: "tour.us"
   std::string out = ".";        ///< folder for results, made when needed
   double timeout_s = 600;       ///< of each wait
 };
@@ -38,9 +37,9 @@ class Script {
   Script(Application& application, OffscreenSurface& surface, ScriptOptions options = {});
 
   void play(const std::string& text);
-  /// One line; empty ones and comments do nothing.
+  /// Runs one line; empty lines and comments do nothing.
   void play_line(const std::string& line);
-  /// Throws Error when an error dialog is open: what a script ends with is asked for.
+  /// Throws Error when an error dialog is open at the script's end.
   void check_no_error() const;
 
  private:

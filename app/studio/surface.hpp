@@ -1,4 +1,4 @@
-// Where the studio is seen and heard: a window, or a picture in memory.
+// Where the studio draws and gets its input: a window, or a picture in memory.
 #pragma once
 
 #include <condition_variable>
@@ -16,7 +16,7 @@
 
 namespace understudy::app {
 
-/// One thread, the one that made it. Its context is current from then on.
+/// Use from the thread that made it; its context is current from then on.
 class Surface {
  public:
   virtual ~Surface() = default;
@@ -25,7 +25,7 @@ class Surface {
   virtual render::RenderTarget target() = 0;
   /// How large text should be: 1 usual, 2 on a screen of twice the density.
   virtual float content_scale() const = 0;
-  /// What has happened since the last call; sleeps up to `seconds` until something does.
+  /// The input since the last call; sleeps up to `seconds` until there is some.
   virtual std::vector<render::InputEvent> events(double seconds) = 0;
   /// Shows what was drawn.
   virtual void present() = 0;
@@ -37,7 +37,7 @@ class Surface {
   virtual void set_clipboard(const std::string& text) = 0;
 };
 
-/// A picture in memory, with input from whoever push()es it. Throws Error when there is no OpenGL.
+/// A picture in memory; push() gives it input. Throws Error when there is no OpenGL.
 class OffscreenSurface final : public Surface {
  public:
   struct Options {
@@ -49,7 +49,7 @@ class OffscreenSurface final : public Surface {
 
   /// From any thread.
   void push(render::InputEvent event);
-  /// What was drawn last. On a null context: black.
+  /// The last picture; black on a null context.
   render::Image picture();
 
   render::Context& context() override { return *context_; }

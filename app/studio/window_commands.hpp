@@ -1,4 +1,4 @@
-// The commands that are about the window alone: dialogs.
+// The commands of the window alone: dialogs.
 #pragma once
 
 #include "app/session/studio.hpp"
@@ -6,7 +6,7 @@
 
 namespace understudy::app {
 
-/// help.keys, dialog.open. The workspace outlives the commands' use.
+/// Adds help.keys and dialog.open. The workspace must outlive the commands.
 void add_window_commands(Commands& commands, ui::Workspace& workspace);
 
 }  // namespace understudy::app

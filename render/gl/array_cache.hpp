@@ -12,12 +12,12 @@ namespace understudy::render::gl {
 /// Uploads each shared array once. Use with one context, on its thread.
 class ArrayCache {
  public:
-  /// The buffer that holds this array's rows; uploads it unless that is so already.
+  /// The buffer with this array's rows; uploads it on first use.
   template <class T>
   const Buffer& of(const Shared<T>& array) {
     return find(array.pointer(), array->data(), static_cast<size_t>(array->size()) * sizeof(*array->data()));
   }
-  /// Call once for each picture: buffers that the last few did not use take in the next new arrays.
+  /// Call once per picture: buffers that the last few pictures did not use are reused for new arrays.
   void next_picture();
 
  private:

@@ -1,4 +1,4 @@
-// What the driver complains about (KHR_debug).
+// The driver's debug messages (KHR_debug).
 #pragma once
 
 #include "render/gl/functions.hpp"
@@ -7,7 +7,7 @@ namespace understudy::render::gl {
 
 enum class DebugMode {
   Off,
-  Log,   ///< errors become warnings in the log, each told once
+  Log,   ///< errors become warnings in the log, each once
   Fatal  ///< check_debug() throws the first error since the last check; what tests use
 };
 

@@ -1,5 +1,5 @@
-// Where one frame of the interface differs from the one before. Software OpenGL pays for every triangle, and
-// from frame to frame little but a playhead and a number changes.
+// Where a frame of the interface differs from the one before: software OpenGL pays for every triangle, and
+// often only a playhead and a number change.
 #pragma once
 
 #include <imgui.h>
@@ -11,7 +11,7 @@
 
 namespace understudy::ui {
 
-/// Adds a rectangle to a few, joined with another where that wastes little.
+/// Adds a rectangle to a short list, merged with another where that wastes little.
 void add_rect(std::vector<Rect>& rects, const Rect& rect);
 
 /// Keeps a copy of a frame's triangles and compares the next one with it.

@@ -1,4 +1,4 @@
-// Puts ImGui's triangles on the screen through the renderer's own GL functions.
+// Draws ImGui's triangles with the renderer's GL functions.
 #pragma once
 
 #include <imgui.h>
@@ -18,8 +18,8 @@ inline ImTextureID texture_id(unsigned gl_name) {
   return reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(gl_name));
 }
 
-/// Draws finished frames. Make, use and destroy it with one context current. Both ways of drawing throw Error
-/// where the context's complaints are fatal, and upload the atlas when its pixels are new.
+/// Draws finished frames. Make, use and destroy it with one context current. Both draw functions upload the
+/// atlas when its pixels are new, and throw Error where the context's messages are fatal.
 class DrawPass {
  public:
   DrawPass();

@@ -1,4 +1,4 @@
-// One interface: ImGui's context, the fonts and the theme, fed by input events and giving triangles.
+// One interface: ImGui's context, fonts and theme; input events go in, triangles come out.
 #pragma once
 
 #include <imgui.h>
@@ -23,7 +23,7 @@ struct FrameInput {
   ThemeKind theme = ThemeKind::Dark;
 };
 
-/// Where copied text goes. By default it stays inside the Gui.
+/// The clipboard. By default copied text stays inside the Gui.
 struct Clipboard {
   std::function<std::string()> get;
   std::function<void(const std::string&)> set;
@@ -38,8 +38,8 @@ class Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// Starts a frame with what happened since the last. Events that would hide each other in one frame (a
-  /// press and its release) are spread over several: see pending().
+  /// Starts a frame with the input since the last one. Spreads events that would hide each other (a press and
+  /// its release) over several frames: see pending().
   void begin_frame(const FrameInput& input, const std::vector<render::InputEvent>& events = {});
   /// Ends it. The triangles are valid until the next begin_frame.
   const ImDrawData& end_frame();

@@ -1,4 +1,4 @@
-// How the studio looks: two palettes and one set of measures.
+// The studio's look: two palettes and one set of measures.
 #pragma once
 
 #include <imgui.h>
@@ -9,7 +9,7 @@ namespace understudy::ui {
 
 enum class ThemeKind { Dark, Light };
 
-/// Every colour the studio uses. A panel names its meaning, never a number.
+/// Every colour the studio uses. Panels use these names, never numbers.
 struct Theme {
   ThemeKind kind = ThemeKind::Dark;
   ImVec4 backdrop;                             ///< behind and between the panels

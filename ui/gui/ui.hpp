@@ -1,4 +1,4 @@
-// What panels and widgets are handed besides their data: theme, fonts, named places and memory.
+// What panels and widgets get besides their data: theme, fonts, named places and memory.
 #pragma once
 
 #include <imgui.h>
@@ -19,13 +19,13 @@ struct Rect {
   float height() const { return max.y - min.y; }
   bool empty() const { return !(max.x > min.x && max.y > min.y); }
   bool contains(const ImVec2& p) const { return p.x >= min.x && p.x < max.x && p.y >= min.y && p.y < max.y; }
-  /// The place at shares of width and height; {0.5, 0.5} is the middle.
+  /// The point at shares of width and height; {0.5, 0.5} is the middle.
   ImVec2 at(float x, float y) const { return {min.x + x * width(), min.y + y * height()}; }
 };
 
 Rect intersection(const Rect& a, const Rect& b);
 
-/// The faces of one size of the interface; all from one atlas.
+/// The fonts of one size of the interface; all from one atlas.
 struct Fonts {
   ImFont* body = nullptr;
   ImFont* strong = nullptr;  ///< body size, semi-bold: headings
@@ -41,14 +41,14 @@ struct Mark {
   bool enabled = true;  ///< false: greyed out, a click does nothing
 };
 
-/// One per Gui. Widgets read its theme and fonts, give their items names that scripts, tests and the manual
-/// use ("timeline.play"), and keep here what must outlive a frame.
+/// One per Gui. Widgets read its theme and fonts, name their items for scripts, tests and the manual
+/// ("timeline.play"), and keep here what must outlive a frame.
 class Ui {
  public:
   const Theme& theme() const { return *theme_; }
   const Fonts& fonts() const { return fonts_; }
   float scale() const { return scale_; }
-  /// A length of the design (pixels at scale 1) in real pixels.
+  /// A length in pixels at scale 1, as real pixels.
   float px(float length) const { return length * scale_; }
 
   /// Names the item just made; the name must be unique in the frame (the last one wins).
@@ -62,11 +62,11 @@ class Ui {
   /// Scrolls to an item when it is next drawn.
   void reveal(const std::string& name) { reveal_ = name; }
 
-  /// Whether the dialog `name` may be open now: only one stands above the windows at a time, the others wait.
-  /// Ask in every frame; a dialog that no longer asks has gone. One inside another need not ask.
+  /// Whether the dialog `name` may be open now: only one is open at a time, the others wait. Call in every
+  /// frame while it is open. A dialog inside another need not call it.
   bool claim_dialog(const std::string& name);
 
-  /// What the widget `id` remembers between frames; T() at first.
+  /// The state of the widget `id` between frames; T() at first.
   template <class T>
   T& state(ImGuiID id) {
     std::any& kept = memory_[id];

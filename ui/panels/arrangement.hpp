@@ -1,17 +1,17 @@
-// Where the parts of the window are.
+// The layout of the window.
 #pragma once
 
 #include "ui/gui/ui.hpp"
 
 namespace understudy::ui {
 
-/// What there is to place. Sizes at scale 1.
+/// The parts to place. Sizes at scale 1.
 struct Parts {
   bool side = true, timeline = true, below = false;
   float side_width = 328, below_height = 150;
 };
 
-/// Pixels. Parts that are hidden, or for which there is no room, are empty.
+/// In pixels. Parts that are hidden or have no room are empty.
 struct Arrangement {
   Rect top, views, below, side, timeline, status;
   Rect side_edge;       ///< where the side panel's width is dragged
@@ -21,7 +21,7 @@ struct Arrangement {
 /// Whether a window of this width has the side panel over the views.
 bool is_narrow(float width, float scale);
 
-/// Fits any size: what matters least goes first.
+/// Fits any size: hides the least important parts first.
 Arrangement arrange(const ImVec2& display, float scale, const Parts& parts);
 
 }  // namespace understudy::ui

@@ -15,7 +15,7 @@ struct Binding {
   std::string label;  ///< "Save as"
 };
 
-/// All that are in force; the registry's win over those built in here.
+/// All bindings; the registry's win over those built in here.
 std::vector<Binding> bindings(const app::Commands& commands);
 
 /// The keys of a command with exactly these arguments; "" where there are none. Commands that ask for a file
@@ -23,14 +23,13 @@ std::vector<Binding> bindings(const app::Commands& commands);
 std::string keys_of(const app::Commands& commands, const std::string& command,
                     const app::Arguments& arguments = {});
 
-/// Whether "Ctrl+S" was pressed in this frame, with these modifiers and no others. False for keys that there
-/// are not.
+/// Whether "Ctrl+S" was pressed in this frame, with exactly these modifiers. False for unknown keys.
 bool pressed(const std::string& keys);
 
-/// Asks for what the keys pressed in this frame stand for, unless something is being typed or a dialog waits.
+/// Pushes the commands of the keys pressed in this frame, unless the user is typing or a dialog is open.
 void ask_for_keys(const app::Session& session, PanelContext& context);
 
-/// A command as a user means it: one that wants a path and has none opens the dialog that asks for it.
+/// Pushes a command, or opens the dialog that asks for its missing path.
 void ask_or_open(const app::Session& session, PanelContext& context, const std::string& command,
                  const app::Arguments& arguments = {});
 

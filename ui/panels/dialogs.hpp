@@ -1,4 +1,4 @@
-// What waits for an answer: errors, questions, notices, words about the program, another method to compare.
+// Dialogs and notices: errors, questions, about the program, another method to compare.
 // Marks: error.copy, error.close; unsaved.yes, .no, .cancel; recover.K, discard.K, recover.later; missing.K,
 // missing.leave; about.copy, about.close; compare.engine, compare.extractor, compare.offsets, compare.root,
 // compare.apply, compare.cancel; notice.0 the newest notice.
@@ -12,10 +12,10 @@
 
 namespace understudy::ui {
 
-/// The first error; false when there is none.
+/// Draws the first error; false when there is none.
 bool draw_error(const app::Session& session, PanelContext& context);
 
-/// What only the window can do about a question.
+/// The part of an answer that only the window can carry out.
 struct QuestionAnswer {
   bool save_as = false;  ///< the document has no file yet: ask for one, then save
   std::string look_for;  ///< MissingFiles: ask for the new place of this path
@@ -27,13 +27,13 @@ struct NoticesState {
   Notices shown;
   double newest = 0;  ///< Notice::until of the newest that was taken over
 };
-/// Outside any window, last.
+/// Call outside any window, last.
 void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state, const Rect& over);
 
-/// Program, versions, machine. False once it was closed.
+/// Program, versions, machine. False once closed.
 bool draw_about(PanelContext& context, const std::string& about);
 
-/// How the second take is to be made; empty at first: as the selected one.
+/// The method of the second take; empty at first: like the selected one.
 struct CompareState {
   std::optional<app::Method> method;
 };

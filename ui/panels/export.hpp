@@ -1,4 +1,4 @@
-// Saving what is not the document: animations, figures, pictures, video.
+// The export dialog: animations, figures, pictures, video.
 // Marks: export.format, export.take, export.rig, export.influences, export.morphs, export.reduce,
 // export.in_place, export.t_pose, export.keep_clips, export.all_takes, export.clip.TAKE, export.path,
 // export.browse, export.size, export.width, export.height, export.all, export.transparent, export.save,
@@ -21,7 +21,7 @@ struct ExportState {
   app::ExportChoice choice;   ///< of an animation, kept for the next one; its format is not used
   bool all_takes = false;     ///< of the selected take's target, as clips of one file
   std::set<size_t> left_out;  ///< of those
-  std::string path;           ///< empty: one is proposed
+  std::string path;           ///< empty: proposes one
   int width = 1920, height = 1080;
   bool all = true;           ///< all views; false: the active one
   bool transparent = false;  ///< pictures
@@ -32,20 +32,20 @@ struct ExportState {
 /// The format behind all of app::export_formats(): every figure of every frame as a table.
 int figures_format();
 
-/// Turns to another kind; the path is proposed anew.
+/// Switches to another kind and proposes a new path.
 void begin_export(ExportState& state, ExportKind kind, int format = 0);
 /// "dance.glb" beside the document, or in the folder used last.
 std::string proposed_path(const app::Session& session, const ExportState& state);
-/// The suffix of what is written; "" for a folder.
+/// The suffix of the file; "" for a folder.
 std::string suffix_of(const ExportState& state);
-/// Asks for the command that writes it.
+/// Pushes the command that writes it.
 void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state);
 
 struct ExportAnswer {
-  bool stays = true;    ///< false: done, or cancelled
+  bool stays = true;    ///< false: done or cancelled
   bool browse = false;  ///< the user wants to choose the path
 };
-/// A dialog; call every frame while it is to be seen.
+/// A dialog; call every frame while it is open.
 ExportAnswer draw_export(const app::Session& session, PanelContext& context, ExportState& state);
 
 }  // namespace understudy::ui

@@ -1,4 +1,4 @@
-// Files and folders chosen for commands. Marks: those of FileBrowser.
+// Chooses files and folders for commands. Marks: those of FileBrowser.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace understudy::ui {
 
-/// What a path is chosen for.
+/// The purpose of a path.
 enum class FilePurpose {
   Anything,       ///< open PATH
   Scan,           ///< source.open PATH
@@ -33,7 +33,7 @@ struct FilesState {
 void choose_file(const app::Session& session, FilesState& state, FilePurpose purpose,
                  const std::string& name = {});
 
-/// Call every frame while the browser is open: asks for the command. The path, where it is for an export.
+/// Call every frame while the browser is open: pushes the command. Returns the path of an export.
 std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state);
 
 }  // namespace understudy::ui

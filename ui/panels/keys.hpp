@@ -1,4 +1,4 @@
-// All keys and commands, to search: shown over everything by H or ?.
+// The searchable list of all keys and commands, opened by H or ?.
 // Marks: keys.search, keys.K (a command of the list), keys.close.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace understudy::ui {
 
-/// A dialog; call every frame while it is to be seen. False once it was closed. A chosen command that needs
-/// nothing more is asked for.
+/// A dialog; call every frame while it is open. False once closed. Pushes a chosen command that needs no
+/// arguments.
 bool draw_keys(const app::Session& session, PanelContext& context);
 
 }  // namespace understudy::ui

@@ -1,4 +1,4 @@
-// What the menus hold: plain data, so that tests can read every entry without opening it.
+// The menus as plain data, so that tests can read every entry without opening it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What every panel is handed besides the session, and the words it writes.
+// What every panel gets besides the session, and the words that panels share.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace understudy::ui {
 
-/// A panel reads the session, draws, and asks: what it pushes runs after the frame.
+/// A panel reads the session, draws, and pushes commands that run after the frame.
 struct PanelContext {
   Ui& ui;
   app::CommandQueue& queue;
@@ -39,20 +39,20 @@ std::string file_name(const std::string& path);
 /// With few digits and its unit: "12.4 mm".
 std::string figure(double value, const std::string& unit);
 
-/// The take that panels are about; null when there is none.
+/// The selected take; null when there is none.
 const app::Take* selected_take(const app::Session& session);
 const app::TakeState* selected_state(const app::Session& session);
 /// Whether anything is open.
 bool has_document(const app::Session& session);
-/// The frames that the timeline is as long as: those known to come, or those made.
+/// The timeline's length: the frames known to come, or those made.
 int known_frames(const app::Session& session);
 double frames_per_second(const app::Session& session);
 
-/// Whether a part of the window is to be seen: a panel (for those in the side panel: its tab), "side", or
+/// Whether a part of the window is shown: a panel (for those in the side panel: its tab), "side", or
 /// "side_over", the side panel where it lies over the views for want of room.
 bool panel_shown(const app::Session& session, const std::string& panel);
 
-/// The tools as they are offered.
+/// The tools in menus and bars.
 struct ToolChoice {
   app::Tool tool;
   const char* argument;  ///< of the command tool
@@ -61,7 +61,7 @@ struct ToolChoice {
 };
 extern const std::array<ToolChoice, 6> kTools;
 
-/// Whether a command makes sense now; menus and buttons are grey where it does not.
+/// Whether a command is possible now; menus and buttons are grey where it is not.
 bool possible(const app::Session& session, const std::string& command);
 
 }  // namespace understudy::ui

@@ -1,4 +1,4 @@
-// Rows of panels: what is shown comes from the session, what the user wants instead comes back.
+// Rows of panels: they show the session's value and return the user's new one.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace understudy::ui {
 
-// All return what the user chose, nothing while it stays as it is.
+// All return the user's choice, nothing while the value stays.
 
 struct RowText {
   std::string name;         ///< id and mark
@@ -21,18 +21,18 @@ std::optional<bool> toggle_row(Ui& ui, const RowText& text, bool on);
 /// A few choices beside each other, or a list where there are many.
 std::optional<int> choice_row(Ui& ui, const RowText& text, const std::vector<std::string>& choices,
                               int chosen);
-/// Changes with every movement of the mouse: for what follows at once.
+/// Changes with every movement of the mouse: for values that take effect at once.
 std::optional<float> number_row(Ui& ui, const RowText& text, float value, const NumberOptions& options);
-/// Changes on Enter or when the field is left: for what takes work.
+/// Changes on Enter or when the field loses focus: for values that cost work.
 std::optional<std::string> text_row(Ui& ui, const RowText& text, const std::string& value,
                                     const std::string& hint = {});
-/// As text_row; what is no number is forgotten.
+/// As text_row; ignores text that is not a number.
 std::optional<double> typed_number_row(Ui& ui, const RowText& text, double value, int decimals = 2);
 
 /// The field alone, over the width that is left.
 std::optional<std::string> committed_text(Ui& ui, const std::string& name, const std::string& value,
                                           const std::string& hint = {});
-/// A number at the beginning of the text, units may follow; none where there is none.
+/// The number at the beginning of the text, units may follow; none without one.
 std::optional<double> parse_number(const std::string& text);
 
 /// A button over a share of the width that is left, for several beside each other: `share` of 1 / count.

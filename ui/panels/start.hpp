@@ -1,4 +1,4 @@
-// The start screen, where the views will be: samples, recent documents, what can be dropped.
+// The start screen in place of the views: samples, recent documents, what can be dropped.
 // Marks: start.sample.K, start.recent.K (documents), start.recent_scan.K, start.recent_target.K,
 // start.open_scan, start.open_target, start.open_document.
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace understudy::ui {
 
-/// Something to try at once.
+/// A sample to try.
 struct SampleCard {
   std::string title, caption;  ///< "A walk", "3D scans of a person, 60 frames"
   app::Arguments paths;        ///< of the command open

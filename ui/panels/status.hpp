@@ -1,4 +1,4 @@
-// The line at the bottom: what works, how far it is, what was last told, frames per second.
+// The status line: running jobs and their progress, the last message, frames per second.
 // Marks: status.job (with status.job.cancel), status.more_jobs, status.message (opens the log),
 // status.document, status.rate.
 #pragma once

@@ -10,7 +10,7 @@
 
 namespace understudy::ui {
 
-/// What takes time to find and changes rarely.
+/// Values that are costly to find and change rarely.
 struct TimelineState {
   int64_t generation = -1;  ///< of the source that the rest is about
   bool looked = false;
@@ -19,7 +19,7 @@ struct TimelineState {
   std::vector<int> bad_numbers;
   std::vector<float> confidence;  ///< of the source, a value a frame
 
-  /// Brings it up to date with the session.
+  /// Updates it from the session.
   void follow(const app::Session& session);
   /// Why a frame is bad; "" where it is not.
   std::string why(int frame) const;

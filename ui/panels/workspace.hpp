@@ -1,4 +1,4 @@
-// The window's content: lays the panels out around the views, and keeps what they remember.
+// The window's content: lays out the panels around the views and shows the dialogs.
 // Marks of its own: side.tab (.K: the K-th panel of the side), side.edge, views.
 #pragma once
 
@@ -14,16 +14,16 @@
 
 namespace understudy::ui {
 
-/// What the window gets from outside.
+/// Services from outside the window.
 struct WorkspaceServices {
   /// Draws the views inside the current window, which covers this place.
   std::function<void(ImVec2 at, ImVec2 size)> draw_views;
   std::vector<SampleCard> samples;
-  std::function<std::string()> about;  ///< versions and machine, asked for when the words are first shown
+  std::function<std::string()> about;  ///< versions and machine, called when first shown
 };
 
-/// One a window. Draw it between Gui::begin_frame and end_frame. It writes nothing: what is to happen stands
-/// in the context's queue.
+/// One per window. Draw it between Gui::begin_frame and end_frame. Changes nothing itself: pushes commands
+/// into the context's queue.
 class Workspace {
  public:
   explicit Workspace(WorkspaceServices services = {}) : services_(std::move(services)) {}

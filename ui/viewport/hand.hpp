@@ -1,5 +1,4 @@
-// The tools: what the left button does in a pane, with a preview of it, and the edit that is asked for in the
-// end.
+// The tools: what the left button does in a pane, the preview while dragging, and the final edit command.
 #pragma once
 
 #include <memory>
@@ -13,7 +12,7 @@
 
 namespace understudy::ui {
 
-/// A pane as a tool sees it.
+/// What a tool needs from a pane.
 struct HandPlace {
   const app::Session& session;
   const PaneContent& pane;
@@ -25,18 +24,18 @@ struct HandPlace {
 /// One for all panes: there is one mouse.
 class Hand {
  public:
-  /// What the pointer does in this frame; finished edits are asked for in `queue`. True when the left button
-  /// is the tool's here, false when the camera may have it.
+  /// Handles the pointer in this frame; pushes finished edits into `queue`. True when the tool uses the left
+  /// button here, false when the camera may.
   bool work(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
-  /// Drops what is under way (Escape, another tool).
+  /// Cancels the current drag (Escape, another tool).
   void let_go();
   bool busy() const { return grip_ != Grip::None; }
   /// The pane that the pointer was in last, or that a drag began in.
   const PaneContent& pane() const { return pane_; }
 
-  /// What is to be shown in the pane of what is under way, or has just been asked for.
+  /// The preview, in this pane, of the current drag or of the edit just pushed.
   EditPreview preview(const HandPlace& place) const;
-  /// The first take's picture with the bone turned; null where it is as it was.
+  /// The first take's picture with the bone turned; null without a turned bone.
   std::shared_ptr<const app::PosedPicture> turned_picture(const HandPlace& place) const;
 
   /// The joint under the pointer in a pane, -1 for none.
@@ -46,7 +45,7 @@ class Hand {
     Vec3 position, normal;
   };
   std::optional<BrushPlace> brush(const PaneContent& pane) const;
-  /// A word beside the pointer: what a click would do; often empty.
+  /// A tip beside the pointer: what a click would do; often empty.
   const std::string& tip() const { return tip_; }
 
  private:

@@ -1,4 +1,4 @@
-// What is written over a pane's picture: its name, the legend, names of joints, warnings.
+// The text over a pane's picture: its name, the legend, names of joints, warnings.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct Overlay {
   Rect rect;  ///< of the pane; all is kept inside
   std::string title, subtitle;
   bool title_right = false;  ///< at the top right: the right half of a wipe
-  std::string hint;          ///< in the middle, where nothing is to be seen
+  std::string hint;          ///< in the middle of an empty pane
   std::string warning;       ///< why the frame is flagged; empty: it is good
   Legend legend;
   struct Label {
@@ -30,7 +30,7 @@ struct Overlay {
 /// Draws into the current window.
 void draw_overlay(Ui& ui, const Overlay& overlay);
 
-/// The labels of a pane's joints: all of them where the layer asks for it, hovered and selected ones always.
+/// The labels of a pane's joints: all where the layer says so, hovered and selected ones always.
 std::vector<Overlay::Label> joint_labels(const PaneView& view, const Joints& joints, bool all, int hovered,
                                          int selected);
 

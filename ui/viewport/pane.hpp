@@ -1,4 +1,4 @@
-// One pane: what it shows, its picture on the graphics card, and when that must be drawn again.
+// One pane: what it shows, its picture on the graphics card, and when to draw it again.
 #pragma once
 
 #include "render/gl/object.hpp"
@@ -12,9 +12,9 @@ namespace understudy::ui {
 /// A picture that is drawn into and shown by ImGui.
 class PaneCanvas {
  public:
-  /// Whether it shows this already, as good as it was asked for then.
+  /// Whether it already shows this in at least this quality.
   bool shows(const render::Scene& scene, const render::Camera& camera, render::PixelSize size) const;
-  /// `fine`: as good as the settings say; else a sketch, for while things move.
+  /// `fine`: in the quality of the settings; else a quick draft while things move.
   void draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
             render::PixelSize size, bool fine);
   bool fine() const { return fine_; }

@@ -1,4 +1,4 @@
-// Gets what a pane shows from the cache, and keeps what it showed until the next is there.
+// Gets a pane's frames from the cache and keeps the last ones until the next are ready.
 #pragma once
 
 #include <deque>
@@ -10,13 +10,13 @@
 
 namespace understudy::ui {
 
-/// All that a pane needs of a frame, asked for at once; none while a part is still being made. Ghosts are
-/// not waited for: those that are there.
+/// Everything that a pane needs for a frame, requested at once; none while a part is being made. Does not
+/// wait for ghosts: takes those that are ready.
 std::optional<PanePictures> pictures_of(const app::Session& session, app::FrameCache& cache,
                                         const PaneContent& pane, int frame);
 
-/// The look of a pane's first target where that stands in its T-pose, or as it came, instead of a frame; none
-/// where it does not.
+/// The look of a pane's first target where the pane shows its T-pose, or the mesh as loaded, instead of a
+/// frame; else none.
 std::optional<std::shared_ptr<const TargetLook>> look_of_standing(const app::Session& session,
                                                                   TargetLooks& looks,
                                                                   const PaneContent& pane);
@@ -24,7 +24,7 @@ std::optional<std::shared_ptr<const TargetLook>> look_of_standing(const app::Ses
 /// One for each pane.
 class PictureKeeper {
  public:
-  /// What to show now: of the frame shown, or of the newest frame that was asked for and is there.
+  /// What to show now: the current frame, or the newest requested frame that is ready.
   const PanePictures& update(const app::Session& session, app::FrameCache& cache, TargetLooks& looks,
                              const PaneContent& pane);
   const PanePictures& pictures() const { return pictures_; }
@@ -41,7 +41,7 @@ class PictureKeeper {
   bool waiting_ = false;
 };
 
-/// Asks for the frames that playback comes to next, and for the neighbours of one that stands.
+/// Requests the next frames of playback, or the neighbours of a still frame.
 void prefetch(const app::Session& session, app::FrameCache& cache, const PaneContent& pane);
 
 }  // namespace understudy::ui

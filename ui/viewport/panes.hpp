@@ -1,4 +1,4 @@
-// The panes of the views: what each one shows, and from where.
+// The panes of the views: what each one shows, and from which camera.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace understudy::ui {
 
-/// What one picture shows. Numbers as in View::active_pane: 0 the source, k the take k - 1.
+/// The content of one picture. Numbers as in View::active_pane: 0 the source, k the take k - 1.
 struct PaneContent {
   bool source = false;
   std::vector<int> takes;  ///< indices of takes, the first is the one that tools and hovering are about
-  int number = 0;          ///< what clicking it makes active
+  int number = 0;          ///< of View::active_pane after a click on it
   bool empty() const { return !source && takes.empty(); }
   bool operator==(const PaneContent& o) const {
     return source == o.source && takes == o.takes && number == o.number;
@@ -30,18 +30,17 @@ PaneContent pane_of(int number);
 
 /// "dance", or "adult, paper" with the method where two takes are of one target.
 std::string pane_title(const app::Session& session, const PaneContent& pane);
-/// Why nothing is to be seen yet, in words for the user; empty where something is.
+/// Why the pane is empty, for the user; empty when it is not.
 std::string pane_hint(const app::Session& session, const PaneContent& pane);
 
-/// The frame a pane shows: the shown frame, or its own last where it has not come that far; -1 without any.
+/// The frame a pane shows: the current frame, or the pane's last one if that is earlier; -1 without any.
 int pane_frame(const app::Session& session, const PaneContent& pane);
 /// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited, and before
 /// there is a frame.
 bool shows_rest(const app::Session& session, const PaneContent& pane);
-/// Whether a pane shows the character of its take as it came: until it is bound.
+/// Whether a pane shows its take's character as loaded, until it is bound.
 bool shows_as_loaded(const app::Session& session, const PaneContent& pane);
-/// What the surface of a take is drawn with: its target, or until that is there the character as it came;
-/// null before that.
+/// The mesh drawn for a take: its target, or before that the character as loaded; null before both.
 std::shared_ptr<const Target> shown_target(const app::TakeState& take);
 /// The joints of the pane's first person in a frame (extracted or performed); null where there are none.
 const Joints* pane_joints(const app::Session& session, const PaneContent& pane, int frame);

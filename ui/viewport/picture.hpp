@@ -1,4 +1,4 @@
-// Pictures of the views for files and videos: any size, the best quality, nothing missing.
+// Pictures of the views for files and videos, in any size and the best quality; waits for every part.
 #pragma once
 
 #include "app/session/frame_cache.hpp"
@@ -12,7 +12,7 @@ namespace understudy::ui {
 struct PictureOptions {
   int pane = -1;  ///< as View::active_pane; -1: all of them, as the layout has them
   render::PixelSize size{1600, 1000};
-  bool transparent = false;  ///< nothing behind what is shown
+  bool transparent = false;  ///< without the background
   bool legend = true;        ///< what the colours mean, at the bottom left
 };
 
@@ -24,8 +24,8 @@ class PictureMaker {
   ~PictureMaker();
   PictureMaker(PictureMaker&&) noexcept;
 
-  /// Waits for the cache until every part is there. Without a frame to show: the empty stage. Throws Error
-  /// for a size that is none or a pane that is not there.
+  /// Waits for the cache until every part is ready. Without frames: the empty stage. Throws Error for an
+  /// impossible size or a pane that does not exist.
   render::Image picture(const app::Session& session, app::FrameCache& cache,
                         const PictureOptions& options = {});
 

@@ -1,4 +1,4 @@
-// From what the session holds and what the cache has made to what the renderer draws. No GL, no ImGui calls.
+// Builds the renderer's scene from the session and the cache's frames. No GL, no ImGui calls.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace understudy::ui {
 
-/// What the hand is doing just now, shown before it is asked for.
+/// The edit under the mouse, shown before its command runs.
 struct EditPreview {
   std::optional<Joints> source_joints;  ///< in place of the extracted ones
   std::optional<Joints> take_joints;    ///< in place of those of the pane's first take (or of its T-pose)
@@ -22,7 +22,7 @@ struct EditPreview {
   std::optional<render::GizmoView> gizmo;
 };
 
-/// Colours once made, kept for as long as they stay the same: one for each pane.
+/// Colours kept while their inputs stay the same; one for each pane.
 struct ColourMemory {
   struct Made {
     std::vector<const void*> from;
@@ -43,7 +43,7 @@ struct SceneInput {
   ThemeKind theme = ThemeKind::Dark;
 };
 
-/// A pane as it is to be drawn, and what its colours mean.
+/// A pane's scene and the meaning of its colours.
 struct PaneScene {
   render::Scene scene;
   Legend legend;

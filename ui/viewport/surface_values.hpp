@@ -1,4 +1,4 @@
-// What the colours of a surface mean: a figure for each vertex, and the words beside its scale.
+// The values behind the colours of a surface: one for each vertex, with their legend.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace understudy::ui {
 
-/// What one pane shows as far as it has been made; null is not there.
+/// The frames that one pane shows; null where not made yet.
 struct PanePictures {
   int frame = -1;
   std::shared_ptr<const app::ScanPicture> scan;
@@ -36,7 +36,7 @@ struct Legend {
     Vec3 color;
   };
   std::vector<Category> categories;  ///< then there is no scale
-  std::string missing;               ///< why there is nothing to show; empty: there is
+  std::string missing;               ///< why there is nothing to show; empty when there is
 };
 
 /// A surface's figures, in the legend's unit.
@@ -45,7 +45,7 @@ struct SurfaceValues {
   std::shared_ptr<const Eigen::VectorXf> values;  ///< [V]; null: plain, categories, or missing
 };
 
-/// A legend's colour at a share of its scale, 0..1.
+/// A legend's colour at `share` of its scale, 0..1.
 Vec3 scale_color(Legend::Scale scale, float share);
 
 /// The colouring that a take is shown with: the one chosen, or the painted joint's weights while painting.

@@ -1,4 +1,4 @@
-// What of a target's looks does not change with its pose: made once, in the background.
+// The parts of a target's look that do not depend on its pose: made once, in the background.
 #pragma once
 
 #include <future>
@@ -12,10 +12,10 @@ namespace understudy::ui {
 
 struct TargetLook {
   render::SharedValues ambient;  ///< light from all around, in the T-pose; empty for a cloud
-  bool closed = false;           ///< its inside is never seen
+  bool closed = false;           ///< its inside is never visible
   float spacing = 0;             ///< of a cloud's points, metres
   app::PosedPicture rest;        ///< the T-pose as a picture
-  bool shaded = false;           ///< `ambient` was asked for, too
+  bool shaded = false;           ///< `ambient` is made, too
 };
 
 /// Whether every edge has a face on either side, so that the inside cannot be seen.
@@ -28,19 +28,19 @@ TargetLook look_of(const Target& target);
 /// Whether a picture of one can be shown as the other: vertices of one number and order, the same faces.
 bool same_surface(const Target* a, const Target* b);
 
-/// The looks of the targets shown, each made on a thread of its own. Use from one thread.
+/// The looks of the shown targets, each made in a thread of its own. Use from one thread.
 class TargetLooks {
  public:
   /// Null at first, then the plain one, then all of it. A target of which only the joints are others has the
   /// look that it had.
   std::shared_ptr<const TargetLook> of(const std::shared_ptr<const Target>& target);
-  /// The same of what is shown for a moment only: it stays plain.
+  /// The same for a mesh shown only briefly: it stays plain.
   std::shared_ptr<const TargetLook> plain_of(const std::shared_ptr<const Target>& target);
-  /// Lets go of all but those that are still being made.
+  /// Drops all but those that are still being made.
   void forget();
-  /// Waits for all that were asked for.
+  /// Waits for all requested looks.
   void wait();
-  /// Grows with every look that has come: then there is something new to draw.
+  /// Grows with every finished look: then there is something new to draw.
   int64_t arrived() const;
 
  private:

@@ -24,13 +24,13 @@ class Views {
   /// context's complaints are fatal.
   void draw(const app::Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui);
 
-  /// Lets go of all that was shown: the document is gone.
+  /// Drops everything shown: the document was closed.
   void forget();
-  /// Whether something that should be seen is still being made, or was drawn quickly only: draw again soon.
+  /// Whether something is still being made or was drawn as a draft only: draw again soon.
   bool waiting() const;
   /// Whether the surface of this take was in the frame drawn last, as it came, in T-pose or performing.
   bool shows_take(int k) const;
-  /// Grows when the background has made something to be drawn that the session knows nothing of.
+  /// Grows when the background has made something to draw that is not part of the session.
   int64_t arrived() const;
   /// Pictures of panes drawn since the start; for tests and figures.
   int64_t drawn() const;

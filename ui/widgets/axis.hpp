@@ -1,4 +1,4 @@
-// What plots and the timeline share: arrays of values, ticks, and curves reduced to the pixels there are.
+// Shared by plots and the timeline: arrays of values, ticks, and curves reduced to the available pixels.
 #pragma once
 
 #include <cmath>
@@ -36,7 +36,7 @@ std::vector<Range> reduce(const Values& values, double first, double last, int c
 
 /// Round numbers (1, 2, 5 times a power of ten) in low..high, at most `most` of them.
 std::vector<double> round_ticks(double low, double high, int most);
-/// As short as the step between ticks allows: "0.25", "40", "1.5k".
+/// A tick's label, as short as the step allows: "0.25", "40", "1.5k".
 std::string tick_label(double value, double step);
 /// A value for reading: three significant digits or so, "–" for NaN.
 std::string short_number(double value);

@@ -10,8 +10,8 @@
 
 namespace understudy::ui {
 
-/// Explains the last item after a short rest of the pointer, with its keys: "Play  Space". Works on what is
-/// greyed out, too.
+/// Explains the last item when the pointer rests on it, with its keys: "Play  Space". Works on greyed-out
+/// items, too.
 void tooltip(Ui& ui, const std::string& text, const std::string& shortcut = {});
 
 struct IconButtonOptions {
@@ -25,7 +25,7 @@ bool icon_button(Ui& ui, const std::string& name, Icon icon, const IconButtonOpt
 
 enum class ButtonLook {
   Plain,
-  Main,    ///< the one that most want here
+  Main,    ///< the usual choice
   Danger,  ///< destroys something
   Quiet    ///< no box until the pointer is over it
 };
@@ -37,7 +37,7 @@ struct ButtonOptions {
 };
 bool button(Ui& ui, const std::string& name, const std::string& label, const ButtonOptions& options = {});
 
-/// A switch with its words to the right. True when it changed.
+/// A switch with its label to the right. True when it changed.
 bool toggle(Ui& ui, const std::string& name, const std::string& label, bool& on);
 
 /// One of a few, beside each other, over the width that is left. True when the choice changed. Choice i is
@@ -59,12 +59,12 @@ struct NumberOptions {
 /// the reset is marked NAME.reset.
 bool number(Ui& ui, const std::string& name, float& value, const NumberOptions& options = {});
 
-/// A line to type in, with grey words while it is empty. True when it changed.
+/// A text field, with a grey hint while it is empty. True when it changed.
 bool text_field(Ui& ui, const std::string& name, std::string& text, const std::string& hint = {});
 
 /// Begins a row: the label on the left, what follows fills the right. `label_width` pixels, 0: 40 %.
 void row(Ui& ui, const std::string& label, const std::string& explanation = {}, float label_width = 0);
-/// A row of words: label and value. The value is cut with "…" where it does not fit, whole in a tooltip.
+/// A row of text: label and value. The value is cut with "…" where it does not fit, whole in a tooltip.
 void row_text(Ui& ui, const std::string& label, const std::string& value);
 
 /// A header that opens and closes what follows; true when open. Remembered by the Ui.
@@ -74,7 +74,7 @@ bool section(Ui& ui, const std::string& name, const std::string& title, bool ope
 void text_cut(Ui& ui, const std::string& text, float width = 0);
 /// The text cut so that it takes at most `width` pixels in the current font.
 std::string cut_to(const std::string& text, float width);
-/// Small grey words, wrapped.
+/// Small grey text, wrapped.
 void hint(Ui& ui, const std::string& text);
 
 struct ProgressOptions {

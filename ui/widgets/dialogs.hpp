@@ -1,4 +1,4 @@
-// Notices that pass, questions that wait, and errors.
+// Notices, questions and error dialogs.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace understudy::ui {
 
 enum class NoticeKind { Info, Good, Warning };
 
-/// Sentences that appear for some seconds, three at most: "Saved walk.understudy". Plain data; the
+/// Sentences shown for some seconds, three at most: "Saved walk.understudy". Plain data; the
 /// application keeps one and draws it last.
 class Notices {
  public:
@@ -39,7 +39,7 @@ struct QuestionWords {
   std::string cancel = "Cancel";  ///< none when empty
   bool dangerous = false;         ///< yes destroys something: it is red, and Enter does not choose it
 };
-/// Call every frame from when the question is to be asked until it answers; outside any window. Enter is yes,
+/// Call every frame until it answers, outside any window. Enter is yes,
 /// Escape is cancel. Buttons are marked NAME.yes, NAME.no, NAME.cancel.
 Answer ask(Ui& ui, const std::string& name, const QuestionWords& question);
 

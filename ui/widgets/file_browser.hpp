@@ -1,4 +1,4 @@
-// The window in which files and folders are chosen.
+// The window for choosing files and folders.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace understudy::ui {
 struct FileFilter {
   std::string label;
   std::vector<std::string> extensions;  ///< lower case, no dot; none: every file
-  bool folders = false;                 ///< a folder of scan frames, or a case
+  bool folders = false;                 ///< a folder of scan frames, or a case, may be chosen
 };
 FileFilter scan_filter();
 FileFilter target_filter();

@@ -1,4 +1,4 @@
-// What a folder holds, found out by a thread of its own so that nobody waits for a disk.
+// Lists a folder in a thread of its own, so that the interface never waits for a disk.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct FolderContents {
 class FolderListing {
  public:
   explicit FolderListing(const std::string& folder);
-  ~FolderListing();  ///< forgets the thread, which then stops by itself
+  ~FolderListing();  ///< detaches the thread, which then stops by itself
   FolderListing(const FolderListing&) = delete;
   FolderListing& operator=(const FolderListing&) = delete;
 

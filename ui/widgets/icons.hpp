@@ -26,7 +26,7 @@ std::string_view icon_name(Icon icon);
 /// Draws it in a square of `size` pixels whose top left corner is `at`.
 void draw_icon(ImDrawList& list, Icon icon, const ImVec2& at, float size, ImU32 color);
 
-/// An item as high as a line of text that shows the icon; for beside words.
+/// An item as high as a line of text that shows the icon; for use beside text.
 void icon_label(Ui& ui, Icon icon, const ImVec4& color);
 
 }  // namespace understudy::ui

@@ -1,4 +1,4 @@
-// Lists to search and tables to read.
+// Searchable lists and tables.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ struct ListItem {
   std::string text;
   std::string note;  ///< grey, on the right
 };
-/// A list with a line to search in above it. Returns the item clicked or chosen by arrows and Enter, -1 when
-/// none was. `height` pixels, 0: what is left. The line is marked NAME.search, item i NAME.i.
+/// A list with a search field above it. Returns the item clicked or chosen by arrows and Enter, -1 for none.
+/// `height` pixels, 0: what is left. The line is marked NAME.search, item i NAME.i.
 int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>& items, int selected,
                     float height = 0);
 /// Whether every word of `search` occurs in the text, in any case.
@@ -22,9 +22,9 @@ bool matches(const std::string& text, const std::string& search);
 struct Column {
   std::string title;
   float width = 0;      ///< at scale 1; 0: shares what is left
-  bool number = false;  ///< its cells stand to the right
+  bool number = false;  ///< aligns its cells to the right
 };
-/// A table with a header that stays. Draw rows only when it says it is open.
+/// A table with a fixed header. Draw rows only while open() is true.
 class Table {
  public:
   /// `height` pixels; 0: as its rows want.
@@ -36,7 +36,7 @@ class Table {
 
   /// Begins a row, to be clicked when `selectable`; true when it was. Marked NAME.ROW.
   bool row(bool selected = false, bool selectable = true);
-  /// The next cell of the row. Text is cut to fit; numbers stand to the right.
+  /// The next cell of the row. Text is cut to fit; numbers align to the right.
   void cell(const std::string& text);
   void cell(double value, const char* format = "%.1f");
 

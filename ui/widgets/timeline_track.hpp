@@ -1,4 +1,4 @@
-// The timeline's track: what has been processed, where the playhead is, and what was noticed on the way.
+// The timeline's track: processed frames, the playhead, bad frames, loop marks and a curve.
 #pragma once
 
 #include <functional>
@@ -25,7 +25,7 @@ struct TrackData {
   std::vector<int> bad_frames;
   Values curve;                              ///< drawn inside, one value a frame
   std::string curve_label;                   ///< with its unit
-  std::function<std::string(int)> describe;  ///< more words for a frame under the pointer
+  std::function<std::string(int)> describe;  ///< extra text for the frame under the pointer
   bool follow = false;                       ///< keep the playhead in view while it plays
   float height = 74;                         ///< at scale 1
 };
