@@ -33,6 +33,7 @@ struct Running {
   std::optional<Evaluator> evaluator;
   Latency latency;
   int64_t frames = 0, flagged = 0;
+  log::Series repeats;  // of the last pose
 };
 
 /// Moments and columns of a sheet that shows the extraction alone.
@@ -54,9 +55,9 @@ render::SheetMoment moment_of(const PerformedFrame& frame, int64_t index, double
   return moment;
 }
 
-void tell_flagged(const PerformedFrame& frame) {
+void tell_flagged(const PerformedFrame& frame, log::Series& repeats) {
   const std::string& why = frame.scan.usable ? frame.result.reason : frame.scan.problem;
-  log::warn("frame " + std::to_string(frame.scan.number) + " repeats the last pose: " + why);
+  repeats.warn("frame " + std::to_string(frame.scan.number) + " repeats the last pose: " + why);
 }
 
 /// One line for each frame as it is finished, for programs that follow along.
@@ -72,7 +73,7 @@ void take_frame(Running& job, const PerformedFrame& frame, bool live) {
   job.latency.add(frame.times);
   if (frame.result.flagged) {
     ++job.flagged;
-    tell_flagged(frame);
+    tell_flagged(frame, job.repeats);
   }
   if (job.output) job.output->push({frame.result.pose, frame.source_joints, &frame.result.vertices});
   if (job.moments && job.moments->wanted(job.frames))
@@ -123,6 +124,7 @@ Running start(const JobOptions& options) {
 }
 
 void finish(const JobOptions& options, Running& job) {
+  job.repeats.finish();
   if (job.output) log::info(options.out + ": " + sentence(job.output->finish()));
   if (job.evaluator) write_json(options.report, report_of(options, job));
   const std::string title =

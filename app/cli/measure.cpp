@@ -45,6 +45,7 @@ Measured measured(const MeasureOptions& options) {
   RecentJoints recent;
   JointFilter filter;
   float waited_s = 0;
+  log::Series problems;
   while (const auto frame = source->next()) {
     check_interrupt("after " + std::to_string(result.frames) + " frames");
     ++result.frames;
@@ -57,8 +58,9 @@ Measured measured(const MeasureOptions& options) {
       waited_s = 0;
     });
     result.flagged += !problem.empty();
-    if (!problem.empty()) log::warn("frame " + std::to_string(frame->number) + ": " + problem);
+    if (!problem.empty()) problems.warn("frame " + std::to_string(frame->number) + ": " + problem);
   }
+  problems.finish();
   US_CHECK(result.frames > result.flagged, options.source.path, ": no frame in it could be used");
   return result;
 }

@@ -39,9 +39,6 @@ class ScanFiles final : public Source {
         import_(options.import),
         quiet_(options.quiet) {
     if (options.quiet) return;
-    for (const FrameGap& gap : scans_.gaps())
-      log::warn(options.path + ": frames " + std::to_string(gap.first) + " to " + std::to_string(gap.last) +
-                " are missing");
     log::info(options.path + ": " + in_words(fps()) + (options.fps > 0 ? "" : " assumed (--fps changes it)"));
   }
 

@@ -4,8 +4,12 @@
 #include <mutex>
 #include <set>
 
+#include "retarget/base/text.hpp"
+
 namespace understudy::log {
 namespace {
+
+constexpr int64_t kToldOfASeries = 10;
 
 void to_stderr(Level level, const std::string& message) {
   std::fprintf(stderr, "%s%s\n", level == Level::Warning ? "warning: " : "", message.c_str());
@@ -49,6 +53,15 @@ void warn_once(const std::string& message) {
     if (!state().told.insert(message).second) return;
   }
   warn(message);
+}
+
+void Series::warn(const std::string& message) {
+  if (++count_ <= kToldOfASeries) log::warn(message);
+}
+
+void Series::finish() {
+  if (count_ > kToldOfASeries) log::warn("and " + grouped(count_ - kToldOfASeries) + " more of these");
+  count_ = 0;
 }
 
 }  // namespace understudy::log

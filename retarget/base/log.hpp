@@ -1,6 +1,7 @@
 // Messages for people: one sink, stderr by default, replaced by the window's console.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -15,5 +16,16 @@ void info(const std::string& message);
 void warn(const std::string& message);
 /// The same message is told once per process only.
 void warn_once(const std::string& message);
+
+/// Warnings of one kind, of which there may be one a frame: ten are told, the others are summed up.
+class Series {
+ public:
+  void warn(const std::string& message);
+  /// "and 99,990 more of these"; nothing where all were told.
+  void finish();
+
+ private:
+  int64_t count_ = 0;
+};
 
 }  // namespace understudy::log

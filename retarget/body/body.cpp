@@ -16,17 +16,18 @@ std::vector<int> folded_joints(const NpyArray& tree, const std::string& path) {
   US_CHECK(tree.shape.size() == 2 && tree.shape[0] == 2 && tree.shape[1] >= kJointCount, path,
            ": kintree_table must be 2 x joints, at least ", kJointCount);
   const int64_t joints = tree.shape[1];
+  const IntegerMatrix parents = tree.integers(joints, path);
   std::vector<int> owner(joints);
   for (int64_t j = 0; j < joints; ++j) {
-    const float parent = tree.values[j];
+    const int64_t parent = parents(0, j);
     if (j < kJointCount) {
       owner[j] = j;
-      US_CHECK(j == 0 || parent == static_cast<float>(kParents[j]), path, ": joint ", j, " hangs on joint ",
-               parent, ", in SMPL's order it hangs on ", kParents[j]);
+      US_CHECK(j == 0 || parent == kParents[j], path, ": joint ", j, " hangs on joint ", parent,
+               ", in SMPL's order it hangs on ", kParents[j]);
       continue;
     }
-    US_CHECK(parent >= 0 && parent < static_cast<float>(j), path, ": joint ", j, " comes before its parent");
-    owner[j] = owner[static_cast<int>(parent)];
+    US_CHECK(parent >= 0 && parent < j, path, ": joint ", j, " comes before its parent");
+    owner[j] = owner[parent];
   }
   return owner;
 }
@@ -42,10 +43,9 @@ RowMatrix folded_weights(const NpyArray& array, const std::vector<int>& owner, i
 }
 
 Faces faces_from(const NpyArray& array, int64_t vertices, const std::string& path) {
-  const RowMatrix numbers = array.matrix(3, path + ": f");
-  for (int64_t i = 0; i < numbers.size(); ++i)
-    US_CHECK(numbers.data()[i] >= 0 && numbers.data()[i] < static_cast<float>(vertices), path,
-             ": a face names a vertex that is not there");
+  const IntegerMatrix numbers = array.integers(3, path + ": f");
+  US_CHECK((numbers.array() >= 0 && numbers.array() < vertices).all(), path,
+           ": a face names a vertex that is not there");
   return numbers.cast<int>();
 }
 

@@ -40,8 +40,8 @@ DataSplit split_of(const fs::path& root, const json& all, const std::string& nam
 }
 
 /// Whether all are numbers from 0 to below `count`.
-bool all_below(const RowMatrix& values, Eigen::Index count) {
-  return values.allFinite() && (values.array() >= 0 && values.array() < static_cast<float>(count)).all();
+bool all_below(const IntegerMatrix& values, Eigen::Index count) {
+  return (values.array() >= 0 && values.array() < count).all();
 }
 
 }  // namespace
@@ -65,18 +65,18 @@ ShapedBody read_dressed_body(const std::string& path) {
   const RowMatrix joints = require(npz, "joints", path).matrix(3, path);
   US_CHECK(joints.rows() == kJointCount, path, ": ", joints.rows(), " joints, not ", kJointCount);
   body.joints = joints;
-  const RowMatrix owner = require(npz, "weight_joint", path).matrix(4, path);
+  const IntegerMatrix owner = require(npz, "weight_joint", path).integers(4, path);
   const RowMatrix weight = require(npz, "weight", path).matrix(4, path);
   const Eigen::Index count = body.vertices.rows();
   US_CHECK(owner.rows() == count && weight.rows() == count, path, ": weights do not fit ", count,
            " vertices");
-  const RowMatrix corners = require(npz, "faces", path).matrix(3, path);
+  const IntegerMatrix corners = require(npz, "faces", path).integers(3, path);
   US_CHECK(all_below(corners, count), path, ": a face names a vertex that is not there");
   body.faces = corners.cast<int>();
   US_CHECK(all_below(owner, kJointCount), path, ": a weight names a joint that is not there");
   body.weights = RowMatrix::Zero(count, kJointCount);
   for (Eigen::Index v = 0; v < count; ++v)
-    for (int k = 0; k < 4; ++k) body.weights(v, static_cast<int>(owner(v, k))) += weight(v, k);
+    for (int k = 0; k < 4; ++k) body.weights(v, owner(v, k)) += weight(v, k);
   return body;
 }
 

@@ -5,6 +5,30 @@
 #include <limits>
 
 namespace understudy {
+namespace {
+
+/// IEEE 754 binary16.
+float half_to_float(uint16_t half) {
+  const int exponent = half >> 10 & 31, mantissa = half & 1023;
+  const float sign = half & 0x8000 ? -1.0f : 1.0f;
+  if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
+  if (exponent == 31)
+    return mantissa ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
+  return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
+}
+
+}  // namespace
+
+std::optional<NumberType> number_type(std::string_view descr) {
+  static const std::pair<const char*, NumberType> kTypes[] = {
+      {"f2", NumberType::F16}, {"f4", NumberType::F32}, {"f8", NumberType::F64}, {"i1", NumberType::I8},
+      {"u1", NumberType::U8},  {"i2", NumberType::I16}, {"u2", NumberType::U16}, {"i4", NumberType::I32},
+      {"u4", NumberType::U32}, {"i8", NumberType::I64}, {"u8", NumberType::U64}};
+  for (const auto& [name, type] : kTypes)
+    if (descr == name) return type;
+  return {};
+}
+
 size_t size_of(NumberType type) {
   switch (type) {
     case NumberType::I8:
@@ -12,6 +36,7 @@ size_t size_of(NumberType type) {
       return 1;
     case NumberType::I16:
     case NumberType::U16:
+    case NumberType::F16:
       return 2;
     case NumberType::I32:
     case NumberType::U32:
@@ -40,6 +65,8 @@ double load_number(NumberType type, const char* at, bool swap) {
       return static_cast<double>(load<int64_t>(at, swap));
     case NumberType::U64:
       return static_cast<double>(load<uint64_t>(at, swap));
+    case NumberType::F16:
+      return half_to_float(load<uint16_t>(at, swap));
     case NumberType::F32:
       return load<float>(at, swap);
     case NumberType::F64:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,11 +15,13 @@
 
 namespace understudy {
 
-enum class NumberType { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
+enum class NumberType { I8, U8, I16, U16, I32, U32, I64, U64, F16, F32, F64 };
+/// By NumPy's name without the byte order: "f4"; none where it is no such number.
+std::optional<NumberType> number_type(std::string_view descr);
 /// Bytes of one number.
 size_t size_of(NumberType type);
 inline bool is_float(NumberType type) {
-  return type == NumberType::F32 || type == NumberType::F64;
+  return type >= NumberType::F16;
 }
 
 /// One value from unaligned memory; `swap` when its byte order is not this machine's.

@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <memory>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/bytes.hpp"
 
 namespace understudy {
 namespace {
@@ -88,42 +87,9 @@ Header parse_header(const std::string& bytes, const std::string& source) {
   return header;
 }
 
-float half_to_float(uint16_t half) {
-  const int exponent = half >> 10 & 31, mantissa = half & 1023;
-  const float sign = half & 0x8000 ? -1.0f : 1.0f;
-  if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
-  if (exponent == 31)
-    return mantissa ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
-  return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
-}
-
-template <class T>
-float read_as(const char* data) {
-  T value;
-  std::memcpy(&value, data, sizeof(T));
-  return static_cast<float>(value);
-}
-
-using Converter = float (*)(const char*);
-
-Converter converter(char kind, int bytes) {
-  if (kind == 'f' && bytes == 2)
-    return [](const char* d) {
-      uint16_t h;
-      std::memcpy(&h, d, 2);
-      return half_to_float(h);
-    };
-  if (kind == 'f' && bytes == 4) return read_as<float>;
-  if (kind == 'f' && bytes == 8) return read_as<double>;
-  if (kind == 'i' && bytes == 1) return read_as<int8_t>;
-  if (kind == 'i' && bytes == 2) return read_as<int16_t>;
-  if (kind == 'i' && bytes == 4) return read_as<int32_t>;
-  if (kind == 'i' && bytes == 8) return read_as<int64_t>;
-  if ((kind == 'u' || kind == 'b') && bytes == 1) return read_as<uint8_t>;
-  if (kind == 'u' && bytes == 2) return read_as<uint16_t>;
-  if (kind == 'u' && bytes == 4) return read_as<uint32_t>;
-  if (kind == 'u' && bytes == 8) return read_as<uint64_t>;
-  return nullptr;
+/// None for what is no number, or of a size that NumPy's numbers do not have.
+std::optional<NumberType> type_of(const Header& header) {
+  return number_type(std::string(1, header.kind == 'b' ? 'u' : header.kind) + std::to_string(header.bytes));
 }
 
 std::string text_from_ucs4(const char* data, int bytes) {
@@ -138,8 +104,9 @@ std::string text_from_ucs4(const char* data, int bytes) {
 }
 
 /// Fortran order to C order.
-std::vector<float> reordered(const std::vector<float>& values, const std::vector<int64_t>& shape) {
-  std::vector<float> result(values.size());
+template <class T>
+std::vector<T> reordered(const std::vector<T>& values, const std::vector<int64_t>& shape) {
+  std::vector<T> result(values.size());
   std::vector<int64_t> index(shape.size(), 0);
   for (size_t from = 0; from < values.size(); ++from) {
     int64_t to = 0;
@@ -206,6 +173,13 @@ RowMatrix NpyArray::matrix(int64_t cols, const std::string& what) const {
   return Eigen::Map<const RowMatrix>(values.data(), size() / cols, cols);
 }
 
+IntegerMatrix NpyArray::integers(int64_t cols, const std::string& what) const {
+  if (whole.empty())
+    return matrix(cols, what).unaryExpr([](float value) { return understudy::whole(value); });
+  US_CHECK(cols > 0 && size() % cols == 0, what, ": ", size(), " numbers do not make rows of ", cols);
+  return Eigen::Map<const IntegerMatrix>(whole.data(), size() / cols, cols);
+}
+
 NpyArray parse_npy(const std::string& bytes, const std::string& source) {
   const Header header = parse_header(bytes, source);
   NpyArray array;
@@ -216,8 +190,8 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source) {
                                 static_cast<int>(std::min<uint64_t>(available, header.bytes)));
     return array;
   }
-  const Converter convert = converter(header.kind, header.bytes);
-  US_CHECK(convert, source, ": arrays of this number type cannot be read");
+  const auto type = type_of(header);
+  US_CHECK(type, source, ": arrays of this number type cannot be read");
   uint64_t count = 1;
   for (int64_t extent : header.shape) {
     const uint64_t e = static_cast<uint64_t>(extent);
@@ -226,17 +200,17 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source) {
   }
   US_CHECK(count <= available / header.bytes, source, ": ends before its ", count, " numbers");
   array.values.resize(count);
+  if (!is_float(*type)) array.whole.resize(count);
   const char* data = bytes.data() + header.data_offset;
   for (uint64_t i = 0; i < count; ++i, data += header.bytes) {
-    if (!header.big_endian) {
-      array.values[i] = convert(data);
-      continue;
-    }
-    char swapped[8];
-    std::reverse_copy(data, data + header.bytes, swapped);
-    array.values[i] = convert(swapped);
+    const double value = load_number(*type, data, header.big_endian);
+    array.values[i] = narrow(value);
+    if (!array.whole.empty()) array.whole[i] = whole(value);
   }
-  if (header.fortran && header.shape.size() > 1) array.values = reordered(array.values, header.shape);
+  if (header.fortran && header.shape.size() > 1) {
+    array.values = reordered(array.values, header.shape);
+    array.whole = reordered(array.whole, header.shape);
+  }
   return array;
 }
 
@@ -269,7 +243,7 @@ Npz read_npz(const std::string& path) {
     const std::string source = path + ": " + name;
     const std::string bytes = read_entry(archive.get(), i, archive_size, source);
     const Header header = parse_header(bytes, source);
-    if (header.kind == 'U' || converter(header.kind, header.bytes)) npz[name] = parse_npy(bytes, source);
+    if (header.kind == 'U' || type_of(header)) npz[name] = parse_npy(bytes, source);
   }
   return npz;
 }

@@ -11,14 +11,19 @@
 
 namespace understudy {
 
+using IntegerMatrix = Eigen::Matrix<int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// One array, converted to float (numbers of any NumPy type) or kept as text (type U).
 struct NpyArray {
   std::vector<int64_t> shape;
-  std::vector<float> values;  ///< C order
-  std::string text;           ///< for a scalar string
+  std::vector<float> values;   ///< C order
+  std::string text;            ///< for a scalar string
+  std::vector<int64_t> whole;  ///< of an array of integers the same without loss, up to 9e15; beyond: -1
   int64_t size() const;
   /// As a matrix of `cols` columns. Throws Error (naming `what`) when it does not divide.
   RowMatrix matrix(int64_t cols, const std::string& what) const;
+  /// The same of whole numbers without loss; what a float array has behind the point is cut off.
+  IntegerMatrix integers(int64_t cols, const std::string& what) const;
 };
 
 using Npz = std::map<std::string, NpyArray>;

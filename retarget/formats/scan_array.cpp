@@ -111,19 +111,9 @@ std::string_view dictionary_value(std::string_view text, std::string_view key, c
   return text.substr(begin + 1, stop == text.npos ? text.npos : stop - begin - 1);
 }
 
-std::optional<NumberType> number_type(std::string_view descr) {
-  static const std::pair<const char*, NumberType> kTypes[] = {
-      {"f4", NumberType::F32}, {"f8", NumberType::F64}, {"i1", NumberType::I8},  {"u1", NumberType::U8},
-      {"i2", NumberType::I16}, {"u2", NumberType::U16}, {"i4", NumberType::I32}, {"u4", NumberType::U32},
-      {"i8", NumberType::I64}, {"u8", NumberType::U64}};
-  for (const auto& [name, type] : kTypes)
-    if (descr == name) return type;
-  return {};
-}
-
 NpyHeader read_header(ByteStream& stream, const std::string& source) {
   std::string start(10, '\0');
-  US_CHECK(stream.read(start.data(), 10) == 10 && start.compare(0, 6, "\x93NUMPY") == 0, source,
+  US_CHECK(stream.read(start.data(), 10) == 10 && starts_with(start, "\x93NUMPY"), source,
            ": is not the NumPy array that it should be");
   uint64_t length = load<uint16_t>(start.data() + 8, false);
   if (start[6] > 1) {  // version 2: four bytes

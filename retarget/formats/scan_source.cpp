@@ -71,9 +71,12 @@ void report_gaps(const std::string& source, const std::vector<FrameGap>& gaps) {
   log::warn(source + ": frames are missing: " + text + (gaps.size() > 5 ? " and more" : ""));
 }
 
+constexpr int kHopeless = 100;  // frames that cannot be read from the first on: nobody has such a capture
+
 class FileFrames : public ScanSource::Frames {
  public:
-  FileFrames(std::vector<std::string> files, const std::string& source) : files_(std::move(files)) {
+  FileFrames(std::vector<std::string> files, const std::string& source)
+      : files_(std::move(files)), source_(source) {
     numbers_ = frame_numbers(files_);
     gaps = find_gaps(numbers_);
     report_gaps(source, gaps);
@@ -83,6 +86,9 @@ class FileFrames : public ScanSource::Frames {
     if (at_ == files_.size()) return {};
     ScanFrame frame = load_frame(files_[at_], numbers_[at_]);
     US_CHECK(frame.usable || files_.size() > 1, frame.problem);
+    read_any_ |= frame.usable || frame.is_empty;
+    US_CHECK(read_any_ || ++unreadable_ < kHopeless, source_, ": none of its first ", kHopeless,
+             " frames can be read; ", frame.problem);
     ++at_;
     return frame;
   }
@@ -95,7 +101,10 @@ class FileFrames : public ScanSource::Frames {
  private:
   std::vector<std::string> files_;
   std::vector<int64_t> numbers_;
+  std::string source_;
   size_t at_ = 0;
+  bool read_any_ = false;
+  int unreadable_ = 0;  // while none was read
 };
 
 std::vector<std::string> under(const std::string& folder, const std::vector<std::string>& names) {
@@ -114,7 +123,7 @@ std::vector<std::string> listed_files(const std::string& path) {
   double number = 0;
   while (!text.at_end()) {
     std::string_view line = text.line();
-    while (!line.empty() && (line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
+    line = trim_end(line);
     if (line.empty() || line[0] == '#') continue;
     split_words(line, ",;", words);
     if (!surely && files.empty() && (words.empty() || parse_number(words[0], number))) return {};
@@ -175,8 +184,8 @@ ScanFrame load_frame(const std::string& path, int64_t number) {
   frame.path = path;
   try {
     frame.mesh = read_mesh(path);
-    US_CHECK(finite_count(frame.mesh.vertices) > 0, path, ": has no ",
-             frame.mesh.vertices.rows() > 0 ? "finite " : "", "points");
+    frame.is_empty = finite_count(frame.mesh.vertices) == 0;
+    US_CHECK(!frame.is_empty, path, ": has no ", frame.mesh.vertices.rows() > 0 ? "finite " : "", "points");
   } catch (const Error& error) {
     frame.usable = false;
     frame.problem = error.what();

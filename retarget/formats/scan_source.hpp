@@ -17,8 +17,9 @@ struct ScanFrame {
   Mesh mesh;
   int64_t number = 0;  ///< from the file's name; the position in the sequence where names have none
   std::string path;
-  bool usable = true;   ///< false: it could not be read or has no finite point, `mesh` may be empty
-  std::string problem;  ///< why it is not usable, one sentence
+  bool usable = true;     ///< false: it could not be read or has no finite point, `mesh` may be empty
+  std::string problem;    ///< why it is not usable, one sentence
+  bool is_empty = false;  ///< it was read, but has no finite point
 };
 
 struct ScanSourceOptions {

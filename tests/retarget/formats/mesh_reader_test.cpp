@@ -132,7 +132,7 @@ TEST(MeshReader, SaysInOneSentenceThatAFileIsSomethingElse) {
 
 TEST(MeshReader, NamesTheReasonWhenAFileCannotBeOpened) {
   const TempFolder folder;
-  EXPECT_TRUE(contains(error_of([&] { read_mesh(folder.path("no.ply")); }), "No such file"));
+  EXPECT_TRUE(contains(error_of([&] { read_mesh(folder.path("no.ply")); }), "no such file"));
   EXPECT_TRUE(contains(error_of([&] { read_mesh(folder.path()); }), "is a folder"));
   EXPECT_TRUE(contains(error_of([&] { read_mesh("/dev/zero"); }), "is a pipe or a device"));
   EXPECT_TRUE(

@@ -46,6 +46,39 @@ TEST(ScanSource, SortsFrameNumbersAndReportsGaps) {
   EXPECT_FALSE(source.next());
 }
 
+TEST(ScanSource, AListOfWhichNothingCanBeReadIsRefusedInOneSentence) {
+  const TempFolder folder;
+  std::string list;
+  for (int i = 0; i < 100000; ++i) list += "gone_" + std::to_string(i) + ".ply\n";
+  ScanSource source(folder.write("frames.lst", list));
+  const std::string complaint = error_of([&] {
+    while (source.next()) {
+    }
+  });
+  EXPECT_TRUE(contains(complaint, "frames.lst: none of its first 100 frames can be read; ")) << complaint;
+}
+
+TEST(ScanSource, ManyFramesMayBeMissingAfterAGoodOne) {
+  const TempFolder folder;
+  folder.write("f0.off", cloud(0));
+  std::string list = "f0.off\n";
+  for (int i = 1; i < 300; ++i) list += "f" + std::to_string(i) + ".off\n";
+  ScanSource source(folder.write("frames.lst", list));
+  int frames = 0;
+  while (source.next()) ++frames;
+  EXPECT_EQ(frames, 300);
+}
+
+TEST(ScanSource, AStageMayBeEmptyForLong) {
+  const TempFolder folder;
+  for (int i = 0; i < 150; ++i) folder.write("f" + std::to_string(i) + ".xyz", "nan nan nan\nnan nan nan\n");
+  folder.write("f150.xyz", "0 0 0\n1 1 1\n");
+  ScanSource source(folder.path());
+  int frames = 0;
+  while (source.next()) ++frames;
+  EXPECT_EQ(frames, 151);
+}
+
 TEST(ScanSource, EveryFifthFrameIsNoGap) {
   const TempFolder folder;
   for (int i = 0; i < 6; ++i) folder.write("f" + std::to_string(5 * i) + ".off", cloud(i));
@@ -110,7 +143,7 @@ TEST(ScanSource, FlagsAFrameThatVanishedMeanwhile) {
   ScanSource source(folder.path());
   std::filesystem::remove(folder.path("f1.off"));
   EXPECT_TRUE(source.next()->usable);
-  EXPECT_TRUE(contains(source.next()->problem, "No such file"));
+  EXPECT_TRUE(contains(source.next()->problem, "no such file"));
   EXPECT_FALSE(source.next());
 }
 
