@@ -20,7 +20,7 @@ TEST(GltfMesh, ReadsAnOutsideBufferBesideTheFile) {
   const std::string path = folder.write("a.gltf", gltf_json("", R"(,"uri":"my%20data.bin")"));
   EXPECT_EQ(read_mesh(path).vertices, four_points());
   std::filesystem::remove(folder.path("my data.bin"));
-  EXPECT_TRUE(contains(error_of([&] { read_mesh(path); }), "No such file"));
+  EXPECT_TRUE(contains(error_of([&] { read_mesh(path); }), "no such file"));
 }
 
 TEST(GltfMesh, SkinnedMeshComesInItsBindPoseWhereTheSkeletonCarriesIt) {
