@@ -100,12 +100,13 @@ RuntimeReport runtime_report() {
   return report;
 }
 
-int train(const TrainOptions& options) {
+int train(const AnyTrainOptions& options) {
   // Trainers bring their own threads: each computes alone.
   setenv("OMP_NUM_THREADS", "1", 0);
   const std::clock_t before = std::clock();  // of all threads
   const int result = plugin().train(options);
-  log::info(detail::join("train ", options.network, ": ", (std::clock() - before) / CLOCKS_PER_SEC,
+  const auto network = std::visit([](const auto& own) { return own.kNetwork; }, options);
+  log::info(detail::join("train ", network, ": ", (std::clock() - before) / CLOCKS_PER_SEC,
                          " core-seconds in this run"));
   return result;
 }

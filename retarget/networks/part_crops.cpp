@@ -21,7 +21,7 @@ const Reach& reach_of(PartKind kind) {
                                                          {Vec3(0, -0.035f, 0.07f), 0.20f},
                                                          {Vec3(0, 0, 0), 0.28f},
                                                          {Vec3(0, 0, 0), 0.30f}}};
-  return reaches[static_cast<size_t>(kind)];
+  return reaches[static_cast<int>(kind)];
 }
 
 /// x to -x and back.
@@ -31,7 +31,7 @@ Mat3 mirrored(const Mat3& R) {
 }
 
 const Mat3& frame_of(const Extraction& seen, const Part& part) {
-  return (*seen.global)[static_cast<size_t>(part.joint)];
+  return (*seen.global)[part.joint];
 }
 
 std::vector<int> points_within(const Points& scan, const Vec3& middle, float radius) {
@@ -79,13 +79,12 @@ std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, con
     // Spread over all of them: scans are often sorted along the body.
     const size_t at = count > kPartPoints ? (i * count / kPartPoints + first) % count : i % count;
     const Vec3 x = R.transpose() * (scan.row(near[at]).transpose() - joint) / size;
-    crop.points.row(static_cast<Eigen::Index>(i)) = x.cwiseProduct(side).transpose();
+    crop.points.row(i) = x.cwiseProduct(side).transpose();
   }
-  const int parent = kParents[static_cast<size_t>(part.joint)];
+  const int parent = kParents[part.joint];
   const Vec3 bone = R.transpose() * (seen.joints.row(parent).transpose() - joint) / size;
   crop.context.head<3>() = bone.cwiseProduct(side);
-  crop.context.segment<6>(3) =
-      rotation_to_6d(into_part((*seen.global)[static_cast<size_t>(parent)], seen, part));
+  crop.context.segment<6>(3) = rotation_to_6d(into_part((*seen.global)[parent], seen, part));
   const int second = part.corrects[1] < 0 ? part.joint : part.corrects[1];
   crop.context.segment<3>(9) =
       vector_into_part((seen.joints.row(second) - seen.joints.row(part.joint)).transpose(), seen, part);

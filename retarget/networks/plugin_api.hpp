@@ -2,17 +2,18 @@
 #pragma once
 
 #include "retarget/networks/networks.hpp"
+#include "retarget/networks/train_options.hpp"
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 5;
+constexpr int kPluginVersion = 6;
 
 struct PluginApi {
   int version;
   Networks (*load)(const NetworkOptions& options, const std::string& folder);
   std::unique_ptr<Deformer> (*load_deformer)(const NetworkOptions& options, const std::string& folder);
   RuntimeReport (*report)();
-  int (*train)(const TrainOptions& options);
+  int (*train)(const AnyTrainOptions& options);
 };
 
 }  // namespace understudy::nn

@@ -10,7 +10,7 @@ namespace {
 using RecentRows = Eigen::Matrix<float, kJointCount, 6, Eigen::RowMajor>;
 
 void copy_to(const Points& points, torch::Tensor tensor) {
-  std::memcpy(tensor.data_ptr<float>(), points.data(), sizeof(float) * static_cast<size_t>(points.size()));
+  std::memcpy(tensor.data_ptr<float>(), points.data(), sizeof(float) * points.size());
 }
 
 void copy_recent(const RecentJoints& recent, const ScanPatches& patches, torch::Tensor joints,
@@ -19,7 +19,7 @@ void copy_recent(const RecentJoints& recent, const ScanPatches& patches, torch::
   RecentRows rows = RecentRows::Zero();
   rows.leftCols(3) = (recent.last()->rowwise() - patches.centre.transpose()) / patches.scale;
   if (recent.before_last()) rows.rightCols(3) = (*recent.last() - *recent.before_last()) / patches.scale;
-  std::memcpy(joints.data_ptr<float>(), rows.data(), sizeof(float) * static_cast<size_t>(rows.size()));
+  std::memcpy(joints.data_ptr<float>(), rows.data(), sizeof(float) * rows.size());
   known.data_ptr<float>()[0] = 1;
   known.data_ptr<float>()[1] = recent.before_last() ? 1 : 0;
 }
@@ -40,12 +40,11 @@ ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,
     input.recent_known = torch::zeros({B, 2});
   }
   for (int64_t b = 0; b < B; ++b) {
-    const ScanPatches& of = patches[static_cast<size_t>(b)];
+    const ScanPatches& of = patches[b];
     copy_to(of.points, input.points[b]);
     copy_to(of.centres, input.centres[b]);
     copy_to(of.offsets, input.offsets[b]);
-    if (!recent.empty())
-      copy_recent(recent[static_cast<size_t>(b)], of, input.recent[b], input.recent_known[b]);
+    if (!recent.empty()) copy_recent(recent[b], of, input.recent[b], input.recent_known[b]);
   }
   return input;
 }

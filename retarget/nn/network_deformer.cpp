@@ -12,6 +12,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/nn/modules/deformation.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
 
 namespace understudy::nn {
@@ -47,10 +48,6 @@ void tidy_weights(RowMatrix& weights) {
     row = (row.array() < least).select(0.f, row);
     row /= row.sum();
   }
-}
-
-torch::Tensor tensor_of(const float* data, int64_t rows, int64_t cols) {
-  return torch::from_blob(const_cast<float*>(data), {rows, cols}).clone();
 }
 
 constexpr float kCells = 180;  // a body's height in cells of one asked point each: 1 cm on an adult
@@ -219,9 +216,8 @@ void NetworkDeformer::ask(const Points& points, const Points& spread, Asked& ask
 }
 
 void NetworkDeformer::ask_slice(Eigen::Index first, Eigen::Index count, const Points& spread, Asked& asked) {
-  const BoundSurface bound =
-      bind_surface(net_, tensor_of(asked.points.data() + 3 * first, count, 3),
-                   tensor_of(joints_.data(), kJointCount, 3), tensor_of(spread.data(), spread.rows(), 3));
+  const BoundSurface bound = bind_surface(net_, tensor_of(asked.points.middleRows(first, count)),
+                                          tensor_of(joints_), tensor_of(spread));
   const torch::Tensor weights = bound.weights.contiguous(), basis = bound.basis.contiguous();
   const Eigen::Map<const RowMatrix> W(weights.data_ptr<float>(), count, kJointCount),
       B(basis.data_ptr<float>(), 3 * count, kPoseFeatureCount);
@@ -243,7 +239,7 @@ void NetworkDeformer::ask_slice(Eigen::Index first, Eigen::Index count, const Po
 /// The networks change slowly over a centimetre, but not everywhere: across gaps and creases vertices are
 /// asked for closer together, and at last themselves. False where the vertices lie too far apart for that.
 bool NetworkDeformer::ask_some(const Points& rest, const Points& spread, Asked& asked, Between& between) {
-  std::vector<int> open(static_cast<size_t>(rest.rows()));  // not yet known
+  std::vector<int> open(rest.rows());  // not yet known
   std::iota(open.begin(), open.end(), 0);
   for (float cells = kCells; cells <= kMostCells; cells *= 2) {
     const std::vector<int> chosen = one_a_cell(rest, open, cells);
@@ -255,7 +251,7 @@ bool NetworkDeformer::ask_some(const Points& rest, const Points& spread, Asked& 
     std::vector<int> rough;
     for (size_t i = 0; i < open.size(); ++i) {
       const int v = open[i];
-      between.near.row(v) = near.row(static_cast<Eigen::Index>(i));
+      between.near.row(v) = near.row(i);
       Eigen::Matrix<float, kBetween, 3> offsets;
       for (int k = 0; k < kBetween; ++k) offsets.row(k) = asked.points.row(between.near(v, k)) - rest.row(v);
       between.shares.row(v) = shares_of(offsets);
@@ -267,7 +263,7 @@ bool NetworkDeformer::ask_some(const Points& rest, const Points& spread, Asked& 
   const Eigen::Index before = asked.points.rows();
   if (!open.empty()) ask(rest(open, Eigen::all), spread, asked);
   for (size_t i = 0; i < open.size(); ++i) {
-    between.near.row(open[i]).setConstant(static_cast<int>(before + static_cast<Eigen::Index>(i)));
+    between.near.row(open[i]).setConstant(static_cast<int>(before + i));
     between.shares.row(open[i]) = Eigen::RowVectorXf::Unit(kBetween, 0);
   }
   return true;

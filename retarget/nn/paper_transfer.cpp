@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "retarget/base/error.hpp"
-#include "retarget/nn/modules/joint_tensors.hpp"
 #include "retarget/nn/modules/motion_gru.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
 
 namespace understudy::nn {
@@ -22,7 +22,7 @@ class PaperTransfer : public MotionTransfer {
   void reset(const Joints& rest_b) override {
     US_CHECK(rest_b.allFinite() && leg_length(rest_b) > 1e-3f,
              "the target's T-pose joints are not those of a body");
-    rest_b_ = to_tensor(rest_b).unsqueeze(0);
+    rest_b_ = tensor_of(rest_b).unsqueeze(0);
     state_ = {};
     leg_sum_ = 0;
     frames_ = 0;
@@ -35,13 +35,13 @@ class PaperTransfer : public MotionTransfer {
     const torch::NoGradGuard no_grad;
     leg_sum_ += leg_length(source.joints);
     const auto leg = static_cast<float>(leg_sum_ / static_cast<double>(++frames_));
-    const MotionInput input{to_tensor(source.joints).view({1, 1, kJointCount, 3}), torch::full({1, 1}, leg),
+    const MotionInput input{tensor_of(source.joints).view({1, 1, kJointCount, 3}), torch::full({1, 1}, leg),
                             torch::full({1, 1}, std::clamp(dt, 1.0f / 240, 0.5f)), rest_b_};
     MotionState next = state_;  // kept only when the answer is good: a bad frame leaves no trace
     const auto local = net_->forward(input, next);  // [1, 1, 22, 3, 3]
     US_CHECK(torch::isfinite(local).all().item<bool>(), "the motion network gave no finite rotation");
     state_ = next;
-    return to_rotations(local);
+    return rotations_of(local);
   }
 
   std::string name() const override { return "paper"; }

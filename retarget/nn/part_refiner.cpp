@@ -7,6 +7,7 @@
 #include "retarget/math/smooth_step.hpp"
 #include "retarget/networks/scan_patches.hpp"
 #include "retarget/nn/modules/part_refiner.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/pipeline/confidence.hpp"
 
@@ -72,25 +73,23 @@ void NetworkPartRefiner::refine_kind(const Points& points, PartKind kind, Extrac
     const auto crop = cut_part(points, seen, part);
     if (!crop) continue;
     parts.push_back(&part);
-    crops.push_back(torch::from_blob(const_cast<float*>(crop->points.data()), {kPartPoints, 3}).clone());
-    contexts.push_back(torch::from_blob(const_cast<float*>(crop->context.data()), {kPartContext}).clone());
+    crops.push_back(tensor_of(crop->points));
+    contexts.push_back(tensor_of(crop->context).flatten());
   }
   if (parts.empty()) return;
   const auto said = net_->of(kind)->forward(torch::stack(crops), torch::stack(contexts)).contiguous();
   const Extraction before = seen;
   for (size_t i = 0; i < parts.size(); ++i)
     for (int k = 0; k < kPartJoints; ++k)
-      correct(k, *parts[i],
-              said.data_ptr<float>() + (i * kPartJoints + static_cast<size_t>(k)) * kPartNumbers, before,
-              seen);
+      correct(k, *parts[i], said.data_ptr<float>() + (i * kPartJoints + k) * kPartNumbers, before, seen);
 }
 
 void NetworkPartRefiner::correct(int slot, const Part& part, const float* said, const Extraction& before,
                                  Extraction& seen) {
-  const int joint = part.corrects[static_cast<size_t>(slot)];
+  const int joint = part.corrects[slot];
   if (joint < 0) return;
   const Mat3 local = rotation_from_6d(Eigen::Map<const Vec6>(said));
-  (*seen.global)[static_cast<size_t>(joint)] = from_part(local, before, part);
+  (*seen.global)[joint] = from_part(local, before, part);
   if (slot >= part.moves) return;
   const Vec3 way = vector_from_part(Eigen::Map<const Vec3>(said + 6), before, part);
   seen.joints.row(joint) = before.joints.row(joint) + way.transpose();

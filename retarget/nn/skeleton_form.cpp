@@ -2,7 +2,6 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/nn/modules/point_transformer.hpp"
-#include "retarget/nn/weights_file.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -38,10 +37,8 @@ std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name) {
   return std::make_shared<DenseForm>();
 }
 
-void save_skeleton_form(const std::string& path, const std::string& name, const SkeletonForm& form,
-                        int64_t samples) {
-  save_weights(path, {"skeleton-" + name, kSkeletonVersion, {{"samples", static_cast<double>(samples)}}},
-               form);
+WeightsHeader skeleton_header(const std::string& name) {
+  return {"skeleton-" + name, kSkeletonVersion, {}};
 }
 
 void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "retarget/nn/modules/skeleton_extractor.hpp"
+#include "retarget/nn/weights_file.hpp"
 
 namespace understudy::nn {
 
@@ -17,8 +18,8 @@ class SkeletonForm : public torch::nn::Module {
 
 /// "dense" or "paper"; anything else is an Error.
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name);
-void save_skeleton_form(const std::string& path, const std::string& name, const SkeletonForm& form,
-                        int64_t samples);
+/// Of the weights of a form; numbers are the trainer's.
+WeightsHeader skeleton_header(const std::string& name);
 void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form);
 
 }  // namespace understudy::nn

@@ -1,3 +1,4 @@
+// What the networks plug-in hands to the program: networks with trained weights, and their training.
 #include <dlfcn.h>
 #include <torch/torch.h>
 
@@ -12,10 +13,7 @@
 #include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/part_refiner.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
-#include "retarget/training/deformation_trainer.hpp"
-#include "retarget/training/motion_trainer.hpp"
-#include "retarget/training/part_trainer.hpp"
-#include "retarget/training/skeleton_trainer.hpp"
+#include "retarget/training/trainers.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -80,13 +78,8 @@ Networks load(const NetworkOptions& options, const std::string& folder) {
   return networks;
 }
 
-int train_network(const TrainOptions& options) {
-  if (options.network == "skeleton") return training::train_skeleton(options);
-  if (options.network == "motion") return training::train_motion(options);
-  if (options.network == "deformation") return training::train_deformation(options);
-  if (options.network == "part") return training::train_part(options);
-  throw Error("there is no network '" + options.network +
-              "' to train: skeleton, part, motion or deformation");
+int train_network(const AnyTrainOptions& any) {
+  return std::visit([](const auto& options) { return training::train(options); }, any);
 }
 
 }  // namespace

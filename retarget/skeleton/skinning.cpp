@@ -4,18 +4,22 @@
 
 namespace understudy {
 
-Points linear_blend_skinning(const Points& rest, const RowMatrix& weights, const Joints& rest_joints,
-                             const PosedSkeleton& posed) {
-  US_CHECK(rest.rows() == weights.rows() && weights.cols() == kJointCount, "skinning: ", rest.rows(),
-           " vertices but weights of ", weights.rows(), "x", weights.cols());
-  Eigen::Matrix<float, kJointCount, 12, Eigen::RowMajor> transforms;  // row j: R row-major, then t
+JointTransforms joint_transforms(const Joints& rest_joints, const PosedSkeleton& posed) {
+  JointTransforms transforms;
   for (int j = 0; j < kJointCount; ++j) {
     const Mat3& R = posed.global[j];
     const Vec3 t = posed.joints.row(j).transpose() - R * rest_joints.row(j).transpose();
     for (int r = 0; r < 3; ++r) transforms.block<1, 3>(j, 3 * r) = R.row(r);
     transforms.block<1, 3>(j, 9) = t.transpose();
   }
-  const RowMatrix blended = weights * transforms;  // [V, 12]
+  return transforms;
+}
+
+Points linear_blend_skinning(const Points& rest, const RowMatrix& weights, const Joints& rest_joints,
+                             const PosedSkeleton& posed) {
+  US_CHECK(rest.rows() == weights.rows() && weights.cols() == kJointCount, "skinning: ", rest.rows(),
+           " vertices but weights of ", weights.rows(), "x", weights.cols());
+  const RowMatrix blended = weights * joint_transforms(rest_joints, posed);  // [V, 12]
   Points vertices(rest.rows(), 3);
   for (Eigen::Index v = 0; v < rest.rows(); ++v)
     for (int r = 0; r < 3; ++r)

@@ -6,21 +6,12 @@
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/modules/deformation.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
+#include "retarget/skeleton/skinning.hpp"
 
 namespace understudy::training {
-Eigen::Matrix<float, kJointCount, 12, Eigen::RowMajor> joint_transforms(const Joints& rest,
-                                                                        const Rotations& local) {
-  Pose pose;
-  pose.local = local;
-  const PosedSkeleton posed = forward_kinematics(rest, pose);
-  Eigen::Matrix<float, kJointCount, 12, Eigen::RowMajor> transforms;
-  for (int j = 0; j < kJointCount; ++j) {
-    for (int r = 0; r < 3; ++r) transforms.block<1, 3>(j, 3 * r) = posed.global[j].row(r);
-    transforms.block<1, 3>(j, 9) =
-        posed.joints.row(j) - (posed.global[j] * rest.row(j).transpose()).transpose();
-  }
-  return transforms;
-}
+
+using nn::tensor_of;
 
 struct DeformationSampler::Surface {
   Faces faces;
@@ -126,31 +117,23 @@ void DeformationSampler::warp(Person& person) {
   std::array<float, kJointCount> stretch;
   for (int j = 0; j < kJointCount; ++j)
     stretch[j] = all * (kMirror[j] < j ? stretch[kMirror[j]] / all : rng_.uniform(0.88f, 1.12f));
-  Joints moved;
   Rotations turn;
-  RowMatrix transforms(kJointCount, 12);
+  PosedSkeleton warped;
   for (int j = 0; j < kJointCount; ++j) {
     const int parent = kParents[j];
     turn[j] = small_rotation(off, rng_);
     if (parent < 0) {
       turn[j] = Mat3::Identity();
-      moved.row(j) = person.joints.row(j);
+      warped.joints.row(j) = person.joints.row(j);
     } else {
       turn[j] = turn[parent] * turn[j];
       const Vec3 bone = (person.joints.row(j) - person.joints.row(parent)).transpose();
-      moved.row(j) = moved.row(parent) + (turn[parent] * bone * stretch[j]).transpose();
+      warped.joints.row(j) = warped.joints.row(parent) + (turn[parent] * bone * stretch[j]).transpose();
     }
-    const Mat3 A = girth * all * turn[j];
-    for (int r = 0; r < 3; ++r) transforms.block<1, 3>(j, 3 * r) = A.row(r);
-    transforms.block<1, 3>(j, 9) = moved.row(j) - (A * person.joints.row(j).transpose()).transpose();
+    warped.global[j] = girth * all * turn[j];
   }
-  const RowMatrix blended = person.surface->weights * transforms;
-  for (Eigen::Index v = 0; v < person.vertices.rows(); ++v) {
-    const Vec3 p = person.vertices.row(v).transpose();
-    for (int r = 0; r < 3; ++r)
-      person.vertices(v, r) = blended.block<1, 3>(v, 3 * r).dot(p) + blended(v, 9 + r);
-  }
-  person.joints = moved;
+  person.vertices = linear_blend_skinning(person.vertices, person.surface->weights, person.joints, warped);
+  person.joints = warped.joints;
 }
 
 /// Mostly a captured pose; often the upper half of another one, sometimes exaggerated.
@@ -212,6 +195,19 @@ void DeformationSampler::place(const Person& person, int row, DeformationBatch& 
     }
     ++i;
   }
+  batch.points[row].copy_(tensor_of(points));
+  batch.surface[row].copy_(tensor_of(surface_of(person)));
+  const auto side = [&](const torch::Tensor& x, auto mirrored) { return person.mirror ? mirrored(x) : x; };
+  batch.weights[row].copy_(side(tensor_of(weights), nn::mirror_weights));
+  batch.basis[row].copy_(side(tensor_of(basis), nn::mirror_basis));
+  if (person.mirror) canonical = reflected(canonical);
+  batch.canonical[row].copy_(tensor_of(canonical));
+  batch.has_canonical[row] = s.canonical.rows() > 0 ? 1.f : 0.f;
+}
+
+/// Points spread over a person, [context_points, 3].
+Points DeformationSampler::surface_of(const Person& person) {
+  const Surface& s = *person.surface;
   Points around(3 * options_.context_points, 3);
   for (int i = 0; i < around.rows(); ++i) {
     const auto sample = s.by_area.sample(rng_);
@@ -219,19 +215,7 @@ void DeformationSampler::place(const Person& person, int row, DeformationBatch& 
     for (int k = 0; k < 3; ++k)
       around.row(i) += sample.barycentric[k] * person.vertices.row(s.faces(sample.face, k));
   }
-  const std::vector<int> spread = farthest_points(around, options_.context_points);
-  Points surface(options_.context_points, 3);
-  for (int i = 0; i < options_.context_points; ++i) surface.row(i) = around.row(spread[i]);
-
-  const auto tensor = [](auto& m) { return torch::from_blob(m.data(), {m.rows(), m.cols()}); };
-  batch.points[row].copy_(tensor(points));
-  batch.surface[row].copy_(tensor(surface));
-  const auto side = [&](const torch::Tensor& x, auto mirrored) { return person.mirror ? mirrored(x) : x; };
-  batch.weights[row].copy_(side(tensor(weights), nn::mirror_weights));
-  batch.basis[row].copy_(side(tensor(basis), nn::mirror_basis));
-  if (person.mirror) canonical = reflected(canonical);
-  batch.canonical[row].copy_(tensor(canonical));
-  batch.has_canonical[row] = s.canonical.rows() > 0 ? 1.f : 0.f;
+  return around(farthest_points(around, options_.context_points), Eigen::all);
 }
 
 DeformationBatch DeformationSampler::next() {
@@ -248,14 +232,14 @@ DeformationBatch DeformationSampler::next() {
                          torch::empty({B, P, kJointCount, 12})};
   for (int64_t i = 0; i < B; ++i) {
     Person person = draw_person();
-    batch.seen_joints[i].copy_(torch::from_blob(person.seen.data(), {kJointCount, 3}));
+    batch.seen_joints[i].copy_(tensor_of(person.seen));
     place(person, static_cast<int>(i), batch);
     for (int64_t k = 0; k < P; ++k) {
-      const Rotations pose = draw_pose();
-      Eigen::VectorXf features = pose_features(pose);
-      auto transforms = joint_transforms(person.joints, pose);
-      batch.features[i][k].copy_(torch::from_blob(features.data(), {nn::kPoseFeatureCount}));
-      batch.transforms[i][k].copy_(torch::from_blob(transforms.data(), {kJointCount, 12}));
+      Pose pose;
+      pose.local = draw_pose();
+      batch.features[i][k].copy_(tensor_of(pose_features(pose.local)).flatten());
+      batch.transforms[i][k].copy_(
+          tensor_of(joint_transforms(person.joints, forward_kinematics(person.joints, pose))));
     }
   }
   return batch;

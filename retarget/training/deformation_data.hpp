@@ -34,10 +34,6 @@ struct DeformationDataOptions {
   float warped_share = 0.2f;   ///< of bodies with other bone lengths, girth and a T-pose not quite held
 };
 
-/// Joint transforms of a pose from the T-pose, rows of 12: rotation row-major, then translation.
-Eigen::Matrix<float, kJointCount, 12, Eigen::RowMajor> joint_transforms(const Joints& rest,
-                                                                        const Rotations& local);
-
 /// Makes batches; the same seed gives the same batches.
 class DeformationSampler {
  public:
@@ -53,6 +49,7 @@ class DeformationSampler {
   Rotations draw_pose();
   void warp(Person& person);
   void place(const Person& person, int row, DeformationBatch& batch);
+  Points surface_of(const Person& person);
   int neighbour_face(const Surface& surface, int face);
 
   const TrainingData& data_;

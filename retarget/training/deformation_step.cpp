@@ -3,12 +3,15 @@
 #include <algorithm>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/network_deformer.hpp"
-#include "retarget/training/deformation_losses.hpp"
+#include "retarget/skeleton/skinning.hpp"
+#include "retarget/training/losses/deformation_losses.hpp"
 
 namespace understudy::training {
 namespace {
 
+using nn::tensor_of;
 using torch::Tensor;
 
 constexpr double kMillimetres = 1000;
@@ -19,14 +22,9 @@ Tensor add_offsets(const Tensor& points, const Tensor& offsets) {
   return points.unsqueeze(-1) + offsets;
 }
 
-template <class Matrix>
-Tensor tensor_of(const Matrix& m) {
-  return torch::from_blob(const_cast<float*>(m.data()), {m.rows(), m.cols()}).clone();
-}
-
 }  // namespace
 
-DeformationLoss deformation_loss(nn::DeformationNet& net, const DeformationBatch& batch) {
+LossSum deformation_loss(nn::DeformationNet& net, const DeformationBatch& batch) {
   Tensor truth, true_offsets;
   {
     const torch::NoGradGuard no_grad;
@@ -39,18 +37,13 @@ DeformationLoss deformation_loss(nn::DeformationNet& net, const DeformationBatch
   const Tensor posed =
       nn::blend_skin(out.log_weights.exp(), add_offsets(batch.points, offsets), batch.transforms);
 
-  const Tensor geometry = kMillimetres * geometry_loss(posed, truth);
-  const Tensor edges = kMillimetres * edge_loss(posed, truth);
-  const Tensor weight = weight_loss(out.log_weights, batch.weights);
-  const Tensor offset = kMillimetres * offset_loss(offsets, true_offsets);
-  const Tensor canonical = kMillimetres * canonical_loss(out.canonical, batch.canonical, batch.has_canonical);
-  DeformationLoss loss;
-  loss.total = geometry + edges + 5 * weight + offset + 0.1 * canonical;
-  loss.geometry_mm = geometry.item<double>();
-  loss.edge_mm = edges.item<double>();
-  loss.weight_kl = weight.item<double>();
-  loss.offset_mm = offset.item<double>();
-  loss.canonical_mm = canonical.item<double>();
+  LossSum loss;
+  loss.add("geometry_mm", kMillimetres * geometry_loss(posed, truth));
+  loss.add("edge_mm", kMillimetres * edge_loss(posed, truth));
+  loss.add("weight_kl", weight_loss(out.log_weights, batch.weights), 5);
+  loss.add("offset_mm", kMillimetres * offset_loss(offsets, true_offsets));
+  loss.add("canonical_mm", kMillimetres * canonical_loss(out.canonical, batch.canonical, batch.has_canonical),
+           0.1);
   return loss;
 }
 
@@ -85,9 +78,11 @@ void DeformationEvaluator::add(const TrainingData& data, const ShapedBody& body,
   target->features = torch::empty({1, kEvaluatedPoses, nn::kPoseFeatureCount});
   target->transforms = torch::empty({1, kEvaluatedPoses, kJointCount, 12});
   for (int k = 0; k < kEvaluatedPoses; ++k) {
-    const Rotations pose = random_pose(data, rng).local;
-    target->features[0][k].copy_(tensor_of(pose_features(pose)).flatten());
-    target->transforms[0][k].copy_(tensor_of(joint_transforms(body.joints, pose)));
+    Pose pose;
+    pose.local = random_pose(data, rng).local;
+    target->features[0][k].copy_(tensor_of(pose_features(pose.local)).flatten());
+    target->transforms[0][k].copy_(
+        tensor_of(joint_transforms(body.joints, forward_kinematics(body.joints, pose))));
   }
   // Neighbours in the T-pose stand for those of every frame, from every fourth vertex: quick, and nearly the
   // same figure.
@@ -102,11 +97,9 @@ void DeformationEvaluator::add(const TrainingData& data, const ShapedBody& body,
   targets_.push_back(target);
 }
 
-DeformationScore DeformationEvaluator::score(nn::DeformationNet& net) const {
+Figures DeformationEvaluator::evaluate(nn::DeformationNet& net) const {
   const torch::NoGradGuard no_grad;
-  DeformationScore score;
-  double naked = 0, clothed = 0;
-  for (const auto& t : targets_) (t->clothed ? clothed : naked) += 1;
+  RunningMean naked, clothed;
   for (const auto& t : targets_) {
     const auto pose = [&t](const Tensor& weights, const Tensor& basis) {
       const Tensor offsets = nn::pose_offsets(basis.unsqueeze(0), t->features);
@@ -118,18 +111,26 @@ DeformationScore DeformationEvaluator::score(nn::DeformationNet& net) const {
       return (p.index_select(0, t->from) - p.index_select(0, t->to)).norm(2, -1);
     };
     const Tensor truth = pose(t->weights, t->basis);
-    const auto bound = nn::bind_surface(net, t->vertices, t->joints, t->surface);
-    const Tensor posed = pose(bound.weights, bound.basis);
-    const double mpvd = kMillimetres * (posed - truth).norm(2, -1).mean().item<double>();
-    const double medl = kMillimetres * (edges(posed) - edges(truth)).abs().mean().item<double>();
-    (t->clothed ? score.clothed_mpvd_mm : score.mpvd_mm) += mpvd / (t->clothed ? clothed : naked);
-    (t->clothed ? score.clothed_medl_mm : score.medl_mm) += medl / (t->clothed ? clothed : naked);
-    if (t->clothed) continue;
-    const auto noisy = nn::bind_surface(net, t->vertices, t->noisy_joints, t->surface);
-    score.noisy_mpvd_mm +=
-        kMillimetres * (pose(noisy.weights, noisy.basis) - truth).norm(2, -1).mean().item<double>() / naked;
+    const auto posed = [&](const Tensor& joints) {
+      const auto bound = nn::bind_surface(net, t->vertices, joints, t->surface);
+      return pose(bound.weights, bound.basis);
+    };
+    const auto error_mm = [&truth](const Tensor& p) {
+      return kMillimetres * (p - truth).norm(2, -1).mean().item<double>();
+    };
+    const Tensor p = posed(t->joints);
+    const double mpvd = error_mm(p);
+    const double medl = kMillimetres * (edges(p) - edges(truth)).abs().mean().item<double>();
+    if (t->clothed)
+      clothed.add({{"clothed_mpvd_mm", mpvd}, {"clothed_medl_mm", medl}});
+    else
+      naked.add({{"dev_mpvd_mm", mpvd},
+                 {"dev_medl_mm", medl},
+                 {"dev_noisy_mpvd_mm", error_mm(posed(t->noisy_joints))}});
   }
-  return score;
+  Figures figures = naked.mean();
+  for (const Figure& figure : clothed.mean()) figures.push_back(figure);
+  return figures;
 }
 
 }  // namespace understudy::training

@@ -66,6 +66,14 @@ void add_joint_errors(std::vector<Joints>& joints, float size, float dt, Rng& rn
   if (joints.size() > 1 && rng.chance(0.1f)) add_lost_limb(joints, rng);
 }
 
+std::vector<float> mean_leg_lengths(const std::vector<Joints>& joints) {
+  std::vector<float> means;
+  float sum = 0;
+  for (const Joints& frame : joints)
+    means.push_back((sum += leg_length(frame)) / static_cast<float>(means.size() + 1));
+  return means;
+}
+
 MotionData::MotionData(const TrainingData& data) {
   for (const auto& betas : data.betas) bodies_.push_back(data.body.shaped(betas).joints);
   for (const auto& dressed : data.dressed) bodies_.push_back(dressed.joints);
@@ -157,10 +165,7 @@ void MotionData::fill(MotionBatch& batch, int64_t row, const MotionBatchOptions&
   add_joint_errors(made.joints, rng.chance(0.2f) ? 0.0f : rng.uniform(0, options.noise), dt, rng);
   copy_joints(batch.joints, row, made.joints);
   batch.dt[row].fill_(dt);
-  float* leg = batch.leg.data_ptr<float>() + row * options.frames;
-  float sum = 0;
-  for (int t = 0; t < options.frames; ++t)
-    leg[t] = (sum += leg_length(made.joints[t])) / static_cast<float>(t + 1);
+  batch.leg[row].copy_(torch::tensor(mean_leg_lengths(made.joints)));
 
   if (crossed) copy_joints(batch.real, row, sequence(other, options.frames, step, rng).joints);
   const Joints& rest_b = bodies_[other.body];

@@ -67,4 +67,7 @@ class MotionData {
 /// now and then a limb is lost for a few frames. `size` is their mean length in metres.
 void add_joint_errors(std::vector<Joints>& joints, float size, float dt, Rng& rng);
 
+/// Of each frame the mean leg length over the frames so far, metres.
+std::vector<float> mean_leg_lengths(const std::vector<Joints>& joints);
+
 }  // namespace understudy::training

@@ -1,126 +1,131 @@
-#include "retarget/training/motion_trainer.hpp"
-
-#include <algorithm>
-#include <cmath>
-
 #include "retarget/base/error.hpp"
-#include "retarget/nn/modules/forward_kinematics.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/training/checkpoint_archive.hpp"
 #include "retarget/training/losses/motion_losses.hpp"
+#include "retarget/training/motion_evaluator.hpp"
+#include "retarget/training/motion_step.hpp"
+#include "retarget/training/trainers.hpp"
+#include "retarget/training/training_run.hpp"
 
 namespace understudy::training {
 namespace {
 
-void set_rate(torch::optim::Adam& optimizer, double rate) {
-  for (auto& group : optimizer.param_groups())
-    static_cast<torch::optim::AdamOptions&>(group.options()).lr(rate);
+constexpr float kDevNoise = 0.02f;  // metres
+
+Schedule schedule() {
+  Schedule schedule;
+  schedule.most_gradient = 0.1;
+  return schedule;
 }
 
-MotionBatch on_device(MotionBatch batch, const std::string& device) {
-  if (device == "cpu") return batch;
+nn::MotionGruOptions form_of(const nn::MotionTrainOptions& options) {
+  nn::MotionGruOptions form;
+  form.quaternions = options.rotation == "quaternion";
+  return form;
+}
+
+MotionBatch to_device(MotionBatch batch, const torch::Device& device) {
   for (auto* tensor : {&batch.joints, &batch.leg, &batch.dt, &batch.clean, &batch.rotations, &batch.rest_a,
                        &batch.rest_b, &batch.seen_b, &batch.real})
-    *tensor = tensor->to(torch::Device(device));
+    *tensor = tensor->to(device);
   return batch;
+}
+
+class MotionTrainer final : public TrainingRun {
+ public:
+  explicit MotionTrainer(const nn::MotionTrainOptions& options);
+
+ private:
+  double learn_to_discriminate(const MotionBatch& batch, const torch::Tensor& made);
+
+  Step learn() override;
+  Figures evaluate() override;
+  nn::WeightsHeader header() const override;
+  void put_own(torch::serialize::OutputArchive& archive) const override;
+  void take_own(torch::serialize::InputArchive& archive) override;
+
+  nn::MotionGruOptions form_;
+  MotionBatchOptions batch_;
+  MotionLossWeights weights_;
+  Rng rng_;
+  MotionData data_;
+  MotionEvaluator clean_, noisy_;
+  nn::MotionGru net_;
+  MotionDiscriminator discriminator_;
+  nn::MotionGru average_;
+  std::unique_ptr<torch::optim::Adam> discriminator_optimizer_;
+};
+
+MotionTrainer::MotionTrainer(const nn::MotionTrainOptions& options)
+    : TrainingRun(options, options.kNetwork, schedule()),
+      form_(form_of(options)),
+      rng_(options.seed),
+      data_(load_training_data(options.data, Split::Train)),
+      clean_(load_training_data(options.data, Split::Dev), 0),
+      noisy_(load_training_data(options.data, Split::Dev), kDevNoise),
+      net_(form_),
+      average_(form_) {
+  if (options.batch > 0) batch_.size = options.batch;
+  batch_.frames = options.context;
+  if (!options.rotation_loss) weights_.rotation = 0;
+  net_->to(device());
+  discriminator_->to(device());
+  own(net_.ptr(), average_.ptr(), std::make_unique<torch::optim::Adam>(net_->parameters()));
+  discriminator_optimizer_ = std::make_unique<torch::optim::Adam>(
+      discriminator_->parameters(), torch::optim::AdamOptions(2e-4).betas({0.5, 0.99}));
+  log::info(detail::join("motion: ", data_.stretches(), " stretches of motion, each on its own body"));
+}
+
+TrainingRun::Step MotionTrainer::learn() {
+  const MotionBatch batch = to_device(data_.batch(batch_, rng_), device());
+  MotionStep step = motion_step(net_, discriminator_, batch, weights_);
+  step.loss.total.backward();
+  if (batch.crossed > 0 && all_finite(step.loss.parts))
+    step.loss.parts.push_back({"discriminator_accuracy", learn_to_discriminate(batch, step.made)});
+  return {batch.joints.size(0), step.loss.parts};
+}
+
+/// The discriminator's step, and its accuracy before it.
+double MotionTrainer::learn_to_discriminate(const MotionBatch& batch, const torch::Tensor& made) {
+  const auto rest = batch.rest_b.slice(0, 0, batch.crossed), dt = batch.dt.slice(0, 0, batch.crossed);
+  const auto real_scores = discriminator_->forward(batch.real, rest, dt);
+  const auto made_scores = discriminator_->forward(made, rest, dt);
+  discriminator_optimizer_->zero_grad();
+  discriminator_loss(real_scores, made_scores).backward();
+  discriminator_optimizer_->step();
+  return discriminator_accuracy(real_scores, made_scores);
+}
+
+Figures MotionTrainer::evaluate() {
+  Figures figures = clean_.evaluate(average_, "dev_");
+  for (const Figure& figure : noisy_.evaluate(average_, "dev_noisy_")) figures.push_back(figure);
+  return figures;
+}
+
+nn::WeightsHeader MotionTrainer::header() const {
+  return {"motion",
+          nn::kMotionGruVersion,
+          {{"hidden", static_cast<double>(form_.hidden)},
+           {"layers", static_cast<double>(form_.layers)},
+           {"quaternions", form_.quaternions ? 1.0 : 0.0}}};
+}
+
+void MotionTrainer::put_own(torch::serialize::OutputArchive& archive) const {
+  put(archive, "discriminator", *discriminator_);
+  put(archive, "discriminator_optimizer", *discriminator_optimizer_);
+  put_random(archive, rng_.state());
+}
+
+void MotionTrainer::take_own(torch::serialize::InputArchive& archive) {
+  take(archive, "discriminator", *discriminator_);
+  take(archive, "discriminator_optimizer", *discriminator_optimizer_);
+  rng_ = Rng(take_random(archive));
 }
 
 }  // namespace
 
-MotionTrainer::MotionTrainer(const MotionTrainerOptions& options) : options_(options), rng_(options.seed) {
-  torch::manual_seed(options.seed);
-  net = nn::MotionGru(options.net);
-  discriminator = MotionDiscriminator();
-  const torch::Device device(options.device);
-  net->to(device);
-  discriminator->to(device);
-  optimizer_ = std::make_unique<torch::optim::Adam>(net->parameters(),
-                                                    torch::optim::AdamOptions(options.learning_rate));
-  telling_optimizer_ = std::make_unique<torch::optim::Adam>(
-      discriminator->parameters(), torch::optim::AdamOptions(options.telling_rate).betas({0.5, 0.99}));
-}
-
-MotionStep MotionTrainer::step(const MotionData& data, double progress) {
-  const double fall = 0.5 * (1 + std::cos(M_PI * std::clamp(progress, 0.0, 1.0)));
-  set_rate(*optimizer_, options_.learning_rate * (0.01 + 0.99 * fall));
-  return step(data.batch(options_.batch, rng_));
-}
-
-MotionStep MotionTrainer::step(const MotionBatch& batch) {
-  samples += batch.joints.size(0);
-  return learn(on_device(batch, options_.device));
-}
-
-MotionStep MotionTrainer::learn(const MotionBatch& batch) {
-  const int64_t crossed = batch.crossed;
-  nn::MotionState there, back;
-  const auto local_b = net->forward({batch.joints, batch.leg, batch.dt, batch.seen_b}, there);  // A to B
-  const auto made = nn::forward_kinematics(batch.rest_b, local_b).joints;
-  const auto made_b = made.slice(0, 0, crossed);  // another body: no truth is known
-  auto rotations = local_b.slice(0, crossed);     // B is A: these already came back
-  auto joints = made.slice(0, crossed);
-  if (crossed > 0) {
-    const auto leg_b =
-        nn::leg_lengths(batch.rest_b.slice(0, 0, crossed)).unsqueeze(1).expand({crossed, made.size(1)});
-    const auto rest_a = batch.rest_a.slice(0, 0, crossed);
-    const auto local_a =
-        net->forward({made_b, leg_b, batch.dt.slice(0, 0, crossed), rest_a}, back);  // and back to A
-    rotations = torch::cat({local_a, rotations});
-    joints = torch::cat({nn::forward_kinematics(rest_a, local_a).joints, joints});
-  }
-
-  const auto cycle = cycle_loss(joints, batch.clean);
-  const auto rotation = rotation_loss(rotations, batch.rotations);
-  const auto smoothness = smoothness_loss(joints, batch.clean, batch.dt);
-  auto loss = cycle + options_.rotation_weight * rotation + options_.smoothness_weight * smoothness;
-  MotionStep report{cycle.item<double>(), rotation.item<double>(), smoothness.item<double>(), 0, 0};
-  if (crossed > 0) {
-    const auto adversarial = fooling_loss(
-        discriminator->forward(made_b, batch.rest_b.slice(0, 0, crossed), batch.dt.slice(0, 0, crossed)));
-    loss = loss + options_.adversarial_weight * adversarial;
-    report.adversarial = adversarial.item<double>();
-  }
-  US_CHECK(std::isfinite(loss.item<double>()), "training of motion transfer: the loss is not finite");
-  optimizer_->zero_grad();
-  loss.backward();
-  torch::nn::utils::clip_grad_norm_(net->parameters(), 0.1);
-  optimizer_->step();
-  if (crossed > 0) report.accuracy = tell_apart(batch, made_b.detach());
-  return report;
-}
-
-double MotionTrainer::tell_apart(const MotionBatch& batch, const torch::Tensor& made) {
-  const auto rest = batch.rest_b.slice(0, 0, batch.crossed);
-  const auto dt = batch.dt.slice(0, 0, batch.crossed);
-  const auto real_scores = discriminator->forward(batch.real, rest, dt);
-  const auto fake_scores = discriminator->forward(made, rest, dt);
-  telling_optimizer_->zero_grad();
-  telling_loss(real_scores, fake_scores).backward();
-  telling_optimizer_->step();
-  return telling_accuracy(real_scores, fake_scores);
-}
-
-void MotionTrainer::save_checkpoint(const std::string& path) {
-  torch::serialize::OutputArchive archive;
-  put(archive, "net", *net);
-  put(archive, "discriminator", *discriminator);
-  put(archive, "optimizer", *optimizer_);
-  put(archive, "telling_optimizer", *telling_optimizer_);
-  archive.write("samples", torch::full({1}, samples, torch::kInt64));
-  archive.write("rng", torch::full({1}, static_cast<int64_t>(rng_.state()), torch::kInt64));
-  archive.write("minutes", number(minutes));
-  save_archive(archive, path);
-}
-
-void MotionTrainer::load_checkpoint(const std::string& path) {
-  read_archive(path, torch::Device(options_.device), [&](torch::serialize::InputArchive& archive) {
-    take(archive, "net", *net);
-    take(archive, "discriminator", *discriminator);
-    take(archive, "optimizer", *optimizer_);
-    take(archive, "telling_optimizer", *telling_optimizer_);
-    samples = number_from(archive, "samples").item<int64_t>();
-    rng_ = Rng(static_cast<uint64_t>(number_from(archive, "rng").item<int64_t>()));
-    minutes = number_from(archive, "minutes").item<double>();
-  });
+int train(const nn::MotionTrainOptions& options) {
+  return MotionTrainer(options).run();
 }
 
 }  // namespace understudy::training

@@ -44,7 +44,7 @@ PartBatch batch_of(const Crops& made) {
   PartBatch batch{torch::empty({B, nn::kPartPoints, 3}), torch::empty({B, nn::kPartContext}),
                   tensor_of(made.truth), tensor_of(made.before)};
   for (int64_t b = 0; b < B; ++b) {
-    const nn::PartCrop& crop = made.crops[static_cast<size_t>(b)];
+    const nn::PartCrop& crop = made.crops[b];
     std::copy(crop.points.data(), crop.points.data() + crop.points.size(),
               batch.points.data_ptr<float>() + b * crop.points.size());
     std::copy(crop.context.data(), crop.context.data() + nn::kPartContext,
@@ -71,16 +71,14 @@ Extraction PartSampler::pretend(const PosedSkeleton& truth) {
                                       : rng_.uniform(0.003f, 0.014f);
   seen.global.emplace();
   Joints error = Joints::Zero();
-  for (size_t j = 0; j < kJointCount; ++j) {
-    const auto row = static_cast<Eigen::Index>(j);
-    if (kParents[j] >= 0)
-      error.row(row) = 0.5f * error.row(kParents[j]);  // limbs are misplaced as a whole, too
-    for (int axis = 0; axis < 3; ++axis) error(row, axis) += spread * rng_.normal();
-    seen.joints.row(row) = truth.joints.row(row) + error.row(row);
+  for (int j = 0; j < kJointCount; ++j) {
     const int p = kParents[j];
+    if (p >= 0) error.row(j) = 0.5f * error.row(p);  // limbs are misplaced as a whole, too
+    for (int axis = 0; axis < 3; ++axis) error(j, axis) += spread * rng_.normal();
+    seen.joints.row(j) = truth.joints.row(j) + error.row(j);
     const Eigen::Quaternionf own(truth.global[j]);
     // What the limb suggests of the part on it: no bend.
-    const Eigen::Quaternionf parent(truth.global[static_cast<size_t>(p < 0 ? 0 : p)]);
+    const Eigen::Quaternionf parent(truth.global[p < 0 ? 0 : p]);
     const float drawn = rng_.chance(0.6f) ? rng_.uniform() : 0.0f;
     (*seen.global)[j] = turned(10) * own.slerp(drawn, parent).toRotationMatrix();
   }
@@ -90,12 +88,12 @@ Extraction PartSampler::pretend(const PosedSkeleton& truth) {
 PartBatches PartSampler::next(int scans) {
   std::array<Crops, nn::kPartKinds> made;
   for (int n = 0; n < scans; ++n) {
-    const MadeScan scan = makers_[static_cast<size_t>(rng_.below(3))].next();
+    const MadeScan scan = makers_[rng_.below(3)].next();
     const Extraction seen = pretend(scan.truth);
     for (const nn::Part& part : nn::kCroppedParts) {
       const auto crop = nn::cut_part(scan.points, seen, part);
       if (!crop) continue;
-      Crops& to = made[static_cast<size_t>(part.kind)];
+      Crops& to = made[static_cast<int>(part.kind)];
       std::array<Told, nn::kPartJoints> truth, before;
       Told none = Told::Zero();
       none[0] = none[4] = 1;
@@ -103,7 +101,7 @@ PartBatches PartSampler::next(int scans) {
       before = truth;
       for (size_t k = 0; k < nn::kPartJoints; ++k) {
         if (part.corrects[k] < 0) continue;
-        const auto j = static_cast<size_t>(part.corrects[k]);
+        const auto j = part.corrects[k];
         const Vec3 way =
             (scan.truth.joints.row(part.corrects[k]) - seen.joints.row(part.corrects[k])).transpose();
         truth[k] = told(scan.truth.global[j], way, seen, part);

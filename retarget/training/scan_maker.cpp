@@ -73,7 +73,7 @@ std::vector<Pose> ScanMaker::clip_poses(int count) {
 std::vector<Pose> ScanMaker::make_poses(int count) {
   const auto turn = [this](float angle) { return rotation_from_axis_angle(angle * random_direction(rng_)); };
   Mat3 yaw = rotation_about_y(rng_.uniform(-options_.yaw, options_.yaw));
-  std::vector<Pose> poses(static_cast<size_t>(count));
+  std::vector<Pose> poses(count);
   Rotations changed;
   changed.fill(Mat3::Identity());
   if (rng_.chance(options_.t_pose)) {
@@ -105,8 +105,8 @@ std::vector<Pose> ScanMaker::make_poses(int count) {
   return poses;
 }
 
-/// `rest`, where given, are the same places in T-pose.
-MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose, int count, Points* rest_places) {
+MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose) {
+  const int count = options_.points > 0 ? options_.points : kRawPoints;
   const ShapedBody& body = person.body;
   MadeScan scan;
   scan.truth = forward_kinematics(body.joints, pose);
@@ -124,8 +124,7 @@ MadeScan ScanMaker::sample_posed(const Person& person, const Pose& pose, int cou
     }
   }
   scan.points = linear_blend_skinning(rest + offset, weights, body.joints, scan.truth);
-  if (rest_places) *rest_places = std::move(rest);
-  scan.parts.resize(static_cast<size_t>(count));
+  scan.parts.resize(count);
   for (int i = 0; i < count; ++i) weights.row(i).maxCoeff(&scan.parts[i]);
   return scan;
 }
@@ -193,32 +192,10 @@ void ScanMaker::degrade(MadeScan& scan) {
   add_clutter(scan, scan.points.rows());
 }
 
-int ScanMaker::raw_points() const {
-  return options_.points > 0 ? options_.points : kRawPoints;
-}
-
-void ScanMaker::finish(MadeScan& scan, bool captured) {
-  if (captured) degrade(scan);
-  if (options_.points == 0) thin(scan, rng_);
-}
-
 std::shared_ptr<const ScanMaker::Person> ScanMaker::draw_person() {
   std::shared_ptr<Person>& person = people_[rng_.below(kPoolSize)];
   if (--person->left < 0) person = make_person();
   return person;
-}
-
-std::vector<MadeScan> ScanMaker::follow(const std::vector<Pose>& poses) {
-  const auto person = draw_person();
-  const float scale = leg_length(person->body.joints) / data_.template_leg;
-  const bool captured = rng_.chance(options_.captured);
-  std::vector<MadeScan> scans;
-  for (Pose pose : poses) {
-    pose.root *= scale;  // clips' paths are the template's
-    scans.push_back(sample_posed(*person, pose, raw_points()));
-    finish(scans.back(), captured);
-  }
-  return scans;
 }
 
 ScanMaker::Stream ScanMaker::start() {
@@ -231,31 +208,18 @@ ScanMaker::Stream ScanMaker::start() {
 }
 
 MadeScan ScanMaker::next(Stream& stream) {
-  MadeScan scan = sample_posed(*stream.person, stream.poses.back(), raw_points());
+  MadeScan scan = sample_posed(*stream.person, stream.poses.back());
   stream.poses.pop_back();
   occlude(scan, stream.seed);
   if (options_.stretch > 0) stretch(scan);
-  finish(scan, stream.captured);
+  if (stream.captured) degrade(scan);
+  if (options_.points == 0) thin(scan, rng_);
   return scan;
 }
 
 MadeScan ScanMaker::next() {
   Stream stream = start();
   return next(stream);
-}
-
-PosedPair ScanMaker::pair() {
-  constexpr float kHeadingError = 0.1f;  // radians: where somebody faces is known no better than it was seen
-  Stream stream = start();
-  Pose& pose = stream.poses.back();
-  const Mat3 ahead = rotation_about_y(kHeadingError * rng_.normal() - heading_of(pose.local[Pelvis]));
-  pose.local[Pelvis] = ahead * pose.local[Pelvis];
-  pose.root = ahead * pose.root;
-  const Pose posture = pose;  // the stream forgets it
-  PosedPair pair;
-  pair.source = next(stream).points;
-  pair.posed = sample_posed(*draw_person(), posture, nn::kScanPoints, &pair.rest).points;
-  return pair;
 }
 
 }  // namespace understudy::training

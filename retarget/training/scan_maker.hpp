@@ -42,13 +42,6 @@ struct MadeScan : LabelledPoints {
   PosedSkeleton truth;
 };
 
-/// One posture on two people who face about +z, metres: a scan of the first, and as many places on the
-/// second.
-struct PosedPair {
-  Points source;       ///< [kScanPoints, 3] of the first, in the posture
-  Points rest, posed;  ///< [kScanPoints, 3] of the second, in T-pose and in the posture
-};
-
 /// Keeps a pool of shaped bodies that is renewed slowly: shaping costs more than posing the sampled points.
 /// One thread each; the same seed gives the same scans.
 class ScanMaker {
@@ -72,21 +65,16 @@ class ScanMaker {
   Stream start();
   /// The next frame of a stream that has one left.
   MadeScan next(Stream& stream);
-  /// One person in these poses one after the other, all of them degraded or none.
-  std::vector<MadeScan> follow(const std::vector<Pose>& poses);
-  PosedPair pair();
 
  private:
   std::shared_ptr<Person> make_person();
   std::shared_ptr<const Person> draw_person();
   std::vector<Pose> clip_poses(int count);
   std::vector<Pose> make_poses(int count);
-  MadeScan sample_posed(const Person& person, const Pose& pose, int count, Points* rest = nullptr);
+  MadeScan sample_posed(const Person& person, const Pose& pose);
   void occlude(MadeScan& scan, uint64_t seed);
   void stretch(MadeScan& scan);
   void degrade(MadeScan& scan);
-  void finish(MadeScan& scan, bool captured);
-  int raw_points() const;
   void add_clutter(MadeScan& scan, Eigen::Index kept);
 
   const TrainingData& data_;

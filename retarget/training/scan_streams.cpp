@@ -19,7 +19,7 @@ Joints exchanged(const Joints& joints) {
 }  // namespace
 
 ScanStreams::ScanStreams(const TrainingData& data, const ScanMakerOptions& options, uint64_t seed, int people)
-    : maker_(data, options, seed), rng_(seed + 1), people_(static_cast<size_t>(people)) {}
+    : maker_(data, options, seed), rng_(seed + 1), people_(people) {}
 
 /// Sides exchanged, somebody else's, or displaced.
 RecentJoints ScanStreams::wrong(const RecentJoints& recent) {

@@ -4,29 +4,12 @@
 
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/extractor_input.hpp"
+#include "retarget/training/losses/skeleton_losses.hpp"
 
 namespace understudy::training {
 namespace {
 
 constexpr int64_t M = nn::kPatches, J = kJointCount;
-
-// Limbs as (left, right) joints: exchanging them and seeing a smaller error is a swap.
-const std::vector<std::vector<std::pair<int, int>>> kLimbs = {
-    {{LeftShoulder, RightShoulder}, {LeftElbow, RightElbow}, {LeftWrist, RightWrist}},
-    {{LeftHip, RightHip}, {LeftKnee, RightKnee}, {LeftAnkle, RightAnkle}, {LeftFoot, RightFoot}}};
-
-double swaps(const Joints& found, const Joints& truth) {
-  int count = 0;
-  for (const auto& limb : kLimbs) {
-    float straight = 0, crossed = 0;
-    for (const auto& [l, r] : limb) {
-      straight += (found.row(l) - truth.row(l)).norm() + (found.row(r) - truth.row(r)).norm();
-      crossed += (found.row(r) - truth.row(l)).norm() + (found.row(l) - truth.row(r)).norm();
-    }
-    count += crossed < straight;
-  }
-  return count / static_cast<double>(kLimbs.size());
-}
 
 }  // namespace
 
@@ -43,7 +26,7 @@ SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<R
   batch.truth.parts = torch::empty({B, M}, torch::kInt64);
   for (int64_t b = 0; b < B; ++b) {
     const MadeScan& scan = scans[b];
-    const nn::ScanPatches& patches = all[static_cast<size_t>(b)];
+    const nn::ScanPatches& patches = all[b];
     batch.scale.data_ptr<float>()[b] = patches.scale;
     std::memcpy(batch.centre[b].data_ptr<float>(), patches.centre.data(), sizeof(float) * 3);
     const Joints joints = (scan.truth.joints.rowwise() - patches.centre.transpose()) / patches.scale;
@@ -68,6 +51,23 @@ SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device)
           {batch.truth.joints.to(device), batch.truth.rotations.to(device), batch.truth.parts.to(device)}};
 }
 
+LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {
+  const SkeletonTruth& truth = batch.truth;
+  LossSum loss;
+  if (!out.votes.defined()) {
+    loss.add("joint_loss", (out.joints - truth.joints).square().mean());
+    return loss;
+  }
+  const auto error = (out.joints - truth.joints).square().sum(-1).sqrt();  // [B, 22]
+  loss.add("joint_loss", mean_distance(out.joints, truth.joints) + mean_distance(out.voted, truth.joints));
+  loss.add("vote_loss", vote_loss(out.votes, batch.input.centres, truth.joints, /*reach=*/0.8));
+  loss.add("part_loss", torch::nn::functional::cross_entropy(out.parts.flatten(0, 1), truth.parts.flatten()),
+           0.05);
+  loss.add("rotation_loss", (out.rotations - truth.rotations).abs().mean(), 0.3);
+  loss.add("spread_loss", spread_loss(error, out.log_spread), 0.01);
+  return loss;
+}
+
 std::vector<Joints> world_joints(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {
   const auto world =
       (out.joints.detach() * batch.scale.view({-1, 1, 1}) + batch.centre.unsqueeze(1)).cpu().contiguous();
@@ -75,28 +75,6 @@ std::vector<Joints> world_joints(const nn::ExtractorOutput& out, const SkeletonB
   for (int64_t b = 0; b < world.size(0); ++b)
     joints.emplace_back(Eigen::Map<const Joints>(world[b].data_ptr<float>()));
   return joints;
-}
-
-SkeletonScore score(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {
-  const auto joints = out.joints.cpu().contiguous(), truth = batch.truth.joints.cpu().contiguous();
-  const bool turns = out.rotations.defined();
-  const auto rotations = (turns ? out.rotations : batch.truth.rotations).cpu().contiguous(),
-             true_rotations = batch.truth.rotations.cpu().contiguous();
-  const auto scale = batch.scale.cpu();
-  const int64_t B = joints.size(0);
-  SkeletonScore s;
-  for (int64_t b = 0; b < B; ++b) {
-    const Joints p = Eigen::Map<const Joints>(joints[b].data_ptr<float>());
-    const Joints q = Eigen::Map<const Joints>(truth[b].data_ptr<float>());
-    s.joint_mm += 1000.0 * scale.data_ptr<float>()[b] * (p - q).rowwise().norm().mean() / B;
-    s.swap_rate += swaps(p, q) / B;
-    for (int64_t j = 0; j < J; ++j) {
-      const Mat3 P = rotation_from_6d(Eigen::Map<const Vec6>(rotations[b][j].data_ptr<float>()));
-      const Mat3 Q = rotation_from_6d(Eigen::Map<const Vec6>(true_rotations[b][j].data_ptr<float>()));
-      s.rotation_deg += geodesic_angle(P, Q) * 180.0 / kPi / static_cast<double>(B * J);
-    }
-  }
-  return s;
 }
 
 }  // namespace understudy::training

@@ -1,13 +1,21 @@
-// Training scans as tensors.
+// Training scans as tensors, and the loss of the extractor on them.
 #pragma once
 
 #include <vector>
 
+#include "retarget/nn/modules/skeleton_extractor.hpp"
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/training/loss_sum.hpp"
 #include "retarget/training/scan_maker.hpp"
-#include "retarget/training/skeleton_loss.hpp"
 
 namespace understudy::training {
+
+/// What is true of B scans, in the normalised frame of ScanPatches.
+struct SkeletonTruth {
+  torch::Tensor joints;     ///< [B, 22, 3]
+  torch::Tensor rotations;  ///< [B, 22, 6] world
+  torch::Tensor parts;      ///< [B, M] int64, 22: not the body
+};
 
 struct SkeletonBatch {
   nn::ExtractorInput input;
@@ -20,13 +28,10 @@ struct SkeletonBatch {
 SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<RecentJoints>& recent = {});
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device);
 
+/// A network without votes, paper 1's, has the mean squared error of its joints alone (L_skeleton).
+LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch);
+
 /// The joints that the network saw, world, metres.
 std::vector<Joints> world_joints(const nn::ExtractorOutput& out, const SkeletonBatch& batch);
-
-/// Figures of the extractor on a batch, in metres and degrees.
-struct SkeletonScore {
-  double joint_mm = 0, swap_rate = 0, rotation_deg = 0;
-};
-SkeletonScore score(const nn::ExtractorOutput& out, const SkeletonBatch& batch);
 
 }  // namespace understudy::training

@@ -76,7 +76,7 @@ std::vector<Pose> random_poses(const TrainingData& data, int count, Rng& rng) {
   const auto [clip, first] = random_frame(data, rng);
   const size_t step = count > 1 ? 1 + rng.below(3) : 1;
   std::vector<Pose> poses;
-  for (size_t k = 0; k < static_cast<size_t>(count); ++k) {
+  for (int k = 0; k < count; ++k) {
     const size_t number = first + k * step;
     if (number >= clip->good.size()) break;
     const int frame = clip->good[number];

@@ -30,7 +30,7 @@ TORCH_MODULE(PartNet);
 class PartRefinerNetImpl : public torch::nn::Module {
  public:
   PartRefinerNetImpl();
-  PartNet& of(PartKind kind) { return nets_[static_cast<size_t>(kind)]; }
+  PartNet& of(PartKind kind) { return nets_[static_cast<int>(kind)]; }
 
  private:
   std::array<PartNet, kPartKinds> nets_;

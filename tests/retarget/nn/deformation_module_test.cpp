@@ -5,7 +5,7 @@
 
 #include "retarget/skeleton/skinning.hpp"
 #include "retarget/training/deformation_data.hpp"
-#include "retarget/training/deformation_losses.hpp"
+#include "retarget/training/losses/deformation_losses.hpp"
 #include "tests/retarget/nn/deformation_support.hpp"
 
 namespace understudy {
@@ -135,7 +135,7 @@ TEST(BlendSkin, EqualsLinearBlendSkinning) {
   const Pose pose = testing::random_test_pose(9);
   Pose centred = pose;
   centred.root = Vec3::Zero();
-  auto transforms = training::joint_transforms(body.joints, pose.local);
+  auto transforms = joint_transforms(body.joints, forward_kinematics(body.joints, pose));
   const auto tensor = [](const auto& m) {
     return torch::from_blob(const_cast<float*>(m.data()), {m.rows(), m.cols()}).clone();
   };

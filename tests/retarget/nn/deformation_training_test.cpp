@@ -1,6 +1,4 @@
 // Batches, overfitting, and a training run that is killed and goes on.
-#include "retarget/training/deformation_trainer.hpp"
-
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -10,8 +8,8 @@
 #include <sstream>
 
 #include "retarget/base/error.hpp"
-#include "retarget/training/deformation_losses.hpp"
 #include "retarget/training/deformation_step.hpp"
+#include "retarget/training/trainers.hpp"
 #include "tests/retarget/nn/deformation_support.hpp"
 
 namespace understudy::training {
@@ -72,7 +70,7 @@ TEST(DeformationTraining, OverfitsOneBatch) {
   form.width = 64;
   nn::DeformationNet net(form);
   torch::optim::Adam optimizer(net->parameters(), torch::optim::AdamOptions(3e-3));
-  const double before = deformation_loss(net, batch).geometry_mm;
+  const double before = deformation_loss(net, batch).parts[0].value;
   for (int i = 0; i < 250; ++i) {
     optimizer.zero_grad();
     deformation_loss(net, batch).total.backward();
@@ -80,8 +78,9 @@ TEST(DeformationTraining, OverfitsOneBatch) {
     optimizer.step();
   }
   const auto after = deformation_loss(net, batch);
-  EXPECT_LT(after.geometry_mm, 0.1 * before);
-  EXPECT_LT(after.weight_kl, 0.1);
+  EXPECT_LT(after.parts[0].value, 0.1 * before);
+  EXPECT_EQ(after.parts[2].name, "weight_kl");
+  EXPECT_LT(after.parts[2].value, 0.1);
 }
 
 TEST(DeformationEvaluator, TruthlikeNetworkScoresBetterThanRandom) {
@@ -89,7 +88,7 @@ TEST(DeformationEvaluator, TruthlikeNetworkScoresBetterThanRandom) {
   const DeformationEvaluator evaluator(data);
   torch::manual_seed(1);
   nn::DeformationNet net;
-  const double random = evaluator.score(net).mpvd_mm;
+  const double random = evaluator.evaluate(net)[0].value;
   EXPECT_GT(random, 10);
   DeformationSampler sampler(data, small_batch(), 3);
   torch::optim::Adam optimizer(net->parameters(), torch::optim::AdamOptions(1e-3));
@@ -99,7 +98,7 @@ TEST(DeformationEvaluator, TruthlikeNetworkScoresBetterThanRandom) {
     torch::nn::utils::clip_grad_norm_(net->parameters(), 10.0);
     optimizer.step();
   }
-  EXPECT_LT(evaluator.score(net).mpvd_mm, 0.6 * random);
+  EXPECT_LT(evaluator.evaluate(net)[0].value, 0.6 * random);
 }
 
 std::string bytes_of(const std::string& path) {
@@ -117,9 +116,8 @@ class DeformationTrainerTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  nn::TrainOptions options(const std::string& name) const {
-    nn::TrainOptions o;
-    o.network = "deformation";
+  nn::DeformationTrainOptions options(const std::string& name) const {
+    nn::DeformationTrainOptions o;
     o.data = folder_;
     o.out = folder_ + "/" + name;
     o.samples = 6 * 512;
@@ -137,18 +135,18 @@ std::string tensors_of(const std::string& path) {
 }
 
 TEST_F(DeformationTrainerTest, GoesOnWhereItWasStopped) {
-  EXPECT_EQ(train_deformation(options("whole")), 0);
-  nn::TrainOptions stopped = options("parts");
+  EXPECT_EQ(train(options("whole")), 0);
+  nn::DeformationTrainOptions stopped = options("parts");
   int asked = 0;
   stopped.cancelled = [&asked] { return ++asked > 3; };
-  EXPECT_EQ(train_deformation(stopped), 1);
+  EXPECT_EQ(train(stopped), 1);
   EXPECT_NE(tensors_of(options("whole").out), tensors_of(stopped.out));
-  EXPECT_EQ(train_deformation(options("parts")), 0);
+  EXPECT_EQ(train(options("parts")), 0);
   EXPECT_TRUE(tensors_of(options("whole").out) == tensors_of(options("parts").out));
 }
 
 TEST_F(DeformationTrainerTest, WritesALearningCurve) {
-  train_deformation(options("curve"));
+  train(options("curve"));
   const std::string curve = bytes_of(options("curve").out + ".csv");
   EXPECT_EQ(curve.rfind("minutes,step,samples", 0), 0u);
   EXPECT_NE(curve.find("3072"), std::string::npos);
@@ -156,13 +154,13 @@ TEST_F(DeformationTrainerTest, WritesALearningCurve) {
 
 TEST_F(DeformationTrainerTest, RefusesWhatIsNoCheckpoint) {
   std::ofstream(options("junk").out + ".checkpoint") << "not a checkpoint";
-  EXPECT_THROW(train_deformation(options("junk")), Error);
+  EXPECT_THROW(train(options("junk")), Error);
 }
 
 TEST_F(DeformationTrainerTest, WantsAnEnd) {
-  nn::TrainOptions endless = options("endless");
+  nn::DeformationTrainOptions endless = options("endless");
   endless.samples = 0;
-  EXPECT_THROW(train_deformation(endless), Error);
+  EXPECT_THROW(train(endless), Error);
 }
 
 }  // namespace

@@ -54,15 +54,15 @@ TEST(SmoothnessLoss, IsTheSameAtAnyRate) {
 TEST(AdversarialLosses, GradientsAreThoseOfFiniteDifferences) {
   torch::manual_seed(4);
   const auto fake = doubles({6});
-  EXPECT_LT(gradient_error([](const torch::Tensor& x) { return fooling_loss(x); }, doubles({6})), 1e-7);
-  EXPECT_LT(gradient_error([&](const torch::Tensor& x) { return telling_loss(x, fake); }, doubles({6})),
+  EXPECT_LT(gradient_error([](const torch::Tensor& x) { return adversarial_loss(x); }, doubles({6})), 1e-7);
+  EXPECT_LT(gradient_error([&](const torch::Tensor& x) { return discriminator_loss(x, fake); }, doubles({6})),
             1e-7);
-  EXPECT_LT(gradient_error([&](const torch::Tensor& x) { return telling_loss(fake, x); }, doubles({6})),
+  EXPECT_LT(gradient_error([&](const torch::Tensor& x) { return discriminator_loss(fake, x); }, doubles({6})),
             1e-7);
 }
 
 TEST(AdversarialLosses, AccuracyCountsBothKinds) {
-  EXPECT_DOUBLE_EQ(telling_accuracy(torch::tensor({0.9f, 0.2f}), torch::tensor({0.1f, 0.3f})), 0.75);
+  EXPECT_DOUBLE_EQ(discriminator_accuracy(torch::tensor({0.9f, 0.2f}), torch::tensor({0.1f, 0.3f})), 0.75);
 }
 
 TEST(MotionDiscriminator, ItsGradientReachesTheMotionNetwork) {
@@ -72,7 +72,7 @@ TEST(MotionDiscriminator, ItsGradientReachesTheMotionNetwork) {
   const auto input = random_input(2, 20);
   nn::MotionState state;
   const auto made = nn::forward_kinematics(input.rest, net->forward(input, state)).joints;
-  fooling_loss(discriminator->forward(made, input.rest, input.dt)).backward();
+  adversarial_loss(discriminator->forward(made, input.rest, input.dt)).backward();
   double size = 0;
   for (const auto& parameter : net->parameters()) {
     ASSERT_TRUE(parameter.grad().defined());
@@ -92,9 +92,9 @@ TEST(MotionDiscriminator, LearnsToTellStillFromMoving) {
     const auto real = discriminator->forward(input.joints, input.rest, input.dt);
     const auto fake = discriminator->forward(still, input.rest, input.dt);
     optimizer.zero_grad();
-    telling_loss(real, fake).backward();
+    discriminator_loss(real, fake).backward();
     optimizer.step();
-    if (i >= 70) accuracy += telling_accuracy(real, fake) / 10;
+    if (i >= 70) accuracy += discriminator_accuracy(real, fake) / 10;
   }
   EXPECT_GE(accuracy, 0.8);
 }

@@ -10,7 +10,8 @@
 #include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/motion_evaluator.hpp"
-#include "retarget/training/motion_trainer.hpp"
+#include "retarget/training/motion_step.hpp"
+#include "retarget/training/trainers.hpp"
 #include "tests/retarget/nn/motion_support.hpp"
 
 namespace understudy {
@@ -26,11 +27,13 @@ class MotionTraining : public ::testing::Test {
   }
   void TearDown() override { log::set_sink(before_); }
 
-  MotionTrainerOptions small() const {
-    MotionTrainerOptions options;
-    options.net = {/*hidden=*/24, /*layers=*/1};
-    options.batch.size = 4;
-    options.batch.frames = 20;
+  nn::MotionTrainOptions options(const char* name, int64_t samples) const {
+    nn::MotionTrainOptions options;
+    options.data = folder_.path();
+    options.out = file(name);
+    options.batch = 2;
+    options.threads = 1;
+    options.samples = samples;
     return options;
   }
   std::string file(const char* name) const { return folder_.path() + "/" + name; }
@@ -78,72 +81,70 @@ TEST(JointErrors, AreAsLargeAsAsked) {
 
 TEST_F(MotionTraining, OneBatchCanBeLearntByHeart) {
   const MotionData data(load_training_data(folder_.path(), Split::Train));
-  auto options = small();
-  options.net.hidden = 48;
-  options.learning_rate = 3e-3;
-  MotionTrainer trainer(options);
   Rng rng(4);
   const auto batch = data.batch({4, 20, 0}, rng);
-  const MotionStep first = trainer.step(batch);
-  MotionStep last;
-  for (int i = 0; i < 150; ++i) last = trainer.step(batch);
-  EXPECT_LT(last.cycle, 0.1 * first.cycle);
-  EXPECT_LT(last.rotation, 0.5 * first.rotation);
+  torch::manual_seed(1);
+  nn::MotionGru net(nn::MotionGruOptions{/*hidden=*/48, /*layers=*/1});
+  MotionDiscriminator discriminator;
+  torch::optim::Adam optimizer(net->parameters(), 3e-3);
+  Figures first, last;
+  for (int i = 0; i < 151; ++i) {
+    optimizer.zero_grad();
+    const MotionStep step = motion_step(net, discriminator, batch, {});
+    step.loss.total.backward();
+    torch::nn::utils::clip_grad_norm_(net->parameters(), 0.1);
+    optimizer.step();
+    (i == 0 ? first : last) = step.loss.parts;
+  }
+  EXPECT_EQ(last[0].name, "cycle");
+  EXPECT_LT(last[0].value, 0.1 * first[0].value);
+  EXPECT_EQ(last[1].name, "rotation");
+  EXPECT_LT(last[1].value, 0.5 * first[1].value);
 }
 
 TEST_F(MotionTraining, GoingOnFromACheckpointIsTheSameAsNeverStopping) {
-  const MotionData data(load_training_data(folder_.path(), Split::Train));
-  MotionTrainer whole(small());
-  for (int i = 0; i < 6; ++i) whole.step(data, i / 6.0);
-
-  MotionTrainer first(small());
-  for (int i = 0; i < 3; ++i) first.step(data, i / 6.0);
-  first.save_checkpoint(file("half"));
-  auto other_seed = small();
+  EXPECT_EQ(train(options("whole", 12)), 0);
+  auto stopped = options("parts", 12);
+  int asked = 0;
+  stopped.cancelled = [&asked] { return ++asked > 3; };
+  EXPECT_EQ(train(stopped), 1);
+  auto other_seed = options("parts", 12);
   other_seed.seed = 99;
-  MotionTrainer second(other_seed);
-  second.load_checkpoint(file("half"));
-  for (int i = 3; i < 6; ++i) second.step(data, i / 6.0);
-
-  EXPECT_EQ(second.samples, whole.samples);
-  const auto a = whole.net->parameters(), b = second.net->parameters();
+  EXPECT_EQ(train(other_seed), 0);
+  const auto net_of = [this](const char* name) {
+    nn::MotionGru net;
+    nn::load_weights(file(name), "motion", nn::kMotionGruVersion, *net);
+    return net->parameters();
+  };
+  const auto a = net_of("whole"), b = net_of("parts");
   for (size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(torch::equal(a[i], b[i]));
-  const auto c = whole.discriminator->parameters(), d = second.discriminator->parameters();
-  for (size_t i = 0; i < c.size(); ++i) EXPECT_TRUE(torch::equal(c[i], d[i]));
 }
 
 TEST_F(MotionTraining, RefusesAFileThatIsNoCheckpoint) {
-  std::ofstream(file("junk")) << "not a checkpoint";
-  MotionTrainer trainer(small());
-  EXPECT_THROW(trainer.load_checkpoint(file("junk")), Error);
-  EXPECT_THROW(trainer.load_checkpoint(file("absent")), Error);
+  std::ofstream(file("junk.checkpoint")) << "not a checkpoint";
+  EXPECT_THROW(train(options("junk", 4)), Error);
 }
 
 TEST_F(MotionTraining, TheEvaluatorRecognisesAnUntrainedNetwork) {
-  const MotionEvaluator evaluator(load_training_data(folder_.path(), Split::Dev), 0, 30);
+  const MotionEvaluator evaluator(load_training_data(folder_.path(), Split::Dev), 0);
   nn::MotionGru net(nn::MotionGruOptions{16, 1});
-  const MotionFigures figures = evaluator.evaluate(net);  // untrained
-  EXPECT_GT(figures.rot_deg, 5);
-  EXPECT_GT(figures.mpjpe_mm, figures.pa_mpjpe_mm);
+  const Figures figures = evaluator.evaluate(net, "dev_");  // untrained
+  EXPECT_EQ(figures[2].name, "dev_rot_deg");
+  EXPECT_GT(figures[2].value, 5);
+  EXPECT_GT(figures[0].value, figures[1].value);  // aligned is nearer
 }
 
 TEST_F(MotionTraining, TheCommandTrainsStopsWhenAskedAndGoesOn) {
-  nn::TrainOptions options;
-  options.network = "motion";
-  options.data = folder_.path();
-  options.out = file("motion.weights");
-  options.batch = 2;
-  options.threads = 1;
-  options.samples = 8;
+  auto o = options("motion.weights", 8);
   int asked = 0;
-  options.cancelled = [&] { return ++asked == 2; };
-  EXPECT_EQ(train_motion(options), 1);
-  EXPECT_EQ(nn::read_weights_header(options.out).numbers.at("samples"), 4);
+  o.cancelled = [&] { return ++asked == 3; };
+  EXPECT_EQ(train(o), 1);
+  EXPECT_EQ(nn::read_weights_header(o.out).numbers.at("samples"), 4);
 
-  options.cancelled = nullptr;
-  EXPECT_EQ(train_motion(options), 0);
-  EXPECT_EQ(nn::read_weights_header(options.out).numbers.at("samples"), 8);
-  std::ifstream curve(options.out + ".csv");
+  o.cancelled = nullptr;
+  EXPECT_EQ(train(o), 0);
+  EXPECT_EQ(nn::read_weights_header(o.out).numbers.at("samples"), 8);
+  std::ifstream curve(o.out + ".csv");
   std::string line;
   int lines = 0;
   while (std::getline(curve, line)) ++lines;
@@ -151,19 +152,13 @@ TEST_F(MotionTraining, TheCommandTrainsStopsWhenAskedAndGoesOn) {
 }
 
 TEST_F(MotionTraining, TheAblationsTrainAndTheirWeightsAreRead) {
-  nn::TrainOptions options;
-  options.network = "motion";
-  options.data = folder_.path();
-  options.out = file("quaternion.weights");
-  options.batch = 2;
-  options.threads = 1;
-  options.samples = 4;
-  options.rotation = "quaternion";
-  options.rotation_loss = false;
-  options.context = 5;
-  EXPECT_EQ(train_motion(options), 0);
-  EXPECT_EQ(nn::read_weights_header(options.out).numbers.at("quaternions"), 1);
-  EXPECT_NO_THROW(nn::load_paper_transfer(options.out));
+  auto o = options("quaternion.weights", 4);
+  o.rotation = "quaternion";
+  o.rotation_loss = false;
+  o.context = 5;
+  EXPECT_EQ(train(o), 0);
+  EXPECT_EQ(nn::read_weights_header(o.out).numbers.at("quaternions"), 1);
+  EXPECT_NO_THROW(nn::load_paper_transfer(o.out));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/part_data.hpp"
-#include "retarget/training/part_trainer.hpp"
+#include "retarget/training/trainers.hpp"
 #include "tests/support/training_folder.hpp"
 
 namespace understudy::training {
@@ -23,9 +23,8 @@ class PartTraining : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  nn::TrainOptions options(int64_t samples) const {
-    nn::TrainOptions options;
-    options.network = "part";
+  nn::PartTrainOptions options(int64_t samples) const {
+    nn::PartTrainOptions options;
     options.data = folder_.string();
     options.out = (folder_ / "part.weights").string();
     options.samples = samples;
@@ -59,11 +58,11 @@ TEST_F(PartTraining, CropsComeWithRotationsAndWaysInTheirFrame) {
 }
 
 TEST_F(PartTraining, WritesWeightsAndGoesOnFromItsCheckpoint) {
-  EXPECT_EQ(train_part(options(16)), 0);
+  EXPECT_EQ(train(options(16)), 0);
   const nn::WeightsHeader first = nn::read_weights_header(options(0).out);
   EXPECT_EQ(first.kind, nn::kPartFileKind);
   EXPECT_EQ(first.numbers.at("samples"), 16);
-  EXPECT_EQ(train_part(options(32)), 0);
+  EXPECT_EQ(train(options(32)), 0);
   EXPECT_EQ(nn::read_weights_header(options(0).out).numbers.at("steps"), 8);
   nn::PartRefinerNet net;
   nn::load_weights(options(0).out, nn::kPartFileKind, nn::kPartVersion, *net);
@@ -71,7 +70,7 @@ TEST_F(PartTraining, WritesWeightsAndGoesOnFromItsCheckpoint) {
 }
 
 TEST_F(PartTraining, RefusesToTrainWithoutAnEnd) {
-  EXPECT_ANY_THROW(train_part(options(0)));
+  EXPECT_ANY_THROW(train(options(0)));
 }
 
 }  // namespace

@@ -6,9 +6,10 @@
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/skeleton_form.hpp"
+#include "retarget/training/losses/part_losses.hpp"
 #include "retarget/training/scan_streams.hpp"
 #include "retarget/training/skeleton_batch.hpp"
-#include "retarget/training/skeleton_trainer.hpp"
+#include "retarget/training/trainers.hpp"
 #include "tests/support/training_folder.hpp"
 
 namespace understudy::training {
@@ -71,9 +72,21 @@ TEST(SkeletonLoss, SpreadHasTheRightGradientAndGivesTheJointsNone) {
   torch::manual_seed(3);
   const auto truth = torch::randn({1, 22, 3}, torch::kFloat64);
   auto joints = torch::randn({1, 22, 3}, torch::kFloat64).requires_grad_();
-  expect_gradient([&](const torch::Tensor& s) { return spread_loss(joints, truth, s); },
-                  torch::randn({1, 22}));
+  const auto error = (joints - truth).norm(2, -1);
+  expect_gradient([&](const torch::Tensor& s) { return spread_loss(error, s); }, torch::randn({1, 22}));
   EXPECT_FALSE(joints.grad().defined());
+}
+
+TEST(PartLoss, HasTheRightGradientOfRotationsAndPlaces) {
+  torch::manual_seed(5);
+  const auto truth = torch::randn({2, 2, 9}, torch::kFloat64),
+             log_error = torch::randn({2, 2, 1}, torch::kFloat64);
+  // The expected error is held: the error that it is compared with has no gradient by design.
+  const auto loss = [&](const torch::Tensor& x) {
+    const auto output = torch::cat({x, log_error}, 2);
+    return part_loss(output, truth) - 0.01 * spread_loss(place_error(output, truth), log_error.squeeze(2));
+  };
+  expect_gradient(loss, torch::randn({2, 2, 9}));
 }
 
 TEST_F(SkeletonTraining, ScansAreTheSameForTheSameSeedAndOthersForAnother) {
@@ -173,17 +186,16 @@ TEST_F(SkeletonTraining, OverfitsOneBatch) {
   double first = 0, last = 0;
   for (int step = 0; step < 60; ++step) {
     optimizer.zero_grad();
-    const auto loss = skeleton_loss(net->forward(batch.input), batch.input.centres, batch.truth);
+    const auto loss = skeleton_loss(net->forward(batch.input), batch);
     loss.total.backward();
     optimizer.step();
-    (step == 0 ? first : last) = loss.joint.item<double>();
+    (step == 0 ? first : last) = loss.parts[0].value;
   }
   EXPECT_LT(last, 0.2 * first);
 }
 
-nn::TrainOptions few_samples(const fs::path& folder, int64_t samples) {
-  nn::TrainOptions options;
-  options.network = "skeleton";
+nn::SkeletonTrainOptions few_samples(const fs::path& folder, int64_t samples) {
+  nn::SkeletonTrainOptions options;
   options.data = folder.string();
   options.out = (folder / "out.weights").string();
   options.samples = samples;
@@ -193,9 +205,9 @@ nn::TrainOptions few_samples(const fs::path& folder, int64_t samples) {
 }
 
 TEST_F(SkeletonTraining, ResumesFromItsCheckpoint) {
-  train_skeleton(few_samples(folder_, 8));
+  train(few_samples(folder_, 8));
   EXPECT_TRUE(fs::exists(folder_ / "out.weights"));
-  train_skeleton(few_samples(folder_, 12));
+  train(few_samples(folder_, 12));
   std::ifstream curve(folder_ / "out.weights.csv");
   std::string header, first, second;
   std::getline(curve, header), std::getline(curve, first), std::getline(curve, second);
@@ -204,13 +216,13 @@ TEST_F(SkeletonTraining, ResumesFromItsCheckpoint) {
 }
 
 TEST_F(SkeletonTraining, KeepsAShareOfWhatItStartedFrom) {
-  train_skeleton(few_samples(folder_, 8));
+  train(few_samples(folder_, 8));
   const std::string begun = (folder_ / "begun.weights").string(), out = (folder_ / "out.weights").string();
   fs::rename(out, begun);
   fs::remove(out + ".checkpoint");
-  nn::TrainOptions options = few_samples(folder_, 40);
+  nn::SkeletonTrainOptions options = few_samples(folder_, 40);
   options.init = begun;
-  train_skeleton(options);
+  train(options);
   const auto parameters_of = [](const std::string& path) {
     const auto net = nn::make_skeleton_form("dense");
     nn::load_skeleton_form(path, "dense", *net);
@@ -218,7 +230,7 @@ TEST_F(SkeletonTraining, KeepsAShareOfWhatItStartedFrom) {
   };
   const auto first = parameters_of(begun), last = parameters_of(out);
   options.keep = 0.25;
-  train_skeleton(options);  // nothing left to train: only written anew
+  train(options);  // nothing left to train: only written anew
   const auto kept = parameters_of(out);
   double moved = 0;
   for (size_t i = 0; i < kept.size(); ++i) {
@@ -227,11 +239,11 @@ TEST_F(SkeletonTraining, KeepsAShareOfWhatItStartedFrom) {
   }
   EXPECT_GT(moved, 0.1);
   options.init.clear();
-  EXPECT_THROW(train_skeleton(options), Error);
+  EXPECT_THROW(train(options), Error);
 }
 
 TEST_F(SkeletonTraining, WithoutDataIsOneSentence) {
-  EXPECT_THROW(train_skeleton(few_samples(folder_ / "nowhere", 8)), Error);
+  EXPECT_THROW(train(few_samples(folder_ / "nowhere", 8)), Error);
 }
 
 }  // namespace

@@ -1,0 +1,54 @@
+// What can be trained, without LibTorch: the options of each network's training, and the call that runs one.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+
+namespace understudy::nn {
+
+/// What every training is told.
+struct TrainOptions {
+  std::string data, out;  ///< the data folder; the weights file, its checkpoint (OUT.checkpoint) beside it
+  std::string curve;      ///< learning curve CSV; empty: out + ".csv"
+  double minutes = 0;     ///< stop after this long; 0: no limit
+  int64_t samples = 0;    ///< stop after this many in total; 0: no limit
+  int threads = 0;        ///< 0: the network's own
+  int batch = 0;          ///< 0: the network's own
+  uint64_t seed = 1;
+  std::string device = "cpu";       ///< "cpu" or "cuda"
+  std::string init;                 ///< weights to start from
+  double keep = 0;                  ///< share of those in the weights that are written
+  std::function<bool()> cancelled;  ///< asked between steps; the checkpoint is written before it stops
+};
+
+struct SkeletonTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "skeleton";
+  std::string form = "dense";  ///< "dense" or "paper"
+  std::string poses = "all";   ///< "all", or "rest": people in T-pose, for the joints of targets
+};
+
+struct PartTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "part";
+};
+
+struct MotionTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "motion";
+  std::string rotation = "6d";  ///< how the network puts rotations, "6d" or "quaternion"
+  bool rotation_loss = true;    ///< L_rot of paper 1, eq. 2
+  int context = 30;             ///< frames of a sequence; the paper's 30
+};
+
+struct DeformationTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "deformation";
+};
+
+using AnyTrainOptions =
+    std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions>;
+
+/// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
+/// it came to the end, 1 when it was cancelled. Throws Error.
+int train(const AnyTrainOptions& options);
+
+}  // namespace understudy::nn
