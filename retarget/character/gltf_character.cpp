@@ -17,102 +17,80 @@ namespace understudy {
 namespace {
 
 using Json = nlohmann::json;
+using Attributes = std::map<std::string, int>;  // accessors by their names
 
 constexpr int kMaxDepth = 1000, kMostParts = 10000;
 constexpr int64_t kMostPrimitives = 1000000;
 
-std::string text_of(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-const Json& object_in(const Json& object, const char* name) {
-  static const Json kEmpty = Json::object();
-  const auto found = object.find(name);
-  return found != object.end() && found->is_object() ? *found : kEmpty;
-}
-
 class CharacterReader {
  public:
-  CharacterReader(std::string_view bytes, const std::string& path) : file_(bytes, path), path_(path) {}
+  CharacterReader(std::string_view bytes, const std::string& path)
+      : file_(bytes, path, GltfFile::Use::Character), model_(file_.model()), path_(path) {}
   Character read();
 
  private:
   void read_nodes();
-  void order_nodes(const std::vector<int64_t>& parents);
+  void order_nodes(const std::vector<int>& parents);
   void read_skins();
-  void read_skin_joints(const Json& skin, CharacterSkin& out);
-  void read_mesh(const Json& node, int to);
-  void read_primitive(const Json& primitive, CharacterPart part);
-  void read_attributes(const Json& attributes, CharacterPart& part);
-  void read_influences(const Json& attributes, CharacterPart& part);
-  void read_faces(const Json& primitive, int64_t mode, CharacterPart& part);
-  void read_shapes(const Json& primitive, CharacterPart& part);
+  void read_mesh(const tinygltf::Node& node, int to);
+  void read_primitive(const tinygltf::Primitive& primitive, CharacterPart part);
+  void read_attributes(const Attributes& attributes, CharacterPart& part);
+  void read_influences(const Attributes& attributes, CharacterPart& part);
+  void read_shapes(const tinygltf::Primitive& primitive, CharacterPart& part);
   void read_images();
   void keep_texts(const char* name, std::vector<std::string>& out);
   void keep_extensions(const Json& value, std::set<std::string>& found) const;
   void read_animations();
-  void read_channel(const Json& channel, const Json& samplers, CharacterAnimation& out);
-  RowMatrix rows(int64_t accessor, int parts, const char* what, Eigen::Index count);
-  int node_number(int64_t index) const;
+  void read_channel(const tinygltf::AnimationChannel& channel,
+                    const std::vector<tinygltf::AnimationSampler>& samplers, CharacterAnimation& out);
+  RowMatrix rows(int accessor, int parts, const char* what, Eigen::Index count);
+  int node_number(int index) const { return file_.item(node_of_, index, "nodes"); }
 
   GltfFile file_;
+  const tinygltf::Model& model_;
   const std::string& path_;
   Character out_;
   int64_t primitives_ = 0, vertices_ = 0;  // so far
   std::vector<int> node_of_;               // of each node of the file, its number here; -1: not in the scene
 };
 
-int CharacterReader::node_number(int64_t index) const {
-  US_CHECK(index >= 0 && index < static_cast<int64_t>(node_of_.size()), path_, ": names number ", index,
-           " of its ", node_of_.size(), " nodes");
-  return node_of_[static_cast<size_t>(index)];
-}
-
 void CharacterReader::read_nodes() {
-  const auto count = static_cast<int64_t>(file_.list("nodes").size());
+  const size_t count = model_.nodes.size();
   US_CHECK(count <= 100000, path_, ": has ", count, " nodes; 100000 are read at most");
-  node_of_.assign(static_cast<size_t>(count), -1);
-  std::vector<int64_t> parents(static_cast<size_t>(count), -1);
-  for (int64_t n = 0; n < count; ++n) {
-    const auto children = file_.item("nodes", n).find("children");
-    if (children == file_.item("nodes", n).end()) continue;
-    US_CHECK(children->is_array(), path_, ": the children of node ", n, " are no list");
-    for (const auto& child : *children) {
-      US_CHECK(child.is_number(), path_, ": a child of node ", n, " is no number");
-      const int64_t c = whole(child.get<double>());
-      US_CHECK(c >= 0 && c < count, path_, ": node ", n, " has a child that is not there");
-      US_CHECK(parents[static_cast<size_t>(c)] < 0, path_, ": node ", c, " is a child of two nodes");
-      parents[static_cast<size_t>(c)] = n;
+  node_of_.assign(count, -1);
+  std::vector<int> parents(count, -1);
+  for (size_t n = 0; n < count; ++n)
+    for (const int c : model_.nodes[n].children) {
+      US_CHECK(static_cast<size_t>(c) < count, path_, ": node ", n, " has a child that is not there");
+      US_CHECK(parents[c] < 0, path_, ": node ", c, " is a child of two nodes");
+      parents[c] = static_cast<int>(n);
     }
-  }
   order_nodes(parents);
-  out_.nodes.resize(static_cast<size_t>(count));
-  for (int64_t n = 0; n < count; ++n) {
-    const Json& object = file_.item("nodes", n);
-    CharacterNode& node = out_.nodes[static_cast<size_t>(node_of_[static_cast<size_t>(n)])];
-    const int64_t parent = parents[static_cast<size_t>(n)];
-    node.name = text_of(object, "name");
-    node.parent = parent < 0 ? -1 : node_of_[static_cast<size_t>(parent)];
-    node.local = Transform::from(gltf_local_transform(file_, object));
-    if (const auto s = file_.numbers(object, "scale", 3); !s.empty())
-      node.local.scale = Vec3(s[0], s[1], s[2]);
+  out_.nodes.resize(count);
+  for (size_t n = 0; n < count; ++n) {
+    const tinygltf::Node& from = model_.nodes[n];
+    CharacterNode& node = out_.nodes[node_of_[n]];
+    node.name = from.name;
+    node.parent = parents[n] < 0 ? -1 : node_number(parents[n]);
+    node.local = Transform::from(gltf_local_transform(file_, from));
+    if (!from.scale.empty())
+      node.local.scale = Vec3(narrow(from.scale[0]), narrow(from.scale[1]), narrow(from.scale[2]));
   }
 }
 
 // Numbers for the nodes, parents first: the file's own where they are so already.
-void CharacterReader::order_nodes(const std::vector<int64_t>& parents) {
+void CharacterReader::order_nodes(const std::vector<int>& parents) {
   std::vector<int> depth(parents.size(), 0);
   bool in_order = true;
   for (size_t n = 0; n < parents.size(); ++n) {
     int steps = 1;
-    for (int64_t p = parents[n]; p >= 0 && steps <= kMaxDepth; p = parents[static_cast<size_t>(p)]) ++steps;
+    for (int p = parents[n]; p >= 0 && steps <= kMaxDepth; p = parents[p]) ++steps;
     depth[n] = steps;
-    in_order = in_order && parents[n] < static_cast<int64_t>(n);
+    in_order = in_order && parents[n] < static_cast<int>(n);
   }
   for (size_t n = 0; n < parents.size(); ++n) {  // a way up without an end is a circle, or only long
-    int64_t slow = static_cast<int64_t>(n), fast = slow;
-    const auto up = [&](int64_t& at) { at = at < 0 ? at : parents[static_cast<size_t>(at)]; };
+    int slow = static_cast<int>(n), fast = slow;
+    const auto up = [&](int& at) { at = at < 0 ? at : parents[at]; };
     if (depth[n] <= kMaxDepth) continue;
     do {
       up(slow);
@@ -129,62 +107,45 @@ void CharacterReader::order_nodes(const std::vector<int64_t>& parents) {
   for (size_t i = 0; i < order.size(); ++i) node_of_[order[i]] = static_cast<int>(i);
 }
 
-void CharacterReader::read_skin_joints(const Json& skin, CharacterSkin& out) {
-  const auto joints = skin.find("joints");
-  US_CHECK(joints != skin.end() && joints->is_array() && !joints->empty(), path_, ": a skin has no joints");
-  for (const auto& joint : *joints) {
-    US_CHECK(joint.is_number(), path_, ": a joint of a skin is no number");
-    out.joints.push_back(node_number(whole(joint.get<double>())));
-  }
-  std::vector<int> sorted = out.joints;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  US_CHECK(twice == sorted.end(), path_, ": a skin names the bone '",
-           excerpt(out_.nodes[static_cast<size_t>(*twice)].name), "' twice");
-}
-
 void CharacterReader::read_skins() {
-  const auto count = static_cast<int64_t>(file_.list("skins").size());
-  US_CHECK(count <= kMostParts, path_, ": has ", count, " skins; ", kMostParts, " are read at most");
-  for (int64_t s = 0; s < count; ++s) {
-    const Json& object = file_.item("skins", s);
+  US_CHECK(model_.skins.size() <= kMostParts, path_, ": has ", model_.skins.size(), " skins; ", kMostParts,
+           " are read at most");
+  for (const tinygltf::Skin& from : model_.skins) {
     CharacterSkin skin;
-    skin.name = text_of(object, "name");
-    read_skin_joints(object, skin);
-    if (object.contains("inverseBindMatrices")) {
-      const GltfAccessor matrices = file_.accessor(file_.integer(object, "inverseBindMatrices", -1));
-      US_CHECK(matrices.parts == 16 && static_cast<size_t>(matrices.count) >= skin.joints.size(), path_,
-               ": a skin has fewer bind matrices than joints");
-      for (size_t j = 0; j < skin.joints.size(); ++j)
-        skin.inverse_bind.push_back(Eigen::Map<const Mat4>(matrices.values.data() + 16 * j));
-    } else {
-      skin.inverse_bind.assign(skin.joints.size(), Mat4::Identity());
-    }
+    skin.name = from.name;
+    for (const int joint : from.joints) skin.joints.push_back(node_number(joint));
+    const std::vector<float> matrices = file_.inverse_bind(from);
+    std::vector<int> sorted = skin.joints;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    US_CHECK(twice == sorted.end(), path_, ": a skin names the bone '", excerpt(out_.nodes[*twice].name),
+             "' twice");
+    skin.inverse_bind.assign(skin.joints.size(), Mat4::Identity());
+    for (size_t j = 0; j < skin.joints.size() && !matrices.empty(); ++j)
+      skin.inverse_bind[j] = Eigen::Map<const Mat4>(matrices.data() + 16 * j);
     out_.skins.push_back(std::move(skin));
   }
 }
 
-RowMatrix CharacterReader::rows(int64_t accessor, int parts, const char* what, Eigen::Index count) {
+RowMatrix CharacterReader::rows(int accessor, int parts, const char* what, Eigen::Index count) {
   const GltfAccessor values = file_.accessor(accessor);
   US_CHECK(values.parts == parts && (count < 0 || values.count == count), path_, ": the ", what,
            " of a primitive are not ", count, " times ", parts, " numbers");
   return Eigen::Map<const RowMatrix>(values.values.data(), values.count, parts);
 }
 
-void CharacterReader::read_attributes(const Json& attributes, CharacterPart& part) {
-  part.vertices = rows(file_.integer(attributes, "POSITION", -1), 3, "positions", -1);
+void CharacterReader::read_attributes(const Attributes& attributes, CharacterPart& part) {
+  part.vertices = rows(attributes.at("POSITION"), 3, "positions", -1);
   const Eigen::Index count = part.vertices.rows();
-  if (attributes.contains("NORMAL"))
-    part.normals = rows(file_.integer(attributes, "NORMAL", -1), 3, "normals", count);
-  if (attributes.contains("TANGENT"))
-    part.tangents = rows(file_.integer(attributes, "TANGENT", -1), 4, "tangents", count);
+  if (attributes.count("NORMAL")) part.normals = rows(attributes.at("NORMAL"), 3, "normals", count);
+  if (attributes.count("TANGENT")) part.tangents = rows(attributes.at("TANGENT"), 4, "tangents", count);
   for (int i = 0; i < 8; ++i) {
     const std::string name = "TEXCOORD_" + std::to_string(i);
-    if (!attributes.contains(name)) break;
-    part.uvs.push_back(rows(file_.integer(attributes, name.c_str(), -1), 2, "texture coordinates", count));
+    if (attributes.count(name) == 0) break;
+    part.uvs.push_back(rows(attributes.at(name), 2, "texture coordinates", count));
   }
-  if (!attributes.contains("COLOR_0")) return;
-  const GltfAccessor colors = file_.accessor(file_.integer(attributes, "COLOR_0", -1));
+  if (attributes.count("COLOR_0") == 0) return;
+  const GltfAccessor colors = file_.accessor(attributes.at("COLOR_0"));
   US_CHECK((colors.parts == 3 || colors.parts == 4) && colors.count == count, path_,
            ": the colours of a primitive are not one a vertex");
   part.colors = RowMatrix::Ones(count, 4);
@@ -192,20 +153,18 @@ void CharacterReader::read_attributes(const Json& attributes, CharacterPart& par
       Eigen::Map<const RowMatrix>(colors.values.data(), colors.count, colors.parts);
 }
 
-void CharacterReader::read_influences(const Json& attributes, CharacterPart& part) {
+void CharacterReader::read_influences(const Attributes& attributes, CharacterPart& part) {
   const Eigen::Index count = part.vertices.rows();
-  US_CHECK(attributes.contains("JOINTS_0") && attributes.contains("WEIGHTS_0"), path_, ": the part '",
-           part.name, "' has a skin but no weights");
-  const int sets = attributes.contains("JOINTS_1") && attributes.contains("WEIGHTS_1") ? 2 : 1;
+  US_CHECK(attributes.count("JOINTS_0") && attributes.count("WEIGHTS_0"), path_, ": the part '", part.name,
+           "' has a skin but no weights");
+  const int sets = attributes.count("JOINTS_1") && attributes.count("WEIGHTS_1") ? 2 : 1;
   part.joints.setZero(count, 4 * sets);
   part.weights.setZero(count, 4 * sets);
   for (int s = 0; s < sets; ++s) {
     const std::string end = std::to_string(s);
-    const RowMatrix joints =
-        rows(file_.integer(attributes, ("JOINTS_" + end).c_str(), -1), 4, "joints of the skin", count);
+    const RowMatrix joints = rows(attributes.at("JOINTS_" + end), 4, "joints of the skin", count);
     part.joints.middleCols(4 * s, 4) = joints.cast<int>();
-    part.weights.middleCols(4 * s, 4) =
-        rows(file_.integer(attributes, ("WEIGHTS_" + end).c_str(), -1), 4, "skin weights", count);
+    part.weights.middleCols(4 * s, 4) = rows(attributes.at("WEIGHTS_" + end), 4, "skin weights", count);
   }
   US_CHECK(part.weights.allFinite() && (count == 0 || part.weights.minCoeff() >= 0), path_,
            ": a skin weight of the part '", part.name, "' is negative or not finite");
@@ -224,51 +183,24 @@ void CharacterReader::read_influences(const Json& attributes, CharacterPart& par
   }
 }
 
-void CharacterReader::read_faces(const Json& primitive, int64_t mode, CharacterPart& part) {
-  const int64_t count = part.vertices.rows();
-  std::vector<int64_t> c;
-  if (primitive.contains("indices")) {
-    const GltfAccessor indices = file_.accessor(file_.integer(primitive, "indices", -1));
-    US_CHECK(indices.parts == 1, path_, ": the indices of a primitive are no single numbers");
-    for (const float index : indices.values) {
-      US_CHECK(index >= 0 && index < static_cast<float>(count), path_, ": a face names vertex ", index,
-               " of a primitive of ", count);
-      c.push_back(static_cast<int64_t>(index));
-    }
-  } else {
-    for (int64_t i = 0; i < count; ++i) c.push_back(i);
-  }
-  FaceList faces;
-  for (size_t i = 0; i + 2 < c.size(); i += mode == 4 ? 3 : 1) {
-    const bool turn = mode == 5 && i % 2 == 1;
-    faces.add(mode == 6 ? c[0] : c[i], c[i + (turn ? 2 : 1)], c[i + (turn ? 1 : 2)]);
-  }
-  part.faces = faces.finish(count, path_);
-}
-
-void CharacterReader::read_shapes(const Json& primitive, CharacterPart& part) {
-  const auto targets = primitive.find("targets");
-  if (targets == primitive.end() || !targets->is_array()) return;
-  US_CHECK(targets->size() <= 1000, path_, ": the part '", part.name, "' has ", targets->size(),
-           " morph targets");
-  for (const auto& target : *targets) {
-    US_CHECK(target.is_object(), path_, ": a morph target is no object");
-    part.shapes.push_back(target.contains("POSITION") ? Points(rows(file_.integer(target, "POSITION", -1), 3,
-                                                                    "morph targets", part.vertices.rows()))
-                                                      : Points::Zero(part.vertices.rows(), 3));
+void CharacterReader::read_shapes(const tinygltf::Primitive& primitive, CharacterPart& part) {
+  US_CHECK(primitive.targets.size() <= 1000, path_, ": the part '", part.name, "' has ",
+           primitive.targets.size(), " morph targets");
+  for (const Attributes& target : primitive.targets) {
+    const auto positions = target.find("POSITION");
+    part.shapes.push_back(positions == target.end()
+                              ? Points::Zero(part.vertices.rows(), 3)
+                              : Points(rows(positions->second, 3, "morph targets", part.vertices.rows())));
   }
 }
 
-void CharacterReader::read_primitive(const Json& primitive, CharacterPart part) {
-  US_CHECK(primitive.is_object() && ++primitives_ <= kMostPrimitives, path_,
-           ": a primitive is no object, or there are too many");
-  const int64_t mode = file_.integer(primitive, "mode", 4);
-  const Json& attributes = object_in(primitive, "attributes");
-  if ((mode != 0 && mode < 4) || mode > 6 || !attributes.contains("POSITION")) return;  // lines, or nothing
-  part.material = static_cast<int>(std::min<int64_t>(file_.integer(primitive, "material", -1), 1 << 30));
-  read_attributes(attributes, part);
-  if (part.skin >= 0) read_influences(attributes, part);
-  if (mode != 0) read_faces(primitive, mode, part);
+void CharacterReader::read_primitive(const tinygltf::Primitive& primitive, CharacterPart part) {
+  US_CHECK(++primitives_ <= kMostPrimitives, path_, ": has too many primitives");
+  if (!file_.is_shown(primitive)) return;
+  part.material = std::min(primitive.material, 1 << 30);
+  read_attributes(primitive.attributes, part);
+  if (part.skin >= 0) read_influences(primitive.attributes, part);
+  part.faces = file_.faces(primitive, part.vertices.rows());
   read_shapes(primitive, part);
   vertices_ += part.vertices.rows();
   US_CHECK(vertices_ <= 16000000, path_, ": has more than 16 million vertices");
@@ -276,45 +208,38 @@ void CharacterReader::read_primitive(const Json& primitive, CharacterPart part) 
   out_.parts.push_back(std::move(part));
 }
 
-void CharacterReader::read_mesh(const Json& node, int to) {
-  const Json& mesh = file_.item("meshes", file_.integer(node, "mesh", -1));
+void CharacterReader::read_mesh(const tinygltf::Node& node, int to) {
+  const tinygltf::Mesh& mesh = file_.item(model_.meshes, node.mesh, "meshes");
   CharacterPart part;
-  part.name = text_of(mesh, "name");
+  part.name = mesh.name;
   part.node = to;
-  if (node.contains("skin")) {
-    const int64_t skin = file_.integer(node, "skin", -1);
-    file_.item("skins", skin);
-    part.skin = static_cast<int>(skin);
-  }
-  const auto primitives = mesh.find("primitives");
-  if (primitives == mesh.end() || !primitives->is_array()) return;
+  part.skin = node.skin;
+  if (node.skin >= 0) file_.item(model_.skins, node.skin, "skins");
   size_t shapes = 0;
-  for (const auto& primitive : *primitives) {
+  for (const auto& primitive : mesh.primitives) {
     read_primitive(primitive, part);
     if (!out_.parts.empty()) shapes = std::max(shapes, out_.parts.back().shapes.size());
   }
-  std::vector<float>& weights = out_.nodes[static_cast<size_t>(to)].shape_weights;
-  const Json& from = node.contains("weights") ? node : mesh;
-  if (from.contains("weights")) weights = file_.numbers(from, "weights", from["weights"].size());
+  std::vector<float>& weights = out_.nodes[to].shape_weights;
+  for (const double weight : node.weights.empty() ? mesh.weights : node.weights)
+    weights.push_back(narrow(weight));
   weights.resize(shapes, 0.0f);
 }
 
 void CharacterReader::read_images() {
-  for (int64_t i = 0; i < static_cast<int64_t>(file_.list("images").size()); ++i) {
-    const Json& object = file_.item("images", i);
+  for (const tinygltf::Image& from : model_.images) {
     CharacterImage image;
-    image.name = text_of(object, "name");
-    const std::string what = "picture " + std::to_string(i), uri = text_of(object, "uri");
-    if (object.contains("bufferView")) {
-      const std::string_view bytes = file_.view_bytes(file_.integer(object, "bufferView", -1));
-      file_.spend(bytes.size());
-      image.bytes = std::string(bytes);
+    image.name = from.name;
+    const std::string what = "picture " + std::to_string(out_.images.size());
+    if (from.bufferView >= 0) {
+      image.bytes = std::string(file_.view_bytes(from.bufferView));
+      file_.spend(image.bytes.size());
+    } else if (!from.image.empty()) {
+      image.bytes.assign(from.image.begin(), from.image.end());
     } else {
-      const bool is_data = starts_with(uri, "data:");
-      if (image.name.empty() && !is_data) image.name = std::filesystem::path(uri).stem().string();
-      image.bytes = is_data ? file_.uri_bytes(uri, what)
-                            : picture_or_white([&] { return file_.uri_bytes(uri, what); },
-                                               path_ + ": " + what + " (" + excerpt(uri) + ")");
+      if (image.name.empty()) image.name = std::filesystem::path(from.uri).stem().string();
+      image.bytes = picture_or_white([&] { return file_.uri_bytes(from.uri, what); },
+                                     path_ + ": " + what + " (" + excerpt(from.uri) + ")");
     }
     image.mime = picture_type(image.bytes);
     US_CHECK(!image.mime.empty(), path_, ": ", what, image.name.empty() ? "" : " '" + image.name + "'",
@@ -338,7 +263,7 @@ void CharacterReader::keep_extensions(const Json& value, std::set<std::string>& 
       if (key == "extensions" && inner.is_object())
         for (const auto& extension : inner.items()) found.insert(extension.key());
       if (ends_with(key, "Texture") && inner.is_object())
-        check_index(inner, "index", file_.list("textures").size(), path_);
+        check_index(inner, "index", file_.kept("textures").size(), path_);
     }
   }
   if (value.is_structured())
@@ -347,22 +272,22 @@ void CharacterReader::keep_extensions(const Json& value, std::set<std::string>& 
 
 void CharacterReader::keep_texts(const char* name, std::vector<std::string>& out) {
   std::set<std::string> extensions(out_.extensions.begin(), out_.extensions.end());
-  for (int64_t i = 0; i < static_cast<int64_t>(file_.list(name).size()); ++i) {
-    const Json& object = file_.item(name, i);
+  for (const Json& object : file_.kept(name)) {
+    US_CHECK(object.is_object(), path_, ": number ", out.size(), " of its ", name, " is no object");
     if (std::string_view(name) == "textures") {
       check_index(object, "source", out_.images.size(), path_);
-      check_index(object, "sampler", file_.list("samplers").size(), path_);
-      for (const auto& extension : object_in(object, "extensions"))
+      check_index(object, "sampler", file_.kept("samplers").size(), path_);
+      for (const auto& extension : object.value("extensions", Json::object()))
         if (extension.is_object()) check_index(extension, "source", out_.images.size(), path_);
     }
     const std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
-    US_CHECK(text.size() <= 1000000, path_, ": number ", i, " of its ", name, " is too long");
+    US_CHECK(text.size() <= 1000000, path_, ": number ", out.size(), " of its ", name, " is too long");
     keep_extensions(object, extensions);
     out.push_back(text);
   }
   out_.extensions.assign(extensions.begin(), extensions.end());
   out_.required.clear();
-  for (const auto& required : file_.list("extensionsRequired"))
+  for (const auto& required : file_.kept("extensionsRequired"))
     if (required.is_string() && extensions.erase(required.get<std::string>()) > 0)
       out_.required.push_back(required.get<std::string>());
 }
@@ -375,33 +300,27 @@ TrackPath track_path(const std::string& name, const std::string& path) {
   return TrackPath::Shapes;
 }
 
-void CharacterReader::read_channel(const Json& channel, const Json& samplers, CharacterAnimation& out) {
-  US_CHECK(channel.is_object(), path_, ": an animation's channel is no object");
-  const Json& target = object_in(channel, "target");
-  if (!target.contains("node") || text_of(target, "path") == "pointer") return;
+void CharacterReader::read_channel(const tinygltf::AnimationChannel& channel,
+                                   const std::vector<tinygltf::AnimationSampler>& samplers,
+                                   CharacterAnimation& out) {
+  if (channel.target_node < 0 || channel.target_path == "pointer") return;
   CharacterTrack track;
-  track.node = node_number(file_.integer(target, "node", -1));
-  track.path = track_path(text_of(target, "path"), path_);
-  const int64_t index = file_.integer(channel, "sampler", -1);
-  US_CHECK(samplers.is_array() && index >= 0 && index < static_cast<int64_t>(samplers.size()) &&
-               samplers[static_cast<size_t>(index)].is_object(),
-           path_, ": an animation names a sampler that is not there");
-  const Json& sampler = samplers[static_cast<size_t>(index)];
-  const std::string kind = text_of(sampler, "interpolation");
-  track.interpolation = kind == "STEP"          ? TrackInterpolation::Step
-                        : kind == "CUBICSPLINE" ? TrackInterpolation::Cubic
-                                                : TrackInterpolation::Linear;
-  track.times = file_.accessor(file_.integer(sampler, "input", -1)).values;
-  track.values = file_.accessor(file_.integer(sampler, "output", -1)).values;
+  track.node = node_number(channel.target_node);
+  track.path = track_path(channel.target_path, path_);
+  const tinygltf::AnimationSampler& sampler = file_.item(samplers, channel.sampler, "samplers");
+  track.interpolation = sampler.interpolation == "STEP"          ? TrackInterpolation::Step
+                        : sampler.interpolation == "CUBICSPLINE" ? TrackInterpolation::Cubic
+                                                                 : TrackInterpolation::Linear;
+  track.times = file_.accessor(sampler.input).values;
+  track.values = file_.accessor(sampler.output).values;
   const size_t width = track.path == TrackPath::Rotation ? 4
-                       : track.path == TrackPath::Shapes
-                           ? out_.nodes[static_cast<size_t>(track.node)].shape_weights.size()
-                           : 3;
+                       : track.path == TrackPath::Shapes ? out_.nodes[track.node].shape_weights.size()
+                                                         : 3;
   const size_t wanted =
       track.times.size() * width * (track.interpolation == TrackInterpolation::Cubic ? 3 : 1);
   US_CHECK(!track.times.empty() && track.values.size() == wanted, path_, ": an animation of the node '",
-           out_.nodes[static_cast<size_t>(track.node)].name, "' has ", track.values.size(), " numbers for ",
-           track.times.size(), " keys");
+           out_.nodes[track.node].name, "' has ", track.values.size(), " numbers for ", track.times.size(),
+           " keys");
   for (size_t i = 0; i < track.times.size(); ++i)
     US_CHECK(std::isfinite(track.times[i]) && (i == 0 || track.times[i] > track.times[i - 1]), path_,
              ": the times of an animation do not increase");
@@ -411,13 +330,10 @@ void CharacterReader::read_channel(const Json& channel, const Json& samplers, Ch
 }
 
 void CharacterReader::read_animations() {
-  for (int64_t a = 0; a < static_cast<int64_t>(file_.list("animations").size()); ++a) {
-    const Json& object = file_.item("animations", a);
+  for (const tinygltf::Animation& from : model_.animations) {
     CharacterAnimation animation;
-    animation.name = text_of(object, "name");
-    const auto channels = object.find("channels"), samplers = object.find("samplers");
-    if (channels != object.end() && channels->is_array() && samplers != object.end())
-      for (const auto& channel : *channels) read_channel(channel, *samplers, animation);
+    animation.name = from.name;
+    for (const auto& channel : from.channels) read_channel(channel, from.samplers, animation);
     out_.animations.push_back(std::move(animation));
   }
 }
@@ -431,13 +347,11 @@ Character CharacterReader::read() {
   keep_texts("textures", out_.textures);
   keep_texts("materials", out_.materials);
   const GltfSceneNodes scene = walk_gltf_scene(file_);
-  std::vector<int64_t> order = scene.order;  // parts in the order of their nodes here
-  std::sort(order.begin(), order.end(),
-            [&](int64_t a, int64_t b) { return node_number(a) < node_number(b); });
-  for (const int64_t index : order) {
-    const Json& node = file_.item("nodes", index);
-    if (!node.contains("mesh")) continue;
-    read_mesh(node, node_number(index));
+  std::vector<int> order = scene.order;  // parts in the order of their nodes here
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return node_number(a) < node_number(b); });
+  for (const int index : order) {
+    const tinygltf::Node& node = model_.nodes[index];
+    if (node.mesh >= 0) read_mesh(node, node_number(index));
   }
   read_animations();
   check_character(out_, path_);

@@ -3,56 +3,62 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/formats/gltf_file.hpp"
 
 namespace understudy {
 namespace {
 
-using nlohmann::json;
-
-enum Target { NoTarget = 0, VertexData = 34962, Indices = 34963 };
+enum Target {
+  NoTarget = 0,
+  VertexData = TINYGLTF_TARGET_ARRAY_BUFFER,
+  Indices = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER
+};
 
 template <class T>
 constexpr int component_of() {
-  if (std::is_same_v<T, uint8_t>) return 5121;
-  if (std::is_same_v<T, uint16_t>) return 5123;
-  if (std::is_same_v<T, uint32_t>) return 5125;
-  return 5126;
+  if (std::is_same_v<T, uint8_t>) return TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+  if (std::is_same_v<T, uint16_t>) return TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+  if (std::is_same_v<T, uint32_t>) return TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  return TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
-/// The binary chunk, its views and the accessors into it.
-class BinaryChunk {
+/// The model in the making: one buffer, its views and the accessors into it.
+class ModelMaker {
  public:
-  size_t add_view(const void* data, size_t size, Target target) {
-    const size_t start = bytes_.size();
-    bytes_.resize((start + size + 3) / 4 * 4, 0);
-    if (size > 0) std::memcpy(bytes_.data() + start, data, size);
-    json view = {{"buffer", 0}, {"byteOffset", start}, {"byteLength", size}};
-    if (target != NoTarget) view["target"] = static_cast<int>(target);
-    views_.push_back(view);
-    return views_.size() - 1;
+  ModelMaker() { model.buffers.resize(1); }
+
+  int add_view(const void* data, size_t size, Target target) {
+    auto& bytes = model.buffers[0].data;
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = bytes.size();
+    view.byteLength = size;
+    view.target = target;
+    bytes.resize((view.byteOffset + size + 3) / 4 * 4, 0);
+    if (size > 0) std::memcpy(bytes.data() + view.byteOffset, data, size);
+    model.bufferViews.push_back(std::move(view));
+    return static_cast<int>(model.bufferViews.size()) - 1;
   }
   template <class T>
-  size_t add(const std::vector<T>& values, const char* type, Target target, bool bounds = false) {
-    json accessor = {{"componentType", component_of<T>()},
-                     {"count", values.size() / width(type)},
-                     {"type", type},
-                     {"bufferView", add_view(values.data(), values.size() * sizeof(T), target)}};
-    if (bounds) add_bounds(values.data(), values.size(), width(type), accessor);
-    accessors_.push_back(accessor);
-    return accessors_.size() - 1;
+  int add(const std::vector<T>& values, int type, Target target, bool bounds = false) {
+    const auto width = static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
+    tinygltf::Accessor accessor = accessor_of(component_of<T>(), type, values.size() / width);
+    accessor.bufferView = add_view(values.data(), values.size() * sizeof(T), target);
+    if (bounds) add_bounds(values.data(), values.size(), width, accessor);
+    return add(std::move(accessor));
   }
-  size_t add(const RowMatrix& values, Target target, bool bounds = false) {
-    static const std::array<const char*, 5> kTypes = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+  int add(const RowMatrix& values, Target target, bool bounds = false) {
     return add(std::vector<float>(values.data(), values.data() + values.size()),
-               kTypes[static_cast<size_t>(values.cols())], target, bounds);
+               values.cols() == 1 ? TINYGLTF_TYPE_SCALAR : static_cast<int>(values.cols()), target, bounds);
   }
   /// Rows of three that are mostly zero.
-  size_t add_sparse(const Points& values) {
+  int add_sparse(const Points& values) {
     std::vector<uint32_t> rows;
     std::vector<float> kept;
     for (Eigen::Index v = 0; v < values.rows(); ++v)
@@ -60,42 +66,48 @@ class BinaryChunk {
         rows.push_back(static_cast<uint32_t>(v));
         kept.insert(kept.end(), values.row(v).data(), values.row(v).data() + 3);
       }
-    json accessor = {{"componentType", 5126}, {"count", values.rows()}, {"type", "VEC3"}};
+    tinygltf::Accessor accessor =
+        accessor_of(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, static_cast<size_t>(values.rows()));
     add_bounds(values.data(), static_cast<size_t>(values.size()), 3, accessor);
-    accessor["sparse"] = {
-        {"count", rows.size()},
-        {"indices",
-         {{"bufferView", add_view(rows.data(), 4 * rows.size(), NoTarget)}, {"componentType", 5125}}},
-        {"values", {{"bufferView", add_view(kept.data(), 4 * kept.size(), NoTarget)}}}};
-    accessors_.push_back(accessor);
-    return accessors_.size() - 1;
+    auto& sparse = accessor.sparse;
+    sparse.isSparse = true;
+    sparse.count = static_cast<int>(rows.size());
+    sparse.indices = {0, add_view(rows.data(), 4 * rows.size(), NoTarget),
+                      TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT};
+    sparse.values = {add_view(kept.data(), 4 * kept.size(), NoTarget), 0};
+    return add(std::move(accessor));
   }
-  const std::vector<char>& bytes() const { return bytes_; }
-  const json& views() const { return views_; }
-  const json& accessors() const { return accessors_; }
+
+  tinygltf::Model model;
 
  private:
-  static size_t width(const std::string& type) {
-    return type == "SCALAR" ? 1 : type == "MAT4" ? 16 : static_cast<size_t>(type.back() - '0');
+  static tinygltf::Accessor accessor_of(int component, int type, size_t count) {
+    tinygltf::Accessor accessor;
+    accessor.componentType = component;
+    accessor.type = type;
+    accessor.count = count;
+    return accessor;
+  }
+  int add(tinygltf::Accessor accessor) {
+    model.accessors.push_back(std::move(accessor));
+    return static_cast<int>(model.accessors.size()) - 1;
   }
   template <class T>
-  static void add_bounds(const T* values, size_t count, size_t width, json& accessor) {
-    std::vector<T> low(values, values + width), high = low;
+  static void add_bounds(const T* values, size_t count, size_t width, tinygltf::Accessor& accessor) {
+    accessor.minValues.assign(values, values + width);
+    accessor.maxValues = accessor.minValues;
     for (size_t i = 0; i < count; ++i) {
-      low[i % width] = std::min(low[i % width], values[i]);
-      high[i % width] = std::max(high[i % width], values[i]);
+      const auto value = static_cast<double>(values[i]);
+      accessor.minValues[i % width] = std::min(accessor.minValues[i % width], value);
+      accessor.maxValues[i % width] = std::max(accessor.maxValues[i % width], value);
     }
-    accessor["min"] = low;
-    accessor["max"] = high;
   }
-  std::vector<char> bytes_;
-  json views_ = json::array(), accessors_ = json::array();
 };
 
-json named(const std::string& name) {
-  json out = json::object();
-  if (!name.empty()) out["name"] = name;
-  return out;
+/// A name as JSON may hold it: what is no UTF-8 becomes a sign for that.
+std::string text_of(const std::string& name) {
+  using nlohmann::json;
+  return json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
 /// Unit rows, as the format wants them; a row without a direction becomes `otherwise`.
@@ -125,18 +137,17 @@ RowMatrix weights_of_bones(const CharacterPart& part) {
 }
 
 template <class T>
-size_t add_joints(const CharacterPart& part, const RowMatrix& weights, Eigen::Index first,
-                  BinaryChunk& chunk) {
+int add_joints(const CharacterPart& part, const RowMatrix& weights, Eigen::Index first, ModelMaker& out) {
   std::vector<T> joints;
   for (Eigen::Index v = 0; v < part.joints.rows(); ++v)
     for (Eigen::Index k = first; k < first + 4; ++k)
       joints.push_back(k < part.joints.cols() && weights(v, k) > 0 ? static_cast<T>(part.joints(v, k))
                                                                    : T{0});
-  return chunk.add(joints, "VEC4", VertexData);
+  return out.add(joints, TINYGLTF_TYPE_VEC4, VertexData);
 }
 
-void add_skin_attributes(const Character& character, const CharacterPart& part, BinaryChunk& chunk,
-                         json& attributes) {
+void add_skin_attributes(const Character& character, const CharacterPart& part, ModelMaker& out,
+                         std::map<std::string, int>& attributes) {
   // The sums are one to the last bit, which validators want: the largest weight takes the rounding.
   RowMatrix exact = weights_of_bones(part);
   for (Eigen::Index v = 0; v < exact.rows(); ++v) {
@@ -146,215 +157,203 @@ void add_skin_attributes(const Character& character, const CharacterPart& part, 
     row[largest] = 0;
     row[largest] = 1 - row.sum();
   }
-  const bool wide = character.skins[static_cast<size_t>(part.skin)].joints.size() > 256;
+  const bool wide = character.skins[part.skin].joints.size() > 256;
   for (Eigen::Index first = 0; first < part.joints.cols(); first += 4) {
     const std::string end = std::to_string(first / 4);
-    attributes["JOINTS_" + end] = wide ? add_joints<uint16_t>(part, exact, first, chunk)
-                                       : add_joints<uint8_t>(part, exact, first, chunk);
+    attributes["JOINTS_" + end] =
+        wide ? add_joints<uint16_t>(part, exact, first, out) : add_joints<uint8_t>(part, exact, first, out);
     RowMatrix weights = RowMatrix::Zero(exact.rows(), 4);
     const Eigen::Index count = std::min<Eigen::Index>(4, exact.cols() - first);
     weights.leftCols(count) = exact.middleCols(first, count);
-    attributes["WEIGHTS_" + end] = chunk.add(weights, VertexData);
+    attributes["WEIGHTS_" + end] = out.add(weights, VertexData);
   }
 }
 
-json primitive_of(const Character& character, const CharacterPart& part, size_t shapes, BinaryChunk& chunk) {
-  json attributes;
-  attributes["POSITION"] = chunk.add(RowMatrix(part.vertices), VertexData, true);
+tinygltf::Primitive primitive_of(const Character& character, const CharacterPart& part, size_t shapes,
+                                 ModelMaker& out) {
+  tinygltf::Primitive primitive;
+  auto& attributes = primitive.attributes;
+  attributes["POSITION"] = out.add(RowMatrix(part.vertices), VertexData, true);
   if (part.normals.rows() > 0)
-    attributes["NORMAL"] = chunk.add(unit_rows(part.normals, Vec3::UnitY()), VertexData);
+    attributes["NORMAL"] = out.add(unit_rows(part.normals, Vec3::UnitY()), VertexData);
   if (part.tangents.rows() > 0) {
     RowMatrix tangents = part.tangents;
     tangents.leftCols<3>() = unit_rows(part.tangents.leftCols<3>(), Vec3::UnitX());
     tangents.col(3) =
         (part.tangents.col(3).array() < 0).select(-1.0f, Eigen::VectorXf::Ones(tangents.rows()));
-    attributes["TANGENT"] = chunk.add(tangents, VertexData);
+    attributes["TANGENT"] = out.add(tangents, VertexData);
   }
   for (size_t i = 0; i < part.uvs.size(); ++i)
-    attributes["TEXCOORD_" + std::to_string(i)] = chunk.add(part.uvs[i], VertexData);
+    attributes["TEXCOORD_" + std::to_string(i)] = out.add(part.uvs[i], VertexData);
   if (part.colors.rows() > 0) {
     const RowMatrix colors = part.colors.cwiseMax(0.0f).cwiseMin(1.0f);
     const bool opaque = colors.col(3).minCoeff() == 1;
-    attributes["COLOR_0"] = chunk.add(opaque ? RowMatrix(colors.leftCols<3>()) : colors, VertexData);
+    attributes["COLOR_0"] = out.add(opaque ? RowMatrix(colors.leftCols<3>()) : colors, VertexData);
   }
-  if (part.skin >= 0) add_skin_attributes(character, part, chunk, attributes);
-  json primitive = {{"attributes", attributes}, {"mode", part.faces.rows() > 0 ? 4 : 0}};
-  if (part.material >= 0) primitive["material"] = part.material;
-  if (part.faces.rows() > 0 && part.vertices.rows() <= 65535)
-    primitive["indices"] = chunk.add(
-        std::vector<uint16_t>(part.faces.data(), part.faces.data() + part.faces.size()), "SCALAR", Indices);
-  else if (part.faces.rows() > 0)
-    primitive["indices"] = chunk.add(
-        std::vector<uint32_t>(part.faces.data(), part.faces.data() + part.faces.size()), "SCALAR", Indices);
+  if (part.skin >= 0) add_skin_attributes(character, part, out, attributes);
+  primitive.mode = part.faces.rows() > 0 ? TINYGLTF_MODE_TRIANGLES : TINYGLTF_MODE_POINTS;
+  primitive.material = std::max(part.material, -1);
+  const int *first = part.faces.data(), *end = first + part.faces.size();
+  if (part.faces.rows() > 0)
+    primitive.indices = part.vertices.rows() <= 65535
+                            ? out.add(std::vector<uint16_t>(first, end), TINYGLTF_TYPE_SCALAR, Indices)
+                            : out.add(std::vector<uint32_t>(first, end), TINYGLTF_TYPE_SCALAR, Indices);
   for (size_t s = 0; s < shapes; ++s)
-    primitive["targets"].push_back(
-        {{"POSITION", chunk.add_sparse(s < part.shapes.size() ? part.shapes[s]
-                                                              : Points::Zero(part.vertices.rows(), 3))}});
+    primitive.targets.push_back(
+        {{"POSITION",
+          out.add_sparse(s < part.shapes.size() ? part.shapes[s] : Points::Zero(part.vertices.rows(), 3))}});
   return primitive;
 }
 
 /// Meshes, one a node that carries parts; gives the mesh of each node, -1 for none.
-std::vector<int> add_meshes(const Character& character, BinaryChunk& chunk, json& gltf) {
+std::vector<int> add_meshes(const Character& character, ModelMaker& out) {
   std::vector<int> mesh_of(character.nodes.size(), -1);
-  json meshes = json::array();
   for (size_t n = 0; n < character.nodes.size(); ++n) {
-    json primitives = json::array();
-    std::string name;
-    const size_t shapes = character.nodes[n].shape_weights.size();
+    tinygltf::Mesh mesh;
+    const std::vector<float>& weights = character.nodes[n].shape_weights;
     for (const auto& part : character.parts) {
       if (part.node != static_cast<int>(n) || part.vertices.rows() == 0) continue;
-      primitives.push_back(primitive_of(character, part, shapes, chunk));
-      name = part.name;
+      mesh.primitives.push_back(primitive_of(character, part, weights.size(), out));
+      mesh.name = text_of(part.name);
     }
-    if (primitives.empty()) continue;
-    mesh_of[n] = static_cast<int>(meshes.size());
-    json mesh = named(name);
-    mesh["primitives"] = primitives;
-    if (shapes > 0) mesh["weights"] = character.nodes[n].shape_weights;
-    meshes.push_back(mesh);
+    if (mesh.primitives.empty()) continue;
+    mesh.weights.assign(weights.begin(), weights.end());
+    mesh_of[n] = static_cast<int>(out.model.meshes.size());
+    out.model.meshes.push_back(std::move(mesh));
   }
-  gltf["meshes"] = meshes;
   return mesh_of;
 }
 
-void add_nodes(const Character& character, const std::vector<int>& mesh_of, json& gltf) {
-  json nodes = json::array(), roots = json::array();
-  for (size_t n = 0; n < character.nodes.size(); ++n) {
-    const CharacterNode& from = character.nodes[n];
-    json node = named(from.name);
-    const Transform& local = from.local;
-    const auto& t = local.translation;
-    const auto& s = local.scale;
-    const Eigen::Quaternionf q = local.rotation.normalized();
-    if (!t.isZero(0)) node["translation"] = {t.x(), t.y(), t.z()};
-    if (!q.isApprox(Eigen::Quaternionf::Identity(), 0)) node["rotation"] = {q.x(), q.y(), q.z(), q.w()};
-    if (s != Vec3::Ones()) node["scale"] = {s.x(), s.y(), s.z()};
-    if (mesh_of[n] >= 0) {
-      node["mesh"] = mesh_of[n];
-      for (const auto& part : character.parts)
-        if (part.node == static_cast<int>(n) && part.skin >= 0) node["skin"] = part.skin;
-    }
-    nodes.push_back(node);
-    if (from.parent < 0)
-      roots.push_back(n);
-    else
-      nodes[static_cast<size_t>(from.parent)]["children"].push_back(n);
+void add_nodes(const Character& character, const std::vector<int>& mesh_of, ModelMaker& out) {
+  tinygltf::Scene scene;
+  auto& nodes = out.model.nodes;
+  for (const CharacterNode& from : character.nodes) {
+    const auto n = static_cast<int>(nodes.size());
+    tinygltf::Node node;
+    node.name = text_of(from.name);
+    const Vec3 &t = from.local.translation, &s = from.local.scale;
+    const Eigen::Quaternionf q = from.local.rotation.normalized();
+    if (!t.isZero(0)) node.translation.assign(t.begin(), t.end());
+    if (!q.isApprox(Eigen::Quaternionf::Identity(), 0)) node.rotation = {q.x(), q.y(), q.z(), q.w()};
+    if (s != Vec3::Ones()) node.scale.assign(s.begin(), s.end());
+    node.mesh = mesh_of[n];
+    for (const auto& part : character.parts)
+      if (node.mesh >= 0 && part.node == n && part.skin >= 0) node.skin = part.skin;
+    nodes.push_back(std::move(node));
+    (from.parent < 0 ? scene.nodes : nodes[from.parent].children).push_back(n);
   }
-  gltf["nodes"] = nodes;
-  gltf["scene"] = 0;
-  gltf["scenes"] = json::array({{{"nodes", roots}}});
+  out.model.defaultScene = 0;
+  out.model.scenes = {scene};
 }
 
-void add_skins(const Character& character, BinaryChunk& chunk, json& gltf) {
-  for (const auto& skin : character.skins) {
+void add_skins(const Character& character, ModelMaker& out) {
+  for (const auto& from : character.skins) {
     std::vector<float> matrices;
-    for (Mat4 matrix : skin.inverse_bind) {
+    for (Mat4 matrix : from.inverse_bind) {
       matrix.row(3) << 0, 0, 0, 1;
       matrices.insert(matrices.end(), matrix.data(), matrix.data() + 16);
     }
-    json object = named(skin.name);
-    object["joints"] = skin.joints;
-    object["inverseBindMatrices"] = chunk.add(matrices, "MAT4", NoTarget);
-    gltf["skins"].push_back(object);
+    tinygltf::Skin skin;
+    skin.name = text_of(from.name);
+    skin.joints = from.joints;
+    skin.inverseBindMatrices = out.add(matrices, TINYGLTF_TYPE_MAT4, NoTarget);
+    out.model.skins.push_back(std::move(skin));
   }
 }
 
-void add_materials(const Character& character, BinaryChunk& chunk, json& gltf) {
-  for (const auto& image : character.images) {
-    json object = named(image.name);
-    object["mimeType"] = image.mime;
-    object["bufferView"] = chunk.add_view(image.bytes.data(), image.bytes.size(), NoTarget);
-    gltf["images"].push_back(object);
+void add_images(const Character& character, ModelMaker& out) {
+  for (const auto& from : character.images) {
+    tinygltf::Image image;
+    image.name = text_of(from.name);
+    image.mimeType = from.mime;
+    image.bufferView = out.add_view(from.bytes.data(), from.bytes.size(), NoTarget);
+    out.model.images.push_back(std::move(image));
   }
-  for (const auto& text : character.samplers) gltf["samplers"].push_back(json::parse(text));
-  for (const auto& text : character.textures) gltf["textures"].push_back(json::parse(text));
-  for (const auto& text : character.materials) gltf["materials"].push_back(json::parse(text));
-  if (!character.extensions.empty()) gltf["extensionsUsed"] = character.extensions;
-  if (!character.required.empty()) gltf["extensionsRequired"] = character.required;
 }
 
-void add_animations(const Character& character, BinaryChunk& chunk, json& gltf) {
+void add_animations(const Character& character, ModelMaker& out) {
   static const std::array<const char*, 4> kPaths = {"translation", "rotation", "scale", "weights"};
   static const std::array<const char*, 3> kKinds = {"LINEAR", "STEP", "CUBICSPLINE"};
-  for (const auto& animation : character.animations) {
-    if (animation.tracks.empty()) continue;
-    json samplers = json::array(), channels = json::array();
-    std::vector<std::pair<const std::vector<float>*, size_t>> times;  // tracks with the same times share them
-    for (const auto& track : animation.tracks) {
+  for (const auto& from : character.animations) {
+    if (from.tracks.empty()) continue;
+    tinygltf::Animation animation;
+    animation.name = text_of(from.name);
+    std::vector<std::pair<const std::vector<float>*, int>> times;  // tracks with the same times share them
+    for (const auto& track : from.tracks) {
       auto same = std::find_if(times.begin(), times.end(),
                                [&](const auto& known) { return *known.first == track.times; });
       if (same == times.end()) {
-        times.emplace_back(&track.times, chunk.add(track.times, "SCALAR", NoTarget, true));
+        times.emplace_back(&track.times, out.add(track.times, TINYGLTF_TYPE_SCALAR, NoTarget, true));
         same = times.end() - 1;
       }
-      const char* type = track.path == TrackPath::Rotation ? "VEC4"
-                         : track.path == TrackPath::Shapes ? "SCALAR"
-                                                           : "VEC3";
-      channels.push_back(
-          {{"sampler", samplers.size()},
-           {"target", {{"node", track.node}, {"path", kPaths[static_cast<size_t>(track.path)]}}}});
-      samplers.push_back({{"input", same->second},
-                          {"output", chunk.add(track.values, type, NoTarget)},
-                          {"interpolation", kKinds[static_cast<size_t>(track.interpolation)]}});
+      const int type = track.path == TrackPath::Rotation ? TINYGLTF_TYPE_VEC4
+                       : track.path == TrackPath::Shapes ? TINYGLTF_TYPE_SCALAR
+                                                         : TINYGLTF_TYPE_VEC3;
+      tinygltf::AnimationChannel channel;
+      channel.sampler = static_cast<int>(animation.samplers.size());
+      channel.target_node = track.node;
+      channel.target_path = kPaths[static_cast<size_t>(track.path)];
+      tinygltf::AnimationSampler sampler;
+      sampler.input = same->second;
+      sampler.output = out.add(track.values, type, NoTarget);
+      sampler.interpolation = kKinds[static_cast<size_t>(track.interpolation)];
+      animation.channels.push_back(std::move(channel));
+      animation.samplers.push_back(std::move(sampler));
     }
-    json object = named(animation.name);
-    object["samplers"] = samplers;
-    object["channels"] = channels;
-    gltf["animations"].push_back(object);
+    out.model.animations.push_back(std::move(animation));
   }
 }
 
-std::string base64(const std::vector<char>& bytes) {
-  static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+/// The lists that tinygltf would not write as they came: it drops nulls, numbers beyond int, names of
+/// samplers.
+std::string kept_lists(const Character& character) {
   std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t bits = 0;
-    for (size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k)
-      out.push_back(k > 1 && i + k - 1 >= bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63u]);
+  const auto add = [&](const char* name, const std::vector<std::string>& texts) {
+    for (size_t i = 0; i < texts.size(); ++i)
+      out += (i > 0 ? "," : std::string("\"") + name + "\":[") + texts[i];
+    if (!texts.empty()) out += "],";
+  };
+  add("materials", character.materials);
+  add("textures", character.textures);
+  add("samplers", character.samplers);
+  return out;
+}
+
+/// Puts the beginning of a JSON object into that of a glTF file; in GLB it stands behind two lengths.
+void put_first(std::string lists, bool is_text, std::string& file) {
+  if (is_text) {
+    file.insert(1, lists);
+    return;
   }
-  return out;
-}
-
-void append_number(uint32_t value, std::string& out) {
-  out.append(reinterpret_cast<const char*>(&value), 4);
-}
-
-std::string as_glb(std::string text, const std::vector<char>& bytes) {
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  std::string out = "glTF";
-  append_number(2, out);
-  append_number(static_cast<uint32_t>(28 + text.size() + bytes.size()), out);
-  append_number(static_cast<uint32_t>(text.size()), out);
-  out += "JSON" + text;
-  append_number(static_cast<uint32_t>(bytes.size()), out);
-  out.append("BIN\0", 4).append(bytes.data(), bytes.size());
-  return out;
+  lists.append((4 - lists.size() % 4) % 4, ' ');
+  for (const size_t at : {8u, 12u}) {  // of the file, of its JSON
+    const auto length = static_cast<uint32_t>(load<uint32_t>(file.data() + at, false) + lists.size());
+    std::memcpy(file.data() + at, &length, sizeof(length));
+  }
+  file.insert(21, lists);
 }
 
 }  // namespace
 
 std::string gltf_bytes(const Character& character, const std::string& path) {
   check_character(character, path);
-  BinaryChunk chunk;
-  json gltf;
-  gltf["asset"] = {{"version", "2.0"}, {"generator", "Understudy"}};
-  add_nodes(character, add_meshes(character, chunk, gltf), gltf);
-  add_skins(character, chunk, gltf);
-  add_materials(character, chunk, gltf);
-  add_animations(character, chunk, gltf);
-  gltf["bufferViews"] = chunk.views();
-  gltf["accessors"] = chunk.accessors();
-  json buffer = {{"byteLength", chunk.bytes().size()}};
-  US_CHECK(chunk.bytes().size() < 0xf0000000u, path, ": the character needs ", chunk.bytes().size(),
-           " bytes, glTF holds 4 GB");
+  ModelMaker out;
+  out.model.asset.generator = "Understudy";
+  add_nodes(character, add_meshes(character, out), out);
+  add_skins(character, out);
+  add_images(character, out);
+  add_animations(character, out);
+  out.model.extensionsUsed = character.extensions;
+  out.model.extensionsRequired = character.required;
+  const size_t size = out.model.buffers[0].data.size();
+  US_CHECK(size < 0xf0000000u, path, ": the character needs ", size, " bytes, glTF holds 4 GB");
   const bool is_text = file_suffix(path) == ".gltf";
-  if (is_text) buffer["uri"] = "data:application/octet-stream;base64," + base64(chunk.bytes());
-  gltf["buffers"] = json::array({buffer});
-  const std::string text = gltf.dump(is_text ? 1 : -1, ' ', false, json::error_handler_t::replace);
-  return is_text ? text : as_glb(text, chunk.bytes());
+  std::ostringstream stream;
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(&out.model, stream, is_text, !is_text);
+  US_CHECK(stream, path, ": there is not enough memory for it");
+  std::string file = stream.str();
+  put_first(kept_lists(character), is_text, file);
+  return file;
 }
 
 void write_gltf_character(const std::string& path, const Character& character) {

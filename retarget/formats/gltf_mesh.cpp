@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
@@ -12,7 +11,6 @@
 namespace understudy {
 namespace {
 
-using Json = nlohmann::json;
 using Mat4 = Eigen::Matrix4f;
 
 // The nearest turn by quarters: the rest pose of the root joint may lean and look aside, but a bind pose is
@@ -30,30 +28,21 @@ Mat3 snapped(const Mat3& R) {
 }
 
 // Where the bind pose of a skin stands in the world: as its root joint carries it there.
-Mat4 bind_transform(GltfFile& file, const Json& skin, const GltfSceneNodes& nodes) {
-  const auto joints = skin.find("joints");
-  US_CHECK(joints != skin.end() && joints->is_array() && !joints->empty(), file.path(),
-           ": a skin has no joints");
+Mat4 bind_transform(GltfFile& file, const tinygltf::Skin& skin, const GltfSceneNodes& nodes) {
+  const std::vector<float> matrices = file.inverse_bind(skin);
   std::vector<size_t> ranks(nodes.world.size(), nodes.order.size());
-  for (size_t i = 0; i < nodes.order.size(); ++i) ranks[static_cast<size_t>(nodes.order[i])] = i;
-  size_t best = joints->size(), best_rank = nodes.order.size();
-  for (size_t j = 0; j < joints->size(); ++j) {
-    US_CHECK((*joints)[j].is_number_unsigned(), file.path(), ": a joint of a skin is no number");
-    const int64_t node = whole((*joints)[j].get<double>());
-    if (node < 0 || node >= static_cast<int64_t>(ranks.size())) continue;
-    if (ranks[static_cast<size_t>(node)] >= best_rank) continue;
+  for (size_t i = 0; i < nodes.order.size(); ++i) ranks[nodes.order[i]] = i;
+  size_t best = 0, best_rank = nodes.order.size();
+  for (size_t j = 0; j < skin.joints.size(); ++j) {
+    const auto node = static_cast<size_t>(skin.joints[j]);
+    if (node >= ranks.size() || ranks[node] >= best_rank) continue;
     best = j;
-    best_rank = ranks[static_cast<size_t>(node)];
+    best_rank = ranks[node];
   }
-  if (best == joints->size()) return Mat4::Identity();  // a skeleton outside of the scene
+  if (best_rank == nodes.order.size()) return Mat4::Identity();  // a skeleton outside of the scene
   Mat4 inverse_bind = Mat4::Identity();
-  if (skin.contains("inverseBindMatrices")) {
-    const GltfAccessor matrices = file.accessor(file.integer(skin, "inverseBindMatrices", -1));
-    US_CHECK(matrices.parts == 16 && static_cast<size_t>(matrices.count) >= joints->size(), file.path(),
-             ": a skin has fewer bind matrices than joints");
-    inverse_bind = Eigen::Map<const Mat4>(matrices.values.data() + 16 * best);
-  }
-  Mat4 world = nodes.world[static_cast<size_t>(nodes.order[best_rank])] * inverse_bind;
+  if (!matrices.empty()) inverse_bind = Eigen::Map<const Mat4>(matrices.data() + 16 * best);
+  Mat4 world = nodes.world[nodes.order[best_rank]] * inverse_bind;
   const Mat3 M = world.topLeftCorner<3, 3>();
   const float scale = std::cbrt(std::abs(M.determinant()));
   if (!(scale > 1e-12f) || !inverse_bind.allFinite() || std::abs(inverse_bind.determinant()) < 1e-20f)
@@ -70,13 +59,23 @@ class MeshCollector {
  public:
   explicit MeshCollector(GltfFile& file) : file_(file) {}
 
-  void add_mesh(const Json& mesh, const Mat4& transform) {
-    first_vertex_.clear();
-    const auto primitives = mesh.find("primitives");
-    if (primitives == mesh.end() || !primitives->is_array()) return;
-    for (const auto& primitive : *primitives) {
-      US_CHECK(primitive.is_object(), file_.path(), ": a primitive is no object");
-      add_primitive(primitive, transform);
+  void add_mesh(const tinygltf::Mesh& mesh, const Mat4& transform) {
+    std::map<int, int64_t>
+        first_vertex;  // of each accessor of positions: primitives that share it share vertices
+    for (const auto& primitive : mesh.primitives) {
+      US_CHECK(++primitives_ <= 1000000, file_.path(), ": has more than a million primitives");
+      if (!file_.is_shown(primitive)) continue;
+      const int index = primitive.attributes.at("POSITION");
+      const GltfAccessor positions = file_.accessor(index);
+      US_CHECK(positions.parts == 3, file_.path(), ": the positions of a primitive are not of three numbers");
+      const auto [known, is_new] =
+          first_vertex.try_emplace(index, static_cast<int64_t>(positions_.size() / 3));
+      if (is_new) add_vertices(primitive, positions, transform);
+      const bool mirrored = transform.topLeftCorner<3, 3>().determinant() < 0;
+      const Faces faces = file_.faces(primitive, positions.count);
+      for (const auto& face : faces.rowwise())
+        faces_.add(known->second + face[0], known->second + face[mirrored ? 2 : 1],
+                   known->second + face[mirrored ? 1 : 2]);
     }
   }
 
@@ -89,76 +88,26 @@ class MeshCollector {
   }
 
  private:
-  void add_primitive(const Json& primitive, const Mat4& transform) {
-    US_CHECK(++primitives_ <= 1000000, file_.path(), ": has more than a million primitives");
-    const int64_t mode = file_.integer(primitive, "mode", 4);
-    const auto attributes = primitive.find("attributes");
-    if ((mode != 0 && mode < 4) || mode > 6 || attributes == primitive.end() || !attributes->is_object() ||
-        !attributes->contains("POSITION"))
-      return;  // lines, or nothing to see
-    const auto extensions = primitive.find("extensions");
-    US_CHECK(extensions == primitive.end() || !extensions->contains("KHR_draco_mesh_compression") ||
-                 file_.item("accessors", file_.integer(*attributes, "POSITION", -1)).contains("bufferView"),
-             file_.path(), ": is compressed with Draco, which is not read; export it without");
-    int64_t count = 0;
-    const int64_t base = add_vertices(*attributes, transform, count);
-    if (mode == 0) return;
-    std::vector<int64_t> corners;
-    if (primitive.contains("indices")) {
-      const GltfAccessor indices = file_.accessor(file_.integer(primitive, "indices", -1));
-      US_CHECK(indices.parts == 1, file_.path(), ": the indices of a primitive are no single numbers");
-      for (const float index : indices.values) {
-        US_CHECK(index >= 0 && index < static_cast<float>(count), file_.path(), ": a face names vertex ",
-                 index, " of a primitive of ", count);
-        corners.push_back(base + static_cast<int64_t>(index));
-      }
-    } else {
-      for (int64_t i = 0; i < count; ++i) corners.push_back(base + i);
-    }
-    add_faces(mode, transform.topLeftCorner<3, 3>().determinant() < 0, corners);
-  }
-
-  // Primitives that share their positions share their vertices.
-  int64_t add_vertices(const Json& attributes, const Mat4& transform, int64_t& count) {
-    const int64_t index = file_.integer(attributes, "POSITION", -1);
-    const GltfAccessor positions = file_.accessor(index);
-    US_CHECK(positions.parts == 3, file_.path(), ": the positions of a primitive are not of three numbers");
-    count = positions.count;
-    const auto base = static_cast<int64_t>(positions_.size() / 3);
-    const auto [known, is_new] = first_vertex_.try_emplace(index, base);
-    if (!is_new) return known->second;
-    US_CHECK(base + count <= 16000000, file_.path(), ": has more than 16 million vertices");
+  void add_vertices(const tinygltf::Primitive& primitive, const GltfAccessor& positions,
+                    const Mat4& transform) {
+    US_CHECK(static_cast<int64_t>(positions_.size() / 3) + positions.count <= 16000000, file_.path(),
+             ": has more than 16 million vertices");
     const Mat3 M = transform.topLeftCorner<3, 3>();
     const Vec3 t = transform.topRightCorner<3, 1>();
-    for (int64_t i = 0; i < count; ++i) {
+    for (int64_t i = 0; i < positions.count; ++i) {
       const Vec3 p = M * Eigen::Map<const Vec3>(positions.values.data() + 3 * i) + t;
       positions_.insert(positions_.end(), {p.x(), p.y(), p.z()});
     }
-    add_colours(attributes, count);
-    return base;
-  }
-
-  void add_colours(const Json& attributes, int64_t count) {
-    if (!attributes.contains("COLOR_0")) return;
-    const GltfAccessor colours = file_.accessor(file_.integer(attributes, "COLOR_0", -1));
-    if (colours.parts < 3 || colours.parts > 4 || colours.count != count) return;
-    for (int64_t i = 0; i < count; ++i)
-      for (int c = 0; c < 3; ++c)
-        colours_.push_back(colours.values[static_cast<size_t>(i * colours.parts + c)]);
-  }
-
-  void add_faces(int64_t mode, bool mirrored, const std::vector<int64_t>& c) {
-    const size_t step = mode == 4 ? 3 : 1;
-    for (size_t i = 0; i + 2 < c.size(); i += step) {
-      const bool turn = (mode == 5 && i % 2 == 1) != mirrored;
-      const int64_t a = mode == 6 ? c[0] : c[i];
-      faces_.add(a, c[i + (turn ? 2 : 1)], c[i + (turn ? 1 : 2)]);
-    }
+    const auto colour = primitive.attributes.find("COLOR_0");
+    if (colour == primitive.attributes.end()) return;
+    const GltfAccessor colours = file_.accessor(colour->second);
+    if (colours.parts < 3 || colours.parts > 4 || colours.count != positions.count) return;
+    for (int64_t i = 0; i < colours.count; ++i)
+      for (int c = 0; c < 3; ++c) colours_.push_back(colours.values[i * colours.parts + c]);
   }
 
   GltfFile& file_;
   int64_t primitives_ = 0;
-  std::map<int64_t, int64_t> first_vertex_;  // of each accessor of positions in this mesh
   std::vector<float> positions_, colours_;
   FaceList faces_;
 };
@@ -166,22 +115,21 @@ class MeshCollector {
 }  // namespace
 
 Mesh parse_gltf(std::string_view bytes, const std::string& path) {
-  GltfFile file(bytes, path);
+  GltfFile file(bytes, path, GltfFile::Use::Surface);
+  const tinygltf::Model& model = file.model();
   const GltfSceneNodes nodes = walk_gltf_scene(file);
   MeshCollector collector(file);
-  std::map<int64_t, Mat4> bound;  // of each skin: many meshes may share one
-  for (const int64_t index : nodes.order) {
-    const Json& node = file.item("nodes", index);
-    if (!node.contains("mesh")) continue;
-    const Json& mesh = file.item("meshes", file.integer(node, "mesh", -1));
-    Mat4 transform = nodes.world[static_cast<size_t>(index)];
-    if (node.contains("skin")) {
-      const int64_t skin = file.integer(node, "skin", -1);
-      const auto [known, is_new] = bound.try_emplace(skin);
-      if (is_new) known->second = bind_transform(file, file.item("skins", skin), nodes);
+  std::map<int, Mat4> bound;  // of each skin: many meshes may share one
+  for (const int index : nodes.order) {
+    const tinygltf::Node& node = model.nodes[index];
+    if (node.mesh < 0) continue;
+    Mat4 transform = nodes.world[index];
+    if (node.skin >= 0) {
+      const auto [known, is_new] = bound.try_emplace(node.skin);
+      if (is_new) known->second = bind_transform(file, file.item(model.skins, node.skin, "skins"), nodes);
       transform = known->second;
     }
-    collector.add_mesh(mesh, transform);
+    collector.add_mesh(file.item(model.meshes, node.mesh, "meshes"), transform);
   }
   const Mesh mesh = collector.finish();
   US_CHECK(mesh.vertices.rows() > 0, path, ": holds no mesh");
