@@ -88,6 +88,7 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
   if (flagged > 0)
     log::warn(path + ": " + std::to_string(flagged) +
               " of its frames could not be used and repeat the last pose");
+  input.source_to_scan = source->to_file();
   input.clips.push_back(std::move(clip));
 }
 

@@ -125,7 +125,10 @@ Running start(const JobOptions& options) {
 
 void finish(const JobOptions& options, Running& job) {
   job.repeats.finish();
-  if (job.output) log::info(options.out + ": " + sentence(job.output->finish()));
+  if (job.output) {
+    job.output->set_source_to_scan(job.source->to_file());
+    log::info(options.out + ": " + sentence(job.output->finish()));
+  }
   if (job.evaluator) write_json(options.report, report_of(options, job));
   const std::string title =
       file_name(options.source.path) + " performed by " + file_name(options.target.path);

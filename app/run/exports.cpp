@@ -155,7 +155,7 @@ class ResultOutput final : public FrameOutput {
   void write(const ExportFrame& frame) override {
     writer_.push(surface(frame), posed_joints(frame.pose), frame.pose.local, frame.source_joints);
   }
-  void close() override { writer_.finish(); }
+  void close() override { writer_.finish(source_to_scan_); }
   bool is_surface() const override { return true; }
   ResultWriter writer_;
 };
@@ -304,6 +304,7 @@ ExportCost export_motion(const std::string& path, ExportFormat format, const Exp
     output->push(frame);
   }
   if (input.body.file.progress) input.body.file.progress(1);
+  output->set_source_to_scan(input.source_to_scan);
   return output->finish();
 }
 

@@ -52,8 +52,14 @@ class MotionOutput {
  public:
   virtual ~MotionOutput() = default;
   virtual void push(const ExportFrame& frame) = 0;
+  /// From the frames' source_joints to the coordinates of the source's file, for formats that hold them; known
+  /// after the first frame.
+  void set_source_to_scan(const Eigen::Matrix4d& matrix) { source_to_scan_ = matrix; }
   /// What the written file costs. Throws Error, also where there was no frame.
   virtual ExportCost finish() = 0;
+
+ protected:
+  Eigen::Matrix4d source_to_scan_ = Eigen::Matrix4d::Identity();
 };
 
 /// name: of the motion. Throws Error naming the path: it cannot be written, or the format cannot do what the
@@ -65,6 +71,7 @@ struct ExportInput {
   ExportBody body;
   std::vector<CharacterClip> clips;   ///< more than one only in glTF
   std::vector<Joints> source_joints;  ///< beside the poses of the only clip; may be empty
+  Eigen::Matrix4d source_to_scan = Eigen::Matrix4d::Identity();  ///< from them to the source's file
 };
 
 /// All of it. body.file.progress is told 0..1; what it throws ends the export, and what was there stays.

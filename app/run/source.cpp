@@ -72,6 +72,7 @@ class ScanFiles final : public Source {
     scans_.seek(at_ = frame);
   }
   std::string decision() const override { return decision_ ? decision_->sentence : ""; }
+  Eigen::Matrix4d to_file() const override { return decision_.value_or(ImportDecision()).to_file(); }
   std::optional<int64_t> count() const override { return scans_.count(); }
 
  private:
@@ -138,6 +139,7 @@ class PerformingBody final : public Source {
     at_ = static_cast<size_t>(frame);
   }
   std::string decision() const override { return decision_.sentence; }
+  Eigen::Matrix4d to_file() const override { return decision_.to_file(); }
   std::optional<int64_t> count() const override { return static_cast<int64_t>(motion_.poses.size()); }
 
  private:
@@ -196,6 +198,7 @@ class MovingSkeleton final : public AnimatedSource {
     }
   }
   std::string decision() const override { return decision_; }
+  Eigen::Matrix4d to_file() const override { return motion_.to_file(); }
 
  private:
   SourceFrame frame_at(int64_t frame) const override {
@@ -225,6 +228,7 @@ class ScannedCharacter final : public AnimatedSource {
                 decision_.sentence);
   }
   std::string decision() const override { return decision_.sentence; }
+  Eigen::Matrix4d to_file() const override { return decision_.to_file(); }
 
  private:
   SourceFrame frame_at(int64_t frame) const override {
@@ -275,7 +279,7 @@ std::unique_ptr<Source> as_scan(Character character, const SourceOptions& option
   US_CHECK(character.vertex_count() > 0, options.path,
            ": holds no surface that could be looked at as a scan");
   const int clip = chosen_clip(character, options.clip);
-  const ClipTimes times = clip_times(character.animations[clip], options.fps);
+  const ClipTimes times = clip_times(character, clip, options.fps);
   return std::make_unique<ScannedCharacter>(std::move(character), clip, times, options);
 }
 

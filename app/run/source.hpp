@@ -64,6 +64,9 @@ class Source {
   virtual void seek(int64_t frame) = 0;
   /// What was decided about units, axes and floor, one sentence; empty before the first usable frame.
   virtual std::string decision() const = 0;
+  /// From frames as they are handed out back to the file's own units, axes and floor: scale, rotation and offset
+  /// in one. Of a body that performs a motion to the body's, y up. The identity before the first usable frame.
+  virtual Eigen::Matrix4d to_file() const { return Eigen::Matrix4d::Identity(); }
   /// None while it is not known.
   virtual std::optional<int64_t> count() const = 0;
   /// Frames per second.

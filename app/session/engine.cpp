@@ -439,6 +439,7 @@ bool Engine::Impl::tell_source() {
   SourceFrames event;
   event.first = static_cast<int>(told);
   event.decision = source ? source->decision() : "";
+  if (source) event.to_file = source->to_file();
   event.has_faces = has_faces;
   const float dt = source ? static_cast<float>(1 / source->fps()) : 1 / 30.0f;
   for (int n = 0; n < kReplayChunk && told < frames.size(); ++n, ++told) {

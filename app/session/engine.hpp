@@ -62,7 +62,8 @@ struct SourceFailed {
 struct SourceFrames {
   int first = 0;
   bool has_faces = false;
-  std::string decision;  ///< about units, axes and floor
+  std::string decision;                                   ///< about units, axes and floor
+  Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();  ///< as SourceState's
   std::vector<KeptSource> frames;
 };
 /// A target's file was read: how it came, upright and at its size. What performs is still to be bound.

@@ -39,10 +39,12 @@ struct SourceState {
   std::string name;              ///< for people
   std::optional<int64_t> count;  ///< frames in all, where known
   double fps = 30;
-  std::string decision;            ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
-  std::vector<SourceClip> clips;   ///< animations in the file; none of scans
-  int clip = -1;                   ///< the one that is played
-  std::vector<KeptSource> frames;  ///< of the extractor of the first take
+  std::string decision;  ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
+  Eigen::Matrix4d to_file =
+      Eigen::Matrix4d::Identity();  ///< from the frames' joints to the file's coordinates
+  std::vector<SourceClip> clips;    ///< animations in the file; none of scans
+  int clip = -1;                    ///< the one that is played
+  std::vector<KeptSource> frames;   ///< of the extractor of the first take
   bool has_faces = false;
   int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
 };

@@ -101,6 +101,7 @@ void Studio::take_in(SourceFrames& event) {
   SourceState& source = session_.source;
   if (put(source.frames, event.first, std::move(event.frames))) ++source.generation;
   source.decision = event.decision;
+  source.to_file = event.to_file;
   source.has_faces = event.has_faces;
 }
 

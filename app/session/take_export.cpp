@@ -56,6 +56,7 @@ void add_clip(ExportInput& out, const Session& session, size_t k, const std::str
     const auto& frames = session.source.frames;
     out.source_joints.push_back(t < frames.size() ? frames[t].joints : Joints::Zero());
   }
+  out.source_to_scan = session.source.to_file;
   out.clips.push_back(std::move(clip));
 }
 

@@ -202,11 +202,11 @@ const Unit* find_unit(const std::string& name) {
   return nullptr;
 }
 
-// No person has this height in any unit. Somebody who lies, or a giant, is still in metres; the rest are
-// characters of arbitrary size, and become as tall as people are.
-std::string decide_odd_size(float height, ImportDecision& decision) {
+// No person has this height in any unit. Somebody who lies, or a giant, is still in metres; the rest, small or
+// large, are characters of arbitrary size, and become as tall as people are.
+std::string decide_odd_size(float height, float extent, ImportDecision& decision) {
   const bool has_size = height > 1e-20f && height < 1e30f;
-  const bool metric = !has_size || (height >= 0.1f && height < 5.0f);
+  const bool metric = !has_size || (extent >= 0.5f && extent < 5.0f);
   const std::string what = "a height of " + short_number(height) + " is no person's in any unit";
   decision.units = metric ? "m" : "fit";
   decision.scale = metric ? 1.0f : kUsualHeight / height;
@@ -214,8 +214,8 @@ std::string decide_odd_size(float height, ImportDecision& decision) {
   return std::string("units: ") + (metric ? "metres (" : "unknown, made 1.7 m tall (") + what + ")";
 }
 
-// Writes unit and scale into the decision; returns the words about it.
-std::string decide_units(float height, const std::string& forced, ImportDecision& decision) {
+// Writes unit and scale into the decision; returns the words about it. extent: the largest along any axis.
+std::string decide_units(float height, float extent, const std::string& forced, ImportDecision& decision) {
   const bool guess = forced.empty() || forced == "auto";
   const Unit* unit = guess ? nullptr : find_unit(forced);
   US_CHECK(guess || unit, "the unit '", forced, "' is none of m, dm, cm, mm, in");
@@ -224,7 +224,7 @@ std::string decide_units(float height, const std::string& forced, ImportDecision
     for (const auto& candidate : kUnits)
       if (height >= candidate.low && height < candidate.high) unit = &candidate;
     why = " (from the height " + short_number(height) + ")";
-    if (!unit) return decide_odd_size(height, decision);
+    if (!unit) return decide_odd_size(height, extent, decision);
   }
   decision.units = unit->name;
   decision.scale = unit->metres;
@@ -244,6 +244,13 @@ Points ImportDecision::apply(const Points& points) const {
   return out;
 }
 
+Eigen::Matrix4d ImportDecision::to_file() const {
+  Eigen::Matrix4d to_world = Eigen::Matrix4d::Identity();
+  to_world.topLeftCorner<3, 3>() = (axes * scale).cast<double>();
+  to_world(1, 3) = -static_cast<double>(floor);
+  return to_world.inverse();
+}
+
 ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   const Points points = even_points(first);
   US_CHECK(points.rows() > 0, "the first frame has no finite point to decide units and axes from");
@@ -260,9 +267,10 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   const float high = up.negative ? -range.low : range.high;
   if (up.floor.seen) low = up.negative ? -up.floor.height : up.floor.height;
 
+  const float extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
   ImportDecision decision;
   decision.up = std::string(up.negative ? "-" : "") + static_cast<char>('x' + up.axis);
-  decision.sentence = decide_units(high - low, forced.units, decision);
+  decision.sentence = decide_units(high - low, extent, forced.units, decision);
   decision.height = (high - low) * decision.scale;
   decision.axes = rotation_about_y(forced.yaw_deg * kPi / 180.0f) * to_y_up(up);
   const float measured = low * decision.scale;

@@ -30,4 +30,10 @@ void ResultWriter::push(const Points& vertices, const Joints& joints, const Rota
   npz_.push(SourceJoints, source_joints.data());
 }
 
+void ResultWriter::finish(const Eigen::Matrix4d& source_to_scan) {
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = source_to_scan;
+  npz_.add("source_to_scan", {4, 4}, {rows.data(), rows.data() + rows.size()});
+  npz_.finish();
+}
+
 }  // namespace understudy

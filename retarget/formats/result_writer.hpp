@@ -7,7 +7,7 @@
 namespace understudy {
 
 /// Writes vertices [T, V, 3], joints [T, 22, 3], rotations [T, 22, 3, 3] (local) and source_joints [T, 22,
-/// 3], float32. Without finish() nothing is left behind.
+/// 3], float32, and source_to_scan [4, 4], float64. Without finish() nothing is left behind.
 class ResultWriter {
  public:
   /// Throws Error when the folder cannot be written.
@@ -16,8 +16,9 @@ class ResultWriter {
   /// Throws Error when the number of vertices changes or the disk is full.
   void push(const Points& vertices, const Joints& joints, const Rotations& local,
             const Joints& source_joints);
-  /// Throws Error when the archive cannot be written.
-  void finish() { npz_.finish(); }
+  /// source_to_scan takes source_joints to the coordinates of the source's file. Throws Error when the archive
+  /// cannot be written.
+  void finish(const Eigen::Matrix4d& source_to_scan = Eigen::Matrix4d::Identity());
 
  private:
   std::string path_;

@@ -10,6 +10,7 @@ namespace understudy {
 namespace {
 
 constexpr double kUsualFps = 30, kHighestFps = 1000;
+constexpr double kMostFrames = 24 * 3600 * 60;
 
 /// Whole rates where they nearly are: times in files are rounded.
 double tidy_fps(double fps) {
@@ -75,7 +76,8 @@ int chosen_clip(const Character& character, const std::string& clip) {
   return longest;
 }
 
-ClipTimes clip_times(const CharacterAnimation& animation, double fps) {
+ClipTimes clip_times(const Character& character, int clip, double fps) {
+  const CharacterAnimation& animation = character.animations.at(static_cast<size_t>(clip));
   ClipTimes out;
   double first = -1, last = 0;
   for (const auto& track : animation.tracks) {
@@ -87,7 +89,11 @@ ClipTimes clip_times(const CharacterAnimation& animation, double fps) {
   out.start = std::max(0.0, first);
   const double own = own_fps(animation);
   out.fps = fps > 0 ? fps : own;
-  out.count = static_cast<int64_t>(std::floor((last - out.start) * out.fps + 0.1)) + 1;
+  const double count = std::floor((last - out.start) * out.fps + 0.1) + 1;
+  US_CHECK(count <= kMostFrames, character.called(), ": its animation '", excerpt(animation.name), "' is ",
+           last - out.start, " s long at ", out.fps, " frames/s, only ", static_cast<int64_t>(kMostFrames),
+           " frames are read (a day at 60 frames/s)");
+  out.count = static_cast<int64_t>(count);
   return out;
 }
 

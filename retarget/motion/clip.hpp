@@ -19,7 +19,8 @@ struct ClipTimes {
   float at(int64_t frame) const { return static_cast<float>(start + static_cast<double>(frame) / fps); }
 };
 
-/// fps 0: the rate at which the keys lie, 30 where they lie at none.
-ClipTimes clip_times(const CharacterAnimation& animation, double fps = 0);
+/// The frames of animation number `clip`. fps 0: the rate at which the keys lie, 30 where they lie at none.
+/// Throws Error naming the character where they are more than a day has at 60 frames/s.
+ClipTimes clip_times(const Character& character, int clip, double fps = 0);
 
 }  // namespace understudy

@@ -115,7 +115,7 @@ struct SkeletalMotion::Impl {
 
 SkeletalMotion::Impl::Impl(Character character, const SkeletalMotionOptions& options)
     : clip(chosen_clip(character, options.clip)),
-      times(clip_times(character.animations[clip], options.fps)),
+      times(clip_times(character, clip, options.fps)),
       c(in_bind_pose(character, clip, times, options)),
       surface(c.character),
       support(SupportPoints::from(c.target.mesh.vertices, c.target.joints)),
@@ -223,6 +223,14 @@ SkeletalMotion::SkeletalMotion(SkeletalMotion&&) noexcept = default;
 
 int64_t SkeletalMotion::count() const {
   return impl_->times.count;
+}
+
+Eigen::Matrix4d SkeletalMotion::to_file() const {
+  ImportDecision decision;
+  decision.scale = impl_->c.to_world.scale;
+  decision.axes = impl_->axes;
+  decision.floor = impl_->floor;
+  return decision.to_file();
 }
 
 double SkeletalMotion::fps() const {

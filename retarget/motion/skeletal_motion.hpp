@@ -29,6 +29,8 @@ class SkeletalMotion {
 
   int64_t count() const;
   double fps() const;
+  /// From the joints to the file's own units and axes.
+  Eigen::Matrix4d to_file() const;
   /// Joints, and rotations relative to the T-pose, whatever pose the character was bound in. Joints that the
   /// rig lacks go with the ones above them, at half the confidence.
   Extraction skeleton(int64_t frame) const;

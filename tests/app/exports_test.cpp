@@ -180,7 +180,9 @@ TEST_P(EveryFormat, InPlaceStaysWhereTheTargetStands) {
   if (GetParam().format != ExportFormat::Npz) return;  // the others take the same poses
   for (Pose& pose : input_.clips[0].poses) pose.root.x() += 5;
   input_.body.file.in_place = true;
+  input_.source_to_scan(2, 3) = 0.5;
   export_it();
+  EXPECT_EQ(read_npz(path_).at("source_to_scan").values[11], 0.5f);
   const NpyArray joints = read_npz(path_).at("joints");
   for (int t = 0; t < kFrames; ++t)
     EXPECT_NEAR(joints.values[static_cast<size_t>(t) * 66], input_.body.character->target.joints(0, 0),

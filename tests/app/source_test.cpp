@@ -75,6 +75,17 @@ TEST_F(SourceFiles, ComeInMetresAsTheFirstFrameSays) {
   EXPECT_FALSE(source->next());
 }
 
+TEST_F(SourceFiles, KnowTheWayBackToTheirFiles) {
+  std::ofstream file(scratch.path("frame_00000.xyz"));  // centimetres, z up, the floor at 40 cm
+  for (int i = 0; i < 200; ++i)
+    file << 20 * std::cos(2.4f * i) << ' ' << 20 * std::sin(2.4f * i) << ' ' << 40 + 0.85f * i << '\n';
+  file.close();
+  const auto source = open_source(here());
+  const Vec3 first = source->next()->mesh.vertices.row(0).transpose();
+  const Eigen::Vector4d back = source->to_file() * first.cast<double>().homogeneous();
+  EXPECT_LT((back.head<3>() - Eigen::Vector3d(20, 0, 40)).norm(), 0.01) << back;
+}
+
 TEST_F(SourceFiles, ObeyForcedUnitsAndRate) {
   write_frame(0, 1);
   SourceOptions options = here();

@@ -166,7 +166,7 @@ TEST(Import, SurvivesNanPointsAndTinyScans) {
 
 TEST(Import, MakesACharacterOfArbitrarySizeAsTallAsPeopleAre) {
   Warnings warnings;
-  for (const float scale : {1e-4f, 275.0f, 1e6f}) {
+  for (const float scale : {1e-4f, 0.095f, 275.0f, 1e6f}) {
     const Mesh file = as_file(person(true), "y", scale);
     const ImportDecision decision = decide_import(file, {});
     EXPECT_EQ(decision.units, "fit");
@@ -174,6 +174,29 @@ TEST(Import, MakesACharacterOfArbitrarySizeAsTallAsPeopleAre) {
   }
   EXPECT_EQ(decide_import(as_file(person(true), "y", 2), {}).units, "m");
   EXPECT_TRUE(warnings.contain("is no person's in any unit"));
+}
+
+TEST(Import, TakesSomebodyWhoLiesAsMetresWhateverTheHeight) {
+  Warnings warnings;
+  ImportOptions lying;
+  lying.up = "z";  // on the back: 0.3 m high
+  const ImportDecision decision = decide_import(as_file(person(false), "y", 1), lying);
+  EXPECT_TRUE(warnings.contain("taken as metres"));
+  EXPECT_EQ(decision.units, "m");
+}
+
+TEST(Import, KnowsTheWayBack) {
+  Mesh file = as_file(person(true), "z", 100, {30, -20, 700});
+  ImportOptions turned;
+  turned.yaw_deg = 33;
+  const ImportDecision decision = decide_import(file, turned);
+  ASSERT_EQ(decision.units, "cm");
+  const Points world = decision.apply(file.vertices);
+  const Eigen::Matrix4d back = decision.to_file();
+  for (Eigen::Index v = 0; v < world.rows(); ++v) {
+    const Eigen::Vector4d there = back * world.row(v).transpose().cast<double>().homogeneous();
+    EXPECT_LT((there.head<3>() - file.vertices.row(v).transpose().cast<double>()).norm(), 0.01);
+  }
 }
 
 TEST(Import, KeepsTheFilesZeroWhenTheLowestPointsAreNearIt) {

@@ -130,9 +130,14 @@ TEST(ResultWriter, WritesWhatWasPushed) {
       writer.push(vertices * static_cast<float>(i), forward_kinematics(human_rest(), pose).joints, pose.local,
                   human_rest());
     }
-    writer.finish();
+    Eigen::Matrix4d to_scan = Eigen::Matrix4d::Identity();
+    to_scan(0, 3) = 7;
+    writer.finish(to_scan);
   }
   const Npz npz = read_npz(folder.path("r.npz"));
+  const NpyArray& to_scan = require(npz, "source_to_scan", "r.npz");
+  EXPECT_EQ(to_scan.shape, (std::vector<int64_t>{4, 4}));
+  EXPECT_EQ(to_scan.values[3], 7);
   const NpyArray& v = require(npz, "vertices", "r.npz");
   EXPECT_EQ(v.shape, (std::vector<int64_t>{5, vertices.rows(), 3}));
   EXPECT_FLOAT_EQ(v.values.back(), 4 * vertices(vertices.rows() - 1, 2));

@@ -264,6 +264,38 @@ TEST(SkeletalMotion, ResamplesWhenAsked) {
   EXPECT_LT((motion.skeleton(20).joints - trip.truth.at(10).joints).cwiseAbs().maxCoeff(), 1e-3f);
 }
 
+TEST(SkeletalMotion, RefusesAnimationsOfMoreFramesThanADayHas) {
+  const Truth truth;
+  for (const double last : {1e6, 1e18, 3e38}) {
+    Character character = parse_bvh(made_bvh({}, truth.rest, truth.poses), "made.bvh");
+    for (auto& track : character.animations[0].tracks) track.times.back() = static_cast<float>(last);
+    character.file = "long.glb";
+    const std::string complaint = error_of([&] { SkeletalMotion(character, {}); });
+    EXPECT_TRUE(contains(complaint, "long.glb: its animation '")) << complaint;
+    EXPECT_TRUE(contains(complaint, "only 5184000 frames are read")) << complaint;
+  }
+  MadeBvh slow;
+  slow.fps = 1e-7;
+  EXPECT_TRUE(contains(error_of([&] { motion_of(slow, truth); }), "only 5184000 frames are read"));
+  SkeletalMotionOptions fast;
+  fast.fps = 1e9;
+  EXPECT_TRUE(contains(error_of([&] { motion_of({}, truth, fast); }), "only 5184000 frames are read"));
+}
+
+TEST(SkeletalMotion, KnowsTheWayBackToTheFile) {
+  MadeBvh made;
+  made.unit = 0.01f;
+  made.z_up = true;
+  const Truth truth;
+  const Character file = parse_bvh(made_bvh(made, truth.rest, truth.poses), "made.bvh");
+  const SkeletalMotion motion(file, {});
+  const Eigen::Matrix4d back = motion.to_file();
+  const Vec3 hips = motion.skeleton(7).joints.row(LeftKnee).transpose();
+  const auto node = static_cast<size_t>(motion.map().node[LeftKnee]);
+  const Vec3 own = nodes_at(file, 0, 7 / 120.0f).world[node].topRightCorner<3, 1>();
+  EXPECT_LT(((back * hips.cast<double>().homogeneous()).head<3>() - own.cast<double>()).norm(), 0.01) << own;
+}
+
 TEST(SkeletalMotion, ShowsTheSkinOrTheBones) {
   const RoundTrip trip({});
   const SkeletalMotion skinned = trip.opened();
