@@ -89,11 +89,14 @@ int bench(const BenchOptions& options) {
   const auto character = open_target(onto, networks);
   Repeated source(from, options.frames);
   networks = networks_for(std::move(networks), *character, on_their_rig(onto, *character));
-  Performer performer(source, character->target, std::move(networks), {});
+  Retargeter retargeter(std::move(networks));
+  retargeter.set_target(character->target);
+  RetargetedSource retargeted(source, retargeter, from.path);
   Latency latency;
   double first_s = 0, memory_1000 = 0;
   Progress progress("bench", options.frames);
-  for (int64_t i = 0; const auto frame = performer.next(); ++i) {
+  while (const auto frame = retargeted.next()) {
+    const int64_t i = frame->index;
     check_interrupt("after frame " + std::to_string(i));
     if (i == 0) first_s = seconds_since_start();
     if (i > 0) latency.add(frame->times);  // the first frame also pays for what is done once

@@ -5,7 +5,7 @@
 #include "app/cli/attempt.hpp"
 #include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
-#include "app/run/performer.hpp"
+#include "app/run/retargeted_source.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
@@ -47,73 +47,53 @@ struct CaseFigures {
   Metrics file;        // of the exported file, where asked for
 };
 
-/// Only the skeletons of the scans: cases without a target. Repaired and smoothed as for a performance.
-void evaluate_extraction(const Case& c, SkeletonExtractor& extractor, CaseFigures& to) {
-  const auto source = open_source(case_source(c));
-  RecentJoints recent;
-  JointFilter filter;
-  std::optional<Extraction> raw;  // of the last good frame
-  std::optional<Joints> smooth;
-  float waited_s = 0;
-  while (true) {
-    check_interrupt("in case " + c.name);
-    FrameTimes times;
-    const auto began = std::chrono::steady_clock::now();
-    const auto frame = source->next();
-    if (!frame) break;
-    times.read = ms_since(began);
-    waited_s += static_cast<float>(1 / c.fps);
-    const std::string problem = failure_of([&] {
-      raw = extractor.extract_next(frame->mesh, recent);
-      smooth = filter.push(*raw, waited_s).joints;
-      waited_s = 0;
-    });
-    US_CHECK(smooth, frame->path, ": ", problem);
-    times.total = ms_since(began);
-    times.extract = times.total - times.read;
-    to.result.latency.add(times);
-    to.result.flagged += !problem.empty();
-    EvaluatedFrame evaluated;
-    evaluated.source_joints = &*smooth;
-    evaluated.raw_joints = &raw->joints;
-    evaluated.confidence = &raw->confidence;
-    evaluated.scan = frame->usable ? &frame->mesh : nullptr;
-    to.evaluator.push(evaluated);
+/// One frame: of the target, where there is one, and of the skeleton in the scan.
+void evaluate_frame(const RetargetedFrame& frame, const PreparedCharacter* target, Evaluator& evaluator) {
+  const PerformedFrame& result = frame.result;
+  EvaluatedFrame evaluated;
+  Points vertices;
+  if (target) {
+    vertices = target->surface.in_file_order(result.vertices);
+    evaluated.vertices = &vertices;
+    evaluated.joints = &result.joints;
+    evaluated.rotations = &result.pose.local;
   }
+  evaluated.source_joints = &result.source.joints;
+  evaluated.raw_joints = result.flagged ? &result.source.joints : &result.observed.joints;
+  evaluated.confidence = &result.confidence;
+  evaluated.scan = frame.scan.usable ? &frame.scan.mesh : nullptr;
+  evaluator.push(evaluated);
 }
 
-/// The whole way, frame by frame; with `oracle` the true skeleton takes the place of the extracted one.
+/// The whole way, frame by frame; of cases without a target as far as the skeleton. With `oracle` the true
+/// skeleton takes the place of the extracted one.
 void evaluate_performance(const Case& c, const EvalOptions& options, Networks networks,
                           const std::shared_ptr<const PreparedCharacter>& character, CaseFigures& to) {
-  const PreparedCharacter& target = *character;
   const auto source = open_source(case_source(c));
   CharacterClip clip{c.name, c.fps, {}};
   const std::vector<Joints>* const oracle =
       options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
   US_CHECK(options.oracle.empty() || (oracle && !oracle->empty()), c.truth,
            ": --oracle skeleton wants source_joints");
-  Performer performer(*source, target.target, std::move(networks), options.retarget);
+  Retargeter retargeter(std::move(networks), options.retarget);
+  if (character) retargeter.set_target(character->target);
+  RetargetedSource retargeted(*source, retargeter, c.source);
   for (size_t t = 0;; ++t) {
     check_interrupt("in case " + c.name);
     US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");
     if (options.restart_every > 0 && t > 0 && t % static_cast<size_t>(options.restart_every) == 0)
-      performer.restart();
+      retargeter.restart();
     const bool known = oracle && t < oracle->size();
-    const auto frame = known ? performer.next((*oracle)[t]) : performer.next();
+    const auto frame = retargeted.next(known ? std::optional<Joints>((*oracle)[t]) : std::nullopt);
     if (!frame) break;
-    const RetargetedFrame& result = frame->result;
-    clip.poses.push_back(result.pose);
+    clip.poses.push_back(frame->result.pose);
     to.result.latency.add(frame->times);
-    to.result.flagged += result.flagged;
-    const Points vertices = target.surface.in_file_order(result.vertices);
-    const Confidence confidence =
-        result.flagged ? Confidence(Confidence::Zero()) : result.source_raw.confidence;
-    to.evaluator.push({&vertices, &result.joints, &result.pose.local, &frame->source_joints,
-                       result.flagged ? &frame->source_joints : &result.source_raw.joints,
-                       frame->scan.usable ? &frame->scan.mesh : nullptr, &confidence});
+    evaluate_frame(*frame, character.get(), to.evaluator);
   }
+  retargeted.check_used();
+  to.result.flagged = retargeted.flagged();
   if (!options.file_shapes || !to.truth || to.truth->vertices.empty()) return;
-  ExportBody body{character, performer.retargeter().networks().deformer, {}};
+  ExportBody body{character, retargeter.performer().deformer(), {}};
   body.file.their_rig = false;
   body.file.shapes = *options.file_shapes;
   to.file = file_figures(body, clip, *to.truth);
@@ -162,23 +142,22 @@ void evaluate_case(const Bench& bench, const std::string& folder, const Case& c,
   US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle wants a truth");
   std::optional<Mesh> mesh;  // with the file's own vertices
   std::shared_ptr<const PreparedCharacter> target;
-  Networks networks;
-  if (options.oracle == "pose" && !c.target.empty()) {
+  const bool knows_poses = options.oracle == "pose", performed = !c.target.empty();
+  Networks networks = nn::load_networks(
+      options.networks, {!knows_poses, performed && !knows_poses, performed && !knows_poses, performed});
+  if (knows_poses) {
     mesh = read_mesh(c.target);
-  } else {
-    networks = nn::load_networks(options.networks);
-    if (!c.target.empty()) target = open_target(case_target(c), networks);
-    if (target) mesh = target->target_in_file_order();
-    if (bench.fit) networks.extractor = std::make_unique<BodyFit>(bench.fit);  // of the source alone
+  } else if (performed) {
+    target = open_target(case_target(c), networks);
+    mesh = target->target_in_file_order();
   }
+  if (bench.fit) networks.extractor = std::make_shared<BodyFit>(bench.fit);  // of the source alone
   Evaluator evaluator(c.fps, truth ? &*truth : nullptr, mesh ? &*mesh : nullptr);
   CaseFigures to{evaluator, result, truth ? &*truth : nullptr, {}};
-  if (target)
-    evaluate_performance(c, options, std::move(networks), target, to);
-  else if (mesh)
-    evaluate_deformation(*truth, *mesh, *nn::load_deformer(options.networks), to);
+  if (knows_poses)
+    evaluate_deformation(*truth, *mesh, *networks.deformer, to);
   else
-    evaluate_extraction(c, *networks.extractor, to);
+    evaluate_performance(c, options, std::move(networks), target, to);
   result.frames = result.latency.frames();
   result.metrics = evaluator.metrics();
   result.metrics.insert(result.metrics.end(), to.file.begin(), to.file.end());

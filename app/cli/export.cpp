@@ -13,6 +13,7 @@
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
+#include "app/run/retargeted_source.hpp"
 #include "app/session/take_export.hpp"
 #include "render/contact_sheet.hpp"
 #include "render/image.hpp"
@@ -24,7 +25,6 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
-#include "retarget/pipeline/person_check.hpp"
 
 namespace understudy::app {
 namespace {
@@ -62,31 +62,21 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
   SourceOptions one = options.source;
   one.path = path;
   const auto source = open_source(one);
-  retargeter.restart();
+  RetargetedSource retargeted(*source, retargeter, path);
   CharacterClip clip{clip_name(path), source->fps(), {}};
   Progress progress(clip.name + " -> " + clip_name(options.target.path), source->count().value_or(0));
-  int64_t flagged = 0;
-  const auto dt = static_cast<float>(1 / source->fps());
-  Joints seen = Joints::Zero();
-  PersonCheck person;
-  while (auto scan = source->next()) {
-    const RetargetedFrame frame =
-        scan->skeleton ? retargeter.push(*scan->skeleton, dt) : retargeter.push(scan->mesh, dt);
-    flagged += frame.flagged ? 1 : 0;
-    const std::string doubt = frame.flagged ? "" : person.push(frame.source_raw);
-    if (!doubt.empty()) log::warn(path + ": " + doubt);
-    if (!frame.flagged) seen = frame.source.joints;
-    clip.poses.push_back(frame.pose);
-    input.source_joints.push_back(seen);
-    progress.step(static_cast<int64_t>(clip.poses.size()));
-    check_interrupt("after frame " + std::to_string(scan->number));
-    if (options.frames > 0 && static_cast<int64_t>(clip.poses.size()) >= options.frames) break;
+  while (const auto frame = retargeted.next()) {
+    clip.poses.push_back(frame->result.pose);
+    input.source_joints.push_back(frame->result.source.joints);
+    progress.step(retargeted.frames());
+    check_interrupt("after frame " + std::to_string(frame->scan.number));
+    if (options.frames > 0 && retargeted.frames() >= options.frames) break;
   }
   progress.finish();
-  check_interrupt("after " + std::to_string(clip.poses.size()) + " frames");
-  US_CHECK(static_cast<int64_t>(clip.poses.size()) > flagged, path, ": no frame in it could be used");
-  if (flagged > 0)
-    log::warn(path + ": " + std::to_string(flagged) +
+  check_interrupt("after " + std::to_string(retargeted.frames()) + " frames");
+  retargeted.check_used();
+  if (retargeted.flagged() > 0)
+    log::warn(path + ": " + std::to_string(retargeted.flagged()) +
               " of its frames could not be used and repeat the last pose");
   input.source_to_scan = source->to_file();
   input.clips.push_back(std::move(clip));
@@ -109,7 +99,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormatInfo
   quick.vertices = false;
   Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
   retargeter.set_target(character->target);
-  Performance out{{{character, retargeter.networks().deformer, file}, {}, {}}, options.target.path};
+  Performance out{{{character, retargeter.performer().deformer(), file}, {}, {}}, options.target.path};
   for (const std::string& path : options.sources) perform(options, path, retargeter, out.input);
   return out;
 }

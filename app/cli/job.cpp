@@ -13,7 +13,6 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
-#include "retarget/pipeline/person_check.hpp"
 
 namespace understudy::app {
 namespace {
@@ -27,64 +26,58 @@ std::string file_name(const std::string& path) {
 struct Running {
   std::unique_ptr<Source> source;
   std::shared_ptr<const PreparedCharacter> character;
-  std::unique_ptr<Performer> performer;
+  std::unique_ptr<Retargeter> retargeter;
+  std::unique_ptr<RetargetedSource> retargeted;
   std::unique_ptr<MotionOutput> output;  // null: no animation wanted
   std::optional<PreviewMoments> moments, skeletons;
   std::optional<Evaluator> evaluator;
   Latency latency;
-  int64_t frames = 0, flagged = 0;
   log::Series repeats;  // of the last pose
 };
 
 /// Moments and columns of a sheet that shows the extraction alone.
 constexpr int kSkeletonMoments = 60, kSkeletonColumns = 12;
 
-render::SheetMoment source_moment(const PerformedFrame& frame, int64_t index, double fps) {
+render::SheetMoment source_moment(const RetargetedFrame& frame, double fps) {
   render::SheetMoment moment;
-  moment.frame = index;
-  moment.seconds = static_cast<double>(index) / fps;
+  moment.frame = frame.index;
+  moment.seconds = static_cast<double>(frame.index) / fps;
   moment.source = frame.scan.mesh;
-  moment.source_joints = frame.source_joints;
+  moment.source_joints = frame.result.source.joints;
   return moment;
 }
 
-render::SheetMoment moment_of(const PerformedFrame& frame, int64_t index, double fps, const Mesh& rest) {
-  render::SheetMoment moment = source_moment(frame, index, fps);
+render::SheetMoment moment_of(const RetargetedFrame& frame, double fps, const Mesh& rest) {
+  render::SheetMoment moment = source_moment(frame, fps);
   moment.target = Mesh{frame.result.vertices, rest.faces, rest.colors};
   moment.target_joints = frame.result.joints;
   return moment;
 }
 
-void tell_flagged(const PerformedFrame& frame, log::Series& repeats) {
-  const std::string& why = frame.scan.usable ? frame.result.reason : frame.scan.problem;
-  repeats.warn("frame " + std::to_string(frame.scan.number) + " repeats the last pose: " + why);
-}
-
 /// One line for each frame as it is finished, for programs that follow along.
-void tell_live(const PerformedFrame& frame) {
+void tell_live(const RetargetedFrame& frame) {
   const Vec3& root = frame.result.pose.root;
   std::printf("frame %lld root %.4f %.4f %.4f %s\n", static_cast<long long>(frame.scan.number), root.x(),
               root.y(), root.z(), frame.result.flagged ? "flagged" : "good");
   std::fflush(stdout);
 }
 
-void take_frame(Running& job, const PerformedFrame& frame, bool live) {
-  const Target& target = job.performer->retargeter().target();
+void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
+  const PerformedFrame& result = frame.result;
+  const double fps = job.source->fps();
   job.latency.add(frame.times);
-  if (frame.result.flagged) {
-    ++job.flagged;
-    tell_flagged(frame, job.repeats);
-  }
-  if (job.output) job.output->push({frame.result.pose, frame.source_joints, &frame.result.vertices});
-  if (job.moments && job.moments->wanted(job.frames))
-    job.moments->add(job.frames, moment_of(frame, job.frames, job.source->fps(), target.mesh));
-  if (job.skeletons && job.skeletons->wanted(job.frames))
-    job.skeletons->add(job.frames, source_moment(frame, job.frames, job.source->fps()));
+  if (result.flagged)
+    job.repeats.warn("frame " + std::to_string(frame.scan.number) +
+                     " repeats the last pose: " + result.reason);
+  if (job.output) job.output->push({result.pose, result.source.joints, &result.vertices});
+  if (job.moments && job.moments->wanted(frame.index))
+    job.moments->add(frame.index, moment_of(frame, fps, job.character->target.mesh));
+  if (job.skeletons && job.skeletons->wanted(frame.index))
+    job.skeletons->add(frame.index, source_moment(frame, fps));
   if (job.evaluator)
-    job.evaluator->push({&frame.result.vertices, &frame.result.joints, &frame.result.pose.local,
-                         &frame.source_joints, nullptr, frame.scan.usable ? &frame.scan.mesh : nullptr});
+    job.evaluator->push({&result.vertices, &result.joints, &result.pose.local, &result.source.joints, nullptr,
+                         frame.scan.usable ? &frame.scan.mesh : nullptr});
   if (live) tell_live(frame);
-  ++job.frames;
 }
 
 Json report_of(const JobOptions& options, const Running& job) {
@@ -93,8 +86,8 @@ Json report_of(const JobOptions& options, const Running& job) {
   report["source"] = options.source.path;
   report["target"] = options.target.path;
   report["fps"] = job.source->fps();
-  report["frames"] = job.frames;
-  report["flagged"] = job.flagged;
+  report["frames"] = job.retargeted->frames();
+  report["flagged"] = job.retargeted->flagged();
   report["metrics"] = to_json(job.evaluator->metrics());
   report["ms"] = to_json(job.latency, 0.5);
   report["ms_p95"] = to_json(job.latency, 0.95);
@@ -106,16 +99,16 @@ Running start(const JobOptions& options) {
   Networks networks = nn::load_networks(options.networks);
   job.character = open_target(options.target, networks);
   networks = networks_for(std::move(networks), *job.character, on_their_rig(options.target, *job.character));
-  const Mesh& target = job.character->target.mesh;
   job.source = open_source(options.source);
   log::info("inference threads: " + nn::runtime_report().threads_why);
-  job.performer =
-      std::make_unique<Performer>(*job.source, job.character->target, std::move(networks), options.retarget);
+  job.retargeter = std::make_unique<Retargeter>(std::move(networks), options.retarget);
+  job.retargeter->set_target(job.character->target);
+  job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source.path);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
-  if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &target);
+  if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);
   if (!options.out.empty()) {
-    ExportBody body{job.character, job.performer->retargeter().networks().deformer, {}};
+    ExportBody body{job.character, job.retargeter->performer().deformer(), {}};
     body.file.their_rig = on_their_rig(options.target, *job.character);
     job.output = open_export(options.out, export_format("", options.out), body,
                              file_name(options.source.path), job.source->fps());
@@ -148,18 +141,15 @@ void run_job(const JobOptions& options) {
   Running job = start(options);
   Progress progress(file_name(options.source.path) + " -> " + file_name(options.target.path),
                     job.source->count().value_or(0), options.progress_lines);
-  PersonCheck person;
-  while (const auto frame = job.performer->next()) {
+  while (const auto frame = job.retargeted->next()) {
     take_frame(job, *frame, options.source.follow);
-    const std::string doubt = frame->result.flagged ? "" : person.push(frame->result.source_raw);
-    if (!doubt.empty()) log::warn(options.source.path + ": " + doubt);
-    progress.step(job.frames);
+    progress.step(frame->index + 1);
     check_interrupt("after frame " + std::to_string(frame->scan.number));
   }
   progress.finish();
-  check_interrupt("after " + std::to_string(job.frames) + " frames");
-  US_CHECK(job.frames > job.flagged, options.source.path, ": no frame in it could be used");
-  if (job.frames == 1)
+  check_interrupt("after " + std::to_string(job.retargeted->frames()) + " frames");
+  job.retargeted->check_used();
+  if (job.retargeted->frames() == 1)
     log::warn(options.source.path + ": holds only one frame: the result is a pose, not a motion");
   finish(options, job);
 }

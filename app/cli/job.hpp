@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/run/performer.hpp"
+#include "app/run/retargeted_source.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/networks/networks.hpp"
 #include "retarget/pipeline/retargeter.hpp"

@@ -1,16 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/options.hpp"
 #include "app/run/evaluator.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
-#include "retarget/base/error.hpp"
+#include "app/run/retargeted_source.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
-#include "retarget/pipeline/joint_filter.hpp"
 
 namespace understudy::app {
 namespace {
@@ -40,28 +38,26 @@ void push(Evaluator& evaluator, const Joints& joints, const Mesh& scan) {
 
 Measured measured(const MeasureOptions& options) {
   const auto source = open_source(options.source);
-  const auto extractor = nn::load_networks(options.networks).extractor;
+  NetworkParts seeing;
+  seeing.extractor = true;
+  Retargeter retargeter(nn::load_networks(options.networks, seeing));
+  RetargetedSource retargeted(*source, retargeter, options.source.path);
   Measured result(source->fps(), options.every);
-  RecentJoints recent;
-  JointFilter filter;
-  float waited_s = 0;
   log::Series problems;
-  while (const auto frame = source->next()) {
-    check_interrupt("after " + std::to_string(result.frames) + " frames");
-    ++result.frames;
-    waited_s += static_cast<float>(1 / source->fps());
-    const std::string problem = failure_of([&] {
-      const Extraction seen =
-          frame->skeleton ? *frame->skeleton : extractor->extract_next(frame->mesh, recent);
-      push(result.raw, seen.joints, frame->mesh);
-      push(result.smooth, filter.push(seen, waited_s).joints, frame->mesh);
-      waited_s = 0;
-    });
-    result.flagged += !problem.empty();
-    if (!problem.empty()) problems.warn("frame " + std::to_string(frame->number) + ": " + problem);
+  while (const auto frame = retargeted.next()) {
+    check_interrupt("after " + std::to_string(frame->index) + " frames");
+    const PerformedFrame& seen = frame->result;
+    if (seen.flagged) {
+      problems.warn("frame " + std::to_string(frame->scan.number) + ": " + seen.reason);
+      continue;
+    }
+    push(result.raw, seen.observed.joints, frame->scan.mesh);
+    push(result.smooth, seen.source.joints, frame->scan.mesh);
   }
   problems.finish();
-  US_CHECK(result.frames > result.flagged, options.source.path, ": no frame in it could be used");
+  retargeted.check_used();
+  result.frames = retargeted.frames();
+  result.flagged = retargeted.flagged();
   return result;
 }
 

@@ -18,13 +18,13 @@ namespace understudy::app {
 
 StudioServices studio_services(const std::string& weights) {
   StudioServices services;
-  services.networks = [weights](const Method& method) {
+  services.networks = [weights](const Method& method, const NetworkParts& parts) {
     nn::NetworkOptions options;
     options.weights = weights;
     options.engine = method.engine;
     options.extractor = method.extractor;
     options.offsets = method.offsets;
-    return nn::load_networks(options);
+    return nn::load_networks(options, parts);
   };
   services.weights = [weights] {
     nn::NetworkOptions options;

@@ -12,14 +12,12 @@
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/metrics/surface_metrics.hpp"
+#include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy::app {
 
 /// Key and value, in the order of the report. Figures that cannot be told for a sequence are left out.
 using Metrics = std::vector<std::pair<std::string, double>>;
-
-/// Of each joint, 0..1.
-using Confidence = Eigen::Array<float, kJointCount, 1>;
 
 /// One finished frame, as the evaluator sees it. What is not there is null.
 struct EvaluatedFrame {

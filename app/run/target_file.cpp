@@ -67,6 +67,10 @@ std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options) {
   return standing;
 }
 
+bool wants_extractor(const TargetOptions& options, const PreparedCharacter& standing) {
+  return !on_their_rig(options, standing);
+}
+
 std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> character,
                                                      const TargetOptions& options, const Networks& networks) {
   said_of(options.path, [&] {

@@ -37,6 +37,8 @@ std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& option
 /// The first half of it, which asks no network: as the file has it, upright and at its size, to be looked at.
 /// Throws Error naming the file.
 std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options);
+/// Whether the second half asks the networks' extractors: a mesh without a rig that it performs on.
+bool wants_extractor(const TargetOptions& options, const PreparedCharacter& standing);
 /// The second half, with the same options.
 std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> standing,
                                                      const TargetOptions& options, const Networks& networks);

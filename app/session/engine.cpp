@@ -10,29 +10,22 @@
 #include <thread>
 #include <utility>
 
+#include "app/run/retargeted_source.hpp"
 #include "app/session/background_thread.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/pipeline/person_check.hpp"
 
 namespace understudy::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int kReplayChunk = 200;  // frames made anew between two looks at the plan
-
-JointFilterOptions filter_options(const Method& method) {
-  JointFilterOptions options;
-  options.repair_swaps = method.repair_swaps;
-  options.smooth = method.smooth_joints;
-  options.fix_lengths = method.fix_lengths;
-  return options;
-}
 
 RetargetOptions retarget_options(const Method& method) {
   RetargetOptions options;
-  options.filter = filter_options(method);
+  options.filter.repair_swaps = method.repair_swaps;
+  options.filter.smooth = method.smooth_joints;
+  options.filter.fix_lengths = method.fix_lengths;
   options.root.mode = method.root;
   options.lock_feet = method.lock_feet;
   options.vertices = false;  // made from the poses when they are looked at
@@ -45,22 +38,17 @@ std::shared_ptr<const SafeBinding> binding_of(const std::shared_ptr<const Deform
   return careful ? std::shared_ptr<const SafeBinding>(careful, &careful->binding()) : nullptr;
 }
 
-/// What one scan gave, kept to be performed again.
-struct Extracted {
-  Extraction extraction;
-  std::optional<BodyGirth> girth;
-  bool usable = true;
-  std::string problem;
-  int points = 0;
-  double read_ms = 0, extract_ms = 0;
+/// What was seen in one frame, kept to be performed again.
+struct Seen {
+  Observation observation;
+  double read_ms = 0;
 };
 
 /// One extractor over the source so far.
 struct Stream {
-  std::unique_ptr<SkeletonExtractor> extractor;
-  std::vector<Extracted> frames;
-  RecentJoints recent;
-  PersonCheck person;
+  std::shared_ptr<SkeletonExtractor> extractor;  // null: nothing has asked for it yet
+  std::optional<Observer> observer;              // none before the first frame
+  std::vector<Seen> frames;
 };
 
 /// A take at work.
@@ -69,7 +57,7 @@ struct TakeWork {
   std::string target_is, method_is, joints_are;
   std::shared_ptr<PreparedCharacter> standing;  // until it is the character
   std::shared_ptr<const PreparedCharacter> character;
-  std::unique_ptr<Retargeter> retargeter;
+  std::optional<Performer> performer;
   bool failed = false;
   size_t done = 0;      // frames performed with the present settings
   size_t told_new = 0;  // frames whose times have been told
@@ -112,8 +100,8 @@ struct Engine::Impl {
   std::unique_ptr<Source> source;
   std::map<std::string, Stream> streams;
   bool opened = false, ended = false;
-  JointFilter filter;
-  size_t told = 0;  // frames of the shown stream that have been told
+  size_t told = 0;                 // frames of the shown stream that have been told
+  std::optional<Performer> alone;  // repairs and smooths what is shown where no take does
   bool has_faces = false;
   std::vector<TakeWork> takes;
   std::thread thread;
@@ -129,15 +117,18 @@ struct Engine::Impl {
   void close_source();
   void open();
   void adopt_take(TakeWork& take, const Plan::TakePlan& wanted);
-  bool stand(TakeWork& take);
-  bool prepare(TakeWork& take);
-  Stream& stream_of(const std::string& extractor);
+  template <class Work>
+  bool of_take(TakeWork& take, Work work);
+  void load(TakeWork& take);
+  void prepare(TakeWork& take);
+  const std::shared_ptr<SkeletonExtractor>& extractor_of(const std::string& name);
+  std::vector<std::string> wanted_streams() const;
   bool read_frame();
-  Extracted extracted(Stream& stream, const SourceFrame& frame) const;
-  /// Says where the source may be no person.
-  void doubt(Stream& stream) const;
+  void observe(const SourceFrame& frame, const std::string& extractor, double read_ms);
+  float interval() const;
+  Observation edited(const Seen& seen, size_t frame) const;
   bool tell_source();
-  bool perform(TakeWork& take);
+  void perform(TakeWork& take);
 };
 
 /// Whether an event says something of the source's frames, which another source makes untrue.
@@ -221,19 +212,17 @@ void Engine::Impl::adopt(Plan wanted) {
     source_is = source_wanted;
   }
   const std::string skeleton_wanted = key_of(wanted.skeleton_edits);
-  const bool shown_anew = wanted.extractor != plan.extractor;
-  if (skeleton_wanted != skeleton_is || shown_anew) {
-    told = 0;
-    filter.reset();
-  }
+  const auto first = [](const Plan& of) { return of.takes.empty() ? 0 : of.takes[0].id; };
+  const bool another_take = first(plan) != 0 && first(plan) != first(wanted);
+  if (skeleton_wanted != skeleton_is || wanted.extractor != plan.extractor || another_take) told = 0;
   std::vector<TakeWork> kept;
   for (const Plan::TakePlan& want : wanted.takes) {
     TakeWork take;
     for (TakeWork& old : takes)
       if (old.plan.id == want.id) take = std::move(old);
     adopt_take(take, want);
-    if (skeleton_wanted != skeleton_is && take.retargeter) {
-      take.retargeter->restart();
+    if (skeleton_wanted != skeleton_is && take.performer) {
+      take.performer->restart();
       take.done = 0;
     }
     kept.push_back(std::move(take));
@@ -250,7 +239,7 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   if (target_wanted != take.target_is || method_wanted != take.method_is) take.told_new = 0;
   if (target_wanted != take.target_is || method_wanted != take.method_is ||
       joints_wanted != take.joints_are) {
-    take.retargeter.reset();
+    take.performer.reset();
     take.failed = false;
     take.done = 0;
   }
@@ -262,12 +251,11 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
 
 void Engine::Impl::close_source() {
   source.reset();
-  for (auto& [name, stream] : streams) stream.frames.clear(), stream.recent = {}, stream.person = {};
+  for (auto& [name, stream] : streams) stream.frames.clear(), stream.observer.reset();
   opened = ended = has_faces = false;
   told = 0;
-  filter.reset();
   for (TakeWork& take : takes) {
-    if (take.retargeter) take.retargeter->restart();
+    if (take.performer) take.performer->restart();
     take.done = take.told_new = 0;
   }
 }
@@ -275,17 +263,36 @@ void Engine::Impl::close_source() {
 /// Does a little of what is left, the most urgent first. False: nothing is left.
 bool Engine::Impl::step() {
   for (TakeWork& take : takes)
-    if (!take.character && !take.standing && !take.failed) return stand(take);
+    if (!take.character && !take.standing && !take.failed) return of_take(take, [&] { load(take); });
   if (!opened && !plan.source.path.empty()) {
     open();
     return true;
   }
   for (TakeWork& take : takes)
-    if (!take.retargeter && !take.failed) return prepare(take);
+    if (!take.performer && !take.failed) return of_take(take, [&] { prepare(take); });
   if (tell_source()) return true;
   for (TakeWork& take : takes)
-    if (perform(take)) return true;
+    if (take.performer && take.done < streams[take.plan.method.extractor].frames.size())
+      return of_take(take, [&] { perform(take); });
   return read_frame();
+}
+
+/// Works for a take; what goes wrong ends that take alone.
+template <class Work>
+bool Engine::Impl::of_take(TakeWork& take, Work work) {
+  std::string problem;
+  try {
+    work();
+    return true;
+  } catch (const std::bad_alloc&) {
+    problem = "there is not enough memory for it";
+  } catch (const std::exception& error) {
+    problem = error.what();
+  }
+  take.failed = true;
+  take.performer.reset();
+  tell(TakeFailed{take.plan.id, problem});
+  return true;
 }
 
 void Engine::Impl::open() {
@@ -310,105 +317,70 @@ void Engine::Impl::open() {
 }
 
 /// Reads a target's file and shows how it came: binding it takes longer.
-bool Engine::Impl::stand(TakeWork& take) {
-  try {
-    take.standing = load_target(take.plan.target);
-    auto shown = std::make_shared<Target>();
-    shown->mesh = take.standing->surface.mesh;
-    tell(TakeLoaded{take.plan.id, std::move(shown)});
-  } catch (const std::exception& error) {
-    take.failed = true;
-    tell(TakeFailed{take.plan.id, error.what()});
-  }
-  return true;
+void Engine::Impl::load(TakeWork& take) {
+  take.standing = load_target(take.plan.target);
+  auto shown = std::make_shared<Target>();
+  shown->mesh = take.standing->surface.mesh;
+  tell(TakeLoaded{take.plan.id, std::move(shown)});
 }
 
-bool Engine::Impl::prepare(TakeWork& take) {
-  try {
-    Networks networks = networks_of(take.plan.method);
-    if (!take.character)
-      take.character = bind_target(std::exchange(take.standing, nullptr), take.plan.target, networks);
-    Stream& stream = streams[take.plan.method.extractor];
-    if (!stream.extractor) stream.extractor = std::move(networks.extractor);
-    networks.extractor.reset();
-    networks.rest_extractor.reset();
-    networks =
-        networks_for(std::move(networks), *take.character, on_their_rig(take.plan.target, *take.character));
-    const std::shared_ptr<const Deformer> deformer = networks.deformer;
-    Target target = take.character->target;
-    target.joints = understudy::apply(take.plan.joints, target.joints);
-    auto retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(take.plan.method));
-    retargeter->set_target(target);
-    take.retargeter = std::move(retargeter);  // only with a target: without one it can do nothing
-    take.done = 0;
-    tell(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)), deformer,
-                   binding_of(deformer)});
-  } catch (const std::exception& error) {
-    take.failed = true;
-    tell(TakeFailed{take.plan.id, error.what()});
-  }
-  return true;
+void Engine::Impl::prepare(TakeWork& take) {
+  const Method& method = take.plan.method;
+  NetworkParts parts = NetworkParts::performers();
+  const bool looked_at = !take.character && wants_extractor(take.plan.target, *take.standing);
+  parts.rest_extractor = looked_at;
+  Networks networks = networks_of(method, parts);
+  if (looked_at) networks.extractor = extractor_of(method.extractor);
+  if (!take.character)
+    take.character = bind_target(std::exchange(take.standing, nullptr), take.plan.target, networks);
+  networks =
+      networks_for(std::move(networks), *take.character, on_their_rig(take.plan.target, *take.character));
+  Target target = take.character->target;
+  target.joints = understudy::apply(take.plan.joints, target.joints);
+  take.performer.emplace(target, networks.transfer, networks.deformer, retarget_options(method));
+  take.done = 0;
+  tell(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)),
+                 networks.deformer, binding_of(networks.deformer)});
 }
 
-Stream& Engine::Impl::stream_of(const std::string& extractor) {
-  Stream& stream = streams[extractor];
-  if (!stream.extractor) {
+const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const std::string& name) {
+  auto& extractor = streams[name].extractor;
+  if (!extractor) {
     Method method;
-    method.extractor = extractor;
-    stream.extractor = networks_of(method).extractor;
-    US_CHECK(stream.extractor, "there is no skeleton extractor '", extractor, "'");
+    method.extractor = name;
+    NetworkParts parts;
+    parts.extractor = true;
+    extractor = networks_of(method, parts).extractor;
+    US_CHECK(extractor, "there is no skeleton extractor '", name, "'");
   }
-  return stream;
+  return extractor;
 }
 
-Extracted Engine::Impl::extracted(Stream& stream, const SourceFrame& frame) const {
-  Extracted result;
-  const auto began = Clock::now();
-  result.points = static_cast<int>(frame.mesh.vertices.rows());
-  result.usable = frame.usable;
-  result.problem = frame.problem;
-  if (!frame.usable) return result;
-  try {
-    if (frame.skeleton) {
-      result.extraction = *frame.skeleton;
-      return result;
-    }
-    result.extraction = stream.extractor->extract_next(frame.mesh, stream.recent);
-    result.extraction.sole_height = sole_height(result.extraction.joints, frame.mesh.vertices);
-    result.girth = measure_girth(result.extraction, frame.mesh.vertices);
-  } catch (const Error& error) {
-    result.usable = false;
-    result.problem = error.what();
+/// The extractors that the view or a take wants.
+std::vector<std::string> Engine::Impl::wanted_streams() const {
+  std::vector<std::string> wanted{plan.extractor};
+  for (const TakeWork& take : takes) {
+    const std::string& name = take.plan.method.extractor;
+    if (!take.failed && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) wanted.push_back(name);
   }
-  result.extract_ms = ms_since(began);
-  return result;
+  return wanted;
 }
 
-void Engine::Impl::doubt(Stream& stream) const {
-  const Extracted& last = stream.frames.back();
-  const std::string why = last.usable ? stream.person.push(last.extraction) : "";
-  if (!why.empty()) log::warn(plan.source.path + ": " + why);
-}
-
-/// The next scan through every extractor that a take or the view wants. A stream that came later catches up
-/// first.
+/// The next frame, seen by every stream that is wanted. One that came later catches up first.
 bool Engine::Impl::read_frame() {
   if (!source || plan.source.path.empty()) return false;
   try {
-    std::vector<Stream*> wanted{&stream_of(plan.extractor)};
-    for (const TakeWork& take : takes) {
-      Stream* const stream = &stream_of(take.plan.method.extractor);
-      if (std::find(wanted.begin(), wanted.end(), stream) == wanted.end()) wanted.push_back(stream);
-    }
-    size_t behind = wanted[0]->frames.size();
+    const std::vector<std::string> wanted = wanted_streams();
+    size_t behind = streams[plan.extractor].frames.size();
     bool even = true;
-    for (const Stream* stream : wanted) {
-      even = even && stream->frames.size() == behind;
-      behind = std::min(behind, stream->frames.size());
+    for (const std::string& name : wanted) {
+      const size_t seen = streams[name].frames.size();
+      even = even && seen == behind;
+      behind = std::min(behind, seen);
     }
     if (even && ended) return false;
     if (!even) source->seek(static_cast<int64_t>(behind)), ended = false;
-    const auto began = Clock::now();
+    const auto began = std::chrono::steady_clock::now();
     auto frame = source->next();
     if (!frame) {
       ended = true;
@@ -417,12 +389,8 @@ bool Engine::Impl::read_frame() {
     has_faces = has_faces || !frame->mesh.is_cloud();
     if (frame->usable) frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
     const double read_ms = ms_since(began);
-    for (Stream* stream : wanted)
-      if (stream->frames.size() == behind) {
-        stream->frames.push_back(extracted(*stream, *frame));
-        stream->frames.back().read_ms = read_ms;
-        doubt(*stream);
-      }
+    for (const std::string& name : wanted)
+      if (streams[name].frames.size() == behind) observe(*frame, name, read_ms);
     return true;
   } catch (const std::exception& error) {
     source.reset();
@@ -431,61 +399,85 @@ bool Engine::Impl::read_frame() {
   }
 }
 
-/// Tells what was extracted and has not been told: edited, repaired, smoothed.
+/// Takes whose extractor cannot be had end here; where it is the view's, too, the source does.
+void Engine::Impl::observe(const SourceFrame& frame, const std::string& extractor, double read_ms) {
+  Stream& stream = streams[extractor];
+  try {
+    if (!stream.observer) stream.observer.emplace(frame.skeleton ? nullptr : extractor_of(extractor));
+  } catch (const std::exception&) {
+    for (TakeWork& take : takes)
+      if (take.plan.method.extractor == extractor) of_take(take, [] { throw; });
+    if (extractor == plan.extractor) throw;
+    return;
+  }
+  stream.frames.push_back({observed(*stream.observer, frame, interval()), read_ms});
+  const std::string& warning = stream.frames.back().observation.warning;
+  if (!warning.empty()) log::warn(plan.source.path + ": " + warning);
+}
+
+/// Seconds between two frames.
+float Engine::Impl::interval() const {
+  return source ? static_cast<float>(1 / source->fps()) : 1 / 30.0f;
+}
+
+/// As the user corrected it.
+Observation Engine::Impl::edited(const Seen& seen, size_t frame) const {
+  Observation result = seen.observation;
+  if (result.problem.empty())
+    static_cast<Extraction&>(result) =
+        understudy::apply(plan.skeleton_edits, result, static_cast<int>(frame));
+  return result;
+}
+
+/// Tells what was seen and has not been told. The first take repairs and smooths it and tells that; where
+/// there is none this does.
 bool Engine::Impl::tell_source() {
-  const auto found = streams.find(plan.extractor);
-  if (found == streams.end() || told >= found->second.frames.size()) return false;
-  const std::vector<Extracted>& frames = found->second.frames;
+  const std::vector<Seen>& frames = streams[plan.extractor].frames;
+  const bool no_take = takes.empty() || takes[0].failed;
+  if (no_take && !alone) {
+    alone.emplace(retarget_options(takes.empty() ? Method{} : takes[0].plan.method));
+    told = 0;
+  }
+  if (!no_take) alone.reset();
+  if (told >= frames.size()) return false;
+  if (told == 0 && alone) alone->restart();
   SourceFrames event;
   event.first = static_cast<int>(told);
   event.decision = source ? source->decision() : "";
   if (source) event.to_file = source->to_file();
   event.has_faces = has_faces;
-  const float dt = source ? static_cast<float>(1 / source->fps()) : 1 / 30.0f;
   for (int n = 0; n < kReplayChunk && told < frames.size(); ++n, ++told) {
-    const Extracted& frame = frames[told];
+    const Observation seen = edited(frames[told], told);
     KeptSource kept;
-    kept.raw = frame.extraction.joints;
-    kept.points = frame.points;
-    kept.flagged = !frame.usable;
-    kept.reason = frame.problem;
-    if (frame.usable) {
-      kept.confidence_of = frame.extraction.confidence;
-      kept.confidence = frame.extraction.confidence.mean();
-      kept.joints =
-          filter.push(understudy::apply(plan.skeleton_edits, frame.extraction, static_cast<int>(told)), dt)
-              .joints;
-    } else if (!event.frames.empty()) {
-      kept.joints = event.frames.back().joints;
-    }
+    kept.raw = frames[told].observation.joints;
+    kept.points = static_cast<int>(seen.points);
+    kept.reason = refusal(seen);
+    kept.flagged = !kept.reason.empty();
+    if (!kept.flagged) kept.confidence_of = seen.confidence;
+    kept.confidence = kept.confidence_of.mean();
+    kept.joints = alone ? alone->perform(seen, interval()).source.joints : seen.joints;
     event.frames.push_back(std::move(kept));
   }
   tell(std::move(event));
   return true;
 }
 
-bool Engine::Impl::perform(TakeWork& take) {
-  const std::vector<Extracted>& frames = streams[take.plan.method.extractor].frames;
-  if (!take.retargeter || take.done >= frames.size()) return false;
+void Engine::Impl::perform(TakeWork& take) {
+  const std::vector<Seen>& frames = streams[take.plan.method.extractor].frames;
   TakeFrames event;
   event.id = take.plan.id;
   event.first = static_cast<int>(take.done);
-  const float dt = source ? static_cast<float>(1 / source->fps()) : 1 / 30.0f;
   for (int n = 0; n < kReplayChunk && take.done < frames.size(); ++n, ++take.done) {
-    const Extracted& frame = frames[take.done];
-    const RetargetedFrame result =
-        frame.usable ? take.retargeter->push(understudy::apply(plan.skeleton_edits, frame.extraction,
-                                                               static_cast<int>(take.done)),
-                                             dt, frame.girth ? &*frame.girth : nullptr)
-                     : take.retargeter->skip(frame.problem, dt);
+    const Seen& seen = frames[take.done];
+    const PerformedFrame result = take.performer->perform(edited(seen, take.done), interval());
     event.frames.push_back(kept(result));
     if (take.done < take.told_new) continue;
     take.told_new = take.done + 1;
-    event.times.push_back({frame.read_ms, frame.extract_ms, result.ms.transfer, result.ms.deform,
-                           frame.read_ms + frame.extract_ms + result.ms.transfer + result.ms.deform});
+    const double extract_ms = seen.observation.extract_ms;
+    event.times.push_back({seen.read_ms, extract_ms, result.transfer_ms, result.deform_ms,
+                           seen.read_ms + extract_ms + result.transfer_ms + result.deform_ms});
   }
   tell(std::move(event));
-  return true;
 }
 
 Engine::Engine(NetworksOf networks) : impl_(std::make_unique<Impl>(std::move(networks))) {}

@@ -94,7 +94,8 @@ using EngineEvent =
 
 class Engine {
  public:
-  using NetworksOf = std::function<Networks(const Method&)>;
+  /// The parts asked for, of the networks of a method.
+  using NetworksOf = std::function<Networks(const Method&, const NetworkParts&)>;
   explicit Engine(NetworksOf networks);
   ~Engine();  ///< finishes the current frame, then stops
 

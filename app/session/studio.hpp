@@ -14,11 +14,11 @@ namespace understudy::app {
 
 /// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
-  std::function<Networks(const Method&)> networks;  ///< called off the UI thread
-  std::function<std::string()> weights;             ///< checksums, for documents; called off the UI thread
-  std::string samples;                              ///< folder of the bundled samples; empty: none
-  std::string settings_file;                        ///< empty: settings are not kept
-  std::string autosave_folder;                      ///< empty: no autosave
+  std::function<Networks(const Method&, const NetworkParts&)> networks;  ///< called off the UI thread
+  std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
+  std::string samples;                   ///< folder of the bundled samples; empty: none
+  std::string settings_file;             ///< empty: settings are not kept
+  std::string autosave_folder;           ///< empty: no autosave
 };
 
 class Studio {
@@ -81,6 +81,7 @@ class Studio {
   void take_in_results();
   template <class Event>
   void take_in(Event& event);
+  void show_skeleton(int first);
   void take_in_refined();
   void refine_dirty();
   void measure_finished();

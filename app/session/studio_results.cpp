@@ -96,10 +96,20 @@ void Studio::take_in(SourceFailed& event) {
   fail(event.sentence, "source.open");
 }
 
+/// The skeleton shown is the first take's: repaired and smoothed as it was transferred.
+void Studio::show_skeleton(int first) {
+  if (session_.takes.empty()) return;
+  const std::vector<KeptFrame>& performed = session_.takes[0].performed;
+  auto& frames = session_.source.frames;
+  for (size_t t = first; t < std::min(performed.size(), frames.size()); ++t)
+    frames[t].joints = performed[t].source;
+}
+
 template <>
 void Studio::take_in(SourceFrames& event) {
   SourceState& source = session_.source;
   if (put(source.frames, event.first, std::move(event.frames))) ++source.generation;
+  show_skeleton(event.first);
   source.decision = event.decision;
   source.to_file = event.to_file;
   source.has_faces = event.has_faces;
@@ -142,6 +152,7 @@ void Studio::take_in(TakeFrames& event) {
   const bool redone = put(take->performed, event.first, std::move(event.frames));
   for (const FrameTimes& times : event.times) take->latency.add(times);
   const size_t k = take - session_.takes.data();
+  if (k == 0) show_skeleton(event.first);
   if (redone) ++take->generation;
   if (session_.document.takes[k].pose_edits.empty() || !redone)
     append_shown(*take, event.first, session_.source.fps);
@@ -192,6 +203,8 @@ void Studio::refine_dirty() {
           session_.truth};
       request.performed.fps = static_cast<float>(session_.source.fps);
       for (const KeptFrame& frame : take->performed) {
+        const size_t t = request.performed.poses.size();
+        if (t < request.source.size()) request.source[t].joints = frame.source;
         request.performed.poses.push_back(frame.pose);
         request.performed.flags.push_back(frame.flagged);
       }
@@ -271,11 +284,9 @@ void Studio::measure(size_t k) {
   m->edits = session_.document.scan_edits;
   m->shown = take.shown;
   m->joints = take.joints;
-  for (const KeptSource& frame : session_.source.frames) {
-    m->raw_joints.push_back(frame.raw);
-    m->source_joints.push_back(frame.joints);
-  }
-  if (m->source_joints.size() < m->shown.poses.size()) return;
+  for (const KeptSource& frame : session_.source.frames) m->raw_joints.push_back(frame.raw);
+  for (const KeptFrame& frame : take.performed) m->source_joints.push_back(frame.source);
+  if (std::min(m->raw_joints.size(), m->source_joints.size()) < m->shown.poses.size()) return;
   m->character = take.character;
   m->deformer = take.deformer;
   m->truth = session_.truth;

@@ -53,8 +53,7 @@ void add_clip(ExportInput& out, const Session& session, size_t k, const std::str
   for (const int frame : kept_frames(take.pose_edits, state.shown.poses.size())) {
     const size_t t = frame;
     clip.poses.push_back(state.shown.poses[t]);
-    const auto& frames = session.source.frames;
-    out.source_joints.push_back(t < frames.size() ? frames[t].joints : Joints::Zero());
+    out.source_joints.push_back(t < state.performed.size() ? state.performed[t].source : Joints::Zero());
   }
   out.source_to_scan = session.source.to_file;
   out.clips.push_back(std::move(clip));

@@ -450,7 +450,7 @@ Mesh PreparedCharacter::target_in_file_order() const {
   return out;
 }
 
-FoldingTransfer::FoldingTransfer(std::unique_ptr<MotionTransfer> inner, const BoneMap& map)
+FoldingTransfer::FoldingTransfer(std::shared_ptr<MotionTransfer> inner, const BoneMap& map)
     : inner_(std::move(inner)) {
   for (int j = 0; j < kJointCount; ++j) mapped_[j] = map.has(j);
 }

@@ -10,7 +10,7 @@
 #include "retarget/character/character.hpp"
 #include "retarget/character/rest_pose.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/pipeline/retargeter.hpp"
+#include "retarget/pipeline/target.hpp"
 
 namespace understudy {
 
@@ -69,13 +69,15 @@ Joints moved_bind_joints(const RestPose& pose, const Joints& rest);
 /// after them. Global directions of mapped bones stay.
 class FoldingTransfer final : public MotionTransfer {
  public:
-  FoldingTransfer(std::unique_ptr<MotionTransfer> inner, const BoneMap& map);
+  FoldingTransfer(std::shared_ptr<MotionTransfer> inner, const BoneMap& map);
   void reset(const Joints& rest_b) override { inner_->reset(rest_b); }
   Rotations push(const Extraction& source, float dt) override;
+  std::any memory() const override { return inner_->memory(); }
+  void restore(const std::any& memory) override { inner_->restore(memory); }
   std::string name() const override { return inner_->name(); }
 
  private:
-  std::unique_ptr<MotionTransfer> inner_;
+  std::shared_ptr<MotionTransfer> inner_;
   std::array<bool, kJointCount> mapped_;
 };
 

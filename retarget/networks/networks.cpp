@@ -66,14 +66,6 @@ const PluginApi& plugin() {
   return api;
 }
 
-std::string existing_weights(const NetworkOptions& options) {
-  const std::string folder = weights_folder(options);
-  US_CHECK(!folder.empty(),
-           "the trained weights are missing: no folder assets/weights beside the program or above "
-           "it, nor ../share/understudy/weights");
-  return folder;
-}
-
 }  // namespace
 
 std::string weights_folder(const NetworkOptions& options) {
@@ -82,14 +74,12 @@ std::string weights_folder(const NetworkOptions& options) {
   return program_files("weights").string();
 }
 
-Networks load_networks(const NetworkOptions& options) {
-  const std::string folder = existing_weights(options);
-  return plugin().load(options, folder);
-}
-
-std::unique_ptr<Deformer> load_deformer(const NetworkOptions& options) {
-  const std::string folder = existing_weights(options);
-  return plugin().load_deformer(options, folder);
+Networks load_networks(const NetworkOptions& options, const NetworkParts& parts) {
+  const std::string folder = weights_folder(options);
+  US_CHECK(!folder.empty(),
+           "the trained weights are missing: no folder assets/weights beside the program or above "
+           "it, nor ../share/understudy/weights");
+  return plugin().load(options, folder, parts);
 }
 
 RuntimeReport runtime_report() {

@@ -19,10 +19,9 @@ struct NetworkOptions {
   std::string engine_file, extractor_file;  ///< weights in place of the folder's; empty: the folder's
 };
 
-/// The three networks with trained weights. Throws Error when weights are missing or of another version.
-Networks load_networks(const NetworkOptions& options);
-/// A deformer alone (weights and offsets), for oracle evaluations.
-std::unique_ptr<Deformer> load_deformer(const NetworkOptions& options);
+/// The networks with trained weights, as many as asked for; which extractor has none for T-poses leaves that
+/// one null. Throws Error when weights are missing or of another version.
+Networks load_networks(const NetworkOptions& options, const NetworkParts& parts = NetworkParts::all());
 
 /// The folder of weights that would be used; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);

@@ -10,8 +10,7 @@ constexpr int kPluginVersion = 6;
 
 struct PluginApi {
   int version;
-  Networks (*load)(const NetworkOptions& options, const std::string& folder);
-  std::unique_ptr<Deformer> (*load_deformer)(const NetworkOptions& options, const std::string& folder);
+  Networks (*load)(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);
 };

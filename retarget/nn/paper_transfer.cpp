@@ -23,9 +23,7 @@ class PaperTransfer : public MotionTransfer {
     US_CHECK(rest_b.allFinite() && leg_length(rest_b) > 1e-3f,
              "the target's T-pose joints are not those of a body");
     rest_b_ = tensor_of(rest_b).unsqueeze(0);
-    state_ = {};
-    leg_sum_ = 0;
-    frames_ = 0;
+    memory_ = {};
   }
 
   Rotations push(const Extraction& source, float dt) override {
@@ -33,20 +31,29 @@ class PaperTransfer : public MotionTransfer {
     US_CHECK(source.joints.allFinite(), "the source's joints are not finite");
     US_CHECK(leg_length(source.joints) > 1e-3f, "the source's legs have no length");
     const torch::NoGradGuard no_grad;
-    leg_sum_ += leg_length(source.joints);
-    const auto leg = static_cast<float>(leg_sum_ / static_cast<double>(++frames_));
+    Memory next = memory_;  // kept only when the answer is good: a bad frame leaves no trace
+    next.leg_sum += leg_length(source.joints);
+    const auto leg = static_cast<float>(next.leg_sum / static_cast<double>(++next.frames));
     const MotionInput input{tensor_of(source.joints).view({1, 1, kJointCount, 3}), torch::full({1, 1}, leg),
                             torch::full({1, 1}, std::clamp(dt, 1.0f / 240, 0.5f)), rest_b_};
-    MotionState next = state_;  // kept only when the answer is good: a bad frame leaves no trace
-    const auto local = net_->forward(input, next);  // [1, 1, 22, 3, 3]
+    const auto local = net_->forward(input, next.state);  // [1, 1, 22, 3, 3]
     US_CHECK(torch::isfinite(local).all().item<bool>(), "the motion network gave no finite rotation");
-    state_ = next;
+    memory_ = next;
     return rotations_of(local);
   }
 
+  /// Tensors are shared, not copied: the network makes new ones each frame.
+  std::any memory() const override { return memory_; }
+  void restore(const std::any& memory) override { memory_ = std::any_cast<const Memory&>(memory); }
   std::string name() const override { return "paper"; }
 
  private:
+  struct Memory {
+    MotionState state;
+    double leg_sum = 0;
+    int64_t frames = 0;
+  };
+
   static MotionGruOptions options_of(const std::string& path) {
     const WeightsHeader header = read_weights_header(path);
     MotionGruOptions options;
@@ -59,9 +66,7 @@ class PaperTransfer : public MotionTransfer {
 
   MotionGru net_;
   torch::Tensor rest_b_;
-  MotionState state_;
-  double leg_sum_ = 0;
-  int64_t frames_ = 0;
+  Memory memory_;
 };
 
 }  // namespace

@@ -62,16 +62,14 @@ CopyOptions::CopyOptions() {
   point[Neck] = 0;
 }
 
-CopyTransfer::CopyTransfer(const CopyOptions& options)
-    : options_(options), rest_(human_rest()), last_(identity_rotations()) {}
+CopyTransfer::CopyTransfer(const CopyOptions& options) : options_(options), rest_(human_rest()) {}
 
 void CopyTransfer::reset(const Joints& rest_b) {
   US_CHECK(rest_b.allFinite() && leg_length(rest_b) > 1e-4f,
            "the target's T-pose joints are not those of a body");
   const Joints scaled = rest_b / leg_length(rest_b);
   rest_ = (1 - options_.rest_blend) * human_rest() + options_.rest_blend * scaled;
-  last_ = identity_rotations();
-  started_ = false;
+  memory_ = Memory{};
 }
 
 void CopyTransfer::point_bone(Frame& frame, int j, float amount) const {
@@ -134,10 +132,10 @@ Mat3 CopyTransfer::hinge_rotation(const Frame& frame, const Limb& limb) const {
 
   // Least twist from the T-pose, and from the last frame. The first is undefined for a bone turned about.
   const Mat3 least = rotation_between(straight, d1) * parent;
-  const Mat3 before = parent * last_[limb.upper];
+  const Mat3 before = parent * memory_.last[limb.upper];
   const Mat3 carried = rotation_between(before * rest1, d1) * before;
   const float turned = 1 - smooth_step(-0.95f, -0.7f, straight.dot(d1));
-  const float keep = started_ ? std::exp(-frame.dt / options_.relax_s * (1 - turned)) : 0.0f;
+  const float keep = memory_.started ? std::exp(-frame.dt / options_.relax_s * (1 - turned)) : 0.0f;
   float twist = keep * twist_angle(least, carried, d1);
 
   // The bend plane: flexion turns d1 to d2 about the hinge axis.
@@ -160,7 +158,7 @@ void CopyTransfer::solve_limb(Frame& frame, const Limb& limb) {
   const bool known =
       frame.bone(limb.upper, limb.hinge).norm() > 1e-6f && frame.bone(limb.hinge, limb.end).norm() > 1e-6f;
   const Mat3 parent = frame.global[kParents[limb.upper]];
-  settle(frame, limb.upper, known ? hinge_rotation(frame, limb) : Mat3(parent * last_[limb.upper]));
+  settle(frame, limb.upper, known ? hinge_rotation(frame, limb) : Mat3(parent * memory_.last[limb.upper]));
   settle(frame, limb.hinge, frame.global[limb.upper]);
   settle(frame, limb.end, frame.global[limb.hinge]);
 }
@@ -183,11 +181,10 @@ Rotations CopyTransfer::push(const Extraction& source, float dt) {
     settle(frame, LeftFoot, frame.global[LeftAnkle]);
     settle(frame, RightFoot, frame.global[RightAnkle]);
   }
-  last_ = local_rotations(frame.global);
-  started_ = true;
-  for (const Mat3& R : last_)
+  memory_ = {local_rotations(frame.global), true};
+  for (const Mat3& R : memory_.last)
     US_CHECK(R.allFinite(), "the motion transfer gave a rotation that is not a number");
-  return last_;
+  return memory_.last;
 }
 
 }  // namespace understudy

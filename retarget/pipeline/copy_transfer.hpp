@@ -34,9 +34,15 @@ class CopyTransfer final : public MotionTransfer {
   /// Equivariant to the source's heading and place; independent of its size. Throws Error when a joint is not
   /// finite.
   Rotations push(const Extraction& source, float dt) override;
+  std::any memory() const override { return memory_; }
+  void restore(const std::any& memory) override { memory_ = std::any_cast<const Memory&>(memory); }
   std::string name() const override { return "copy"; }
 
  private:
+  struct Memory {
+    Rotations last = identity_rotations();  // local rotations of the last frame
+    bool started = false;
+  };
   struct Limb;
   struct Frame;
   void solve_trunk(Frame& frame) const;
@@ -47,9 +53,8 @@ class CopyTransfer final : public MotionTransfer {
   Mat3 hinge_rotation(const Frame& frame, const Limb& limb) const;
 
   CopyOptions options_;
-  Joints rest_;     // the source's assumed T-pose
-  Rotations last_;  // local rotations of the last frame
-  bool started_ = false;
+  Joints rest_;  // the source's assumed T-pose
+  Memory memory_;
 };
 
 }  // namespace understudy

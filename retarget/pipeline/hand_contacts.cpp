@@ -150,7 +150,7 @@ void HandContacts::reset() {
   offset_.fill(Vec3::Zero());
 }
 
-void HandContacts::learn(const Joints& source, const BodyGirth* girth) {
+void HandContacts::learn(const Joints& source, const std::optional<BodyGirth>& girth) {
   frames_ = std::min(frames_ + 1, kNewest);
   lengths_ += (bone_lengths(source) - lengths_) / frames_;
   if (girth) girth_.push(*girth);
@@ -334,7 +334,8 @@ std::array<Vec3, 2> HandContacts::wanted(Scene& scene) const {
   return moved;
 }
 
-Pose HandContacts::push(const Pose& pose, const Joints& source, const BodyGirth* girth, float dt) {
+Pose HandContacts::push(const Pose& pose, const Joints& source, const std::optional<BodyGirth>& girth,
+                        float dt) {
   US_CHECK(body_, "hands want a target first");
   US_CHECK(source.allFinite(), "the source's joints are not finite");
   learn(source, girth);

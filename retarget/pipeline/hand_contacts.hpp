@@ -36,15 +36,15 @@ class HandContacts {
   /// The source starts anew.
   void reset();
   /// The pose with its hands where they belong. source: the source's joints in this frame, world; girth: of
-  /// its scan, null where there is none; dt seconds since the frame before.
-  Pose push(const Pose& pose, const Joints& source, const BodyGirth* girth, float dt);
+  /// its scan, where there is one; dt seconds since the frame before.
+  Pose push(const Pose& pose, const Joints& source, const std::optional<BodyGirth>& girth, float dt);
   /// How far each wrist is moved in the last frame, metres: left, right.
   std::array<float, 2> moved() const { return {offset_[0].norm(), offset_[1].norm()}; }
 
  private:
   struct Body;   // the target's surface, in samples
   struct Scene;  // one frame of both bodies
-  void learn(const Joints& source, const BodyGirth* girth);
+  void learn(const Joints& source, const std::optional<BodyGirth>& girth);
   Points source_rest(const Joints& rest_a) const;
   std::vector<int> near(const Scene& scene, int side, const std::vector<int>& actors) const;
   Vec3 pull(const Scene& scene, const std::vector<int>& hand, const std::vector<int>& near,

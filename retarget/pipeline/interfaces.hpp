@@ -2,6 +2,7 @@
 // needs LibTorch.
 #pragma once
 
+#include <any>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,12 +12,13 @@
 
 namespace understudy {
 
-/// What one frame says about the body in it.
+/// Of each joint, 0..1; see confidence.hpp.
+using Confidence = Eigen::Array<float, kJointCount, 1>;
+
+/// The skeleton in one frame.
 struct Extraction {
   Joints joints = Joints::Zero();  ///< world, metres
-  Eigen::Array<float, kJointCount, 1> confidence =
-      Eigen::Array<float, kJointCount,
-                   1>::Ones();       ///< 0..1 a joint: what it stands for is told in confidence.hpp
+  Confidence confidence = Confidence::Ones();
   std::optional<Rotations> global;   ///< world rotations seen on the surface, where known
   std::optional<float> sole_height;  ///< metres over the floor of the lowest points near the feet, where seen
   bool exact = false;  ///< a skeleton's own, seen in no scan: nothing is to be repaired, smoothed or solved
@@ -44,24 +46,25 @@ class SkeletonExtractor {
   virtual ~SkeletonExtractor() = default;
   /// Throws Error when the cloud has fewer than 32 finite points or the network gives NaN.
   virtual Extraction extract(const Mesh& scan) = 0;
-  /// The same of a stream's next scan, knowing what was seen just before; `recent` is told what is seen now,
-  /// if anything is.
-  Extraction extract_next(const Mesh& scan, RecentJoints& recent) {
-    Extraction seen = extract_after(recent, scan);
-    recent.push(seen.joints);
-    return seen;
-  }
-  virtual std::string name() const = 0;
-
- private:
-  /// Whoever has no use for the past looks at the scan alone.
+  /// The same of a stream's next scan, knowing what was seen just before. Extractors without memory ignore
+  /// `recent`.
   virtual Extraction extract_after(const RecentJoints& /*recent*/, const Mesh& scan) { return extract(scan); }
+  virtual std::string name() const = 0;
+};
+
+/// What remembers between frames. Its memory can be copied and put back: a frame that is refused leaves no
+/// trace.
+class Remembering {
+ public:
+  virtual ~Remembering() = default;
+  virtual std::any memory() const = 0;
+  /// `memory` is one that the same object gave.
+  virtual void restore(const std::any& memory) = 0;
 };
 
 /// Source joints in, the target's local rotations out, frame by frame, with state (paper 1, section 3.1).
-class MotionTransfer {
+class MotionTransfer : public Remembering {
  public:
-  virtual ~MotionTransfer() = default;
   /// Forgets the past; rest_b are the target's T-pose joints, metres. Throws Error when they are no body's.
   virtual void reset(const Joints& rest_b) = 0;
   /// Local rotations of the target for one source frame, dt seconds after the one before. The root's position
@@ -91,11 +94,18 @@ class Deformer {
   virtual std::string name() const = 0;
 };
 
-/// The three networks that the pipeline runs on.
+/// Which networks are wanted: each costs time and memory to load.
+struct NetworkParts {
+  bool extractor = false, rest_extractor = false, transfer = false, deformer = false;
+  static NetworkParts all() { return {true, true, true, true}; }
+  static NetworkParts performers() { return {false, false, true, true}; }
+};
+
+/// The networks that the pipeline runs on. Those that are not asked for are null.
 struct Networks {
-  std::unique_ptr<SkeletonExtractor> extractor;
-  std::unique_ptr<SkeletonExtractor> rest_extractor;  ///< trained on T-poses, for targets; may be null
-  std::unique_ptr<MotionTransfer> transfer;
+  std::shared_ptr<SkeletonExtractor> extractor;
+  std::shared_ptr<SkeletonExtractor> rest_extractor;  ///< trained on T-poses, for targets
+  std::shared_ptr<MotionTransfer> transfer;
   std::shared_ptr<Deformer> deformer;
 };
 

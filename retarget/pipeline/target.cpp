@@ -1,4 +1,5 @@
-// Finding the joints of a target in T-pose.
+#include "retarget/pipeline/target.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +7,6 @@
 #include "retarget/geometry/finite_rows.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
-#include "retarget/pipeline/retargeter.hpp"
 
 namespace understudy {
 

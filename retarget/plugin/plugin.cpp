@@ -34,10 +34,6 @@ std::unique_ptr<PartRefiner> load_parts(const std::string& folder) {
   return load_part_refiner(path);
 }
 
-std::unique_ptr<Deformer> load_skin(const NetworkOptions& options, const std::string& folder) {
-  return load_network_deformer(folder + "/deformation.weights", options.offsets);
-}
-
 /// A name of the BLAS library that LibTorch uses, or null: only OpenBLAS has these.
 template <class Function>
 Function blas_symbol(const char* name) {
@@ -61,20 +57,24 @@ RuntimeReport report() {
   return found;
 }
 
-Networks load(const NetworkOptions& options, const std::string& folder) {
-  if (report().slow_blas)
-    log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
-  Networks networks;
+std::unique_ptr<SkeletonExtractor> load_extractor(const NetworkOptions& options, const std::string& folder) {
   const bool dense = options.extractor == "dense";
   const std::string file =
       folder + (dense ? "/skeleton.weights" : "/skeleton_" + options.extractor + ".weights");
-  networks.extractor =
-      load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
-                             options.extractor, dense && options.near ? load_parts(folder) : nullptr);
-  if (dense && options.extractor_file.empty())
+  return load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
+                                options.extractor, dense && options.near ? load_parts(folder) : nullptr);
+}
+
+Networks load(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts) {
+  if (report().slow_blas)
+    log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
+  Networks networks;
+  if (parts.extractor) networks.extractor = load_extractor(options, folder);
+  if (parts.rest_extractor && options.extractor == "dense" && options.extractor_file.empty())
     networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
-  networks.transfer = load_transfer(options, folder);
-  networks.deformer = load_skin(options, folder);
+  if (parts.transfer) networks.transfer = load_transfer(options, folder);
+  if (parts.deformer)
+    networks.deformer = load_network_deformer(folder + "/deformation.weights", options.offsets);
   return networks;
 }
 
@@ -87,6 +87,6 @@ int train_network(const AnyTrainOptions& any) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion, load, load_skin, report, train_network};
+  static const PluginApi api{kPluginVersion, load, report, train_network};
   return &api;
 }

@@ -56,9 +56,10 @@ TEST_F(StudioCharacter, PerformsOnItsOwnBonesFromAnyPoseAndHeading) {
 TEST_F(StudioCharacter, IsSeenAsItCameBeforeAnyNetworkIsThere) {
   std::promise<void> loaded;
   StudioServices slow = services();
-  slow.networks = [networks = slow.networks, gate = loaded.get_future().share()](const Method& method) {
+  slow.networks = [networks = slow.networks, gate = loaded.get_future().share()](const Method& method,
+                                                                                 const NetworkParts& parts) {
     gate.wait();
-    return networks(method);
+    return networks(method, parts);
   };
   Studio studio(std::move(slow));
   studio.run("target.add", {path("made.glb")});

@@ -125,14 +125,14 @@ class StudioTest : public ::testing::Test {
 
   StudioServices services() {
     StudioServices services;
-    services.networks = [count = extractions_](const Method& method) {
+    services.networks = [count = extractions_](const Method& method, const NetworkParts& parts) {
       Networks networks;
-      networks.extractor = std::make_unique<CountingExtractor>(count);
-      networks.rest_extractor = std::make_unique<RestExtractor>();
       CopyOptions options;
       if (method.engine == "paper") options.seen.setZero();
-      networks.transfer = std::make_unique<CopyTransfer>(options);
-      networks.deformer = std::make_shared<NearestDeformer>();
+      if (parts.extractor) networks.extractor = std::make_shared<CountingExtractor>(count);
+      if (parts.rest_extractor) networks.rest_extractor = std::make_shared<RestExtractor>();
+      if (parts.transfer) networks.transfer = std::make_shared<CopyTransfer>(options);
+      if (parts.deformer) networks.deformer = std::make_shared<NearestDeformer>();
       return networks;
     };
     services.weights = [] { return std::string("stand-ins:00000000"); };

@@ -325,9 +325,9 @@ class RefusingDeformer : public NearestDeformer {
 TEST_F(StudioTest, ATargetThatNoNetworkTakesIsToldAndExchanged) {
   auto refusing = std::make_shared<std::atomic<bool>>(true);
   StudioServices own = services();
-  own.networks = [refusing, usual = own.networks](const Method& method) {
-    Networks networks = usual(method);
-    if (*refusing) networks.deformer = std::make_shared<RefusingDeformer>();
+  own.networks = [refusing, usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (*refusing && parts.deformer) networks.deformer = std::make_shared<RefusingDeformer>();
     return networks;
   };
   Studio studio(own);
@@ -340,6 +340,110 @@ TEST_F(StudioTest, ATargetThatNoNetworkTakesIsToldAndExchanged) {
   studio.run("method.engine", {"0", "paper"});
   studio.wait_idle(60);
   EXPECT_EQ(frame_count(studio.session()), kFrames);
+}
+
+/// Fails at its tenth frame with what is no Error of ours.
+class RunningOut final : public MotionTransfer {
+ public:
+  void reset(const Joints&) override { frames_ = 0; }
+  Rotations push(const Extraction&, float) override {
+    if (++frames_ == 10) throw std::bad_alloc();
+    return identity_rotations();
+  }
+  std::any memory() const override { return frames_; }
+  void restore(const std::any& memory) override { frames_ = std::any_cast<int>(memory); }
+  std::string name() const override { return "running out"; }
+
+ private:
+  int frames_ = 0;
+};
+
+TEST_F(StudioTest, ATakeThatFailsLeavesTheOthersAtWork) {
+  StudioServices own = services();
+  own.networks = [usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (method.engine == "paper" && parts.transfer) networks.transfer = std::make_shared<RunningOut>();
+    return networks;
+  };
+  Studio studio(own);
+  studio.run("open", {path("target.obj")});
+  studio.run("compare.add", {"0", "engine=paper"});
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle(60);
+  const Session& session = studio.session();
+  EXPECT_EQ(session.source.frames.size(), static_cast<size_t>(kFrames));
+  EXPECT_EQ(session.takes[0].performed.size(), static_cast<size_t>(kFrames));
+  EXPECT_TRUE(session.takes[0].problem.empty());
+  EXPECT_EQ(session.takes[1].problem, "there is not enough memory for it");
+  ASSERT_EQ(session.errors.size(), 1u);
+}
+
+TEST_F(StudioTest, ASkeletonIsShownAndExportedAsItsTakeTransferredIt) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("compare.add", {"0", "smooth=off", "lengths=off", "swaps=off"});
+  studio.wait_idle(60);
+  const auto& frames = studio.session().source.frames;
+  const auto exported = [&](const char* take) {
+    studio.run("export.run", {take, path("out.npz")});
+    studio.wait_idle(60);
+    EXPECT_TRUE(studio.session().errors.empty());
+    const NpyArray joints = read_npz(path("out.npz")).at("source_joints");
+    return Joints(Eigen::Map<const Joints>(joints.values.data() + 10 * kJointCount * 3));
+  };
+  EXPECT_EQ(exported("0"), frames[10].joints);
+  EXPECT_NE(exported("0"), frames[10].raw);
+  EXPECT_EQ(exported("1"), frames[10].raw);  // nothing was to be done to it
+  studio.run("target.remove", {"0"});
+  studio.wait_idle(60);
+  EXPECT_EQ(frames[10].joints, frames[10].raw);
+  studio.run("target.remove", {"0"});
+  studio.wait_idle(60);
+  EXPECT_NE(frames[10].joints, frames[10].raw);  // as before there was a target
+}
+
+TEST_F(StudioTest, ASkeletonIsShownRepairedWhereTheTargetIsBroken) {
+  Studio alone(services());
+  alone.run("open", {path("scan.npz")});
+  alone.wait_idle(60);
+  std::ofstream(path("broken.obj")) << "v 1 2\n";
+  Studio studio(services());
+  studio.run("target.add", {path("broken.obj")});
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle(60);
+  for (size_t t = 0; t < kFrames; ++t)
+    EXPECT_EQ(studio.session().source.frames[t].joints, alone.session().source.frames[t].joints) << t;
+}
+
+TEST_F(StudioTest, NetworksAreLoadedWhenTheyAreNeeded) {
+  std::map<std::string, int> loads;
+  StudioServices own = services();
+  own.networks = [&loads, usual = own.networks](const Method& method, const NetworkParts& parts) {
+    loads["extractor"] += parts.extractor;
+    loads["rest extractor"] += parts.rest_extractor;
+    loads["transfer"] += parts.transfer;
+    loads["deformer"] += parts.deformer;
+    return usual(method, parts);
+  };
+  const auto expect = [&](int extractor, int rest, int performer) {
+    EXPECT_EQ(loads["extractor"], extractor);
+    EXPECT_EQ(loads["rest extractor"], rest);
+    EXPECT_EQ(loads["transfer"], performer);
+    EXPECT_EQ(loads["deformer"], performer);
+  };
+  Studio studio(own);
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle(60);
+  expect(1, 0, 0);
+  studio.run("open", {path("target.obj")});
+  studio.wait_idle(60);
+  expect(1, 1, 1);  // a mesh without a rig is looked at
+  studio.run("compare.add", {"0", "feet=off"});
+  studio.wait_idle(60);
+  expect(1, 2, 2);
+  studio.run("method.engine", {"0", "paper"});
+  studio.wait_idle(60);
+  expect(1, 2, 3);
 }
 
 TEST_F(StudioTest, RetargetingAgainMakesEveryFrameAnew) {

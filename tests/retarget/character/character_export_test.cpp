@@ -137,6 +137,8 @@ TEST(FoldingTransfer, JointsWithoutABoneDoNotTurn) {
       out[LeftCollar] = out[LeftShoulder] = Eigen::AngleAxisf(0.3f, Vec3::UnitZ()).toRotationMatrix();
       return out;
     }
+    std::any memory() const override { return {}; }
+    void restore(const std::any&) override {}
     std::string name() const override { return "turning"; }
   };
   BoneMap map;

@@ -72,6 +72,17 @@ TEST_F(PaperTransfer, ABadFrameIsRefusedAndLeavesNoTrace) {
   EXPECT_EQ(difference(engine->push(source(2), 1.0f / 30), other->push(source(2), 1.0f / 30)), 0);
 }
 
+TEST_F(PaperTransfer, WhatItRemembersIsPutBack) {
+  auto engine = nn::load_paper_transfer(path_);
+  engine->reset(rest_);
+  for (int t = 0; t < 3; ++t) engine->push(source(t), 1.0f / 30);
+  const std::any before = engine->memory();
+  const Rotations first = engine->push(source(3), 1.0f / 30);
+  engine->push(source(9), 1.0f / 30);
+  engine->restore(before);
+  EXPECT_EQ(difference(engine->push(source(3), 1.0f / 30), first), 0);
+}
+
 TEST_F(PaperTransfer, TurnsWithTheSource) {
   auto engine = nn::load_paper_transfer(path_);
   engine->reset(rest_);

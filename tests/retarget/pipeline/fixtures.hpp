@@ -122,8 +122,8 @@ inline Mesh scan_of(const PointBody& body, const Joints& rest, const Pose& pose)
   return scan;
 }
 
-inline Extraction seen(const Joints& joints) {
-  Extraction e;
+inline Observation seen(const Joints& joints) {
+  Observation e;
   e.joints = joints;
   return e;
 }

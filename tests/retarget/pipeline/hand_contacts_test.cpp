@@ -43,7 +43,7 @@ struct Stage {
   Pose push(const Pose& pose) {
     const PosedSkeleton posed = forward_kinematics(source.joints, pose);
     const BodyGirth girth = measure_girth(posed.joints, posed.global, posed_vertices(source, pose));
-    return hands.push(pose, posed.joints, &girth, kFrame);
+    return hands.push(pose, posed.joints, girth, kFrame);
   }
   /// The source looked at with its arms away first, then for half a second in this pose.
   Pose settled(const Pose& pose) {
@@ -89,7 +89,7 @@ TEST(HandContacts, HandsThatTouchEachOtherDoSoAfterATransferThatTookThemApartAnd
   apart.local[RightShoulder] = rotation_about_y(-0.25f) * pose.local[RightShoulder];
   ASSERT_GT(stage.gaps(apart)[0][TouchOtherHand], 0.04f);
   const Joints seen = forward_kinematics(stage.source.joints, pose).joints;
-  for (int t = 0; t < 15; ++t) kept = stage.hands.push(apart, seen, nullptr, kFrame);
+  for (int t = 0; t < 15; ++t) kept = stage.hands.push(apart, seen, std::nullopt, kFrame);
   EXPECT_LT(stage.gaps(kept)[0][TouchOtherHand], 0.03f);
   const auto [left, right] = stage.hands.moved();
   EXPECT_LT(std::max(left, right), 2 * std::min(left, right));
@@ -125,7 +125,7 @@ TEST(HandContacts, WithoutScansASourceIsAsThickAsAHuman) {
   const Pose copied = hand_on_belly(stage.source);
   const Joints seen = forward_kinematics(stage.source.joints, copied).joints;
   Pose kept;
-  for (int t = 0; t < 15; ++t) kept = stage.hands.push(copied, seen, nullptr, kFrame);
+  for (int t = 0; t < 15; ++t) kept = stage.hands.push(copied, seen, std::nullopt, kFrame);
   EXPECT_LT(stage.buried(kept), 0.5 * stage.buried(copied));
   EXPECT_LT(stage.gaps(kept)[0][TouchTorso], 0.02f);
 }
@@ -174,12 +174,12 @@ TEST(HandContacts, LooksOnlyBackAndStartsAnew) {
 TEST(HandContacts, RefusesWhatDoesNotFit) {
   const ShapedBody body = person(1.0f);
   HandContacts hands;
-  EXPECT_THROW(hands.push(Pose{}, body.joints, nullptr, kFrame), Error);
+  EXPECT_THROW(hands.push(Pose{}, body.joints, std::nullopt, kFrame), Error);
   EXPECT_THROW(hands.bind(Mesh{body.vertices, body.faces}, body.joints, body.weights.topRows(10)), Error);
   hands.bind(Mesh{body.vertices, body.faces}, body.joints, body.weights);
   Joints bad = body.joints;
   bad(3, 1) = NAN;
-  EXPECT_THROW(hands.push(Pose{}, bad, nullptr, kFrame), Error);
+  EXPECT_THROW(hands.push(Pose{}, bad, std::nullopt, kFrame), Error);
 }
 
 TEST(HandContacts, ABodyWithoutFacesOrHandsIsLeftInPeace) {
@@ -188,7 +188,7 @@ TEST(HandContacts, ABodyWithoutFacesOrHandsIsLeftInPeace) {
   weights.col(Pelvis).setOnes();
   HandContacts hands;
   hands.bind(Mesh{body.vertices}, body.joints, weights);
-  const Pose kept = hands.push(Pose{}, body.joints, nullptr, kFrame);
+  const Pose kept = hands.push(Pose{}, body.joints, std::nullopt, kFrame);
   for (const Mat3& R : kept.local) EXPECT_EQ(R, Mat3(Mat3::Identity()));
 }
 

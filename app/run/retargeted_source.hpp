@@ -1,0 +1,44 @@
+// Reads a source and retargets it, frame by frame.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/run/latency.hpp"
+#include "app/run/source.hpp"
+#include "retarget/pipeline/retargeter.hpp"
+
+namespace understudy::app {
+
+/// What an observer sees in a source's frame: its scan, or the skeleton that it brings.
+Observation observed(Observer& observer, const SourceFrame& frame, float dt);
+
+/// A frame that has been read and performed.
+struct RetargetedFrame {
+  int64_t index = 0;  ///< 0 the first
+  SourceFrame scan;   ///< metres, y up
+  PerformedFrame result;
+  FrameTimes times;
+};
+
+/// Goes through a source once, counts its frames and takes their times. Tells the log where the source may be
+/// no person.
+class RetargetedSource {
+ public:
+  /// `retargeter` starts anew. Both must outlive this. name: for people.
+  RetargetedSource(Source& source, Retargeter& retargeter, std::string name);
+  /// None at the end. known: the source's joints, where they are not to be extracted.
+  std::optional<RetargetedFrame> next(const std::optional<Joints>& known = {});
+  int64_t frames() const { return frames_; }
+  int64_t flagged() const { return flagged_; }
+  /// Throws Error naming the source where all frames so far are flagged.
+  void check_used() const;
+
+ private:
+  Source& source_;
+  Retargeter& retargeter_;
+  std::string name_;
+  int64_t frames_ = 0, flagged_ = 0;
+};
+
+}  // namespace understudy::app

@@ -1,0 +1,109 @@
+// The second half of the way of a frame: observations of one person in, the target's performance out.
+#pragma once
+
+#include <any>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "retarget/pipeline/foot_lock.hpp"
+#include "retarget/pipeline/hand_contacts.hpp"
+#include "retarget/pipeline/joint_filter.hpp"
+#include "retarget/pipeline/motion_style.hpp"
+#include "retarget/pipeline/root_path.hpp"
+#include "retarget/pipeline/target.hpp"
+
+namespace understudy {
+
+struct RetargetOptions {
+  JointFilterOptions filter;
+  RootPathOptions root;
+  bool lock_feet = true;  ///< feet that stand do not slide
+  FootLockOptions feet;
+  bool keep_contacts = true;  ///< hands that touch the body or each other do so on the target, too
+  HandContactOptions hands;
+  bool vertices = true;  ///< false: poses only, no deformation
+};
+
+/// The target in one frame.
+struct PerformedFrame {
+  Points vertices;                 ///< [V, 3] metres, in the target's order; empty when not asked for
+  Joints joints = Joints::Zero();  ///< of the target, world
+  Pose pose;                       ///< of the target: local rotations and root
+  Observation observed;            ///< as it came
+  Observation source;              ///< styled, repaired and smoothed: what was transferred; where
+                                   ///< flagged that of the last good frame
+  Confidence confidence = Confidence::Zero();  ///< of the observed joints; zero where flagged
+  bool flagged = false;                        ///< the frame could not be used; the pose is the last good one
+  std::string reason;                          ///< why it is flagged, one sentence
+  double transfer_ms = 0, deform_ms = 0;
+};
+
+/// What is kept of a past frame: everything else can be made again from it. Under 2 kB.
+struct KeptFrame {
+  Pose pose;
+  Joints source = Joints::Zero();  ///< joints of the source, repaired and smoothed
+  bool flagged = false;
+};
+KeptFrame kept(const PerformedFrame& frame);
+
+/// One target that performs. Frame i is finished before frame i + 1 is read, nothing looks into the future
+/// and memory does not grow. One thread at a time.
+class Performer {
+ public:
+  /// Has no target: its frames have a `source`, repaired and smoothed, and no pose.
+  explicit Performer(const RetargetOptions& options = {});
+  /// Binds the networks to the target. Throws Error when they cannot be, or one is missing.
+  Performer(Target target, std::shared_ptr<MotionTransfer> transfer, std::shared_ptr<Deformer> deformer,
+            const RetargetOptions& options = {});
+  /// Styles work in the order in which they were added, before all else.
+  void add_style(std::unique_ptr<MotionStyle> style);
+  /// Starts the source anew.
+  void restart();
+
+  /// The target's frame, dt seconds after the one before. One that is refused (refusal(), or a stage cannot
+  /// work with it) repeats the last pose (before any good one: the T-pose at the origin), is flagged and
+  /// leaves no trace in what comes after.
+  PerformedFrame perform(const Observation& seen, float dt);
+
+  const Target& target() const { return target_; }
+  const std::shared_ptr<Deformer>& deformer() const { return deformer_; }
+
+ private:
+  /// What the stages remember, one value.
+  struct Memory {
+    JointFilter filter;
+    RootPath root;
+    FootLock feet;
+    HandContacts hands;
+    std::any transfer;             // copies: the engine and
+    std::vector<std::any> styles;  // the styles keep their own
+  };
+  using Stage = void (Performer::*)(PerformedFrame& frame);
+  static const std::vector<Stage> kStages;
+
+  Memory remembered() const;
+  void put_back(Memory memory);
+  void run(PerformedFrame& frame);
+  PerformedFrame repeat(PerformedFrame frame, std::string reason);
+  void finish(PerformedFrame& frame) const;
+
+  void style(PerformedFrame& frame);
+  void filter(PerformedFrame& frame);
+  void transfer(PerformedFrame& frame);
+  void root(PerformedFrame& frame);
+  void feet(PerformedFrame& frame);
+  void hands(PerformedFrame& frame);
+  void deform(PerformedFrame& frame);
+
+  RetargetOptions options_;
+  Target target_;
+  std::shared_ptr<MotionTransfer> transfer_;  // null: no target
+  std::shared_ptr<Deformer> deformer_;
+  std::vector<std::unique_ptr<MotionStyle>> styles_;
+  Memory now_;
+  KeptFrame last_;
+  float waited_ = 0;  // seconds since the last good frame
+};
+
+}  // namespace understudy

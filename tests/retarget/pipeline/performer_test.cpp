@@ -1,0 +1,135 @@
+#include "retarget/pipeline/performer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/retarget/pipeline/fixtures.hpp"
+
+namespace understudy {
+namespace {
+
+using namespace fixtures;
+constexpr float kFrame = 1 / 30.0f;
+
+/// Skins rigidly, or refuses to.
+class MoodyDeformer final : public Deformer {
+ public:
+  explicit MoodyDeformer(RowMatrix weights) : inner_(std::move(weights)) {}
+  void bind(const Points& rest, const Joints& joints) override { inner_.bind(rest, joints); }
+  const RowMatrix& weights() const override { return inner_.weights(); }
+  std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override {
+    return inner_.with_weights(std::move(weights));
+  }
+  Points offsets(const Pose& pose) const override { return inner_.offsets(pose); }
+  Points deform(const Pose& pose) const override {
+    Points points = inner_.deform(pose);
+    if (nan_next_) points(0, 0) = std::numeric_limits<float>::quiet_NaN();
+    nan_next_ = false;
+    return points;
+  }
+  std::string name() const override { return "moody"; }
+  void fail_once() { nan_next_ = true; }
+
+ private:
+  RigidDeformer inner_;
+  mutable bool nan_next_ = false;
+};
+
+/// Leaves everything as it is and counts the frames it remembers.
+class IdentityStyle final : public MotionStyle {
+ public:
+  explicit IdentityStyle(int& frames) : frames_(frames) {}
+  void reset() override { frames_ = 0; }
+  Observation push(Observation seen, float) override {
+    ++frames_;
+    return seen;
+  }
+  std::any memory() const override { return frames_; }
+  void restore(const std::any& memory) override { frames_ = std::any_cast<int>(memory); }
+
+ private:
+  int& frames_;
+};
+
+struct Stage {
+  Joints rest = other_body();
+  PointBody target{rest};
+  std::shared_ptr<MoodyDeformer> deformer = std::make_shared<MoodyDeformer>(target.weights);
+  Performer performer{prepare_target(target.mesh, rest), std::make_shared<CopyTransfer>(), deformer};
+
+  static Observation seen(int i) {
+    Observation observation;
+    observation.joints = forward_kinematics(human_rest(), dance(static_cast<float>(i) / 30)).joints;
+    return observation;
+  }
+  PerformedFrame push(int i) { return performer.perform(seen(i), kFrame); }
+};
+
+bool same_bytes(const Points& a, const Points& b) {
+  return a.rows() == b.rows() &&
+         std::memcmp(a.data(), b.data(), static_cast<size_t>(a.size()) * sizeof(float)) == 0;
+}
+
+TEST(Performer, ARefusedFrameLeavesNoTrace) {
+  Stage refusing, skipping;
+  for (int i = 0; i < 30; ++i) {
+    const bool bad = i % 7 == 3;
+    if (bad) refusing.deformer->fail_once();
+    const PerformedFrame a = refusing.push(i);
+    const PerformedFrame b =
+        bad ? skipping.performer.perform(without_skeleton("left out"), kFrame) : skipping.push(i);
+    EXPECT_EQ(a.flagged, bad);
+    EXPECT_TRUE(same_bytes(a.vertices, b.vertices)) << i;
+    EXPECT_EQ(a.source.joints, b.source.joints) << i;
+  }
+}
+
+TEST(Performer, AnIdentityStyleChangesNoByte) {
+  Stage plain, styled;
+  int frames = 0;
+  styled.performer.add_style(std::make_unique<IdentityStyle>(frames));
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(same_bytes(plain.push(i).vertices, styled.push(i).vertices)) << i;
+  EXPECT_EQ(frames, 20);
+}
+
+TEST(Performer, AStyleForgetsARefusedFrameAndStartsAnew) {
+  Stage stage;
+  int frames = 0;
+  stage.performer.add_style(std::make_unique<IdentityStyle>(frames));
+  stage.push(0);
+  stage.deformer->fail_once();
+  EXPECT_TRUE(stage.push(1).flagged);
+  EXPECT_EQ(frames, 1);
+  stage.performer.restart();
+  EXPECT_EQ(frames, 0);
+}
+
+TEST(Performer, AFrameThatFailsHasNoConfidenceAndTheLastSkeleton) {
+  Stage stage;
+  const PerformedFrame good = stage.push(0);
+  EXPECT_EQ(good.confidence.minCoeff(), 1);
+  Observation weak = Stage::seen(1);
+  weak.confidence.setConstant(0.02f);
+  stage.deformer->fail_once();
+  for (const PerformedFrame& bad : {stage.push(1), stage.performer.perform(weak, kFrame),
+                                    stage.performer.perform(without_skeleton("nobody there"), kFrame)}) {
+    EXPECT_TRUE(bad.flagged);
+    EXPECT_NE(bad.reason, "");
+    EXPECT_EQ(bad.confidence.maxCoeff(), 0);
+    EXPECT_EQ(bad.source.joints, good.source.joints);
+  }
+}
+
+TEST(Performer, WithoutATargetItRepairsAndSmoothsAlone) {
+  Stage stage;
+  Performer alone;
+  for (int i = 0; i < 20; ++i) {
+    const PerformedFrame frame = alone.perform(Stage::seen(i), kFrame);
+    EXPECT_EQ(frame.source.joints, stage.push(i).source.joints) << i;
+    EXPECT_EQ(frame.vertices.rows(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace understudy
