@@ -1,6 +1,6 @@
-// The way to the networks without LibTorch: its code lives in a plug-in (libunderstudy_networks.so) that is
-// loaded on first use. So the program starts without LibTorch, and OpenBLAS and OpenMP, which read their
-// settings when they are loaded, get the right ones first.
+// The networks, for callers that do not link LibTorch: their code is a plug-in (libunderstudy_networks.so),
+// loaded on first use. The program starts without LibTorch, and sets up OpenBLAS and OpenMP, which read their
+// settings once, before they are loaded.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct NetworkOptions {
   std::string weights;                      ///< folder of the weights; empty: the program's own
   std::string engine = "copy";              ///< motion transfer: "copy" or "paper"
   bool offsets = true;                      ///< pose-corrective offsets (paper 1, eq. 3) on or off
-  bool near = true;                         ///< of "dense": limbs and head are looked at again from near
+  bool near = true;                         ///< of "dense": refine limbs and head on crops of the scan
   std::string extractor = "dense";          ///< "dense" or "paper"
   std::string engine_file, extractor_file;  ///< weights in place of the folder's; empty: the folder's
 };
@@ -23,10 +23,10 @@ struct NetworkOptions {
 /// one null. Throws Error when weights are missing or of another version.
 Networks load_networks(const NetworkOptions& options, const NetworkParts& parts = NetworkParts::all());
 
-/// The folder of weights that would be used; empty when there is none.
+/// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);
 
-/// What the plug-in found: BLAS library and kernel, threads chosen and why. Lines for `doctor`.
+/// BLAS library and kernel, number of threads and the reason for it; `doctor` prints it.
 struct RuntimeReport {
   std::string torch_version, blas, blas_core;
   int threads = 0;

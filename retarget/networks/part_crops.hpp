@@ -1,5 +1,4 @@
-// Arms, legs, hands, head and feet seen from near: points of a scan around a joint, in the joint's own
-// frame.
+// Part crops: the points of a scan around an arm, leg, hand, head or foot, in the frame of its joint.
 #pragma once
 
 #include <array>
@@ -13,16 +12,16 @@ namespace understudy::nn {
 enum class PartKind { Hand, Head, Foot, Arm, Leg };
 constexpr int kPartKinds = 5;
 constexpr int kPartPoints = 128;  ///< points of a crop
-constexpr int kPartContext = 13;  ///< numbers that go with it
-constexpr int kPartJoints = 2;    ///< joints of which something is told
+constexpr int kPartContext = 13;  ///< numbers beside the points
+constexpr int kPartJoints = 2;    ///< joints that a crop corrects, at most
 
-/// A joint that is seen again, and what is corrected there.
+/// A joint with a crop of its own, and the joints that are corrected there.
 struct Part {
   PartKind kind;
   int joint;                              ///< the crop is about it and in its frame
-  std::array<int, kPartJoints> corrects;  ///< joints whose rotations and places are told, -1: none
-  int moves;  ///< so many of them are put where they were told to be: the others are better known from afar
-  bool mirrored;  ///< a right one, looked at as a left one
+  std::array<int, kPartJoints> corrects;  ///< joints with a predicted rotation and position, -1: none
+  int moves;      ///< how many of them also move; the whole body gives better positions for the others
+  bool mirrored;  ///< a right part, reflected into a left one
 };
 constexpr std::array<Part, 9> kCroppedParts = {
     {{PartKind::Leg, LeftKnee, {LeftKnee, LeftHip}, 1, false},
@@ -35,23 +34,23 @@ constexpr std::array<Part, 9> kCroppedParts = {
      {PartKind::Foot, LeftAnkle, {LeftAnkle, LeftFoot}, 2, false},
      {PartKind::Foot, RightAnkle, {RightAnkle, RightFoot}, 2, true}}};
 
-/// What a network sees of a part.
+/// Input of the part network.
 struct PartCrop {
   Points points;  ///< [kPartPoints, 3] in the joint's frame, in leg lengths
   Eigen::Matrix<float, kPartContext, 1>
       context;  ///< parent's bone and rotation in that frame, the second joint, how full it is
 };
 
-/// Points of the scan (finite ones, metres) around the part as the extraction, which must have rotations,
-/// says it lies; repeated where there are few. None where fewer than 16 are there. `first` picks which are
-/// taken where there are more than enough.
+/// The finite points of a scan (metres) around the part, at the place that the extraction gives it; the
+/// extraction must have rotations. Points repeat where there are few; no crop where there are fewer than 16.
+/// `first` shifts the choice where there are more than enough.
 std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, const Part& part,
                                  uint32_t first = 0);
 
-/// A rotation of the world in the frame of a crop, and back: what the network is to say and what was said.
+/// A world rotation in the frame of a crop, and back: labels and predictions.
 Mat3 into_part(const Mat3& world, const Extraction& seen, const Part& part);
 Mat3 from_part(const Mat3& local, const Extraction& seen, const Part& part);
-/// The same of a way in the world, metres; in the crop it is in leg lengths.
+/// The same for a displacement: metres in the world, leg lengths in the crop.
 Vec3 vector_into_part(const Vec3& world, const Extraction& seen, const Part& part);
 Vec3 vector_from_part(const Vec3& local, const Extraction& seen, const Part& part);
 

@@ -1,4 +1,4 @@
-// What the networks plug-in offers to the program that loads it.
+// The functions that the networks plug-in offers to the program.
 #pragma once
 
 #include "retarget/networks/networks.hpp"

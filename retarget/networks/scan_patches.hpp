@@ -1,4 +1,4 @@
-// A scan as the extractor sees it: normalised, thinned to a fixed number of points, cut into overlapping
+// Input of the extractor: a scan, normalised, sampled to a fixed number of points, cut into overlapping
 // patches.
 #pragma once
 

@@ -1,4 +1,4 @@
-// How trained weights lie in a file, without LibTorch.
+// The file format of trained weights, read without LibTorch.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace understudy::nn {
 
 inline constexpr char kWeightsMagic[] = "USWEIGHT";
 
-/// Named tensors as they lie in the file.
+/// A tensor in the file.
 struct StoredTensor {
   std::vector<int64_t> shape;
   bool half = false;       ///< two bytes a number, else four

@@ -1,4 +1,4 @@
-// Scans and what was seen before them as tensors.
+// Scans and the joints of the frames before them, as tensors.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace understudy::nn {
 
-/// B scans beside each other, on the CPU. `recent` is what was seen in the frames before each of them, or
-/// empty: scans of no stream.
+/// A batch of B scans, on the CPU. `recent`: the extracted joints of the frames before each scan; empty for
+/// scans of no stream.
 ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,
                                const std::vector<RecentJoints>& recent = {});
 

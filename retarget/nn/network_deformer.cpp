@@ -50,12 +50,12 @@ void tidy_weights(RowMatrix& weights) {
   }
 }
 
-constexpr float kCells = 180;  // a body's height in cells of one asked point each: 1 cm on an adult
+constexpr float kCells = 180;  // a body's height in cells of one evaluated point each: 1 cm on an adult
 constexpr float kMostCells = 4 * kCells;  // where a centimetre is too coarse
-constexpr int kSlice = 16384;             // points asked at once: what the networks say of one takes 2.4 kB
-constexpr int kBetween = 8;               // asked points that tell of one between them
-constexpr float kRough = 0.008f;          // where a weight is that far from linear among them, each is asked
-constexpr float kOffsetUnit = 0.1f;       // metres: offsets may be as rough as weights in it
+constexpr int kSlice = 16384;             // points evaluated at once: the output for one takes 2.4 kB
+constexpr int kBetween = 8;               // evaluated points that one between them is interpolated from
+constexpr float kRough = 0.008f;     // where a weight is that far from linear among them, each is evaluated
+constexpr float kOffsetUnit = 0.1f;  // metres: offsets may be as rough as weights in it
 constexpr int kKnown = kJointCount + 9;
 
 using Neighbours = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -124,17 +124,17 @@ Eigen::Matrix<float, kPoseFeatureCount, 3> probing_bends() {
   return bends;
 }
 
-/// What the networks said of some points.
-struct Asked {
+/// Points at which the networks were evaluated, and their output.
+struct Samples {
   Points points;                    // [N, 3]
   RowMatrix known;                  // [N, kKnown]: the weights, then offsets of probing bends, kOffsetUnit
   std::vector<OffsetBlock> blocks;  // by row
 };
 
-/// How vertices lie between points that were asked for; without rows: every vertex was, in their order.
+/// How vertices lie between evaluated points; without rows: every vertex was evaluated, in their order.
 struct Between {
-  Neighbours near;   // [V, kBetween] rows of what was asked
-  RowMatrix shares;  // [V, kBetween], 0 behind the first of a vertex that was asked for itself
+  Neighbours near;   // [V, kBetween] rows of the evaluated points
+  RowMatrix shares;  // [V, kBetween], 0 behind the first of a vertex that was evaluated itself
   /// A vertex' row from those of the points.
   template <int Columns, class Rows>
   Eigen::Matrix<float, 1, Columns> row(const Rows& rows, Eigen::Index v) const {
@@ -147,8 +147,8 @@ struct Between {
 
 class NetworkDeformer : public Deformer {
  public:
-  NetworkDeformer(const std::string& path, bool offsets, int most_asked)
-      : path_(path), offsets_(offsets), most_asked_(most_asked) {
+  NetworkDeformer(const std::string& path, bool offsets, int most_evaluated)
+      : path_(path), offsets_(offsets), most_evaluated_(most_evaluated) {
     load_weights(path, "deformation", kDeformationVersion, *net_);
     net_->eval();
   }
@@ -160,23 +160,23 @@ class NetworkDeformer : public Deformer {
   std::string name() const override { return offsets_ ? "network" : "network, no offsets"; }
 
  private:
-  void ask(const Points& points, const Points& spread, Asked& asked);
-  void ask_slice(Eigen::Index first, Eigen::Index count, const Points& spread, Asked& asked);
-  bool ask_some(const Points& rest, const Points& spread, Asked& asked, Between& between);
+  void evaluate(const Points& points, const Points& context, Samples& samples);
+  void evaluate_slice(Eigen::Index first, Eigen::Index count, const Points& context, Samples& samples);
+  bool evaluate_some(const Points& rest, const Points& context, Samples& samples, Between& between);
   void keep_weights();
   void add_offsets(const Pose& pose, Points& rest) const;
 
   DeformationNet net_;
   std::string path_;
   bool offsets_;
-  int most_asked_;
+  int most_evaluated_;
   Points rest_;
   Joints joints_ = Joints::Zero();
   RowMatrix weights_;
   // Shared by copies with other weights: offsets of all vertices, or of the points between which they lie.
   std::shared_ptr<const std::vector<OffsetBlock>> blocks_;
   std::shared_ptr<const Between> between_;
-  Eigen::Index asked_ = 0;            // how many of either
+  Eigen::Index sampled_ = 0;          // how many of either
   std::vector<int> first_influence_;  // [V + 1] into influences_
   std::vector<Influence> influences_;
 };
@@ -184,84 +184,88 @@ class NetworkDeformer : public Deformer {
 void NetworkDeformer::bind(const Points& rest, const Joints& rest_joints) {
   US_CHECK(rest.rows() > 0, "the target has no points");
   US_CHECK(rest.allFinite() && rest_joints.allFinite(), "the target has a coordinate that is no number");
-  const Points spread = spread_points(rest, static_cast<int>(net_->options.context_points));
+  const Points context = spread_points(rest, static_cast<int>(net_->options.context_points));
   joints_ = rest_joints;
-  Asked asked;
+  Samples samples;
   auto between = std::make_shared<Between>();
-  if (rest.rows() <= most_asked_ || !ask_some(rest, spread, asked, *between)) ask(rest, spread, asked);
+  if (rest.rows() <= most_evaluated_ || !evaluate_some(rest, context, samples, *between))
+    evaluate(rest, context, samples);
   rest_ = rest;
-  asked_ = asked.points.rows();
+  sampled_ = samples.points.rows();
   if (between->near.rows() == 0) {
-    weights_ = asked.known.leftCols<kJointCount>().cwiseMax(0);
+    weights_ = samples.known.leftCols<kJointCount>().cwiseMax(0);
   } else {
     weights_.resize(rest.rows(), kJointCount);
     for (Eigen::Index v = 0; v < rest.rows(); ++v)
-      weights_.row(v) = between->row<kKnown>(asked.known, v).head<kJointCount>().cwiseMax(0);
+      weights_.row(v) = between->row<kKnown>(samples.known, v).head<kJointCount>().cwiseMax(0);
   }
   tidy_weights(weights_);
   keep_weights();
-  asked.blocks.shrink_to_fit();
-  blocks_ = std::make_shared<const std::vector<OffsetBlock>>(std::move(asked.blocks));
+  samples.blocks.shrink_to_fit();
+  blocks_ = std::make_shared<const std::vector<OffsetBlock>>(std::move(samples.blocks));
   between_ = std::move(between);
 }
 
-/// Appends what the networks say of these points.
-void NetworkDeformer::ask(const Points& points, const Points& spread, Asked& asked) {
-  const Eigen::Index before = asked.points.rows(), all = before + points.rows();
-  asked.points.conservativeResize(all, 3);
-  asked.points.bottomRows(points.rows()) = points;
-  asked.known.conservativeResize(all, kKnown);
+/// Appends the networks' output for these points.
+void NetworkDeformer::evaluate(const Points& points, const Points& context, Samples& samples) {
+  const Eigen::Index before = samples.points.rows(), all = before + points.rows();
+  samples.points.conservativeResize(all, 3);
+  samples.points.bottomRows(points.rows()) = points;
+  samples.known.conservativeResize(all, kKnown);
   for (Eigen::Index from = before; from < all; from += kSlice)
-    ask_slice(from, std::min<Eigen::Index>(kSlice, all - from), spread, asked);
+    evaluate_slice(from, std::min<Eigen::Index>(kSlice, all - from), context, samples);
 }
 
-void NetworkDeformer::ask_slice(Eigen::Index first, Eigen::Index count, const Points& spread, Asked& asked) {
-  const BoundSurface bound = bind_surface(net_, tensor_of(asked.points.middleRows(first, count)),
-                                          tensor_of(joints_), tensor_of(spread));
+void NetworkDeformer::evaluate_slice(Eigen::Index first, Eigen::Index count, const Points& context,
+                                     Samples& samples) {
+  const BoundSurface bound = bind_surface(net_, tensor_of(samples.points.middleRows(first, count)),
+                                          tensor_of(joints_), tensor_of(context));
   const torch::Tensor weights = bound.weights.contiguous(), basis = bound.basis.contiguous();
   const Eigen::Map<const RowMatrix> W(weights.data_ptr<float>(), count, kJointCount),
       B(basis.data_ptr<float>(), 3 * count, kPoseFeatureCount);
   US_CHECK(W.allFinite() && B.allFinite(), path_,
            ": the deformation networks give no numbers for this target");
-  asked.known.middleRows(first, count).leftCols<kJointCount>() = W;
+  samples.known.middleRows(first, count).leftCols<kJointCount>() = W;
   static const Eigen::Matrix<float, kPoseFeatureCount, 3> bends = probing_bends();
   const RowMatrix probed = offsets_ ? RowMatrix(B * bends) : RowMatrix(RowMatrix::Zero(3 * count, 3));
-  asked.known.middleRows(first, count).rightCols<9>() =
+  samples.known.middleRows(first, count).rightCols<9>() =
       Eigen::Map<const RowMatrix>(probed.data(), count, 9) / kOffsetUnit;
   for (Eigen::Index i = 0; offsets_ && i < count; ++i)
     for (int j = 1; j < kJointCount; ++j) {
       const auto block = B.block<3, 9>(3 * i, 9 * (j - 1));
       if (block.norm() * kLargestBend > kLeastOffset)
-        asked.blocks.push_back(offset_block(static_cast<int>(first + i), j, block));
+        samples.blocks.push_back(offset_block(static_cast<int>(first + i), j, block));
     }
 }
 
 /// The networks change slowly over a centimetre, but not everywhere: across gaps and creases vertices are
-/// asked for closer together, and at last themselves. False where the vertices lie too far apart for that.
-bool NetworkDeformer::ask_some(const Points& rest, const Points& spread, Asked& asked, Between& between) {
+/// evaluated closer together, and at last each. False where the vertices lie too far apart for that.
+bool NetworkDeformer::evaluate_some(const Points& rest, const Points& context, Samples& samples,
+                                    Between& between) {
   std::vector<int> open(rest.rows());  // not yet known
   std::iota(open.begin(), open.end(), 0);
   for (float cells = kCells; cells <= kMostCells; cells *= 2) {
     const std::vector<int> chosen = one_a_cell(rest, open, cells);
     if (chosen.size() <= kBetween || 2 * chosen.size() >= open.size()) break;
-    ask(rest(chosen, Eigen::all), spread, asked);
+    evaluate(rest(chosen, Eigen::all), context, samples);
     between.near.conservativeResize(rest.rows(), kBetween);
     between.shares.conservativeResize(rest.rows(), kBetween);
-    const Neighbours near = nearest_neighbours(asked.points, rest(open, Eigen::all), kBetween);
+    const Neighbours near = nearest_neighbours(samples.points, rest(open, Eigen::all), kBetween);
     std::vector<int> rough;
     for (size_t i = 0; i < open.size(); ++i) {
       const int v = open[i];
       between.near.row(v) = near.row(i);
       Eigen::Matrix<float, kBetween, 3> offsets;
-      for (int k = 0; k < kBetween; ++k) offsets.row(k) = asked.points.row(between.near(v, k)) - rest.row(v);
+      for (int k = 0; k < kBetween; ++k)
+        offsets.row(k) = samples.points.row(between.near(v, k)) - rest.row(v);
       between.shares.row(v) = shares_of(offsets);
-      if (!is_flat(offsets, between.near.row(v), asked.known)) rough.push_back(v);
+      if (!is_flat(offsets, between.near.row(v), samples.known)) rough.push_back(v);
     }
     open = std::move(rough);
   }
   if (between.near.rows() == 0) return false;
-  const Eigen::Index before = asked.points.rows();
-  if (!open.empty()) ask(rest(open, Eigen::all), spread, asked);
+  const Eigen::Index before = samples.points.rows();
+  if (!open.empty()) evaluate(rest(open, Eigen::all), context, samples);
   for (size_t i = 0; i < open.size(); ++i) {
     between.near.row(open[i]).setConstant(static_cast<int>(before + i));
     between.shares.row(open[i]) = Eigen::RowVectorXf::Unit(kBetween, 0);
@@ -286,7 +290,7 @@ void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
     bend[j] = Eigen::Map<const Eigen::Matrix<float, 9, 1>>(m.data());
   }
   Eigen::Matrix<float, Eigen::Dynamic, 4, Eigen::RowMajor> moved;
-  moved.setZero(asked_, 4);
+  moved.setZero(sampled_, 4);
   for (const OffsetBlock& b : *blocks_) {
     Eigen::Vector4f offset = Eigen::Vector4f::Zero();
     for (int k = 0; k < 9; ++k) offset += b.block.col(k) * bend[b.joint][k];
@@ -342,8 +346,8 @@ Points NetworkDeformer::deform(const Pose& pose) const {
 
 }  // namespace
 
-std::unique_ptr<Deformer> load_network_deformer(const std::string& path, bool offsets, int most_asked) {
-  return std::make_unique<NetworkDeformer>(path, offsets, most_asked);
+std::unique_ptr<Deformer> load_network_deformer(const std::string& path, bool offsets, int most_evaluated) {
+  return std::make_unique<NetworkDeformer>(path, offsets, most_evaluated);
 }
 
 Points spread_points(const Points& points, int count) {
@@ -356,11 +360,11 @@ Points spread_points(const Points& points, int count) {
   std::sort(order.begin(), order.end(), [&key](int a, int b) { return key(a) < key(b); });
   Points sorted(points.rows(), 3);  // from the top down, so that the choice does not know the file's order
   for (size_t i = 0; i < order.size(); ++i) sorted.row(i) = points.row(order[i]);
-  Points spread(count, 3);
+  Points context(count, 3);
   const int distinct = static_cast<int>(std::min<Eigen::Index>(count, points.rows()));
   const std::vector<int> chosen = farthest_points(sorted, distinct);
-  for (int i = 0; i < count; ++i) spread.row(i) = sorted.row(chosen[i % distinct]);
-  return spread;
+  for (int i = 0; i < count; ++i) context.row(i) = sorted.row(chosen[i % distinct]);
+  return context;
 }
 
 }  // namespace understudy::nn

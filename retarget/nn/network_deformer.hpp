@@ -12,13 +12,13 @@ namespace understudy::nn {
 /// Reads the weights; without `offsets` it is linear blend skinning alone. Throws Error when the file is
 /// missing, damaged or of another version. Its bind() throws Error when a coordinate is not finite or the
 /// networks give NaN; deform() before bind() throws. Deforming costs no network: one thread, some
-/// milliseconds. Of targets with more than `most_asked` vertices the networks are asked at one a centimetre
-/// and where that is too coarse; the others lie between.
+/// milliseconds. Of targets with more than `most_evaluated` vertices one a centimetre is evaluated, more where
+/// that is too coarse; the others are interpolated.
 std::unique_ptr<Deformer> load_network_deformer(const std::string& path, bool offsets,
-                                                int most_asked = 40000);
+                                                int most_evaluated = 40000);
 
-/// `count` points spread over a target's surface, the same set for any order of its points; fewer points are
-/// repeated.
+/// `count` points distributed over a target's surface, the same set for any order of its points; repeated
+/// where there are fewer.
 Points spread_points(const Points& points, int count);
 
 }  // namespace understudy::nn

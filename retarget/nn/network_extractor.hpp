@@ -1,4 +1,4 @@
-// Skeleton extraction with the trained network, for users without LibTorch.
+// Skeleton extraction with the trained network.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 namespace understudy::nn {
 
 /// Loads the extractor. form: "dense" or "paper" (see skeleton_form.hpp); parts, which may be
-/// null, looks again at limbs and head. Throws Error naming the weights file.
+/// null, refines limbs and head. Throws Error naming the weights file.
 std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& path, const std::string& form,
                                                           std::unique_ptr<PartRefiner> parts = nullptr);
 

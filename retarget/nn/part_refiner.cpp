@@ -59,7 +59,7 @@ class NetworkPartRefiner final : public PartRefiner {
 
  private:
   void refine_kind(const Points& points, PartKind kind, Extraction& seen);
-  static void correct(int slot, const Part& part, const float* said, const Extraction& before,
+  static void correct(int slot, const Part& part, const float* output, const Extraction& before,
                       Extraction& seen);
 
   PartRefinerNet net_;
@@ -77,23 +77,23 @@ void NetworkPartRefiner::refine_kind(const Points& points, PartKind kind, Extrac
     contexts.push_back(tensor_of(crop->context).flatten());
   }
   if (parts.empty()) return;
-  const auto said = net_->of(kind)->forward(torch::stack(crops), torch::stack(contexts)).contiguous();
+  const auto output = net_->of(kind)->forward(torch::stack(crops), torch::stack(contexts)).contiguous();
   const Extraction before = seen;
   for (size_t i = 0; i < parts.size(); ++i)
     for (int k = 0; k < kPartJoints; ++k)
-      correct(k, *parts[i], said.data_ptr<float>() + (i * kPartJoints + k) * kPartNumbers, before, seen);
+      correct(k, *parts[i], output.data_ptr<float>() + (i * kPartJoints + k) * kPartNumbers, before, seen);
 }
 
-void NetworkPartRefiner::correct(int slot, const Part& part, const float* said, const Extraction& before,
+void NetworkPartRefiner::correct(int slot, const Part& part, const float* output, const Extraction& before,
                                  Extraction& seen) {
   const int joint = part.corrects[slot];
   if (joint < 0) return;
-  const Mat3 local = rotation_from_6d(Eigen::Map<const Vec6>(said));
+  const Mat3 local = rotation_from_6d(Eigen::Map<const Vec6>(output));
   (*seen.global)[joint] = from_part(local, before, part);
   if (slot >= part.moves) return;
-  const Vec3 way = vector_from_part(Eigen::Map<const Vec3>(said + 6), before, part);
-  seen.joints.row(joint) = before.joints.row(joint) + way.transpose();
-  seen.confidence[joint] = confidence_for(std::exp(said[9]) * leg_length(before.joints));
+  const Vec3 displacement = vector_from_part(Eigen::Map<const Vec3>(output + 6), before, part);
+  seen.joints.row(joint) = before.joints.row(joint) + displacement.transpose();
+  seen.confidence[joint] = confidence_for(std::exp(output[9]) * leg_length(before.joints));
 }
 
 float confidence_of_both(float crop, float whole) {

@@ -1,5 +1,5 @@
-// Joints and rotations of limbs and head, seen again from near: the whole body's 1,024 points leave a hand
-// some twenty.
+// Refines joints and rotations of limbs and head on part crops: of the whole body's 1,024 points a hand gets
+// about twenty.
 #pragma once
 
 #include <memory>

@@ -18,7 +18,7 @@ class SkeletonForm : public torch::nn::Module {
 
 /// "dense" or "paper"; anything else is an Error.
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name);
-/// Of the weights of a form; numbers are the trainer's.
+/// Header for the weights of a form; the trainer adds the numbers.
 WeightsHeader skeleton_header(const std::string& name);
 void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form);
 

@@ -1,4 +1,4 @@
-// Trained weights on disk: named tensors and what they are.
+// Trained weights on disk: named tensors and a header.
 #pragma once
 
 #include <torch/torch.h>
@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-/// What a weights file says of itself.
+/// A weights file's header.
 struct WeightsHeader {
   std::string kind;                       ///< "skeleton", "part", "motion" or "deformation"
   int version = 0;                        ///< of the network's form; another version is refused
@@ -21,7 +21,7 @@ void save_weights(const std::string& path, const WeightsHeader& header, const to
                   bool half = true);
 /// Only the header. Throws Error when the file is missing, damaged, or no weights file.
 WeightsHeader read_weights_header(const std::string& path);
-/// A size of the network that the header of `path` tells, or `usual` where it tells none. Throws Error naming
+/// A size of the network from the header of `path`, or `usual` where the header has none. Throws Error naming
 /// the file when it is no whole number from 1 to `most`.
 int64_t header_size(const std::string& path, const WeightsHeader& header, const char* key, int64_t usual,
                     int64_t most);

@@ -15,10 +15,10 @@ namespace understudy::training {
 /// B sequences of T frames. The first `crossed` of them go to another body, whose own motions are `real`; for
 /// the others A and B are one body.
 struct MotionBatch {
-  torch::Tensor joints;  ///< [B, T, 22, 3] A's joints as an extractor would see them: with errors, metres
-  torch::Tensor leg;    ///< [B, T] A's leg length, mean over the frames so far of what the joints say, metres
-  torch::Tensor dt;     ///< [B, T] seconds
-  torch::Tensor clean;  ///< [B, T, 22, 3] A's joints without errors, the pelvis at the origin
+  torch::Tensor joints;     ///< [B, T, 22, 3] A's joints as an extractor would see them: with errors, metres
+  torch::Tensor leg;        ///< [B, T] A's leg length, mean over the frames so far, metres
+  torch::Tensor dt;         ///< [B, T] seconds
+  torch::Tensor clean;      ///< [B, T, 22, 3] A's joints without errors, the pelvis at the origin
   torch::Tensor rotations;  ///< [B, T, 22, 3, 3] A's local rotations
   torch::Tensor rest_a;     ///< [B, 22, 3] T-pose joints, metres
   torch::Tensor rest_b;     ///< [B, 22, 3]

@@ -1,4 +1,4 @@
-// The discriminator of motion transfer: is this body's motion a captured one, or made by the network?
+// The discriminator of motion transfer: is a motion captured, or made by the network?
 #pragma once
 
 #include <torch/torch.h>

@@ -1,4 +1,4 @@
-// How good motion transfer is on people and clips that training does not see.
+// Evaluates motion transfer on people and clips that training does not see.
 #pragma once
 
 #include <string>
@@ -10,8 +10,7 @@
 
 namespace understudy::training {
 
-/// Sources with and without extractor-like errors, each for a target body. It evaluates only; nothing learns
-/// from it.
+/// Sources with or without errors like an extractor's, each for a target body.
 class MotionEvaluator {
  public:
   /// `noise`: mean length of the errors of the source's joints, metres. Throws Error without clips.

@@ -11,11 +11,11 @@ namespace {
 
 constexpr float kRadians = kPi / 180;
 
-using Told = Eigen::Matrix<float, 9, 1>;
+using Label = Eigen::Matrix<float, 9, 1>;
 
 struct Crops {
   std::vector<nn::PartCrop> crops;
-  std::vector<std::array<Told, nn::kPartJoints>> truth, before;
+  std::vector<std::array<Label, nn::kPartJoints>> truth, before;
 };
 
 ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
@@ -25,17 +25,18 @@ ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
   return ScanMaker(data, options, seed);
 }
 
-Told told(const Mat3& rotation, const Vec3& way, const Extraction& seen, const nn::Part& part) {
-  Told result;
-  result << rotation_to_6d(nn::into_part(rotation, seen, part)), nn::vector_into_part(way, seen, part);
+Label label_of(const Mat3& rotation, const Vec3& displacement, const Extraction& seen, const nn::Part& part) {
+  Label result;
+  result << rotation_to_6d(nn::into_part(rotation, seen, part)),
+      nn::vector_into_part(displacement, seen, part);
   return result;
 }
 
-torch::Tensor tensor_of(const std::vector<std::array<Told, nn::kPartJoints>>& rows) {
+torch::Tensor tensor_of(const std::vector<std::array<Label, nn::kPartJoints>>& rows) {
   auto tensor = torch::empty({static_cast<int64_t>(rows.size()), nn::kPartJoints, 9});
   float* out = tensor.data_ptr<float>();
   for (const auto& row : rows)
-    for (const Told& one : row) out = std::copy(one.data(), one.data() + one.size(), out);
+    for (const Label& one : row) out = std::copy(one.data(), one.data() + one.size(), out);
   return tensor;
 }
 
@@ -77,7 +78,7 @@ Extraction PartSampler::pretend(const PosedSkeleton& truth) {
     for (int axis = 0; axis < 3; ++axis) error(j, axis) += spread * rng_.normal();
     seen.joints.row(j) = truth.joints.row(j) + error.row(j);
     const Eigen::Quaternionf own(truth.global[j]);
-    // What the limb suggests of the part on it: no bend.
+    // Pulled to the parent: as if the part did not bend.
     const Eigen::Quaternionf parent(truth.global[p < 0 ? 0 : p]);
     const float drawn = rng_.chance(0.6f) ? rng_.uniform() : 0.0f;
     (*seen.global)[j] = turned(10) * own.slerp(drawn, parent).toRotationMatrix();
@@ -94,18 +95,18 @@ PartBatches PartSampler::next(int scans) {
       const auto crop = nn::cut_part(scan.points, seen, part);
       if (!crop) continue;
       Crops& to = made[static_cast<int>(part.kind)];
-      std::array<Told, nn::kPartJoints> truth, before;
-      Told none = Told::Zero();
+      std::array<Label, nn::kPartJoints> truth, before;
+      Label none = Label::Zero();
       none[0] = none[4] = 1;
       truth.fill(none);
       before = truth;
       for (size_t k = 0; k < nn::kPartJoints; ++k) {
         if (part.corrects[k] < 0) continue;
         const auto j = part.corrects[k];
-        const Vec3 way =
+        const Vec3 displacement =
             (scan.truth.joints.row(part.corrects[k]) - seen.joints.row(part.corrects[k])).transpose();
-        truth[k] = told(scan.truth.global[j], way, seen, part);
-        before[k] = told((*seen.global)[j], Vec3::Zero(), seen, part);
+        truth[k] = label_of(scan.truth.global[j], displacement, seen, part);
+        before[k] = label_of((*seen.global)[j], Vec3::Zero(), seen, part);
       }
       to.crops.push_back(*crop);
       to.truth.push_back(truth);

@@ -1,4 +1,4 @@
-// Crops of arms, legs, hands, heads and feet with what is true of them.
+// Part crops with labels.
 #pragma once
 
 #include <torch/torch.h>
@@ -14,18 +14,18 @@ namespace understudy::training {
 struct PartBatch {
   torch::Tensor points;   ///< [B, kPartPoints, 3]
   torch::Tensor context;  ///< [B, kPartContext]
-  torch::Tensor
-      truth;  ///< [B, kPartJoints, 9] rotation and way as PartNet tells them; what a kind lacks: none
-  torch::Tensor before;  ///< [B, kPartJoints, 9] what would be said without looking
+  /// [B, kPartJoints, 9] rotation and displacement as in PartNet's output; identity where a kind has none.
+  torch::Tensor truth;
+  torch::Tensor before;  ///< [B, kPartJoints, 9] the same of the extraction, uncorrected
 };
 using PartBatches = std::array<PartBatch, nn::kPartKinds>;
 
-/// Makes dense scans and pretends an extraction of them whose rotations are wrong as real ones are: partly
-/// drawn to what the limb alone suggests, partly at random.
+/// Makes dense scans and simulates an extraction of them whose rotations are as wrong as real ones: partly
+/// pulled to those of the parent, partly at random.
 class PartSampler {
  public:
   PartSampler(const TrainingData& data, uint64_t seed);
-  /// The crops of so many scans.
+  /// The crops of that many scans.
   PartBatches next(int scans);
 
  private:

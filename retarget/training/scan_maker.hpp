@@ -1,5 +1,4 @@
-// Makes training scans: a random person in a random posture, seen by a simulated capture rig, with what is
-// true of it.
+// Makes training scans: a random person in a random pose, captured by a simulated rig, with labels.
 #pragma once
 
 #include <memory>
@@ -14,12 +13,12 @@ namespace understudy::training {
 struct ScanMakerOptions {
   float captured = 0.6f;   ///< share of scans with noise, holes, uneven density, outliers, floor
   float dressed = 0.35f;   ///< share of dressed people
-  float mixed = 0.25f;     ///< share with upper and lower body from different postures
+  float mixed = 0.25f;     ///< share with upper and lower body from different poses
   float jittered = 0.5f;   ///< share with every joint turned a little
-  float limp = 0;          ///< share with hands, head and feet turned much, as no clip has them
+  float limp = 0;          ///< share with hands, head and feet turned further than in any clip
   float t_pose = 0.06f;    ///< share in (nearly) the T-pose: targets
   float tilted = 0.06f;    ///< share of bodies far from upright
-  bool mirror = true;      ///< mirror half of the postures
+  bool mirror = true;      ///< mirror half of the poses
   float yaw = kPi;         ///< headings, +- radians
   float skirts = 0.06f;    ///< share in a wide skirt or dress, its legs hidden
   float coats = 0.05f;     ///< share with thick sleeves and trunk
@@ -37,7 +36,7 @@ struct ScanMakerOptions {
   static ScanMakerOptions rest();
 };
 
-/// One scan of kScanPoints points, or as many as the options say, and its truth, world metres.
+/// A scan of kScanPoints points, or as many as the options say, and its labels, world metres.
 struct MadeScan : LabelledPoints {
   PosedSkeleton truth;
 };
@@ -54,11 +53,11 @@ class ScanMaker {
     SurfaceSampler sampler;
     int left;  ///< scans until it is replaced
   };
-  /// Somebody over some frames of a clip, dressed and seen in one way.
+  /// A person over some frames of a clip, with the same clothes and camera.
   struct Stream {
     std::shared_ptr<const Person> person;
     std::vector<Pose> poses;  ///< those that are left, the last one first
-    uint64_t seed = 0;        ///< of what they wear and of where they are seen from
+    uint64_t seed = 0;        ///< of clothes and camera
     bool captured = false;
   };
   /// Of 1 to options.longest frames.

@@ -1,4 +1,4 @@
-// Scans with a past: what the extractor itself said of the frames before.
+// Scans of streams, with the extractor's own joints of the frames before.
 #pragma once
 
 #include "retarget/pipeline/interfaces.hpp"
@@ -8,7 +8,7 @@ namespace understudy::training {
 
 struct FollowedScans {
   std::vector<MadeScan> scans;
-  std::vector<RecentJoints> recent;  ///< of each scan; in some of them wrong, as after a cut
+  std::vector<RecentJoints> recent;  ///< of each scan; wrong in some, as after a cut
 };
 
 /// Follows many people at once and takes some of them in turn, so that a batch's scans, and those of the
@@ -18,7 +18,7 @@ class ScanStreams {
   ScanStreams(const TrainingData& data, const ScanMakerOptions& options, uint64_t seed, int people = 128);
   /// count: up to the number of people.
   FollowedScans next(int count);
-  /// What the extractor saw in the scans of the last next(), world, metres.
+  /// The joints extracted from the scans of the last next(), world, metres.
   void saw(const std::vector<Joints>& joints);
 
  private:

@@ -10,7 +10,7 @@
 
 namespace understudy::training {
 
-/// What is true of B scans, in the normalised frame of ScanPatches.
+/// Labels of B scans, in the normalised frame of ScanPatches.
 struct SkeletonTruth {
   torch::Tensor joints;     ///< [B, 22, 3]
   torch::Tensor rotations;  ///< [B, 22, 6] world
@@ -24,14 +24,14 @@ struct SkeletonBatch {
   SkeletonTruth truth;
 };
 
-/// Scans cut into patches and put beside each other. `recent`: what was seen before each, or empty.
+/// Scans cut into patches, as a batch. `recent`: the joints extracted before each, or empty.
 SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<RecentJoints>& recent = {});
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device);
 
 /// A network without votes, paper 1's, has the mean squared error of its joints alone (L_skeleton).
 LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch);
 
-/// The joints that the network saw, world, metres.
+/// The extracted joints, world, metres.
 std::vector<Joints> world_joints(const nn::ExtractorOutput& out, const SkeletonBatch& batch);
 
 }  // namespace understudy::training

@@ -1,4 +1,4 @@
-// What networks learn from: bodies, dressed people and clips of a data folder (DATA/splits.json names the
+// Training data: bodies, dressed people and clips of a data folder (DATA/splits.json names the
 // splits).
 #pragma once
 
@@ -32,12 +32,12 @@ TrainingData load_training_data(const std::string& folder, Split split);
 /// A shape between two people of the data, or one of them.
 Eigen::VectorXf random_shape(const TrainingData& data, Rng& rng);
 
-/// A posture of the clips: any frame, half the time weighed by clip and half by frame, so that short rare
+/// A pose of the clips: any frame, half the time weighed by clip and half by frame, so that short rare
 /// clips count.
 const Pose& random_pose(const TrainingData& data, Rng& rng);
 
-/// Up to `count` postures of a clip, one to three frames apart, beginning with one as of random_pose. Fewer
-/// where a frame is not good.
+/// Up to `count` poses of a clip, one to three frames apart, the first as in random_pose. Fewer where a frame
+/// is not good.
 std::vector<Pose> random_poses(const TrainingData& data, int count, Rng& rng);
 
 }  // namespace understudy::training

@@ -16,12 +16,12 @@ struct DeformationOptions {
   int64_t width = 256;           ///< hidden units a point
   int64_t trunk_blocks = 3;      ///< residual blocks shared by W_net and O_net
   int64_t context = 96;          ///< size of the summary of the whole surface
-  int64_t code = 128;            ///< size of what is known of the whole body: joints and summary
+  int64_t code = 128;            ///< size of the body code: joints and summary
   int64_t context_points = 512;  ///< points that the summary is made of
 };
 
-/// Points are seen from their own side of the body: the right half is looked at in a mirror, so that the
-/// networks learn one half only. Within this distance of the middle (metres on an adult) both views are
+/// Every point is seen from its own side of the body: the right half is mirrored, so that the networks learn
+/// one half only. Within this distance of the middle (metres on an adult) both views are
 /// blended.
 constexpr double kMirrorBand = 0.02;
 
@@ -31,7 +31,7 @@ constexpr int64_t kPoseFeatureCount = 189;
 /// Size of a body: the length of its bones together over that of an adult's, [B, 1, 1]. joints [B, 22, 3].
 torch::Tensor body_scale(const torch::Tensor& joints);
 
-/// What W_net and O_net see of a point besides the body's code, [B, N, kPointFeatureCount]: where it lies
+/// Input of W_net and O_net for a point besides the body code, [B, N, kPointFeatureCount]: its position
 /// from every joint and along every bone, over the body's size, and waves of both. Unchanged when body and
 /// point move or grow together.
 torch::Tensor point_features(const torch::Tensor& points, const torch::Tensor& joints);
@@ -56,7 +56,7 @@ struct FilmBlockImpl : torch::nn::Module {
 };
 TORCH_MODULE(FilmBlock);
 
-/// What the networks say of points on the own side of a body.
+/// Output of the networks for points on their own side of a body.
 struct SurfaceFunctions {
   torch::Tensor log_weights;  ///< [B, N, 22], log of skin weights that sum to 1
   torch::Tensor basis;        ///< [B, N, 567]: offset = basis as 3x189 times pose features, metres
@@ -70,7 +70,7 @@ struct SurfaceFunctions {
 struct DeformationNetImpl : torch::nn::Module {
   explicit DeformationNetImpl(const DeformationOptions& net_options = {});
 
-  /// What is known of the whole body, [B, code]: T-pose joints [B, 22, 3] and points spread over its surface
+  /// Summary of the whole body, [B, code]: T-pose joints [B, 22, 3] and points spread over its surface
   /// [B, M, 3] (in any order).
   torch::Tensor body_code(const torch::Tensor& joints, const torch::Tensor& surface);
   /// points [B, N, 3] on the own side.

@@ -11,7 +11,7 @@ constexpr int64_t kBones = kJointCount - 1;
 constexpr int64_t kShape = 3 * kBones + 3 * kBones + kBones;  // places, directions, lengths
 constexpr int64_t kSourceFeatures = kShape + 3 * kBones + 3;  // and velocities, turning, the interval
 constexpr int64_t kRestWidth = 48;
-constexpr double kRate = 30;  // velocities are told as at 30 frames/s
+constexpr double kRate = 30;  // velocities are per frame at 30 frames/s
 
 torch::Tensor parents_of(const torch::Tensor& like) {
   std::vector<int64_t> parents(kParents.begin() + 1, kParents.end());
@@ -83,10 +83,10 @@ torch::Tensor MotionGruImpl::source_features(const MotionInput& input, const Mot
 }
 
 /// Zero output is the T-pose.
-torch::Tensor MotionGruImpl::rotations(const torch::Tensor& said) const {
+torch::Tensor MotionGruImpl::rotations(const torch::Tensor& output) const {
   if (quaternions_)
-    return rotations_from_quaternions(said + torch::tensor({1.f, 0.f, 0.f, 0.f}, said.options()));
-  return rotations_from_6d(said + torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f}, said.options()));
+    return rotations_from_quaternions(output + torch::tensor({1.f, 0.f, 0.f, 0.f}, output.options()));
+  return rotations_from_6d(output + torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f}, output.options()));
 }
 
 torch::Tensor MotionGruImpl::forward(const MotionInput& input, MotionState& state) {

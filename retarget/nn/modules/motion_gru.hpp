@@ -14,10 +14,10 @@ constexpr int kMotionGruVersion = 1;
 struct MotionGruOptions {
   int64_t hidden = 192;      ///< width of the recurrent layers
   int64_t layers = 2;        ///< of each recurrent network
-  bool quaternions = false;  ///< rotations are said as quaternions: the ablation of 6D
+  bool quaternions = false;  ///< outputs quaternions: the ablation of 6D
 };
 
-/// What the network sees of B sequences of T frames.
+/// Input of the network: B sequences of T frames.
 struct MotionInput {
   torch::Tensor joints;  ///< [B, T, 22, 3] A's joints, metres; any place and heading
   torch::Tensor leg;     ///< [B, T] A's leg length as known at each frame, metres
@@ -25,7 +25,7 @@ struct MotionInput {
   torch::Tensor rest;    ///< [B, 22, 3] B's T-pose joints, metres
 };
 
-/// What it remembers between frames; empty: nothing was seen yet.
+/// State between frames; empty before the first.
 struct MotionState {
   torch::Tensor encoder, decoder;  ///< [layers, B, hidden]
   torch::Tensor joints;            ///< [B, 1, 22, 3] the last frame
@@ -50,7 +50,7 @@ class MotionGruImpl : public torch::nn::Module {
  private:
   torch::Tensor source_features(const MotionInput& input, const MotionState& state,
                                 const torch::Tensor& heading) const;
-  torch::Tensor rotations(const torch::Tensor& said) const;
+  torch::Tensor rotations(const torch::Tensor& output) const;
 
   bool quaternions_;
   torch::nn::Linear embed_source{nullptr}, embed_rest{nullptr};

@@ -24,7 +24,7 @@ torch::Tensor PartNetImpl::forward(const torch::Tensor& points, const torch::Ten
   const auto found = torch::cat({std::get<0>(y.max(1)), context}, 1);
   const auto turn = head_->forward(found).view({points.size(0), kPartJoints, 6});
   const auto place = place_->forward(found).view({points.size(0), kPartJoints, 4});
-  // Untrained: no turn, hardly a way, an error of 2 % of a leg.
+  // Untrained: no rotation, hardly any displacement, an error of 2 % of a leg.
   const auto none = torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, -4.f}, points.options());
   const auto unit = torch::tensor({1.f, 1.f, 1.f, 1.f, 1.f, 1.f, .1f, .1f, .1f, 1.f}, points.options());
   return torch::cat({turn, place}, 2) * unit + none;

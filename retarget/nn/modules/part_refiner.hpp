@@ -1,4 +1,4 @@
-// The network that sees arms, legs, hands, head and feet from near.
+// The network of the part refiner: arms, legs, hands, head and feet on crops of their own.
 #pragma once
 
 #include <torch/torch.h>
@@ -9,12 +9,12 @@ namespace understudy::nn {
 
 constexpr int kPartVersion = 2;
 constexpr const char* kPartFileKind = "leaf";  ///< as its files have it
-/// Of a joint: a rotation in the crop's frame as 6D, the way from where it was seen to where it is and the
-/// log of the error to expect of that, both in leg lengths.
+/// Outputs for a joint: its rotation in the crop's frame as 6D, its displacement from where it was extracted,
+/// and the log of the expected error of that, both in leg lengths.
 constexpr int kPartNumbers = 10;
 
 /// Two levels of a PointNet (Qi et al., CVPR 2017) over one kind of part: the second sees each point beside
-/// what the first found in all of them.
+/// the pooled features of the first.
 class PartNetImpl : public torch::nn::Module {
  public:
   PartNetImpl();
@@ -26,7 +26,7 @@ class PartNetImpl : public torch::nn::Module {
 };
 TORCH_MODULE(PartNet);
 
-/// One PartNet a kind.
+/// A PartNet for each kind.
 class PartRefinerNetImpl : public torch::nn::Module {
  public:
   PartRefinerNetImpl();

@@ -124,10 +124,10 @@ ExtractorOutput SkeletonExtractorNetImpl::forward(const ExtractorInput& input) {
   x = token_norm(x);
 
   ExtractorOutput out;
-  const auto said = vote_head->forward(x);  // [B, M, 23 + 22 + 66]
-  out.parts = said.narrow(2, 0, kParts);
-  const auto choice = torch::softmax(said.narrow(2, kParts, J), 1);  // [B, M, 22] over patches
-  out.votes = centres.unsqueeze(2) + said.narrow(2, kParts + J, 3 * J).view({B, M, J, 3});
+  const auto output = vote_head->forward(x);  // [B, M, 23 + 22 + 66]
+  out.parts = output.narrow(2, 0, kParts);
+  const auto choice = torch::softmax(output.narrow(2, kParts, J), 1);  // [B, M, 22] over patches
+  out.votes = centres.unsqueeze(2) + output.narrow(2, kParts + J, 3 * J).view({B, M, J, 3});
   out.voted = (choice.unsqueeze(3) * out.votes).sum(1);  // [B, 22, 3]
   decode(x + position, input, choice, out);
   return out;
@@ -137,10 +137,10 @@ torch::Tensor SkeletonExtractorNetImpl::embed_recent(const ExtractorInput& input
                                                      const torch::Tensor& voted) {
   const auto known = input.recent_known.unsqueeze(1);                        // [B, 1, 2]
   const auto there = known.narrow(2, 0, 1), moving = known.narrow(2, 1, 1);  // [B, 1, 1]
-  const auto way = (input.recent.narrow(2, 0, 3) - voted).clamp(-kFarthest, kFarthest);
+  const auto displacement = (input.recent.narrow(2, 0, 3) - voted).clamp(-kFarthest, kFarthest);
   const auto moved = input.recent.narrow(2, 3, 3).clamp(-kFarthest, kFarthest);  // [B, 22, 3]
-  const auto said = torch::cat({way * there, moved * moving, known.expand({-1, J, -1})}, 2);
-  return there * recent_mlp->forward(said);  // [B, 22, C]
+  const auto output = torch::cat({displacement * there, moved * moving, known.expand({-1, J, -1})}, 2);
+  return there * recent_mlp->forward(output);  // [B, 22, C]
 }
 
 void SkeletonExtractorNetImpl::decode(const torch::Tensor& tokens, const ExtractorInput& input,
@@ -154,11 +154,11 @@ void SkeletonExtractorNetImpl::decode(const torch::Tensor& tokens, const Extract
   if (input.recent.defined()) x = x + embed_recent(input, at);
   for (const auto& layer : *decoder)
     x = layer->as<JointDecoderLayer>()->forward(x, position, tokens, among, across);
-  const auto said = joint_head->forward(joint_norm(x));  // [B, 22, 10]
-  out.joints = out.voted + 0.1 * said.narrow(2, 0, 3);
+  const auto output = joint_head->forward(joint_norm(x));  // [B, 22, 10]
+  out.joints = out.voted + 0.1 * output.narrow(2, 0, 3);
   const auto upright = torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f}, centres.options());
-  out.rotations = said.narrow(2, 3, 6) + upright;
-  out.log_spread = said.select(2, 9) - 3.0;
+  out.rotations = output.narrow(2, 3, 6) + upright;
+  out.log_spread = output.select(2, 9) - 3.0;
 }
 
 }  // namespace understudy::nn

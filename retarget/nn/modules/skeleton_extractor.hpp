@@ -1,5 +1,5 @@
-// The skeleton extraction network. Every patch of the scan says on which part of the body it lies and votes
-// for every joint; the votes are weighed, and a decoder over the joints corrects them and reads off their
+// The skeleton extraction network. Every patch of the scan predicts its body part and votes for every joint;
+// the votes are averaged with learned weights, and a decoder over the joints corrects them and predicts their
 // rotations.
 #pragma once
 
@@ -16,16 +16,15 @@ struct ExtractorShape {
 };
 
 /// B scans as the network sees them, normalised (ScanPatches): all points [B, N, 3], patch centres [B, M, 3],
-/// and the points of each patch minus its centre [B, M, K, 3]. Of streams also what was seen in the frame
-/// before, in the same frame of reference: joints and how they moved since the one before that [B, 22, 6],
-/// and whether either is known, 1 or 0 [B, 2]; undefined: of no scan.
+/// and the points of each patch minus its centre [B, M, K, 3]. For streams also the frame before, in the
+/// same frame of reference: joints and their displacement since the one before that [B, 22, 6], and whether
+/// either is known, 1 or 0 [B, 2]; undefined for scans of no stream.
 struct ExtractorInput {
   torch::Tensor points, centres, offsets;
   torch::Tensor recent, recent_known;
 };
 
-/// What the network says of B scans; undefined where a form does not say it. Everything in the normalised
-/// frame of ScanPatches.
+/// Output for B scans in the normalised frame of ScanPatches; undefined where a form lacks it.
 struct ExtractorOutput {
   torch::Tensor parts;       ///< [B, M, 23] logits: 22 parts, and "not the body"
   torch::Tensor votes;       ///< [B, M, 22, 3] where each patch believes each joint
