@@ -38,14 +38,14 @@ class Canvas {
              "a picture cannot be ", size.width, " x ", size.height, " pixels");
     if (same(size, size_)) return false;
     size_ = size;
-    attach_color(still_, still_color_, samples_);
-    attach_color(plain_, plain_color_, 1);
+    attach_samples(still_, still_color_, GL_RGBA8, samples_);
+    attach_samples(plain_, plain_color_, GL_RGBA8, 1);
     if (samples_ > 1) {
-      attach_color(work_, work_color_, samples_);
-      attach_depth_samples();
+      attach_samples(work_, work_color_, GL_RGBA8, samples_);
+      attach_samples(work_, work_depth_, GL_DEPTH_COMPONENT24, samples_);
       attach_depth_texture(plain_);
     } else {
-      attach_color_texture();
+      gl::attach(work_, color_texture_, {size_.width, size_.height});
       attach_depth_texture(work_);
     }
     for (const gl::Framebuffer* each : {&work_, &still_, &plain_}) complete(*each);
@@ -67,47 +67,21 @@ class Canvas {
   void resolve_color(unsigned framebuffer) const { blit(work(), framebuffer, GL_COLOR_BUFFER_BIT); }
 
  private:
-  void attach_color(const gl::Framebuffer& framebuffer, const gl::Renderbuffer& color, int samples) const {
-    gl::api().BindRenderbuffer(GL_RENDERBUFFER, color.name());
-    gl::api().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? samples : 0, GL_RGBA8,
-                                             size_.width, size_.height);
-    const gl::TargetScope target(framebuffer.name(), size_.width, size_.height);
-    gl::api().FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.name());
-  }
-
-  void attach_color_texture() const {
-    gl::api().BindTexture(GL_TEXTURE_2D, color_texture_.name());
-    gl::api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size_.width, size_.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                         nullptr);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-      gl::api().TexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-      gl::api().TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
-    const gl::TargetScope target(work_.name(), size_.width, size_.height);
-    gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_texture_.name(),
-                                   0);
-  }
-
-  void attach_depth_samples() const {
-    gl::api().BindRenderbuffer(GL_RENDERBUFFER, work_depth_.name());
-    gl::api().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, GL_DEPTH_COMPONENT24, size_.width,
+  void attach_samples(const gl::Framebuffer& framebuffer, const gl::Renderbuffer& to, GLenum format,
+                      int samples) const {
+    gl::api().BindRenderbuffer(GL_RENDERBUFFER, to.name());
+    gl::api().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? samples : 0, format, size_.width,
                                              size_.height);
-    const gl::TargetScope target(work_.name(), size_.width, size_.height);
-    gl::api().FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-                                      work_depth_.name());
+    const gl::TargetScope target(framebuffer.name(), size_.width, size_.height);
+    gl::api().FramebufferRenderbuffer(GL_FRAMEBUFFER,
+                                      format == GL_RGBA8 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
+                                      GL_RENDERBUFFER, to.name());
   }
 
   void attach_depth_texture(const gl::Framebuffer& framebuffer) const {
-    gl::api().BindTexture(GL_TEXTURE_2D, depth_texture_.name());
-    gl::api().TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size_.width, size_.height, 0,
-                         GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-      gl::api().TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-      gl::api().TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
-    const gl::TargetScope target(framebuffer.name(), size_.width, size_.height);
-    gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_texture_.name(),
-                                   0);
+    gl::attach(
+        framebuffer, depth_texture_,
+        {size_.width, size_.height, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_NEAREST});
   }
 
   void complete(const gl::Framebuffer& framebuffer) const {

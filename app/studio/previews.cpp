@@ -7,6 +7,7 @@
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "app/session/document_file.hpp"
+#include "render/gl/program.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/read_character.hpp"
@@ -71,18 +72,6 @@ Mesh normalized(Mesh mesh) {
   mesh.vertices.rowwise() -= foot;
   if (size > 0) mesh.vertices *= 1.7f / size;
   return mesh;
-}
-
-void attach(const gl::Framebuffer& framebuffer, const gl::Texture& texture, render::PixelSize size) {
-  const auto& api = gl::api();
-  api.BindTexture(GL_TEXTURE_2D, texture.name());
-  api.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  api.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-  api.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
 }
 
 }  // namespace
@@ -220,13 +209,13 @@ std::unique_ptr<gl::Texture> Previews::picture_of(const render::Scene& scene, re
   const gl::Texture drawn;
   auto flipped = std::make_unique<gl::Texture>();
   const gl::Framebuffer from, to;
-  attach(from, drawn, size);
-  attach(to, *flipped, size);
+  const int w = size.width, h = size.height;
+  gl::attach(from, drawn, {w, h});
+  gl::attach(to, *flipped, {w, h});
   render::Camera camera;
   camera.yaw = 0.35f, camera.pitch = 0.1f;
   camera = render::fitted(camera, render::all_points(scene), size.aspect(), 0.06f);
   renderer_->draw(scene, camera, {from.name(), size});
-  const int w = size.width, h = size.height;
   gl::api().BindFramebuffer(GL_READ_FRAMEBUFFER, from.name());
   gl::api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, to.name());
   gl::api().BlitFramebuffer(0, 0, w, h, 0, h, w, 0, GL_COLOR_BUFFER_BIT, GL_NEAREST);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "render/gl/program.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {
@@ -41,11 +42,8 @@ void OffscreenSurface::resize(int width, int height) {
   context_->make_current();
   color_ = std::make_unique<gl::Texture>();
   framebuffer_ = std::make_unique<gl::Framebuffer>();
-  gl::api().BindTexture(GL_TEXTURE_2D, color_->name());
-  gl::api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  gl::api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl::attach(*framebuffer_, *color_, {width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST});
   gl::api().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_->name());
-  gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_->name(), 0);
   US_CHECK(gl::api().CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
            "OpenGL cannot make a picture of ", width, " x ", height, " pixels");
   width_ = width, height_ = height;

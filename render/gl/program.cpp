@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "render/gl/scopes.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::render::gl {
@@ -71,6 +72,23 @@ void Uniform<Eigen::Vector4f>::set(const Eigen::Vector4f& value) const {
 template <>
 void Uniform<Eigen::Matrix4f>::set(const Eigen::Matrix4f& value) const {
   api().UniformMatrix4fv(location_, 1, GL_FALSE, value.data());
+}
+
+void set_image(const Texture& texture, const TextureImage& image) {
+  api().BindTexture(GL_TEXTURE_2D, texture.name());
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    api().TexParameteri(GL_TEXTURE_2D, filter, static_cast<GLint>(image.filter));
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    api().TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  api().TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(image.internal), image.width, image.height, 0,
+                   image.format, image.type, image.pixels);
+}
+
+void attach(const Framebuffer& framebuffer, const Texture& texture, const TextureImage& image) {
+  set_image(texture, image);
+  const TargetScope target(framebuffer.name(), image.width, image.height);
+  const GLenum part = image.format == GL_DEPTH_COMPONENT ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0;
+  api().FramebufferTexture2D(GL_FRAMEBUFFER, part, GL_TEXTURE_2D, texture.name(), 0);
 }
 
 void upload(const Buffer& buffer, GLenum target, const void* data, size_t bytes) {

@@ -36,6 +36,18 @@ class Uniform {
   int location_;
 };
 
+/// The picture that a texture gets: its format, size and pixels (null: undefined ones).
+struct TextureImage {
+  int width = 0, height = 0;
+  GLenum internal = GL_RGBA8, format = GL_RGBA, type = GL_UNSIGNED_BYTE;
+  GLenum filter = GL_LINEAR;
+  const void* pixels = nullptr;
+};
+/// Binds the texture, gives it the picture, and clamps it at its edges.
+void set_image(const Texture& texture, const TextureImage& image);
+/// The same, and what is drawn into the framebuffer (its depth where the format is one) goes into the texture.
+void attach(const Framebuffer& framebuffer, const Texture& texture, const TextureImage& image);
+
 /// Replaces a buffer's contents with `bytes` bytes.
 void upload(const Buffer& buffer, GLenum target, const void* data, size_t bytes);
 

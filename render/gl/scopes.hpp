@@ -29,29 +29,22 @@ class CapabilityScope : Scope {
   bool before_;
 };
 
-class ProgramScope : Scope {
+/// Binds or sets one thing; `kState` asks which was there, `kSet` is the function of the table that sets it.
+template <GLenum kState, auto kSet>
+class ValueScope : Scope {
  public:
-  explicit ProgramScope(unsigned program) {
-    api().GetIntegerv(GL_CURRENT_PROGRAM, &before_);
-    api().UseProgram(program);
+  explicit ValueScope(unsigned value) {
+    api().GetIntegerv(kState, &before_);
+    (api().*kSet)(value);
   }
-  ~ProgramScope() { api().UseProgram(static_cast<unsigned>(before_)); }
+  ~ValueScope() { (api().*kSet)(static_cast<unsigned>(before_)); }
 
  private:
   GLint before_ = 0;
 };
-
-class VertexArrayScope : Scope {
- public:
-  explicit VertexArrayScope(unsigned vertex_array) {
-    api().GetIntegerv(GL_VERTEX_ARRAY_BINDING, &before_);
-    api().BindVertexArray(vertex_array);
-  }
-  ~VertexArrayScope() { api().BindVertexArray(static_cast<unsigned>(before_)); }
-
- private:
-  GLint before_ = 0;
-};
+using ProgramScope = ValueScope<GL_CURRENT_PROGRAM, &Functions::UseProgram>;
+using VertexArrayScope = ValueScope<GL_VERTEX_ARRAY_BINDING, &Functions::BindVertexArray>;
+using DepthFuncScope = ValueScope<GL_DEPTH_FUNC, &Functions::DepthFunc>;
 
 /// Draws into a framebuffer of a size in pixels; restores both bindings and the viewport.
 class TargetScope : Scope {
@@ -133,18 +126,6 @@ class ColorMaskScope : Scope {
 
  private:
   std::array<GLboolean, 4> before_{};
-};
-
-class DepthFuncScope : Scope {
- public:
-  explicit DepthFuncScope(GLenum function) {
-    api().GetIntegerv(GL_DEPTH_FUNC, &before_);
-    api().DepthFunc(function);
-  }
-  ~DepthFuncScope() { api().DepthFunc(static_cast<GLenum>(before_)); }
-
- private:
-  GLint before_ = 0;
 };
 
 }  // namespace understudy::render::gl

@@ -59,13 +59,7 @@ void draw_square(const gl::VertexArray& none) {
 }  // namespace
 
 GroundPass::GroundPass()
-    : grid_("grid", kGroundVertex, kGridFragment), shadow_("shadow", kGroundVertex, kShadowFragment) {
-  gl::api().BindTexture(GL_TEXTURE_2D, texture_.name());
-  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    gl::api().TexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
-  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-    gl::api().TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
-}
+    : grid_("grid", kGroundVertex, kGridFragment), shadow_("shadow", kGroundVertex, kShadowFragment) {}
 
 void GroundPass::draw_grid(const GroundView& view, const Vec3& center) {
   const gl::ProgramScope program(grid_.id());
@@ -79,10 +73,9 @@ void GroundPass::draw_shadow(const Scene& scene) {
   const FloorShadow shadow = floor_shadow(scene);
   const gl::ProgramScope program(shadow_.id());
   gl::api().ActiveTexture(GL_TEXTURE0);
-  gl::api().BindTexture(GL_TEXTURE_2D, texture_.name());
   gl::api().PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  gl::api().TexImage2D(GL_TEXTURE_2D, 0, GL_R8, FloorShadow::kSide, FloorShadow::kSide, 0, GL_RED,
-                       GL_UNSIGNED_BYTE, shadow.dark.data());
+  constexpr int kSide = FloorShadow::kSide;
+  gl::set_image(texture_, {kSide, kSide, GL_R8, GL_RED, GL_UNSIGNED_BYTE, GL_LINEAR, shadow.dark.data()});
   const float half = shadow.area.z() / 2;
   shadow_place_.set({shadow.area.x() + half, scene.ground.height, shadow.area.y() + half, half});
   strength_.set(scene.ground.shadow);

@@ -90,16 +90,8 @@ void OcclusionPass::resize(PixelSize size) {
   if (small.width == small_.width && small.height == small_.height) return;
   small_ = small;
   for (int i = 0; i < 2; ++i) {
-    gl::api().BindTexture(GL_TEXTURE_2D, textures_[i].name());
-    gl::api().TexImage2D(GL_TEXTURE_2D, 0, GL_RG8, small.width, small.height, 0, GL_RG, GL_UNSIGNED_BYTE,
-                         nullptr);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-      gl::api().TexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-      gl::api().TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    gl::attach(framebuffers_[i], textures_[i], {small.width, small.height, GL_RG8, GL_RG});
     const gl::TargetScope target(framebuffers_[i].name(), small.width, small.height);
-    gl::api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, textures_[i].name(),
-                                   0);
     US_CHECK(gl::api().CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
              "OpenGL makes no framebuffer for occlusion");
   }

@@ -90,25 +90,16 @@ void DrawPass::present(const ImDrawData& data, const ImFontAtlas& atlas, const r
 
 void DrawPass::resize_canvas(render::PixelSize size) {
   canvas_size_ = size;
-  api().BindTexture(GL_TEXTURE_2D, canvas_.name());
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                   nullptr);
-  const render::gl::TargetScope target(framebuffer_.name(), size.width, size.height);
-  api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, canvas_.name(), 0);
+  render::gl::attach(framebuffer_, canvas_,
+                     {size.width, size.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST});
 }
 
 void DrawPass::upload_atlas(const ImFontAtlas& atlas) {
   api().ActiveTexture(GL_TEXTURE0);
   if (atlas.TexPixelsRGBA32 == atlas_pixels_ && atlas_pixels_ != nullptr) return;
   atlas_pixels_ = atlas.TexPixelsRGBA32;
-  api().BindTexture(GL_TEXTURE_2D, atlas_.name());
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, atlas.TexWidth, atlas.TexHeight, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                   atlas.TexPixelsRGBA32);
+  render::gl::set_image(atlas_, {atlas.TexWidth, atlas.TexHeight, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE,
+                                 GL_LINEAR, atlas.TexPixelsRGBA32});
 }
 
 /// All lists one after the other in one buffer.

@@ -14,8 +14,8 @@ namespace understudy::ui {
 namespace {
 
 /// The same figure of all takes, the selected one first.
-std::vector<Curve> overlaid(const app::Session& session, const app::Series& of_selected) {
-  std::vector<Curve> all;
+std::vector<PlotLine> overlaid(const app::Session& session, const app::Series& of_selected) {
+  std::vector<PlotLine> all;
   const auto add = [&](size_t take, const app::Series& series) {
     const bool named = take < session.document.takes.size();
     all.push_back(

@@ -1,6 +1,6 @@
 #include "ui/viewport/pane.hpp"
 
-#include "render/gl/scopes.hpp"
+#include "render/gl/program.hpp"
 #include "render/picking.hpp"
 #include "ui/panels/panel.hpp"
 
@@ -62,15 +62,8 @@ void PaneCanvas::draw(render::Renderer& renderer, const render::Scene& scene, co
 
 void PaneCanvas::resize(render::PixelSize size) {
   size_ = size;
-  api().BindTexture(GL_TEXTURE_2D, texture_.name());
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  api().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                   nullptr);
-  const render::gl::TargetScope target(framebuffer_.name(), size.width, size.height);
-  api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
+  render::gl::attach(framebuffer_, texture_,
+                     {size.width, size.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST});
 }
 
 std::string value_under(const app::Session& session, const Pane& pane, const ImVec2& at) {

@@ -12,7 +12,7 @@ namespace {
 /// Everything one plot's drawing needs.
 struct Plot {
   Ui& ui;
-  const std::vector<Curve>& series;
+  const std::vector<PlotLine>& series;
   const PlotOptions& options;
   ImDrawList& list;
   Rect all;
@@ -35,10 +35,11 @@ double tick_step(const std::vector<double>& ticks) {
 }
 
 /// The values' range with some air, or what was asked for.
-Range value_range(const std::vector<Curve>& series, const PlotOptions& options, double first, double last) {
+Range value_range(const std::vector<PlotLine>& series, const PlotOptions& options, double first,
+                  double last) {
   if (!options.range.empty()) return options.range;
   Range range;
-  for (const Curve& one : series)
+  for (const PlotLine& one : series)
     for (int i = std::max(0, static_cast<int>(first));
          i <= std::min(one.values.size - 1, static_cast<int>(last)); ++i)
       range.include(one.values.data[i]);
@@ -118,15 +119,15 @@ void draw_hover(Plot& p, int frame) {
   ImGui::PopStyleVar();
 }
 
-int frame_count(const std::vector<Curve>& series) {
+int frame_count(const std::vector<PlotLine>& series) {
   int count = 0;
-  for (const Curve& one : series) count = std::max(count, one.values.size);
+  for (const PlotLine& one : series) count = std::max(count, one.values.size);
   return count;
 }
 
 }  // namespace
 
-PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<Curve>& series,
+PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<PlotLine>& series,
                 const PlotOptions& options) {
   const FontScope small(ui.fonts().small);
   const ImVec2 at = ImGui::GetCursorScreenPos(),

@@ -10,7 +10,7 @@
 
 namespace understudy::ui {
 
-struct Curve {
+struct PlotLine {
   std::string label;
   Values values;
   int color = -1;  ///< of Theme::series; -1: by its place
@@ -31,7 +31,7 @@ struct PlotAnswer {
 };
 
 /// Curves over frames with axes, a legend, and the values under the pointer. Over the width that is left.
-PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<Curve>& series,
+PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<PlotLine>& series,
                 const PlotOptions& options = {});
 
 struct HistogramOptions {
