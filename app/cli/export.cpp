@@ -25,6 +25,7 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
+#include "retarget/formats/file_formats.hpp"
 
 namespace understudy::app {
 namespace {
@@ -287,7 +288,7 @@ Action declare_export(CLI::App& command) {
                      "which of the document's, by name or number from 1; several become several clips");
   command.add_option("--source", options->sources, "motions to perform; several become several clips");
   command.add_option("--target", options->target.path,
-                     "a character: GLB, glTF, FBX, DAE, OBJ, PLY, OFF, STL");
+                     "a character or an SMPL-format body: " + format_names(kTarget));
   command.add_option("--out", options->out, "the file, or the folder of a sequence");
   command.add_flag("--print-map", options->print_map, "show which bone is which joint, and stop");
   command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");

@@ -5,6 +5,7 @@
 #include "app/cli/job.hpp"
 #include "app/cli/options.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/formats/file_formats.hpp"
 
 namespace understudy::app {
 
@@ -32,16 +33,15 @@ void add_network_options(CLI::App& command, nn::NetworkOptions& networks) {
 Action declare_retarget(CLI::App& command) {
   const auto job = std::make_shared<JobOptions>();
   command
-      .add_option(
-          "--source", job->source.path,
-          "scans: a folder, a list or an array; a skeletal motion: BVH, AMASS .npz, FBX, DAE, animated GLB "
-          "or glTF; or an SMPL-format body (--motion)")
+      .add_option("--source", job->source.path,
+                  "scans: a folder of frames (" + format_names(kScanFrame) +
+                      "), a list or an array; a skeletal motion: " + format_names(kMotion) +
+                      "; or an SMPL-format body (--motion)")
       ->required();
   add_source_options(command, job->source);
   command
-      .add_option(
-          "--target", job->target.path,
-          "a character in any upright pose: GLB, glTF, FBX, DAE, OBJ, PLY, OFF, STL, or an SMPL-format .npz")
+      .add_option("--target", job->target.path,
+                  "a character in any upright pose, or an SMPL-format body: " + format_names(kTarget))
       ->required();
   add_target_options(command, job->target);
   add_network_options(command, job->networks);

@@ -316,10 +316,9 @@ bool turn_upright(Motion& motion, const std::string& up) {
 void check_source_options(const SourceOptions& options) {
   if (!options.motion.empty()) return check_body_options(options);
   if (is_motion_file(options.path)) return check_skeletal_options(options);
-  const std::string suffix = file_suffix(options.path);
   std::error_code failed;
   const bool is_folder = std::filesystem::is_directory(options.path, failed);
-  if (is_folder || (suffix != ".glb" && suffix != ".gltf")) check_scan_options(options);
+  if (is_folder || !may_hold_motion(options.path)) check_scan_options(options);
 }
 
 std::unique_ptr<Source> open_source(const SourceOptions& options) {

@@ -7,6 +7,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 
 namespace understudy::app {
@@ -42,7 +43,7 @@ auto said_of(const std::string& path, Work work) {
 }  // namespace
 
 Character read_target(const std::string& path, const std::vector<float>& betas) {
-  if (file_suffix(path) == ".npz") {
+  if (can_be(path, kBody)) {
     const Npz npz = read_npz(path);
     if (npz.count("v_template")) {
       const ShapedBody person = read_smpl_body(path).shaped(as_vector(betas));

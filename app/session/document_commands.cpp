@@ -4,9 +4,7 @@
 #include "app/run/case_folder.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/base/text.hpp"
-#include "retarget/character/read_character.hpp"
-#include "retarget/formats/bytes.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/motion/read_motion.hpp"
 
@@ -110,7 +108,7 @@ void add_files(Commands& commands) {
                 }});
   commands.add({"document.save_as", "Save as", "PATH", "", false, false, [](Studio& s, const Arguments& a) {
                   std::string path = word(a, 0, "path");
-                  if (file_suffix(path) != ".understudy") path += ".understudy";
+                  if (!can_be(path, kDocument)) path += ".understudy";
                   save_document(s, path);
                 }});
   commands.add({"open", "Open", "PATH ...: a scan, target, document or case", "", false, false, open_all});
@@ -161,18 +159,18 @@ void add_recovery(Commands& commands) {
 enum class Kind { Document, Case, Scans, Body, Motion, Mesh };
 
 Kind kind_of_npz(const std::string& path) {
-  const Npz npz = read_npz(path);
-  if (npz.count("v_template")) return Kind::Body;
-  if (npz.count("poses")) return Kind::Motion;
-  return Kind::Scans;
+  const std::vector<std::string> names = npz_names(path);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return has("v_template") ? Kind::Body : has("poses") ? Kind::Motion : Kind::Scans;
 }
 
 /// Of what may be a character or a motion: who has a target and no source wants a motion.
 bool wanted_as_source(const Document& document, const std::string& path) {
-  if (file_suffix(path) == ".bvh") return true;
+  if (!can_be(path, kTarget)) return can_be(path, kMotion | kScanSequence);
   if (!document.source.path.empty() || document.takes.empty()) return false;
-  const std::string suffix = file_suffix(path);
-  return is_motion_file(path) || ((suffix == ".glb" || suffix == ".gltf") && read_motion(path));
+  return is_motion_file(path) || read_motion(path);
 }
 
 Kind kind_of(const Document& document, const std::string& path) {
@@ -180,12 +178,11 @@ Kind kind_of(const Document& document, const std::string& path) {
   US_CHECK(fs::exists(path, failed), path, ": there is no such file or folder");
   if (fs::is_directory(path, failed))
     return fs::exists(fs::path(path) / "case.json") ? Kind::Case : Kind::Scans;
-  const std::string suffix = file_suffix(path);
-  if (suffix == ".understudy") return Kind::Document;
+  if (can_be(path, kDocument)) return Kind::Document;
   if (fs::path(path).filename() == "case.json") return Kind::Case;
-  if (suffix == ".npz") return kind_of_npz(path);
-  if (suffix == ".npy" || suffix == ".lst" || wanted_as_source(document, path)) return Kind::Scans;
-  US_CHECK(is_character_file(path), path, ": is neither a scan, a target, a motion nor a document");
+  if (can_be(path, kBody)) return kind_of_npz(path);
+  if (wanted_as_source(document, path)) return Kind::Scans;
+  US_CHECK(can_be(path, kTarget), path, ": is neither a scan, a target, a motion nor a document");
   return Kind::Mesh;
 }
 
@@ -237,8 +234,7 @@ void Studio::open(const std::string& path) {
       return run("source.open", {whole});
     case Kind::Motion:
       // A body that is there performs it; without one its skeleton is the source.
-      if (session_.document.takes.empty() ||
-          file_suffix(session_.document.takes.back().target.path) != ".npz")
+      if (session_.document.takes.empty() || !can_be(session_.document.takes.back().target.path, kBody))
         return run("source.open", {whole});
       return run("source.motion", {session_.document.takes.back().target.path, whole});
     case Kind::Body:

@@ -3,6 +3,7 @@
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/motion/read_motion.hpp"
 
@@ -27,7 +28,7 @@ void set_source(Studio& studio, SourceOptions source) {
 
 void add_opening(Commands& commands) {
   commands.add({"source.open", "Open scan",
-                "PATH: scans (folder, list, array) or a skeletal motion (BVH, AMASS .npz, FBX, DAE, GLB)", "",
+                "PATH: scans (folder, list, array) or a skeletal motion (" + format_names(kMotion) + ")", "",
                 true, false, [](Studio& s, const Arguments& a) {
                   SourceOptions source;
                   source.path = fs::absolute(word(a, 0, "path")).lexically_normal().string();

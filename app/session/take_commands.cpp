@@ -3,7 +3,7 @@
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/character/read_character.hpp"
+#include "retarget/formats/file_formats.hpp"
 
 namespace understudy::app {
 namespace {
@@ -16,8 +16,7 @@ std::string target_file(const Arguments& arguments, size_t i) {
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file");
   US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
-  US_CHECK(is_character_file(path) || file_suffix(path) == ".npz", path,
-           ": is not a known character or mesh format");
+  US_CHECK(can_be(path, kTarget), path, ": is not a known character or mesh format");
   return path;
 }
 

@@ -10,8 +10,8 @@
 #include "render/gl/program.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/viewport/scene_builder.hpp"
@@ -144,8 +144,7 @@ Previews::Content Previews::read(const std::string& path) {
   Content content;
   try {
     const fs::path at(path);
-    const std::string suffix = file_suffix(path);
-    if (suffix == ".understudy") {
+    if (can_be(path, kDocument)) {
       const SavedDocument saved = read_document(path);
       if (!saved.document.source.path.empty()) content = read(saved.document.source.path);
       const size_t takes = saved.document.takes.size();
@@ -154,10 +153,10 @@ Previews::Content Previews::read(const std::string& path) {
       return content;
     }
     if (!fs::is_directory(at)) {
-      if (!is_character_file(path) && suffix != ".npz" && suffix != ".npy") return content;
+      if (!can_be(path, kTarget | kScanSequence)) return content;
       if (fs::file_size(at) > kLargest) return {{}, "too large for a preview"};
     }
-    if (!fs::is_directory(at) && suffix != ".npy") {
+    if (!fs::is_directory(at) && can_be(path, kTarget)) {
       const Character character = read_target(path, {});
       MergedSurface surface = merged_surface(character, bind_pose(character).vertices);
       paint(surface, character);

@@ -9,26 +9,34 @@
 #include "retarget/character/obj_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 
 namespace understudy {
 namespace {
 
-bool needs_process(const std::string& path, std::string_view bytes) {
-  const std::string suffix = file_suffix(path);
-  return suffix == ".fbx" || suffix == ".dae" || bytes.substr(0, 20) == "Kaydara FBX Binary  " ||
-         bytes.substr(0, 512).find("<COLLADA") != bytes.npos;
+/// Formats of which more than a mesh is read.
+struct Reader {
+  std::string_view format;
+  Character (*parse)(std::string_view bytes, const std::string& path);
+};
+constexpr Reader kReaders[] = {{"glTF", parse_gltf_character}, {"OBJ", parse_obj_character}};
+
+/// Of these an outside library reads all.
+bool needs_process(const FileFormat* format) {
+  return format && !format->parse && !format->open;
 }
 
 Character read_any(const std::string& path, const ReadCharacterOptions& options) {
   const std::string bytes = read_file(path), stem = std::filesystem::path(path).stem().string();
   US_CHECK(!bytes.empty(), path, ": is empty");
-  US_CHECK(file_suffix(path) != ".bvh", path, ": is a motion, not a character");
-  if (needs_process(path, bytes)) return read_in_process(path, options);
-  const auto content = format_of_content(bytes), suffix = format_of_suffix(path);
-  const auto format = content ? content : suffix;
-  if (format == MeshFormat::Gltf) return parse_gltf_character(bytes, path);
-  if (format == MeshFormat::Obj) return parse_obj_character(bytes, path);
+  const FileFormat* const suffix = format_of_suffix(path, kTarget);
+  US_CHECK(suffix || !can_be(path, kMotion), path, ": is a motion, not a character");
+  const FileFormat* const content = format_of_content(bytes, kTarget);
+  if (needs_process(suffix) || needs_process(content)) return read_in_process(path, options);
+  const FileFormat* const format = content ? content : suffix;
+  for (const Reader& reader : kReaders)
+    if (format && reader.format == format->name) return reader.parse(bytes, path);
   const Mesh mesh = parse_mesh(bytes, path);
   Character out = character_of_mesh(mesh, stem);
   check_character(out, path);
@@ -59,11 +67,6 @@ Character character_of_mesh(const Mesh& mesh, const std::string& name) {
   part.material = 0;
   out.parts.push_back(std::move(part));
   return out;
-}
-
-bool is_character_file(const std::string& path) {
-  const std::string suffix = file_suffix(path);
-  return suffix == ".fbx" || suffix == ".dae" || format_of_suffix(path);
 }
 
 Character read_character(const std::string& path, const ReadCharacterOptions& options) {

@@ -19,9 +19,6 @@ struct ReadCharacterOptions {
 /// of its own, which may crash. Throws Error: one sentence that names the file.
 Character read_character(const std::string& path, const ReadCharacterOptions& options = {});
 
-/// Whether the file's suffix is one that read_character may know.
-bool is_character_file(const std::string& path);
-
 /// A mesh without anything more as a character.
 Character character_of_mesh(const Mesh& mesh, const std::string& name);
 

@@ -1,23 +1,12 @@
 // Reads a mesh or point cloud from a file of any known format, by what is in it.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
-
-enum class MeshFormat { Ply, Obj, Off, Stl, Xyz, Pcd, Gltf };
-
-/// The format's name for messages: "PLY".
-const char* format_name(MeshFormat format);
-/// The format that a path's suffix stands for; none when it stands for no mesh.
-std::optional<MeshFormat> format_of_suffix(const std::string& path);
-/// The format that the bytes give away; none when nothing does (XYZ never does).
-std::optional<MeshFormat> format_of_content(std::string_view bytes);
 
 /// A mesh or point cloud in the file's own units and axes. What the bytes are decides, the suffix helps where
 /// they do not tell; where the two disagree, the bytes are believed and a warning is given. NaN and infinite

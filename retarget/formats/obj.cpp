@@ -1,8 +1,8 @@
-#include "retarget/formats/obj.hpp"
-
+// OBJ, Wavefront's text format: its vertices (with colours where they follow the position) and faces.
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
+#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -70,6 +70,8 @@ class ObjParser {
 
 }  // namespace
 
+/// Vertices and faces of all objects and groups of a .obj; materials, lines, curves are ignored. Throws
+/// Error, naming `source`.
 Mesh parse_obj(std::string_view bytes, const std::string& source) {
   ObjParser parser(source);
   TextCursor text(bytes, source);
@@ -90,6 +92,21 @@ Mesh parse_obj(std::string_view bytes, const std::string& source) {
   }
   if (!joined.empty()) parser.line(joined, 0);
   return parser.finish();
+}
+
+// The first words of the lines of an OBJ file, as far as they are seen in its beginning.
+bool is_obj(std::string_view bytes) {
+  TextCursor text(bytes.substr(0, 65536), "");
+  std::vector<std::string_view> words;
+  double number = 0;
+  while (!text.at_end()) {
+    split_words(text.line(), "", words);
+    if (words.empty() || words[0][0] == '#') continue;
+    if (words[0] == "v") return words.size() >= 4 && parse_number(words[1], number);
+    const auto known = {"mtllib", "usemtl", "o", "g", "s", "vn", "vt", "vp", "f", "l", "p"};
+    if (std::find(known.begin(), known.end(), words[0]) == known.end()) return false;
+  }
+  return false;
 }
 
 }  // namespace understudy

@@ -1,9 +1,9 @@
-#include "retarget/formats/off.hpp"
-
+// OFF, Geomview's format, ascii and binary, with its prefixes for colours, normals and texture coordinates.
 #include <algorithm>
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
+#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -175,6 +175,7 @@ class BinaryOff {
 
 }  // namespace
 
+/// A mesh or cloud from the bytes of a .off ([ST][C][N]OFF [BINARY]). Throws Error, naming `source`.
 Mesh parse_off(std::string_view bytes, const std::string& source) {
   TextCursor text(bytes, source);
   text.skip_comments();
@@ -191,6 +192,14 @@ Mesh parse_off(std::string_view bytes, const std::string& source) {
   text.line();  // the number of edges, which some writers leave out
   check_counts(header, text.left() + 1, 6, 2, source);
   return AsciiOff(text, header, source).read();
+}
+
+bool is_off(std::string_view bytes) {
+  TextCursor text(bytes.substr(0, 4096), "");
+  text.skip_comments();
+  const std::string_view word = text.word();
+  if (word.size() > 8 || word.size() < 3 || !ends_with(word, "OFF")) return false;
+  return word.find_first_not_of("STCN4nOF") == word.npos;
 }
 
 }  // namespace understudy

@@ -1,9 +1,9 @@
-#include "retarget/formats/pcd.hpp"
-
+// PCD, the Point Cloud Library's format: ascii, binary, binary_compressed.
 #include <algorithm>
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
+#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -228,6 +228,8 @@ Mesh read_ascii(const Header& header, std::string_view body, const std::string& 
 
 }  // namespace
 
+/// A cloud from the bytes of a .pcd, any fields in any order, packed colours; the NaN points of organised
+/// clouds are kept. Throws Error, naming `source`.
 Mesh parse_pcd(std::string_view bytes, const std::string& source) {
   const Header header = read_header(bytes, source);
   const std::string_view body = bytes.substr(header.size);
@@ -248,6 +250,14 @@ Mesh parse_pcd(std::string_view bytes, const std::string& source) {
   US_CHECK(whole_size == size, source, ": its compressed data is ", whole_size,
            " bytes long, its header says ", size);
   return read_binary(header, lzf_decompress(body.substr(8, packed), size, source), true, source);
+}
+
+bool is_pcd(std::string_view bytes) {
+  TextCursor text(bytes.substr(0, 4096), "");
+  text.skip_comments();
+  const std::string_view word = text.word();
+  if (word == "VERSION" || word == "FIELDS") return true;
+  return bytes.substr(0, 7) == "# .PCD ";
 }
 
 }  // namespace understudy

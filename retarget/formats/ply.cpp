@@ -1,11 +1,11 @@
-#include "retarget/formats/ply.hpp"
-
+// PLY, the Stanford format: ascii and binary of both byte orders.
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
+#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -289,6 +289,9 @@ bool is_wanted(const Element& element) {
 
 }  // namespace
 
+/// A mesh or cloud from the bytes of a .ply: properties of any type in any order, polygons as fans, triangle
+/// strips, colours where there are any; all other elements are stepped over. NaN and infinite coordinates are
+/// kept. Throws Error, naming `source`.
 Mesh parse_ply(std::string_view bytes, const std::string& source) {
   const Header header = read_header(bytes, source);
   Values values(bytes.substr(header.size), header, source);

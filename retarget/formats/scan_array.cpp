@@ -204,16 +204,6 @@ class ArrayFrames : public ScanSource::Frames {
   std::string bytes_;
 };
 
-std::unique_ptr<ScanSource::Frames> open_npy(const std::string& path) {
-  auto stream = std::make_unique<FileStream>(path);
-  const NpyHeader header = read_header(*stream, path);
-  US_CHECK(is_sequence(header.shape) || is_frame(header.shape), path,
-           ": its array is not frames x points x 3");
-  US_CHECK(header.readable, path,
-           ": its numbers are not in C order or of a type that is read; save it as float32");
-  return std::make_unique<ArrayFrames>(path, std::move(stream), header);
-}
-
 std::string entry_name(zip_t* zip, zip_int64_t index) {
   const char* const name = zip_get_name(zip, static_cast<zip_uint64_t>(index), 0);
   return name ? name : "";
@@ -260,7 +250,19 @@ Faces read_faces(const Archive& archive, int64_t points, const std::string& path
   return faces.finish(points, path);
 }
 
-std::unique_ptr<ScanSource::Frames> open_npz(const std::string& path) {
+}  // namespace
+
+std::unique_ptr<ScanSource::Frames> npy_frames(const std::string& path) {
+  auto stream = std::make_unique<FileStream>(path);
+  const NpyHeader header = read_header(*stream, path);
+  US_CHECK(is_sequence(header.shape) || is_frame(header.shape), path,
+           ": its array is not frames x points x 3");
+  US_CHECK(header.readable, path,
+           ": its numbers are not in C order or of a type that is read; save it as float32");
+  return std::make_unique<ArrayFrames>(path, std::move(stream), header);
+}
+
+std::unique_ptr<ScanSource::Frames> npz_frames(const std::string& path) {
   const FileStream readable(path);  // says why, when it cannot be read
   int code = 0;
   const std::shared_ptr<zip_t> zip(zip_open(path.c_str(), ZIP_RDONLY, &code), [](zip_t* z) {
@@ -277,13 +279,6 @@ std::unique_ptr<ScanSource::Frames> open_npz(const std::string& path) {
   auto frames = std::make_unique<ArrayFrames>(path, std::move(stream), header);
   frames->faces = read_faces(archive, frames->points(), path);
   return frames;
-}
-
-}  // namespace
-
-std::unique_ptr<ScanSource::Frames> array_frames(const std::string& path) {
-  const std::string suffix = file_suffix(path);
-  return suffix == ".npy" ? open_npy(path) : open_npz(path);
 }
 
 }  // namespace understudy

@@ -9,7 +9,7 @@
 
 #include "retarget/base/log.hpp"
 #include "retarget/formats/bytes.hpp"
-#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_frames.hpp"
 
 namespace understudy {
@@ -78,9 +78,9 @@ class FollowedFolder : public ScanSource::Frames {
     std::vector<std::string> open;
     for (const auto& name : names) {
       if (name[0] == '.' || (handed_out_ > 0 && !natural_less(last_name_, name))) continue;
-      const auto format = format_of_suffix(name);
-      if (!format || (format_ && *format != *format_)) {
-        if (format) log::warn_once(folder_ + ": " + format_name(*format) + " files are left out");
+      const FileFormat* const format = format_of_suffix(name, kScanFrame);
+      if (!format || (format_ && format != format_)) {
+        if (format) log::warn_once(folder_ + ": " + format->name + " files are left out");
         continue;
       }
       open.push_back(name);
@@ -111,7 +111,7 @@ class FollowedFolder : public ScanSource::Frames {
     ScanFrame frame = load_frame(path, number ? *number : handed_out_);
     if (!written && (!frame.usable || !(state_of(path) == state_))) return {};
     waiting_.pop_front();
-    if (!format_) format_ = format_of_suffix(name);
+    if (!format_) format_ = format_of_suffix(name, kScanFrame);
     note_gap(name);
     if (number && number_ && !step_) step_ = *number - *number_;
     number_ = number;
@@ -131,7 +131,7 @@ class FollowedFolder : public ScanSource::Frames {
 
   std::string folder_;
   ScanSourceOptions options_;
-  std::optional<MeshFormat> format_;
+  const FileFormat* format_ = nullptr;  // of the first frame
   std::deque<std::string> waiting_;
   std::string last_name_, watched_;
   FileState state_;

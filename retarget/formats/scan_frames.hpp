@@ -27,8 +27,6 @@ std::optional<int64_t> frame_number(const std::string& path);
 /// A folder that is still being written.
 std::unique_ptr<ScanSource::Frames> follow_folder(const std::string& folder,
                                                   const ScanSourceOptions& options);
-/// The frames of a .npy or .npz, streamed: one frame in memory at a time.
-std::unique_ptr<ScanSource::Frames> array_frames(const std::string& path);
 
 /// Names of the files in a folder, unsorted, hidden ones left out. Throws Error.
 std::vector<std::string> folder_files(const std::string& folder);

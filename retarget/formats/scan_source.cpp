@@ -8,6 +8,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/scan_frames.hpp"
 
@@ -116,7 +117,7 @@ std::vector<std::string> under(const std::string& folder, const std::vector<std:
 // The paths in a list file; none when it is no list (a .txt may be a cloud).
 std::vector<std::string> listed_files(const std::string& path) {
   const std::string bytes = read_file(path);
-  const bool surely = file_suffix(path) == ".lst";
+  const bool surely = !can_be(path, kScanFrame);
   std::vector<std::string> files;
   TextCursor text(bytes, path);
   std::vector<std::string_view> words;
@@ -128,7 +129,7 @@ std::vector<std::string> listed_files(const std::string& path) {
     split_words(line, ",;", words);
     if (!surely && files.empty() && (words.empty() || parse_number(words[0], number))) return {};
     const auto file = fs::path(path).parent_path() / fs::path(std::string(line));
-    if (!surely && files.empty() && !format_of_suffix(file.string())) return {};
+    if (!surely && files.empty() && !can_be(file.string(), kScanFrame)) return {};
     files.push_back(file.string());
   }
   US_CHECK(!surely || !files.empty(), path, ": the list names no file");
@@ -136,16 +137,18 @@ std::vector<std::string> listed_files(const std::string& path) {
 }
 
 std::unique_ptr<ScanSource::Frames> open_file(const std::string& path) {
-  const std::string suffix = file_suffix(path);
-  if (suffix == ".npy" || suffix == ".npz") return array_frames(path);
-  if (suffix == ".txt" || suffix == ".lst") {
-    auto files = listed_files(path);
-    if (!files.empty()) return std::make_unique<FileFrames>(std::move(files), path);
-  }
-  return std::make_unique<FileFrames>(std::vector<std::string>{path}, path);
+  const FileFormat* const format = format_of_suffix(path, kScanSequence);
+  auto frames = format ? format->open(path) : nullptr;
+  return frames ? std::move(frames) : std::make_unique<FileFrames>(std::vector<std::string>{path}, path);
 }
 
 }  // namespace
+
+std::unique_ptr<ScanSource::Frames> listed_frames(const std::string& path) {
+  auto files = listed_files(path);
+  if (files.empty()) return nullptr;
+  return std::make_unique<FileFrames>(std::move(files), path);
+}
 
 bool natural_less(const std::string& a, const std::string& b) {
   size_t i = 0, j = 0;
@@ -212,12 +215,10 @@ std::vector<std::string> folder_files(const std::string& folder) {
 }
 
 std::vector<std::string> frame_files(const std::string& folder, const std::vector<std::string>& names) {
-  std::map<MeshFormat, std::vector<std::string>> kinds, text;
+  std::map<const FileFormat*, std::vector<std::string>> kinds, text;
   for (const auto& name : names) {
-    const auto format = format_of_suffix(name);
-    if (!format || name[0] == '.') continue;
-    const std::string suffix = file_suffix(name);
-    (suffix == ".txt" || suffix == ".csv" ? text : kinds)[*format].push_back(name);
+    const FileFormat* const format = format_of_suffix(name, kScanFrame);
+    if (format && name[0] != '.') (format->is_plain_text ? text : kinds)[format].push_back(name);
   }
   if (kinds.empty()) kinds = std::move(text);
   if (kinds.empty()) return {};
@@ -226,10 +227,9 @@ std::vector<std::string> frame_files(const std::string& folder, const std::vecto
   for (const auto& [format, files] : kinds) {
     if (format == best->first) continue;
     US_CHECK(files.size() < best->second.size(), folder, ": holds ", files.size(), " frames each of ",
-             format_name(best->first), " and ", format_name(format),
-             ", so which to take must be said by a list");
-    log::warn_once(folder + ": " + std::to_string(files.size()) + " " + format_name(format) +
-                   " files are left out, most frames are " + format_name(best->first));
+             best->first->name, " and ", format->name, ", so which to take must be said by a list");
+    log::warn_once(folder + ": " + std::to_string(files.size()) + " " + format->name +
+                   " files are left out, most frames are " + best->first->name);
   }
   std::sort(best->second.begin(), best->second.end(), natural_less);
   return best->second;
@@ -247,7 +247,7 @@ ScanSource::ScanSource(const std::string& path, const ScanSourceOptions& options
       return;
     }
     const auto names = frame_files(path, folder_files(path));
-    US_CHECK(!names.empty(), path, ": holds no frames (PLY, OBJ, OFF, STL, XYZ, PCD, glTF files)");
+    US_CHECK(!names.empty(), path, ": holds no frames (", format_names(kScanFrame), " files)");
     frames_ = std::make_unique<FileFrames>(under(path, names), path);
     return;
   }

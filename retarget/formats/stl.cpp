@@ -1,10 +1,10 @@
-#include "retarget/formats/stl.hpp"
-
+// STL, ascii and binary.
 #include <array>
 #include <unordered_map>
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
+#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -112,10 +112,21 @@ bool is_ascii(std::string_view bytes) {
 
 }  // namespace
 
+/// A mesh from the bytes of a .stl; corners at exactly the same position become one vertex. Throws Error,
+/// naming `source`.
 Mesh parse_stl(std::string_view bytes, const std::string& source) {
   if (is_ascii(bytes)) return parse_ascii(bytes, source);
   US_CHECK(bytes.size() >= kHeaderBytes, source, ": is too short for an STL file");
   return parse_binary(bytes, source);
+}
+
+// Ascii STL says "solid", and so may any text: a facet must follow. Binary STL has no sign but its size.
+bool is_stl(std::string_view bytes) {
+  if (lower_case(bytes.substr(0, 5)) == "solid") {
+    const std::string start = lower_case(bytes.substr(0, 1024));
+    if (start.find("facet") != start.npos || start.find("endsolid") != start.npos) return true;
+  }
+  return bytes.size() >= 84 && bytes.size() == 84 + 50ull * load<uint32_t>(bytes.data() + 80, false);
 }
 
 }  // namespace understudy

@@ -1,5 +1,4 @@
-#include "retarget/formats/xyz.hpp"
-
+// XYZ, TXT, CSV, ASC, PTS: a point a line.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
+#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -111,6 +111,10 @@ class XyzParser {
 
 }  // namespace
 
+/// A cloud from lines of numbers parted by blanks, commas or semicolons. The first three are the position,
+/// unless a line of column names says otherwise; colours are taken from columns named so, or from three more
+/// numbers that can be no normal. A leading count and lines that start with # or // are stepped over. Throws
+/// Error, naming `source`.
 Mesh parse_xyz(std::string_view bytes, const std::string& source) {
   US_CHECK(bytes.substr(0, 4096).find('\0') == bytes.npos, source, ": is binary, not lines of numbers");
   if (bytes.substr(0, 3) == "\xEF\xBB\xBF") bytes.remove_prefix(3);  // the byte order mark of some editors

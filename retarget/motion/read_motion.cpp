@@ -4,8 +4,7 @@
 #include <filesystem>
 
 #include "retarget/base/error.hpp"
-#include "retarget/base/text.hpp"
-#include "retarget/formats/bytes.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/motion/amass_motion.hpp"
 #include "retarget/motion/bvh.hpp"
@@ -21,28 +20,40 @@ bool is_amass_motion(const std::string& path) {
   return has("poses") && has("trans") && !has("v_template");
 }
 
+/// Formats of bones alone.
+struct Reader {
+  std::string_view format;
+  Character (*read)(const std::string& path);
+};
+constexpr Reader kReaders[] = {{"BVH", read_bvh}, {"NPZ", read_amass_character}};
+
 }  // namespace
 
 bool is_motion_file(const std::string& path) {
-  const std::string suffix = file_suffix(path);
-  if (suffix != ".npz" && suffix != ".bvh" && suffix != ".fbx" && suffix != ".dae") return false;
+  const FileFormat* const format = format_of_suffix(path, kMotion);
+  if (!format || format->parse) return false;
   std::error_code failed;
   US_CHECK(std::filesystem::exists(path, failed), path, ": there is no such file");
   if (std::filesystem::is_directory(path)) return false;
-  return suffix != ".npz" || is_amass_motion(path);
+  return !format->open || is_amass_motion(path);
+}
+
+bool may_hold_motion(const std::string& path) {
+  const FileFormat* const format = format_of_suffix(path, kMotion);
+  return format && format->parse;
 }
 
 std::optional<Character> read_motion(const std::string& path, const ReadCharacterOptions& options) {
   std::error_code failed;
-  const std::string suffix = file_suffix(path);
-  const bool is_gltf = suffix == ".glb" || suffix == ".gltf";
+  const bool is_gltf = may_hold_motion(path);
   if (std::filesystem::is_directory(path, failed) || (!is_gltf && !is_motion_file(path))) return std::nullopt;
-  const bool bones_alone = suffix == ".bvh" || suffix == ".npz";
-  Character character = suffix == ".bvh"   ? read_bvh(path)
-                        : suffix == ".npz" ? read_amass_character(path)
-                                           : read_character(path, options);
-  character.file = path;
-  if (bones_alone) return character;
+  for (const Reader& reader : kReaders)
+    if (reader.format == format_of_suffix(path, kMotion)->name) {
+      Character character = reader.read(path);
+      character.file = path;
+      return character;
+    }
+  Character character = read_character(path, options);
   auto& all = character.animations;
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& one) { return one.tracks.empty(); }),
             all.end());

@@ -13,6 +13,8 @@ namespace understudy {
 /// names of its arrays. A glTF may be one, too: that only reading it tells. Throws Error when there is no
 /// such file.
 bool is_motion_file(const std::string& path);
+/// Whether a file of this name may hold a motion, and only reading it tells.
+bool may_hold_motion(const std::string& path);
 
 /// The animated character of a BVH, FBX, DAE, glTF or GLB file, or of an AMASS-format .npz; it may have no
 /// mesh. None when the file is of another kind or a glTF without an animation. Throws Error naming the file,

@@ -289,6 +289,11 @@ TEST_F(SourceFiles, AnAnimatedSurfaceIsSampledAnewWhereAScanIsAskedFor) {
   EXPECT_TRUE(open_source(options)->next()->skeleton);
 }
 
+TEST_F(SourceFiles, ABodyIsOneWhateverTheCaseOfItsSuffix) {
+  write_npz(scratch.path("BODY.NPZ"), tiny_body());
+  EXPECT_GT(read_target(scratch.path("BODY.NPZ"), {1}).vertex_count(), 0);
+}
+
 TEST_F(SourceFiles, ATargetTakesShapeParameters) {
   write_npz(scratch.path("body.npz"), tiny_body());
   const Character plain = read_target(scratch.path("body.npz"), {}),

@@ -57,7 +57,7 @@ TEST_P(Corpus, IsReadOrRefusedQuicklyWholeCutAndDamaged) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Readers, Corpus, testing::ValuesIn(readers()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace understudy::fuzz

@@ -19,6 +19,7 @@
 #include "app/studio/event_text.hpp"
 #include "app/studio/key_chord.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
 #include "retarget/body/data_folder.hpp"
 #include "retarget/character/bone_choices.hpp"
@@ -28,16 +29,10 @@
 #include "retarget/character/picture.hpp"
 #include "retarget/character/pixels.hpp"
 #include "retarget/character/vertex_colors.hpp"
-#include "retarget/formats/gltf_mesh.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
-#include "retarget/formats/obj.hpp"
-#include "retarget/formats/off.hpp"
-#include "retarget/formats/pcd.hpp"
-#include "retarget/formats/ply.hpp"
 #include "retarget/formats/scan_source.hpp"
-#include "retarget/formats/stl.hpp"
-#include "retarget/formats/xyz.hpp"
 #include "retarget/motion/bvh.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/networks/weights_layout.hpp"
@@ -56,11 +51,6 @@ void check_mesh(const Mesh& mesh) {
   must(mesh.faces.size() == 0 || (mesh.faces.minCoeff() >= 0 && mesh.faces.maxCoeff() < mesh.vertices.rows()),
        "faces name vertices");
   must(mesh.colors.rows() == 0 || mesh.colors.rows() == mesh.vertices.rows(), "colours fit");
-}
-
-template <Mesh (*parse)(std::string_view, const std::string&)>
-void mesh(const std::string& bytes) {
-  check_mesh(parse(bytes, "x"));
 }
 
 void any_mesh(const std::string& bytes) {
@@ -127,10 +117,6 @@ const std::string& nowhere() {
 
 void gltf_character(const std::string& bytes) {
   use_character(parse_gltf_character(bytes, nowhere()));
-}
-
-void gltf_scan(const std::string& bytes) {
-  check_mesh(parse_gltf(bytes, nowhere()));
 }
 
 double number_in(const nlohmann::json& object, const char* name) {
@@ -396,39 +382,50 @@ void bone_choices(const std::string& bytes) {
   parse_bone_choices(bytes, "map.json");
 }
 
+/// Every format of the table that holds a mesh: "ply"; "obj_scan", where "obj" reads it as a character.
+void add_mesh_formats(std::vector<Reader>& all) {
+  for (const FileFormat& format : file_formats()) {
+    if (!format.parse || format.is_plain_text) continue;
+    const auto read = [&format](const std::string& bytes) { check_mesh(format.parse(bytes, nowhere())); };
+    std::string name = lower_case(format.name);
+    const bool taken = std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
+    const auto declared = name == "gltf" ? declared_by_gltf : name == "pcd" ? declared_by_pcd : text_size;
+    all.push_back({taken ? name + "_scan" : name, read, declared});
+  }
+}
+
+std::vector<Reader> all_readers() {
+  std::vector<Reader> all = {{"gltf", gltf_character, declared_by_gltf},
+                             {"obj", obj_character, text_size},
+                             {"any_mesh", any_mesh, declared_by_mesh},
+                             {"npy", npy, bytes_size},
+                             {"npy_frames", npy_frames, bytes_size},
+                             {"npz", npz, declared_by_zip},
+                             {"npz_frames", npz_frames, declared_by_zip},
+                             {"amass", amass, declared_by_zip},
+                             {"body", body, declared_by_zip},
+                             {"dressed_body", dressed_body, declared_by_zip},
+                             {"truth", truth, declared_by_zip},
+                             {"bvh", bvh, text_size},
+                             {"picture", picture, declared_by_picture},
+                             {"weights", weights, text_size},
+                             {"worker_words", worker_words, bytes_size},
+                             {"document", document, text_size},
+                             {"script", script, text_size},
+                             {"bone_map", bone_choices, text_size},
+                             {"scan_list", scan_list, text_size},
+                             {"case", test_case, text_size},
+                             {"splits", splits, text_size},
+                             {"report_rows", report_rows, text_size},
+                             {"settings", settings, text_size}};
+  add_mesh_formats(all);
+  return all;
+}
+
 }  // namespace
 
 const std::vector<Reader>& readers() {
-  static const std::vector<Reader> all = {{"gltf", gltf_character, declared_by_gltf},
-                                          {"gltf_scan", gltf_scan, declared_by_gltf},
-                                          {"obj", obj_character, text_size},
-                                          {"obj_scan", mesh<parse_obj>, text_size},
-                                          {"ply", mesh<parse_ply>, text_size},
-                                          {"off", mesh<parse_off>, text_size},
-                                          {"stl", mesh<parse_stl>, text_size},
-                                          {"xyz", mesh<parse_xyz>, text_size},
-                                          {"pcd", mesh<parse_pcd>, declared_by_pcd},
-                                          {"any_mesh", any_mesh, declared_by_mesh},
-                                          {"npy", npy, bytes_size},
-                                          {"npy_frames", npy_frames, bytes_size},
-                                          {"npz", npz, declared_by_zip},
-                                          {"npz_frames", npz_frames, declared_by_zip},
-                                          {"amass", amass, declared_by_zip},
-                                          {"body", body, declared_by_zip},
-                                          {"dressed_body", dressed_body, declared_by_zip},
-                                          {"truth", truth, declared_by_zip},
-                                          {"bvh", bvh, text_size},
-                                          {"picture", picture, declared_by_picture},
-                                          {"weights", weights, text_size},
-                                          {"worker_words", worker_words, bytes_size},
-                                          {"document", document, text_size},
-                                          {"script", script, text_size},
-                                          {"bone_map", bone_choices, text_size},
-                                          {"scan_list", scan_list, text_size},
-                                          {"case", test_case, text_size},
-                                          {"splits", splits, text_size},
-                                          {"report_rows", report_rows, text_size},
-                                          {"settings", settings, text_size}};
+  static const std::vector<Reader> all = all_readers();
   return all;
 }
 

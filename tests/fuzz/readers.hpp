@@ -2,15 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace understudy::fuzz {
 
 struct Reader {
-  const char* name;
+  std::string name;
   /// Reads the bytes and uses what comes out as the program does. Throws Error, and nothing else.
-  void (*read)(const std::string& bytes);
+  std::function<void(const std::string& bytes)> read;
   /// The size in memory of what the bytes say they hold: what the largest allocation is measured by.
   size_t (*declared)(const std::string& bytes);
 };

@@ -605,5 +605,35 @@ TEST_F(StudioTest, PlaysRoundAndStopsAtTheEndWithoutALoop) {
   EXPECT_FALSE(studio.session().playback.playing);
 }
 
+TEST_F(StudioTest, ASuffixInCapitalsOpensAsTheSameInSmallLetters) {
+  fs::copy_file(US_SOURCE_DIR "/tests/fuzz/corpus/bvh/walk.bvh", path("WALK.BVH"));
+  fs::copy_file(path("scan.npz"), path("SCAN.NPZ"));
+  fs::copy_file(path("target.obj"), path("TARGET.OBJ"));
+  std::ofstream(path("ALL.LST")) << "target.obj\n";
+  Studio studio(services());
+  for (const char* source : {"WALK.BVH", "SCAN.NPZ", "ALL.LST"}) {
+    studio.run("open", {path(source)});
+    EXPECT_EQ(studio.session().document.source.path, path(source));
+  }
+  EXPECT_TRUE(studio.session().document.takes.empty());
+  studio.run("open", {path("TARGET.OBJ")});
+  ASSERT_EQ(studio.session().document.takes.size(), 1u);
+  studio.run("document.save_as", {path("WORK.UNDERSTUDY")});
+  EXPECT_TRUE(fs::exists(path("WORK.UNDERSTUDY")));
+  studio.run("document.new");
+  studio.run("open", {path("WORK.UNDERSTUDY")});
+  EXPECT_EQ(studio.session().document.takes.size(), 1u);
+}
+
+TEST_F(StudioTest, WhateverCanBeATargetOpensAsOne) {
+  Studio studio(services());
+  size_t takes = 0;
+  for (const char* name : {"a.xyz", "b.PCD", "c.FBX", "d.dae", "e.ply", "f.GLB"}) {
+    std::ofstream(path(name)) << "x";
+    studio.run("open", {path(name)});
+    ASSERT_EQ(studio.session().document.takes.size(), ++takes) << name;
+  }
+}
+
 }  // namespace
 }  // namespace understudy::app

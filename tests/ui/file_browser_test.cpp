@@ -66,6 +66,26 @@ TEST_F(Browser, ShowsWhatFitsInNaturalOrder) {
   EXPECT_LT(mark("browser.entry.walk").rect.min.y, mark("browser.entry.take2.bvh").rect.min.y);
 }
 
+TEST_F(Browser, ShowsEveryFormatThatCanBeOpenedInAnyCase) {
+  const std::vector<std::string> targets = {"t.FBX", "t.dae", "t.xyz", "t.pcd", "t.GLB", "t.npz", "t.coff"},
+                                 motions = {"m.BVH", "m.dae", "m.Npz"};
+  for (const auto& name : targets) write(name);
+  for (const auto& name : motions) write(name);
+  open({target_filter()});
+  for (const auto& name : targets) EXPECT_TRUE(shown("browser.entry." + name)) << name;
+  EXPECT_FALSE(shown("browser.entry.m.BVH"));
+  open({motion_filter()});
+  for (const auto& name : motions) EXPECT_TRUE(shown("browser.entry." + name)) << name;
+}
+
+TEST_F(Browser, AFolderOfGlbFramesIsAScanAndOneOfCharactersIsNot) {
+  for (const char* folder : {"scan", "people"}) fs::create_directories(root / folder);
+  for (const char* name : {"scan/f_1.glb", "scan/f_2.GLB", "people/anna.glb", "people/bert.glb"}) write(name);
+  open({scan_filter()});
+  EXPECT_TRUE(shown("browser.look.scan"));
+  EXPECT_FALSE(shown("browser.look.people"));
+}
+
 TEST_F(Browser, ADoubleClickChoosesAFile) {
   open({target_filter()});
   double_click("browser.entry.body.obj");
@@ -279,12 +299,6 @@ TEST(FileSize, IsShort) {
   EXPECT_EQ(file_size(3400000), "3.4 MB");
   EXPECT_EQ(file_size(999999), "1.0 MB");
   EXPECT_EQ(file_size(25000), "25 kB");
-}
-
-TEST(Extension, IsLowerCaseAndNotAHiddenName) {
-  EXPECT_EQ(extension_of("Body.OBJ"), "obj");
-  EXPECT_EQ(extension_of(".obj"), "");
-  EXPECT_EQ(extension_of("README"), "");
 }
 
 }  // namespace

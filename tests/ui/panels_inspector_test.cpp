@@ -46,7 +46,7 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
 }
 
 TEST_F(Inspector, AFileThatMayMoveHasAnimationsToChoose) {
-  session.document.source.path = "/scans/walk.bvh";
+  session.document.source.path = "/scans/walk.FBX";
   frame(2);
   expect_typed("source.clip", "2", {"source.clip 2"});
   expect_click("source.as_scan", {"source.as_scan on"});

@@ -1,32 +1,17 @@
 #include "ui/panels/files.hpp"
 
-#include <algorithm>
 #include <filesystem>
 
 namespace understudy::ui {
 namespace fs = std::filesystem;
 namespace {
 
-FileFilter everything_known() {
-  FileFilter all{"All supported files", {"understudy"}, true};
-  for (const FileFilter& filter : {scan_filter(), target_filter(), motion_filter(), case_filter()})
-    for (const std::string& extension : filter.extensions)
-      if (std::find(all.extensions.begin(), all.extensions.end(), extension) == all.extensions.end())
-        all.extensions.push_back(extension);
-  return all;
-}
-
 BrowseRequest request_for(FilePurpose purpose) {
   switch (purpose) {
     case FilePurpose::Scan:
       return {"Open scan", "Open", false, {scan_filter(), any_filter()}, "", ""};
     case FilePurpose::MotionBody:
-      return {"Open motion: first the body",
-              "Next",
-              false,
-              {{"SMPL-format bodies", {"npz"}, false}, any_filter()},
-              "",
-              ""};
+      return {"Open motion: first the body", "Next", false, {body_filter(), any_filter()}, "", ""};
     case FilePurpose::Motion:
       return {"Open motion: now the motion", "Open", false, {motion_filter(), any_filter()}, "", ""};
     case FilePurpose::Target:
@@ -42,7 +27,7 @@ BrowseRequest request_for(FilePurpose purpose) {
     case FilePurpose::Export:
       return {"Where to", "Choose", true, {{"All files", {}, false}}, "", ""};
     default:
-      return {"Open", "Open", false, {everything_known(), any_filter()}, "", ""};
+      return {"Open", "Open", false, {known_filter(), any_filter()}, "", ""};
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "ui/panels/rig.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/lists.hpp"
@@ -76,9 +77,7 @@ void draw_source_facts(const app::Session& session, Ui& ui) {
 
 /// Whether a file of this name may hold a skeleton that moves.
 bool may_move(const app::SourceOptions& source) {
-  static const std::vector<std::string> suffixes = {".bvh", ".fbx", ".dae", ".glb", ".gltf", ".npz"};
-  const std::string suffix = file_suffix(source.path);
-  return source.motion.empty() && std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
+  return source.motion.empty() && can_be(source.path, kMotion);
 }
 
 /// By its name where that alone says which, else by its number.

@@ -11,6 +11,7 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/widgets/controls.hpp"
 #include "ui/widgets/dialogs.hpp"
@@ -39,13 +40,14 @@ Icon icon_of(const FolderEntry& entry) {
   if (entry.frames > 0) return Icon::Points;
   if (entry.is_case) return Icon::Check;
   if (entry.is_folder) return Icon::Folder;
-  const std::string extension = extension_of(entry.name);
-  if (extension == "understudy") return Icon::Layers;
-  if (extension == "bvh") return Icon::Skeleton;
-  if (extension == "png" || extension == "jpg") return Icon::Image;
-  if (extension == "mp4") return Icon::Video;
-  for (const char* mesh : {"obj", "ply", "off", "stl", "glb", "gltf", "fbx"})
-    if (extension == mesh) return Icon::Mesh;
+  if (const FileFormat* const known = format_of_suffix(entry.name, ~0u); known && !known->is_plain_text) {
+    if (known->uses & kDocument) return Icon::Layers;
+    if (known->uses == kMotion) return Icon::Skeleton;
+    if (known->uses & kTarget && !known->open) return Icon::Mesh;
+  }
+  const std::string suffix = file_suffix(entry.name);
+  if (suffix == ".png" || suffix == ".jpg") return Icon::Image;
+  if (suffix == ".mp4") return Icon::Video;
   return Icon::File;
 }
 
@@ -63,22 +65,25 @@ bool pressed(Key key) {
 }  // namespace
 
 FileFilter scan_filter() {
-  return {"Scans",
-          {"ply", "obj", "off", "stl", "xyz", "pcd", "npy", "npz", "glb", "gltf", "fbx", "dae", "bvh", "txt",
-           "lst"},
-          true};
+  return {"Scans", format_suffixes(kScanFrame | kScanSequence | kMotion), true};
 }
 FileFilter target_filter() {
-  return {"Targets", {"obj", "ply", "off", "stl", "glb", "gltf", "fbx", "npz"}};
+  return {"Targets", format_suffixes(kTarget)};
 }
 FileFilter motion_filter() {
-  return {"Motions", {"bvh", "npz", "fbx", "glb", "gltf"}};
+  return {"Motions", format_suffixes(kMotion)};
+}
+FileFilter body_filter() {
+  return {"SMPL-format bodies", format_suffixes(kBody)};
 }
 FileFilter document_filter() {
-  return {"Understudy documents", {"understudy"}};
+  return {"Understudy documents", format_suffixes(kDocument)};
 }
 FileFilter case_filter() {
-  return {"Cases", {"json"}, true};
+  return {"Cases", format_suffixes(kCase), true};
+}
+FileFilter known_filter() {
+  return {"All supported files", format_suffixes(~0u), true};
 }
 FileFilter any_filter() {
   return {"All files", {}, true};
@@ -146,11 +151,11 @@ std::optional<std::string> FileBrowser::draw(Ui& ui) {
   if (newest != contents_ || rows_of_filter_ != filter_) {
     contents_ = std::move(newest), rows_of_filter_ = filter_;
     rows_.clear();
-    const auto& extensions = filter().extensions;
+    const auto& suffixes = filter().suffixes;
     for (int i = 0; i < ssize(contents_->entries); ++i) {
       const FolderEntry& entry = contents_->entries[i];
-      const bool fits = extensions.empty() || std::find(extensions.begin(), extensions.end(),
-                                                        extension_of(entry.name)) != extensions.end();
+      const bool fits = suffixes.empty() || std::find(suffixes.begin(), suffixes.end(),
+                                                      file_suffix(entry.name)) != suffixes.end();
       if (entry.is_folder || fits) rows_.push_back(i);
     }
   }
@@ -500,11 +505,10 @@ void FileBrowser::accept() {
     return;
   }
   if (name_.empty()) return;
-  const auto& extensions = filter().extensions;
+  const auto& suffixes = filter().suffixes;
   std::string name = name_;
-  if (!extensions.empty() &&
-      std::find(extensions.begin(), extensions.end(), extension_of(name)) == extensions.end())
-    name += "." + extensions.front();
+  if (!suffixes.empty() && std::find(suffixes.begin(), suffixes.end(), file_suffix(name)) == suffixes.end())
+    name += suffixes.front();
   const fs::path path = fs::path(folder_) / name;
   std::error_code error;
   if (fs::is_directory(path, error))

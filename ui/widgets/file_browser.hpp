@@ -16,14 +16,16 @@ namespace understudy::ui {
 /// Which files are shown, and whether a folder itself may be the answer.
 struct FileFilter {
   std::string label;
-  std::vector<std::string> extensions;  ///< lower case, no dot; none: every file
-  bool folders = false;                 ///< a folder of scan frames, or a case, may be chosen
+  std::vector<std::string> suffixes;  ///< lower case, with the dot; none: every file
+  bool folders = false;               ///< a folder of scan frames, or a case, may be chosen
 };
 FileFilter scan_filter();
 FileFilter target_filter();
 FileFilter motion_filter();
+FileFilter body_filter();
 FileFilter document_filter();
 FileFilter case_filter();
+FileFilter known_filter();  ///< all that opens
 FileFilter any_filter();
 
 struct Place {

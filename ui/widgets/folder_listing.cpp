@@ -13,8 +13,8 @@
 #include <system_error>
 #include <thread>
 
-#include "retarget/base/text.hpp"
-#include "retarget/formats/scan_source.hpp"
+#include "retarget/formats/file_formats.hpp"
+#include "retarget/formats/scan_frames.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -28,9 +28,9 @@ bool comes_before(const FolderEntry& a, const FolderEntry& b) {
   return a.is_folder != b.is_folder ? a.is_folder : natural_less(a.name, b.name);
 }
 
-bool is_frame_format(const std::string& extension) {
-  constexpr std::array<const char*, 6> kFormats = {"ply", "obj", "off", "stl", "xyz", "pcd"};
-  return std::find(kFormats.begin(), kFormats.end(), extension) != kFormats.end();
+/// A file of a format that characters come in, too, is a frame only where its name has a number.
+bool is_frame(const std::string& name, const FileFormat& format) {
+  return !format.is_plain_text && (!(format.uses & kMotion) || frame_number(name));
 }
 
 std::string reason(const std::string& folder, const std::error_code& error) {
@@ -54,15 +54,16 @@ FolderEntry entry_of(const fs::directory_entry& found) {
 /// Looks into a folder for scan frames and a case; a single frame is no sequence.
 void look_inside(const fs::path& folder, FolderEntry& entry, const std::atomic<bool>& unwanted) {
   std::error_code error;
-  std::map<std::string, int> counts;
+  std::map<const FileFormat*, int> counts;
   int seen = 0;
   for (fs::directory_iterator at(folder, error), end; !error && at != end && !unwanted; at.increment(error)) {
-    const std::string name = at->path().filename().string(), extension = extension_of(name);
+    const std::string name = at->path().filename().string();
     if (name == "case.json") entry.is_case = true;
-    if (is_frame_format(extension)) ++counts[extension];
+    const FileFormat* const format = format_of_suffix(name, kScanFrame);
+    if (format && is_frame(name, *format)) ++counts[format];
     if (++seen >= kMostFrames) break;
   }
-  for (const auto& [extension, count] : counts)
+  for (const auto& [format, count] : counts)
     if (count > 1) entry.frames = std::max(entry.frames, count);
 }
 
@@ -126,11 +127,6 @@ FolderListing::~FolderListing() {
 std::shared_ptr<const FolderContents> FolderListing::contents() const {
   const std::lock_guard<std::mutex> lock(shared_->mutex);
   return shared_->newest;
-}
-
-std::string extension_of(const std::string& name) {
-  const std::string suffix = file_suffix(name);
-  return suffix.empty() ? suffix : suffix.substr(1);
 }
 
 std::string file_size(uint64_t bytes) {

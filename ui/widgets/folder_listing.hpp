@@ -41,8 +41,6 @@ class FolderListing {
   std::shared_ptr<Shared> shared_;
 };
 
-/// Extension in lower case without the dot; empty when there is none.
-std::string extension_of(const std::string& name);
 /// "512 B", "3.4 MB".
 std::string file_size(uint64_t bytes);
 

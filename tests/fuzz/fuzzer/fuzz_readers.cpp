@@ -44,10 +44,10 @@ size_t limit_for(const std::string& bytes) {
 extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
   for (int i = 1; i < *count; ++i)
     for (const Reader& one : readers())
-      if (std::string("--reader=") + one.name == (*arguments)[i]) reader = &one;
+      if ("--reader=" + one.name == (*arguments)[i]) reader = &one;
   if (reader == nullptr) {
     std::fprintf(stderr, "fuzz_readers --reader=NAME [OPTIONS] CORPUS, NAME is one of:");
-    for (const Reader& one : readers()) std::fprintf(stderr, " %s", one.name);
+    for (const Reader& one : readers()) std::fprintf(stderr, " %s", one.name.c_str());
     std::fprintf(stderr, "\n");
     std::exit(2);
   }

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <sstream>
 
 #include "retarget/formats/bytes.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "tests/retarget/formats/support.hpp"
 
 namespace understudy {
@@ -271,6 +273,43 @@ TEST(Pcd, RepeatsBackReferencesOfCompressedData) {
                      bytes_of(uint32_t{48}) + packed,
                  "a.pcd");
   EXPECT_EQ(mesh.vertices, Points::Zero(4, 3));
+}
+
+/// The names in a sentence of the README: "PLY, OBJ or GLB" from `begin` to `end`; none when it is not there.
+std::vector<std::string> promised(const std::string& begin, const std::string& end) {
+  const std::string readme = read_file(US_SOURCE_DIR "/README.md");
+  const size_t from = readme.find(begin);
+  if (from == readme.npos) return {};
+  std::istringstream words(readme.substr(from, readme.find(end, from) - from).substr(begin.size()));
+  std::vector<std::string> names;
+  for (std::string word; words >> word;) {
+    word.erase(std::remove(word.begin(), word.end(), ','), word.end());
+    if (word.size() > 2 && std::isupper(static_cast<unsigned char>(word[1]))) names.push_back(word);
+  }
+  return names;
+}
+
+TEST(FileFormats, WhatTheReadmePromisesIsInTheTable) {
+  const std::tuple<const char*, const char*, unsigned> sentences[] = {
+      {"`SCANS` is a folder of ", " frames", kScanFrame},
+      {"or one ", " of T x N x 3", kScanSequence},
+      {"*Targets* are ", " or a cloud", kTarget},
+      {"*Sources may be skeletons*: BVH, AMASS ", ". Their bones", kMotion}};
+  for (const auto& [begin, end, use] : sentences) {
+    const auto names = promised(begin, end);
+    EXPECT_FALSE(names.empty()) << begin;
+    for (const std::string& name : names) {
+      std::istringstream either(name);
+      for (std::string one; std::getline(either, one, '/');) EXPECT_TRUE(can_be("x." + one, use)) << one;
+    }
+  }
+}
+
+TEST(FileFormats, NoTwoOfOneUseHaveTheSameSuffix) {
+  for (unsigned use = kScanFrame; use <= kCase; use *= 2) {
+    std::set<std::string> seen;
+    for (const std::string& suffix : format_suffixes(use)) EXPECT_TRUE(seen.insert(suffix).second) << suffix;
+  }
 }
 
 }  // namespace

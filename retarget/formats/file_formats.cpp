@@ -1,0 +1,97 @@
+#include "retarget/formats/file_formats.hpp"
+
+#include "retarget/base/text.hpp"
+#include "retarget/formats/gltf_mesh.hpp"
+
+namespace understudy {
+
+// Readers and what recognises their files, each format in a file of its own.
+Mesh parse_ply(std::string_view bytes, const std::string& source);
+Mesh parse_obj(std::string_view bytes, const std::string& source);
+Mesh parse_off(std::string_view bytes, const std::string& source);
+Mesh parse_stl(std::string_view bytes, const std::string& source);
+Mesh parse_xyz(std::string_view bytes, const std::string& source);
+Mesh parse_pcd(std::string_view bytes, const std::string& source);
+bool is_obj(std::string_view bytes);
+bool is_off(std::string_view bytes);
+bool is_stl(std::string_view bytes);
+bool is_pcd(std::string_view bytes);
+std::unique_ptr<ScanSource::Frames> npy_frames(const std::string& path);
+std::unique_ptr<ScanSource::Frames> npz_frames(const std::string& path);
+std::unique_ptr<ScanSource::Frames> listed_frames(const std::string& path);
+
+namespace {
+
+bool is_ply(std::string_view bytes) {
+  return starts_with(bytes, "ply\n") || starts_with(bytes, "ply\r");
+}
+
+bool is_gltf(std::string_view bytes) {
+  if (starts_with(bytes, "glTF")) return true;
+  TextCursor text(bytes.substr(0, 4096), "");
+  text.skip_comments();
+  return starts_with(text.word(), "{") && bytes.find("\"asset\"") != bytes.npos;
+}
+
+bool is_fbx(std::string_view bytes) {
+  return starts_with(bytes, "Kaydara FBX Binary  ");
+}
+
+bool is_dae(std::string_view bytes) {
+  return bytes.substr(0, 512).find("<COLLADA") != bytes.npos;
+}
+
+}  // namespace
+
+const std::vector<FileFormat>& file_formats() {
+  constexpr unsigned kSurface = kScanFrame | kTarget;
+  static const std::vector<FileFormat> formats = {
+      {"PLY", {".ply"}, kSurface, parse_ply, is_ply, true},
+      {"OBJ", {".obj"}, kSurface, parse_obj, is_obj},
+      {"OFF", {".off", ".coff"}, kSurface, parse_off, is_off, true},
+      {"STL", {".stl"}, kSurface, parse_stl, is_stl},
+      {"XYZ", {".xyz", ".xyzn", ".xyzrgb", ".asc", ".pts"}, kSurface, parse_xyz},
+      {"TXT", {".txt", ".csv"}, kSurface, parse_xyz, nullptr, false, nullptr, true},
+      {"PCD", {".pcd"}, kSurface, parse_pcd, is_pcd, true},
+      {"glTF", {".glb", ".gltf"}, kSurface | kMotion, parse_gltf, is_gltf, true},
+      {"FBX", {".fbx"}, kTarget | kMotion, nullptr, is_fbx},
+      {"DAE", {".dae"}, kTarget | kMotion, nullptr, is_dae},
+      {"BVH", {".bvh"}, kMotion},
+      {"NPY", {".npy"}, kScanSequence, nullptr, nullptr, false, npy_frames},
+      {"NPZ", {".npz"}, kScanSequence | kTarget | kMotion | kBody, nullptr, nullptr, false, npz_frames},
+      {"list", {".lst", ".txt"}, kScanSequence, nullptr, nullptr, false, listed_frames},
+      {"document", {".understudy"}, kDocument},
+      {"case", {".json"}, kCase}};
+  return formats;
+}
+
+const FileFormat* format_of_suffix(std::string_view path, unsigned uses) {
+  const std::string suffix = file_suffix(path);
+  for (const FileFormat& format : file_formats())
+    for (const char* const known : format.suffixes)
+      if ((format.uses & uses) && suffix == known) return &format;
+  return nullptr;
+}
+
+const FileFormat* format_of_content(std::string_view bytes, unsigned uses) {
+  for (const FileFormat& format : file_formats())
+    if ((format.uses & uses) && format.recognise && format.recognise(bytes)) return &format;
+  return nullptr;
+}
+
+std::string format_names(unsigned uses) {
+  std::string names;
+  for (const FileFormat& format : file_formats())
+    if ((format.uses & uses) && !format.is_plain_text) append_item(names, format.name);
+  return names;
+}
+
+std::vector<std::string> format_suffixes(unsigned uses) {
+  std::vector<std::string> suffixes;
+  for (const FileFormat& format : file_formats())
+    if ((format.uses & uses) && !format.is_plain_text)
+      suffixes.insert(suffixes.end(), format.suffixes.begin(), format.suffixes.end());
+  return suffixes;
+}
+
+}  // namespace understudy
