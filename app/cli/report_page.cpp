@@ -11,15 +11,17 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/metrics/metric_table.hpp"
 
 namespace understudy::app {
 namespace {
 
-/// A figure of a table: where it lies in a report, its unit and digits.
+/// A figure of a table: where it lies in a report, and how it is told there.
 struct Column {
-  const char *group, *key, *title;
-  double scale;
-  int digits;
+  const char *group, *key;
+  const char* title = nullptr;  ///< null: the key
+  double scale = 1;             ///< of a share: 100, in per cent
+  int digits = -1;              ///< -1: those of the metric
 };
 
 struct Table {
@@ -27,14 +29,10 @@ struct Table {
   std::vector<Column> columns;
 };
 
-const std::vector<Column> kPerformance = {{"mean", "mpjpe_m", "mpjpe_m", 1, 4},
-                                          {"mean", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4},
-                                          {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 4},
-                                          {"mean", "medl_mm", "medl_mm", 1, 3},
-                                          {"mean", "acc", "acc", 1, 4},
-                                          {"mean", "pa_acc", "pa_acc", 1, 4},
-                                          {"mean", "rot_deg", "rot_deg", 1, 1},
-                                          {"ms", "total", "s a frame", 0.001, 3}};
+const std::vector<Column> kPerformance = {{"mean", "mpjpe_m"},   {"mean", "pa_mpjpe_m"},
+                                          {"mean", "pa_mpvd_m"}, {"mean", "medl_mm"},
+                                          {"mean", "acc"},       {"mean", "pa_acc"},
+                                          {"mean", "rot_deg"},   {"ms", "total", "s a frame", 0.001, 3}};
 
 const std::vector<Table>& tables() {
   static const std::vector<Table> all = {
@@ -54,11 +52,11 @@ const std::vector<Table>& tables() {
        "and "
        "skin buried: shares inside the rest of the target's own body, of arms and hands less the source's. "
        "Stretch: change of edges' lengths beyond the wrists and above the head's joint, and the truth's.",
-       {{"mean", "foot_skate", "feet slide, m/s", 1, 3},
-        {"mean", "floor_mm", "floor, mm", 1, 2},
-        {"mean", "floor_worst_mm", "worst, mm", 1, 1},
+       {{"mean", "foot_skate", "feet slide, m/s"},
+        {"mean", "floor_mm", "floor, mm"},
+        {"mean", "floor_worst_mm", "worst, mm"},
         {"mean", "hand_contact_kept", "hand contacts, %", 100, 0},
-        {"mean", "hand_contact_gap_mm", "gap, mm", 1, 1},
+        {"mean", "hand_contact_gap_mm", "gap, mm"},
         {"mean", "arm_buried_added", "arms buried, %", 100, 2},
         {"mean", "self_penetration", "skin buried, %", 100, 2},
         {"mean", "hand_stretch", "hands stretch, %", 100, 2},
@@ -68,28 +66,28 @@ const std::vector<Table>& tables() {
       {"seen",
        "Rotations seen on the surface",
        "Positions alone do not say how a bone is turned about itself, nor how head, hands and feet are.",
-       {{"mean", "rot_deg", "rot_deg", 1, 1},
-        {"mean", "head_deg", "head_deg", 1, 1},
-        {"mean", "wrist_deg", "wrist_deg", 1, 1},
-        {"mean", "foot_deg", "foot_deg", 1, 1},
-        {"mean", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4}}},
+       {{"mean", "rot_deg"},
+        {"mean", "head_deg"},
+        {"mean", "wrist_deg"},
+        {"mean", "foot_deg"},
+        {"mean", "pa_mpjpe_m"}}},
       {"contexts",
        "Contexts",
        "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
        "of "
        "that length. Places start anew, so only figures after alignment are compared.",
-       {{"mean", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4},
-        {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 4},
-        {"mean", "medl_mm", "medl_mm", 1, 3},
-        {"mean", "pa_acc", "pa_acc", 1, 4},
-        {"mean", "rot_deg", "rot_deg", 1, 1}}},
+       {{"mean", "pa_mpjpe_m"},
+        {"mean", "pa_mpvd_m"},
+        {"mean", "medl_mm"},
+        {"mean", "pa_acc"},
+        {"mean", "rot_deg"}}},
       {"rotation", "What the network says of rotations, with and without a loss on them",
        "All trained with the same budget, shorter than that of the shipped weights.", kPerformance},
       {"extraction",
        "Skeleton extraction",
        "Of the source's 22 joints, repaired and smoothed; raw: as extracted.",
-       {{"mean", "extraction_mpjpe_mm", "mm", 1, 1},
-        {"mean", "extraction_raw_mpjpe_mm", "raw, mm", 1, 1},
+       {{"mean", "extraction_mpjpe_mm", "mm"},
+        {"mean", "extraction_raw_mpjpe_mm", "raw, mm"},
         {"mean", "extraction_swap_rate", "swapped, %", 100, 2},
         {"mean", "extraction_flip_rate", "flipped, %", 100, 2},
         {"mean", "inside", "inside, %", 100, 1},
@@ -101,9 +99,9 @@ const std::vector<Table>& tables() {
        "shoulders "
        "and hips "
        "keeps of its volume where they are turned by more than 90 degrees, and what it should.",
-       {{"mean", "mpvd_m", "mpvd_m", 1, 5},
-        {"mean", "pa_mpvd_m", "pa_mpvd_m", 1, 5},
-        {"mean", "medl_mm", "medl_mm", 1, 3},
+       {{"mean", "mpvd_m", nullptr, 1, 5},
+        {"mean", "pa_mpvd_m", nullptr, 1, 5},
+        {"mean", "medl_mm"},
         {"mean", "bent_volume", "volume, %", 100, 1},
         {"mean", "bent_volume_true", "true, %", 100, 1}}}};
   return all;
@@ -111,8 +109,9 @@ const std::vector<Table>& tables() {
 
 std::string figure(const Json& report, const Column& column) {
   if (!report.contains(column.group) || !report[column.group].contains(column.key)) return "";
+  const Metric* const metric = find_metric(column.key);
   char text[32];
-  std::snprintf(text, sizeof text, "%.*f", column.digits,
+  std::snprintf(text, sizeof text, "%.*f", column.digits >= 0 || !metric ? column.digits : metric->digits,
                 column.scale * report[column.group][column.key].get<double>());
   return text;
 }
@@ -148,7 +147,7 @@ void write_table(std::ostream& page, const Table& table, const std::vector<Repor
     if (!begun) {
       page << "\n## " << table.title << "\n\n" << table.says << "\n\n";
       std::vector<std::string> head = {"suite", "row"};
-      for (const Column& column : table.columns) head.push_back(column.title);
+      for (const Column& column : table.columns) head.push_back(column.title ? column.title : column.key);
       head.insert(head.end(), {"cases", "trained with"});
       write_head(page, head);
       begun = true;
@@ -222,7 +221,7 @@ void write_groups(std::ostream& page, const char* what, const Json& groups,
                   const std::vector<Column>& columns) {
   if (groups.empty()) return;
   std::vector<std::string> head = {what};
-  for (const Column& column : columns) head.push_back(column.title);
+  for (const Column& column : columns) head.push_back(column.title ? column.title : column.key);
   page << '\n';
   write_head(page, head);
   for (const auto& group : groups.items()) {
@@ -238,11 +237,9 @@ void write_breakdown(std::ostream& page, const std::string& folder, const Report
   write_groups(page, "joint", breakdown["joints"],
                {{"", "extraction_mm", "extraction, mm", 1, 1},
                 {"", "pa_mpjpe_mm", "pa_mpjpe, mm", 1, 1},
-                {"", "rot_deg", "rot_deg", 1, 1}});
-  const std::vector<Column> grouped = {{"", "extraction_mpjpe_mm", "extraction, mm", 1, 1},
-                                       {"", "pa_mpjpe_m", "pa_mpjpe_m", 1, 4},
-                                       {"", "rot_deg", "rot_deg", 1, 1},
-                                       {"", "acc", "acc", 1, 4}};
+                {"", "rot_deg"}});
+  const std::vector<Column> grouped = {
+      {"", "extraction_mpjpe_mm", "extraction, mm"}, {"", "pa_mpjpe_m"}, {"", "rot_deg"}, {"", "acc"}};
   write_groups(page, "motion", breakdown["motions"], grouped);
   write_groups(page, "body", breakdown["bodies"], grouped);
   page << '\n';

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,7 +11,7 @@
 #include "app/run/case_folder.hpp"
 #include "retarget/metrics/bent_volume.hpp"
 #include "retarget/metrics/hand_contact.hpp"
-#include "retarget/metrics/joint_metrics.hpp"
+#include "retarget/metrics/metric_table.hpp"
 #include "retarget/metrics/surface_metrics.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 
@@ -28,12 +29,6 @@ struct EvaluatedFrame {
   const Joints* raw_joints = nullptr;     ///< extracted, as the network says
   const Mesh* scan = nullptr;
   const Confidence* confidence = nullptr;  ///< of the raw joints
-};
-
-/// Figures of one frame's surface; NaN where not told.
-struct SurfaceFigures {
-  double mpvd_m = std::nan(""), pa_mpvd_m = std::nan(""), medl_mm = std::nan(""), floor_mm = std::nan("");
-  double self_penetration = std::nan(""), inside = std::nan("");
 };
 
 /// Collects a sequence. Surface figures are summed as the frames come; the slow ones (self_penetration,
@@ -56,27 +51,28 @@ class Evaluator {
   void push(const EvaluatedFrame& frame);
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
-  /// Of the frame pushed last.
-  const SurfaceFigures& last() const { return last_; }
+  /// What the surface of the frame pushed last says, by the metric's key; without what is not told.
+  const std::map<std::string, double>& last() const { return last_; }
 
   // What was pushed, in order; empty where it was null.
-  const JointSequence& joints() const { return joints_; }
-  const JointSequence& source_joints() const { return source_joints_; }
-  const JointSequence& raw_joints() const { return raw_joints_; }
-  const std::vector<Rotations>& rotations() const { return rotations_; }
+  const JointSequence& joints() const { return seen_.joints; }
+  const JointSequence& source_joints() const { return seen_.source_joints; }
+  const JointSequence& raw_joints() const { return seen_.raw_joints; }
+  const std::vector<Rotations>& rotations() const { return seen_.rotations; }
   const std::vector<Confidence>& confidence() const { return confidence_; }
 
  private:
   struct Mean {
     double sum = 0;
     int count = 0;
-    void add(double value) { sum += value, ++count; }
+    double per_unit = 1;  // from metres, where the figure is told in another unit
+    double value() const { return per_unit * sum / count; }
   };
+  void note(const char* key, double value);
   void push_surface(const EvaluatedFrame& frame);
   void push_hands(const Points& vertices);
   void push_bends(const Points& vertices, const Points& true_vertices);
-  void add_truth(Metrics& result) const;
-  void add_extraction(Metrics& result) const;
+  std::map<std::string, double> surface_figures() const;
 
   double fps_;
   int slow_every_;
@@ -87,12 +83,10 @@ class Evaluator {
   std::optional<PartStretch> parts_;  // of the target
   ContactsKept contacts_;
   int64_t frames_ = 0;
-  JointSequence joints_, source_joints_, raw_joints_;
-  std::vector<Rotations> rotations_;
+  MetricSequence seen_, true_;
   std::vector<Confidence> confidence_;
-  SurfaceFigures last_;
-  Mean mpvd_, pa_mpvd_, medl_, floor_, self_penetration_, inside_, buried_, buried_added_, bent_, bent_true_,
-      hand_stretch_, head_stretch_, hand_stretch_true_, head_stretch_true_;
+  std::map<std::string, double> last_;
+  std::map<std::string, Mean> means_;  // of what surfaces say, by the metric's key
   double floor_worst_ = 0;
 };
 

@@ -16,16 +16,11 @@ struct FigureInput {
   const Truth* truth = nullptr;  ///< may be null
 };
 
-/// confidence and bone_drift of the source; foot_skate and jerk; with truth mpjpe_m, pa_mpjpe_m, acc,
-/// rot_deg, head_deg, wrist_deg, foot_deg, extraction_mpjpe_mm, extraction_swap_rate. As many values as
-/// frames shown.
+/// Every metric of the table that frames have and joints and poses tell, as far as what it needs is known. As
+/// many values as frames shown.
 std::vector<Series> joint_figures(const FigureInput& input);
 
-/// The order, names and units of every series there is; values empty.
-const std::vector<Series>& known_series();
-/// Figures that only a whole sequence has; without values.
-const std::vector<Series>& known_totals();
-/// A series of `known_series` by key, with `count` values NaN.
+/// The series of a metric by key, with `count` values NaN. Throws Error when there is none.
 Series blank_series(const std::string& key, size_t count);
 
 }  // namespace understudy::app

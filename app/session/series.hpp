@@ -11,7 +11,6 @@ struct Series {
   std::string key;    ///< as in design's reports: "pa_mpjpe_m"
   std::string label;  ///< for people: "PA-MPJPE"
   std::string unit;   ///< "m", "mm", "deg", "m/s", ""
-  bool lower_is_better = true;
   std::vector<float> values;
 };
 

@@ -244,20 +244,14 @@ struct Measuring {
   Metrics metrics;
 };
 
-void keep_figures(std::vector<Series>& series, size_t t, const SurfaceFigures& figures) {
-  const double values[] = {figures.mpvd_m,   figures.pa_mpvd_m,        figures.medl_mm,
-                           figures.floor_mm, figures.self_penetration, figures.inside};
-  for (size_t i = 0; i < series.size(); ++i) series[i].values[t] = static_cast<float>(values[i]);
-}
-
 void evaluate_all(Measuring& m, JobControl& control) {
   const size_t count = m.shown.poses.size();
   const bool comparable = m.truth && m.truth->frames == static_cast<int64_t>(count) &&
                           m.truth->vertex_count == static_cast<int64_t>(m.character->surface.in_file.size());
   const Mesh target = m.character->target_in_file_order();
   Evaluator evaluator(m.shown.fps, comparable ? m.truth.get() : nullptr, &target);
-  for (const char* key : {"mpvd_m", "pa_mpvd_m", "medl_mm", "floor_mm", "self_penetration", "inside"})
-    m.series.push_back(blank_series(key, count));
+  for (const Metric& metric : metric_table())
+    if (metric.per_frame && metric.needs == 0) m.series.push_back(blank_series(metric.key, count));
   SourceOptions quiet = m.source;
   quiet.quiet = true;
   const std::unique_ptr<Source> source = open_source(quiet);
@@ -269,7 +263,9 @@ void evaluate_all(Measuring& m, JobControl& control) {
     const Points vertices = m.character->surface.in_file_order(m.deformer->deform(m.shown.poses[t]));
     evaluator.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.raw_joints[t],
                     scan && scan->usable ? &scan->mesh : nullptr});
-    keep_figures(m.series, t, evaluator.last());
+    for (Series& series : m.series)
+      if (const auto told = evaluator.last().find(series.key); told != evaluator.last().end())
+        series.values[t] = static_cast<float>(told->second);
   }
   m.metrics = evaluator.metrics();
 }

@@ -178,7 +178,7 @@ TEST_F(FolderTest, FollowTheEnvironment) {
 }
 
 TEST(SeriesTest, AreFoundByKey) {
-  const std::vector<Series> series{{"a", "A", "m", true, {1}}, {"b", "B", "", true, {2}}};
+  const std::vector<Series> series{{"a", "A", "m", {1}}, {"b", "B", "", {2}}};
   EXPECT_EQ(find(series, "b")->values[0], 2);
   EXPECT_EQ(find(series, "c"), nullptr);
 }

@@ -4,6 +4,8 @@
 
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/metrics/metric_table.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/panels/timeline.hpp"
@@ -61,17 +63,24 @@ std::vector<std::string> figure_keys(const app::Session& session) {
 }
 
 std::string figure_of(const app::Metrics& metrics, const std::string& key) {
+  const Metric* const known = find_metric(key);
   for (const auto& [name, value] : metrics)
-    if (name == key) return figure(value, "");
+    if (name == key) return known ? printed("%.*f", known->digits, value) : figure(value, "");
   return "\u2013";
 }
 
 /// "PA-MPJPE, m" for "pa_mpjpe_m".
 std::string words_of(const std::string& key) {
-  const app::Series* known = app::find(app::known_series(), key);
-  if (known == nullptr) known = app::find(app::known_totals(), key);
+  const Metric* const known = find_metric(key);
   if (known == nullptr) return key;
-  return known->unit.empty() ? known->label : known->label + ", " + known->unit;
+  return *known->unit == 0 ? known->label : std::string(known->label) + ", " + known->unit;
+}
+
+/// For people who do not know it.
+const char* hint_of(const std::string& key) {
+  const Metric* const known = find_metric(key);
+  if (known == nullptr || known->better == Better::Neither) return nullptr;
+  return known->better == Better::Lower ? "The lower, the better" : "The higher, the better";
 }
 
 void draw_figures(const app::Session& session, Ui& ui) {
@@ -88,6 +97,7 @@ void draw_figures(const app::Session& session, Ui& ui) {
   for (const std::string& key : keys) {
     table.row(false, false);
     table.cell(words_of(key));
+    if (const char* const words = hint_of(key)) tooltip(ui, words);
     for (size_t k = 0; k + 1 < columns.size(); ++k) table.cell(figure_of(session.takes[k].metrics, key));
   }
 }

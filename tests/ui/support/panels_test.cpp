@@ -48,9 +48,9 @@ app::TakeState performed_take(int frames, float phase) {
   take.target = small_target();
   take.shown.poses.resize(static_cast<size_t>(frames));
   take.joints.assign(static_cast<size_t>(frames), standing(0));
-  take.series = {{"confidence", "Confidence", "", false, wave(frames, 0.4f, phase)},
-                 {"foot_skate", "Foot skate", "m/s", true, wave(frames, 0.1f, phase)},
-                 {"pa_mpjpe_m", "PA-MPJPE", "m", true, wave(frames, 0.02f, phase)}};
+  take.series = {{"confidence", "Confidence", "", wave(frames, 0.4f, phase)},
+                 {"foot_skate", "Foot skate", "m/s", wave(frames, 0.1f, phase)},
+                 {"pa_mpjpe_m", "PA-MPJPE", "m", wave(frames, 0.02f, phase)}};
   take.metrics = {{"pa_mpjpe_m", 0.0213}, {"foot_skate", 0.11 + phase}};
   for (int i = 0; i < frames; ++i) take.latency.add({2.1, 9.5 + 0.1 * i, 1.2, 3.4, 16.2 + 0.1 * i});
   take.cost = {3.2, 1.1, 0.008, 0.03};

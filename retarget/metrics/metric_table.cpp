@@ -1,0 +1,176 @@
+#include "retarget/metrics/metric_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace understudy {
+namespace {
+
+using Sequence = MetricSequence;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr unsigned kOfJoints = kNeedsJoints | kNeedsTruth, kOfRotations = kNeedsRotations | kNeedsTruth,
+                   kOfSource = kNeedsSource | kNeedsTruth;
+
+double aligned_error(const Sequence& p, const Sequence& q, double) {
+  return mean_joint_error(aligned_joints(p.joints, q.joints), q.joints);
+}
+
+double aligned_acceleration_error(const Sequence& p, const Sequence& q, double fps) {
+  return acceleration_error(aligned_joints(p.joints, q.joints), q.joints, fps);
+}
+
+template <double RotationError::*part>
+double turned(const Sequence& p, const Sequence& q, double) {
+  return rotation_error(p.rotations, q.rotations).*part;
+}
+
+/// Second difference of joint positions at 30 frames/s around frame t.
+Joints bend(const JointSequence& joints, size_t t, double fps) {
+  const float per_frame = static_cast<float>(fps * fps / 900);
+  return per_frame * (joints[t + 1] - 2 * joints[t] + joints[t - 1]);
+}
+
+std::vector<float> acceleration_errors(const Sequence& p, const Sequence& q, double fps) {
+  std::vector<float> values(p.joints.size(), kNan);
+  for (size_t t = 1; t + 1 < values.size(); ++t)
+    values[t] = (bend(p.joints, t, fps) - bend(q.joints, t, fps)).rowwise().norm().mean();
+  return values;
+}
+
+/// How far bone lengths are from their mean over time, mean over bones, share of the length.
+std::vector<float> bone_drifts(const Sequence& p, const Sequence&, double) {
+  using Lengths = Eigen::Array<float, kJointCount, 1>;
+  const auto lengths = [](const Joints& joints) {
+    Lengths result = Lengths::Zero();
+    for (int j = 1; j < kJointCount; ++j) result[j] = (joints.row(j) - joints.row(kParents[j])).norm();
+    return result;
+  };
+  Lengths usual = Lengths::Zero();
+  for (const Joints& joints : p.source_joints)
+    usual += lengths(joints) / static_cast<float>(p.source_joints.size());
+  std::vector<float> values;
+  for (const Joints& joints : p.source_joints) {
+    const Lengths now = lengths(joints);
+    float sum = 0;
+    for (int j = 1; j < kJointCount; ++j)
+      if (usual[j] > 1e-4f) sum += std::abs(now[j] - usual[j]) / usual[j];
+    values.push_back(sum / (kJointCount - 1));
+  }
+  return values;
+}
+
+std::vector<float> confidences(const Sequence& p, const Sequence&, double) {
+  return p.confidence;
+}
+
+/// `count` frames from `first` on.
+template <class List>
+List part_of(const List& list, size_t first, size_t count) {
+  return list.empty() ? list
+                      : List(list.begin() + static_cast<std::ptrdiff_t>(first),
+                             list.begin() + static_cast<std::ptrdiff_t>(first + count));
+}
+Sequence part_of(const Sequence& s, size_t first, size_t count) {
+  return {part_of(s.joints, first, count),
+          part_of(s.rotations, first, count),
+          part_of(s.source_joints, first, count),
+          part_of(s.raw_joints, first, count),
+          {}};
+}
+
+std::vector<Metric> made_table() {
+  using S = const Sequence&;
+  const Better lower = Better::Lower, higher = Better::Higher, neither = Better::Neither;
+  const bool each = true, whole = false;
+  const char *const per_frame2 = "m/frame\xC2\xB2", *const per_s3 = "m/s\xC2\xB3";
+  return {
+      {"confidence", "Confidence", "", 2, each, higher, kNeedsConfidence, nullptr, 0, confidences},
+      {"mpjpe_m", "MPJPE", "m", 4, each, lower, kOfJoints,
+       [](S p, S q, double) { return mean_joint_error(p.joints, q.joints); }},
+      {"pa_mpjpe_m", "PA-MPJPE", "m", 4, each, lower, kOfJoints, aligned_error},
+      {"acc", "Acceleration error", per_frame2, 4, each, lower, kOfJoints,
+       [](S p, S q, double fps) { return acceleration_error(p.joints, q.joints, fps); }, 0,
+       acceleration_errors},
+      {"pa_acc", "PA acceleration error", per_frame2, 4, whole, lower, kOfJoints, aligned_acceleration_error},
+      {"mpvd_m", "MPVD", "m", 4, each, lower},
+      {"pa_mpvd_m", "PA-MPVD", "m", 4, each, lower},
+      {"medl_mm", "MEDL", "mm", 3, each, lower},
+      {"rot_deg", "Rotation error", "deg", 1, each, lower, kOfRotations, turned<&RotationError::all_deg>},
+      {"head_deg", "Head rotation error", "deg", 1, each, lower, kOfRotations,
+       turned<&RotationError::head_deg>},
+      {"wrist_deg", "Wrist rotation error", "deg", 1, each, lower, kOfRotations,
+       turned<&RotationError::wrist_deg>},
+      {"foot_deg", "Foot rotation error", "deg", 1, each, lower, kOfRotations,
+       turned<&RotationError::foot_deg>},
+      {"extraction_mpjpe_mm", "Extraction error", "mm", 1, each, lower, kOfSource,
+       [](S p, S q, double) { return 1000 * mean_joint_error(p.source_joints, q.source_joints); }},
+      {"extraction_swap_rate", "Left-right swaps", "", 4, each, lower, kOfSource,
+       [](S p, S q, double) { return swap_rate(p.source_joints, q.source_joints); }},
+      {"extraction_flip_rate", "Front-back flips", "", 4, whole, lower, kOfSource,
+       [](S p, S q, double) { return flip_rate(p.source_joints, q.source_joints); }},
+      {"extraction_raw_mpjpe_mm", "Raw extraction error", "mm", 1, whole, lower, kNeedsRaw | kNeedsTruth,
+       [](S p, S q, double) { return 1000 * mean_joint_error(p.raw_joints, q.source_joints); }},
+      {"bone_drift", "Bone length drift", "", 4, each, lower, kNeedsSource,
+       [](S p, S, double) { return bone_drift(p.source_joints); }, 0, bone_drifts},
+      {"foot_skate", "Foot skate", "m/s", 3, each, lower, kNeedsJoints,
+       [](S p, S, double fps) { return foot_skate(p.joints, fps); }, 1},
+      {"floor_mm", "Floor penetration", "mm", 2, each, lower},
+      {"floor_worst_mm", "Deepest floor penetration", "mm", 1, whole, lower},
+      {"hand_contacts", "Hand contacts of the source", "", 0, whole, neither},
+      {"hand_contact_kept", "Hand contacts kept", "", 2, whole, higher},
+      {"hand_contact_gap_mm", "Gap in hand contacts", "mm", 1, whole, lower},
+      {"arm_buried", "Arms inside the body", "", 4, whole, neither},
+      {"arm_buried_added", "Arms inside the body, beyond the source's", "", 4, whole, lower},
+      {"bent_volume", "Volume kept in bends", "", 3, whole, neither},
+      {"bent_volume_true", "Volume kept in bends, truth", "", 3, whole, neither},
+      {"hand_stretch", "Hand stretch", "", 4, whole, neither},
+      {"hand_stretch_true", "Hand stretch, truth", "", 4, whole, neither},
+      {"head_stretch", "Head stretch", "", 4, whole, neither},
+      {"head_stretch_true", "Head stretch, truth", "", 4, whole, neither},
+      {"jerk", "Jerk", per_s3, 2, each, lower, kNeedsJoints,
+       [](S p, S, double fps) { return jerk(p.joints, fps); }, 3},
+      {"self_penetration", "Self-penetration", "", 4, each, lower},
+      {"inside", "Joints inside the scan", "", 3, each, higher}};
+}
+
+}  // namespace
+
+const std::vector<Metric>& metric_table() {
+  static const std::vector<Metric> table = made_table();
+  return table;
+}
+
+const Metric* find_metric(const std::string& key) {
+  for (const Metric& metric : metric_table())
+    if (key == metric.key) return &metric;
+  return nullptr;
+}
+
+bool is_known(const Metric& metric, const MetricSequence& p, const MetricSequence& q) {
+  const auto needs = [&](unsigned what) { return (metric.needs & what) != 0; };
+  const auto there = [&](const auto& in_p, const auto& in_q) {
+    return !in_p.empty() && (!needs(kNeedsTruth) || !in_q.empty());
+  };
+  return (!needs(kNeedsJoints) || there(p.joints, q.joints)) &&
+         (!needs(kNeedsRotations) || there(p.rotations, q.rotations)) &&
+         (!needs(kNeedsSource) || there(p.source_joints, q.source_joints)) &&
+         (!needs(kNeedsRaw) || there(p.raw_joints, q.source_joints)) &&
+         (!needs(kNeedsConfidence) || !p.confidence.empty());
+}
+
+std::vector<float> per_frame_figures(const Metric& metric, const MetricSequence& p, const MetricSequence& q,
+                                     size_t frames, double fps) {
+  std::vector<float> values(frames, kNan);
+  if (metric.series) {
+    values = metric.series(p, q, fps);
+    values.resize(frames, kNan);
+    return values;
+  }
+  const auto after = static_cast<size_t>(metric.after);
+  for (size_t t = 0; t + after < frames; ++t)
+    values[t] = static_cast<float>(metric.of(part_of(p, t, after + 1), part_of(q, t, after + 1), fps));
+  return values;
+}
+
+}  // namespace understudy
