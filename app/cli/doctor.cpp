@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 
 #include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
@@ -7,7 +8,9 @@
 #include "app/run/version.hpp"
 #include "render/context/context.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/networks/networks.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -26,12 +29,22 @@ std::string found_or_why(Find find, bool& healthy) {
   return "MISSING: " + why;
 }
 
+/// Those whose weights are in the folder.
+std::string present(const MethodChoices& choices, const std::string& folder) {
+  std::string names;
+  for (const MethodChoice& choice : choices)
+    if (!choice.weights || std::filesystem::exists(folder + "/" + choice.weights))
+      append_item(names, choice.name);
+  return names;
+}
+
 std::string weights_line(const nn::NetworkOptions& options) {
   const std::string folder = nn::weights_folder(options);
   US_CHECK(!folder.empty(), "no folder of weights, neither beside the program nor in its source tree");
   const Networks networks = nn::load_networks(options);
   return folder + " (" + networks.extractor->name() + ", " + networks.transfer->name() + ", " +
-         networks.deformer->name() + ")";
+         networks.deformer->name() + "); engines: " + present(engines(), folder) +
+         "; extractors: " + present(extractors(), folder);
 }
 
 int doctor(const nn::NetworkOptions& options) {

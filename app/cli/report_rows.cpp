@@ -6,6 +6,7 @@
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -47,8 +48,8 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
            "there is no table \"", row.table, "\"");
   row.budget = json.value("budget", "");
   row.breakdown = json.value("breakdown", false);
-  row.eval.networks.engine = json.value("engine", "copy");
-  row.eval.networks.extractor = json.value("extractor", "dense");
+  row.eval.networks.engine = engine_named(json.value("engine", engines().front().name)).name;
+  row.eval.networks.extractor = extractor_named(json.value("extractor", extractors().front().name)).name;
   row.eval.networks.weights = file("weights");
   row.eval.networks.engine_file = file("engine_weights");
   row.eval.networks.extractor_file = file("extractor_weights");

@@ -6,6 +6,7 @@
 #include "app/cli/options.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/file_formats.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 
@@ -19,10 +20,10 @@ void add_performance_options(CLI::App& command, RetargetOptions& performance) {
 }
 
 void add_network_options(CLI::App& command, nn::NetworkOptions& networks) {
-  command.add_option("--engine", networks.engine, "motion transfer: copy or paper")
-      ->check(CLI::IsMember({"copy", "paper"}));
-  command.add_option("--extractor", networks.extractor, "skeleton extraction: dense, or paper 1's")
-      ->check(CLI::IsMember({"dense", "paper"}));
+  command.add_option("--engine", networks.engine, "motion transfer; " + help_of(engines()))
+      ->check(CLI::IsMember(names_of(engines())));
+  command.add_option("--extractor", networks.extractor, "skeleton extraction; " + help_of(extractors()))
+      ->check(CLI::IsMember(names_of(extractors())));
   command.add_option("--weights", networks.weights, "folder of the weights (default: beside the program)");
   command.add_option("--engine-weights", networks.engine_file,
                      "weights file of the engine in place of the folder's");

@@ -3,6 +3,7 @@
 #include "app/cli/commands.hpp"
 #include "app/run/interrupt.hpp"
 #include "retarget/networks/train_options.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -31,7 +32,8 @@ void add_common(CLI::App& command, nn::TrainOptions& options) {
 }
 
 void add_own(CLI::App& command, nn::SkeletonTrainOptions& options) {
-  command.add_option("--form", options.form, "dense, or paper 1's")->check(CLI::IsMember({"dense", "paper"}));
+  command.add_option("--form", options.form, help_of(extractors()))
+      ->check(CLI::IsMember(names_of(extractors())));
   command.add_option("--poses", options.poses, "all, or rest (T-poses, for the joints of targets)")
       ->check(CLI::IsMember({"all", "rest"}));
 }

@@ -6,6 +6,7 @@
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/motion/read_motion.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -71,9 +72,9 @@ void add_import(Commands& commands) {
          floor.reset();
          if (word(a, 0, "height") != "auto") floor = static_cast<float>(number(a, 0, "height"));
        }});
-  commands.add({"source.extractor", "Skeleton extraction", "dense|paper", "", true, false,
+  commands.add({"source.extractor", "Skeleton extraction", names_of(extractors(), "|"), "", true, false,
                 [](Studio& s, const Arguments& a) {
-                  choice(a, 0, "extractor", {"dense", "paper"});
+                  choice(a, 0, "extractor", names_of(extractors()));
                   for (Take& take : s.session().document.takes) take.method.extractor = a[0];
                 }});
 }

@@ -4,6 +4,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
 namespace {
@@ -125,11 +126,11 @@ void set_method(Method& method, const std::string& key, const std::string& value
   switch (choice({key}, 0, "setting",
                  {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths", "feet"})) {
     case 0:
-      choice({value}, 0, "engine", {"copy", "paper"});
+      choice({value}, 0, "engine", names_of(engines()));
       method.engine = value;
       break;
     case 1:
-      choice({value}, 0, "extractor", {"dense", "paper"});
+      choice({value}, 0, "extractor", names_of(extractors()));
       method.extractor = value;
       break;
     case 2:
@@ -153,14 +154,14 @@ void set_method(Method& method, const std::string& key, const std::string& value
 }
 
 void add_methods(Commands& commands) {
-  const auto setting = [&commands](const char* key, const char* label, const char* usage) {
+  const auto setting = [&commands](const char* key, const char* label, const std::string& usage) {
     const std::string name = key;
     commands.add({"method." + name, label, usage, "", true, false, [name](Studio& s, const Arguments& a) {
                     set_method(take_argument(s.session(), a, 0).method, name, word(a, 1, "setting"));
                   }});
   };
-  setting("engine", "Motion transfer", "TAKE copy|paper");
-  setting("extractor", "Skeleton extraction", "TAKE dense|paper");
+  setting("engine", "Motion transfer", "TAKE " + names_of(engines(), "|"));
+  setting("extractor", "Skeleton extraction", "TAKE " + names_of(extractors(), "|"));
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
   setting("root", "Path", "TAKE scaled|original|in-place");
   commands.add({"method.filter", "Filter", "TAKE swaps|smooth|lengths|feet on|off", "", true, false,

@@ -12,16 +12,18 @@
 #include "retarget/nn/network_extractor.hpp"
 #include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/part_refiner.hpp"
-#include "retarget/pipeline/copy_transfer.hpp"
+#include "retarget/pipeline/method_table.hpp"
 #include "retarget/training/trainers.hpp"
 
 namespace understudy::nn {
 namespace {
 
 std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, const std::string& folder) {
-  if (options.engine == "copy") return std::make_unique<CopyTransfer>();
-  US_CHECK(options.engine == "paper", "there is no engine '", options.engine, "': copy or paper");
-  return load_paper_transfer(options.engine_file.empty() ? folder + "/motion.weights" : options.engine_file);
+  const MethodChoice& engine = engine_named(options.engine);
+  if (engine.make) return engine.make();
+  const std::string file = options.engine_file.empty() ? folder + "/" + engine.weights : options.engine_file;
+  if (options.engine == "paper") return load_paper_transfer(file);
+  throw Error("the networks plug-in does not know the engine " + options.engine);
 }
 
 /// Null where the folder has none: weights of one's own need no second look.
@@ -59,8 +61,7 @@ RuntimeReport report() {
 
 std::unique_ptr<SkeletonExtractor> load_extractor(const NetworkOptions& options, const std::string& folder) {
   const bool dense = options.extractor == "dense";
-  const std::string file =
-      folder + (dense ? "/skeleton.weights" : "/skeleton_" + options.extractor + ".weights");
+  const std::string file = folder + "/" + extractor_named(options.extractor).weights;
   return load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
                                 options.extractor, dense && options.near ? load_parts(folder) : nullptr);
 }

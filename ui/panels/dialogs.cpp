@@ -98,12 +98,11 @@ QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) 
 }
 
 void draw_method_rows(app::Method& method, Ui& ui) {
-  if (const auto i =
-          choice_row(ui, {"compare.engine", "Transfer", ""}, {"Copy", "Paper"}, method.engine == "paper"))
-    method.engine = *i == 1 ? "paper" : "copy";
-  if (const auto i = choice_row(ui, {"compare.extractor", "Extractor", ""}, {"Dense", "Paper"},
-                                method.extractor == "paper"))
-    method.extractor = *i == 1 ? "paper" : "dense";
+  if (const auto name = method_row(ui, {"compare.engine", "Transfer", ""}, engines(), method.engine))
+    method.engine = *name;
+  if (const auto name =
+          method_row(ui, {"compare.extractor", "Extractor", ""}, extractors(), method.extractor))
+    method.extractor = *name;
   if (const auto on = toggle_row(ui, {"compare.offsets", "Offsets", ""}, method.offsets))
     method.offsets = *on;
   if (const auto i = choice_row(ui, {"compare.root", "Path", ""}, {"Scaled", "Original", "In place"},

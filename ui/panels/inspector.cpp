@@ -144,10 +144,10 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
     context.ask("source.floor", {height ? argument(*height) : "auto"});
   }
   const app::Take* take = session.document.takes.empty() ? nullptr : &session.document.takes.front();
-  int extractor = take != nullptr && take->method.extractor == "paper" ? 1 : 0;
-  if (const auto i = choice_row(ui, {"source.extractor", "Extractor", "The network that finds the joints"},
-                                {"Dense", "Paper"}, extractor))
-    context.ask("source.extractor", {*i == 1 ? "paper" : "dense"});
+  const std::string extractor = take != nullptr ? take->method.extractor : extractors().front().name;
+  if (const auto name = method_row(ui, {"source.extractor", "Extractor", "The network that finds the joints"},
+                                   extractors(), extractor))
+    context.ask("source.extractor", {*name});
 }
 
 void draw_source(const app::Session& session, PanelContext& context) {
@@ -290,13 +290,15 @@ void draw_method(const app::Session& session, PanelContext& context) {
   if (take == nullptr || !section(ui, "inspector.method", "Method")) return;
   const std::string k = std::to_string(session.selected_take);
   const app::Method& method = take->method;
-  if (const auto i =
-          choice_row(ui, {"method.engine", "Transfer", "The method that transfers the motion to the target"},
-                     {"Copy", "Paper"}, method.engine == "paper" ? 1 : 0))
-    context.ask("method.engine", {k, *i == 1 ? "paper" : "copy"});
-  if (const auto i = choice_row(ui, {"method.extractor", "Extractor", "The network that finds the joints"},
-                                {"Dense", "Paper"}, method.extractor == "paper" ? 1 : 0))
-    context.ask("method.extractor", {k, *i == 1 ? "paper" : "dense"});
+  if (const auto name =
+          method_row(ui,
+                     {"method.engine", "Transfer",
+                      "The method that transfers the motion to the target; " + help_of(engines())},
+                     engines(), method.engine))
+    context.ask("method.engine", {k, *name});
+  if (const auto name = method_row(ui, {"method.extractor", "Extractor", "The network that finds the joints"},
+                                   extractors(), method.extractor))
+    context.ask("method.extractor", {k, *name});
   if (const auto on = toggle_row(ui, {"method.offsets", "Offsets", "Pose-corrective offsets of the skin"},
                                  method.offsets))
     context.ask("method.offsets", {k, on_off(*on)});

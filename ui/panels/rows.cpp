@@ -36,6 +36,13 @@ std::optional<int> choice_row(Ui& ui, const RowText& text, const std::vector<std
   return changed ? std::optional<int>(chosen) : std::nullopt;
 }
 
+std::optional<std::string> method_row(Ui& ui, const RowText& text, const MethodChoices& choices,
+                                      const std::string& chosen) {
+  const auto i = choice_row(ui, text, labels_of(choices), index_of(choices, chosen));
+  if (!i) return std::nullopt;
+  return choices[static_cast<size_t>(*i)].name;
+}
+
 std::optional<float> number_row(Ui& ui, const RowText& text, float value, const NumberOptions& options) {
   row(ui, text.label, text.explanation);
   return number(ui, text.name, value, options) ? std::optional<float>(value) : std::nullopt;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "retarget/pipeline/method_table.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
@@ -21,6 +22,9 @@ std::optional<bool> toggle_row(Ui& ui, const RowText& text, bool on);
 /// A few choices beside each other, or a list where there are many.
 std::optional<int> choice_row(Ui& ui, const RowText& text, const std::vector<std::string>& choices,
                               int chosen);
+/// The name of an engine or extractor; a name that is in no row leaves nothing chosen.
+std::optional<std::string> method_row(Ui& ui, const RowText& text, const MethodChoices& choices,
+                                      const std::string& chosen);
 /// Changes with every movement of the mouse: for values that take effect at once.
 std::optional<float> number_row(Ui& ui, const RowText& text, float value, const NumberOptions& options);
 /// Changes on Enter or when the field loses focus: for values that cost work.

@@ -7,6 +7,7 @@
 #include "app/session/follow.hpp"
 #include "render/picking.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/pipeline/method_table.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -29,8 +30,9 @@ PaneContent overlay(const Session& session) {
 }
 
 std::string method_words(const app::Method& method) {
-  std::string words = method.engine == "paper" ? "paper's network" : "copied rotations";
-  if (method.extractor == "paper") words += ", paper's extractor";
+  const int engine = index_of(engines(), method.engine), extractor = index_of(extractors(), method.extractor);
+  std::string words = engine < 0 ? method.engine : engines()[static_cast<size_t>(engine)].caption;
+  if (extractor > 0) words += std::string(", ") + extractors()[static_cast<size_t>(extractor)].caption;
   if (!method.offsets) words += ", no offsets";
   return words;
 }

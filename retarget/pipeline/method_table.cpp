@@ -1,0 +1,77 @@
+#include "retarget/pipeline/method_table.hpp"
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/pipeline/copy_transfer.hpp"
+
+namespace understudy {
+namespace {
+
+template <class Engine>
+std::unique_ptr<MotionTransfer> made() {
+  return std::make_unique<Engine>();
+}
+
+const MethodChoice& named(const MethodChoices& choices, const std::string& name, const char* what) {
+  const int i = index_of(choices, name);
+  US_CHECK(i >= 0, "there is no ", what, " '", name, "': ", names_of(choices, ", "));
+  return choices[static_cast<size_t>(i)];
+}
+
+}  // namespace
+
+const MethodChoices& engines() {
+  static const MethodChoices all = {
+      {"copy", "Copy", "copied rotations", "rotations are seen and solved, then copied", nullptr,
+       made<CopyTransfer>},
+      {"paper", "Paper", "paper's network", "paper 1's network says them", "motion.weights"}};
+  return all;
+}
+
+const MethodChoices& extractors() {
+  static const MethodChoices all = {
+      {"dense", "Dense", "dense extractor", "every point says where the joints are", "skeleton.weights"},
+      {"paper", "Paper", "paper's extractor", "paper 1's network", "skeleton_paper.weights"}};
+  return all;
+}
+
+const MethodChoice& engine_named(const std::string& name) {
+  return named(engines(), name, "engine");
+}
+
+const MethodChoice& extractor_named(const std::string& name) {
+  return named(extractors(), name, "extractor");
+}
+
+std::vector<std::string> names_of(const MethodChoices& choices) {
+  std::vector<std::string> names;
+  for (const MethodChoice& choice : choices) names.push_back(choice.name);
+  return names;
+}
+
+std::string names_of(const MethodChoices& choices, const char* between) {
+  std::string names;
+  for (const MethodChoice& choice : choices) append_item(names, choice.name, between);
+  return names;
+}
+
+std::vector<std::string> labels_of(const MethodChoices& choices) {
+  std::vector<std::string> labels;
+  for (const MethodChoice& choice : choices) labels.push_back(choice.label);
+  return labels;
+}
+
+int index_of(const MethodChoices& choices, const std::string& name) {
+  for (size_t i = 0; i < choices.size(); ++i)
+    if (name == choices[i].name) return static_cast<int>(i);
+  return -1;
+}
+
+std::string help_of(const MethodChoices& choices) {
+  std::string help;
+  for (const MethodChoice& choice : choices)
+    append_item(help, std::string(choice.name) + ": " + choice.sentence, "; ");
+  return help;
+}
+
+}  // namespace understudy
