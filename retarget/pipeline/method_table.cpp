@@ -3,6 +3,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
+#include "retarget/pipeline/positions_transfer.hpp"
 
 namespace understudy {
 namespace {
@@ -24,7 +25,9 @@ const MethodChoices& engines() {
   static const MethodChoices all = {
       {"copy", "Copy", "copied rotations", "rotations are seen and solved, then copied", nullptr,
        made<CopyTransfer>},
-      {"paper", "Paper", "paper's network", "paper 1's network says them", "motion.weights"}};
+      {"paper", "Paper", "paper's network", "paper 1's network says them", "motion.weights"},
+      {"positions", "Positions", "rotations from positions",
+       "rotations are solved from joint positions alone", nullptr, made<PositionsTransfer>}};
   return all;
 }
 
