@@ -5,6 +5,10 @@
 #include <limits>
 
 namespace understudy {
+
+// Metrics in files of their own.
+double bone_asymmetry(const MetricSequence& p, const MetricSequence& q, double fps);
+
 namespace {
 
 using Sequence = MetricSequence;
@@ -113,6 +117,7 @@ std::vector<Metric> made_table() {
        [](S p, S q, double) { return 1000 * mean_joint_error(p.raw_joints, q.source_joints); }},
       {"bone_drift", "Bone length drift", "", 4, each, lower, kNeedsSource,
        [](S p, S, double) { return bone_drift(p.source_joints); }, 0, bone_drifts},
+      {"bone_asymmetry", "Left-right bone difference", "", 4, each, lower, kNeedsSource, bone_asymmetry},
       {"foot_skate", "Foot skate", "m/s", 3, each, lower, kNeedsJoints,
        [](S p, S, double fps) { return foot_skate(p.joints, fps); }, 1},
       {"floor_mm", "Floor penetration", "mm", 2, each, lower},
