@@ -11,6 +11,7 @@ Mesh parse_obj(std::string_view bytes, const std::string& source);
 Mesh parse_off(std::string_view bytes, const std::string& source);
 Mesh parse_stl(std::string_view bytes, const std::string& source);
 Mesh parse_xyz(std::string_view bytes, const std::string& source);
+Mesh parse_pts(std::string_view bytes, const std::string& source);
 Mesh parse_pcd(std::string_view bytes, const std::string& source);
 bool is_obj(std::string_view bytes);
 bool is_off(std::string_view bytes);
@@ -50,7 +51,8 @@ const std::vector<FileFormat>& file_formats() {
       {"OBJ", {".obj"}, kSurface, parse_obj, is_obj},
       {"OFF", {".off", ".coff"}, kSurface, parse_off, is_off, true},
       {"STL", {".stl"}, kSurface, parse_stl, is_stl},
-      {"XYZ", {".xyz", ".xyzn", ".xyzrgb", ".asc", ".pts"}, kSurface, parse_xyz},
+      {"XYZ", {".xyz", ".xyzn", ".xyzrgb", ".asc"}, kSurface, parse_xyz},
+      {"PTS", {".pts"}, kSurface, parse_pts},
       {"TXT", {".txt", ".csv"}, kSurface, parse_xyz, nullptr, false, nullptr, true},
       {"PCD", {".pcd"}, kSurface, parse_pcd, is_pcd, true},
       {"glTF", {".glb", ".gltf"}, kSurface | kMotion, parse_gltf, is_gltf, true},
