@@ -83,7 +83,7 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
   input.clips.push_back(std::move(clip));
 }
 
-Performance perform_sources(const ExportOptions& options, const ExportFormatInfo& format) {
+Performance perform_sources(const ExportOptions& options, const ExportFormat& format) {
   US_CHECK(!options.sources.empty(), "--source: a motion to perform is wanted");
   US_CHECK(!options.target.path.empty(), "--target: a character that performs it is wanted");
   US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
@@ -93,7 +93,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormatInfo
   const bool theirs = on_their_rig(options.target, *character);
   CharacterExportOptions file = options.file;
   file.their_rig = theirs;
-  check_export_options(options.out, format.format, file);
+  check_export_options(options.out, format, file);
   US_CHECK(!theirs || file.influences == 4, options.target.path,
            ": its own skin stays as it is, --influences is for ours (--rig ours)");
   RetargetOptions quick = options.retarget;
@@ -113,7 +113,7 @@ void check_session(const Session& session) {
 }
 
 std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& document,
-                                 const ExportFormatInfo& format) {
+                                 const ExportFormat& format) {
   std::vector<size_t> takes;
   try {
     for (const std::string& name : options.takes) takes.push_back(take_called(document, name, 1));
@@ -127,7 +127,7 @@ std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& d
 }
 
 /// The document's takes as the studio shows them: its edits, its corrections of joints and weights.
-Performance perform_document(const ExportOptions& options, const ExportFormatInfo& format) {
+Performance perform_document(const ExportOptions& options, const ExportFormat& format) {
   US_CHECK(options.not_of_documents.empty(), options.document, ": a document has its own source and target, ",
            options.not_of_documents, " is for others");
   StudioServices services;
@@ -151,7 +151,7 @@ Performance perform_document(const ExportOptions& options, const ExportFormatInf
   studio.tick(0);
   check_session(session);
   progress.finish();
-  ExportChoice choice{format.format, options.file, {}, {}};
+  ExportChoice choice{&format, options.file, {}, {}};
   if (options.target.rig != "auto") choice.theirs = options.target.rig == "theirs";
   return {export_input(session, takes, choice), name};
 }
@@ -226,20 +226,20 @@ int print_map(const ExportOptions& options) {
 int run_export(const ExportOptions& options) {
   if (options.print_map) return print_map(options);
   US_CHECK(!options.out.empty(), "--out: a file to write is wanted");
-  const ExportFormatInfo& format = info_of(export_format(options.format, options.out));
+  const ExportFormat& format = export_format(options.format, options.out);
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
            ": only of a GLB or glTF file a picture can be made");
-  check_export(options.out, format.format);
+  check_export(options.out, format);
   CharacterExportOptions on_any_rig = options.file;
   on_any_rig.their_rig = options.target.rig != "ours";
-  check_export_options(options.out, format.format, on_any_rig);
+  check_export_options(options.out, format, on_any_rig);
   US_CHECK(options.takes.empty() || !options.document.empty(), "--take: only a document has takes");
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
   Performance done =
       options.document.empty() ? perform_sources(options, format) : perform_document(options, format);
   done.input.body.file.progress = [](float) { check_interrupt("while it was written"); };
   const auto began = std::chrono::steady_clock::now();
-  const ExportCost cost = export_motion(options.out, format.format, done.input);
+  const ExportCost cost = export_motion(options.out, format, done.input);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   std::fprintf(stderr, "written and measured in %.2f s\n", seconds);
   report_cost(options, done, cost);
@@ -249,7 +249,7 @@ int run_export(const ExportOptions& options) {
 
 void add_file_options(CLI::App& command, ExportOptions& options) {
   std::string formats;
-  for (const ExportFormatInfo& info : export_formats()) append_item(formats, info.name);
+  for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
   command.add_option("--format", options.format,
                      formats + " (default: by the suffix; ply and obj are folders)");
   command.add_option("--influences", options.file.influences, "bones a vertex on our rig: 4 or 8")

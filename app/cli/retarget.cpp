@@ -4,6 +4,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/job.hpp"
 #include "app/cli/options.hpp"
+#include "app/run/exports.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/pipeline/method_table.hpp"
@@ -47,9 +48,7 @@ Action declare_retarget(CLI::App& command) {
   add_target_options(command, job->target);
   add_network_options(command, job->networks);
   add_performance_options(command, job->retarget);
-  command.add_option(
-      "--out", job->out,
-      "the animated target: .glb, .gltf, .bvh, .pc2, .csv of joints, or .npz with all figures");
+  command.add_option("--out", job->out, "the animated target: " + export_suffixes());
   command.add_option("--report", job->report, "report as JSON");
   command.add_option("--preview", job->preview, "contact sheet as PNG");
   command.add_option("--skeletons", job->skeletons,

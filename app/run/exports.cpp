@@ -205,94 +205,95 @@ class CharacterOutput final : public MotionOutput {
 
 }  // namespace
 
-const std::vector<ExportFormatInfo>& export_formats() {
-  static const std::vector<ExportFormatInfo> formats = {
-      {ExportFormat::Glb, "glb", ".glb", "GLB", "The animated character, for any engine.", true},
-      {ExportFormat::Gltf, "gltf", ".gltf", "glTF", "The same as text.", true},
-      {ExportFormat::Bvh, "bvh", ".bvh", "BVH", "The motion of 22 joints, in centimetres.", false},
-      {ExportFormat::Amass, "amass", ".npz", "AMASS", "The motion as SMPL's joints turn, z up.", false},
-      {ExportFormat::Npz, "npz", ".npz", "NPZ", "Vertices, joints and rotations as arrays.", false},
-      {ExportFormat::Ply, "ply", "", "PLY", "A folder with the surface of every frame.", false},
-      {ExportFormat::Obj, "obj", "", "OBJ", "The same as text, with texture coordinates.", false},
-      {ExportFormat::PointCache, "pc2", ".pc2", "PC2", "A vertex cache, and the mesh that it moves.", false},
-      {ExportFormat::Joints, "joints", ".csv", "CSV", "Where the 22 joints are, as a table.", false}};
+const std::vector<ExportFormat>& export_formats() {
+  using P = const std::string&;
+  using B = const ExportBody&;
+  using Output = std::unique_ptr<MotionOutput>;
+  constexpr auto character = [](P path, B body, P name, double fps) -> Output {
+    return std::make_unique<CharacterOutput>(path, body, name, fps);
+  };
+  static const std::vector<ExportFormat> formats = {
+      {"glb", ".glb", "GLB", "The animated character, for any engine.", true, true, character},
+      {"gltf", ".gltf", "glTF", "The same as text.", true, true, character},
+      {"bvh", ".bvh", "BVH", "The motion of 22 joints, in centimetres.", true, false,
+       [](P path, B body, P, double fps) -> Output { return std::make_unique<BvhOutput>(path, body, fps); }},
+      {"amass", ".npz", "AMASS", "The motion as SMPL's joints turn, z up.", false, false,
+       [](P path, B body, P, double fps) -> Output {
+         return std::make_unique<AmassOutput>(path, body, fps);
+       }},
+      {"npz", ".npz", "NPZ", "Vertices, joints and rotations as arrays.", true, false,
+       [](P path, B body, P, double) -> Output { return std::make_unique<ResultOutput>(path, body); }},
+      {"ply", "", "PLY", "A folder with the surface of every frame.", false, false,
+       [](P path, B body, P, double) -> Output {
+         return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Ply);
+       }},
+      {"obj", "", "OBJ", "The same as text, with texture coordinates.", false, false,
+       [](P path, B body, P, double) -> Output {
+         return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Obj);
+       }},
+      {"pc2", ".pc2", "PC2", "A vertex cache, and the mesh that it moves.", true, false,
+       [](P path, B body, P, double) -> Output { return std::make_unique<CacheOutput>(path, body); }},
+      {"joints", ".csv", "CSV", "Where the 22 joints are, as a table.", true, false,
+       [](P path, B body, P, double fps) -> Output {
+         return std::make_unique<JointsOutput>(path, body, fps);
+       }}};
   return formats;
 }
 
-const ExportFormatInfo& info_of(ExportFormat format) {
-  return export_formats()[static_cast<size_t>(format)];
+std::string export_suffixes() {
+  std::string suffixes;
+  for (const ExportFormat& format : export_formats())
+    if (format.by_suffix) append_item(suffixes, format.suffix);
+  return suffixes;
 }
 
-ExportFormat export_format(const std::string& name, const std::string& path) {
-  std::string names, suffixes;
-  for (const ExportFormatInfo& info : export_formats()) {
-    if (info.name == name) return info.format;
-    if (name.empty() && info.format != ExportFormat::Amass && *info.suffix &&
-        file_suffix(path) == info.suffix)
-      return info.format;
-    append_item(names, info.name);
-    if (*info.suffix && info.format != ExportFormat::Amass) append_item(suffixes, info.suffix);
+const ExportFormat& export_format(const std::string& name, const std::string& path) {
+  std::string names;
+  for (const ExportFormat& format : export_formats()) {
+    if (name.empty() ? format.by_suffix && file_suffix(path) == format.suffix : format.name == name)
+      return format;
+    append_item(names, format.name);
   }
   US_CHECK(name.empty(), path, ": there is no format '", name, "', use one of ", names);
-  throw Error(path + ": this output format is not known by its name, use " + suffixes +
+  throw Error(path + ": this output format is not known by its name, use " + export_suffixes() +
               "; or name a format: " + names);
 }
 
-void check_export(const std::string& path, ExportFormat format) {
-  const ExportFormatInfo& info = info_of(format);
-  US_CHECK(!info.is_character || file_suffix(path) == info.suffix, path, ": a ", info.label,
-           " file is called something", info.suffix);
-  if (*info.suffix) return check_writable(path);
+void check_export(const std::string& path, const ExportFormat& format) {
+  US_CHECK(!format.is_character || file_suffix(path) == format.suffix, path, ": a ", format.label,
+           " file is called something", format.suffix);
+  if (*format.suffix) return check_writable(path);
   const PartFolder made_and_removed(path);
 }
 
-void check_export_options(const std::string& path, ExportFormat format, const CharacterExportOptions& file) {
-  const ExportFormatInfo& info = info_of(format);
-  US_CHECK(!info.is_character || file.their_rig || !file.keep_clips, path,
+void check_export_options(const std::string& path, const ExportFormat& format,
+                          const CharacterExportOptions& file) {
+  US_CHECK(!format.is_character || file.their_rig || !file.keep_clips, path,
            ": the file's own clips move its own rig, on our 22 joints they cannot be kept");
-  if (info.is_character) return;
-  US_CHECK(!file.t_pose_clip, path, ": ", info.label, " holds one motion, the T-pose cannot be another");
-  US_CHECK(!file.keep_clips, path, ": ", info.label,
+  if (format.is_character) return;
+  US_CHECK(!file.t_pose_clip, path, ": ", format.label, " holds one motion, the T-pose cannot be another");
+  US_CHECK(!file.keep_clips, path, ": ", format.label,
            " holds one motion, the file's own clips cannot be kept");
-  US_CHECK(file.shapes == 0, path, ": ", info.label, " holds no morph targets");
-  US_CHECK(file.influences == 4, path, ": ", info.label, " holds no skin weights, so no ", file.influences,
+  US_CHECK(file.shapes == 0, path, ": ", format.label, " holds no morph targets");
+  US_CHECK(file.influences == 4, path, ": ", format.label, " holds no skin weights, so no ", file.influences,
            " bones a vertex");
-  US_CHECK(!(file.reduce_mm > 0), path, ": ", info.label, " holds every frame, keys cannot be left out");
+  US_CHECK(!(file.reduce_mm > 0), path, ": ", format.label, " holds every frame, keys cannot be left out");
 }
 
-std::unique_ptr<MotionOutput> open_export(const std::string& path, ExportFormat format,
+std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps) {
   check_export_options(path, format, body.file);
-  switch (format) {
-    case ExportFormat::Bvh:
-      return std::make_unique<BvhOutput>(path, body, fps);
-    case ExportFormat::Amass:
-      return std::make_unique<AmassOutput>(path, body, fps);
-    case ExportFormat::Npz:
-      return std::make_unique<ResultOutput>(path, body);
-    case ExportFormat::Ply:
-      return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Ply);
-    case ExportFormat::Obj:
-      return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Obj);
-    case ExportFormat::PointCache:
-      return std::make_unique<CacheOutput>(path, body);
-    case ExportFormat::Joints:
-      return std::make_unique<JointsOutput>(path, body, fps);
-    case ExportFormat::Glb:
-    case ExportFormat::Gltf:
-      break;
-  }
-  return std::make_unique<CharacterOutput>(path, body, name, fps);
+  return format.open(path, body, name, fps);
 }
 
-ExportCost export_motion(const std::string& path, ExportFormat format, const ExportInput& input) {
+ExportCost export_motion(const std::string& path, const ExportFormat& format, const ExportInput& input) {
   US_CHECK(!input.clips.empty(), path, ": there is no motion to export");
-  if (info_of(format).is_character) {
+  if (format.is_character) {
     check_export(path, format);
     check_export_options(path, format, input.body.file);
     return export_character(path, *input.body.character, *input.body.screen, input.clips, input.body.file);
   }
-  US_CHECK(input.clips.size() == 1, path, ": ", info_of(format).label, " holds one motion, these are ",
+  US_CHECK(input.clips.size() == 1, path, ": ", format.label, " holds one motion, these are ",
            input.clips.size());
   const CharacterClip& clip = input.clips[0];
   const auto output = open_export(path, format, input.body, clip.name, clip.fps);

@@ -9,28 +9,35 @@
 
 namespace understudy::app {
 
-enum class ExportFormat { Glb, Gltf, Bvh, Amass, Npz, Ply, Obj, PointCache, Joints };
+struct ExportBody;
+class MotionOutput;
 
-struct ExportFormatInfo {
-  ExportFormat format;
+/// One row of the table of formats that a performed motion can be written in.
+struct ExportFormat {
   const char* name;    ///< "bvh", as --format and commands say it
   const char* suffix;  ///< ".bvh"; empty: a folder
   const char* label;   ///< for menus
   const char* words;   ///< what it is good for, one sentence
+  bool by_suffix;      ///< a path with the suffix means it; false: it is chosen by its name alone
   bool is_character;   ///< a rigged character: rig, influences, morphs, key reduction and several clips
+  /// Its writer; see open_export.
+  std::unique_ptr<MotionOutput> (*open)(const std::string& path, const ExportBody& body,
+                                        const std::string& name, double fps);
 };
 
-/// All of them, in the order of the enum.
-const std::vector<ExportFormatInfo>& export_formats();
-const ExportFormatInfo& info_of(ExportFormat format);
+/// All of them, in the order of menus.
+const std::vector<ExportFormat>& export_formats();
 /// The format of that name; an empty name: what the path's suffix stands for. Throws Error naming the path.
-ExportFormat export_format(const std::string& name, const std::string& path);
+const ExportFormat& export_format(const std::string& name, const std::string& path);
+/// For help: ".glb, .gltf, .bvh".
+std::string export_suffixes();
 
 /// Throws Error at once when nothing could be written there, before hours of work are done for it.
-void check_export(const std::string& path, ExportFormat format);
+void check_export(const std::string& path, const ExportFormat& format);
 
 /// Throws Error where an option says something that such a file cannot hold.
-void check_export_options(const std::string& path, ExportFormat format, const CharacterExportOptions& file);
+void check_export_options(const std::string& path, const ExportFormat& format,
+                          const CharacterExportOptions& file);
 
 /// Who performs, as on screen.
 struct ExportBody {
@@ -64,7 +71,7 @@ class MotionOutput {
 
 /// name: of the motion. Throws Error naming the path: it cannot be written, or the format cannot do what the
 /// options want.
-std::unique_ptr<MotionOutput> open_export(const std::string& path, ExportFormat format,
+std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps);
 
 struct ExportInput {
@@ -75,7 +82,7 @@ struct ExportInput {
 };
 
 /// All of it. body.file.progress is told 0..1; what it throws ends the export, and what was there stays.
-ExportCost export_motion(const std::string& path, ExportFormat format, const ExportInput& input);
+ExportCost export_motion(const std::string& path, const ExportFormat& format, const ExportInput& input);
 
 /// "mean 0.41 mm, largest 2.13 mm off the screen, 1.2 MB", for people.
 std::string sentence(const ExportCost& cost);

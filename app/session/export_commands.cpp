@@ -25,16 +25,16 @@ void run_export(Studio& studio, const Arguments& a) {
   const Session& session = studio.session();
   std::vector<size_t> takes = {take};
   for (const std::string& name : choice.takes) takes.push_back(take_called(session.document, name));
-  const ExportFormatInfo& format = info_of(choice.format);
+  const ExportFormat& format = *choice.format;
   US_CHECK(takes.size() == 1 || format.is_character, path, ": ", format.label,
            " holds one motion, these are ", takes.size());
   const auto input = std::make_shared<ExportInput>(export_input(session, takes, choice));
-  check_export(path, choice.format);
+  check_export(path, format);
   const std::string name = fs::path(path).filename().string();
   const auto cost = std::make_shared<ExportCost>();
   studio.jobs().start(
       "Exporting " + name,
-      [input, path, format = choice.format, cost](JobControl& control) {
+      [input, path, &format, cost](JobControl& control) {
         input->body.file.progress = [&control](float done) {
           control.check();
           control.progress(done);

@@ -73,7 +73,7 @@ ExportChoice export_choice(const std::string& path, const std::vector<std::strin
     else
       set_option(out, key, value);
   }
-  out.format = export_format(format, path);
+  out.format = &export_format(format, path);
   return out;
 }
 

@@ -12,7 +12,7 @@ namespace understudy::app {
 
 /// A format and its options, as commands name them.
 struct ExportChoice {
-  ExportFormat format = ExportFormat::Glb;
+  const ExportFormat* format = &export_formats().front();
   CharacterExportOptions file;
   std::optional<bool> theirs;      ///< drive the character's own bones; none: where the take performs on them
   std::vector<std::string> takes;  ///< more takes, by name or number from 0, each a clip of its own

@@ -27,7 +27,7 @@ constexpr std::array<Size, 5> kSizes = {{{"1280 x 720", 1280, 720},
 constexpr int kLargest = 16384;
 
 /// Null: the figures.
-const app::ExportFormatInfo* format_of(const ExportState& state) {
+const app::ExportFormat* format_of(const ExportState& state) {
   const auto& formats = app::export_formats();
   const bool is_motion = state.format >= 0 && state.format < ssize(formats);
   return is_motion ? &formats[state.format] : nullptr;
@@ -43,7 +43,7 @@ std::string safe_name(std::string name) {
 
 void draw_format(Ui& ui, ExportState& state) {
   std::vector<std::string> labels;
-  for (const app::ExportFormatInfo& info : app::export_formats()) labels.push_back(info.label);
+  for (const app::ExportFormat& info : app::export_formats()) labels.push_back(info.label);
   labels.push_back("Figures");
   if (const auto i = choice_row(ui, {"export.format", "Format", ""}, labels, state.format)) {
     const bool own = !state.path.empty() && file_suffix(state.path) == suffix_of(state);
@@ -86,7 +86,7 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, 
 /// The takes that go into the file, one clip each.
 std::vector<size_t> clips_of(const app::Session& session, const ExportState& state) {
   const size_t selected = session.selected_take;
-  const app::ExportFormatInfo* const format = format_of(state);
+  const app::ExportFormat* const format = format_of(state);
   if (!state.all_takes || format == nullptr || !format->is_character ||
       selected >= session.document.takes.size())
     return {selected};
@@ -144,7 +144,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
   int chosen = session.selected_take;
   row(ui, "Take");
   if (dropdown(ui, "export.take", takes, chosen)) context.ask("target.select", {std::to_string(chosen)});
-  const app::ExportFormatInfo* const format = format_of(state);
+  const app::ExportFormat* const format = format_of(state);
   const app::Take* const take = selected_take(session);
   const app::TakeState* const made = selected_state(session);
   if (format != nullptr && take != nullptr && made != nullptr) {
@@ -161,7 +161,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
 }
 
 /// What is not as it would be anyway.
-app::Arguments export_words(const app::ExportFormatInfo& format, const app::ExportChoice& choice) {
+app::Arguments export_words(const app::ExportFormat& format, const app::ExportChoice& choice) {
   app::Arguments words = {std::string("format=") + format.name};
   const CharacterExportOptions& file = choice.file;
   if (file.in_place) words.push_back("in_place=on");
@@ -259,7 +259,7 @@ void begin_export(ExportState& state, ExportKind kind, int format) {
 
 std::string suffix_of(const ExportState& state) {
   if (state.kind == ExportKind::Animation) {
-    const app::ExportFormatInfo* const format = format_of(state);
+    const app::ExportFormat* const format = format_of(state);
     return format != nullptr ? format->suffix : ".csv";
   }
   return state.kind == ExportKind::Picture ? ".png" : ".mp4";
@@ -281,7 +281,7 @@ void ask_for_export(const app::Session& session, PanelContext& context, const Ex
     const std::vector<size_t> takes = clips_of(session, state);
     if (takes.empty()) return;
     app::Arguments asked = {std::to_string(takes[0]), state.path};
-    const app::ExportFormatInfo* const format = format_of(state);
+    const app::ExportFormat* const format = format_of(state);
     if (format == nullptr) return context.ask("export.csv", asked);
     for (std::string& word : export_words(*format, state.choice)) asked.push_back(std::move(word));
     for (size_t i = 1; i < takes.size(); ++i)

@@ -55,7 +55,7 @@ TEST(Blender, MovesTheMeshByThePointCacheAsWeDo) {
   const std::vector<Pose> poses = made_motion(kFrames, character->target.joints);
   input.clips = {{"walk", 25, poses}};
   PlayJob job{folder.path("walk.pc2"), folder.path("walk.blender"), 0, 25, {}};
-  app::export_motion(job.file, app::ExportFormat::PointCache, input);
+  app::export_motion(job.file, app::export_format("pc2", ""), input);
   for (int i = 0; i < kTimes; ++i)
     job.times.push_back(static_cast<float>(i * (kFrames - 1) / (kTimes - 1)) / 25);
   ASSERT_NO_FATAL_FAILURE(run_blender("blender_cache.py", {job}));
