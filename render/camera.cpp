@@ -107,8 +107,8 @@ float fitting_distance(const Camera& camera, const Points& points, float aspect,
   const Mat3 R = axes(camera);
   float distance = 0.05f;
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    const Vec3 p =
-        R.transpose() * (points.row(i).transpose() - camera.target);  // camera axes, from the target
+    // camera axes, from the target
+    const Vec3 p = R.transpose() * (points.row(i).transpose() - camera.target);
     const float needed = std::max(std::abs(p.x()) / half.x(), std::abs(p.y()) / half.y());
     // A point nearer to the eye by p.z looks larger; the orthographic picture does not care.
     distance = std::max(distance, camera.orthographic ? needed : needed + p.z());

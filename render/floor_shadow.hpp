@@ -12,8 +12,8 @@ namespace understudy::render {
 struct FloorShadow {
   static constexpr int kSide = 80;  ///< cells
   Vec3 area = Vec3(-1, -1, 2);      ///< x, z of its corner and its side, metres
-  std::array<uint8_t, kSide * kSide>
-      dark{};  ///< 255: no light at all; row by row along x; fades to 0 at its edges
+  /// 255: no light at all; row by row along x; fades to 0 at its edges
+  std::array<uint8_t, kSide * kSide> dark{};
 };
 
 /// Of all that stands in the scene: everything flattened onto the floor, darker the lower it is, then

@@ -105,7 +105,7 @@ class Canvas {
   gl::Texture color_texture_, depth_texture_;
 };
 
-/// A person's folds are shallow: they want more than occlusion from depths does to be seen as well.
+/// A person's folds are shallow: they need more strength than occlusion from depth to be as visible.
 float ambient_strength(const Scene& scene) {
   return std::min(1.f, 1.6f * scene.occlusion);
 }
@@ -202,7 +202,7 @@ struct Renderer::Parts {
   SmoothPass smooth;
 };
 
-/// Background and grid, drawn anew only when the view or they have changed.
+/// Background and grid, redrawn only when the view or they have changed.
 void Renderer::Parts::draw_still(const Scene& scene, const Camera& camera, PixelSize size) {
   std::string key = key_of(camera, size, scene.background, scene.ground);
   if (key != still) {

@@ -18,8 +18,8 @@ enum class Quality {
 struct RendererOptions {
   int samples = 4;  ///< a pixel, against jagged edges; fewer where the driver has fewer
   Quality quality = Quality::Best;
-  bool smooth =
-      true;  ///< with one sample a pixel: soften edges afterwards, which costs software OpenGL far less
+  /// with one sample a pixel: soften edges afterwards, which costs software OpenGL far less
+  bool smooth = true;
 };
 
 /// Where to draw: a framebuffer (0: the window's) and its size.

@@ -21,12 +21,12 @@ struct MeshView {
   SharedFaces faces;      ///< [F, 3]
   SharedPoints normals;   ///< [V, 3]; empty: from the faces, each time it is drawn
   SharedPoints colors;    ///< [V, 3]; empty: `color` everywhere
-  SharedValues
-      ambient;  ///< [V] share of the light from all around, see ambient_occlusion(); empty: all of it
+  /// [V] share of the light from all around, see ambient_occlusion(); empty: all of it
+  SharedValues ambient;
   Vec3 color = Vec3(0.77f, 0.74f, 0.71f);
   float opacity = 1;  ///< below 1 only the front layer is seen, and what is behind it
-  bool two_sided =
-      true;  ///< show the inside, lit like the outside (scans have holes); a closed one draws faster without
+  /// show the inside, lit like the outside (scans have holes); a closed one draws faster without
+  bool two_sided = true;
 };
 template <class V, class S>
 FieldsOf<S, MeshView> fields(V& visit, S& m) {

@@ -22,7 +22,7 @@ struct Font::Face {
 
 namespace {
 
-/// The code points of UTF-8; a byte that begins none becomes itself.
+/// The code points of UTF-8; an invalid byte stands for itself.
 std::vector<int> code_points(const std::string& text) {
   std::vector<int> points;
   for (size_t i = 0; i < text.size();) {

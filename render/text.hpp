@@ -11,7 +11,7 @@ namespace understudy::render {
 /// A font file, or none: then all text is invisible and has no width.
 class Font {
  public:
-  /// Inter, else DejaVu Sans, where Debian puts them; tells once in the log when neither is there.
+  /// Inter, else DejaVu Sans, where Debian puts them; warns once in the log when neither is there.
   static Font system();
   /// Throws Error when the file is missing or no font.
   explicit Font(const std::string& path);

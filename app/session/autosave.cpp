@@ -67,7 +67,7 @@ std::string file_name(const Owner& owner) {
          kSuffix;
 }
 
-/// Whose copy a file is; none for other files, what lies beside an unfinished one ("....part") too.
+/// The process that wrote a copy; none for other files, unfinished ones ("....part") included.
 std::optional<Owner> owner_of(const std::string& name) {
   const size_t begin = std::string(kPrefix).size(), end = name.rfind(kSuffix);
   if (!starts_with(name, kPrefix) || end == std::string::npos || end < begin) return {};

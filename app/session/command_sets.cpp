@@ -60,8 +60,7 @@ int joint_argument(const Arguments& arguments, size_t i) {
 
 Vec3 vector_argument(const Arguments& arguments, size_t i, const char* what) {
   Vec3 value;
-  for (int axis = 0; axis < 3; ++axis)
-    value[axis] = static_cast<float>(number(arguments, i + static_cast<size_t>(axis), what));
+  for (int axis = 0; axis < 3; ++axis) value[axis] = static_cast<float>(number(arguments, i + axis, what));
   return value;
 }
 

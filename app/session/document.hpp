@@ -41,8 +41,8 @@ FieldsOf<S, Method> fields(V& visit, S& method) {
 /// What the user changed of a target.
 struct TargetEdits {
   std::vector<JointMove> joints;
-  std::shared_ptr<const WeightRows>
-      weights;  ///< null: none; shared, so that a copy of a document costs nothing
+  /// null: none; shared, so that a copy of a document costs nothing
+  std::shared_ptr<const WeightRows> weights;
 };
 template <class V, class S>
 FieldsOf<S, TargetEdits> fields(V& visit, S& edits) {

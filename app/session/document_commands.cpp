@@ -166,7 +166,7 @@ Kind kind_of_npz(const std::string& path) {
   return has("v_template") ? Kind::Body : has("poses") ? Kind::Motion : Kind::Scans;
 }
 
-/// Of what may be a character or a motion: who has a target and no source wants a motion.
+/// Decides about a file that may be a character or a motion: with a target and no source it is a motion.
 bool wanted_as_source(const Document& document, const std::string& path) {
   if (!can_be(path, kTarget)) return can_be(path, kMotion | kScanSequence);
   if (!document.source.path.empty() || document.takes.empty()) return false;

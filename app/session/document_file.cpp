@@ -46,7 +46,7 @@ std::string folder_of(const std::string& path) {
   return whole.parent_path().string();
 }
 
-/// The path's last part is kept, "" and "." are gone: "a/b/" and "a/./b" are one place.
+/// Removes empty parts and ".": "a/b/" and "a/./b" are one place.
 fs::path place(const std::string& path) {
   fs::path normal = fs::path(path).lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();

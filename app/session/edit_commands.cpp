@@ -2,13 +2,14 @@
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 
 namespace understudy::app {
 namespace {
 
 int frame_argument(const Session& session, const Arguments& a, size_t i) {
   const int frame = whole_number(a, i, "frame");
-  const int count = std::max(frame_count(session), static_cast<int>(session.source.frames.size()));
+  const int count = std::max<int>(frame_count(session), session.source.frames.size());
   US_CHECK(frame >= 0 && frame < count, "there is no frame ", frame, " among ", count);
   return frame;
 }
@@ -117,8 +118,7 @@ void add_pose_edits(Commands& commands) {
 template <class Edit>
 void remove_at(std::vector<Edit>& edits, const Arguments& a, size_t i) {
   const int index = whole_number(a, i, "edit");
-  US_CHECK(index >= 0 && static_cast<size_t>(index) < edits.size(), "there is no edit ", index, " among ",
-           edits.size());
+  US_CHECK(index >= 0 && index < ssize(edits), "there is no edit ", index, " among ", edits.size());
   edits.erase(edits.begin() + index);
 }
 

@@ -32,7 +32,7 @@ RetargetOptions retarget_options(const Method& method) {
   return options;
 }
 
-/// Where the networks' weights were doubted; null where they are not asked for any.
+/// Where the networks' weights are uncertain; null where no network binds.
 std::shared_ptr<const SafeBinding> binding_of(const std::shared_ptr<const Deformer>& deformer) {
   const auto careful = std::dynamic_pointer_cast<const CarefulDeformer>(deformer);
   return careful ? std::shared_ptr<const SafeBinding>(careful, &careful->binding()) : nullptr;
@@ -131,7 +131,7 @@ struct Engine::Impl {
   void perform(TakeWork& take);
 };
 
-/// Whether an event says something of the source's frames, which another source makes untrue.
+/// Whether an event is about the source's frames, so that another source invalidates it.
 bool of_frames(const EngineEvent& event) {
   return !std::holds_alternative<TakeLoaded>(event) && !std::holds_alternative<TakeReady>(event) &&
          !std::holds_alternative<TakeFailed>(event);
@@ -142,7 +142,7 @@ void Engine::Impl::tell(EngineEvent event) {
   if (own_epoch == epoch || !of_frames(event)) events.push_back(std::move(event));
 }
 
-/// Under the mutex. What is still being made of another source will not be told.
+/// Under the mutex. Frames still in work for another source are dropped.
 void Engine::Impl::change_source(const std::string& key, bool afresh) {
   if (key == wanted_source && !afresh) return;
   wanted_source = key;
@@ -277,7 +277,7 @@ bool Engine::Impl::step() {
   return read_frame();
 }
 
-/// Works for a take; what goes wrong ends that take alone.
+/// Works for one take; an error ends that take alone.
 template <class Work>
 bool Engine::Impl::of_take(TakeWork& take, Work work) {
   std::string problem;
@@ -356,7 +356,7 @@ const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const std::
   return extractor;
 }
 
-/// The extractors that the view or a take wants.
+/// The extractors that the view or a take needs.
 std::vector<std::string> Engine::Impl::wanted_streams() const {
   std::vector<std::string> wanted{plan.extractor};
   for (const TakeWork& take : takes) {
@@ -429,8 +429,8 @@ Observation Engine::Impl::edited(const Seen& seen, size_t frame) const {
   return result;
 }
 
-/// Tells what was seen and has not been told. The first take repairs and smooths it and tells that; where
-/// there is none this does.
+/// Reports the frames seen since the last call. The first take repairs and smooths them and reports the result;
+/// without a take this does.
 bool Engine::Impl::tell_source() {
   const std::vector<Seen>& frames = streams[plan.extractor].frames;
   const bool no_take = takes.empty() || takes[0].failed;

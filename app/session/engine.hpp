@@ -100,7 +100,7 @@ class Engine {
   ~Engine();  ///< finishes the current frame, then stops
 
   /// Makes this plan from now on. Never waits.
-  /// `afresh`: nothing of what was made before is kept, not even what would fit.
+  /// `afresh`: drops everything made before, even what would still fit.
   void set_plan(Plan plan, bool afresh = false);
   void pause(bool paused);
   /// The events since the last call.

@@ -11,7 +11,7 @@ namespace {
 
 size_t take_number(Studio& studio, const Arguments& a) {
   take_argument(studio.session(), a, 0);
-  return static_cast<size_t>(whole_number(a, 0, "take"));
+  return whole_number(a, 0, "take");
 }
 
 std::string whole_path(const Arguments& a) {

@@ -8,7 +8,7 @@ namespace understudy::app {
 /// What is added to the target of a camera: while View::follow is on, the place over the floor of the
 /// person's pelvis in that frame, smoothed over half a second both ways; so a target of a following camera is
 /// relative to the person. Zero where the view does not follow or the person is not known yet. pane: 0 the
-/// source, k the take k - 1. The same for the same frame, however it was come to.
+/// source, k the take k - 1. Depends on the frame alone.
 Vec3 follow_offset(const Session& session, int pane, int frame);
 
 /// The joints of the person of a pane in a frame, as shown; null where they are not there.

@@ -89,7 +89,7 @@ int64_t bytes_of(const Entry& entry) {
   return bytes;
 }
 
-/// The pictures made, by what they are of; the one used longest ago goes first. Not thread-safe.
+/// The finished pictures by key; drops the least recently used first. Not thread-safe.
 class Store {
  public:
   const Entry* find(const Request& request) {
@@ -110,7 +110,7 @@ class Store {
     index_[used_.front().of.key] = used_.begin();
     shrink();
   }
-  /// Forgets what `of` says true to.
+  /// Drops the pictures for which `of` is true.
   template <class Of>
   void forget(Of&& of) {
     for (auto entry = used_.begin(); entry != used_.end();) {
@@ -155,7 +155,7 @@ class ScanReader {
     edits_ = edits;
   }
 
-  /// Never throws: what goes wrong is the picture's problem.
+  /// Never throws: an error becomes the picture's problem.
   ScanPicture picture(int frame) {
     ScanPicture picture;
     try {

@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A time left is told from this much work on, or after so long: before, it would be guessed from start-up.
+/// The time left is shown after this much work or time; earlier it would be a guess from start-up.
 constexpr float kTellingShare = 0.05f;
 constexpr double kTellingSeconds = 1;
 

@@ -5,7 +5,7 @@
 namespace understudy::app {
 namespace {
 
-/// The playhead goes to a frame; from now on the newest frame is no longer followed.
+/// Moves the playhead to a frame and stops following the newest one.
 void go_to(Session& session, double frame) {
   session.playback.frame = std::clamp(frame, 0.0, std::max(0.0, frame_count(session) - 1.0));
   session.playback.live = false;

@@ -10,7 +10,7 @@ namespace {
 void see_whole(Studio& studio) {
   Session& session = studio.session();
   if (!session.view.linked) session.view.active_pane = session.selected_take + 1;
-  const size_t i = session.view.linked ? 0 : static_cast<size_t>(session.view.active_pane);
+  const size_t i = session.view.linked ? 0 : session.view.active_pane;
   const View before = session.view;
   studio.run("view.fit");
   if (i < before.cameras.size() && session.view.cameras[i].distance <= before.cameras[i].distance)

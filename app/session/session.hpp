@@ -25,8 +25,8 @@ namespace understudy::app {
 /// The data kept of each frame of the source: under 1 kB.
 struct KeptSource {
   Joints raw = Joints::Zero();  ///< as extracted, before the user's edits
-  Eigen::Array<float, kJointCount, 1> confidence_of =
-      Eigen::Array<float, kJointCount, 1>::Zero();  ///< 0..1 a joint
+  /// 0..1 a joint
+  Eigen::Array<float, kJointCount, 1> confidence_of = Eigen::Array<float, kJointCount, 1>::Zero();
   Joints joints = Joints::Zero();  ///< edited, repaired and smoothed; of the last good frame where flagged
   float confidence = 0;            ///< mean over joints
   bool flagged = false;
@@ -40,11 +40,11 @@ struct SourceState {
   std::optional<int64_t> count;  ///< frames in all, where known
   double fps = 30;
   std::string decision;  ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
-  Eigen::Matrix4d to_file =
-      Eigen::Matrix4d::Identity();  ///< from the frames' joints to the file's coordinates
-  std::vector<SourceClip> clips;    ///< animations in the file; none of scans
-  int clip = -1;                    ///< the one that is played
-  std::vector<KeptSource> frames;   ///< of the extractor of the first take
+  /// from the frames' joints to the file's coordinates
+  Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
+  std::vector<SourceClip> clips;   ///< animations in the file; none of scans
+  int clip = -1;                   ///< the one that is played
+  std::vector<KeptSource> frames;  ///< of the extractor of the first take
   bool has_faces = false;
   int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
 };
@@ -53,13 +53,13 @@ struct SourceState {
 struct TakeState {
   bool ready = false;   ///< target, weights and joints below are there
   std::string problem;  ///< why it cannot become ready, one sentence; empty: no problem
-  /// As it was read and brought to the T-pose; of the file as it was prepared before, until it is ready.
+  /// The character as read and brought to the T-pose; the one prepared before, until the new one is ready.
   std::shared_ptr<const PreparedCharacter> character;
-  /// The mesh as it came, upright and at its size; to be seen until `target` is there, then null.
+  /// The mesh as loaded, upright and at its size; shown until `target` is there, then null.
   std::shared_ptr<const Target> as_loaded;
   std::shared_ptr<const Target> target;  ///< T-pose mesh and joints (edited)
-  std::shared_ptr<const SafeBinding>
-      binding;                               ///< where the networks' weights are doubted; null: nowhere asked
+  /// where the networks' weights are doubted; null: nowhere asked
+  std::shared_ptr<const SafeBinding> binding;
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
   std::vector<KeptFrame> performed;          ///< the engine's frames

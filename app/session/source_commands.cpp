@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Another source: what was said about the old one's frames no longer holds.
+/// For another source: drops the edits and settings of the old one's frames.
 void set_source(Studio& studio, SourceOptions source) {
   Session& session = studio.session();
   Document& document = session.document;
@@ -79,7 +79,7 @@ void add_import(Commands& commands) {
                 }});
 }
 
-/// Where the file's animations are known, a wrong name is said at once.
+/// Refuses an unknown name at once where the file's animations are known.
 void check_clip(const SourceState& source, const std::string& clip) {
   if (source.clips.empty() || clip.empty()) return;
   std::string all;
@@ -91,7 +91,7 @@ void check_clip(const SourceState& source, const std::string& clip) {
   throw Error(source.name + ": has no animation '" + clip + "', only " + all);
 }
 
-/// What says nothing to such a source is refused at once.
+/// Refuses an option that does not apply to such a source.
 void set_skeletal(Studio& studio, SourceOptions source) {
   if (!source.path.empty()) check_source_options(source);
   studio.session().document.source = std::move(source);

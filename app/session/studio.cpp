@@ -286,7 +286,7 @@ void Studio::autosave(double seconds) {
   state->running = true;
 }
 
-/// A copy that cannot be written is told once, and in no dialog: nothing that the user made is lost yet.
+/// Reports a copy that cannot be written once, without a dialog: no work is lost yet.
 void Studio::autosave_ended() {
   Background::Autosaving& state = *background_->autosaving;
   state.running = false;

@@ -4,6 +4,7 @@
 #include "app/session/background.hpp"
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 
 namespace understudy::app {
@@ -21,11 +22,11 @@ bool put(std::vector<Frame>& all, int first, std::vector<Frame> frames) {
   return replaces;
 }
 
-/// Frames appended to a result that nobody edits are shown at once.
+/// Shows frames appended to a result without edits at once.
 void append_shown(TakeState& take, int first, double fps) {
   take.shown.fps = static_cast<float>(fps);
   const size_t count = take.performed.size();
-  if (static_cast<size_t>(first) > take.shown.poses.size()) first = take.shown.poses.size();
+  if (first > ssize(take.shown.poses)) first = take.shown.poses.size();
   take.shown.poses.resize(count);
   take.shown.flags.resize(count);
   take.joints.resize(count);

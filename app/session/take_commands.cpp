@@ -38,7 +38,7 @@ void add_targets(Commands& commands) {
                   take.name = fs::path(take.target.path).stem().string();
                   remember(session.settings.recent_targets, take.target.path);
                   takes.push_back(std::move(take));
-                  session.selected_take = static_cast<int>(takes.size()) - 1;
+                  session.selected_take = takes.size() - 1;
                 }});
   commands.add(
       {"target.replace", "Replace target", "TAKE PATH", "", true, false, [](Studio& s, const Arguments& a) {
@@ -87,7 +87,7 @@ void add_target_import(Commands& commands) {
                 }});
 }
 
-/// The bones as the choices leave them, where the character is known: what is wrong is said at once.
+/// Checks the chosen bones where the character is known, so that a wrong choice is refused at once.
 void check_bones(const Studio& studio, size_t k) {
   const auto& character = studio.session().takes.at(k).character;
   if (!character) return;

@@ -16,8 +16,7 @@ CameraState& camera(Session& session, int pane) {
   View& view = session.view;
   if (view.linked || pane < 0) pane = 0;
   const CameraState first = view.cameras.empty() ? CameraState{} : view.cameras[0];
-  if (static_cast<size_t>(pane) >= view.cameras.size())
-    view.cameras.resize(static_cast<size_t>(pane) + 1, first);
+  if (pane >= ssize(view.cameras)) view.cameras.resize(pane + 1, first);
   return view.cameras[pane];
 }
 
@@ -71,7 +70,7 @@ void add_cameras(Commands& commands) {
        }});
 }
 
-/// The T-pose stands where the person would: on the floor, under the camera that follows.
+/// The T-pose placed where the person would be: on the floor, under the following camera.
 Joints rest_as_shown(const Target& target) {
   const float floor = target.mesh.vertices.rows() > 0 ? target.mesh.vertices.col(1).minCoeff() : 0;
   const Vec3 from(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
@@ -97,8 +96,7 @@ std::vector<Joints> shown_joints(const Session& session) {
   return all;
 }
 
-/// Turns the camera to the middle of all who are shown and goes as far away as the narrow side of a view
-/// asks.
+/// Turns the camera to the middle of everyone shown and moves it back until all fit the view's narrow side.
 void fit(Studio& studio) {
   constexpr float kBody = 0.2f;          // metres of a body beyond its outermost joints
   constexpr float kTitle = 0.08f;        // of the height stays free above the heads, for words

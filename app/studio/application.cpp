@@ -267,7 +267,7 @@ void Application::draw_interface(double dt, const std::vector<InputEvent>& event
   ++drawn_;
 }
 
-/// Commands that the interface asked for; what they change is drawn next.
+/// Runs the commands that the interface pushed; the next frame shows their effect.
 void Application::run_queue() {
   if (queue_.empty()) return;
   if (observer_)

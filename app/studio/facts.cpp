@@ -55,7 +55,7 @@ size_t seen_takes(const Session& session) {
   return seen;
 }
 
-/// Per cent of the selected take's surface; "none" before it is bound, and where it keeps its own skin.
+/// Per cent of the selected take's surface; "none" before it is bound and where it uses its own skin weights.
 std::string bound_by_shape(const Session& session) {
   const size_t k = session.selected_take;
   if (k >= session.takes.size() || !session.takes[k].binding || session.takes[k].binding->doubt.size() == 0)

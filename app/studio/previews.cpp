@@ -201,7 +201,7 @@ void Previews::draw(const Reading& reading) {
   picture.preview.width = reading.size.width, picture.preview.height = reading.size.height;
 }
 
-/// A texture whose first row is the top one, as ImGui wants it.
+/// A texture whose first row is the top one, as ImGui expects.
 std::unique_ptr<gl::Texture> Previews::picture_of(const render::Scene& scene, render::PixelSize size) {
   if (!renderer_)
     renderer_ = std::make_unique<render::Renderer>(render::RendererOptions{4, render::Quality::Interactive});

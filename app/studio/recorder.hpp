@@ -16,7 +16,7 @@ class Recorder final : public Observer {
   Recorder(const std::string& path, Application& application);
   void input(double dt, const std::vector<render::InputEvent>& events, const Session& session) override;
   void command(const std::string& name, const Arguments& arguments) override;
-  /// A command that no input asked for, such as opening what the command line names.
+  /// A command without input, such as opening the files on the command line.
   void opened(const std::string& name, const Arguments& arguments);
 
  private:

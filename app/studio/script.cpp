@@ -194,7 +194,7 @@ void Script::draw(int count) {
   }
 }
 
-/// Draws until all that is on the screen is there, and widgets have come to rest.
+/// Draws until everything on the screen is made and the widgets have settled.
 void Script::settle() {
   for (int i = 0; i < 4; ++i) {
     draw();
@@ -291,7 +291,7 @@ ImVec2 Script::place_of(const std::string& name) {
   return found->rect.at(number_of(shares.substr(0, comma)), number_of(shares.substr(comma + 1)));
 }
 
-/// `places`: how many numbers follow NAME; X Y are told from a name by being numbers.
+/// `places`: how many numbers follow NAME; a place is X Y when its words are numbers.
 Script::Pointing Script::pointing(Words words, size_t places) const {
   Pointing p;
   p.modifiers = take_modifiers(words);

@@ -7,7 +7,7 @@
 
 namespace understudy::render {
 
-/// Each throws Error saying why there is none. The context is not yet current.
+/// Each throws Error with the reason when it cannot make one. The context is not yet current.
 std::unique_ptr<Context> make_egl_context(bool debug);
 std::unique_ptr<Context> make_osmesa_context(bool debug);
 std::unique_ptr<Context> make_null_context();

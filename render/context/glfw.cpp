@@ -110,7 +110,7 @@ Key key_of(int code) {
   return Key::Unknown;
 }
 
-/// GLFW names keys by their place on a US keyboard: for letters what stands on the key counts (AZERTY).
+/// GLFW names keys by their place on a US keyboard; for letters, the key's label counts (AZERTY).
 Key key_as_labelled(int code, int scancode) {
   const Key placed = key_of(code);
   if (code < GLFW_KEY_APOSTROPHE || code > GLFW_KEY_GRAVE_ACCENT) return placed;
@@ -271,7 +271,7 @@ void Window::Parts::listen_to_keys() {
     event.pressed = action != GLFW_RELEASE;
     event.repeated = action == GLFW_REPEAT;
     event.modifiers = modifiers_of(bits);
-    // X11 tells of a modifier's own key the state before it.
+    // For a modifier's own key X11 gives the state before it.
     if (event.key == Key::LeftShift || event.key == Key::RightShift) event.modifiers.shift = event.pressed;
     if (event.key == Key::LeftControl || event.key == Key::RightControl)
       event.modifiers.control = event.pressed;

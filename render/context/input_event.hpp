@@ -1,4 +1,4 @@
-// What a window, a script or a recording says happened: plain data, whatever it came from.
+// Input events as plain data, from a window, a script or a recording.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace understudy::render {
 
-/// Keys by what stands on them in the user's layout. Letters, digits and F-keys are consecutive.
+/// Keys by their labels in the user's layout. Letters, digits and F-keys are consecutive.
 enum class Key : int {
   Unknown = 0,
   // clang-format off

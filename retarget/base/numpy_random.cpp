@@ -144,15 +144,15 @@ int64_t NumpyRandom::integers(int64_t low, int64_t high) {
 }
 
 std::vector<int64_t> NumpyRandom::permutation(int64_t count) {
-  std::vector<int64_t> order(static_cast<size_t>(count));
-  for (int64_t i = 0; i < count; ++i) order[static_cast<size_t>(i)] = i;
+  std::vector<int64_t> order(count);
+  for (int64_t i = 0; i < count; ++i) order[i] = i;
   uint32_t mask = 0;
   while (mask < count - 1) mask = mask << 1 | 1;
   for (int64_t i = count - 1; i > 0; --i) {
     while ((mask >> 1) >= i) mask >>= 1;
     uint32_t drawn = next32() & mask;
     while (drawn > i) drawn = next32() & mask;
-    std::swap(order[static_cast<size_t>(i)], order[drawn]);
+    std::swap(order[i], order[drawn]);
   }
   return order;
 }

@@ -101,8 +101,8 @@ const std::string& PartFile::part() {
 
 void PartFile::finish(bool synced) {
   check(std::fclose(std::exchange(file_, nullptr)) == 0);
-  const int handle =
-      ::open(part_.c_str(), O_RDONLY | O_CLOEXEC);  // a library may have put a file of its own here
+  // a library may have put a file of its own here
+  const int handle = ::open(part_.c_str(), O_RDONLY | O_CLOEXEC);
   check(handle >= 0);
   const bool good =
       (mode_ < 0 || ::fchmod(handle, static_cast<mode_t>(mode_)) == 0) &&

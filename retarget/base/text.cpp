@@ -86,7 +86,7 @@ std::string printed(const char* format, ...) {
 std::string grouped(int64_t count) {
   std::string digits = std::to_string(count);
   for (int64_t at = static_cast<int64_t>(digits.size()) - 3; at > (count < 0 ? 1 : 0); at -= 3)
-    digits.insert(static_cast<size_t>(at), ",");
+    digits.insert(at, ",");
   return digits;
 }
 

@@ -170,8 +170,8 @@ class PlanPlayer {
   static void arm(const ArmPlan& a, int side, Pose& pose) {
     const Eigen::DiagonalMatrix<float, 3> flip(side ? -1.0f : 1.0f, 1.0f, 1.0f);
     const auto set = [&](int joint, const Mat3& left) { pose.local[joint + side] = flip * left * flip; };
-    const float shrug =
-        0.22f * std::max(a.raise - 60, 0.0f);  // the collar bone takes part above the shoulder
+    // the collar bone takes part above the shoulder
+    const float shrug = 0.22f * std::max(a.raise - 60, 0.0f);
     set(LeftCollar, about(1, -0.15f * a.across) * about(2, shrug));
     set(LeftShoulder, about(1, -0.85f * a.across) * about(0, -a.swing) * about(2, a.raise - 90 - shrug) *
                           about(0, -a.turn));

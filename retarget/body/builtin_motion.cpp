@@ -59,8 +59,8 @@ MotionPlan gait_plan(const Gait& g) {
     p.head_pitch = -0.7f * g.lean_deg + 1.5f * wave(2 * phase + 0.2f);
     p.head_roll = 0.3f * g.tilt_deg * wave(phase);
     for (int side = 0; side < 2; ++side) {
-      const float forward =
-          wave(phase + (side == 0 ? -0.25f : 0.25f) - 0.03f);  // against the leg of its side
+      // against the leg of its side
+      const float forward = wave(phase + (side == 0 ? -0.25f : 0.25f) - 0.03f);
       p.arms[side].swing = g.arm_deg * forward + (g.arm_deg > 30 ? -4.0f : 2.0f);
       p.arms[side].raise = 13;
       p.arms[side].elbow = g.elbow_deg + g.elbow_swing_deg * forward;

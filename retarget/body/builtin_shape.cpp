@@ -244,8 +244,8 @@ float Loft::value(const Vec3& p) const {
   const float a = std::abs(u) / s.ru, b = std::abs(v) / rv;
   const float rho = exponent_ == 2 ? std::sqrt(a * a + b * b)
                                    : std::pow(std::pow(a, exponent_) + std::pow(b, exponent_), 1 / exponent_);
-  const float radial =
-      rho < 1e-4f ? -std::min(s.ru, rv) : r * (1 - 1 / rho);  // along the ray from the centre
+  // along the ray from the centre
+  const float radial = rho < 1e-4f ? -std::min(s.ru, rv) : r * (1 - 1 / rho);
   const float excess = std::max({low_ - t, t - high_, 0.0f});
   if (excess == 0) return radial;
   return std::sqrt(excess * excess + std::max(radial, 0.0f) * std::max(radial, 0.0f));

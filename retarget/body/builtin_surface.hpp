@@ -9,8 +9,8 @@ namespace understudy {
 
 /// A solid that is its own mirror image in the plane x = 0, as far as the mesher needs it.
 struct ImplicitSolid {
-  std::function<float(const Vec3&)>
-      value;  ///< about the distance in metres, negative inside; asked for x >= 0 only
+  /// about the distance in metres, negative inside; asked for x >= 0 only
+  std::function<float(const Vec3&)> value;
   std::function<Vec3(const Vec3&)> warp;     ///< grid space -> space; finer where it contracts; keeps x = 0
   std::function<float(const Vec3&)> detail;  ///< factor on the edge length at a point, 1 = the coarsest
   Vec3 low, high;                            ///< box in grid space; low.x() = 0

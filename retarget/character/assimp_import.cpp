@@ -206,8 +206,8 @@ void add_track(const Key* keys, unsigned count, CharacterTrack track, double tic
 void AssimpConverter::add_animation(const aiAnimation& animation) {
   CharacterAnimation out;
   out.name = animation.mName.C_Str();
-  const double ticks =
-      animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 25;  // assimp's own default
+  // assimp's own default
+  const double ticks = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 25;
   const auto place = [](const aiVector3D& v, std::vector<float>& to) {
     to.insert(to.end(), {v.x, v.y, v.z});
   };

@@ -13,8 +13,8 @@ namespace understudy {
 /// The node of each joint, -1 for none, and how sure that is.
 struct BoneMap {
   std::array<int, kJointCount> node;
-  std::array<float, kJointCount>
-      confidence;   ///< 0..1: 1 name and hierarchy, 0.8 name alone, 0.5 place, 0 none
+  /// 0..1: 1 name and hierarchy, 0.8 name alone, 0.5 place, 0 none
+  std::array<float, kJointCount> confidence;
   std::string how;  ///< "by names (Mixamo)", "by hierarchy and position", "given"
   BoneMap() {
     node.fill(-1);

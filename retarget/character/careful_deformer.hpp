@@ -14,8 +14,8 @@ namespace understudy {
 struct SafeBinding {
   RowMatrix weights;      ///< [V, 22], rows sum to 1
   Eigen::VectorXf doubt;  ///< [V] 0..1: how far a vertex is bound by the shape alone
-  Eigen::VectorXf
-      hard;          ///< [V] 0..1: 1 where pose-corrective offsets must not act (rigid parts, cloth, doubt)
+  /// [V] 0..1: 1 where pose-corrective offsets must not act (rigid parts, cloth, doubt)
+  Eigen::VectorXf hard;
   std::string note;  ///< where, one sentence; empty where the weights stay as they were
 };
 /// Where `weights` [V, 22] reach over to bones that lie far away through the solid, they are blended with

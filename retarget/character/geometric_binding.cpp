@@ -541,8 +541,8 @@ std::vector<bool> keep_parts_rigid(const Mesh& mesh, float leg, RowMatrix& weigh
     area += parts.area[n];
     area_along_one += along_one[n] ? parts.area[n] : 0;
   }
-  const bool pieces =
-      count >= 6 && area_along_one > 0.8f * area;  // of hard parts, nothing reaches over a joint
+  // of hard parts, nothing reaches over a joint
+  const bool pieces = count >= 6 && area_along_one > 0.8f * area;
   for (size_t n = 0; n < count; ++n) {
     auto row = sums.row(n);
     Eigen::Index top = 0;

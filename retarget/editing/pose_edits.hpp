@@ -54,8 +54,8 @@ struct PinEdit {
   FootContactOptions contact;
   float blend_s = 0.25f;      ///< a correction comes and goes within this time, or less between near contacts
   bool keep_soles_up = true;  ///< soles that are under the floor are lifted onto it at any time
-  bool to_floor =
-      true;  ///< the body is moved so that standing soles are at y = 0, not only held where they are
+  /// the body is moved so that standing soles are at y = 0, not only held where they are
+  bool to_floor = true;
   float max_drop_m = 0.04f;  ///< how far the pelvis may sink where a leg is too short (leg 0.8 m)
 };
 template <class V, class S>

@@ -54,9 +54,8 @@ void append_offset(std::string& out, const std::string& indent, const Vec3& metr
 
 void append_joint(std::string& out, const Joints& rest, int joint, int depth) {
   const std::string indent(static_cast<size_t>(2 * depth), ' '), inside = indent + "  ";
-  const int parent = kParents[static_cast<size_t>(joint)];
-  out += indent + (parent < 0 ? "ROOT " : "JOINT ") + kJointNames[static_cast<size_t>(joint)] + '\n' +
-         indent + "{\n";
+  const int parent = kParents[joint];
+  out += indent + (parent < 0 ? "ROOT " : "JOINT ") + kJointNames[joint] + '\n' + indent + "{\n";
   const Vec3 offset =
       parent < 0 ? Vec3(Vec3::Zero()) : Vec3((rest.row(joint) - rest.row(parent)).transpose());
   append_offset(out, inside, offset);
@@ -64,7 +63,7 @@ void append_joint(std::string& out, const Joints& rest, int joint, int depth) {
                               : "CHANNELS 3 Zrotation Xrotation Yrotation\n");
   bool has_child = false;
   for (int child = joint + 1; child < kJointCount; ++child)
-    if (kParents[static_cast<size_t>(child)] == joint) {
+    if (kParents[child] == joint) {
       append_joint(out, rest, child, depth + 1);
       has_child = true;
     }
@@ -80,7 +79,7 @@ void append_joint(std::string& out, const Joints& rest, int joint, int depth) {
 std::vector<size_t> file_order(int joint = Pelvis) {
   std::vector<size_t> order = {static_cast<size_t>(joint)};
   for (int child = joint + 1; child < kJointCount; ++child)
-    if (kParents[static_cast<size_t>(child)] == joint)
+    if (kParents[child] == joint)
       for (const size_t below : file_order(child)) order.push_back(below);
   return order;
 }

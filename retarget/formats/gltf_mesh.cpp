@@ -60,8 +60,8 @@ class MeshCollector {
   explicit MeshCollector(GltfFile& file) : file_(file) {}
 
   void add_mesh(const tinygltf::Mesh& mesh, const Mat4& transform) {
-    std::map<int, int64_t>
-        first_vertex;  // of each accessor of positions: primitives that share it share vertices
+    // of each accessor of positions: primitives that share it share vertices
+    std::map<int, int64_t> first_vertex;
     for (const auto& primitive : mesh.primitives) {
       US_CHECK(++primitives_ <= 1000000, file_.path(), ": has more than a million primitives");
       if (!file_.is_shown(primitive)) continue;

@@ -50,8 +50,8 @@ Range dense_range(const std::vector<float>& sorted) {
 }
 
 std::vector<float> sorted_column(const Points& points, int axis) {
-  std::vector<float> values(static_cast<size_t>(points.rows()));
-  for (Eigen::Index i = 0; i < points.rows(); ++i) values[static_cast<size_t>(i)] = points(i, axis);
+  std::vector<float> values(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) values[i] = points(i, axis);
   std::sort(values.begin(), values.end());
   return values;
 }
@@ -74,8 +74,8 @@ Points even_points(const Mesh& mesh) {
     if (mesh.vertices.row(mesh.faces(f, 0)).allFinite() && mesh.vertices.row(mesh.faces(f, 1)).allFinite() &&
         mesh.vertices.row(mesh.faces(f, 2)).allFinite())
       good.push_back(f);
-  Faces faces(static_cast<Eigen::Index>(good.size()), 3);
-  for (size_t i = 0; i < good.size(); ++i) faces.row(static_cast<Eigen::Index>(i)) = mesh.faces.row(good[i]);
+  Faces faces(good.size(), 3);
+  for (size_t i = 0; i < good.size(); ++i) faces.row(i) = mesh.faces.row(good[i]);
   clean.faces = faces;
   if (faces.rows() == 0) return finite_points(mesh.vertices);
   try {
@@ -161,7 +161,7 @@ UpGuess forced_up(const std::string& up, const Points& points, const std::array<
   US_CHECK(letter == "x" || letter == "y" || letter == "z", "the up axis '", up,
            "' is none of x, y, z, -x, -y, -z");
   UpGuess guess{letter[0] - 'x', negative, {}};
-  const FloorSlab floor = find_floor(points, guess.axis, views[static_cast<size_t>(guess.axis)]);
+  const FloorSlab floor = find_floor(points, guess.axis, views[guess.axis]);
   if (floor.seen && floor.at_high_end == negative) guess.floor = floor;
   return guess;
 }
@@ -257,12 +257,11 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   std::array<AxisView, 3> views;
   for (int axis = 0; axis < 3; ++axis) {
     const auto sorted = sorted_column(points, axis);
-    views[static_cast<size_t>(axis)] = {dense_range(sorted),
-                                        sorted[sorted.size() * 3 / 4] - sorted[sorted.size() / 4]};
+    views[axis] = {dense_range(sorted), sorted[sorted.size() * 3 / 4] - sorted[sorted.size() / 4]};
   }
   const bool guess = forced.up.empty() || forced.up == "auto";
   const UpGuess up = guess ? guess_up(points, views) : forced_up(forced.up, points, views);
-  const Range range = views[static_cast<size_t>(up.axis)].range;
+  const Range range = views[up.axis].range;
   float low = up.negative ? -range.high : range.low;
   const float high = up.negative ? -range.low : range.high;
   if (up.floor.seen) low = up.negative ? -up.floor.height : up.floor.height;

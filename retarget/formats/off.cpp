@@ -61,7 +61,7 @@ class AsciiOff {
     for (int64_t i = 0; i < header_.vertices; ++i) vertex(i, mesh);
     scale_colours(mesh.colors);
     FaceList faces;
-    faces.reserve(static_cast<size_t>(header_.faces));
+    faces.reserve(header_.faces);
     for (int64_t i = 0; i < header_.faces; ++i) face(i, faces);
     mesh.faces = faces.finish(mesh.vertices.rows(), source_);
     return mesh;
@@ -87,13 +87,12 @@ class AsciiOff {
   // line.
   void vertex(int64_t row, Mesh& mesh) {
     next_line("vertex", row);
-    for (int c = 0; c < 3; ++c) mesh.vertices(row, c) = narrow(value(static_cast<size_t>(c), "vertex", row));
+    for (int c = 0; c < 3; ++c) mesh.vertices(row, c) = narrow(value(c, "vertex", row));
     const bool plain = !header_.normals && !header_.texture && (words_.size() == 6 || words_.size() == 7);
     if (row == 0 && (header_.colours || plain)) mesh.colors.resize(header_.vertices, 3);
     if (mesh.colors.rows() == 0) return;
     const size_t first = header_.normals ? 6 : 3;
-    for (size_t c = 0; c < 3; ++c)
-      mesh.colors(row, static_cast<Eigen::Index>(c)) = narrow(value(first + c, "vertex", row));
+    for (size_t c = 0; c < 3; ++c) mesh.colors(row, c) = narrow(value(first + c, "vertex", row));
   }
 
   void face(int64_t row, FaceList& faces) {
@@ -133,13 +132,12 @@ class BinaryOff {
     for (Eigen::Index row = 0; row < header_.vertices; ++row)
       for (size_t i = 0; i < floats; ++i) {
         const float value = load<float>(take(), true);
-        if (i < 3) mesh.vertices(row, static_cast<Eigen::Index>(i)) = value;
-        if (header_.colours && i >= colour && i < colour + 3)
-          mesh.colors(row, static_cast<Eigen::Index>(i - colour)) = value;
+        if (i < 3) mesh.vertices(row, i) = value;
+        if (header_.colours && i >= colour && i < colour + 3) mesh.colors(row, i - colour) = value;
       }
     scale_colours(mesh.colors);
     FaceList faces;
-    faces.reserve(static_cast<size_t>(header_.faces));
+    faces.reserve(header_.faces);
     for (int64_t row = 0; row < header_.faces; ++row) face(faces);
     mesh.faces = faces.finish(mesh.vertices.rows(), source_);
     return mesh;

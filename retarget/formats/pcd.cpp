@@ -177,7 +177,7 @@ void unpack_colour(uint32_t packed, Eigen::Index row, Points& colours) {
 
 Mesh read_binary(const Header& header, std::string_view body, bool by_field, const std::string& source) {
   Mesh mesh;
-  const auto rows = static_cast<Eigen::Index>(header.points);
+  const Eigen::Index rows = header.points;
   mesh.vertices.resize(rows, 3);
   int c = 0;
   for (const char* const name : {"x", "y", "z"}) {
@@ -210,7 +210,7 @@ Mesh read_ascii(const Header& header, std::string_view body, const std::string& 
            header.points, " points, the file has room for at most ",
            (body.size() + 1) / (2 * header.columns));
   Mesh mesh;
-  const auto rows = static_cast<Eigen::Index>(header.points);
+  const Eigen::Index rows = header.points;
   mesh.vertices.resize(rows, 3);
   if (colour) mesh.colors.resize(rows, 3);
   TextCursor text(body, source);

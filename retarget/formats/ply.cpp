@@ -168,7 +168,7 @@ VertexLayout vertex_layout(const Element& element, const std::string& source) {
     if (slot < 0 && colour_channel(p.name) >= 0) slot = 3 + colour_channel(p.name);
     if (p.count || (slot >= 0 && layout.property[slot] >= 0))
       slot = -1;  // a list, or the second of this name
-    if (slot >= 0) layout.property[slot] = static_cast<int>(i);
+    if (slot >= 0) layout.property[slot] = i;
     layout.slot.push_back(slot);
   }
   const auto& at = layout.property;
@@ -259,7 +259,7 @@ void add_strip(const std::vector<int64_t>& strip, FaceList& faces) {
 }
 
 void read_faces(const Element& element, bool strips, Values& values, FaceList& faces) {
-  if (!strips) faces.reserve(static_cast<size_t>(element.rows));
+  if (!strips) faces.reserve(element.rows);
   std::vector<int64_t> corners;
   for (int64_t row = 0; row < element.rows; ++row) {
     for (const Property& p : element.properties) {

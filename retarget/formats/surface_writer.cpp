@@ -44,7 +44,7 @@ void check_frame(const Points& vertices, int64_t count, const std::string& path)
 
 std::string obj_text(const SurfaceTopology& t, const Points& vertices, const std::string& comment) {
   std::string out = "# " + comment + '\n';
-  out.reserve(static_cast<size_t>(40 * vertices.rows() + 40 * t.faces.rows()));
+  out.reserve(40 * vertices.rows() + 40 * t.faces.rows());
   for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
     out += 'v';
     for (int axis = 0; axis < 3; ++axis) append_exact(out += ' ', vertices(v, axis));

@@ -80,8 +80,8 @@ class XyzParser {
     double value = 0;
     US_CHECK(static_cast<size_t>(column) < words_.size(), source_, ": line ", number, ": fewer than ",
              column + 1, " numbers");
-    US_CHECK(parse_number(words_[static_cast<size_t>(column)], value), source_, ": line ", number, ": '",
-             excerpt(words_[static_cast<size_t>(column)]), "' is no number");
+    US_CHECK(parse_number(words_[column], value), source_, ": line ", number, ": '", excerpt(words_[column]),
+             "' is no number");
     return narrow(value);
   }
 

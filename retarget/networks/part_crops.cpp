@@ -37,8 +37,7 @@ const Mat3& frame_of(const Extraction& seen, const Part& part) {
 std::vector<int> points_within(const Points& scan, const Vec3& middle, float radius) {
   std::vector<int> near;
   for (Eigen::Index i = 0; i < scan.rows(); ++i)
-    if ((scan.row(i).transpose() - middle).squaredNorm() < radius * radius)
-      near.push_back(static_cast<int>(i));
+    if ((scan.row(i).transpose() - middle).squaredNorm() < radius * radius) near.push_back(i);
   return near;
 }
 

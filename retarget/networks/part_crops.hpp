@@ -37,8 +37,8 @@ constexpr std::array<Part, 9> kCroppedParts = {
 /// Input of the part network.
 struct PartCrop {
   Points points;  ///< [kPartPoints, 3] in the joint's frame, in leg lengths
-  Eigen::Matrix<float, kPartContext, 1>
-      context;  ///< parent's bone and rotation in that frame, the second joint, how full it is
+  /// parent's bone and rotation in that frame, the second joint, how full it is
+  Eigen::Matrix<float, kPartContext, 1> context;
 };
 
 /// The finite points of a scan (metres) around the part, at the place that the extraction gives it; the

@@ -43,7 +43,7 @@ ScanPatches cut_patches(const Points& points) {
   // From the point nearest to the middle, so that the choice does not depend on the order of the points.
   Eigen::Index first;
   x.rowwise().squaredNorm().minCoeff(&first);
-  patches.centre_index = farthest_points(x, kPatches, static_cast<int>(first));
+  patches.centre_index = farthest_points(x, kPatches, first);
 
   const Eigen::ArrayXf px = x.col(0), py = x.col(1), pz = x.col(2);
   std::vector<uint64_t> keys(kScanPoints);

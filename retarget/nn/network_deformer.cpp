@@ -279,7 +279,7 @@ void NetworkDeformer::keep_weights() {
   for (Eigen::Index v = 0; v < weights_.rows(); ++v) {
     for (int j = 0; j < kJointCount; ++j)
       if (weights_(v, j) > 0) influences_.push_back({j, weights_(v, j)});
-    first_influence_.push_back(static_cast<int>(influences_.size()));
+    first_influence_.push_back(influences_.size());
   }
 }
 

@@ -171,8 +171,8 @@ Points HandContacts::source_rest(const Joints& rest_a) const {
       const auto s = static_cast<size_t>(place.station);
       thicker = lookup(girth.radius[s], place.direction) / lookup(body.girth.radius[s], place.direction);
     }
-    const Vec3 axial =
-        (body.points.row(i) - body.rest.row(place.joint)).transpose() - place.radial;  // along the bone
+    // along the bone
+    const Vec3 axial = (body.points.row(i) - body.rest.row(place.joint)).transpose() - place.radial;
     result.row(i) = rest_a.row(place.joint) + scale * axial.transpose() +
                     std::clamp(thicker, 0.3f, 3.0f) * place.radial.transpose();
   }

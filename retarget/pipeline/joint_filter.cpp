@@ -155,8 +155,8 @@ Eigen::Array<float, kJointCount, 1> JointFilter::lengths() const {
 
 void JointFilter::fix_lengths(Extraction& frame) {
   const auto wanted = lengths();
-  const Eigen::Array<float, kJointCount, 1> give =
-      1.05f - frame.confidence.max(0.0f).min(1.0f);  // sure joints move less
+  // sure joints move less
+  const Eigen::Array<float, kJointCount, 1> give = 1.05f - frame.confidence.max(0.0f).min(1.0f);
   for (int round = 0; round < 6; ++round) {
     for (int j = 1; j < kJointCount; ++j) {
       const int p = kParents[j];

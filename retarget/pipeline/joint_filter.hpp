@@ -9,8 +9,8 @@
 namespace understudy {
 
 struct JointFilterOptions {
-  bool repair_swaps =
-      true;  ///< exchange left and right where the last frames say so and the frame's evidence is weak
+  /// exchange left and right where the last frames say so and the frame's evidence is weak
+  bool repair_swaps = true;
   bool smooth = true;          ///< constant-velocity Kalman filter of each joint and of each seen rotation
   bool fix_lengths = true;     ///< pull each bone to the running median of its length
   float noise_m = 0.009f;      ///< standard deviation of an extracted coordinate at confidence 1

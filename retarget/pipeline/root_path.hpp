@@ -18,8 +18,8 @@ constexpr Names<3> kRootNames{"scaled", "original", "in-place"};
 
 struct RootPathOptions {
   RootMode mode = RootMode::Scaled;  ///< the path over the floor; heights are scaled in every mode
-  float contact =
-      0.5f;  ///< 0..1: how much of a sole's way into the floor, or above it in contact, is taken out
+  /// 0..1: how much of a sole's way into the floor, or above it in contact, is taken out
+  float contact = 0.5f;
   float contact_height_m = 0.04f;  ///< a source's foot this low is in contact
   float settle_s = 1.0f;           ///< time in which the height's offset follows its estimate
 };

@@ -15,11 +15,11 @@ namespace understudy::training {
 /// and 2i+1 are neighbours on the surface.
 struct DeformationBatch {
   torch::Tensor points;  ///< [B, N, 3] metres
-  torch::Tensor
-      seen_joints;        ///< [B, 22, 3] what the networks get: some bodies' joints are wrong, as at run time
-  torch::Tensor surface;  ///< [B, M, 3] points spread over the body
-  torch::Tensor weights;  ///< [B, N, 22] truth
-  torch::Tensor basis;    ///< [B, N, 567] truth, 0 on clothed people
+  /// [B, 22, 3] what the networks get: some bodies' joints are wrong, as at run time
+  torch::Tensor seen_joints;
+  torch::Tensor surface;        ///< [B, M, 3] points spread over the body
+  torch::Tensor weights;        ///< [B, N, 22] truth
+  torch::Tensor basis;          ///< [B, N, 567] truth, 0 on clothed people
   torch::Tensor canonical;      ///< [B, N, 3] the same place on the mean body
   torch::Tensor has_canonical;  ///< [B] 1 for bodies of the parametric family
   torch::Tensor features;       ///< [B, P, 189] pose features

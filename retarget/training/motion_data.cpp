@@ -106,8 +106,8 @@ MotionData::MotionData(const TrainingData& data) {
 
 const MotionData::Stretch& MotionData::random_stretch(Rng& rng) const {
   if (rng.chance(0.5f)) return stretches_[rng.below(static_cast<int>(stretches_.size()))];
-  const auto& mine =
-      of_clip_[rng.below(static_cast<int>(of_clip_.size()))];  // so that short, rare clips count
+  // so that short, rare clips count
+  const auto& mine = of_clip_[rng.below(static_cast<int>(of_clip_.size()))];
   return stretches_[mine[rng.below(static_cast<int>(mine.size()))]];
 }
 
@@ -155,8 +155,8 @@ void MotionData::fill(MotionBatch& batch, int64_t row, const MotionBatchOptions&
   const Stretch& other = crossed ? stretch_of_another(mine, rng) : mine;
   const float longest =
       static_cast<float>(std::min(mine.count, other.count) - 1) / static_cast<float>(options.frames - 1);
-  const float step =
-      std::min(longest, rng.chance(0.4f) ? 1.0f : rng.uniform(0.5f, 1.5f));  // clip frames a frame
+  // clip frames a frame
+  const float step = std::min(longest, rng.chance(0.4f) ? 1.0f : rng.uniform(0.5f, 1.5f));
   const float dt = step / kClipRate;
 
   Sequence made = sequence(mine, options.frames, step, rng);

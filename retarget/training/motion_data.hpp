@@ -23,8 +23,8 @@ struct MotionBatch {
   torch::Tensor rest_a;     ///< [B, 22, 3] T-pose joints, metres
   torch::Tensor rest_b;     ///< [B, 22, 3]
   torch::Tensor seen_b;     ///< [B, 22, 3] rest_b as an extractor would see it
-  torch::Tensor
-      real;  ///< [crossed, T, 22, 3] other, captured motions of rest_b's bodies, the pelvis at the origin
+  /// [crossed, T, 22, 3] other, captured motions of rest_b's bodies, the pelvis at the origin
+  torch::Tensor real;
   int64_t crossed = 0;
 };
 

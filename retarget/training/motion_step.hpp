@@ -17,8 +17,8 @@ struct MotionLossWeights {
 
 struct MotionStep {
   LossSum loss;
-  torch::Tensor
-      made;  ///< [crossed, T, 22, 3] joints of the motions on other bodies, the pelvis at the origin
+  /// [crossed, T, 22, 3] joints of the motions on other bodies, the pelvis at the origin
+  torch::Tensor made;
 };
 
 MotionStep motion_step(nn::MotionGru& net, MotionDiscriminator& discriminator, const MotionBatch& batch,

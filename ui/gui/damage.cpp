@@ -19,7 +19,7 @@ Rect join(const Rect& a, const Rect& b) {
           {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y)}};
 }
 
-/// Whether lists that are in both stand in the same order in both.
+/// Whether the lists in both frames have the same order.
 template <class Lists>
 bool same_order(const Lists& before, const Lists& now) {
   size_t from = 0;

@@ -119,8 +119,8 @@ const ImDrawData& Gui::end_frame() {
 
 void Gui::set_look(const FrameInput& input) {
   const ImVec2 display = io().DisplaySize;
-  const float room =
-      std::floor(4 * std::min(display.x / 360, display.y / 240)) / 4;  // in steps: letters cost 20 ms
+  // in steps: letters cost 20 ms
+  const float room = std::floor(4 * std::min(display.x / 360, display.y / 240)) / 4;
   const float scale = std::clamp(input.scale, 1.f, std::clamp(room, 1.f, 3.f));
   const Theme& wanted = theme(input.theme);
   const bool first = ui_.fonts_.body == nullptr;
@@ -208,7 +208,7 @@ void Gui::apply(const InputEvent& event, Changes& changes) {
   }
 }
 
-/// Without the focus no release is ever told: nothing may stay down.
+/// Without the focus no release arrives, so nothing may stay pressed.
 void Gui::release_all() {
   ImGuiIO& to = io();
   std::fill(std::begin(to.KeysDown), std::end(to.KeysDown), false);

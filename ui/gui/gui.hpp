@@ -52,7 +52,7 @@ class Gui {
   const std::vector<Mark>& marks() const { return ui_.marks(); }
   const ImFontAtlas& atlas() const { return *io().Fonts; }
 
-  /// Whether the interface uses the mouse (it is over a panel), the keys, or is being typed into: then they
+  /// Whether the interface uses the mouse (it is over a panel) or the keys, or the user is typing: then they
   /// are not for the views behind it, nor for shortcuts.
   bool wants_mouse() const { return io().WantCaptureMouse; }
   bool wants_keys() const { return io().WantCaptureKeyboard; }
@@ -78,7 +78,7 @@ class Gui {
   Ui ui_;
 };
 
-/// Whether a key went down in this frame (or repeats, held). Says nothing about who wants it.
+/// Whether a key went down in this frame (or repeats, held). Does not tell which widget it is for.
 bool key_pressed(render::Key key, bool repeat = true);
 
 }  // namespace understudy::ui

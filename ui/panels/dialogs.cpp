@@ -110,7 +110,7 @@ void draw_method_rows(app::Method& method, Ui& ui) {
     method.root = static_cast<RootMode>(*i);
 }
 
-/// The settings in which `other` is not as `base`, as compare.add wants them.
+/// The settings in which `other` differs from `base`, as arguments of compare.add.
 app::Arguments differences(const app::Method& base, const app::Method& other) {
   app::Arguments settings;
   if (base.engine != other.engine) settings.push_back("engine=" + other.engine);

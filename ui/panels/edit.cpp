@@ -132,7 +132,7 @@ int frame_of(const SkeletonEdit& edit) {
   return drag != nullptr ? drag->frame : std::get<SwapEdit>(edit).first;
 }
 
-/// A line for each edit made; a click goes to its frame (-1: it has none). The newest 50.
+/// A line for each of the newest 50 edits; a click shows its frame (-1: it has none).
 void edit_line(PanelContext& context, const std::string& name, const std::string& words, int frame,
                const app::Arguments& removal) {
   Ui& ui = context.ui;

@@ -208,7 +208,7 @@ void draw_picture_rows(Ui& ui, ExportState& state) {
   }
 }
 
-/// Where it goes; true when the user wants to choose.
+/// The path to write; true when the user wants to browse.
 bool draw_path(const app::Session& session, Ui& ui, ExportState& state) {
   if (state.path.empty()) state.path = proposed_path(session, state);
   row(ui, "File");

@@ -80,7 +80,7 @@ bool may_move(const app::SourceOptions& source) {
   return source.motion.empty() && can_be(source.path, kMotion);
 }
 
-/// By its name where that alone says which, else by its number.
+/// Its name where that is unique, else its number.
 std::string word_for_clip(const std::vector<app::SourceClip>& clips, size_t i) {
   const auto called = [&](const app::SourceClip& clip) { return clip.name == clips[i].name; };
   const bool is_plain = !clips[i].name.empty() && clips[i].name != "longest" &&
@@ -196,7 +196,7 @@ void draw_takes(const app::Session& session, PanelContext& context) {
     context.ask("target.remove", {std::to_string(session.selected_take)});
 }
 
-/// Where the shape binds it; who wants to know more colours the view by it.
+/// How much of it the shape binds; the view can be coloured by it.
 void draw_binding(const SafeBinding& binding, Ui& ui) {
   if (binding.note.empty())
     hint(ui, "Bound by the network everywhere.");

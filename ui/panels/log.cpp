@@ -1,4 +1,4 @@
-// The log: what the program told, newest last.
+// The log: the program's messages, newest last.
 // Marks: log.warnings (filter), log.copy, log.clear, log.close, log.lines.
 #include "ui/panels/panels.hpp"
 #include "ui/widgets/controls.hpp"

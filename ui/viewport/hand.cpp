@@ -203,7 +203,7 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
   settle_until_ = session.time + kSettleSeconds;
 }
 
-/// Whether the drag, or the edit just asked for, belongs to this pane and does not show by itself yet.
+/// Whether the drag, or the edit just pushed, belongs to this pane and is not in its pictures yet.
 bool Hand::shown_in(const HandPlace& place) const {
   const Grip grip = busy() ? grip_ : settling_;
   if (grip != Grip::Joint && grip != Grip::Bone && grip != Grip::RestJoint) return false;

@@ -112,7 +112,7 @@ const PanePictures& PictureKeeper::update(const Session& session, app::FrameCach
   return pictures_;
 }
 
-/// In T-pose, or as it came. What stood there before stays until that can be drawn.
+/// The look in T-pose or as loaded; the one shown before stays until it is ready.
 bool PictureKeeper::show_standing(const Session& session, TargetLooks& looks, const PaneContent& pane) {
   const auto look = look_of_standing(session, looks, pane);
   if (!look) return false;

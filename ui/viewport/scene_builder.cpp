@@ -204,7 +204,7 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
   out_.scene.meshes.push_back(std::move(view));
 }
 
-/// Where several stand in one place, each has its own shade of the two sides' colours.
+/// Several people in one space each get their own shade of the two sides' colours.
 void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int person) {
   if (!layers.skeleton) return;
   render::SkeletonView view = render::skeleton_view(joints);

@@ -348,7 +348,7 @@ void Views::Impl::draw_brush(const Frame& f, const Pane& pane) {
                    f.ui.px(1.5f));
 }
 
-/// Following says how the camera goes on: what is seen now stays as it is.
+/// Switching the following camera on or off keeps the current picture.
 void Views::Impl::keep_view_when_following_changes(const Frame& f) {
   const bool now = f.session.view.follow;
   hold = followed && *followed != now;

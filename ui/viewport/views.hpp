@@ -18,8 +18,8 @@ class Views {
   Views(const Views&) = delete;
   Views& operator=(const Views&) = delete;
 
-  /// Fills what is left of the current window with the panes of the layout. A pane is drawn anew only when
-  /// what it shows, its camera or its size has changed. Marks: "view.0" the source, "view.1" the first take
+  /// Fills what is left of the current window with the panes of the layout. Redraws a pane only when
+  /// its content, camera or size has changed. Marks: "view.0" the source, "view.1" the first take
   /// ..., "view.wipe" the line of a wipe, "view.legend", "view.warning", "view.tip". Throws Error where the
   /// context's complaints are fatal.
   void draw(const app::Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui);
@@ -28,7 +28,7 @@ class Views {
   void forget();
   /// Whether something is still being made or was drawn as a draft only: draw again soon.
   bool waiting() const;
-  /// Whether the surface of this take was in the frame drawn last, as it came, in T-pose or performing.
+  /// Whether the surface of this take was in the last frame drawn: as loaded, in T-pose or performing.
   bool shows_take(int k) const;
   /// Grows when the background has made something to draw that is not part of the session.
   int64_t arrived() const;

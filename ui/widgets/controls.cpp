@@ -11,7 +11,7 @@
 namespace understudy::ui {
 namespace {
 
-/// A place to press, drawn by whoever asks.
+/// An invisible button; the caller draws it.
 struct Press {
   bool clicked = false, hovered = false, held = false;
   Rect rect;
@@ -48,7 +48,7 @@ struct Resting {
   int frame = -2;
 };
 
-/// Whether the pointer has rested on the last item long enough to want to know more.
+/// Whether the pointer has rested on the last item long enough for a tooltip.
 bool rests(Ui& ui) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return false;
   auto& resting = ui.state<Resting>(ImHashStr("tooltip"));

@@ -116,7 +116,7 @@ void FolderListing::Shared::count_frames(const std::string& folder, FolderConten
 }
 
 FolderListing::FolderListing(const std::string& folder) : shared_(std::make_shared<Shared>()) {
-  // Detached: a network drive that hangs must not hang whoever closes the browser.
+  // Detached: a network drive that hangs must not block closing the browser.
   std::thread([shared = shared_, folder] { shared->list(folder); }).detach();
 }
 

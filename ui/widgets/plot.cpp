@@ -34,7 +34,7 @@ double tick_step(const std::vector<double>& ticks) {
   return ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
 }
 
-/// The values' range with some air, or what was asked for.
+/// The values' range with a margin, or the range in the options.
 Range value_range(const std::vector<PlotLine>& series, const PlotOptions& options, double first,
                   double last) {
   if (!options.range.empty()) return options.range;

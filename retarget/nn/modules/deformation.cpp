@@ -71,8 +71,8 @@ Tensor point_features(const Tensor& points, const Tensor& joints) {
   const Tensor bone = j.slice(1, 1) - j.index_select(1, parents);  // [B, 21, 3]
   const Tensor length2 = bone.square().sum(-1).clamp_min(1e-6);    // [B, 21]
   const Tensor from = d.index_select(2, parents);                  // [B, N, 21, 3]
-  const Tensor along =
-      ((from * bone.unsqueeze(1)).sum(-1) / length2.unsqueeze(1)).clamp(-1, 2);  // [B, N, 21]
+  // [B, N, 21]
+  const Tensor along = ((from * bone.unsqueeze(1)).sum(-1) / length2.unsqueeze(1)).clamp(-1, 2);
   const Tensor away = (from - along.clamp(0, 1).unsqueeze(-1) * bone.unsqueeze(1)).norm(2, -1);
   const Tensor place = p - j.slice(1, 0, 1);
   return torch::cat(
@@ -165,8 +165,8 @@ SurfaceFunctions DeformationNetImpl::forward(const Tensor& points, const Tensor&
   out.log_weights = torch::log_softmax(to_weights(weight_norm(weight_block(h, code))), -1);
   const Tensor o = offset_norm(offset_block(h, code));
   const Tensor gate = torch::sigmoid(to_gate(o)).unsqueeze(2).unsqueeze(-1);  // [B, N, 1, 21, 1]
-  const Tensor basis =
-      to_basis(o).view({o.size(0), o.size(1), 3, kBones, 9}) * gate;  // offsets are local: most are 0
+  // offsets are local: most are 0
+  const Tensor basis = to_basis(o).view({o.size(0), o.size(1), 3, kBones, 9}) * gate;
   out.basis = basis.flatten(2) * kBasisUnit;
   return out;
 }

@@ -60,8 +60,8 @@ TORCH_MODULE(FilmBlock);
 struct SurfaceFunctions {
   torch::Tensor log_weights;  ///< [B, N, 22], log of skin weights that sum to 1
   torch::Tensor basis;        ///< [B, N, 567]: offset = basis as 3x189 times pose features, metres
-  torch::Tensor
-      canonical;  ///< [B, N, 3] the same place on the mean body (a stepping stone: trained, not used)
+  /// [B, N, 3] the same place on the mean body (a stepping stone: trained, not used)
+  torch::Tensor canonical;
 };
 
 /// W_net and O_net with a common trunk. O_net is factored, o(theta, p) = B(p) c(theta): everything that costs

@@ -34,7 +34,7 @@ torch::Tensor far_apart(const torch::Tensor& positions, int64_t count) {
     const Points cloud = points_of(positions[b]);
     Eigen::Index first;  // the order of the points must not matter
     (cloud.rowwise() - cloud.colwise().mean()).rowwise().squaredNorm().minCoeff(&first);
-    const auto chosen = farthest_points(cloud, static_cast<int>(count), static_cast<int>(first));
+    const auto chosen = farthest_points(cloud, count, first);
     std::copy(chosen.begin(), chosen.end(), kept[b].data_ptr<int64_t>());
   }
   return kept.to(positions.device());
@@ -59,12 +59,12 @@ VectorAttentionImpl::VectorAttentionImpl(int64_t width) {
 torch::Tensor VectorAttentionImpl::forward(const torch::Tensor& x, const torch::Tensor& positions,
                                            const torch::Tensor& neighbours) {
   const auto h = norm(x);
-  const auto delta =
-      theta->forward(positions.unsqueeze(2) - gather_rows(positions, neighbours));  // [B, N, k, C]
-  const auto weight =
-      gamma->forward(phi(h).unsqueeze(2) - gather_rows(psi(h), neighbours) + delta);  // [B, N, k, C]
-  const auto value = gather_rows(alpha(h), neighbours) + delta;                       // [B, N, k, C]
-  return x + out((torch::softmax(weight, 2) * value).sum(2));                         // [B, N, C]
+  // [B, N, k, C]
+  const auto delta = theta->forward(positions.unsqueeze(2) - gather_rows(positions, neighbours));
+  // [B, N, k, C]
+  const auto weight = gamma->forward(phi(h).unsqueeze(2) - gather_rows(psi(h), neighbours) + delta);
+  const auto value = gather_rows(alpha(h), neighbours) + delta;  // [B, N, k, C]
+  return x + out((torch::softmax(weight, 2) * value).sum(2));    // [B, N, C]
 }
 
 PointTransformerImpl::PointTransformerImpl(const PointTransformerShape& shape) : shape_(shape) {

@@ -108,8 +108,8 @@ SkeletonExtractorNetImpl::SkeletonExtractorNetImpl(const ExtractorShape& shape) 
 
 torch::Tensor SkeletonExtractorNetImpl::embed_patches(const torch::Tensor& offsets) {
   const auto B = offsets.size(0), M = offsets.size(1), K = offsets.size(2);
-  const auto x =
-      patch_mlp->forward((5.0 * offsets).view({B * M * K, 3}));   // [BMK, 96]; a patch is about 0.2 wide
+  // [BMK, 96]; a patch is about 0.2 wide
+  const auto x = patch_mlp->forward((5.0 * offsets).view({B * M * K, 3}));
   const auto pooled = std::get<0>(x.view({B, M, K, -1}).max(2));  // [B, M, 96]; amax is slower backward
   return patch_out(pooled);                                       // [B, M, C]
 }
