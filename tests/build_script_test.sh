@@ -34,17 +34,17 @@ MISSING=nodejs bash -c '. cmake/build.sh; take_options; install_packages build t
 [ ! -e "$fake/asked" ] || { echo "installs a package although its program is there"; exit 1; }
 
 # Building: STRICT=ON reaches the configuration of every preset, of one that was configured before, too.
-tree=$(mktemp -d)
+tree=$(mktemp -d) root=$PWD
 trap 'rm -rf "$fake" "$tree"' EXIT
 printf '#!/bin/bash\necho "$@" >>"%s/cmake_asked"\n' "$fake" >"$fake/cmake"
 chmod +x "$fake/cmake"
 mkdir "$tree/build-asan"
 touch "$tree/build-asan/build.ninja"
-(cd "$tree" && STRICT=ON bash -c ". $PWD/cmake/build.sh; build asan fast_tests" >/dev/null)
+(cd "$tree" && STRICT=ON bash -c ". $root/cmake/build.sh; build asan fast_tests" >/dev/null)
 grep -q -- '--preset asan.* -DSTRICT=ON' "$fake/cmake_asked" || { echo "warnings stay warnings"; exit 1; }
 grep -qx -- '--build build-asan -- fast_tests' "$fake/cmake_asked" || { echo "builds something else"; exit 1; }
 rm "$fake/cmake_asked"
-(cd "$tree" && bash -c ". $PWD/cmake/build.sh; build asan" >/dev/null)
+(cd "$tree" && bash -c ". $root/cmake/build.sh; build asan" >/dev/null)
 ! grep -q -- '--preset' "$fake/cmake_asked" || { echo "configures what is configured"; exit 1; }
 
 # The npm packages: a stand-in npm that fails leaves a sentence for the tests; one that works is asked once.
