@@ -2,10 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 #include <vector>
 
 #include "app/cli/commands.hpp"
 #include "app/run/interrupt.hpp"
+#include "retarget/networks/networks.hpp"
 
 namespace {
 
@@ -32,6 +34,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    understudy::nn::prepare_environment(/*trains=*/argc > 1 && std::string(argv[1]) == "train");
     return run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "understudy: %s\n", error.what());

@@ -1,6 +1,7 @@
 #include "retarget/networks/networks.hpp"
 
 #include <dlfcn.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -27,19 +28,18 @@ int inference_threads() {
   return std::clamp(cores / 2, 1, 4);
 }
 
-/// Settings that OpenBLAS and OpenMP read when they are loaded; what the user set stays.
-void prepare_environment() {
-  // OpenBLAS 0.3.21 does not know processors newer than itself and falls back to kernels five times slower.
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl"))
-    setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
-  else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    setenv("OPENBLAS_CORETYPE", "Haswell", 0);
-#endif
-  // Waiting threads that spin take the cores from whoever draws or compiles.
-  setenv("OMP_WAIT_POLICY", "PASSIVE", 0);
-  setenv("OMP_NUM_THREADS", std::to_string(inference_threads()).c_str(), 0);
+void tell(log::Level level, const std::string& message) {
+  level == log::Level::Warning ? log::warn(message) : log::info(message);
+}
+
+/// The plug-in wants some 2 GB of addresses for LibTorch, OpenBLAS's buffers and stacks of threads; with fewer
+/// it would wait for a thread that never starts.
+void check_address_space() {
+  struct rlimit space {};
+  constexpr rlim_t kLeast = rlim_t{3} << 30;
+  US_CHECK(::getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur >= kLeast,
+           "the networks need 3 GB of address space, this process may have ", space.rlim_cur >> 20,
+           " MB (ulimit -v)");
 }
 
 std::string plugin_path() {
@@ -52,7 +52,7 @@ std::string plugin_path() {
 
 const PluginApi& plugin() {
   static const PluginApi& api = []() -> const PluginApi& {
-    prepare_environment();
+    check_address_space();
     const std::string path = plugin_path();
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) throw Error(path + ": cannot be loaded (" + dlerror() + ")");
@@ -61,12 +61,38 @@ const PluginApi& plugin() {
     US_CHECK(entry, path, ": not a networks plug-in");
     US_CHECK(entry()->version == kPluginVersion, path, ": a networks plug-in of version ", entry()->version,
              ", not ", kPluginVersion);
+    entry()->tell_log_to(tell);
     return *entry();
   }();
   return api;
 }
 
+/// At most this many threads of OpenMP: more only cost memory, and a hundred thousand of them the process.
+void clamp_threads() {
+  const char* const wanted = std::getenv("OMP_NUM_THREADS");
+  const long most = std::max(64l, 4l * std::thread::hardware_concurrency());
+  if (wanted == nullptr || std::strtol(wanted, nullptr, 10) <= most) return;
+  log::warn("OMP_NUM_THREADS=" + std::string(wanted) +
+            " is more than this machine can use: " + std::to_string(most) + " are taken");
+  setenv("OMP_NUM_THREADS", std::to_string(most).c_str(), 1);
+}
+
 }  // namespace
+
+void prepare_environment(bool trains) {
+  // OpenBLAS 0.3.21 does not know processors newer than itself and falls back to kernels five times slower.
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512vl"))
+    setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
+  else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    setenv("OPENBLAS_CORETYPE", "Haswell", 0);
+#endif
+  // Waiting threads that spin take the cores from whoever draws or compiles.
+  setenv("OMP_WAIT_POLICY", "PASSIVE", 0);
+  setenv("OMP_NUM_THREADS", std::to_string(trains ? 1 : inference_threads()).c_str(), 0);
+  clamp_threads();
+}
 
 std::string weights_folder(const NetworkOptions& options) {
   if (!options.weights.empty()) return options.weights;
@@ -91,8 +117,6 @@ RuntimeReport runtime_report() {
 }
 
 int train(const AnyTrainOptions& options) {
-  // Trainers bring their own threads: each computes alone.
-  setenv("OMP_NUM_THREADS", "1", 0);
   const std::clock_t before = std::clock();  // of all threads
   const int result = plugin().train(options);
   const auto network = std::visit([](const auto& own) { return own.kNetwork; }, options);

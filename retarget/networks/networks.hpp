@@ -10,6 +10,11 @@
 
 namespace understudy::nn {
 
+/// Sets what OpenBLAS and OpenMP read from the environment when they are loaded; what the user set stays, but
+/// for more threads than any machine has. Call it first in main(): no other thread may run yet. Trainers
+/// bring their own threads, each of which computes alone.
+void prepare_environment(bool trains = false);
+
 struct NetworkOptions {
   std::string weights;                      ///< folder of the weights; empty: the program's own
   std::string engine = "copy";              ///< motion transfer: "copy" or "paper"

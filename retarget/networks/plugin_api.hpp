@@ -1,15 +1,18 @@
 // The functions that the networks plug-in offers to the program.
 #pragma once
 
+#include "retarget/base/log.hpp"
 #include "retarget/networks/networks.hpp"
 #include "retarget/networks/train_options.hpp"
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 6;
+constexpr int kPluginVersion = 7;
 
 struct PluginApi {
   int version;
+  /// What the plug-in's own copy of the log says goes to this function of the program from now on.
+  void (*tell_log_to)(void (*tell)(log::Level, const std::string&));
   Networks (*load)(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);

@@ -59,6 +59,10 @@ RuntimeReport report() {
   return found;
 }
 
+void tell_log_to(void (*tell)(log::Level, const std::string&)) {
+  log::set_sink(tell);
+}
+
 std::unique_ptr<SkeletonExtractor> load_extractor(const NetworkOptions& options, const std::string& folder) {
   const bool dense = options.extractor == "dense";
   const std::string file = folder + "/" + extractor_named(options.extractor).weights;
@@ -88,6 +92,6 @@ int train_network(const AnyTrainOptions& any) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion, load, report, train_network};
+  static const PluginApi api{kPluginVersion, tell_log_to, load, report, train_network};
   return &api;
 }

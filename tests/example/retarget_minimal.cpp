@@ -11,6 +11,7 @@
 
 int main(int argc, char** argv) {
   using namespace understudy;
+  nn::prepare_environment();
   try {
     if (argc != 3) throw Error("usage: retarget_minimal SCANS TARGET");
     Retargeter retargeter(nn::load_networks({}));
