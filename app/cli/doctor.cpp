@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/machine.hpp"
 #include "app/run/version.hpp"

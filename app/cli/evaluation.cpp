@@ -2,7 +2,6 @@
 
 #include <chrono>
 
-#include "app/cli/attempt.hpp"
 #include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/retargeted_source.hpp"

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/report_page.hpp"
 #include "app/cli/worst_frames.hpp"

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "app/cli/attempt.hpp"
 #include "app/cli/commands.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"

@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "app/run/retargeted_source.hpp"
-#include "app/session/background_thread.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/worker.hpp"
 
 namespace understudy::app {
 namespace {

@@ -1,20 +1,18 @@
 #include "app/session/frame_cache.hpp"
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstring>
 #include <deque>
 #include <limits>
 #include <list>
 #include <map>
-#include <mutex>
 #include <new>
-#include <thread>
 #include <tuple>
 #include <utility>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/worker.hpp"
 #include "retarget/geometry/cloud_normals.hpp"
 
 namespace understudy::app {
@@ -248,21 +246,18 @@ void remove_if(std::deque<Request>& requests, Of&& of) {
 }  // namespace
 
 struct FrameCache::Impl {
-  mutable std::mutex mutex;
-  std::condition_variable wake;
-  mutable std::condition_variable rested;
   Store store;
   std::deque<Request> demands;     // the newest last, made first
   std::deque<Request> prefetches;  // made in their order
   std::optional<Request> making;
-  bool making_demanded = false, stop = false;
+  bool making_demanded = false;
 
   SourceOptions source;
   ScanEdits edits;
   int64_t source_version = 0, reader_version = 0;
   std::map<int, std::pair<int64_t, std::shared_ptr<const Deformer>>> takes;  // as last asked for
   ScanReader reader;
-  std::thread thread;
+  Worker worker{"making pictures", [this] { return next(); }};
 
   explicit Impl(Open open) : reader(std::move(open)) {}
 
@@ -280,7 +275,7 @@ struct FrameCache::Impl {
   std::optional<Request> posed_request(const TakeState& take, const Wanted& wanted);
   bool still_wanted(const Request& request) const;
   void take_next();
-  void work();
+  Worker::Task next();
 };
 
 void FrameCache::Impl::ask(Request request) {
@@ -292,7 +287,7 @@ void FrameCache::Impl::ask(Request request) {
   remove(demands, request.key);
   demands.push_back(std::move(request));
   if (demands.size() > kMostDemands) demands.pop_front();
-  wake.notify_one();
+  worker.wake();
 }
 
 void FrameCache::Impl::prefetch(Request request) {
@@ -302,7 +297,7 @@ void FrameCache::Impl::prefetch(Request request) {
   remove(prefetches, key);
   prefetches.push_back(std::move(request));
   if (prefetches.size() > kMostPrefetches) prefetches.pop_front();
-  wake.notify_one();
+  worker.wake();
 }
 
 /// Nothing where there is no such frame. A take of another generation forgets what was made of it before.
@@ -341,47 +336,38 @@ void FrameCache::Impl::take_next() {
   }
 }
 
-void FrameCache::Impl::work() {
-  std::unique_lock lock(mutex);
-  while (true) {
-    wake.wait(lock, [this] { return stop || !demands.empty() || !prefetches.empty(); });
-    if (stop) return;
-    take_next();
-    if (making->key.take == kSource && reader_version != source_version) {
-      reader.set_source(source, edits);
-      reader_version = source_version;
-    }
+Worker::Task FrameCache::Impl::next() {
+  if (demands.empty() && prefetches.empty()) return nullptr;
+  take_next();
+  if (making->key.take == kSource && reader_version != source_version) {
+    reader.set_source(source, edits);
+    reader_version = source_version;
+  }
+  return [this, request = *making] {
     Entry entry;
-    entry.of = *making;
-    lock.unlock();
-    if (entry.of.key.take == kSource)
-      entry.scan = std::make_shared<const ScanPicture>(reader.picture(entry.of.key.frame));
-    else
-      entry.posed = std::make_shared<const PosedPicture>(posed_picture(entry.of));
-    entry.bytes = bytes_of(entry);
-    lock.lock();
+    entry.of = request;
+    const std::string problem = failure_of([&] {
+      if (request.key.take == kSource)
+        entry.scan = std::make_shared<const ScanPicture>(reader.picture(request.key.frame));
+      else
+        entry.posed = std::make_shared<const PosedPicture>(posed_picture(request));
+      entry.bytes = bytes_of(entry);
+    });
+    if (!problem.empty()) log::warn_once("a picture cannot be made: " + problem);
+    const auto held = worker.lock();
     making.reset();
     if (still_wanted(entry.of)) store.put(std::move(entry));
-    rested.notify_all();
-  }
+  };
 }
 
 FrameCache::FrameCache(int64_t limit_mb, Open open) : impl_(std::make_unique<Impl>(std::move(open))) {
   set_limit(limit_mb);
-  impl_->thread = std::thread([impl = impl_.get()] { impl->work(); });
 }
 
-FrameCache::~FrameCache() {
-  {
-    std::lock_guard lock(impl_->mutex);
-    impl_->stop = true;
-  }
-  impl_->wake.notify_one();
-  impl_->thread.join();
-}
+FrameCache::~FrameCache() = default;
 
 void FrameCache::set_source(const SourceOptions& source, const ScanEdits& edits) {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   if (same(source, impl_->source) && same(edits, impl_->edits)) return;
   impl_->source = source;
   impl_->edits = edits;
@@ -390,16 +376,15 @@ void FrameCache::set_source(const SourceOptions& source, const ScanEdits& edits)
   impl_->store.forget(of_source);
   remove_if(impl_->demands, of_source);
   remove_if(impl_->prefetches, of_source);
-  impl_->rested.notify_all();
 }
 
 void FrameCache::set_limit(int64_t limit_mb) {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   impl_->store.set_limit(std::max<int64_t>(limit_mb, 0) << 20);
 }
 
 std::shared_ptr<const ScanPicture> FrameCache::scan(int frame) {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   if (frame < 0 || impl_->source.path.empty()) return nullptr;
   const Request request = impl_->scan_request(frame);
   if (const Entry* made = impl_->store.find(request)) return made->scan;
@@ -408,7 +393,7 @@ std::shared_ptr<const ScanPicture> FrameCache::scan(int frame) {
 }
 
 std::shared_ptr<const PosedPicture> FrameCache::posed(const TakeState& take, const Wanted& wanted) {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   const std::optional<Request> request = impl_->posed_request(take, wanted);
   if (!request) return nullptr;
   if (const Entry* made = impl_->store.find(*request)) return made->posed;
@@ -417,31 +402,31 @@ std::shared_ptr<const PosedPicture> FrameCache::posed(const TakeState& take, con
 }
 
 void FrameCache::prefetch_scan(int frame) {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   if (frame < 0 || impl_->source.path.empty()) return;
   const Request request = impl_->scan_request(frame);
   if (!impl_->store.find(request)) impl_->prefetch(request);
 }
 
 void FrameCache::prefetch_posed(const TakeState& take, const Wanted& wanted) {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   const std::optional<Request> request = impl_->posed_request(take, wanted);
   if (request && !impl_->store.find(*request)) impl_->prefetch(*request);
 }
 
 void FrameCache::wait() const {
-  std::unique_lock lock(impl_->mutex);
-  impl_->rested.wait(lock,
+  auto held = impl_->worker.lock();
+  impl_->worker.wait(held,
                      [this] { return impl_->demands.empty() && !(impl_->making && impl_->making_demanded); });
 }
 
 int64_t FrameCache::bytes() const {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   return impl_->store.bytes();
 }
 
 bool FrameCache::busy() const {
-  std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   return impl_->making || !impl_->demands.empty() || !impl_->prefetches.empty();
 }
 

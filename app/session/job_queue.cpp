@@ -8,8 +8,8 @@
 #include <system_error>
 #include <thread>
 
-#include "app/session/background_thread.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/worker.hpp"
 
 namespace understudy::app {
 namespace {

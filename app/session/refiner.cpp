@@ -1,13 +1,12 @@
 #include "app/session/refiner.hpp"
 
 #include <algorithm>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
+#include <memory>
+#include <utility>
 
-#include "app/session/background_thread.hpp"
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/worker.hpp"
 
 namespace understudy::app {
 
@@ -33,65 +32,44 @@ Refined refine(const RefineRequest& request) {
 }
 
 struct Refiner::Impl {
-  mutable std::mutex mutex;
-  std::condition_variable wake;
   std::vector<RefineRequest> waiting;
   std::vector<Refined> finished;
-  bool stop = false, working = false;
-  std::thread thread;
+  Worker worker{"refining", [this] { return next(); }};
 
-  void run() {
-    yield_to_drawing();
-    std::unique_lock<std::mutex> lock(mutex);
-    while (true) {
-      wake.wait(lock, [this] { return stop || !waiting.empty(); });
-      if (stop) return;
-      const RefineRequest request = std::move(waiting.front());
-      waiting.erase(waiting.begin());
-      working = true;
-      lock.unlock();
-      Refined result = refine(request);
-      lock.lock();
+  Worker::Task next() {
+    if (waiting.empty()) return nullptr;
+    const auto request = std::make_shared<const RefineRequest>(std::move(waiting.front()));
+    waiting.erase(waiting.begin());
+    return [this, request] {
+      Refined result;
+      const std::string problem = failure_of([&] { result = refine(*request); });
+      if (!problem.empty()) result = {}, result.take_id = request->take_id, result.problem = problem;
+      const auto held = worker.lock();
       finished.push_back(std::move(result));
-      working = false;
-    }
+    };
   }
 };
 
-Refiner::Refiner() : impl_(std::make_unique<Impl>()) {
-  impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
-}
-
-Refiner::~Refiner() {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->stop = true;
-  }
-  impl_->wake.notify_all();
-  impl_->thread.join();
-}
+Refiner::Refiner() : impl_(std::make_unique<Impl>()) {}
+Refiner::~Refiner() = default;
 
 void Refiner::request(RefineRequest request) {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    auto& waiting = impl_->waiting;
-    waiting.erase(
-        std::remove_if(waiting.begin(), waiting.end(),
-                       [&](const RefineRequest& other) { return other.take_id == request.take_id; }),
-        waiting.end());
-    waiting.push_back(std::move(request));
-  }
-  impl_->wake.notify_all();
+  const auto held = impl_->worker.lock();
+  auto& waiting = impl_->waiting;
+  const auto of_take = [&](const RefineRequest& other) { return other.take_id == request.take_id; };
+  waiting.erase(std::remove_if(waiting.begin(), waiting.end(), of_take), waiting.end());
+  waiting.push_back(std::move(request));
+  impl_->worker.wake();
 }
 
 std::vector<Refined> Refiner::drain() {
-  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   return std::exchange(impl_->finished, {});
 }
 
 bool Refiner::busy() const {
-  const std::lock_guard<std::mutex> lock(impl_->mutex);
-  return impl_->working || !impl_->waiting.empty() || !impl_->finished.empty();
+  const auto held = impl_->worker.lock();
+  return impl_->worker.working() || !impl_->waiting.empty() || !impl_->finished.empty();
 }
 
 }  // namespace understudy::app

@@ -76,16 +76,8 @@ Mesh normalized(Mesh mesh) {
 
 }  // namespace
 
-Previews::Previews() : thread_([this] { read_all(); }) {}
-
-Previews::~Previews() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  wanted_.notify_one();
-  thread_.join();
-}
+Previews::Previews() = default;
+Previews::~Previews() = default;
 
 const FilePreview& Previews::of(const std::vector<std::string>& paths, render::PixelSize size, bool dark) {
   std::string key = std::to_string(size.width) + "x" + std::to_string(size.height) + (dark ? "d\n" : "l\n");
@@ -93,28 +85,26 @@ const FilePreview& Previews::of(const std::vector<std::string>& paths, render::P
   const auto [at, is_new] = pictures_.try_emplace(key);
   at->second.used = ++uses_;
   if (is_new) {
-    {
-      const std::lock_guard lock(mutex_);
-      to_read_.push_back({key, size, dark, paths, {}});
-      while (to_read_.size() > kWaiting) {
-        pictures_.erase(to_read_.front().key);  // asked for again when it is looked at again
-        to_read_.pop_front();
-      }
+    const auto held = worker_.lock();
+    to_read_.push_back({key, size, dark, paths, {}});
+    while (to_read_.size() > kWaiting) {
+      pictures_.erase(to_read_.front().key);  // asked for again when it is looked at again
+      to_read_.pop_front();
     }
-    wanted_.notify_one();
+    worker_.wake();
   }
   return at->second.preview;
 }
 
 bool Previews::busy() const {
-  const std::lock_guard lock(mutex_);
-  return reading_ || !to_read_.empty() || !to_draw_.empty();
+  const auto held = worker_.lock();
+  return worker_.working() || !to_read_.empty() || !to_draw_.empty();
 }
 
 bool Previews::update() {
   Reading reading;
   {
-    const std::lock_guard lock(mutex_);
+    const auto held = worker_.lock();
     if (to_draw_.empty()) return false;
     reading = std::move(to_draw_.front());
     to_draw_.pop_front();
@@ -124,20 +114,16 @@ bool Previews::update() {
   return true;
 }
 
-void Previews::read_all() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    wanted_.wait(lock, [this] { return stop_ || !to_read_.empty(); });
-    if (stop_) return;
-    Reading reading = std::move(to_read_.back());  // the newest is what is looked at
-    to_read_.pop_back();
-    reading_ = true;
-    lock.unlock();
-    for (const std::string& path : reading.paths) reading.contents.push_back(read(path));
-    lock.lock();
-    reading_ = false;
-    to_draw_.push_back(std::move(reading));
-  }
+Worker::Task Previews::next() {
+  if (to_read_.empty()) return nullptr;
+  const auto reading =
+      std::make_shared<Reading>(std::move(to_read_.back()));  // the newest is what is looked at
+  to_read_.pop_back();
+  return [this, reading] {
+    for (const std::string& path : reading->paths) reading->contents.push_back(read(path));
+    const auto held = worker_.lock();
+    to_draw_.push_back(std::move(*reading));
+  };
 }
 
 Previews::Content Previews::read(const std::string& path) {

@@ -1,17 +1,15 @@
 // Small pictures of files' contents, for the file browser and the start screen.
 #pragma once
 
-#include <condition_variable>
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "render/gl/object.hpp"
 #include "render/renderer.hpp"
+#include "retarget/base/worker.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "ui/gui/draw_pass.hpp"
 
@@ -60,7 +58,7 @@ class Previews {
     int64_t used = 0;
   };
   static Content read(const std::string& path);
-  void read_all();
+  Worker::Task next();
   void draw(const Reading& reading);
   std::unique_ptr<render::gl::Texture> picture_of(const render::Scene& scene, render::PixelSize size);
   void forget_oldest();
@@ -68,11 +66,8 @@ class Previews {
   std::unique_ptr<render::Renderer> renderer_;
   std::map<std::string, Picture> pictures_;
   int64_t uses_ = 0;
-  mutable std::mutex mutex_;
-  std::condition_variable wanted_;
   std::deque<Reading> to_read_, to_draw_;
-  bool reading_ = false, stop_ = false;
-  std::thread thread_;
+  Worker worker_{"previews", [this] { return next(); }};
 };
 
 }  // namespace understudy::app

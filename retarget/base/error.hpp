@@ -1,6 +1,7 @@
 // The one error type and the one check of the whole program.
 #pragma once
 
+#include <new>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,22 @@ std::string join(const Parts&... parts) {
   return out.str();
 }
 }  // namespace detail
+
+/// Runs a part of a job that may fail without the whole failing; gives the sentence of what went wrong, of any
+/// exception, and an empty one when nothing did.
+template <class Part>
+std::string failure_of(Part part) {
+  try {
+    part();
+  } catch (const std::bad_alloc&) {
+    return "there is not enough memory";
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "it failed for an unknown reason";
+  }
+  return {};
+}
 }  // namespace understudy
 
 /// Throws Error with the joined parts when the condition is false.

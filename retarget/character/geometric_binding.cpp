@@ -125,23 +125,21 @@ std::vector<bool> cloth_of(const Mesh& mesh, const Legs& legs, const MiddleCut& 
     const float y = mesh.vertices(v, 1);
     return y > hem - 0.03f * legs.length && y < legs.top + 0.06f * legs.length;
   };
-  std::vector<bool> cloth(mesh.vertices.rows(), false);
-  for (const Eigen::Index f : cut.faces)
-    for (int c = 0; c < 3; ++c)
-      if (in_band(mesh.faces(f, c))) cloth[mesh.faces(f, c)] = true;
-  for (bool grown = true; grown;) {
-    grown = false;
-    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-      int marked = 0;
-      for (int c = 0; c < 3; ++c) marked += cloth[mesh.faces(f, c)] ? 1 : 0;
-      if (marked == 0 || marked == 3) continue;
-      for (int c = 0; c < 3; ++c) {
-        const int v = mesh.faces(f, c);
-        if (cloth[v] || !in_band(v)) continue;
-        cloth[v] = grown = true;
-      }
+  std::vector<int> joined(mesh.vertices.rows());  // a forest: neighbours in the band have one root
+  std::iota(joined.begin(), joined.end(), 0);
+  const auto root = [&](int v) {
+    while (joined[v] != v) v = joined[v] = joined[joined[v]];
+    return v;
+  };
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+    for (int c = 0; c < 3; ++c) {
+      const int a = mesh.faces(f, c), b = mesh.faces(f, (c + 1) % 3);
+      if (in_band(a) && in_band(b)) joined[root(a)] = root(b);
     }
-  }
+  std::vector<bool> holds_cut(joined.size()), cloth(joined.size());
+  for (const Eigen::Index f : cut.faces)
+    for (int c = 0; c < 3; ++c) holds_cut[root(mesh.faces(f, c))] = true;
+  for (int v = 0; v < mesh.vertices.rows(); ++v) cloth[v] = in_band(v) && holds_cut[root(v)];
   constexpr int kAngles = 24;
   std::array<std::array<float, kAngles>, kSlices + 8> outermost{};
   const auto bin = [&](int v, float& radius) -> float& {

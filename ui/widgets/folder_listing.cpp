@@ -13,6 +13,7 @@
 #include <system_error>
 #include <thread>
 
+#include "retarget/base/error.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_frames.hpp"
 
@@ -117,7 +118,10 @@ void FolderListing::Shared::count_frames(const std::string& folder, FolderConten
 
 FolderListing::FolderListing(const std::string& folder) : shared_(std::make_shared<Shared>()) {
   // Detached: a network drive that hangs must not block closing the browser.
-  std::thread([shared = shared_, folder] { shared->list(folder); }).detach();
+  std::thread([shared = shared_, folder] {
+    const std::string problem = failure_of([&] { shared->list(folder); });
+    if (!problem.empty()) shared->publish({{}, true, folder + " cannot be listed: " + problem + "."});
+  }).detach();
 }
 
 FolderListing::~FolderListing() {
