@@ -15,6 +15,8 @@ class PositionsTransfer final : public MotionTransfer {
     positions.global.reset();
     return copy_.push(positions, dt);
   }
+  std::any memory() const override { return copy_.memory(); }
+  void restore(const std::any& memory) override { copy_.restore(memory); }
   std::string name() const override { return "positions"; }
 
  private:
