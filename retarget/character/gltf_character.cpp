@@ -80,25 +80,14 @@ void CharacterReader::read_nodes() {
 
 // Numbers for the nodes, parents first: the file's own where they are so already.
 void CharacterReader::order_nodes(const std::vector<int>& parents) {
+  const int count = static_cast<int>(parents.size());
   std::vector<int> depth(parents.size(), 0);
   bool in_order = true;
-  for (size_t n = 0; n < parents.size(); ++n) {
-    int steps = 1;
-    for (int p = parents[n]; p >= 0 && steps <= kMaxDepth; p = parents[p]) ++steps;
-    depth[n] = steps;
-    in_order = in_order && parents[n] < static_cast<int>(n);
-  }
-  for (size_t n = 0; n < parents.size(); ++n) {  // a way up without an end is a circle, or only long
-    int slow = static_cast<int>(n), fast = slow;
-    const auto up = [&](int& at) { at = at < 0 ? at : parents[at]; };
-    if (depth[n] <= kMaxDepth) continue;
-    do {
-      up(slow);
-      up(fast);
-      up(fast);
-    } while (fast >= 0 && slow != fast);
-    US_CHECK(fast < 0, path_, ": its nodes go round in a circle");
-    throw Error(path_ + ": its nodes are more than 1000 levels deep");
+  for (int n = 0; n < count; ++n) {
+    for (int p = n; p >= 0 && depth[n] <= count; p = parents[p]) ++depth[n];
+    US_CHECK(depth[n] <= count, path_, ": its nodes go round in a circle");
+    US_CHECK(depth[n] <= kMaxDepth, path_, ": its nodes are more than 1000 levels deep");
+    in_order = in_order && parents[n] < n;
   }
   std::vector<size_t> order(parents.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -172,15 +161,9 @@ void CharacterReader::read_influences(const Attributes& attributes, CharacterPar
     const float sum = part.weights.row(v).sum();
     if (sum > 1e-8f && std::abs(sum - 1) > 1e-6f) part.weights.row(v) /= sum;
     if (sum <= 1e-8f) part.weights(v, 0) = 1;  // bound to nothing: to its first bone
-    for (Eigen::Index k = 0; k < part.joints.cols(); ++k) {
-      for (Eigen::Index i = 0; i < k; ++i)  // a bone named twice counts once
-        if (part.weights(v, k) > 0 && part.joints(v, i) == part.joints(v, k) && part.weights(v, i) > 0) {
-          part.weights(v, i) += part.weights(v, k);
-          part.weights(v, k) = 0;
-        }
-      if (part.weights(v, k) == 0) part.joints(v, k) = 0;  // numbers without a weight mean nothing
-    }
   }
+  part.weights = weights_of_bones(part);
+  part.joints = (part.weights.array() > 0).select(part.joints, 0);  // numbers without a weight mean nothing
 }
 
 void CharacterReader::read_shapes(const tinygltf::Primitive& primitive, CharacterPart& part) {

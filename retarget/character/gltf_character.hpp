@@ -14,6 +14,9 @@ namespace understudy {
 /// pictures that are none, ...
 Character parse_gltf_character(std::string_view bytes, const std::string& path);
 
+/// Skin weights, [V, K]: a bone that is named twice for one vertex has both of them in the first place.
+RowMatrix weights_of_bones(const CharacterPart& part);
+
 /// The bytes of such a file; the suffix of `path` .gltf makes text with everything inside, else binary.
 /// Throws Error naming the path, also where the file would pass 4 GB.
 std::string gltf_bytes(const Character& character, const std::string& path);

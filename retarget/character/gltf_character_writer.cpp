@@ -123,19 +123,6 @@ RowMatrix unit_rows(const Points& directions, const Vec3& otherwise) {
   return out;
 }
 
-/// A bone that is named twice for one vertex has both weights in one place, which the format asks for.
-RowMatrix weights_of_bones(const CharacterPart& part) {
-  RowMatrix out = part.weights;
-  for (Eigen::Index v = 0; v < out.rows(); ++v)
-    for (Eigen::Index k = 1; k < out.cols(); ++k)
-      for (Eigen::Index before = 0; before < k && out(v, k) > 0; ++before)
-        if (part.joints(v, before) == part.joints(v, k) && out(v, before) > 0) {
-          out(v, before) += out(v, k);
-          out(v, k) = 0;
-        }
-  return out;
-}
-
 template <class T>
 int add_joints(const CharacterPart& part, const RowMatrix& weights, Eigen::Index first, ModelMaker& out) {
   std::vector<T> joints;
@@ -334,6 +321,18 @@ void put_first(std::string lists, bool is_text, std::string& file) {
 }
 
 }  // namespace
+
+RowMatrix weights_of_bones(const CharacterPart& part) {
+  RowMatrix out = part.weights;
+  for (Eigen::Index v = 0; v < out.rows(); ++v)
+    for (Eigen::Index k = 1; k < out.cols(); ++k)
+      for (Eigen::Index before = 0; before < k && out(v, k) > 0; ++before)
+        if (part.joints(v, before) == part.joints(v, k) && out(v, before) > 0) {
+          out(v, before) += out(v, k);
+          out(v, k) = 0;
+        }
+  return out;
+}
 
 std::string gltf_bytes(const Character& character, const std::string& path) {
   check_character(character, path);

@@ -401,7 +401,8 @@ Mat4 gltf_local_transform(const GltfFile& file, const tinygltf::Node& node) {
 GltfSceneNodes walk_gltf_scene(const GltfFile& file) {
   const tinygltf::Model& model = file.model();
   const size_t count = model.nodes.size();
-  GltfSceneNodes nodes{{}, std::vector<Mat4>(count, Mat4::Identity()), std::vector<bool>(count, false)};
+  GltfSceneNodes nodes{{}, std::vector<Mat4>(count, Mat4::Identity())};
+  std::vector<bool> reached(count, false);
   std::vector<std::pair<int, Mat4>> open;
   if (!model.scenes.empty()) {
     for (const int root : file.item(model.scenes, std::max(model.defaultScene, 0), "scenes").nodes)
@@ -414,8 +415,8 @@ GltfSceneNodes walk_gltf_scene(const GltfFile& file) {
     open.pop_back();
     const tinygltf::Node& node = file.item(model.nodes, index, "nodes");
     const auto i = static_cast<size_t>(index);
-    if (nodes.reached[i]) continue;  // a loop, or a child of two parents: neither is allowed
-    nodes.reached[i] = true;
+    if (reached[i]) continue;  // a loop, or a child of two parents: neither is allowed
+    reached[i] = true;
     nodes.order.push_back(index);
     nodes.world[i] = parent * gltf_local_transform(file, node);
     for (const int child : node.children) open.emplace_back(child, nodes.world[i]);

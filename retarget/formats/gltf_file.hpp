@@ -87,7 +87,6 @@ Eigen::Matrix4f gltf_local_transform(const GltfFile& file, const tinygltf::Node&
 struct GltfSceneNodes {
   std::vector<int> order;
   std::vector<Eigen::Matrix4f> world;
-  std::vector<bool> reached;
 };
 GltfSceneNodes walk_gltf_scene(const GltfFile& file);
 
