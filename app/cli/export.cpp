@@ -109,6 +109,8 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
 void check_session(const Session& session) {
   US_CHECK(!session.question || session.question->kind != Question::Kind::MissingFiles,
            session.question->missing[0], ": is a file of the document and not there");
+  US_CHECK(!session.question || session.question->kind != Question::Kind::PaintMisfit,
+           session.question->text);
   US_CHECK(session.errors.empty(), session.errors.front().text);
 }
 

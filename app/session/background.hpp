@@ -23,6 +23,7 @@ struct Studio::Background {
     size_t refined_frames = 0;
     std::shared_ptr<const Target> neighbours_of;  // the target that `neighbours` are of
     Neighbours neighbours;
+    bool asked_about_paint = false;
     bool measured = false;
     int64_t measuring = 0;  // the job; 0: none
   };

@@ -25,6 +25,10 @@ bool switched(const Arguments& arguments, size_t i, bool now);
 const std::string& word(const Arguments& arguments, size_t i, const char* what);
 /// The index of the argument among `words`.
 size_t choice(const Arguments& arguments, size_t i, const char* what, const std::vector<std::string>& words);
+template <size_t N>
+size_t choice(const Arguments& arguments, size_t i, const char* what, const Names<N>& names) {
+  return choice(arguments, i, what, std::vector<std::string>(names.begin(), names.end()));
+}
 /// A joint by name ("left_wrist") or number.
 int joint_argument(const Arguments& arguments, size_t i);
 Vec3 vector_argument(const Arguments& arguments, size_t i, const char* what);

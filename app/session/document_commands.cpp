@@ -56,7 +56,7 @@ void save_document(Studio& studio, const std::string& path) {
   session.path = whole;
   session.changed = false;
   remember(session.settings.recent, whole);
-  studio.drop_autosave();
+  studio.end_autosave();
   studio.notify("Saved " + fs::path(whole).filename().string());
 }
 

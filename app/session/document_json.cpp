@@ -175,7 +175,12 @@ Json Writer::json_of(const WeightRows& value, const std::string& where) {
     }
     rows.push_back(std::move(row));
   }
-  return {{"vertices", value.vertex}, {"rows", std::move(rows)}};
+  Json json{{"vertices", value.vertex}, {"rows", std::move(rows)}};
+  if (value.places.rows() == 0) return json;  // of a document of before
+  json["of"] = value.of;
+  json["places"] =
+      json_of(std::vector<float>(value.places.data(), value.places.data() + value.places.size()), where);
+  return json;
 }
 
 Json Writer::json_of(const SkeletonEdit& edit, const std::string& where) {
@@ -311,6 +316,12 @@ void Reader::read(const Json& json, std::shared_ptr<const WeightRows>& value, co
       read(row[k + 1], edit.rows(static_cast<Eigen::Index>(i), joint), here, Within<float>{0, 1.001f});
     }
   }
+  std::vector<float> places;
+  reader("of", edit.of, Within<int>{0, std::numeric_limits<int>::max()});
+  reader("places", places);
+  US_CHECK(places.empty() || places.size() == 3 * edit.vertex.size(), where,
+           ".places must be three numbers a vertex");
+  if (!places.empty()) edit.places = Eigen::Map<const Points>(places.data(), edit.rows.rows(), 3);
   check_rows(edit, where);
   if (!edit.empty()) value = std::make_shared<const WeightRows>(std::move(edit));
 }

@@ -66,7 +66,7 @@ void add_skeleton_edits(Commands& commands) {
                   edit.first = frame_argument(s.session(), a, 0);
                   edit.last = frame_argument(s.session(), a, 1);
                   US_CHECK(edit.first <= edit.last, "the last frame comes before the first");
-                  edit.limbs = static_cast<SwapEdit::Limbs>(choice(a, 2, "limbs", {"arms", "legs", "both"}));
+                  edit.limbs = static_cast<SwapEdit::Limbs>(choice(a, 2, "limbs", kLimbNames));
                   s.session().document.skeleton_edits.push_back(edit);
                 }});
   commands.add({"edit.skeleton_clear", "Clear the skeleton's edits", "", "", true, false,
@@ -168,12 +168,14 @@ Painting painting(Studio& studio, const Arguments& a) {
   Take& take = take_argument(studio.session(), a, 0);
   const TakeState& state = studio.session().takes[whole_number(a, 0, "take")];
   US_CHECK(state.target && state.weights, "the target is still being prepared");
+  US_CHECK(state.paint_problem.empty(), state.paint_problem);
   return {take, state};
 }
 
 void keep(Painting& painting, const WeightRows& changed) {
   auto& weights = painting.take.target_edits.weights;
-  weights = std::make_shared<const WeightRows>(weights ? merged(*weights, changed) : changed);
+  weights = std::make_shared<const WeightRows>(
+      placed(weights ? merged(*weights, changed) : changed, painting.state.target->mesh.vertices));
 }
 
 void add_target_edits(Commands& commands) {
@@ -221,6 +223,14 @@ void add_weight_tools(Commands& commands) {
                   const float strength = std::clamp(static_cast<float>(number(a, 1, "strength")), 0.f, 1.f);
                   keep(p, smoothed(*p.state.weights, s.neighbours(whole_number(a, 0, "take")), {}, strength));
                 }});
+  commands.add(
+      {"edit.weights_reproject", "Bring painted weights to the target as it is now", "TAKE", "", true, false,
+       [](Studio& s, const Arguments& a) {
+         auto& weights = take_argument(s.session(), a, 0).target_edits.weights;
+         const auto& target = s.session().takes[static_cast<size_t>(whole_number(a, 0, "take"))].target;
+         US_CHECK(weights && target, "there are no painted weights, or the target is still being prepared");
+         weights = std::make_shared<const WeightRows>(reprojected(*weights, target->mesh.vertices));
+       }});
   commands.add(
       {"edit.weights_clear", "Clear painted weights", "TAKE", "", true, false,
        [](Studio& s, const Arguments& a) { take_argument(s.session(), a, 0).target_edits.weights.reset(); }});

@@ -266,6 +266,12 @@ struct FrameCache::Impl {
   bool is_made_now(const Request& request) const {
     return making && making->key == request.key && making->recipe == request.recipe;
   }
+  template <class Of>
+  void forget(const Of& of) {
+    store.forget(of);
+    remove_if(demands, of);
+    remove_if(prefetches, of);
+  }
   Request scan_request(int frame) const {
     Request request;
     request.key.frame = frame;
@@ -308,10 +314,7 @@ std::optional<Request> FrameCache::Impl::posed_request(const TakeState& take, co
   auto& known = takes[wanted.take];
   if (known != now) {
     known = now;
-    const auto of_take = [&](const Request& request) { return request.key.take == wanted.take; };
-    store.forget(of_take);
-    remove_if(demands, of_take);
-    remove_if(prefetches, of_take);
+    forget([&](const Request& request) { return request.key.take == wanted.take; });
   }
   return Request{{wanted.take, wanted.frame, wanted.offsets},
                  {take.generation, take.deformer, take.target, take.shown.poses[frame]}};
@@ -372,10 +375,13 @@ void FrameCache::set_source(const SourceOptions& source, const ScanEdits& edits)
   impl_->source = source;
   impl_->edits = edits;
   ++impl_->source_version;
-  const auto of_source = [](const Request& request) { return request.key.take == kSource; };
-  impl_->store.forget(of_source);
-  remove_if(impl_->demands, of_source);
-  remove_if(impl_->prefetches, of_source);
+  impl_->forget([](const Request& request) { return request.key.take == kSource; });
+}
+
+void FrameCache::forget_takes() {
+  const auto held = impl_->worker.lock();
+  impl_->takes.clear();
+  impl_->forget([](const Request& request) { return request.key.take != kSource; });
 }
 
 void FrameCache::set_limit(int64_t limit_mb) {

@@ -38,6 +38,8 @@ class FrameCache {
 
   /// Reads scans from this source with these edits from now on; a change drops the frames made before.
   void set_source(const SourceOptions& source, const ScanEdits& edits);
+  /// Drops what was made of takes: one of them was removed.
+  void forget_takes();
   /// Keeps the newest four frames whatever their size: one picture needs several.
   void set_limit(int64_t limit_mb);
 

@@ -51,8 +51,9 @@ struct SourceState {
 
 /// A take as far as it has been performed.
 struct TakeState {
-  bool ready = false;   ///< target, weights and joints below are there
-  std::string problem;  ///< why it cannot become ready, one sentence; empty: no problem
+  bool ready = false;         ///< target, weights and joints below are there
+  std::string problem;        ///< why it cannot become ready, one sentence; empty: no problem
+  std::string paint_problem;  ///< why painted weights are left out, one sentence; empty: they are not
   /// The character as read and brought to the T-pose; the one prepared before, until the new one is ready.
   std::shared_ptr<const PreparedCharacter> character;
   /// The mesh as loaded, upright and at its size; shown until `target` is there, then null.
@@ -97,12 +98,13 @@ struct LogLine {
 
 /// A question that the user must answer before the studio continues.
 struct Question {
-  enum class Kind { UnsavedChanges, Recover, MissingFiles };
+  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit };
   Kind kind = Kind::UnsavedChanges;
   std::string text;
   std::string then;                  ///< the command to continue with ("app.quit", "document.open PATH")
   std::vector<std::string> missing;  ///< MissingFiles: the missing paths
   std::vector<Autosave> autosaves;   ///< Recover
+  int take = -1;                     ///< PaintMisfit: whose weights were painted on another surface
 };
 
 /// What the mouse does in the views.

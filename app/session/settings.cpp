@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -22,81 +21,48 @@ using Json = nlohmann::ordered_json;
 constexpr size_t kMostRecent = 12;
 constexpr int64_t kLargestFile = 1 << 20;
 
-/// One figure: its key, where it is kept, and its range. Defaults are Settings' own.
-template <class Number>
-struct Figure {
-  const char* key;
-  Number Settings::*member;
-  Number low, high;
-};
-constexpr Figure<float> kFloats[] = {{"scale", &Settings::scale, 0.75f, 3},
-                                     {"mouse_sensitivity", &Settings::mouse_sensitivity, 0.2f, 4}};
-constexpr Figure<double> kDoubles[] = {{"autosave_s", &Settings::autosave_s, 5, 600}};
-constexpr Figure<int> kInts[] = {{"samples", &Settings::samples, 1, 4},
-                                 {"cache_mb", &Settings::cache_mb, 64, 8192},
-                                 {"undo_depth", &Settings::undo_depth, 10, 1000},
-                                 {"window_width", &Settings::window_width, 400, 16384},
-                                 {"window_height", &Settings::window_height, 300, 16384}};
-
-struct List {
-  const char* key;
-  std::vector<std::string> Settings::*member;
-};
-constexpr List kLists[] = {{"recent", &Settings::recent},
-                           {"recent_sources", &Settings::recent_sources},
-                           {"recent_targets", &Settings::recent_targets}};
-
-template <class Visit>
-void for_each_figure(Visit visit) {
-  for (const auto& figure : kFloats) visit(figure);
-  for (const auto& figure : kDoubles) visit(figure);
-  for (const auto& figure : kInts) visit(figure);
-}
-
 void bring_into_range(Settings& settings) {
   const bool scale_by_screen = !(settings.scale > 0);
-  const Settings defaults;
-  for_each_figure([&](const auto& figure) {
-    auto& value = settings.*figure.member;
-    if (std::isnan(static_cast<double>(value))) value = defaults.*figure.member;
-    value = std::clamp(value, figure.low, figure.high);
-  });
+  const auto bring_in = [](const char*, auto& value, const auto&... rule) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (sizeof...(rule) > 0)
+      value = std::clamp(value, rule.low..., rule.high...);
+    else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+      value.resize(std::min(value.size(), kMostRecent));
+  };
+  fields(bring_in, settings);
   if (scale_by_screen) settings.scale = 0;
   if (settings.samples == 3) settings.samples = 2;
-  for (const List& list : kLists)
-    if ((settings.*list.member).size() > kMostRecent) (settings.*list.member).resize(kMostRecent);
 }
 
+void read(const Json& json, bool& value) {
+  if (json.is_boolean()) value = json.get<bool>();
+}
+void read(const Json& json, std::string& value) {
+  if (json.is_string()) value = json.get<std::string>();
+}
+void read(const Json& json, std::vector<std::string>& values) {
+  if (!json.is_array()) return;
+  for (const Json& one : json)
+    if (one.is_string()) values.push_back(one.get<std::string>());
+}
+void read(const Json& json, std::map<std::string, bool>& values) {
+  if (!json.is_object()) return;
+  for (const auto& one : json.items())
+    if (one.value().is_boolean()) values[one.key()] = one.value().get<bool>();
+}
 template <class Number>
-void read_figure(const Json& json, const Figure<Number>& figure, Settings& settings) {
-  const auto found = json.find(figure.key);
-  if (found == json.end() || !found->is_number()) return;
+void read(const Json& json, Number& value) {
   // Far outside first: what a Number cannot hold must not be converted to it.
-  const double value = std::clamp(found->template get<double>(), -1e9, 1e9);
-  settings.*figure.member = static_cast<Number>(value);
-}
-
-void read_bool(const Json& json, const char* key, bool& value) {
-  const auto found = json.find(key);
-  if (found != json.end() && found->is_boolean()) value = found->get<bool>();
+  if (json.is_number()) value = static_cast<Number>(std::clamp(json.get<double>(), -1e9, 1e9));
 }
 
 Settings from_json(const Json& json) {
   Settings settings;
-  for_each_figure([&](const auto& figure) { read_figure(json, figure, settings); });
-  read_bool(json, "dark", settings.dark);
-  for (const List& list : kLists) {
-    const auto found = json.find(list.key);
-    if (found == json.end() || !found->is_array()) continue;
-    for (const Json& path : *found)
-      if (path.is_string()) (settings.*list.member).push_back(path.get<std::string>());
-  }
-  const auto panels = json.find("panels");
-  if (panels != json.end() && panels->is_object())
-    for (const auto& panel : panels->items())
-      if (panel.value().is_boolean()) settings.panels[panel.key()] = panel.value().get<bool>();
-  const auto folder = json.find("last_folder");
-  if (folder != json.end() && folder->is_string()) settings.last_folder = folder->get<std::string>();
+  const auto read_member = [&json](const char* name, auto& value, const auto&...) {
+    if (const auto found = json.find(name); found != json.end()) read(*found, value);
+  };
+  fields(read_member, settings);
   bring_into_range(settings);
   return settings;
 }
@@ -140,11 +106,11 @@ Settings read_settings(const std::string& path) {
 void write_settings(const std::string& path, const Settings& settings) {
   Settings kept = settings;
   bring_into_range(kept);
-  Json json{{"dark", kept.dark}};
-  for_each_figure([&](const auto& figure) { json[figure.key] = kept.*figure.member; });
-  for (const List& list : kLists) json[list.key] = kept.*list.member;
-  json["panels"] = kept.panels;
-  json["last_folder"] = kept.last_folder;
+  Json json;
+  const auto write_member = [&json](const char* name, const auto& value, const auto&...) {
+    json[name] = value;
+  };
+  fields(write_member, std::as_const(kept));
   std::error_code ignored;  // what is wrong with the folder, the writing says
   fs::create_directories(fs::path(path).parent_path(), ignored);
   write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');

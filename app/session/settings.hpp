@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "retarget/base/fields.hpp"
+
 namespace understudy::app {
 
 struct Settings {
@@ -21,6 +23,23 @@ struct Settings {
   std::string last_folder;             ///< of the file browser
   int window_width = 1280, window_height = 800;
 };
+template <class V, class S>
+FieldsOf<S, Settings> fields(V& visit, S& settings) {
+  visit("dark", settings.dark);
+  visit("scale", settings.scale, Clamped<float>{0.75f, 3});
+  visit("mouse_sensitivity", settings.mouse_sensitivity, Clamped<float>{0.2f, 4});
+  visit("autosave_s", settings.autosave_s, Clamped<double>{5, 600});
+  visit("samples", settings.samples, Clamped<int>{1, 4});
+  visit("cache_mb", settings.cache_mb, Clamped<int>{64, 8192});
+  visit("undo_depth", settings.undo_depth, Clamped<int>{10, 1000});
+  visit("window_width", settings.window_width, Clamped<int>{400, 16384});
+  visit("window_height", settings.window_height, Clamped<int>{300, 16384});
+  visit("recent", settings.recent);
+  visit("recent_sources", settings.recent_sources);
+  visit("recent_targets", settings.recent_targets);
+  visit("panels", settings.panels);
+  visit("last_folder", settings.last_folder);
+}
 
 /// $XDG_CONFIG_HOME/understudy or ~/.config/understudy; UNDERSTUDY_CONFIG overrides it.
 std::string config_folder();

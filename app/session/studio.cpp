@@ -51,7 +51,7 @@ Studio::Studio(StudioServices services)
 
 Studio::~Studio() {
   try {
-    drop_autosave();
+    end_autosave();
     save_settings();
   } catch (const std::exception& error) {
     log::warn(error.what());
@@ -94,15 +94,15 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
   const Document before = session_.document;
   try {
     command->run(*this, arguments);
+    if (same(before, session_.document)) return;
+    follow_document();
   } catch (...) {
     session_.document = before;  // a command does all of its work or nothing
     throw;
   }
-  if (same(before, session_.document)) return;
   const std::string merge = command->merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
   session_.history.add(before, command->label, merge);
   session_.changed = true;
-  follow_document();
 }
 
 void Studio::try_run(const std::string& name, const Arguments& arguments) {
@@ -128,54 +128,79 @@ void Studio::notify(const std::string& sentence, bool warning) {
   session_.notices.push_back({kind, sentence, "", session_.time + kNoticeSeconds});
 }
 
-/// Tells the background what is wanted now, and drops what no longer belongs to anything.
+/// Tells the background what is wanted now, and drops what no longer belongs to anything. Where it throws nothing has
+/// changed.
 void Studio::follow_document() {
   Background& b = *background_;
-  const Document& document = session_.document;
-  const auto match = matched_takes(b.followed.takes, document.takes);
+  Document now = session_.document;
+  const auto match = matched_takes(b.followed.takes, now.takes);
   std::vector<int64_t> ids;
-  std::vector<TakeState> takes;
-  for (size_t k = 0; k < document.takes.size(); ++k) {
-    const int old = match[k];
-    ids.push_back(old >= 0 ? b.take_ids[old] : b.next_id++);
-    takes.push_back(old >= 0 ? std::move(session_.takes[old]) : TakeState{});
-    if (old >= 0) forget_outdated(takes.back(), b.followed.takes[old], document.takes[k]);
+  std::vector<bool> other_target, other_method;
+  for (size_t k = 0; k < now.takes.size(); ++k) {
+    const Take* const before = match[k] < 0 ? nullptr : &b.followed.takes[match[k]];
+    ids.push_back(before ? b.take_ids[match[k]] : b.next_id++);
+    other_target.push_back(before && !same(before->target, now.takes[k].target));
+    other_method.push_back(before && !same(before->method, now.takes[k].method));
+  }
+  Plan plan = plan_of(now, ids);
+  std::string key = key_of(plan);
+  std::vector<TakeState> takes(now.takes.size());
+  // From here on nothing throws.
+  for (size_t k = 0; k < takes.size(); ++k) {
+    if (match[k] >= 0) takes[k] = std::move(session_.takes[match[k]]);
+    if (other_target[k]) forget_target(takes[k]);
+    if (other_method[k]) takes[k].problem.clear(), takes[k].latency = {};
   }
   session_.takes = std::move(takes);
-  b.take_ids = ids;
-  if (session_.selected_take >= ssize(ids)) session_.selected_take = std::max<int>(0, ids.size() - 1);
-  follow_source();
-  follow_edits();
-  b.followed = document;
-  Plan plan = plan_of(document, ids);
-  const std::string key = key_of(plan);
-  if (key == b.plan_key) return;
-  b.plan_key = key;
-  b.engine.set_plan(std::move(plan));
-  session_.working = true;
-}
-
-/// A take made in another way has other times, and what failed may work. Of a target prepared in another way
-/// only the file is the same.
-void Studio::forget_outdated(TakeState& state, const Take& before, const Take& now) {
-  if (!same(before.target, now.target)) {
-    TakeState fresh;
-    fresh.character = std::move(state.character);
-    fresh.generation = state.generation + 1;
-    state = std::move(fresh);
-    return;
+  b.take_ids = std::move(ids);
+  const bool other_source = now.source.path != b.followed.source.path;
+  b.followed = std::move(now);
+  session_.selected_take =
+      std::max(0, std::min(session_.selected_take, static_cast<int>(session_.takes.size()) - 1));
+  forget_removed();
+  try {
+    follow_source(other_source);
+    follow_edits();
+    if (key == b.plan_key) return;
+    b.engine.set_plan(std::move(plan));
+    b.plan_key = std::move(key);
+    session_.working = true;
+  } catch (const std::exception& error) {
+    fail(error.what());  // what was not followed differs from its key, and is at the next time
   }
-  if (!same(before.method, now.method)) state.problem.clear(), state.latency = {};
 }
 
-void Studio::follow_source() {
+/// Of a target prepared in another way only the file is the same.
+void Studio::forget_target(TakeState& state) {
+  TakeState fresh;
+  fresh.character = std::move(state.character);
+  fresh.generation = state.generation + 1;
+  state = std::move(fresh);
+}
+
+/// What was made for takes that are no more.
+void Studio::forget_removed() {
+  Background& b = *background_;
+  bool any = false;
+  for (auto applied = b.applied.begin(); applied != b.applied.end();) {
+    const int64_t id = applied->first;
+    const bool stays = std::find(b.take_ids.begin(), b.take_ids.end(), id) != b.take_ids.end();
+    if (!stays && applied->second.measuring != 0) jobs_.cancel(applied->second.measuring);
+    if (!stays) b.dirty.erase(id);
+    any = any || !stays;
+    applied = stays ? std::next(applied) : b.applied.erase(applied);
+  }
+  if (any) cache_.forget_takes();
+}
+
+void Studio::follow_source(bool other_path) {
   Background& b = *background_;
   const Document& document = session_.document;
   const std::string key = key_of(document.source, document.scan_edits);
   if (key != b.source_key) {
-    b.source_key = key;
     cache_.set_source(document.source, document.scan_edits);
-    if (document.source.path != b.followed.source.path) session_.source.clips.clear();
+    b.source_key = key;
+    if (other_path) session_.source.clips.clear();
     if (document.source.path.empty()) session_.source = SourceState{};
   }
   if (document.truth == b.truth_path) return;
@@ -206,20 +231,37 @@ void Studio::follow_edits() {
   }
 }
 
-/// Puts the user's skin weights over the networks'.
+/// Puts the user's skin weights over the networks'. Those that were painted on another surface are left out.
 void Studio::apply_weights(size_t k) {
   Background::Applied& applied = background_->applied[background_->take_ids[k]];
   TakeState& state = session_.takes[k];
   applied.weights = session_.document.takes[k].target_edits.weights;
   if (!applied.deformer) return;
   state.deformer = applied.deformer;
-  if (applied.weights && !applied.weights->empty()) {
-    RowMatrix weights = applied.deformer->weights();
-    understudy::apply(*applied.weights, weights);
-    state.deformer = applied.deformer->with_weights(std::move(weights));
-  }
+  state.paint_problem.clear();
+  applied.asked_about_paint = false;
+  if (applied.weights && !applied.weights->empty()) try {
+      RowMatrix weights = applied.deformer->weights();
+      understudy::apply(*applied.weights, weights);
+      state.deformer = applied.deformer->with_weights(std::move(weights));
+    } catch (const Error& error) {
+      state.paint_problem = session_.document.takes[k].name + ": " + error.what();
+    }
   state.weights = std::shared_ptr<const RowMatrix>(state.deformer, &state.deformer->weights());
   ++state.generation;
+}
+
+/// Painted weights that do not fit are asked about, one take after the other.
+void Studio::ask_about_paint() {
+  for (size_t k = 0; k < session_.takes.size() && !session_.question; ++k) {
+    bool& asked = background_->applied[background_->take_ids[k]].asked_about_paint;
+    if (session_.takes[k].paint_problem.empty() || asked) continue;
+    asked = true;
+    session_.question = Question{};
+    session_.question->kind = Question::Kind::PaintMisfit;
+    session_.question->text = session_.takes[k].paint_problem + ". They are left out.";
+    session_.question->take = static_cast<int>(k);
+  }
 }
 
 const Neighbours& Studio::neighbours(size_t take) {
@@ -297,11 +339,14 @@ void Studio::autosave_ended() {
   background_->autosave_problem = state.problem;
 }
 
-void Studio::drop_autosave() {
+void Studio::end_autosave() {
   if (services_.autosave_folder.empty()) return;
   const std::lock_guard lock(background_->autosaving->writing);
   ++background_->autosaving->version;
-  remove_autosave(services_.autosave_folder);
+  if (session_.changed)
+    write_autosave(services_.autosave_folder, saved_document(), session_.path);
+  else
+    remove_autosave(services_.autosave_folder);
 }
 
 SavedDocument Studio::saved_document() const {

@@ -61,8 +61,9 @@ class Studio {
   /// Replaces the open document by a new, an opened or a recovered one.
   void replace_document(SavedDocument saved, const std::string& path);
   void save_settings();
-  /// Removes the copy kept for recovery, also one that is being written: nothing is unsaved any more.
-  void drop_autosave();
+  /// After saving, and at the end: removes the copy kept for recovery, also one that is being written, where nothing is
+  /// unsaved; keeps what is unsaved for the next start.
+  void end_autosave();
   /// The neighbouring vertices of a take's target; made on first use.
   const Neighbours& neighbours(size_t take);
   void pause_work(bool paused);
@@ -74,10 +75,12 @@ class Studio {
   void ask_about_autosaves();
   void load_weights_name();
   void follow_document();
-  void follow_source();
+  void follow_source(bool other_path);
   void follow_edits();
-  void forget_outdated(TakeState& state, const Take& before, const Take& now);
+  static void forget_target(TakeState& state);
+  void forget_removed();
   void apply_weights(size_t k);
+  void ask_about_paint();
   void take_in_results();
   template <class Event>
   void take_in(Event& event);

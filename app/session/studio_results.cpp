@@ -292,9 +292,10 @@ void Studio::measure(size_t k) {
   applied.measuring = jobs_.start(
       "Measuring " + session_.document.takes[k].name, [m](JobControl& control) { evaluate_all(*m, control); },
       [this, id, m, generation] {
-        background_->applied[id].measuring = 0;
         TakeState* const state = take_of(id);
-        if (!state || state->generation != generation) return;
+        if (!state) return;
+        background_->applied[id].measuring = 0;
+        if (state->generation != generation) return;
         merge_series(state->series, std::move(m->series));
         state->metrics = std::move(m->metrics);
       });
@@ -304,6 +305,7 @@ void Studio::take_in_results() {
   Background& b = *background_;
   session_.working = b.engine.working();
   for (EngineEvent& event : b.engine.drain()) std::visit([this](auto& e) { take_in(e); }, event);
+  ask_about_paint();
   take_in_refined();
   refine_dirty();
   for (const std::string& sentence : jobs_.drain()) fail(sentence);

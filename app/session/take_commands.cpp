@@ -137,7 +137,7 @@ void set_method(Method& method, const std::string& key, const std::string& value
       method.offsets = on();
       break;
     case 3:
-      method.root = static_cast<RootMode>(choice({value}, 0, "path", {"scaled", "original", "in-place"}));
+      method.root = static_cast<RootMode>(choice({value}, 0, "path", kRootNames));
       break;
     case 4:
       method.repair_swaps = on();

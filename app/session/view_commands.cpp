@@ -160,10 +160,12 @@ void add_camera_motion(Commands& commands) {
 }
 
 bool& layer(Layers& layers, const Arguments& a) {
-  const std::vector<std::string> names = {"surface",     "as_points", "skeleton", "x_ray",
-                                          "joint_names", "ground",    "trails",   "ghosts"};
-  bool* const which[] = {&layers.surface,     &layers.as_points, &layers.skeleton, &layers.x_ray,
-                         &layers.joint_names, &layers.ground,    &layers.trails,   &layers.ghosts};
+  std::vector<std::string> names;
+  std::vector<bool*> which;
+  const auto collect = [&](const char* name, auto& value, const auto&...) {
+    if constexpr (std::is_same_v<decltype(value), bool&>) names.push_back(name), which.push_back(&value);
+  };
+  fields(collect, layers);
   return *which[choice(a, 1, "layer", names)];
 }
 
@@ -180,9 +182,8 @@ void add_layers(Commands& commands) {
   commands.add({"view.colour", "Colour by",
                 "source|take plain|weights|offsets|error|difference|confidence|doubt", "", false, false,
                 [](Studio& s, const Arguments& a) {
-                  const std::vector<std::string> all = {"plain",      "weights",    "offsets", "error",
-                                                        "difference", "confidence", "doubt"};
-                  layers(s.session(), a).colouring = static_cast<Colouring>(choice(a, 1, "colouring", all));
+                  layers(s.session(), a).colouring =
+                      static_cast<Colouring>(choice(a, 1, "colouring", kColouringNames));
                 }});
   commands.add(
       {"view.weights_joint", "Weights of", "JOINT|all", "", false, false, [](Studio& s, const Arguments& a) {
@@ -212,8 +213,7 @@ void add_layers(Commands& commands) {
 void add_panes(Commands& commands) {
   commands.add({"view.layout", "Layout", "side-by-side|single|overlay|wipe", "", false, false,
                 [](Studio& s, const Arguments& a) {
-                  s.session().view.layout = static_cast<Layout>(
-                      choice(a, 0, "layout", {"side-by-side", "single", "overlay", "wipe"}));
+                  s.session().view.layout = static_cast<Layout>(choice(a, 0, "layout", kLayoutNames));
                 }});
   commands.add({"view.pane", "Active view", "PANE: 0 the source, K + 1 the take K", "", false, false,
                 [](Studio& s, const Arguments& a) {

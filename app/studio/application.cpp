@@ -40,6 +40,7 @@ constexpr double kAsleep = 0.5;          // between looks at nothing, for autosa
 constexpr double kLongest = 0.25;        // time that one frame lets go by: after a sleep nothing jumps
 constexpr int kSettling = 3;             // frames that widgets take to come to rest
 constexpr size_t kLogLines = 2000;
+constexpr int kMostFailures = 10;  // frames on end
 
 constexpr render::PixelSize kCardPicture{448, 256};
 
@@ -130,17 +131,39 @@ Application::~Application() {
 
 void Application::frame(double dt) {
   const std::vector<InputEvent> events = surface_->events(0);
-  studio_->tick(dt);
-  draw(dt, events);
+  tick_and_draw(dt, [&] { draw(dt, events); });
+}
+
+bool Application::attempt(const std::function<void()>& part) {
+  try {
+    part();
+    return true;
+  } catch (const std::exception& error) {
+    if (failures_ + 1 >= kMostFailures) throw;
+    gui_->abandon_frame();
+    const auto& errors = session().errors;
+    if (errors.empty() || errors.back().text != error.what())
+      studio_->fail(error.what(), "a frame of the studio");
+    frames_wanted_ = kSettling;
+    return false;
+  }
+}
+
+/// Where frame after frame goes wrong nobody can read the dialog: the studio ends, and keeps what is unsaved.
+void Application::tick_and_draw(double tick_dt, const std::function<void()>& drawing) {
+  const bool ticked = attempt([&] { studio_->tick(tick_dt); }), drawn = attempt(drawing);
+  failures_ = ticked && drawn ? 0 : failures_ + 1;
 }
 
 void Application::step() {
   const std::vector<InputEvent> events = surface_->events(patience_s());
   const Clock::time_point now = Clock::now();
-  studio_->tick(std::min(seconds_between(ticked_at_, now), kLongest));
+  const double tick_dt = std::min(seconds_between(ticked_at_, now), kLongest);
   ticked_at_ = now;
   if (!events.empty()) input_at_ = now;
-  if (!events.empty() || due()) draw(std::min(seconds_between(drawn_at_, now), kLongest), events);
+  tick_and_draw(tick_dt, [&] {
+    if (!events.empty() || due()) draw(std::min(seconds_between(drawn_at_, now), kLongest), events);
+  });
 }
 
 void Application::run() {

@@ -70,6 +70,9 @@ class Application {
  private:
   using Clock = std::chrono::steady_clock;
   struct LogBox;
+  /// Does a part of a frame. What goes wrong is told in a dialog and the studio goes on; false then.
+  bool attempt(const std::function<void()>& part);
+  void tick_and_draw(double tick_dt, const std::function<void()>& drawing);
   void take_log();
   void draw(double dt, const std::vector<render::InputEvent>& events);
   void handle(const render::InputEvent& event);
@@ -103,6 +106,7 @@ class Application {
   std::string marks_;      ///< what the marks file holds
   int frames_wanted_ = 3;  ///< until the widgets have settled
   int64_t drawn_ = 0;
+  int failures_ = 0;  ///< frames on end in which something went wrong
 };
 
 }  // namespace understudy::app

@@ -12,19 +12,6 @@ std::string yes_no(bool yes) {
   return yes ? "yes" : "no";
 }
 
-const char* layout_name(Layout layout) {
-  switch (layout) {
-    case Layout::SideBySide:
-      return "side-by-side";
-    case Layout::Single:
-      return "single";
-    case Layout::Overlay:
-      return "overlay";
-    default:
-      return "wipe";
-  }
-}
-
 const char* tool_name(Tool tool) {
   constexpr const char* kNames[] = {"look", "joints", "bones", "target-joints", "paint", "crop"};
   return kNames[static_cast<size_t>(tool)];
@@ -37,6 +24,8 @@ const char* question_name(const Session& session) {
       return "unsaved";
     case Question::Kind::Recover:
       return "recover";
+    case Question::Kind::PaintMisfit:
+      return "paint";
     default:
       return "missing";
   }
@@ -84,7 +73,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"undo_label", session.history.undo_label()},
       {"redo_label", session.history.redo_label()},
       {"skeleton_edits", count(session.document.skeleton_edits.size())},
-      {"layout", layout_name(session.view.layout)},
+      {"layout", kLayoutNames[static_cast<size_t>(session.view.layout)]},
       {"active_pane", std::to_string(session.view.active_pane)},
       {"tool", tool_name(session.tool)},
       {"joint", session.selected_joint < 0 ? "none" : kJointNames[session.selected_joint]},

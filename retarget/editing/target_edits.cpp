@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <queue>
 
 #include "retarget/base/error.hpp"
@@ -84,15 +85,23 @@ void add_seams(const Points& vertices, Pairs& pairs) {
     }
 }
 
+Vec3 extent(const Points& points) {
+  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).transpose();
+}
+
+/// Metres, of a grid in whose cells a few points of a surface are.
+float cell_size(const Points& points) {
+  const Vec3 size = extent(points);
+  const float area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  return std::max(2 * std::sqrt(area / static_cast<float>(points.rows())), 1e-5f * size.norm() + 1e-9f);
+}
+
 /// The six nearest of each point of a cloud, both ways.
 Pairs nearest_pairs(const Points& points) {
   constexpr int kNearest = 6;
   Pairs pairs;
   if (points.rows() <= kNearest) return pairs;
-  const Vec3 size = (points.colwise().maxCoeff() - points.colwise().minCoeff()).transpose();
-  const float area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const float cell =
-      std::max(2 * std::sqrt(area / static_cast<float>(points.rows())), 1e-5f * size.norm() + 1e-9f);
+  const float cell = cell_size(points), size = extent(points).norm();
   const PointGrid grid(points, cell);
   std::vector<std::pair<float, int>> found;
   for (int v = 0; v < points.rows(); ++v) {
@@ -102,7 +111,7 @@ Pairs nearest_pairs(const Points& points) {
         const float d = (points.row(k) - points.row(v)).squaredNorm();
         if (k != v && d <= reach * reach) found.emplace_back(d, k);
       });
-      if (found.size() >= kNearest || reach > 4 * size.norm()) break;
+      if (found.size() >= kNearest || reach > 4 * size) break;
     }
     const size_t count = std::min<size_t>(kNearest, found.size());
     std::partial_sort(found.begin(), found.begin() + static_cast<long>(count), found.end());
@@ -219,10 +228,36 @@ void apply(const WeightRows& edit, RowMatrix& weights) {
   US_CHECK(edit.rows.cols() == weights.cols() && edit.rows.rows() == ssize(edit.vertex),
            "painted weights of ", edit.rows.rows(), " x ", edit.rows.cols(), " do not fit ",
            edit.vertex.size(), " vertices and ", weights.cols(), " joints");
+  US_CHECK(edit.of == 0 || edit.of == weights.rows(), "weights were painted on ", edit.of,
+           " vertices, the target has ", weights.rows());
   for (const int v : edit.vertex)
     US_CHECK(v >= 0 && v < weights.rows(), "weights were painted at vertex ", v, " of a target with ",
              weights.rows());
   for (size_t i = 0; i < edit.vertex.size(); ++i) weights.row(edit.vertex[i]) = edit.rows.row(i);
+}
+
+WeightRows placed(WeightRows edit, const Points& vertices) {
+  edit.places = vertices(edit.vertex, Eigen::all);
+  edit.of = static_cast<int>(vertices.rows());
+  return edit;
+}
+
+WeightRows reprojected(const WeightRows& edit, const Points& vertices) {
+  US_CHECK(edit.places.rows() == edit.rows.rows(), "where the weights were painted is not known");
+  US_CHECK(vertices.rows() > 0 && vertices.allFinite() && edit.places.allFinite(),
+           "weights cannot be brought to a surface without finite vertices");
+  const float cell = cell_size(vertices);
+  const PointGrid grid(vertices, cell);
+  std::map<int, Row> sums;
+  for (Eigen::Index i = 0; i < edit.places.rows(); ++i) {
+    const Vec3 place = edit.places.row(i);
+    int nearest = -1;
+    for (float reach = cell; nearest < 0; reach *= 2) nearest = grid.nearest(place, reach);
+    sums.try_emplace(nearest, Row::Zero()).first->second += edit.rows.row(i);
+  }
+  RowCollector rows;
+  for (const auto& [vertex, sum] : sums) rows.add(vertex, normalised(sum, sum));
+  return placed(rows.finish(), vertices);
 }
 
 WeightRows merged(const WeightRows& older, const WeightRows& newer) {

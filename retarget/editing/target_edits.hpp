@@ -32,17 +32,27 @@ Joints apply(const std::vector<JointMove>& moves, const Joints& rest);
 struct WeightRows {
   std::vector<int> vertex;         ///< ascending, each once
   RowMatrix rows{0, kJointCount};  ///< [vertex.size(), 22], not negative, sums 1
+  Points places{0, 3};             ///< [vertex.size(), 3] where they were painted, T-pose; empty: not known
+  int of = 0;                      ///< vertices of the target that was painted; 0: not known
   bool empty() const { return vertex.empty(); }
 };
 template <class V, class S>
 FieldsOf<S, WeightRows> fields(V& visit, S& edit) {
   visit("vertex", edit.vertex);
   visit("rows", edit.rows);
+  visit("places", edit.places);
+  visit("of", edit.of);
 }
 
-/// Puts the rows in. Throws Error when a vertex is outside or the columns differ.
+/// Puts the rows in. Throws Error when they were painted on other vertices than these, or the columns differ.
 void apply(const WeightRows& edit, RowMatrix& weights);
-/// Both; where both have a vertex, the newer row.
+/// With what is needed to bring the rows to another surface, should the target's file change. vertices: [V, 3] of
+/// the target in T-pose, metres.
+WeightRows placed(WeightRows edit, const Points& vertices);
+/// The same on another surface [V, 3] in T-pose: a row goes to the vertex nearest to where it was painted; of
+/// several at one vertex the mean. Throws Error where it is not known where they were painted.
+WeightRows reprojected(const WeightRows& edit, const Points& vertices);
+/// Both; where both have a vertex, the newer row. The places are not kept.
 WeightRows merged(const WeightRows& older, const WeightRows& newer);
 /// The rows of `after` that differ from `before`.
 WeightRows changed_rows(const RowMatrix& before, const RowMatrix& after);

@@ -13,6 +13,28 @@
 namespace understudy::app {
 namespace {
 
+/// Throws in the frames that it is told to.
+struct Thrower final : Observer {
+  int left = 0;
+  void input(double, const std::vector<render::InputEvent>&, const Session&) override {
+    if (left-- > 0) throw Error("this frame went wrong");
+  }
+  void command(const std::string&, const Arguments&) override {}
+};
+
+TEST_F(ApplicationTest, AFrameThatGoesWrongIsToldAndTheStudioGoesOn) {
+  make();
+  Thrower thrower;
+  thrower.left = 3;
+  application_->observe(&thrower);
+  for (int i = 0; i < 5; ++i) application_->frame(0.02);
+  ASSERT_EQ(session().errors.size(), 1u);  // told once
+  EXPECT_EQ(session().errors[0].text, "this frame went wrong");
+  EXPECT_EQ(application_->drawn(), 2);
+  thrower.left = 1000;  // nobody could read that
+  EXPECT_THROW(for (int i = 0; i < 100; ++i) application_->frame(0.02), Error);
+}
+
 TEST_F(ApplicationTest, ShowsTheStartScreenAtFirst) {
   make();
   play("frames 3\nexpect start.open_scan\nexpect menu.file\nexpect_value frames 0");

@@ -109,6 +109,14 @@ const Changes& document_changes() {
        [](SavedDocument& s) {
          change_weights(s, [](WeightRows& rows) { rows.rows.row(0) = RowMatrix::Identity(1, kJointCount); });
        }},
+      {"weights.places",
+       [](SavedDocument& s) {
+         change_weights(s, [](WeightRows& rows) { rows = placed(rows, Points::Random(100, 3)); });
+       }},
+      {"weights.of",
+       [](SavedDocument& s) {
+         change_weights(s, [](WeightRows& rows) { rows = placed(rows, Points::Random(101, 3)); });
+       }},
       POSES(rotate.pop_back()),
       POSES(rotate[0].frame = 1),
       POSES(rotate[0].joint = 1),
@@ -157,7 +165,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [engine, extractor, offsets, swaps, smooth, lengths, feet, root] = Method();
   [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
-  [[maybe_unused]] const auto& [vertex, rows] = WeightRows();
+  [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
   [[maybe_unused]] const auto& [rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();
   [[maybe_unused]] const auto& [frame, joint, turn, falloff] = RotateEdit();
   [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();

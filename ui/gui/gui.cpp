@@ -1,5 +1,7 @@
 #include "ui/gui/gui.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <bitset>
 #include <cmath>
@@ -115,6 +117,14 @@ const ImDrawData& Gui::end_frame() {
   ImGui::Render();
   ui_.finish_frame();
   return *ImGui::GetDrawData();
+}
+
+void Gui::abandon_frame() {
+  ImGui::SetCurrentContext(context_);
+  if (!context_->WithinFrameScope) return;
+  ImGui::ErrorCheckEndFrameRecover(nullptr);
+  ImGui::EndFrame();
+  ui_.finish_frame();
 }
 
 void Gui::set_look(const FrameInput& input) {

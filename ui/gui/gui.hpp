@@ -43,6 +43,8 @@ class Gui {
   void begin_frame(const FrameInput& input, const std::vector<render::InputEvent>& events = {});
   /// Ends it. The triangles are valid until the next begin_frame.
   const ImDrawData& end_frame();
+  /// Ends a frame that something interrupted, wherever it stood; nothing is drawn.
+  void abandon_frame();
 
   /// Whether events wait for the next frame: draw it soon.
   bool pending() const { return !queue_.empty(); }

@@ -8,8 +8,6 @@
 namespace understudy::ui {
 namespace {
 
-constexpr const char* kRoots[] = {"scaled", "original", "in-place"};
-
 void sentence(const std::string& words) {
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(words.c_str());
@@ -117,7 +115,7 @@ app::Arguments differences(const app::Method& base, const app::Method& other) {
   if (base.extractor != other.extractor) settings.push_back("extractor=" + other.extractor);
   if (base.offsets != other.offsets) settings.push_back("offsets=" + on_off(other.offsets));
   if (base.root != other.root)
-    settings.push_back(std::string("root=") + kRoots[static_cast<int>(other.root)]);
+    settings.push_back(std::string("root=") + kRootNames[static_cast<int>(other.root)]);
   return settings;
 }
 
@@ -130,6 +128,25 @@ bool draw_error(const app::Session& session, PanelContext& context) {
   return true;
 }
 
+QuestionAnswer draw_paint(const app::Session& session, PanelContext& context) {
+  const size_t k = static_cast<size_t>(session.question->take);
+  const auto& takes = session.document.takes;
+  const bool known =
+      k < takes.size() && takes[k].target_edits.weights && takes[k].target_edits.weights->places.rows() > 0;
+  QuestionWords question;
+  question.title = "Painted weights do not fit";
+  question.sentence = session.question->text;
+  question.yes = known ? "Bring them over" : "Drop them", question.no = known ? "Drop them" : "";
+  question.cancel = "Decide later", question.dangerous = !known;
+  const Answer answer = ask(context.ui, "paint", question);
+  if (answer == Answer::None) return {};
+  context.ask("question.answer", {"cancel"});
+  if (answer == Answer::Cancel) return {};
+  const bool project = known && answer == Answer::Yes;
+  context.ask(project ? "edit.weights_reproject" : "edit.weights_clear", {std::to_string(k)});
+  return {};
+}
+
 QuestionAnswer draw_question(const app::Session& session, PanelContext& context) {
   using Kind = app::Question::Kind;
   switch (session.question->kind) {
@@ -137,6 +154,8 @@ QuestionAnswer draw_question(const app::Session& session, PanelContext& context)
       return draw_recover(session, context);
     case Kind::MissingFiles:
       return draw_missing(session, context);
+    case Kind::PaintMisfit:
+      return draw_paint(session, context);
     default:
       return draw_unsaved(session, context);
   }

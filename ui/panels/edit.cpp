@@ -166,8 +166,7 @@ void draw_swap(const app::Session& session, PanelContext& context) {
   ButtonOptions options;
   options.width = -1;
   if (!button(ui, "edit.swap.apply", "Swap left and right", options)) return;
-  constexpr const char* kLimbs[] = {"arms", "legs", "both"};
-  context.ask("edit.swap", {std::to_string(first), std::to_string(last), kLimbs[state.swap_limbs]});
+  context.ask("edit.swap", {std::to_string(first), std::to_string(last), kLimbNames[state.swap_limbs]});
   state.swap_first = state.swap_last = -1;
 }
 

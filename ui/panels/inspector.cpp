@@ -302,12 +302,11 @@ void draw_method(const app::Session& session, PanelContext& context) {
   if (const auto on = toggle_row(ui, {"method.offsets", "Offsets", "Pose-corrective offsets of the skin"},
                                  method.offsets))
     context.ask("method.offsets", {k, on_off(*on)});
-  constexpr const char* kRoots[] = {"scaled", "original", "in-place"};
   if (const auto i = choice_row(
           ui,
           {"method.root", "Path", "The path over the floor: scaled by leg length, the source's own, or none"},
           {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
-    context.ask("method.root", {k, kRoots[*i]});
+    context.ask("method.root", {k, kRootNames[*i]});
   draw_filter(method, context, k);
   ButtonOptions compare;
   compare.width = -1, compare.tooltip = "Adds a second take of this target, made with another method";

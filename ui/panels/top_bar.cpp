@@ -12,7 +12,6 @@ namespace understudy::ui {
 namespace {
 
 const std::vector<std::string> kLayouts = {"Side by side", "Single", "Overlay", "Wipe"};
-const std::array<const char*, 4> kLayoutArguments = {"side-by-side", "single", "overlay", "wipe"};
 
 void draw_items(const app::Session& session, PanelContext& context, const std::vector<MenuItem>& items) {
   for (const MenuItem& item : items) {
@@ -113,7 +112,7 @@ void draw_layouts(const app::Session& session, PanelContext& context, const Rect
                            ? segmented(context.ui, "top.layout", kLayouts, chosen)
                            : dropdown(context.ui, "top.layout", kLayouts, chosen);
   ImGui::EndChild();
-  if (changed) context.ask("view.layout", {kLayoutArguments[chosen]});
+  if (changed) context.ask("view.layout", {app::kLayoutNames[chosen]});
 }
 
 void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_one) {

@@ -191,6 +191,25 @@ TEST(WeightRows, MergeTheNewerOverTheOlder) {
   EXPECT_EQ(changed_rows(person().body.weights, at_once).vertex, both.vertex);
 }
 
+TEST(WeightRows, GoToTheNearestVerticesOfAnotherSurface) {
+  Points before(3, 3), after(2, 3);
+  before << 0, 0, 0, 0.1f, 0, 0, 1, 0, 0;
+  after << 1.02f, 0, 0, 0.05f, 0, 0;
+  WeightRows rows;
+  rows.vertex = {0, 1, 2};
+  rows.rows = RowMatrix::Identity(3, kJointCount);
+  EXPECT_THROW(reprojected(rows, after), Error);  // where they were painted is not known
+  const WeightRows there = reprojected(placed(rows, before), after);
+  EXPECT_EQ(there.vertex, (std::vector<int>{0, 1}));
+  EXPECT_EQ(there.of, 2);
+  EXPECT_EQ(there.places, after);
+  EXPECT_FLOAT_EQ(there.rows(0, 2), 1);
+  EXPECT_FLOAT_EQ(there.rows(1, 0), 0.5f);
+  EXPECT_FLOAT_EQ(there.rows(1, 1), 0.5f);
+  RowMatrix weights = RowMatrix::Zero(3, kJointCount);
+  EXPECT_THROW(apply(there, weights), Error);  // painted on two vertices
+}
+
 TEST(WeightRows, RefuseVerticesThatAreNotThere) {
   WeightRows rows;
   rows.vertex = {5};
