@@ -202,18 +202,14 @@ double Application::patience_s() const {
 /// Changes with all that a frame shows and that no command changed.
 std::string Application::fingerprint() const {
   const Session& s = session();
-  std::ostringstream text;
-  text << shown_frame(s) << ' ' << s.source.frames.size() << ' ' << s.source.generation << ' '
-       << s.notices.size() << ' ' << s.errors.size() << ' ' << s.question.has_value() << ' ' << s.working
-       << ' ' << s.log.size() << ' ' << s.changed << ' ' << (s.truth != nullptr) << ' '
-       << studio_->cache().bytes() << ' ' << views_->arrived();
+  std::string key = key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(),
+                           s.errors.size(), s.question.has_value(), s.working, s.log.size(), s.changed,
+                           s.truth != nullptr, studio_->cache().bytes(), views_->arrived(), s.view);
   for (const TakeState& take : s.takes)
-    text << ' ' << take.ready << take.problem.empty() << ' ' << take.generation << ' '
-         << take.shown.poses.size() << ' ' << take.performed.size() << ' ' << take.series.size() << ' '
-         << take.deformer.get() << take.as_loaded.get();
-  for (const JobView& job : s.jobs) text << ' ' << job.id << ' ' << static_cast<int>(job.progress * 200);
-  for (const CameraState& camera : s.view.cameras) text << ' ' << camera.yaw;
-  return text.str();
+    key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
+                  take.performed.size(), take.series.size(), take.as_loaded != nullptr);
+  for (const JobView& job : s.jobs) key += key_of(job.id, static_cast<int>(job.progress * 200));
+  return key;
 }
 
 bool Application::waiting() const {
