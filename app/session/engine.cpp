@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <filesystem>
 #include <map>
-#include <mutex>
-#include <new>
-#include <thread>
 #include <utility>
 
 #include "app/run/retargeted_source.hpp"
@@ -79,20 +75,17 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
 }
 
 struct Engine::Impl {
-  explicit Impl(NetworksOf source_of_networks) : networks_of(std::move(source_of_networks)) {
-    thread = std::thread([this] { run(); });
-  }
+  explicit Impl(NetworksOf source_of_networks) : networks_of(std::move(source_of_networks)) {}
 
-  // Shared with the UI thread, under the mutex.
-  mutable std::mutex mutex;
-  std::condition_variable wake;
+  // Shared with the UI thread, under the worker's mutex.
   std::optional<Plan> next_plan;
   std::vector<EngineEvent> events;
-  bool paused = false, stop = false, busy = false, next_is_afresh = false;
+  bool paused = false, busy = false, next_is_afresh = false;
   std::string wanted_source;
   int64_t epoch = 0;  // counts sources
 
-  // The thread's own.
+  // The worker's own.
+  bool rests = true;      // nothing is left of the plan at work
   int64_t own_epoch = 0;  // of the plan at work
   NetworksOf networks_of;
   Plan plan;
@@ -104,9 +97,9 @@ struct Engine::Impl {
   std::optional<Performer> alone;  // repairs and smooths what is shown where no take does
   bool has_faces = false;
   std::vector<TakeWork> takes;
-  std::thread thread;
+  Worker worker{"retargeting", [this] { return next(); }};
 
-  void run();
+  Worker::Task next();
   bool advance(std::optional<Plan> wanted, bool afresh);
   void forget_all();
   void give_up(const std::string& problem);
@@ -138,7 +131,7 @@ bool of_frames(const EngineEvent& event) {
 }
 
 void Engine::Impl::tell(EngineEvent event) {
-  const std::lock_guard<std::mutex> lock(mutex);
+  const auto held = worker.lock();
   if (own_epoch == epoch || !of_frames(event)) events.push_back(std::move(event));
 }
 
@@ -150,43 +143,29 @@ void Engine::Impl::change_source(const std::string& key, bool afresh) {
   events.erase(std::remove_if(events.begin(), events.end(), of_frames), events.end());
 }
 
-void Engine::Impl::run() {
-  yield_to_drawing();
-  while (true) {
-    std::optional<Plan> wanted;
-    bool afresh = false;
-    {
-      std::unique_lock<std::mutex> lock(mutex);
-      if (stop) return;
-      wanted.swap(next_plan);
-      if (wanted) afresh = std::exchange(next_is_afresh, false);
-      if (wanted) own_epoch = epoch;
-      if (!wanted && paused) {
-        wake.wait(lock);
-        continue;
-      }
-    }
-    if (advance(std::move(wanted), afresh)) continue;
-    std::unique_lock<std::mutex> lock(mutex);
-    if (next_plan || stop) continue;
-    busy = false;
-    wake.wait(lock, [this] { return stop || next_plan; });
-  }
+Worker::Task Engine::Impl::next() {
+  if (!next_plan && (paused || rests)) return nullptr;
+  const bool afresh = next_plan && std::exchange(next_is_afresh, false);
+  if (next_plan) own_epoch = epoch;
+  return [this, afresh, wanted = std::exchange(next_plan, std::nullopt)]() mutable {
+    const bool more = advance(std::move(wanted), afresh);
+    const auto held = worker.lock();
+    rests = !more;
+    if (!more && !next_plan) busy = false;
+  };
 }
 
 /// Adopts what is wanted and does a little. False: nothing is left. Never throws: what no step expected ends
 /// the work, not the program.
 bool Engine::Impl::advance(std::optional<Plan> wanted, bool afresh) {
-  try {
+  bool more = false;
+  const std::string problem = failure_of([&] {
     if (afresh) forget_all();
     if (wanted) adopt(std::move(*wanted));
-    return step();
-  } catch (const std::bad_alloc&) {
-    give_up("there is not enough memory to continue");
-  } catch (const std::exception& error) {
-    give_up(error.what());
-  }
-  return false;
+    more = step();
+  });
+  if (!problem.empty()) give_up(problem);
+  return more;
 }
 
 void Engine::Impl::forget_all() {
@@ -280,15 +259,8 @@ bool Engine::Impl::step() {
 /// Works for one take; an error ends that take alone.
 template <class Work>
 bool Engine::Impl::of_take(TakeWork& take, Work work) {
-  std::string problem;
-  try {
-    work();
-    return true;
-  } catch (const std::bad_alloc&) {
-    problem = "there is not enough memory for it";
-  } catch (const std::exception& error) {
-    problem = error.what();
-  }
+  const std::string problem = failure_of(work);
+  if (problem.empty()) return true;
   take.failed = true;
   take.performer.reset();
   tell(TakeFailed{take.plan.id, problem});
@@ -482,41 +454,30 @@ void Engine::Impl::perform(TakeWork& take) {
 
 Engine::Engine(NetworksOf networks) : impl_(std::make_unique<Impl>(std::move(networks))) {}
 
-Engine::~Engine() {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->stop = true;
-  }
-  impl_->wake.notify_all();
-  impl_->thread.join();
-}
+Engine::~Engine() = default;
 
 void Engine::set_plan(Plan plan, bool afresh) {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->next_is_afresh = impl_->next_is_afresh || afresh;  // the plan before may not have been seen yet
-    impl_->change_source(key_of(plan.source, plan.scan_edits), afresh);
-    impl_->next_plan = std::move(plan);
-    impl_->busy = true;
-  }
-  impl_->wake.notify_all();
+  const auto held = impl_->worker.lock();
+  impl_->next_is_afresh = impl_->next_is_afresh || afresh;  // the plan before may not have been seen yet
+  impl_->change_source(key_of(plan.source, plan.scan_edits), afresh);
+  impl_->next_plan = std::move(plan);
+  impl_->busy = true;
+  impl_->worker.wake();
 }
 
 void Engine::pause(bool paused) {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->paused = paused;
-  }
-  impl_->wake.notify_all();
+  const auto held = impl_->worker.lock();
+  impl_->paused = paused;
+  impl_->worker.wake();
 }
 
 std::vector<EngineEvent> Engine::drain() {
-  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   return std::exchange(impl_->events, {});
 }
 
 bool Engine::working() const {
-  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  const auto held = impl_->worker.lock();
   return impl_->busy;
 }
 

@@ -44,6 +44,7 @@ void limit(int resource, rlim_t most) {
 /// Between fork and exec: only what may be called there.
 [[noreturn]] void become_worker(const char* const arguments[], int errors, rlim_t seconds, rlim_t bytes) {
   ::dup2(errors, 2);
+  ::close_range(3, ~0u, 0);  // windows, sockets and files of the program are none of a broken file's business
   limit(RLIMIT_CPU, seconds);
   limit(RLIMIT_AS, bytes);
   limit(RLIMIT_FSIZE, bytes);

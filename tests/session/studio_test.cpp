@@ -471,7 +471,7 @@ TEST_F(StudioTest, ATakeThatFailsLeavesTheOthersAtWork) {
   EXPECT_EQ(session.source.frames.size(), static_cast<size_t>(kFrames));
   EXPECT_EQ(session.takes[0].performed.size(), static_cast<size_t>(kFrames));
   EXPECT_TRUE(session.takes[0].problem.empty());
-  EXPECT_EQ(session.takes[1].problem, "there is not enough memory for it");
+  EXPECT_EQ(session.takes[1].problem, "there is not enough memory");
   ASSERT_EQ(session.errors.size(), 1u);
 }
 

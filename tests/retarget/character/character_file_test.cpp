@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -352,6 +353,11 @@ TEST(ImportProcess, CrashesHangsAndMissingProgramsAreOneSentence) {
   };
   EXPECT_TRUE(contains(worker("kill -SEGV $$\n"), "a.fbx: the reader of this format crashed"));
   EXPECT_TRUE(contains(worker("exec sleep 20\n"), "longer than 0.5 s"));
+  // None of the program's own files, sockets or windows: 77 is open here and inherited by any other child.
+  ASSERT_EQ(::dup2(2, 77), 77);
+  EXPECT_TRUE(contains(worker("[ -e /proc/$$/fd/77 ] && echo inherited >&2 || echo alone >&2; exit 1\n"),
+                       "a.fbx: alone"));
+  ::close(77);
   EXPECT_TRUE(contains(worker("echo it is no FBX >&2; exit 1\n"), "a.fbx: it is no FBX"));
   EXPECT_TRUE(contains(worker("printf 'it is\\033[31m\\001bad' >&2; exit 1\n"), "a.fbx: it is?[31m?bad"));
   EXPECT_TRUE(contains(worker("echo nonsense >$3\n"), "a.fbx: the reader of this format made nothing of it"));
