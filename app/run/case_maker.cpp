@@ -15,6 +15,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/numpy_random.hpp"
 #include "retarget/base/rng.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/body/costume.hpp"
 #include "retarget/body/data_folder.hpp"
 #include "retarget/body/exact_body.hpp"
@@ -407,7 +408,7 @@ std::vector<EvaluatedMotion> motions_of(const DataSplit& split) {
   std::vector<EvaluatedMotion> motions;
   for (const std::string& folder : split.motion_folders)
     for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".npz")
+      if (file_suffix(entry.path().string()) == ".npz")
         motions.push_back({entry.path().string(), 0, entry.path().stem().string()});
   std::sort(motions.begin(), motions.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
   return motions;

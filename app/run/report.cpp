@@ -24,7 +24,7 @@ Json report_header(const std::string& weights_folder) {
   std::vector<fs::path> files;
   if (fs::is_directory(weights_folder))
     for (const auto& entry : fs::directory_iterator(weights_folder))
-      if (entry.path().extension() == ".weights") files.push_back(entry.path());
+      if (file_suffix(entry.path().string()) == ".weights") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::string weights;
   for (const fs::path& file : files)

@@ -17,10 +17,10 @@ void prepare_environment(bool trains = false);
 
 struct NetworkOptions {
   std::string weights;                      ///< folder of the weights; empty: the program's own
-  std::string engine = "copy";              ///< motion transfer: "copy" or "paper"
+  std::string engine = "copy";              ///< one of engines()
   bool offsets = true;                      ///< pose-corrective offsets (paper 1, eq. 3) on or off
   bool near = true;                         ///< of "dense": refine limbs and head on crops of the scan
-  std::string extractor = "dense";          ///< "dense" or "paper"
+  std::string extractor = "dense";          ///< one of extractors()
   std::string engine_file, extractor_file;  ///< weights in place of the folder's; empty: the folder's
 };
 

@@ -26,8 +26,8 @@ const MethodChoices& engines() {
       {"copy", "Copy", "copied rotations", "rotations are seen and solved, then copied", nullptr,
        made<CopyTransfer>},
       {"paper", "Paper", "paper's network", "paper 1's network says them", "motion.weights"},
-      {"positions", "Positions", "rotations from positions",
-       "rotations are solved from joint positions alone", nullptr, made<PositionsTransfer>}};
+      {"positions", "Joints", "rotations from positions", "rotations are solved from joint positions alone",
+       nullptr, made<PositionsTransfer>}};
   return all;
 }
 

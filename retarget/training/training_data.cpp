@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::training {
 namespace {
@@ -13,7 +14,7 @@ namespace fs = std::filesystem;
 std::vector<Clip> read_clips(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".npz") files.push_back(entry.path());
+    if (file_suffix(entry.path().string()) == ".npz") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<Clip> clips;
   for (const auto& file : files) {

@@ -104,6 +104,13 @@ TEST_F(Inspector, MethodSwitchesNameTheSelectedTake) {
   expect_click("method.lengths", {"method.filter 1 lengths off"});
 }
 
+TEST_F(Inspector, AnEngineThatIsNotThereIsNotShownAsAnother) {
+  session.document.takes[0].method.engine = "hybrid";
+  frame(2);
+  // A choice that is made already would ask for nothing.
+  expect_click("method.engine.0", {"method.engine 0 copy"});
+}
+
 TEST_F(Inspector, WithNothingOpenOnlyOpeningIsOffered) {
   session = app::Session();
   frame(2);
