@@ -62,6 +62,8 @@ int play(const PlayOptions& options) {
   Script script(application, seen, script_options);
   script.play(text);
   script.check_no_error();
+  application.studio().session().changed =
+      false;  // what a script that ran through did not save is not wanted
   return 0;
 }
 

@@ -349,7 +349,7 @@ void document(const std::string& bytes) {
   const std::string text = app::document_text(app::to_json(saved, "/nonexistent-folder"));
   const app::SavedDocument again =
       app::from_json(app::parse_document(text, "again"), "/nonexistent-folder", "again");
-  must(app::same(saved.document, again.document), "what was read can be written and read again");
+  must(same(saved.document, again.document), "what was read can be written and read again");
 }
 
 // Each line's words as the lines of scripts use them.

@@ -334,6 +334,24 @@ TEST_F(WorkspaceTest, UnsavedChangesAreAskedAbout) {
   EXPECT_EQ(workspace.dialog(), "files");
 }
 
+TEST_F(WorkspaceTest, PaintOfAnotherSurfaceIsBroughtOverOrDropped) {
+  const auto asked_with = [&](const char* answer) {
+    session.question =
+        app::Question{app::Question::Kind::PaintMisfit, "adult: painted elsewhere.", "", {}, {}, 0};
+    frame(3);
+    click(answer);
+    frame(2);
+    return take_log();
+  };
+  EXPECT_EQ(asked_with("paint.yes"), (Lines{"question.answer cancel", "edit.weights_clear 0"}));
+  auto placed = std::make_shared<WeightRows>(*session.document.takes[0].target_edits.weights);
+  placed->places = Points::Zero(2, 3);
+  session.document.takes[0].target_edits.weights = placed;
+  EXPECT_EQ(asked_with("paint.yes"), (Lines{"question.answer cancel", "edit.weights_reproject 0"}));
+  EXPECT_EQ(asked_with("paint.no"), (Lines{"question.answer cancel", "edit.weights_clear 0"}));
+  EXPECT_EQ(asked_with("paint.cancel"), Lines{"question.answer cancel"});
+}
+
 TEST_F(WorkspaceTest, SavingFirstAnswersTheQuestion) {
   const auto folder = std::filesystem::temp_directory_path() / "understudy_panels_save";
   std::filesystem::create_directories(folder);
