@@ -62,8 +62,7 @@ int play(const PlayOptions& options) {
   Script script(application, seen, script_options);
   script.play(text);
   script.check_no_error();
-  application.studio().session().changed =
-      false;  // what a script that ran through did not save is not wanted
+  application.studio().session().changed = false;  // what the script did not save is not wanted
   return 0;
 }
 

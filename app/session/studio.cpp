@@ -148,7 +148,7 @@ void Studio::follow_document() {
   // From here on nothing throws.
   for (size_t k = 0; k < takes.size(); ++k) {
     if (match[k] >= 0) takes[k] = std::move(session_.takes[match[k]]);
-    if (other_target[k]) forget_target(takes[k]);
+    if (other_target[k]) forget_target(takes[k]), b.applied[ids[k]].deformer.reset();
     if (other_method[k]) takes[k].problem.clear(), takes[k].latency = {};
   }
   session_.takes = std::move(takes);
