@@ -170,7 +170,7 @@ Kind kind_of_npz(const std::string& path) {
 bool wanted_as_source(const Document& document, const std::string& path) {
   if (!can_be(path, kTarget)) return can_be(path, kMotion | kScanSequence);
   if (!document.source.path.empty() || document.takes.empty()) return false;
-  return is_motion_file(path) || read_motion(path);
+  return is_motion_file(path) || is_animated_gltf(path);
 }
 
 Kind kind_of(const Document& document, const std::string& path) {

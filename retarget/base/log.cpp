@@ -9,7 +9,7 @@
 namespace understudy::log {
 namespace {
 
-constexpr int64_t kToldOfASeries = 10;
+constexpr int64_t kToldOfAKind = 10;
 
 void to_stderr(Level level, const std::string& message) {
   std::fprintf(stderr, "%s%s\n", level == Level::Warning ? "warning: " : "", message.c_str());
@@ -55,12 +55,12 @@ void warn_once(const std::string& message) {
   warn(message);
 }
 
-void Series::warn(const std::string& message) {
-  if (++count_ <= kToldOfASeries) log::warn(message);
+void Repeated::warn(const std::string& message) {
+  if (++count_ <= kToldOfAKind) log::warn(message);
 }
 
-void Series::finish() {
-  if (count_ > kToldOfASeries) log::warn("and " + grouped(count_ - kToldOfASeries) + " more of these");
+void Repeated::finish() {
+  if (count_ > kToldOfAKind) log::warn("and " + grouped(count_ - kToldOfAKind) + " more of these");
   count_ = 0;
 }
 

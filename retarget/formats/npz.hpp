@@ -16,9 +16,9 @@ using IntegerMatrix = Eigen::Matrix<int64_t, Eigen::Dynamic, Eigen::Dynamic, Eig
 /// One array, converted to float (numbers of any NumPy type) or kept as text (type U).
 struct NpyArray {
   std::vector<int64_t> shape;
-  std::vector<float> values;   ///< C order
-  std::string text;            ///< for a scalar string
-  std::vector<int64_t> whole;  ///< of an array of integers the same without loss, up to 9e15; beyond: -1
+  std::vector<float> values;        ///< C order
+  std::string text;                 ///< for a scalar string
+  std::vector<int64_t> whole = {};  ///< of an array of integers the same without loss, up to 9e15; beyond: -1
   int64_t size() const;
   /// As a matrix of `cols` columns. Throws Error (naming `what`) when it does not divide.
   RowMatrix matrix(int64_t cols, const std::string& what) const;

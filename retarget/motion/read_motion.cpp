@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/formats/bytes.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/motion/amass_motion.hpp"
@@ -11,6 +16,8 @@
 
 namespace understudy {
 namespace {
+
+constexpr int kDeepestJson = 200;
 
 bool is_amass_motion(const std::string& path) {
   const std::vector<std::string> names = npz_names(path);
@@ -41,6 +48,26 @@ bool is_motion_file(const std::string& path) {
 bool may_hold_motion(const std::string& path) {
   const FileFormat* const format = format_of_suffix(path, kMotion);
   return format && format->parse;
+}
+
+bool is_animated_gltf(const std::string& path) {
+  if (!may_hold_motion(path)) return false;
+  const uint64_t size = check_file(path);
+  std::ifstream file(path, std::ios::binary);
+  std::string head(20, '\0');
+  file.read(head.data(), 20);
+  const bool is_glb = starts_with(head, "glTF");
+  std::string text(is_glb ? std::min<uint64_t>(load<uint32_t>(head.data() + 12, false), size) : size, '\0');
+  file.clear();
+  file.seekg(is_glb ? 20 : 0);
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (json_depth(text) > kDeepestJson) return false;
+  const auto root = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!root.is_object() || !root.contains("animations") || !root["animations"].is_array()) return false;
+  const auto& all = root["animations"];
+  return std::any_of(all.begin(), all.end(), [](const auto& one) {
+    return one.is_object() && one.contains("channels") && !one["channels"].empty();
+  });
 }
 
 std::optional<Character> read_motion(const std::string& path, const ReadCharacterOptions& options) {

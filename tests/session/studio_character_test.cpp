@@ -135,6 +135,23 @@ TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {
   EXPECT_NE(refused("take=1").find("offsets"), std::string::npos);
 }
 
+/// Only the JSON of the file is left: whoever reads more than that fails.
+TEST_F(StudioCharacter, ADropOfAMotionReturnsBeforeItsNumbersAreRead) {
+  write_gltf_character(path("made.glb"), tests::make_character({}));
+  Character moves = tests::make_character({});
+  CharacterTrack track;
+  track.node = 1, track.times = {0, 1}, track.values = {0, 0, 0, 1, 0, 0.1f, 0, 0.995f};
+  moves.animations.push_back({"nod", {track}});
+  write_gltf_character(path("moves.glb"), moves);
+  uint32_t json_bytes = 0;
+  std::ifstream(path("moves.glb"), std::ios::binary).seekg(12).read(reinterpret_cast<char*>(&json_bytes), 4);
+  fs::resize_file(path("moves.glb"), 20 + json_bytes);
+  Studio studio(services());
+  studio.run("target.add", {path("made.glb")});
+  studio.run("open", {path("moves.glb")});
+  EXPECT_EQ(studio.session().document.source.path, path("moves.glb"));
+}
+
 TEST_F(StudioCharacter, OneOfAFilesAnimationsIsTheSource) {
   Character moves = tests::make_character({});
   for (const float seconds : {1.0f, 2.0f}) {

@@ -7,13 +7,13 @@
 namespace understudy {
 namespace {
 
-TEST(LogSeries, TellsTenAndSumsUpTheOthers) {
+TEST(LogRepeated, TellsTenAndSumsUpTheOthers) {
   std::vector<std::string> told;
   const auto before = log::set_sink([&](log::Level, const std::string& message) { told.push_back(message); });
-  log::Series series;
+  log::Repeated series;
   for (int i = 0; i < 1010; ++i) series.warn("frame " + std::to_string(i));
   series.finish();
-  log::Series few;
+  log::Repeated few;
   few.warn("alone");
   few.finish();
   log::set_sink(before);
