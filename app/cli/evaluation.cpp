@@ -104,7 +104,7 @@ void evaluate_deformation(const Truth& truth, const Mesh& target, Deformer& defo
            "--oracle pose wants target_joints, joints and rotations in the truth");
   deformer.bind(target.vertices, *truth.target_joints);
   for (int64_t t = 0; t < truth.frames; ++t) {
-    const size_t i = static_cast<size_t>(t);
+    const size_t i = t;
     const Pose pose{truth.rotations[i], truth.joints[i].row(Pelvis).transpose()};
     FrameTimes times;
     const auto began = std::chrono::steady_clock::now();
@@ -185,7 +185,7 @@ std::vector<std::string> chosen_cases(const EvalOptions& options) {
     if (folder.find(options.filter, folder.find_last_of('/') + 1) != std::string::npos)
       fitting.push_back(folder);
   US_CHECK(!fitting.empty(), options.cases, ": no case's name holds ", options.filter);
-  const auto limit = static_cast<size_t>(options.limit);
+  const size_t limit = options.limit;
   if (limit == 0 || limit >= fitting.size()) return fitting;
   std::vector<std::string> chosen;
   for (size_t i = 0; i < limit; ++i)
@@ -202,7 +202,7 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
     bench.fit = std::make_shared<const FitBody>(read_smpl_body(options.body));
   }
   Evaluation evaluation;
-  evaluation.breakdown = Breakdown(static_cast<size_t>(options.worst));
+  evaluation.breakdown = Breakdown(options.worst);
   std::vector<Metrics> metrics;
   for (const std::string& folder : chosen_cases(options)) {
     CaseResult result;

@@ -102,7 +102,7 @@ Eigen::VectorXf betas_in(const std::string& motion, Eigen::Index most) {
 }
 
 Eigen::VectorXf as_vector(const std::vector<float>& values) {
-  return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXf>(values.data(), values.size());
 }
 
 /// An SMPL-format body that performs an AMASS-format motion.

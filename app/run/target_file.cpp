@@ -14,7 +14,7 @@ namespace understudy::app {
 namespace {
 
 Eigen::VectorXf as_vector(const std::vector<float>& values) {
-  return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXf>(values.data(), values.size());
 }
 
 CharacterOptions character_options(const TargetOptions& options) {

@@ -396,8 +396,7 @@ float Engine::Impl::interval() const {
 Observation Engine::Impl::edited(const Seen& seen, size_t frame) const {
   Observation result = seen.observation;
   if (result.problem.empty())
-    static_cast<Extraction&>(result) =
-        understudy::apply(plan.skeleton_edits, result, static_cast<int>(frame));
+    static_cast<Extraction&>(result) = understudy::apply(plan.skeleton_edits, result, frame);
   return result;
 }
 
@@ -414,7 +413,7 @@ bool Engine::Impl::tell_source() {
   if (told >= frames.size()) return false;
   if (told == 0 && alone) alone->restart();
   SourceFrames event;
-  event.first = static_cast<int>(told);
+  event.first = told;
   event.decision = source ? source->decision() : "";
   if (source) event.to_file = source->to_file();
   event.has_faces = has_faces;

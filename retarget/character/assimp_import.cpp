@@ -57,7 +57,7 @@ void AssimpConverter::add_nodes() {
   while (!open.empty()) {
     const auto [node, parent] = open.back();
     open.pop_back();
-    const auto at = static_cast<int>(out_.nodes.size());
+    const int at = out_.nodes.size();
     US_CHECK(at < 100000, path_, ": has more than 100000 nodes");
     node_by_name_.try_emplace(node->mName.C_Str(), at);
     out_.nodes.push_back(
@@ -134,7 +134,7 @@ void AssimpConverter::add_part(const aiMesh& mesh, int node) {
   for (unsigned f = 0; f < mesh.mNumFaces; ++f)
     if (mesh.mFaces[f].mNumIndices == 3)
       for (int c = 0; c < 3; ++c) corners.push_back(static_cast<int>(mesh.mFaces[f].mIndices[c]));
-  part.faces = Eigen::Map<const Faces>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
+  part.faces = Eigen::Map<const Faces>(corners.data(), corners.size() / 3, 3);
   for (unsigned s = 0; s < mesh.mNumAnimMeshes; ++s)
     if (mesh.mAnimMeshes[s]->HasPositions() && mesh.mAnimMeshes[s]->mNumVertices == mesh.mNumVertices)
       part.shapes.push_back(rows_of(mesh.mAnimMeshes[s]->mVertices, mesh.mNumVertices) - part.vertices);

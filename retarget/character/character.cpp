@@ -167,7 +167,7 @@ void check_part(const Character& character, const CharacterPart& part, const std
   US_CHECK(part.faces.rows() == 0 || (part.faces.minCoeff() >= 0 && part.faces.maxCoeff() < count), path,
            ": a face of the part '", part.name, "' names a vertex that is not there");
   if (part.skin < 0) return;
-  const auto bones = static_cast<int>(character.skins[part.skin].joints.size());
+  const int bones = character.skins[part.skin].joints.size();
   US_CHECK(part.joints.rows() == count && part.weights.rows() == count &&
                part.joints.cols() == part.weights.cols() && part.joints.cols() <= kMaxInfluences,
            path, ": the skin of the part '", part.name, "' does not fit its vertices");
@@ -352,7 +352,7 @@ MergedSurface merged_surface(const Character& character, const Points& positions
   }
   out.mesh.vertices.resize(first.size(), 3);
   for (size_t i = 0; i < first.size(); ++i) out.mesh.vertices.row(i) = positions.row(first[i]);
-  out.mesh.faces = Eigen::Map<const Faces>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
+  out.mesh.faces = Eigen::Map<const Faces>(corners.data(), corners.size() / 3, 3);
   return out;
 }
 

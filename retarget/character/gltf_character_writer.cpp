@@ -43,11 +43,11 @@ class ModelMaker {
     bytes.resize((view.byteOffset + size + 3) / 4 * 4, 0);
     if (size > 0) std::memcpy(bytes.data() + view.byteOffset, data, size);
     model.bufferViews.push_back(std::move(view));
-    return static_cast<int>(model.bufferViews.size()) - 1;
+    return model.bufferViews.size() - 1;
   }
   template <class T>
   int add(const std::vector<T>& values, int type, Target target, bool bounds = false) {
-    const auto width = static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
+    const size_t width = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
     tinygltf::Accessor accessor = accessor_of(component_of<T>(), type, values.size() / width);
     accessor.bufferView = add_view(values.data(), values.size() * sizeof(T), target);
     if (bounds) add_bounds(values.data(), values.size(), width, accessor);
@@ -67,11 +67,11 @@ class ModelMaker {
         kept.insert(kept.end(), values.row(v).data(), values.row(v).data() + 3);
       }
     tinygltf::Accessor accessor =
-        accessor_of(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, static_cast<size_t>(values.rows()));
-    add_bounds(values.data(), static_cast<size_t>(values.size()), 3, accessor);
+        accessor_of(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, values.rows());
+    add_bounds(values.data(), values.size(), 3, accessor);
     auto& sparse = accessor.sparse;
     sparse.isSparse = true;
-    sparse.count = static_cast<int>(rows.size());
+    sparse.count = rows.size();
     sparse.indices = {0, add_view(rows.data(), 4 * rows.size(), NoTarget),
                       TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT};
     sparse.values = {add_view(kept.data(), 4 * kept.size(), NoTarget), 0};
@@ -90,7 +90,7 @@ class ModelMaker {
   }
   int add(tinygltf::Accessor accessor) {
     model.accessors.push_back(std::move(accessor));
-    return static_cast<int>(model.accessors.size()) - 1;
+    return model.accessors.size() - 1;
   }
   template <class T>
   static void add_bounds(const T* values, size_t count, size_t width, tinygltf::Accessor& accessor) {
@@ -205,7 +205,7 @@ std::vector<int> add_meshes(const Character& character, ModelMaker& out) {
     }
     if (mesh.primitives.empty()) continue;
     mesh.weights.assign(weights.begin(), weights.end());
-    mesh_of[n] = static_cast<int>(out.model.meshes.size());
+    mesh_of[n] = out.model.meshes.size();
     out.model.meshes.push_back(std::move(mesh));
   }
   return mesh_of;
@@ -215,7 +215,7 @@ void add_nodes(const Character& character, const std::vector<int>& mesh_of, Mode
   tinygltf::Scene scene;
   auto& nodes = out.model.nodes;
   for (const CharacterNode& from : character.nodes) {
-    const auto n = static_cast<int>(nodes.size());
+    const int n = nodes.size();
     tinygltf::Node node;
     node.name = text_of(from.name);
     const Vec3 &t = from.local.translation, &s = from.local.scale;
@@ -277,7 +277,7 @@ void add_animations(const Character& character, ModelMaker& out) {
                        : track.path == TrackPath::Shapes ? TINYGLTF_TYPE_SCALAR
                                                          : TINYGLTF_TYPE_VEC3;
       tinygltf::AnimationChannel channel;
-      channel.sampler = static_cast<int>(animation.samplers.size());
+      channel.sampler = animation.samplers.size();
       channel.target_node = track.node;
       channel.target_path = kPaths[static_cast<size_t>(track.path)];
       tinygltf::AnimationSampler sampler;

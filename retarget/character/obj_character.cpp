@@ -235,7 +235,7 @@ void ObjReader::finish_group(const std::string& name, const Group& group, Charac
     if (has_uvs && c[1] >= 0)  // OBJ counts v from below, glTF from above
       part.uvs[0].row(v) << uvs_[2 * c[1]], 1 - uvs_[2 * c[1] + 1];
   }
-  part.faces = Eigen::Map<const Faces>(faces.data(), static_cast<Eigen::Index>(faces.size() / 3), 3);
+  part.faces = Eigen::Map<const Faces>(faces.data(), faces.size() / 3, 3);
   out.parts.push_back(std::move(part));
 }
 

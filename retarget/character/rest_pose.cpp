@@ -57,8 +57,8 @@ RestPose to_t_pose(const Joints& bind, float tolerance_deg) {
   const float tolerance = tolerance_deg * kPi / 180;
   for (const int right : {0, 1}) {
     const Vec3 sideways = right == 1 ? Vec3(-1, 0, 0) : Vec3(1, 0, 0);
-    const auto shoulder = static_cast<size_t>(LeftShoulder + right), elbow = shoulder + 2, wrist = elbow + 2;
-    const auto hip = static_cast<size_t>(LeftHip + right), knee = hip + 3;
+    const size_t shoulder = LeftShoulder + right, elbow = shoulder + 2, wrist = elbow + 2;
+    const size_t hip = LeftHip + right, knee = hip + 3;
     Q[shoulder] =
         brought(Mat3::Identity(), bone(bind, LeftShoulder + right, LeftElbow + right), sideways, tolerance);
     Q[elbow] = brought(Q[shoulder], bone(bind, LeftElbow + right, LeftWrist + right), sideways, tolerance);

@@ -120,11 +120,11 @@ Faces FaceList::finish(int64_t vertex_count, const std::string& source) const {
     US_CHECK(corner >= 0 && corner < vertex_count, source, ": a face names ",
              corner < 0 ? "a vertex number out of range" : "vertex " + std::to_string(corner),
              ", the file has ", vertex_count, " vertices");
-  return Eigen::Map<const Faces>(corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
+  return Eigen::Map<const Faces>(corners_.data(), corners_.size() / 3, 3);
 }
 
 Points rows_of_three(const std::vector<float>& values) {
-  return Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
+  return Eigen::Map<const Points>(values.data(), values.size() / 3, 3);
 }
 
 }  // namespace understudy

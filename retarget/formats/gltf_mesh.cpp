@@ -34,7 +34,7 @@ Mat4 bind_transform(GltfFile& file, const tinygltf::Skin& skin, const GltfSceneN
   for (size_t i = 0; i < nodes.order.size(); ++i) ranks[nodes.order[i]] = i;
   size_t best = 0, best_rank = nodes.order.size();
   for (size_t j = 0; j < skin.joints.size(); ++j) {
-    const auto node = static_cast<size_t>(skin.joints[j]);
+    const size_t node = skin.joints[j];
     if (node >= ranks.size() || ranks[node] >= best_rank) continue;
     best = j;
     best_rank = ranks[node];

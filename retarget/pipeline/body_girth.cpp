@@ -55,7 +55,7 @@ constexpr size_t kSpineBones = 4;  // the first
 Vec3 bone_end(const Bone& bone, const Joints& joints) {
   const auto at = [&](int j) { return Vec3(joints.row(j).transpose()); };
   if (bone.end >= 0) return at(bone.end);
-  const int parent = kParents[static_cast<size_t>(bone.joint)];
+  const int parent = kParents[bone.joint];
   const float longer = bone.joint == Head ? 1.3f : bone.joint >= LeftWrist ? 0.7f : 0.5f;
   return at(bone.joint) + longer * (at(bone.joint) - at(parent));
 }
@@ -110,7 +110,7 @@ GirthPlace girth_place(const Vec3& point, const Joints& joints, const Rotations&
   place.joint = bone.joint;
   place.end = bone.end;
   place.along = (point - a).dot(axis) / (std::abs(length) > 1e-12f ? length : 1e-12f);
-  place.radial = global[static_cast<size_t>(bone.joint)].transpose() * (point - a - place.along * whole);
+  place.radial = global[bone.joint].transpose() * (point - a - place.along * whole);
   const auto [zero, quarter] = across(bone);
   const float angle = std::atan2(place.radial.dot(quarter), place.radial.dot(zero)) / (2 * kPi);
   place.direction = (angle < 0 ? angle + 1 : angle) * BodyGirth::kDirections;
@@ -130,7 +130,7 @@ BodyGirth measure_girth(const Joints& joints, const Rotations& global, const Poi
     if (!surface.row(i).allFinite()) continue;
     const GirthPlace place = girth_place(surface.row(i).transpose(), joints, global);
     if (place.station < 0 || !place.sure) continue;
-    const auto s = static_cast<size_t>(place.station);
+    const size_t s = place.station;
     const auto d = static_cast<size_t>(std::lround(place.direction)) % BodyGirth::kDirections;
     girth.radius[s][d] += place.radial.norm();
     ++count[s][d];

@@ -63,12 +63,12 @@ Pose FootLock::push(const Pose& pose, const Joints& rest, float dt, const Joints
 
   Pose result = pose;
   for (int side = 0; side < 2; ++side) {
-    const auto s = static_cast<size_t>(side);
+    const size_t s = side;
     const Leg leg = Leg::of(side);
     const bool on_heel = on[s], on_ball = on[s + 2];
     const Vec3 ankle = posed.joints.row(leg.ankle).transpose(), ball = posed.joints.row(leg.ball).transpose();
     const Vec3 heel_offset(0, rest(leg.ball, 1) - rest(leg.ankle, 1), -0.06f * leg_m);
-    const Vec3 heel = ankle + posed.global[static_cast<size_t>(leg.ankle)] * heel_offset;
+    const Vec3 heel = ankle + posed.global[leg.ankle] * heel_offset;
     const bool stood = standing_[s];
     standing_[s] = on_heel || on_ball;
     Vec3& offset = offset_[s];

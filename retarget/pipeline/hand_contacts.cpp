@@ -47,7 +47,7 @@ int arm_of(int joint) {
 float lookup(const std::array<float, BodyGirth::kDirections>& radius, float direction) {
   const int low = static_cast<int>(direction) % BodyGirth::kDirections;
   const float t = direction - std::floor(direction);
-  const auto at = [&](int d) { return radius[static_cast<size_t>(d % BodyGirth::kDirections)]; };
+  const auto at = [&](int d) { return radius[d % BodyGirth::kDirections]; };
   return (1 - t) * at(low) + t * at(low + 1);
 }
 
@@ -106,29 +106,26 @@ void HandContacts::bind(const Mesh& target, const Joints& rest, const RowMatrix&
   for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
     int owner = 0;
     weights.row(v).maxCoeff(&owner);
-    if (vertices.row(v).allFinite())
-      of[static_cast<size_t>(arm_of(owner) < 0 ? kJointCount : owner)].push_back(static_cast<int>(v));
+    if (vertices.row(v).allFinite()) of[arm_of(owner) < 0 ? kJointCount : owner].push_back(v);
   }
   std::vector<int> chosen = far_apart(vertices, thinned(of[kJointCount]), kTrunkSamples);
   for (int side = 0; side < 2; ++side)
     for (const int joint : {LeftWrist + side, LeftElbow + side, LeftShoulder + side}) {
       const bool hand = joint == LeftWrist + side;
-      const auto some =
-          far_apart(vertices, thinned(of[static_cast<size_t>(joint)]), hand ? kHandSamples : kArmSamples);
+      const auto some = far_apart(vertices, thinned(of[joint]), hand ? kHandSamples : kArmSamples);
       const int actors = hand ? kHandActors : joint == LeftElbow + side ? kForearmActors : 0;
       for (size_t i = 0; i < some.size(); ++i) {
         if (static_cast<int>(i) < actors)
-          (hand ? body->hands : body->forearms)[static_cast<size_t>(side)].push_back(
-              static_cast<int>(chosen.size()));
+          (hand ? body->hands : body->forearms)[side].push_back(chosen.size());
         chosen.push_back(some[i]);
       }
     }
-  const auto count = static_cast<Eigen::Index>(chosen.size());
+  const Eigen::Index count = chosen.size();
   const Points normals = target.is_cloud() ? Points() : vertex_normals(vertices, target.faces);
   body->points.resize(count, 3);
   body->normals.resize(count, 3);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int v = chosen[static_cast<size_t>(i)];
+    const int v = chosen[i];
     const Vec3 point = vertices.row(v).transpose();
     body->samples.push_back(body->sample_of(weights, v, point));
     body->points.row(i) = point.transpose();
@@ -138,7 +135,7 @@ void HandContacts::bind(const Mesh& target, const Joints& rest, const RowMatrix&
     if (known) body->normals.row(i) = normals.row(v);
   }
   body->follows.resize(count);
-  for (Eigen::Index i = 0; i < count; ++i) body->follows[i] = body->samples[static_cast<size_t>(i)].follows;
+  for (Eigen::Index i = 0; i < count; ++i) body->follows[i] = body->samples[i].follows;
   body_ = std::move(body);
   reset();
 }
@@ -164,11 +161,11 @@ Points HandContacts::source_rest(const Joints& rest_a) const {
       bone_lengths(rest_a) / bone_lengths(body.rest).max(1e-4f);  // of the bone that ends at the joint
   Points result(body.points.rows(), 3);
   for (Eigen::Index i = 0; i < result.rows(); ++i) {
-    const GirthPlace& place = body.samples[static_cast<size_t>(i)].place;
+    const GirthPlace& place = body.samples[i].place;
     const float scale = longer[place.end >= 0 ? place.end : place.joint];
     float thicker = scale;
     if (place.station >= 0) {
-      const auto s = static_cast<size_t>(place.station);
+      const size_t s = place.station;
       thicker = lookup(girth.radius[s], place.direction) / lookup(body.girth.radius[s], place.direction);
     }
     // along the bone
@@ -252,10 +249,10 @@ std::vector<int> HandContacts::near(const Scene& scene, int side, const std::vec
   for (const int i : actors) reach = std::max(reach, (scene.b.col(i) - middle_b).norm());
   reach += kReach;
   for (size_t k = 0; k < body_->samples.size(); ++k) {
-    const auto c = static_cast<Eigen::Index>(k);
+    const Eigen::Index c = k;
     if (body_->samples[k].arm != side && ((scene.a.col(c) - middle_a).squaredNorm() < reach * reach ||
                                           (scene.b.col(c) - middle_b).squaredNorm() < reach * reach))
-      result.push_back(static_cast<int>(k));
+      result.push_back(k);
   }
   return result;
 }
@@ -310,15 +307,14 @@ std::array<Vec3, 2> HandContacts::wanted(Scene& scene) const {
   std::array<float, 2> held{};
   std::array<std::vector<int>, 2> near_hand, near_forearm;
   for (size_t s = 0; s < 2; ++s) {
-    near_hand[s] = near(scene, static_cast<int>(s), body_->hands[s]);
-    near_forearm[s] = near(scene, static_cast<int>(s), body_->forearms[s]);
+    near_hand[s] = near(scene, s, body_->hands[s]);
+    near_forearm[s] = near(scene, s, body_->forearms[s]);
   }
   for (int pass = 0; pass < 3; ++pass) {
     scene.moved = scene.b;
     for (size_t k = 0; k < body_->samples.size(); ++k)
       if (const int arm = body_->samples[k].arm; arm >= 0)
-        scene.moved.col(static_cast<Eigen::Index>(k)) +=
-            body_->samples[k].follows * moved[static_cast<size_t>(arm)];
+        scene.moved.col(k) += body_->samples[k].follows * moved[arm];
     std::array<Vec3, 2> step;
     for (size_t s = 0; s < 2; ++s) {
       if (pass < 2) {
@@ -346,18 +342,18 @@ Pose HandContacts::push(const Pose& pose, const Joints& source, const std::optio
   const auto count = body.points.rows();
   Scene scene{Eigen::Matrix3Xf(3, count), Eigen::Matrix3Xf(3, count), Eigen::Matrix3Xf(3, count), {}};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Body::Sample& sample = body.samples[static_cast<size_t>(i)];
+    const Body::Sample& sample = body.samples[i];
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();
     for (size_t k = 0; k < kInfluences && sample.weight[k] > 0.01f; ++k) {
       const int j = sample.joint[k];
-      const Mat3& R = posed.global[static_cast<size_t>(j)];
+      const Mat3& R = posed.global[j];
       a += sample.weight[k] * (R * (points_a.row(i) - rest_a.row(j)).transpose() + source.row(j).transpose());
       b += sample.weight[k] *
            (R * (body.points.row(i) - body.rest.row(j)).transpose() + posed.joints.row(j).transpose());
     }
     scene.a.col(i) = a;
     scene.b.col(i) = b;
-    scene.normals.col(i) = posed.global[static_cast<size_t>(sample.owner)] * body.normals.row(i).transpose();
+    scene.normals.col(i) = posed.global[sample.owner] * body.normals.row(i).transpose();
   }
   const std::array<Vec3, 2> goal = wanted(scene);
   const Mat3& chest = posed.global[Spine3];
@@ -365,8 +361,8 @@ Pose HandContacts::push(const Pose& pose, const Joints& source, const std::optio
   const float limit = options_.most_m * leg_length(body.rest) / 0.8f;
   Pose result = pose;
   for (int side = 0; side < 2; ++side) {
-    Vec3& offset = offset_[static_cast<size_t>(side)];
-    offset += follow * (chest.transpose() * goal[static_cast<size_t>(side)] - offset);
+    Vec3& offset = offset_[side];
+    offset += follow * (chest.transpose() * goal[side] - offset);
     if (offset.norm() > limit) offset *= limit / offset.norm();
     if (offset.norm() < 1e-4f) continue;
     place_wrist(body.rest, side, posed.joints.row(LeftWrist + side).transpose() + chest * offset, result);

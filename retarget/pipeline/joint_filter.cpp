@@ -29,7 +29,7 @@ JointFilter::JointFilter(const JointFilterOptions& options) : options_(options) 
 
 void JointFilter::reset() {
   tracks_.fill(Track{});
-  lengths_.fill(RunningMedian(static_cast<size_t>(std::max(1, options_.length_window))));
+  lengths_.fill(RunningMedian(std::max(1, options_.length_window)));
   turning_ = false;
   frames_ = swaps_in_a_row_ = 0;
   repaired_ = false;
@@ -133,8 +133,7 @@ void JointFilter::smooth_turns(Extraction& frame, float dt) {
     const Mat3 expected = rotation_from_axis_angle(dt * t.velocity) * t.rotation;
     t.spread.predict(dt, options_.turn_acceleration);
     const Vec3 innovation = rotation_to_axis_angle(seen * expected.transpose());
-    const float deviation =
-        noise(frame.confidence[static_cast<Eigen::Index>(j)], options_.turn_noise, options_.weak_turn_noise);
+    const float deviation = noise(frame.confidence[j], options_.turn_noise, options_.weak_turn_noise);
     const auto [kp, kv] = t.spread.correct(innovation.squaredNorm(), deviation);
     // Products of rotations drift from being one.
     t.rotation = Eigen::Quaternionf(Mat3(rotation_from_axis_angle(kp * innovation) * expected))

@@ -16,7 +16,7 @@ std::unique_ptr<MotionTransfer> made() {
 const MethodChoice& named(const MethodChoices& choices, const std::string& name, const char* what) {
   const int i = index_of(choices, name);
   US_CHECK(i >= 0, "there is no ", what, " '", name, "': ", names_of(choices, ", "));
-  return choices[static_cast<size_t>(i)];
+  return choices[i];
 }
 
 }  // namespace

@@ -90,21 +90,20 @@ SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints)
       const bool mine = (rest(v, 0) > mid) == (side == 0) && rest(v, 1) < rest_joints(ankle, 1);
       const int cell = static_cast<int>(std::floor((rest(v, 2) - heel) / length * kCells));
       if (!mine || cell < 0 || cell >= kCells) continue;
-      if (lowest[cell] < 0 || rest(v, 1) < rest(lowest[cell], 1)) lowest[cell] = static_cast<int>(v);
+      if (lowest[cell] < 0 || rest(v, 1) < rest(lowest[cell], 1)) lowest[cell] = v;
     }
     for (const int v : lowest)
       if (v >= 0) add(rest(v, 2) > rest_joints(toe, 2) ? toe : ankle, rest.row(v).transpose());
   }
-  support.offset.resize(static_cast<Eigen::Index>(offsets.size()), 3);
-  for (size_t i = 0; i < offsets.size(); ++i)
-    support.offset.row(static_cast<Eigen::Index>(i)) = offsets[i].transpose();
+  support.offset.resize(offsets.size(), 3);
+  for (size_t i = 0; i < offsets.size(); ++i) support.offset.row(i) = offsets[i].transpose();
   return support;
 }
 
 float SupportPoints::lowest(const PosedSkeleton& posed) const {
   float low = 0;
   for (size_t i = 0; i < joint.size(); ++i) {
-    const Vec3 offset_world = posed.global[joint[i]] * offset.row(static_cast<Eigen::Index>(i)).transpose();
+    const Vec3 offset_world = posed.global[joint[i]] * offset.row(i).transpose();
     low = std::min(low, posed.joints(joint[i], 1) - posed.joints(Pelvis, 1) + offset_world.y());
   }
   return low;
@@ -115,8 +114,7 @@ float SupportPoints::lowest_of_foot(const PosedSkeleton& posed, int side) const 
   for (size_t i = 0; i < joint.size(); ++i) {
     const int j = joint[i];
     if (j != LeftAnkle + side && j != LeftFoot + side) continue;
-    const Vec3 offset_world =
-        posed.global[static_cast<size_t>(j)] * offset.row(static_cast<Eigen::Index>(i)).transpose();
+    const Vec3 offset_world = posed.global[j] * offset.row(i).transpose();
     low = std::min(low, posed.joints(j, 1) + offset_world.y());
   }
   return low;

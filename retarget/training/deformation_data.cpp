@@ -83,7 +83,7 @@ Mat3 small_rotation(float degrees, Rng& rng) {
 DeformationSampler::Person DeformationSampler::draw_person() {
   Person person;
   if (surfaces_.size() > 1 && rng_.chance(options_.clothed_share)) {
-    const int i = rng_.below(static_cast<int>(data_.dressed.size()));
+    const int i = rng_.below(data_.dressed.size());
     person.vertices = data_.dressed[i].vertices;
     person.joints = data_.dressed[i].joints;
     person.surface = surfaces_[1 + i].get();
@@ -153,7 +153,7 @@ Rotations DeformationSampler::draw_pose() {
 
 int DeformationSampler::neighbour_face(const Surface& surface, int face) {
   const auto& around = surface.faces_of_vertex[surface.faces(face, rng_.below(3))];
-  return around[rng_.below(static_cast<int>(around.size()))];
+  return around[rng_.below(around.size())];
 }
 
 /// Fills row `row` of the batch with places on a person's own side.
@@ -176,7 +176,7 @@ void DeformationSampler::place(const Person& person, int row, DeformationBatch& 
       face = sample.face;
       b = sample.barycentric;
     } else {
-      face = rng_.below(static_cast<int>(s.faces.rows()));
+      face = rng_.below(s.faces.rows());
     }
     points.row(i).setZero();
     weights.row(i).setZero();
@@ -233,7 +233,7 @@ DeformationBatch DeformationSampler::next() {
   for (int64_t i = 0; i < B; ++i) {
     Person person = draw_person();
     batch.seen_joints[i].copy_(tensor_of(person.seen));
-    place(person, static_cast<int>(i), batch);
+    place(person, i, batch);
     for (int64_t k = 0; k < P; ++k) {
       Pose pose;
       pose.local = draw_pose();

@@ -57,7 +57,7 @@ struct DeformationEvaluator::Target {
 
 DeformationEvaluator::DeformationEvaluator(const TrainingData& data) {
   Rng rng(7);
-  const int people = static_cast<int>(data.betas.size());
+  const int people = data.betas.size();
   for (int i = 0; i < std::min(4, people); ++i) add(data, data.body.shaped(data.betas[i * people / 4]), rng);
   for (size_t i = 0; i < std::min<size_t>(3, data.dressed.size()); ++i) add(data, data.dressed[i], rng);
 }

@@ -21,9 +21,9 @@ constexpr std::array<float, kJointCount> kErrorShare = {0.7f, 0.8f, 0.8f, 0.7f, 
 void add_lost_limb(std::vector<Joints>& joints, Rng& rng) {
   constexpr std::array<int, 8> kLost = {LeftWrist, RightWrist, LeftElbow, RightElbow,
                                         LeftFoot,  RightFoot,  LeftKnee,  RightKnee};
-  const int joint = kLost[rng.below(static_cast<int>(kLost.size()))];
-  const int first = rng.below(static_cast<int>(joints.size()));
-  const int last = std::min(first + 1 + rng.below(6), static_cast<int>(joints.size()));
+  const int joint = kLost[rng.below(kLost.size())];
+  const int first = rng.below(joints.size());
+  const int last = std::min<int>(first + 1 + rng.below(6), joints.size());
   const Vec3 offset = 0.08f * Vec3(rng.normal(), rng.normal(), rng.normal());
   for (int t = first; t < last; ++t) joints[t].row(joint) += offset.transpose();
 }
@@ -88,9 +88,9 @@ MotionData::MotionData(const TrainingData& data) {
       size_t end = i + 1;
       while (end < clip.good.size() && end - i < kStretch && clip.good[end] == clip.good[end - 1] + 1) ++end;
       if (end - i >= kShortest) {
-        mine.push_back(static_cast<int>(stretches_.size()));
-        stretches_.push_back({static_cast<int>(c), clip.good[i], static_cast<int>(end - i),
-                              who.below(static_cast<int>(bodies_.size()))});
+        mine.push_back(stretches_.size());
+        stretches_.push_back(
+            {static_cast<int>(c), clip.good[i], static_cast<int>(end - i), who.below(bodies_.size())});
       }
       i = end;
     }
@@ -105,10 +105,10 @@ MotionData::MotionData(const TrainingData& data) {
 }
 
 const MotionData::Stretch& MotionData::random_stretch(Rng& rng) const {
-  if (rng.chance(0.5f)) return stretches_[rng.below(static_cast<int>(stretches_.size()))];
+  if (rng.chance(0.5f)) return stretches_[rng.below(stretches_.size())];
   // so that short, rare clips count
-  const auto& mine = of_clip_[rng.below(static_cast<int>(of_clip_.size()))];
-  return stretches_[mine[rng.below(static_cast<int>(mine.size()))]];
+  const auto& mine = of_clip_[rng.below(of_clip_.size())];
+  return stretches_[mine[rng.below(mine.size())]];
 }
 
 Rotations MotionData::rotations_at(const Stretch& stretch, float frame) const {

@@ -53,9 +53,7 @@ JointSequence performed(const Joints& rest, const std::vector<Rotations>& rotati
 
 MotionEvaluator::MotionEvaluator(const TrainingData& dev, float noise) {
   Rng rng(7);
-  const auto body = [&] {
-    return dev.body.shaped(dev.betas[rng.below(static_cast<int>(dev.betas.size()))]).joints;
-  };
+  const auto body = [&] { return dev.body.shaped(dev.betas[rng.below(dev.betas.size())]).joints; };
   const auto [clips, frames] = equally_long(dev.clips);
   std::vector<torch::Tensor> source, leg, rest;
   const size_t every = std::max<size_t>(1, clips.size() / kCases);

@@ -23,9 +23,8 @@ bool is_upper(int joint) {
 /// Exactly kScanPoints of the points, at random, repeating some where there are too few.
 void thin(MadeScan& scan, Rng& rng) {
   std::vector<int> order(scan.points.rows());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  for (size_t i = 0; i + 1 < order.size(); ++i)
-    std::swap(order[i], order[i + rng.below(static_cast<int>(order.size() - i))]);
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  for (size_t i = 0; i + 1 < order.size(); ++i) std::swap(order[i], order[i + rng.below(order.size() - i)]);
   const size_t count = order.size();
   order.resize(nn::kScanPoints);
   for (size_t i = count; i < order.size(); ++i) order[i] = order[i % count];
@@ -55,7 +54,7 @@ ScanMaker::ScanMaker(const TrainingData& data, const ScanMakerOptions& options, 
 std::shared_ptr<ScanMaker::Person> ScanMaker::make_person() {
   ShapedBody body;
   if (!data_.dressed.empty() && rng_.chance(options_.dressed))
-    body = data_.dressed[rng_.below(static_cast<int>(data_.dressed.size()))];
+    body = data_.dressed[rng_.below(data_.dressed.size())];
   else
     body = data_.body.shaped(random_shape(data_, rng_));
   SurfaceSampler sampler(body.vertices, body.faces);
@@ -175,7 +174,7 @@ void ScanMaker::degrade(MadeScan& scan) {
   const float least = rng_.uniform(0.15f, 0.8f);  // density at the back, of that at the front
   std::vector<std::pair<Vec3, float>> holes(rng_.below(6));
   for (auto& [at, radius] : holes) {
-    at = scan.points.row(rng_.below(static_cast<int>(scan.points.rows())));
+    at = scan.points.row(rng_.below(scan.points.rows()));
     radius = rng_.uniform(0.03f, 0.12f);
   }
   std::vector<int> kept;

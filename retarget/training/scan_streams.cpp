@@ -1,6 +1,7 @@
 #include "retarget/training/scan_streams.hpp"
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/math/random_direction.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -23,7 +24,7 @@ ScanStreams::ScanStreams(const TrainingData& data, const ScanMakerOptions& optio
 
 /// Sides exchanged, somebody else's, or displaced.
 RecentJoints ScanStreams::wrong(const RecentJoints& recent) {
-  const RecentJoints& other = people_[rng_.below(static_cast<int>(people_.size()))].recent;
+  const RecentJoints& other = people_[rng_.below(people_.size())].recent;
   const int how = rng_.below(3);
   const Eigen::RowVector3f away = 0.2f * rng_.normal() * random_direction(rng_).transpose();
   const auto made = [&](const Joints& own) -> Joints {
@@ -39,7 +40,7 @@ RecentJoints ScanStreams::wrong(const RecentJoints& recent) {
 }
 
 FollowedScans ScanStreams::next(int count) {
-  US_CHECK(count <= static_cast<int>(people_.size()), "only ", people_.size(), " people are followed");
+  US_CHECK(count <= ssize(people_), "only ", people_.size(), " people are followed");
   FollowedScans batch;
   shown_.clear();
   for (int i = 0; i < count; ++i) {
