@@ -82,14 +82,6 @@ Points diverging_colors(const Eigen::VectorXf& values, float most) {
   return colors_of(values, -most, most, diverging_color);
 }
 
-Points category_colors(const std::vector<int>& indices) {
-  const int count = kCategories.size();
-  Points colors(indices.size(), 3);
-  for (size_t i = 0; i < indices.size(); ++i)
-    colors.row(i) = kCategories[(indices[i] % count + count) % count];
-  return colors;
-}
-
 Points weight_colors(const RowMatrix& weights) {
   RowMatrix categories(weights.cols(), 3);
   for (Eigen::Index j = 0; j < weights.cols(); ++j) categories.row(j) = kCategories[j % kCategories.size()];

@@ -27,8 +27,6 @@ Points viridis_colors(const Eigen::VectorXf& values, float low, float high);
 Points error_colors(const Eigen::VectorXf& values, float high);
 /// -`most` to `most` along diverging_color().
 Points diverging_colors(const Eigen::VectorXf& values, float most);
-/// A category colour for each index (from the start again after 22), [N, 3].
-Points category_colors(const std::vector<int>& indices);
 
 /// Skin weights as colours: each vertex the mix of its joints' category colours. weights [V, J] -> [V, 3].
 Points weight_colors(const RowMatrix& weights);

@@ -47,9 +47,8 @@ Points outline(const Points& vertices, const std::optional<Joints>& joints) {
   return points;
 }
 
-Cell make_cell(const Mesh& mesh, const std::optional<Joints>& joints, const Vec3& color, float floor) {
+Cell make_cell(const Mesh& mesh, const std::optional<Joints>& joints, const Vec3& color) {
   Cell cell;
-  cell.scene.ground.height = floor;
   cell.scene.ground.radius = 2.2f;
   if (mesh.vertices.rows() > 0) add(cell.scene, mesh);
   for (auto& view : cell.scene.meshes) view.color = color;
@@ -201,7 +200,7 @@ std::vector<Cell> source_cells(const std::vector<SheetMoment>& moments, const Sh
   const auto shown = [](const SheetMoment& m) { return m.source.vertices.rows() > 0 || m.source_joints; };
   if (std::none_of(moments.begin(), moments.end(), shown)) return cells;
   for (const SheetMoment& m : moments)
-    cells.push_back(make_cell(m.source, m.source_joints, options.source_color, options.source_floor));
+    cells.push_back(make_cell(m.source, m.source_joints, options.source_color));
   return cells;
 }
 
@@ -210,9 +209,7 @@ std::vector<Cell> target_cells(const std::vector<SheetMoment>& moments, const Sh
   if (std::none_of(moments.begin(), moments.end(), [](const SheetMoment& m) { return m.target.has_value(); }))
     return cells;
   for (const SheetMoment& m : moments)
-    cells.push_back(make_cell(m.target.value_or(Mesh{}),
-                              options.target_skeleton ? m.target_joints : std::nullopt, options.target_color,
-                              options.target_floor));
+    cells.push_back(make_cell(m.target.value_or(Mesh{}), std::nullopt, options.target_color));
   return cells;
 }
 
@@ -265,17 +262,6 @@ Image contact_sheet(const std::vector<SheetMoment>& moments, const SheetOptions&
   const auto context = make_offscreen_context();
   Renderer renderer;
   return contact_sheet(renderer, moments, options);
-}
-
-float lowest_floor(const std::vector<Mesh>& scans) {
-  std::vector<float> heights;
-  for (const Mesh& scan : scans)
-    for (Eigen::Index i = 0; i < scan.vertices.rows(); ++i)
-      if (std::isfinite(scan.vertices(i, 1))) heights.push_back(scan.vertices(i, 1));
-  if (heights.empty()) return 0;
-  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 500);
-  std::nth_element(heights.begin(), low, heights.end());
-  return *low;
 }
 
 }  // namespace understudy::render

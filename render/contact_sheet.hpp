@@ -16,7 +16,6 @@ struct SheetMoment {
   Mesh source;                          ///< the scan, a mesh or a cloud; empty: not shown
   std::optional<Joints> source_joints;  ///< extracted from it
   std::optional<Mesh> target;  ///< the target performing it, a mesh or a cloud; in none: no target rows
-  std::optional<Joints> target_joints;
 };
 
 struct SheetOptions {
@@ -24,8 +23,6 @@ struct SheetOptions {
   int width = 1800;   ///< pixels; the height follows from the people shown
   int columns = 6;    ///< moments in a row; more continue below
   float heading = 0;  ///< radians about +y that the person faces, 0 is +z; the sheet looks from there
-  float source_floor = 0, target_floor = 0;  ///< heights of the floors, metres
-  bool target_skeleton = false;              ///< show it in the target too
   std::string source_caption = "Scan, extracted skeleton", target_caption = "Target";
   Vec3 source_color = Vec3(0.66f, 0.71f, 0.76f), target_color = Vec3(0.80f, 0.75f, 0.69f);
 };
@@ -36,8 +33,5 @@ Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
                     const SheetOptions& options = {});
 /// The same with an offscreen context of its own; no context is current on this thread afterwards.
 Image contact_sheet(const std::vector<SheetMoment>& moments, const SheetOptions& options = {});
-
-/// The floor under some scans: the height that one in 500 of all their points lies below.
-float lowest_floor(const std::vector<Mesh>& scans);
 
 }  // namespace understudy::render

@@ -72,13 +72,4 @@ std::optional<int> point_near(const Points& points, const Ray& ray, float radius
   return best;
 }
 
-std::vector<Touched> brushed(const Points& vertices, const Vec3& place, float radius) {
-  std::vector<Touched> touched;
-  for (Eigen::Index i = 0; i < vertices.rows(); ++i) {
-    const float share = (vertices.row(i).transpose() - place).squaredNorm() / (radius * radius);
-    if (share < 1) touched.push_back({static_cast<int>(i), (1 - share) * (1 - share)});
-  }
-  return touched;
-}
-
 }  // namespace understudy::render

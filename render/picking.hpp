@@ -29,12 +29,4 @@ std::optional<int> point_under(const Points& points, const Camera& camera, Pixel
 /// The same with nothing but a ray: the point nearest to it, before its origin, within `radius` metres.
 std::optional<int> point_near(const Points& points, const Ray& ray, float radius);
 
-/// Vertices within `radius` metres of a place, with how strongly a round soft brush there touches each: 1 in
-/// the middle to 0 at the rim, smoothly.
-struct Touched {
-  int vertex;
-  float strength;
-};
-std::vector<Touched> brushed(const Points& vertices, const Vec3& place, float radius);
-
 }  // namespace understudy::render

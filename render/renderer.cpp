@@ -294,14 +294,6 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-void Renderer::set_options(const RendererOptions& options) {
-  if (options.samples != parts_->options.samples) {
-    parts_->canvas = Canvas(options.samples);
-    parts_->still.clear();
-  }
-  parts_->options = options;
-}
-
 void Renderer::draw(const Scene& scene, const Camera& camera, const RenderTarget& target) {
   Parts& p = *parts_;
   for (const auto& mesh : scene.meshes) check(mesh);

@@ -38,9 +38,6 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// From the next picture on; passes and uploaded arrays are kept.
-  void set_options(const RendererOptions& options);
-
   /// Draws the scene over all of the target. Throws Error when the scene's arrays do not fit together, and,
   /// where the context's messages are fatal, with the first of them.
   void draw(const Scene& scene, const Camera& camera, const RenderTarget& target);

@@ -50,7 +50,6 @@ render::SheetMoment source_moment(const RetargetedFrame& frame, double fps) {
 render::SheetMoment moment_of(const RetargetedFrame& frame, double fps, const Mesh& rest) {
   render::SheetMoment moment = source_moment(frame, fps);
   moment.target = Mesh{frame.result.vertices, rest.faces, rest.colors};
-  moment.target_joints = frame.result.joints;
   return moment;
 }
 

@@ -574,7 +574,6 @@ ExportCost export_character(const std::string& path, const PreparedCharacter& ch
   const Character written = parse_gltf_character(bytes, path);
   const auto wanted = wanted_clips(character, clips, options);
   ExportCost cost = measure(written, character, screen, wanted, part_of(options.progress, 0.6f, 1));
-  for (const auto& clip : wanted) cost.keys_before += static_cast<int64_t>(clip.poses.size());
   cost.bytes = static_cast<int64_t>(bytes.size());
   write_file(path, bytes);
   return cost;

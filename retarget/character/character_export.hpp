@@ -33,7 +33,7 @@ struct CharacterExportOptions {
 struct ExportCost {
   bool measured = false;  ///< false: the format holds no surface that could be compared
   double mean_mm = 0, largest_mm = 0;
-  int64_t frames = 0, keys = 0, keys_before = 0, bytes = 0;
+  int64_t frames = 0, keys = 0, bytes = 0;
 };
 
 /// The animated character in memory. screen: bound to the character's target, as it deforms on screen.

@@ -104,10 +104,4 @@ Extraction apply(const std::vector<SkeletonEdit>& edits, Extraction seen, int fr
   return seen;
 }
 
-bool touches(const std::vector<SkeletonEdit>& edits, int frame) {
-  return std::any_of(edits.begin(), edits.end(), [frame](const SkeletonEdit& any) {
-    return std::visit([frame](const auto& edit) { return weight(edit, frame) > 0; }, any);
-  });
-}
-
 }  // namespace understudy

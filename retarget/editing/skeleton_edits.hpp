@@ -53,7 +53,4 @@ using SkeletonEdit = std::variant<DragEdit, SwapEdit>;
 /// that is none.
 Extraction apply(const std::vector<SkeletonEdit>& edits, Extraction seen, int frame);
 
-/// Whether any edit changes that frame.
-bool touches(const std::vector<SkeletonEdit>& edits, int frame);
-
 }  // namespace understudy

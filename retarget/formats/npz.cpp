@@ -214,10 +214,6 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source) {
   return array;
 }
 
-NpyArray read_npy(const std::string& path) {
-  return parse_npy(read_file(path, kLargestArray), path);
-}
-
 std::vector<std::string> npz_names(const std::string& path) {
   const Zip archive = open_archive(path);
   std::vector<std::string> names;

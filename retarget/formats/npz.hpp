@@ -31,7 +31,6 @@ using Npz = std::map<std::string, NpyArray>;
 /// Reads one .npy from bytes in memory; `source` names it in complaints. Sizes are checked before anything is
 /// allocated.
 NpyArray parse_npy(const std::string& bytes, const std::string& source);
-NpyArray read_npy(const std::string& path);
 /// Reads every array of a .npz (zip, stored or deflated). Arrays of other kinds (objects) are left out.
 Npz read_npz(const std::string& path);
 /// Names of its arrays; nothing else is read.

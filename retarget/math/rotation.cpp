@@ -73,16 +73,4 @@ Points Similarity::apply(const Points& points) const {
   return ((scale * points * R.transpose()).rowwise() + t.transpose()).eval();
 }
 
-Similarity similarity_alignment(const Points& from, const Points& to) {
-  US_CHECK(from.rows() == to.rows() && from.rows() >= 3,
-           "alignment wants two equal sets of at least 3 points, not ", from.rows(), " and ", to.rows());
-  const Eigen::Matrix4f T = Eigen::umeyama(from.transpose(), to.transpose(), true);
-  Similarity result;
-  const Mat3 sR = T.topLeftCorner<3, 3>();
-  result.scale = std::cbrt(std::max(sR.determinant(), 1e-30f));
-  result.R = sR / result.scale;
-  result.t = T.topRightCorner<3, 1>();
-  return result;
-}
-
 }  // namespace understudy

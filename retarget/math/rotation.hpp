@@ -38,7 +38,5 @@ struct Similarity {
   Vec3 t = Vec3::Zero();
   Points apply(const Points& points) const;
 };
-/// The best similarity from `from` to `to`, both [N, 3], N >= 3 (Umeyama, PAMI 1991).
-Similarity similarity_alignment(const Points& from, const Points& to);
 
 }  // namespace understudy

@@ -133,15 +133,6 @@ TEST(PickingRay, LeavesOutWhatIsBehindTheEyeOrNotFinite) {
   EXPECT_EQ(point_under(points, camera, kSize, {200, 150}, 1000), std::nullopt);
 }
 
-TEST(Brushed, FadesToTheRim) {
-  Points row(5, 3);
-  row << 0, 0, 0, 0.05f, 0, 0, 0.09f, 0, 0, 0.1f, 0, 0, 0.2f, 0, 0;
-  const auto touched = brushed(row, Vec3::Zero(), 0.1f);
-  ASSERT_EQ(touched.size(), 3u);
-  EXPECT_FLOAT_EQ(touched[0].strength, 1);
-  EXPECT_LT(touched[2].strength, touched[1].strength);
-}
-
 class Gizmo : public testing::TestWithParam<bool> {
  protected:
   Gizmo() {

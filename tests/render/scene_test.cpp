@@ -88,13 +88,6 @@ TEST(Scales, ShowWhatIsNoNumberAsGrey) {
     EXPECT_TRUE(scale(nan).isApprox(Vec3(0.5f, 0.5f, 0.5f)));
 }
 
-TEST(CategoryColors, BeginAgainAfterTheLast) {
-  const Points colors = category_colors({0, 22, 5, -1});
-  EXPECT_EQ(colors.row(0), colors.row(1));
-  EXPECT_TRUE(colors.row(2).transpose().isApprox(kCategories[5]));
-  EXPECT_TRUE(colors.row(3).transpose().isApprox(kCategories[21]));
-}
-
 TEST(FloorShadow, IsDarkestUnderTheFeetAndNothingAtItsEdge) {
   Scene scene;
   add(scene, make_person(2000));

@@ -54,10 +54,7 @@ class Gui {
   const std::vector<Mark>& marks() const { return ui_.marks(); }
   const ImFontAtlas& atlas() const { return *io().Fonts; }
 
-  /// Whether the interface uses the mouse (it is over a panel) or the keys, or the user is typing: then they
-  /// are not for the views behind it, nor for shortcuts.
-  bool wants_mouse() const { return io().WantCaptureMouse; }
-  bool wants_keys() const { return io().WantCaptureKeyboard; }
+  /// Whether the user is typing: then keys are no shortcuts.
   bool wants_text() const { return io().WantTextInput; }
   /// The shape that the mouse pointer should have.
   render::CursorShape cursor() const;

@@ -81,12 +81,6 @@ TargetLook plain_look_of(const Target& target) {
   return look;
 }
 
-TargetLook look_of(const Target& target) {
-  TargetLook look = plain_look_of(target);
-  shade(look, target);
-  return look;
-}
-
 bool same_surface(const Target* a, const Target* b) {
   if (a == nullptr || b == nullptr) return a == b;
   const Faces &f = a->mesh.faces, &g = b->mesh.faces;

@@ -22,8 +22,6 @@ struct TargetLook {
 bool is_closed(const Faces& faces);
 /// All but `ambient`, within some hundredths of a second.
 TargetLook plain_look_of(const Target& target);
-/// All of it; takes about a quarter of a second for 13,000 vertices.
-TargetLook look_of(const Target& target);
 
 /// Whether a picture of one can be shown as the other: vertices of one number and order, the same faces.
 bool same_surface(const Target* a, const Target* b);

@@ -209,19 +209,10 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
 
 bool number(Ui& ui, const std::string& name, float& value, const NumberOptions& options) {
   const IdScope id(name);
-  const bool reset = options.resettable && value != options.initial;
-  const float size = ImGui::GetFrameHeight(), gap = ImGui::GetStyle().ItemInnerSpacing.x;
-  ImGui::SetNextItemWidth(reset ? -(size + gap) : -FLT_MIN);
-  bool changed = ImGui::DragFloat("##value", &value, options.speed, options.min, options.max, options.format,
-                                  ImGuiSliderFlags_AlwaysClamp);
+  ImGui::SetNextItemWidth(-FLT_MIN);
+  const bool changed = ImGui::DragFloat("##value", &value, options.speed, options.min, options.max,
+                                        options.format, ImGuiSliderFlags_AlwaysClamp);
   ui.mark(name);
-  if (!reset) return changed;
-  ImGui::SameLine(0, gap);
-  char words[64];
-  std::snprintf(words, sizeof words, options.format, options.initial);
-  if (icon_button(ui, name + ".reset", Icon::Reset,
-                  {std::string("Back to ") + words, "", false, false, size / ui.scale()}))
-    value = options.initial, changed = true;
   return changed;
 }
 
@@ -350,19 +341,14 @@ bool progress(Ui& ui, const std::string& name, const ProgressOptions& options) {
 }
 
 bool splitter(Ui& ui, const std::string& name, float& size, const SplitterOptions& options) {
-  const ImVec2 left = ImGui::GetContentRegionAvail();
-  const float thick = std::round(ui.px(6));
-  const Press p = press(ui, name, options.vertical ? ImVec2(thick, left.y) : ImVec2(left.x, thick), name);
-  if (p.hovered || p.held)
-    ImGui::SetMouseCursor(options.vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
-  const ImVec2 middle = p.rect.at(0.5f, 0.5f);
-  const float half = ui.px(p.hovered || p.held ? 1 : 0.5f);
-  const Rect line = options.vertical ? Rect{{middle.x - half, p.rect.min.y}, {middle.x + half, p.rect.max.y}}
-                                     : Rect{{p.rect.min.x, middle.y - half}, {p.rect.max.x, middle.y + half}};
-  fill(line, p.hovered || p.held ? ui.theme().accent_hover : ui.theme().line, 0);
+  const Press p = press(ui, name, {std::round(ui.px(6)), ImGui::GetContentRegionAvail().y}, name);
+  const bool lit = p.hovered || p.held;
+  if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  const float middle = p.rect.at(0.5f, 0).x, half = ui.px(lit ? 1 : 0.5f);
+  fill({{middle - half, p.rect.min.y}, {middle + half, p.rect.max.y}},
+       lit ? ui.theme().accent_hover : ui.theme().line, 0);
   if (!p.held) return false;
-  const ImVec2 moved = ImGui::GetIO().MouseDelta;
-  const float by = (options.vertical ? moved.x : moved.y) / ui.scale();
+  const float by = ImGui::GetIO().MouseDelta.x / ui.scale();
   size = std::clamp(size + (options.reversed ? -by : by), options.min, std::max(options.min, options.max));
   return by != 0;
 }

@@ -52,11 +52,8 @@ struct NumberOptions {
   float min = -FLT_MAX, max = FLT_MAX;
   float speed = 0.01f;  ///< a pixel of dragging
   const char* format = "%.2f";
-  float initial = 0;        ///< what its reset button, shown while the value differs, goes back to
-  bool resettable = false;  ///< whether there is that button
 };
-/// A number to drag, or to type after a double click; over the width that is left. True while it changes;
-/// the reset is marked NAME.reset.
+/// A number to drag, or to type after a double click; over the width that is left. True while it changes.
 bool number(Ui& ui, const std::string& name, float& value, const NumberOptions& options = {});
 
 /// A text field, with a grey hint while it is empty. True when it changed.
@@ -87,11 +84,10 @@ struct ProgressOptions {
 bool progress(Ui& ui, const std::string& name, const ProgressOptions& options);
 
 struct SplitterOptions {
-  bool vertical = true;   ///< a line from top to bottom, moved left and right
-  bool reversed = false;  ///< `size` is of the side after the line: it grows to the left or up
+  bool reversed = false;  ///< `size` is of the right side: it grows to the left
   float min = 80, max = 10000;
 };
-/// A line between two areas that changes the size (pixels at scale 1) of one. True while dragged.
+/// An upright line between two areas that changes the size (pixels at scale 1) of one. True while dragged.
 bool splitter(Ui& ui, const std::string& name, float& size, const SplitterOptions& options = {});
 
 }  // namespace understudy::ui

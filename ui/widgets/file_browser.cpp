@@ -79,9 +79,6 @@ FileFilter body_filter() {
 FileFilter document_filter() {
   return {"Understudy documents", format_suffixes(kDocument)};
 }
-FileFilter case_filter() {
-  return {"Cases", format_suffixes(kCase), true};
-}
 FileFilter known_filter() {
   return {"All supported files", format_suffixes(~0u), true};
 }

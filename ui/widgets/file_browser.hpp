@@ -24,7 +24,6 @@ FileFilter target_filter();
 FileFilter motion_filter();
 FileFilter body_filter();
 FileFilter document_filter();
-FileFilter case_filter();
 FileFilter known_filter();  ///< all that opens
 FileFilter any_filter();
 

@@ -50,25 +50,6 @@ class Pen {
   ImU32 color_;
 };
 
-void eye(Pen& pen) {
-  pen.line({{1, 8},
-            {2.6f, 5.8f},
-            {5, 4.2f},
-            {8, 3.6f},
-            {11, 4.2f},
-            {13.4f, 5.8f},
-            {15, 8},
-            {13.4f, 10.2f},
-            {11, 11.8f},
-            {8, 12.4f},
-            {5, 11.8f},
-            {2.6f, 10.2f}},
-           true);
-}
-void body_of_lock(Pen& pen) {
-  pen.box({3, 7.5f}, {13, 14});
-  pen.disc({8, 10.7f}, 1.1f);
-}
 void turned_arrow(Pen& pen, bool left) {
   const auto x = [left](float at) { return left ? at : 16 - at; };
   pen.line({{x(5.5f), 2.8f}, {x(2.2f), 6}, {x(5.5f), 9.2f}});
@@ -79,12 +60,6 @@ void turned_arrow(Pen& pen, bool left) {
 void page(Pen& pen) {
   pen.line({{9.5f, 1.8f}, {3.5f, 1.8f}, {3.5f, 14.2f}, {12.5f, 14.2f}, {12.5f, 4.8f}}, true);
   pen.line({{9.3f, 2}, {9.3f, 5}, {12.3f, 5}});
-}
-void teeth(Pen& pen) {
-  for (int k = 0; k < 8; ++k) {
-    const float a = static_cast<float>(k) * kPi / 4, c = std::cos(a), s = std::sin(a);
-    pen.line({{8 + 4.8f * c, 8 + 4.8f * s}, {8 + 6.9f * c, 8 + 6.9f * s}});
-  }
 }
 void four_arrows(Pen& pen) {
   pen.line({{8, 1.6f}, {8, 14.4f}}), pen.line({{1.6f, 8}, {14.4f, 8}});
@@ -109,48 +84,33 @@ constexpr std::array<Entry, static_cast<size_t>(Icon::Count)> kIcons = {{
                           p.block({12.6f, 3.2f}, {14.2f, 12.8f}); }},
   {"loop", [](Pen& p) { p.line({{2.2f, 8}, {2.2f, 6}, {3.2f, 4.4f}, {13, 4.4f}}), p.line({{10.8f, 2}, {13.2f, 4.4f}, {10.8f, 6.8f}}),
                         p.line({{13.8f, 8}, {13.8f, 10}, {12.8f, 11.6f}, {3, 11.6f}}), p.line({{5.2f, 9.2f}, {2.8f, 11.6f}, {5.2f, 14}}); }},
-  {"eye", [](Pen& p) { eye(p), p.ring({8, 8}, 2); }},
-  {"eye-off", [](Pen& p) { eye(p), p.line({{2.5f, 14}, {13.5f, 2}}); }},
-  {"lock", [](Pen& p) { body_of_lock(p), p.arc({8, 5.6f}, 3.2f, 2, 4), p.line({{4.8f, 5.6f}, {4.8f, 7.5f}}), p.line({{11.2f, 5.6f}, {11.2f, 7.5f}}); }},
-  {"unlock", [](Pen& p) { body_of_lock(p), p.arc({8, 4.9f}, 3.2f, 2, 3.7f), p.line({{4.8f, 4.9f}, {4.8f, 7.5f}}); }},
   {"undo", [](Pen& p) { turned_arrow(p, true); }},
   {"redo", [](Pen& p) { turned_arrow(p, false); }},
-  {"reset", [](Pen& p) { p.arc({8, 8.4f}, 5.2f, -1.5f, 1.9f), p.line({{4.1f, 1.7f}, {4.1f, 5}, {7.4f, 5}}); }},
   {"folder", [](Pen& p) { p.line({{1.8f, 13}, {1.8f, 3.2f}, {6, 3.2f}, {7.6f, 5.2f}, {14.2f, 5.2f}, {14.2f, 13}}, true); }},
   {"file", page},
   {"image", [](Pen& p) { p.box({1.8f, 2.8f}, {14.2f, 13.2f}), p.disc({5.4f, 6.2f}, 1.2f), p.line({{2.5f, 12}, {6.2f, 9}, {8.2f, 10.6f}, {11, 7.4f}, {13.8f, 10.4f}}); }},
   {"video", [](Pen& p) { p.box({1.5f, 4}, {10.3f, 12}), p.line({{10.5f, 7}, {14.5f, 4.6f}, {14.5f, 11.4f}, {10.5f, 9}}); }},
-  {"save", [](Pen& p) { p.line({{2.2f, 2.2f}, {11.2f, 2.2f}, {13.8f, 4.8f}, {13.8f, 13.8f}, {2.2f, 13.8f}}, true), p.line({{5, 2.4f}, {5, 5.6f}, {10, 5.6f}, {10, 2.4f}}),
-                        p.line({{4.8f, 13.6f}, {4.8f, 9.2f}, {11.2f, 9.2f}, {11.2f, 13.6f}}); }},
   {"home", [](Pen& p) { p.line({{1.6f, 8}, {8, 2.2f}, {14.4f, 8}}), p.line({{3.6f, 6.6f}, {3.6f, 13.6f}, {12.4f, 13.6f}, {12.4f, 6.6f}}); }},
   {"clock", [](Pen& p) { p.ring({8, 8}, 6.2f), p.line({{8, 4.4f}, {8, 8}, {10.6f, 9.6f}}); }},
-  {"search", [](Pen& p) { p.ring({6.8f, 6.8f}, 4.4f), p.line({{10.1f, 10.1f}, {14, 14}}); }},
   {"copy", [](Pen& p) { p.box({5.4f, 5.4f}, {14, 14}), p.line({{3.6f, 10.6f}, {2, 10.6f}, {2, 2}, {10.6f, 2}, {10.6f, 3.6f}}); }},
   {"trash", [](Pen& p) { p.line({{2.2f, 4.4f}, {13.8f, 4.4f}}), p.line({{3.6f, 4.6f}, {4.4f, 14}, {11.6f, 14}, {12.4f, 4.6f}}), p.line({{6, 4.2f}, {6, 2.2f}, {10, 2.2f}, {10, 4.2f}}); }},
   {"warning", [](Pen& p) { p.line({{8, 2}, {14.6f, 13.6f}, {1.4f, 13.6f}}, true), p.line({{8, 6.2f}, {8, 9.8f}}), p.disc({8, 11.7f}, 0.9f); }},
   {"info", [](Pen& p) { p.ring({8, 8}, 6.2f), p.line({{8, 7.4f}, {8, 11.4f}}), p.disc({8, 5}, 0.95f); }},
   {"check", [](Pen& p) { p.line({{3, 8.6f}, {6.4f, 12}, {13, 4.6f}}); }},
   {"close", [](Pen& p) { p.line({{3.8f, 3.8f}, {12.2f, 12.2f}}), p.line({{12.2f, 3.8f}, {3.8f, 12.2f}}); }},
-  {"plus", [](Pen& p) { p.line({{8, 3}, {8, 13}}), p.line({{3, 8}, {13, 8}}); }},
-  {"minus", [](Pen& p) { p.line({{3, 8}, {13, 8}}); }},
   {"chevron-right", [](Pen& p) { p.line({{6, 4}, {10, 8}, {6, 12}}); }},
   {"chevron-down", [](Pen& p) { p.line({{4, 6}, {8, 10}, {12, 6}}); }},
   {"chevron-up", [](Pen& p) { p.line({{4, 10}, {8, 6}, {12, 10}}); }},
-  {"chevron-left", [](Pen& p) { p.line({{10, 4}, {6, 8}, {10, 12}}); }},
   {"person", [](Pen& p) { p.ring({8, 4.4f}, 2.6f), p.arc({8, 14}, 5.2f, 2, 4), p.line({{2.8f, 14}, {13.2f, 14}}); }},
   {"skeleton", [](Pen& p) { p.ring({8, 2.8f}, 1.5f), p.line({{8, 4.4f}, {8, 9.4f}}), p.line({{2.6f, 7.4f}, {8, 5.6f}, {13.4f, 7.4f}}),
                             p.line({{4.6f, 14.4f}, {8, 9.4f}, {11.4f, 14.4f}}), p.disc({8, 9.4f}, 1.2f), p.disc({2.6f, 7.4f}, 1.1f), p.disc({13.4f, 7.4f}, 1.1f); }},
   {"mesh", [](Pen& p) { p.line({{8, 1.6f}, {13.8f, 4.8f}, {13.8f, 11.2f}, {8, 14.4f}, {2.2f, 11.2f}, {2.2f, 4.8f}}, true), p.line({{2.4f, 4.9f}, {8, 8}, {13.6f, 4.9f}}), p.line({{8, 8}, {8, 14.2f}}); }},
   {"points", [](Pen& p) { for (const ImVec2 at : {ImVec2(8, 2.6f), ImVec2(4.4f, 5.2f), ImVec2(11.6f, 5.2f), ImVec2(8, 6.8f), ImVec2(5.4f, 9.6f), ImVec2(10.6f, 9.6f), ImVec2(2.6f, 12.6f), ImVec2(8, 12.8f), ImVec2(13.4f, 12.6f)}) p.disc(at, 1.15f); }},
   {"brush", [](Pen& p) { p.line({{14, 2}, {7.6f, 8.6f}}), p.line({{7.4f, 8.2f}, {5, 8.8f}, {3.8f, 10.8f}, {3.4f, 13}, {2, 13.8f}, {5.4f, 14}, {7.6f, 12.8f}, {8.4f, 11}, {8, 9}}, true); }},
-  {"gear", [](Pen& p) { p.ring({8, 8}, 4.6f), p.ring({8, 8}, 1.6f), teeth(p); }},
   {"camera", [](Pen& p) { p.line({{1.6f, 4.8f}, {4.6f, 4.8f}, {6, 2.8f}, {10, 2.8f}, {11.4f, 4.8f}, {14.4f, 4.8f}, {14.4f, 13}, {1.6f, 13}}, true), p.ring({8, 8.6f}, 2.5f); }},
-  {"grid", [](Pen& p) { p.box({2, 2}, {14, 14}), p.line({{6, 2}, {6, 14}}), p.line({{10, 2}, {10, 14}}), p.line({{2, 6}, {14, 6}}), p.line({{2, 10}, {14, 10}}); }},
   {"chart", [](Pen& p) { p.line({{2, 2}, {2, 14}, {14.4f, 14}}), p.line({{4.6f, 10.6f}, {7.2f, 6.6f}, {9.8f, 8.8f}, {13.6f, 3.6f}}); }},
-  {"split", [](Pen& p) { p.box({1.8f, 2.8f}, {14.2f, 13.2f}), p.line({{8, 2.8f}, {8, 13.2f}}); }},
   {"select", [](Pen& p) { p.line({{3.4f, 2}, {12.8f, 9}, {8.4f, 9.6f}, {5.8f, 13.4f}}, true); }},
   {"move", four_arrows},
-  {"pin", [](Pen& p) { p.line({{5, 2}, {11, 2}}), p.line({{6, 2.2f}, {5.6f, 7}, {3.4f, 9.4f}, {12.6f, 9.4f}, {10.4f, 7}, {10, 2.2f}}), p.line({{8, 9.6f}, {8, 14.4f}}); }},
   {"layers", [](Pen& p) { p.line({{8, 1.8f}, {14.4f, 5.2f}, {8, 8.6f}, {1.6f, 5.2f}}, true), p.line({{1.8f, 8.4f}, {8, 11.6f}, {14.2f, 8.4f}}), p.line({{1.8f, 11.2f}, {8, 14.4f}, {14.2f, 11.2f}}); }},
   {"menu", [](Pen& p) { p.line({{2.4f, 4}, {13.6f, 4}}), p.line({{2.4f, 8}, {13.6f, 8}}), p.line({{2.4f, 12}, {13.6f, 12}}); }},
 }};

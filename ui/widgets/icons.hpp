@@ -11,11 +11,10 @@ namespace understudy::ui {
 
 enum class Icon : int {
   // clang-format off
-  Play, Pause, StepBack, StepForward, ToStart, ToEnd, Loop,
-  Eye, EyeOff, Lock, Unlock, Undo, Redo, Reset,
-  Folder, File, Image, Video, Save, Home, Clock, Search, Copy, Trash,
-  Warning, Info, Check, Close, Plus, Minus, ChevronRight, ChevronDown, ChevronUp, ChevronLeft,
-  Person, Skeleton, Mesh, Points, Brush, Gear, Camera, Grid, Chart, Split, Select, Move, Pin, Layers, Menu,
+  Play, Pause, StepBack, StepForward, ToStart, ToEnd, Loop, Undo, Redo,
+  Folder, File, Image, Video, Home, Clock, Copy, Trash,
+  Warning, Info, Check, Close, ChevronRight, ChevronDown, ChevronUp,
+  Person, Skeleton, Mesh, Points, Brush, Camera, Chart, Select, Move, Layers, Menu,
   // clang-format on
   Count
 };

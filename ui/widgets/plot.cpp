@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/colors.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
@@ -219,52 +218,6 @@ void histogram(Ui& ui, const std::string& name, const Values& values, const Hist
     written = write(std::max(x, written + word_width(words) / 2 + (written > area.min.x ? ui.px(10) : 0)),
                     at.y, words, ui.theme().series[1]);
   }
-}
-
-void viridis_legend(Ui& ui, const std::string& name, float low, float high, const std::string& unit) {
-  const FontScope small(ui.fonts().small);
-  constexpr int kSteps = 32;
-  const float line = ImGui::GetTextLineHeight(), bar = std::round(ui.px(8)),
-              width = std::max(ImGui::GetContentRegionAvail().x, ui.px(60));
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const auto at_step = [](int k) {
-    const auto c = render::viridis(static_cast<float>(k) / kSteps);
-    return color({c.x(), c.y(), c.z(), 1});
-  };
-  for (int k = 0; k < kSteps; ++k) {
-    const float left = at.x + width * static_cast<float>(k) / kSteps,
-                right = at.x + width * static_cast<float>(k + 1) / kSteps;
-    list.AddRectFilledMultiColor({left, at.y}, {right, at.y + bar}, at_step(k), at_step(k + 1),
-                                 at_step(k + 1), at_step(k));
-  }
-  for (int k = 0; k <= 2; ++k) {
-    const float share = static_cast<float>(k) / 2, value = low + share * (high - low);
-    const std::string words = short_number(value) + (k == 2 && !unit.empty() ? " " + unit : "");
-    list.AddText({at.x + share * (width - word_width(words)), at.y + bar + ui.px(3)},
-                 color(ui.theme().text_dim), words.c_str());
-  }
-  ImGui::Dummy({width, bar + ui.px(3) + line});
-  ui.mark(name);
-}
-
-void category_legend(Ui& ui, const std::string& name, const std::vector<Category>& categories) {
-  const FontScope small(ui.fonts().small);
-  ImGui::BeginGroup();
-  const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x,
-              box = std::round(ui.px(10));
-  for (size_t i = 0; i < categories.size(); ++i) {
-    const float width = box + ui.px(5) + word_width(categories[i].label), gap = ui.px(12);
-    if (i > 0 && ImGui::GetItemRectMax().x + gap + width < right) ImGui::SameLine(0, gap);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float line = ImGui::GetTextLineHeight(), top = at.y + std::round((line - box) / 2);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled({at.x, top}, {at.x + box, top + box}, color(categories[i].color), ui.px(2));
-    list.AddText({at.x + box + ui.px(5), at.y}, color(ui.theme().text_dim), categories[i].label.c_str());
-    ImGui::Dummy({width, line});
-  }
-  ImGui::EndGroup();
-  ui.mark(name);
 }
 
 }  // namespace understudy::ui

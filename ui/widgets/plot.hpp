@@ -43,14 +43,4 @@ struct HistogramOptions {
 /// How often values occur; NaN ones are left out.
 void histogram(Ui& ui, const std::string& name, const Values& values, const HistogramOptions& options = {});
 
-/// A bar of viridis with the numbers at its ends and between.
-void viridis_legend(Ui& ui, const std::string& name, float low, float high, const std::string& unit);
-
-struct Category {
-  std::string label;
-  ImVec4 color;
-};
-/// Coloured squares with words, as many beside each other as fit.
-void category_legend(Ui& ui, const std::string& name, const std::vector<Category>& categories);
-
 }  // namespace understudy::ui

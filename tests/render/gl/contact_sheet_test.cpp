@@ -104,13 +104,5 @@ TEST(ContactSheet, RefusesNothingAndNoRoom) {
   EXPECT_THROW(contact_sheet(moments(6, false), red(60)), Error);
 }
 
-TEST(LowestFloor, IsUnderTheFeetAndNotUnderAStray) {
-  Mesh scan = make_pear();
-  scan.vertices.col(1).array() += 0.3f;
-  scan.vertices(7, 1) = -5;
-  EXPECT_NEAR(lowest_floor({scan}), 0.3f, 0.02f);
-  EXPECT_EQ(lowest_floor({}), 0);
-}
-
 }  // namespace
 }  // namespace understudy::render

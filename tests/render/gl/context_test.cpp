@@ -120,18 +120,6 @@ TEST(Renderer, DrawsTheSameWhateverItDrewBefore) {
             fresh.render_image(scene, view_of(scene), {64, 64}).pixels);
 }
 
-TEST(Renderer, TakesOtherOptionsOnTheWay) {
-  const auto context = make_offscreen_context({ContextKind::Any, gl::DebugMode::Fatal});
-  const Scene scene = pear_and_skeleton();
-  const RendererOptions quick{1, Quality::Interactive}, fine{4, Quality::Best};
-  Renderer changed(quick), always(fine);
-  const Image first = changed.render_image(scene, view_of(scene), {64, 64});
-  changed.set_options(fine);
-  const Image second = changed.render_image(scene, view_of(scene), {64, 64});
-  EXPECT_EQ(second.pixels, always.render_image(scene, view_of(scene), {64, 64}).pixels);
-  EXPECT_NE(first.pixels, second.pixels);
-}
-
 TEST(Program, NamesAUniformThatIsNotThere) {
   const auto context = make_offscreen_context();
   const gl::Program program("plain", "void main() { gl_Position = vec4(0.0); }",

@@ -89,8 +89,7 @@ TEST_P(Gallery, DrawsEveryIconAndPlot) {
     EXPECT_GT(drawn(image, mark.rect), mark.enabled ? 0.02 : 0.0) << mark.name << " is empty";
   }
   EXPECT_GT(icons, 36);
-  for (const char* name :
-       {"gallery.mpjpe", "gallery.acc", "gallery.latency", "gallery.scale", "gallery.track"})
+  for (const char* name : {"gallery.mpjpe", "gallery.acc", "gallery.latency", "gallery.track"})
     EXPECT_GT(drawn(image, gui.find(name)->rect), 0.01) << name;
 }
 

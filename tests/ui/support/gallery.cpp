@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "render/colors.hpp"
 #include "ui/widgets/controls.hpp"
 #include "ui/widgets/lists.hpp"
 #include "ui/widgets/plot.hpp"
@@ -49,7 +48,7 @@ void draw_controls(Ui& ui, GalleryState& state) {
     dropdown(ui, "gallery.method", {"Full method", "Without offsets", "Skeleton only"}, state.method);
     row(ui, "Smoothing");
     NumberOptions smoothing;
-    smoothing.min = 0, smoothing.max = 1, smoothing.resettable = true, smoothing.initial = 0.2f;
+    smoothing.min = 0, smoothing.max = 1;
     number(ui, "gallery.smoothing", state.smoothing, smoothing);
     row(ui, "Brush radius");
     NumberOptions radius;
@@ -97,15 +96,6 @@ void draw_plots(Ui& ui, GalleryState& state) {
   HistogramOptions latency;
   latency.unit = "ms", latency.marks = {{"p50", 31.f}, {"p95", 40.f}};
   histogram(ui, "gallery.latency", full, latency);
-  viridis_legend(ui, "gallery.scale", 0, 42.5f, "mm");
-  std::vector<Category> joints;
-  const char* names[] = {"Pelvis",     "Left hip", "Right hip", "Spine",     "Left knee",
-                         "Right knee", "Neck",     "Head",      "Left wrist"};
-  for (size_t j = 0; j < 9; ++j) {
-    const auto& c = render::kCategories[j + 2];
-    joints.push_back({names[j], {c.x(), c.y(), c.z(), 1}});
-  }
-  category_legend(ui, "gallery.joints", joints);
 }
 
 void draw_lists(Ui& ui) {
