@@ -32,7 +32,7 @@ struct Running {
   std::optional<PreviewMoments> moments, skeletons;
   std::optional<Evaluator> evaluator;
   Latency latency;
-  log::Repeated repeats;  // of the last pose
+  log::Tally repeats;  // of the last pose
 };
 
 /// Moments and columns of a sheet that shows the extraction alone.

@@ -43,7 +43,7 @@ Measured measured(const MeasureOptions& options) {
   Retargeter retargeter(nn::load_networks(options.networks, seeing));
   RetargetedSource retargeted(*source, retargeter, options.source.path);
   Measured result(source->fps(), options.every);
-  log::Repeated problems;
+  log::Tally problems;
   while (const auto frame = retargeted.next()) {
     check_interrupt("after " + std::to_string(frame->index) + " frames");
     const PerformedFrame& seen = frame->result;

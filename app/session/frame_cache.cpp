@@ -257,7 +257,7 @@ struct FrameCache::Impl {
   int64_t source_version = 0, reader_version = 0;
   std::map<int, std::pair<int64_t, std::shared_ptr<const Deformer>>> takes;  // as last asked for
   ScanReader reader;
-  Worker worker{"making pictures", [this] { return next(); }};
+  Worker worker{"making pictures", [this] { return next(); }, Worker::Priority::AsDrawing};  // looked at
 
   explicit Impl(Open open) : reader(std::move(open)) {}
 

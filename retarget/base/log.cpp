@@ -55,11 +55,11 @@ void warn_once(const std::string& message) {
   warn(message);
 }
 
-void Repeated::warn(const std::string& message) {
+void Tally::warn(const std::string& message) {
   if (++count_ <= kToldOfAKind) log::warn(message);
 }
 
-void Repeated::finish() {
+void Tally::finish() {
   if (count_ > kToldOfAKind) log::warn("and " + grouped(count_ - kToldOfAKind) + " more of these");
   count_ = 0;
 }

@@ -18,7 +18,7 @@ void warn(const std::string& message);
 void warn_once(const std::string& message);
 
 /// Warnings of one kind, of which there may be one a frame: ten are told, the others are summed up.
-class Repeated {
+class Tally {
  public:
   void warn(const std::string& message);
   /// "and 99,990 more of these"; nothing where all were told.

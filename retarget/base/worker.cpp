@@ -17,10 +17,10 @@ void yield_to_drawing() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);  // a thread of its own, on Linux
 }
 
-Worker::Worker(std::string name, std::function<Task()> next)
+Worker::Worker(std::string name, std::function<Task()> next, Priority priority)
     : name_(std::move(name)), next_(std::move(next)) {
   try {
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::thread([this, priority] { run(priority); });
   } catch (const std::system_error&) {
     throw Error(name_ + ": the system allows no further thread");
   }
@@ -35,8 +35,8 @@ Worker::~Worker() {
   thread_.join();
 }
 
-void Worker::run() {
-  yield_to_drawing();
+void Worker::run(Priority priority) {
+  if (priority == Priority::YieldsToDrawing) yield_to_drawing();
   auto held = lock();
   while (!stop_) {
     Task task;

@@ -18,9 +18,10 @@ void yield_to_drawing();
 class Worker {
  public:
   using Task = std::function<void()>;  ///< runs without the mutex
+  enum class Priority { YieldsToDrawing, AsDrawing };
   /// Called with the mutex held; an empty task: nothing is to be done. Throws Error, naming `name`, when the
   /// system allows no further thread.
-  Worker(std::string name, std::function<Task()> next);
+  Worker(std::string name, std::function<Task()> next, Priority priority = Priority::YieldsToDrawing);
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -35,7 +36,7 @@ class Worker {
   void wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& holds) const;
 
  private:
-  void run();
+  void run(Priority priority);
 
   std::string name_;
   std::function<Task()> next_;

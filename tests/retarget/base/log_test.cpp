@@ -7,13 +7,13 @@
 namespace understudy {
 namespace {
 
-TEST(LogRepeated, TellsTenAndSumsUpTheOthers) {
+TEST(LogTally, TellsTenAndSumsUpTheOthers) {
   std::vector<std::string> told;
   const auto before = log::set_sink([&](log::Level, const std::string& message) { told.push_back(message); });
-  log::Repeated series;
+  log::Tally series;
   for (int i = 0; i < 1010; ++i) series.warn("frame " + std::to_string(i));
   series.finish();
-  log::Repeated few;
+  log::Tally few;
   few.warn("alone");
   few.finish();
   log::set_sink(before);
