@@ -12,8 +12,8 @@ namespace understudy::nn {
 /// Reads the weights; without `offsets` it is linear blend skinning alone. Throws Error when the file is
 /// missing, damaged or of another version. Its bind() throws Error when a coordinate is not finite or the
 /// networks give NaN; deform() before bind() throws. Deforming costs no network: one thread, some
-/// milliseconds. Of targets with more than `most_evaluated` vertices one a centimetre is evaluated, more where
-/// that is too coarse; the others are interpolated.
+/// milliseconds. Of targets with more than `most_evaluated` vertices one a centimetre is evaluated, more
+/// where that is too coarse; the others are interpolated.
 std::unique_ptr<Deformer> load_network_deformer(const std::string& path, bool offsets,
                                                 int most_evaluated = 40000);
 
