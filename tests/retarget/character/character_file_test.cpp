@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -228,6 +229,60 @@ TEST(CharacterFile, BytesNamedAgainAndAgainAreRefused) {
   json pictures = broken_base();
   for (int i = 0; i < 300; ++i) pictures["images"].push_back(pictures["images"][0]);
   EXPECT_EQ(complaint_about(pictures), "");  // small things may be named often
+}
+
+TEST(CharacterFile, ListsThatWouldTakeManyTimesTheFileAreRefused) {
+  const std::string path = "many.gltf";
+  for (const char* name : {"nodes", "meshes", "skins", "accessors", "animations", "images"}) {
+    std::string text = std::string(R"({"asset":{"version":"2.0"},")") + name + "\":[{}";
+    for (int i = 0; i < 5000; ++i) text += ",{}";
+    const std::string complaint = error_of([&] { parse_gltf_character(text + "]}", path); });
+    EXPECT_TRUE(contains(complaint, "lists 5001 things, more than a file of its size may")) << complaint;
+  }
+}
+
+TEST(CharacterFile, MaterialsTexturesAndSamplersStayAsTheyCame) {
+  json gltf = broken_base();
+  gltf["materials"][0]["extras"] = {
+      {"nothing", nullptr}, {"large", 12345678901234}, {"empty", json::array()}};
+  gltf["materials"][0]["alphaCutoff"] = 0.5;
+  gltf["samplers"][0]["name"] = "tiles";
+  const TempFolder folder;
+  for (const char* name : {"b.glb", "b.gltf"}) {
+    const Character read = read_character(folder.write("a.gltf", gltf.dump()));
+    const Character again = written_and_read(read, name);
+    EXPECT_EQ(json::parse(again.materials[0]), gltf["materials"][0]);
+    EXPECT_EQ(json::parse(again.samplers[0]), gltf["samplers"][0]);
+    EXPECT_EQ(again.textures, read.textures);
+  }
+}
+
+TEST(CharacterFile, BuffersMayBeLargerThanToldAndOfAnyName) {
+  json gltf = broken_base();
+  std::string uri = gltf["buffers"][0]["uri"];
+  std::string lines = uri;
+  for (size_t i = 40; i < lines.size(); i += 77) lines.insert(i, "\n");
+  gltf["buffers"][0]["uri"] = lines + "AAAA";
+  EXPECT_EQ(complaint_about(gltf), "");
+  const TempFolder folder;
+  const Character made = make_character();
+  write_gltf_character(folder.path("a.glb"), made);
+  const std::string glb = read_file(folder.path("a.glb"));
+  uint32_t length = 0;
+  std::memcpy(&length, glb.data() + 12, 4);
+  folder.write("a+b c.bin", glb.substr(28 + length) + "more");
+  gltf["buffers"][0]["uri"] = "a+b%20c.bin";
+  const Character read = read_character(folder.write("a.gltf", gltf.dump()));
+  EXPECT_EQ(read.parts[0].vertices, made.parts[0].vertices);
+  gltf["buffers"][0]["byteLength"] = glb.size();
+  folder.write("a.gltf", gltf.dump());
+  EXPECT_TRUE(contains(error_of([&] { read_character(folder.path("a.gltf")); }), "bytes, it should hold"));
+}
+
+TEST(CharacterFile, NamesThatAreNoUtf8AreWrittenAllTheSame) {
+  Character made = make_character();
+  made.nodes[0].name = "B\xe9n\xe9";
+  EXPECT_EQ(written_and_read(made, "a.glb").nodes[0].name, "B\xef\xbf\xbdn\xef\xbf\xbd");
 }
 
 TEST(CharacterFile, UrisOutsideOfTheFolderAreRefused) {
