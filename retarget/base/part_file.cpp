@@ -16,7 +16,7 @@ namespace understudy {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kFull = ": writing failed, the disk may be full";
+constexpr const char* kFull = ": cannot be written, the disk may be full";
 
 /// Without the slash at its end.
 std::string folder_name(const std::string& path) {

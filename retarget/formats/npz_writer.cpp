@@ -100,7 +100,7 @@ void NpzWriter::finish() {
     array.file->rewrite(0, frames_header(array.frames, array.frame_shape));
     add_entry(archive, array.name, zip_source_file(archive.zip, array.file->part().c_str(), 0, -1), path_);
   }
-  US_CHECK(zip_close(archive.zip) == 0, path_, ": writing failed (", zip_strerror(archive.zip), ")");
+  US_CHECK(zip_close(archive.zip) == 0, path_, ": cannot be written (", zip_strerror(archive.zip), ")");
   archive.zip = nullptr;
   arrays_.clear();
   archive.file.finish();
