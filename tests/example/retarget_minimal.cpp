@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     while (auto scan = scans.next()) {
       if (scan->usable && !import) import = decide_import(scan->mesh, {});
       if (scan->usable) import->apply(scan->mesh);
-      const RetargetedFrame frame = retargeter.push(scan->mesh, /*dt=*/1.0f / 30);
+      const PerformedFrame frame = retargeter.push(scan->mesh, /*dt=*/1.0f / 30);
       const auto head = frame.joints.row(Head);
       std::printf("frame %lld: %lld vertices, head at %.3f %.3f %.3f\n", static_cast<long long>(scan->number),
                   static_cast<long long>(frame.vertices.rows()), head.x(), head.y(), head.z());

@@ -187,8 +187,7 @@ TEST(SeriesTest, AreWrittenAFrameARow) {
   tests::ScratchFolder scratch;
   const std::string path = scratch.path("a b.csv");
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  write_csv(path, {{"jerk", "Jerk", "m/s3", true, {0.1f, nan, 1e-8f}}, {"odd, \"one\"", "", "", true, {2}}},
-            30);
+  write_csv(path, {{"jerk", "Jerk", "m/s3", {0.1f, nan, 1e-8f}}, {"odd, \"one\"", "", "", {2}}}, 30);
   EXPECT_EQ(tests::read_bytes(path),
             "frame,seconds,jerk,\"odd, \"\"one\"\"\"\n"
             "0,0,0.1,2\n"
