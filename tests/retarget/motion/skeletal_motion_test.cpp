@@ -276,7 +276,7 @@ TEST(SkeletalMotion, RefusesAnimationsOfMoreFramesThanADayHas) {
   }
   MadeBvh slow;
   slow.fps = 1e-7;
-  EXPECT_TRUE(contains(error_of([&] { motion_of(slow, truth); }), "only 5184000 frames are read"));
+  EXPECT_TRUE(contains(error_of([&] { motion_of(slow, truth); }), "a frame time of"));
   SkeletalMotionOptions fast;
   fast.fps = 1e9;
   EXPECT_TRUE(contains(error_of([&] { motion_of({}, truth, fast); }), "only 5184000 frames are read"));
