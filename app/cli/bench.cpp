@@ -18,7 +18,7 @@ namespace {
 struct BenchOptions {
   std::string source, target;
   int64_t frames = 300;
-  nn::NetworkOptions networks;
+  MethodOptions how;
 };
 
 /// The same source again and again, up to a number of frames: one long sequence.
@@ -85,11 +85,11 @@ int bench(const BenchOptions& options) {
   from.path = options.source.empty() ? samples_folder() + "/scan" : options.source;
   TargetOptions onto;
   onto.path = options.target.empty() ? samples_folder() + "/target_adult.glb" : options.target;
-  Networks networks = nn::load_networks(options.networks);
+  Networks networks = nn::load_networks(network_options(options.how));
   const auto character = open_target(onto, networks);
   Repeated source(from, options.frames);
   networks = networks_for(std::move(networks), *character, on_their_rig(onto, *character));
-  Retargeter retargeter(std::move(networks));
+  Retargeter retargeter(std::move(networks), retarget_options(options.how.method));
   retargeter.set_target(character->target);
   RetargetedSource retargeted(source, retargeter, from.path);
   Latency latency;
@@ -125,7 +125,7 @@ Action declare_bench(CLI::App& command) {
   command.add_option("--target", options->target, "a body in T-pose (default: a bundled one)");
   command.add_option("--frames", options->frames, "how many; 10000 shows whether memory grows")
       ->check(CLI::Range(2, 10000000));
-  add_network_options(command, options->networks);
+  add_method_options(command, options->how);
   const auto ui_options = std::make_shared<UiBenchOptions>();
   CLI::App* ui = command.add_subcommand("ui", "the studio: frames a second, delays, start-up, memory");
   ui->add_option("--context", ui_options->context, "how to draw: any, egl, osmesa")

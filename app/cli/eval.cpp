@@ -55,11 +55,6 @@ Action declare_eval(CLI::App& command) {
   command.add_option("--filter", options->filter, "only cases whose name holds this");
   command.add_option("--limit", options->limit, "at most so many cases, evenly spread")
       ->check(CLI::NonNegativeNumber);
-  command.add_flag("!--no-foot-lock", options->retarget.lock_feet, "standing feet may slide");
-  command.add_flag("!--no-hand-contacts", options->retarget.keep_contacts,
-                   "hands that touch the source's body need not touch the target's");
-  command.add_flag("!--no-near", options->networks.near, "limbs and head are not looked at again from near");
-  command.add_flag("!--no-offsets", options->networks.offsets, "no pose-corrective offsets");
   command
       .add_option("--restart-every", options->restart_every,
                   "forget the past after so many frames: contexts of this length")
@@ -77,7 +72,7 @@ Action declare_eval(CLI::App& command) {
   command.add_option("--worst", options->worst, "how many of the worst frames are told (default: 20)")
       ->check(CLI::Range(0, 10000));
   command.add_option("--pictures", files->pictures, "folder for pictures of the worst frames");
-  add_network_options(command, options->networks);
+  add_method_options(command, options->how);
   return [options, files] { return eval(*options, files->out, files->pictures); };
 }
 

@@ -74,7 +74,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
       options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
   US_CHECK(options.oracle.empty() || (oracle && !oracle->empty()), c.truth,
            ": --oracle skeleton wants source_joints");
-  Retargeter retargeter(std::move(networks), options.retarget);
+  Retargeter retargeter(std::move(networks), retarget_options(options.how.method));
   if (character) retargeter.set_target(character->target);
   RetargetedSource retargeted(*source, retargeter, c.source);
   for (size_t t = 0;; ++t) {
@@ -142,8 +142,9 @@ void evaluate_case(const Bench& bench, const std::string& folder, const Case& c,
   std::optional<Mesh> mesh;  // with the file's own vertices
   std::shared_ptr<const PreparedCharacter> target;
   const bool knows_poses = options.oracle == "pose", performed = !c.target.empty();
-  Networks networks = nn::load_networks(
-      options.networks, {!knows_poses, performed && !knows_poses, performed && !knows_poses, performed});
+  Networks networks =
+      nn::load_networks(network_options(options.how),
+                        {!knows_poses, performed && !knows_poses, performed && !knows_poses, performed});
   if (knows_poses) {
     mesh = read_mesh(c.target);
   } else if (performed) {
@@ -227,12 +228,12 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
 }
 
 Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
-  Json report = report_header(nn::weights_folder(options.networks));
-  report["engine"] = options.networks.engine;
+  Json report = report_header(nn::weights_folder(network_options(options.how)));
+  report["engine"] = options.how.method.engine;
   if (!options.oracle.empty()) report["oracle"] = options.oracle;
   if (!options.baseline.empty()) report["baseline"] = options.baseline;
-  if (!options.networks.offsets) report["offsets"] = false;
-  if (!options.networks.near) report["near"] = false;
+  if (!options.how.method.offsets) report["offsets"] = false;
+  if (!options.how.method.near) report["near"] = false;
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
   for (const CaseResult& result : evaluation.results) report["cases"].push_back(case_json(result));

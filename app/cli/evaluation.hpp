@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/options.hpp"
 #include "app/run/breakdown.hpp"
 #include "app/run/latency.hpp"
 #include "app/run/source.hpp"
-#include "retarget/networks/networks.hpp"
-#include "retarget/pipeline/retargeter.hpp"
 
 namespace understudy::app {
 
@@ -22,8 +21,7 @@ struct EvalOptions {
   std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
   std::string body;                ///< SMPL-format, of the baseline "fit"
   int worst = 20;                  ///< frames told as the worst
-  nn::NetworkOptions networks;
-  RetargetOptions retarget;
+  MethodOptions how;
 };
 
 struct CaseResult {

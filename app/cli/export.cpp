@@ -39,8 +39,7 @@ struct ExportOptions {
   SourceOptions source;          // what all sources share
   TargetOptions target;
   CharacterExportOptions file;
-  RetargetOptions retarget;
-  nn::NetworkOptions networks;
+  MethodOptions how;
   bool print_map = false;
   int64_t frames = 0;
 };
@@ -88,7 +87,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   US_CHECK(!options.target.path.empty(), "--target: a character that performs it is wanted");
   US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
            " holds one motion, these are ", options.sources.size());
-  Networks networks = nn::load_networks(options.networks);
+  Networks networks = nn::load_networks(network_options(options.how));
   const auto character = open_target(options.target, networks);
   const bool theirs = on_their_rig(options.target, *character);
   CharacterExportOptions file = options.file;
@@ -96,7 +95,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   check_export_options(options.out, format, file);
   US_CHECK(!theirs || file.influences == 4, options.target.path,
            ": its own skin stays as it is, --influences is for ours (--rig ours)");
-  RetargetOptions quick = options.retarget;
+  RetargetOptions quick = retarget_options(options.how.method);
   quick.vertices = false;
   Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
   retargeter.set_target(character->target);
@@ -133,7 +132,7 @@ Performance perform_document(const ExportOptions& options, const ExportFormat& f
   US_CHECK(options.not_of_documents.empty(), options.document, ": a document has its own source and target, ",
            options.not_of_documents, " is for others");
   StudioServices services;
-  services.networks = studio_services(options.networks.weights).networks;
+  services.networks = studio_services(options.how.weights).networks;
   Studio studio(std::move(services));
   studio.run("document.open", {options.document});
   const Session& session = studio.session();
@@ -204,7 +203,7 @@ void report_cost(const ExportOptions& options, const Performance& done, const Ex
     std::printf("%s %lld bytes, %lld frames\n", options.out.c_str(), static_cast<long long>(cost.bytes),
                 static_cast<long long>(cost.frames));
   if (options.report.empty()) return;
-  Json report = report_header(nn::weights_folder(options.networks));
+  Json report = report_header(nn::weights_folder(network_options(options.how)));
   report["target"] = done.target;
   report["rig"] = done.input.body.file.their_rig ? "theirs" : "ours";
   report["mapped"] = prepared.map.count();
@@ -297,9 +296,8 @@ Action declare_export(CLI::App& command) {
   command.add_option("--report", options->report, "what it costs, as JSON");
   add_source_options(command, options->source);
   add_target_options(command, options->target);
-  add_performance_options(command, options->retarget);
   add_file_options(command, *options);
-  add_network_options(command, options->networks);
+  add_method_options(command, options->how);
   return [options, &command] {
     options->not_of_documents = first_not_of_documents(command);
     return run_export(*options);

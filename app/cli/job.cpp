@@ -80,8 +80,8 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
 }
 
 Json report_of(const JobOptions& options, const Running& job) {
-  Json report = report_header(nn::weights_folder(options.networks));
-  report["engine"] = options.networks.engine;
+  Json report = report_header(nn::weights_folder(network_options(options.how)));
+  report["engine"] = options.how.method.engine;
   report["source"] = options.source.path;
   report["target"] = options.target.path;
   report["fps"] = job.source->fps();
@@ -95,12 +95,12 @@ Json report_of(const JobOptions& options, const Running& job) {
 
 Running start(const JobOptions& options) {
   Running job;
-  Networks networks = nn::load_networks(options.networks);
+  Networks networks = nn::load_networks(network_options(options.how));
   job.character = open_target(options.target, networks);
   networks = networks_for(std::move(networks), *job.character, on_their_rig(options.target, *job.character));
   job.source = open_source(options.source);
   log::info("inference threads: " + nn::runtime_report().threads_why);
-  job.retargeter = std::make_unique<Retargeter>(std::move(networks), options.retarget);
+  job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how.method));
   job.retargeter->set_target(job.character->target);
   job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source.path);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());

@@ -5,18 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/options.hpp"
 #include "app/run/retargeted_source.hpp"
-#include "app/run/target_file.hpp"
-#include "retarget/networks/networks.hpp"
-#include "retarget/pipeline/retargeter.hpp"
 
 namespace understudy::app {
 
 struct JobOptions {
   SourceOptions source;
   TargetOptions target;
-  nn::NetworkOptions networks;
-  RetargetOptions retarget;
+  MethodOptions how;
   std::string out;              ///< its suffix is the format's; empty: none
   std::string report;           ///< .json; empty: none
   std::string preview;          ///< .png; empty: none

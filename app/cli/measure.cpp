@@ -15,7 +15,7 @@ namespace {
 
 struct MeasureOptions {
   SourceOptions source;
-  nn::NetworkOptions networks;
+  MethodOptions how;
   std::string out;
   int every = 1;  ///< frames between looks at what is inside
 };
@@ -40,7 +40,8 @@ Measured measured(const MeasureOptions& options) {
   const auto source = open_source(options.source);
   NetworkParts seeing;
   seeing.extractor = true;
-  Retargeter retargeter(nn::load_networks(options.networks, seeing));
+  Retargeter retargeter(nn::load_networks(network_options(options.how), seeing),
+                        retarget_options(options.how.method));
   RetargetedSource retargeted(*source, retargeter, options.source.path);
   Measured result(source->fps(), options.every);
   log::Tally problems;
@@ -64,7 +65,7 @@ Measured measured(const MeasureOptions& options) {
 int measure(const MeasureOptions& options) {
   check_writable(options.out);
   const Measured result = measured(options);
-  Json report = report_header(nn::weights_folder(options.networks));
+  Json report = report_header(nn::weights_folder(network_options(options.how)));
   report["source"] = options.source.path;
   report["frames"] = result.frames;
   report["flagged"] = result.flagged;
@@ -85,7 +86,7 @@ Action declare_measure(CLI::App& command) {
   command.add_option("--every", options->every, "look at what is inside only every so many frames")
       ->check(CLI::Range(1, 1000000));
   add_source_options(command, options->source);
-  add_network_options(command, options->networks);
+  add_method_options(command, options->how);
   return [options] { return measure(*options); };
 }
 

@@ -1,10 +1,10 @@
 // Options that several subcommands take.
 #pragma once
 
+#include "app/run/method.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/networks/networks.hpp"
-#include "retarget/pipeline/retargeter.hpp"
 
 namespace CLI {
 class App;
@@ -18,10 +18,13 @@ void add_source_options(CLI::App& command, SourceOptions& source);
 /// All that may be said of a target but --target itself.
 void add_target_options(CLI::App& command, TargetOptions& target);
 
-/// How the motion is performed: --root, --no-foot-lock.
-void add_performance_options(CLI::App& command, RetargetOptions& performance);
-
-/// --engine, --extractor, --weights, --engine-weights, --extractor-weights.
-void add_network_options(CLI::App& command, nn::NetworkOptions& networks);
+/// A method, and where its weights are.
+struct MethodOptions {
+  Method method;
+  std::string weights;                      ///< folder; empty: beside the program
+  std::string engine_file, extractor_file;  ///< in place of the folder's; empty: the folder's
+};
+void add_method_options(CLI::App& command, MethodOptions& how);
+nn::NetworkOptions network_options(const MethodOptions& how);
 
 }  // namespace understudy::app

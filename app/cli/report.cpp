@@ -46,13 +46,13 @@ Json identity(const ReportRow& row) {
           {"name", row.name},
           {"cases", e.cases},
           {"made", made(e.cases)},
-          {"engine", e.networks.engine},
-          {"extractor", e.networks.extractor},
-          {"weights", report_header(nn::weights_folder(e.networks))["weights"]},
-          {"files", {marked(e.networks.engine_file), marked(e.networks.extractor_file)}},
-          {"near", e.networks.near},
-          {"offsets", e.networks.offsets},
-          {"foot_lock", e.retarget.lock_feet},
+          {"engine", e.how.method.engine},
+          {"extractor", e.how.method.extractor},
+          {"weights", report_header(nn::weights_folder(network_options(e.how)))["weights"]},
+          {"files", {marked(e.how.engine_file), marked(e.how.extractor_file)}},
+          {"near", e.how.method.near},
+          {"offsets", e.how.method.offsets},
+          {"foot_lock", e.how.method.lock_feet},
           {"oracle", e.oracle},
           {"baseline", e.baseline},
           {"body", e.baseline == "fit" ? marked(e.body) : ""},
@@ -111,7 +111,7 @@ ReportPlan chosen_rows(const ReportOptions& options) {
     if (!wanted) continue;
     row.eval.cases = (fs::path(options.cases) / row.suite).string();
     row.eval.body = options.body;
-    if (row.eval.networks.weights.empty()) row.eval.networks.weights = options.weights;
+    if (row.eval.how.weights.empty()) row.eval.how.weights = options.weights;
     if (options.limit > 0)
       row.eval.limit = row.eval.limit > 0 ? std::min(row.eval.limit, options.limit) : options.limit;
     chosen.push_back(std::move(row));

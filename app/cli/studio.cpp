@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/options.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
 #include "app/run/samples.hpp"
@@ -11,19 +12,13 @@
 #include "app/studio/recorder.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/networks/networks.hpp"
 
 namespace understudy::app {
 
 StudioServices studio_services(const std::string& weights) {
   StudioServices services;
   services.networks = [weights](const Method& method, const NetworkParts& parts) {
-    nn::NetworkOptions options;
-    options.weights = weights;
-    options.engine = method.engine;
-    options.extractor = method.extractor;
-    options.offsets = method.offsets;
-    return nn::load_networks(options, parts);
+    return nn::load_networks(network_options({method, weights, {}, {}}), parts);
   };
   services.weights = [weights] {
     nn::NetworkOptions options;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/method.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/base/fields.hpp"
@@ -13,30 +14,8 @@
 #include "retarget/editing/scan_edits.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
 #include "retarget/editing/target_edits.hpp"
-#include "retarget/pipeline/retargeter.hpp"
 
 namespace understudy::app {
-
-/// How a take is made: the networks, and the switches of an ablation.
-struct Method {
-  std::string engine = "copy";      ///< motion transfer: "copy" or "paper"
-  std::string extractor = "dense";  ///< skeleton extraction: "dense" or "paper"
-  bool offsets = true;              ///< pose-corrective offsets
-  bool repair_swaps = true, smooth_joints = true, fix_lengths = true;  ///< of JointFilterOptions
-  bool lock_feet = true;                                               ///< feet that stand do not slide
-  RootMode root = RootMode::Scaled;
-};
-template <class V, class S>
-FieldsOf<S, Method> fields(V& visit, S& method) {
-  visit("engine", method.engine);
-  visit("extractor", method.extractor);
-  visit("offsets", method.offsets);
-  visit("repair_swaps", method.repair_swaps);
-  visit("smooth_joints", method.smooth_joints);
-  visit("fix_lengths", method.fix_lengths);
-  visit("lock_feet", method.lock_feet);
-  visit("root", method.root, kRootNames);
-}
 
 /// What the user changed of a target.
 struct TargetEdits {

@@ -17,14 +17,10 @@ namespace {
 
 constexpr int kReplayChunk = 200;  // frames made anew between two looks at the plan
 
-RetargetOptions retarget_options(const Method& method) {
-  RetargetOptions options;
-  options.filter.repair_swaps = method.repair_swaps;
-  options.filter.smooth = method.smooth_joints;
-  options.filter.fix_lengths = method.fix_lengths;
-  options.root.mode = method.root;
-  options.lock_feet = method.lock_feet;
-  options.vertices = false;  // made from the poses when they are looked at
+/// Vertices are made from the poses when they are looked at.
+RetargetOptions poses_only(const Method& method) {
+  RetargetOptions options = retarget_options(method);
+  options.vertices = false;
   return options;
 }
 
@@ -70,7 +66,7 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
     const Take& take = document.takes[k];
     plan.takes.push_back({take_ids[k], take.target, take.method, take.target_edits.joints});
   }
-  if (!plan.takes.empty()) plan.extractor = plan.takes[0].method.extractor;
+  if (!plan.takes.empty()) plan.shown = plan.takes[0].method;
   return plan;
 }
 
@@ -114,10 +110,11 @@ struct Engine::Impl {
   bool of_take(TakeWork& take, Work work);
   void load(TakeWork& take);
   void prepare(TakeWork& take);
-  const std::shared_ptr<SkeletonExtractor>& extractor_of(const std::string& name);
-  std::vector<std::string> wanted_streams() const;
+  Stream& stream_of(const Method& method) { return streams[extraction_key(method)]; }
+  const std::shared_ptr<SkeletonExtractor>& extractor_of(const Method& method);
+  std::vector<Method> wanted_extractions() const;
   bool read_frame();
-  void observe(const SourceFrame& frame, const std::string& extractor, double read_ms);
+  void observe(const SourceFrame& frame, const Method& method, double read_ms);
   float interval() const;
   Observation edited(const Seen& seen, size_t frame) const;
   bool tell_source();
@@ -193,7 +190,9 @@ void Engine::Impl::adopt(Plan wanted) {
   const std::string skeleton_wanted = key_of(wanted.skeleton_edits);
   const auto first = [](const Plan& of) { return of.takes.empty() ? 0 : of.takes[0].id; };
   const bool another_take = first(plan) != 0 && first(plan) != first(wanted);
-  if (skeleton_wanted != skeleton_is || wanted.extractor != plan.extractor || another_take) told = 0;
+  if (skeleton_wanted != skeleton_is || extraction_key(wanted.shown) != extraction_key(plan.shown) ||
+      another_take)
+    told = 0;
   std::vector<TakeWork> kept;
   for (const Plan::TakePlan& want : wanted.takes) {
     TakeWork take;
@@ -251,7 +250,7 @@ bool Engine::Impl::step() {
     if (!take.performer && !take.failed) return of_take(take, [&] { prepare(take); });
   if (tell_source()) return true;
   for (TakeWork& take : takes)
-    if (take.performer && take.done < streams[take.plan.method.extractor].frames.size())
+    if (take.performer && take.done < stream_of(take.plan.method).frames.size())
       return of_take(take, [&] { perform(take); });
   return read_frame();
 }
@@ -302,51 +301,49 @@ void Engine::Impl::prepare(TakeWork& take) {
   const bool looked_at = !take.character && wants_extractor(take.plan.target, *take.standing);
   parts.rest_extractor = looked_at;
   Networks networks = networks_of(method, parts);
-  if (looked_at) networks.extractor = extractor_of(method.extractor);
+  if (looked_at) networks.extractor = extractor_of(method);
   if (!take.character)
     take.character = bind_target(std::exchange(take.standing, nullptr), take.plan.target, networks);
   networks =
       networks_for(std::move(networks), *take.character, on_their_rig(take.plan.target, *take.character));
   Target target = take.character->target;
   target.joints = understudy::apply(take.plan.joints, target.joints);
-  take.performer.emplace(target, networks.transfer, networks.deformer, retarget_options(method));
+  take.performer.emplace(target, networks.transfer, networks.deformer, poses_only(method));
   take.done = 0;
   tell(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)),
                  networks.deformer, binding_of(networks.deformer)});
 }
 
-const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const std::string& name) {
-  auto& extractor = streams[name].extractor;
+const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const Method& method) {
+  auto& extractor = stream_of(method).extractor;
   if (!extractor) {
-    Method method;
-    method.extractor = name;
     NetworkParts parts;
     parts.extractor = true;
     extractor = networks_of(method, parts).extractor;
-    US_CHECK(extractor, "there is no skeleton extractor '", name, "'");
+    US_CHECK(extractor, "there is no skeleton extractor '", method.extractor, "'");
   }
   return extractor;
 }
 
-/// The extractors that the view or a take needs.
-std::vector<std::string> Engine::Impl::wanted_streams() const {
-  std::vector<std::string> wanted{plan.extractor};
-  for (const TakeWork& take : takes) {
-    const std::string& name = take.plan.method.extractor;
-    if (!take.failed && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) wanted.push_back(name);
-  }
-  return wanted;
+/// Methods with all the extractors that the view or a take wants.
+std::vector<Method> Engine::Impl::wanted_extractions() const {
+  std::map<std::string, Method> wanted{{extraction_key(plan.shown), plan.shown}};
+  for (const TakeWork& take : takes)
+    if (!take.failed) wanted.emplace(extraction_key(take.plan.method), take.plan.method);
+  std::vector<Method> methods;
+  for (const auto& [key, method] : wanted) methods.push_back(method);
+  return methods;
 }
 
 /// The next frame, seen by every stream that is wanted. One that came later catches up first.
 bool Engine::Impl::read_frame() {
   if (!source || plan.source.path.empty()) return false;
   try {
-    const std::vector<std::string> wanted = wanted_streams();
-    size_t behind = streams[plan.extractor].frames.size();
+    const std::vector<Method> wanted = wanted_extractions();
+    size_t behind = stream_of(plan.shown).frames.size();
     bool even = true;
-    for (const std::string& name : wanted) {
-      const size_t seen = streams[name].frames.size();
+    for (const Method& method : wanted) {
+      const size_t seen = stream_of(method).frames.size();
       even = even && seen == behind;
       behind = std::min(behind, seen);
     }
@@ -361,8 +358,8 @@ bool Engine::Impl::read_frame() {
     has_faces = has_faces || !frame->mesh.is_cloud();
     if (frame->usable) frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
     const double read_ms = ms_since(began);
-    for (const std::string& name : wanted)
-      if (streams[name].frames.size() == behind) observe(*frame, name, read_ms);
+    for (const Method& method : wanted)
+      if (stream_of(method).frames.size() == behind) observe(*frame, method, read_ms);
     return true;
   } catch (const std::exception& error) {
     source.reset();
@@ -372,14 +369,15 @@ bool Engine::Impl::read_frame() {
 }
 
 /// Takes whose extractor cannot be had end here; where it is the view's, too, the source does.
-void Engine::Impl::observe(const SourceFrame& frame, const std::string& extractor, double read_ms) {
-  Stream& stream = streams[extractor];
+void Engine::Impl::observe(const SourceFrame& frame, const Method& method, double read_ms) {
+  Stream& stream = stream_of(method);
   try {
-    if (!stream.observer) stream.observer.emplace(frame.skeleton ? nullptr : extractor_of(extractor));
+    if (!stream.observer) stream.observer.emplace(frame.skeleton ? nullptr : extractor_of(method));
   } catch (const std::exception&) {
+    const std::string key = extraction_key(method);
     for (TakeWork& take : takes)
-      if (take.plan.method.extractor == extractor) of_take(take, [] { throw; });
-    if (extractor == plan.extractor) throw;
+      if (extraction_key(take.plan.method) == key) of_take(take, [] { throw; });
+    if (extraction_key(plan.shown) == key) throw;
     return;
   }
   stream.frames.push_back({observed(*stream.observer, frame, interval()), read_ms});
@@ -403,10 +401,10 @@ Observation Engine::Impl::edited(const Seen& seen, size_t frame) const {
 /// Reports the frames seen since the last call. The first take repairs and smooths them and reports the result;
 /// without a take this does.
 bool Engine::Impl::tell_source() {
-  const std::vector<Seen>& frames = streams[plan.extractor].frames;
+  const std::vector<Seen>& frames = stream_of(plan.shown).frames;
   const bool no_take = takes.empty() || takes[0].failed;
   if (no_take && !alone) {
-    alone.emplace(retarget_options(takes.empty() ? Method{} : takes[0].plan.method));
+    alone.emplace(poses_only(takes.empty() ? Method{} : takes[0].plan.method));
     told = 0;
   }
   if (!no_take) alone.reset();
@@ -434,7 +432,7 @@ bool Engine::Impl::tell_source() {
 }
 
 void Engine::Impl::perform(TakeWork& take) {
-  const std::vector<Seen>& frames = streams[take.plan.method.extractor].frames;
+  const std::vector<Seen>& frames = stream_of(take.plan.method).frames;
   TakeFrames event;
   event.id = take.plan.id;
   event.first = static_cast<int>(take.done);

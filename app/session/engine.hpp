@@ -22,7 +22,7 @@ struct Plan {
     std::vector<JointMove> joints;
   };
   SourceOptions source;
-  std::string extractor = "dense";  ///< of the skeletons shown
+  Method shown;  ///< its extractor is of the skeletons shown
   ScanEdits scan_edits;
   std::vector<SkeletonEdit> skeleton_edits;
   std::vector<TakePlan> takes;
@@ -38,7 +38,7 @@ FieldsOf<S, Plan::TakePlan> fields(V& visit, S& take) {
 template <class V, class S>
 FieldsOf<S, Plan> fields(V& visit, S& plan) {
   visit("source", plan.source);
-  visit("extractor", plan.extractor);
+  visit("shown", plan.shown);
   visit("scan_edits", plan.scan_edits);
   visit("skeleton_edits", plan.skeleton_edits);
   visit("takes", plan.takes);

@@ -123,8 +123,9 @@ void add_rig(Commands& commands) {
 /// One setting of a method, "engine=paper".
 void set_method(Method& method, const std::string& key, const std::string& value) {
   const auto on = [&] { return on_off({value}, 0); };
-  switch (choice({key}, 0, "setting",
-                 {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths", "feet"})) {
+  switch (choice(
+      {key}, 0, "setting",
+      {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths", "feet", "contacts", "near"})) {
     case 0:
       choice({value}, 0, "engine", names_of(engines()));
       method.engine = value;
@@ -148,8 +149,14 @@ void set_method(Method& method, const std::string& key, const std::string& value
     case 6:
       method.fix_lengths = on();
       break;
-    default:
+    case 7:
       method.lock_feet = on();
+      break;
+    case 8:
+      method.keep_contacts = on();
+      break;
+    default:
+      method.near = on();
   }
 }
 
@@ -164,9 +171,9 @@ void add_methods(Commands& commands) {
   setting("extractor", "Skeleton extraction", "TAKE " + names_of(extractors(), "|"));
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
   setting("root", "Path", "TAKE scaled|original|in-place");
-  commands.add({"method.filter", "Filter", "TAKE swaps|smooth|lengths|feet on|off", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 1, "filter", {"swaps", "smooth", "lengths", "feet"});
+  commands.add({"method.filter", "Filter", "TAKE swaps|smooth|lengths|feet|contacts|near on|off", "", true,
+                false, [](Studio& s, const Arguments& a) {
+                  choice(a, 1, "filter", {"swaps", "smooth", "lengths", "feet", "contacts", "near"});
                   set_method(take_argument(s.session(), a, 0).method, a[1], word(a, 2, "switch"));
                 }});
   commands.add(

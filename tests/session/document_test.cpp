@@ -97,6 +97,8 @@ const Changes& document_changes() {
       TAKE(method.smooth_joints = true),
       TAKE(method.fix_lengths = true),
       TAKE(method.lock_feet = true),
+      TAKE(method.keep_contacts = true),
+      TAKE(method.near = true),
       TAKE(method.root = RootMode::Original),
       TAKE(target_edits.joints.pop_back()),
       TAKE(target_edits.joints[0].joint = Head),
@@ -162,7 +164,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [name, target, method, target_edits, pose_edits] = Take();
   [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
                                 target_bones] = TargetOptions();
-  [[maybe_unused]] const auto& [engine, extractor, offsets, swaps, smooth, lengths, feet, root] = Method();
+  [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,
+                                root] = Method();
   [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();

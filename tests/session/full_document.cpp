@@ -44,7 +44,7 @@ Take take(const std::string& folder) {
   take.target = {
       folder + "/targets/a b ü.obj",           {0.5f, -1.25f}, {"cm", "-z", 12.5f, 0.01f}, false, "ours",
       {{"left_wrist", "Hand.L"}, {"head", ""}}};
-  take.method = {"paper", "paper", false, false, false, false, false, RootMode::InPlace};
+  take.method = {"paper", "paper", false, false, false, false, false, false, false, RootMode::InPlace};
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();
   take.pose_edits = pose_edits();

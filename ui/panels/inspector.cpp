@@ -262,7 +262,10 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
       {"swaps", "Repair swaps", "Corrects limbs whose left and right were swapped", method.repair_swaps},
       {"smooth", "Smooth joints", "Smooths noise in the extracted joints", method.smooth_joints},
       {"lengths", "Fix lengths", "Keeps bones at one length", method.fix_lengths},
-      {"feet", "Lock feet", "Keeps standing feet from sliding", method.lock_feet}};
+      {"feet", "Lock feet", "Keeps standing feet from sliding", method.lock_feet},
+      {"contacts", "Hand contacts", "Hands that touch the body do so on the target, too",
+       method.keep_contacts},
+      {"near", "Second look", "Limbs and head are looked at again from near", method.near}};
   for (const Switch& s : switches)
     if (const auto on =
             toggle_row(context.ui, {std::string("method.") + s.name, s.label, s.explanation}, s.on))

@@ -1,0 +1,20 @@
+#include "app/run/method.hpp"
+
+namespace understudy::app {
+
+RetargetOptions retarget_options(const Method& method) {
+  RetargetOptions options;
+  options.filter.repair_swaps = method.repair_swaps;
+  options.filter.smooth = method.smooth_joints;
+  options.filter.fix_lengths = method.fix_lengths;
+  options.root.mode = method.root;
+  options.lock_feet = method.lock_feet;
+  options.keep_contacts = method.keep_contacts;
+  return options;
+}
+
+std::string extraction_key(const Method& method) {
+  return method.extractor + (method.near ? ", from near" : "");
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,41 @@
+// How a motion is brought to a target: the networks, and the switches of an ablation.
+#pragma once
+
+#include <string>
+
+#include "retarget/base/fields.hpp"
+#include "retarget/pipeline/performer.hpp"
+
+namespace understudy::app {
+
+struct Method {
+  std::string engine = "copy";      ///< motion transfer, see engines()
+  std::string extractor = "dense";  ///< skeleton extraction, see extractors()
+  bool near = true;                 ///< of "dense": limbs and head are looked at again from near
+  bool offsets = true;              ///< pose-corrective offsets
+  bool repair_swaps = true, smooth_joints = true, fix_lengths = true;  ///< of JointFilterOptions
+  bool lock_feet = true;                                               ///< feet that stand do not slide
+  bool keep_contacts = true;                                           ///< hands touch what they touched
+  RootMode root = RootMode::Scaled;
+};
+template <class V, class S>
+FieldsOf<S, Method> fields(V& visit, S& method) {
+  visit("engine", method.engine);
+  visit("extractor", method.extractor);
+  visit("near", method.near);
+  visit("offsets", method.offsets);
+  visit("repair_swaps", method.repair_swaps);
+  visit("smooth_joints", method.smooth_joints);
+  visit("fix_lengths", method.fix_lengths);
+  visit("lock_feet", method.lock_feet);
+  visit("keep_contacts", method.keep_contacts);
+  visit("root", method.root, kRootNames);
+}
+
+/// What of it the pipeline does, networks apart.
+RetargetOptions retarget_options(const Method& method);
+
+/// Equal texts: methods that see the same skeletons in a scan.
+std::string extraction_key(const Method& method);
+
+}  // namespace understudy::app
