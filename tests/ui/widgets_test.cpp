@@ -316,7 +316,7 @@ TEST(ClockTime, CountsMinutes) {
   EXPECT_EQ(clock_time(125.5), "2:05.50");
 }
 
-class Timeline : public UiTest {
+class TimelineTrack : public UiTest {
  protected:
   void SetUp() override {
     data.total = 1001, data.processed = 600;
@@ -332,7 +332,7 @@ class Timeline : public UiTest {
   int seek = -1, hovered = -1;
 };
 
-TEST_F(Timeline, ScrubsToTheFrameUnderThePointer) {
+TEST_F(TimelineTrack, ScrubsToTheFrameUnderThePointer) {
   click(mark("track").rect.at(0.3f, 0.5f));
   EXPECT_EQ(seek, 300);
   EXPECT_EQ(hovered, 300);
@@ -343,7 +343,7 @@ TEST_F(Timeline, ScrubsToTheFrameUnderThePointer) {
   EXPECT_EQ(seek, 1000);
 }
 
-TEST_F(Timeline, LoopMarksAreDraggedAndDoNotCross) {
+TEST_F(TimelineTrack, LoopMarksAreDraggedAndDoNotCross) {
   data.loop = LoopRange{200, 400};
   frame();
   const Rect rect = mark("track").rect, first = mark("track.loop_first").rect;
@@ -356,7 +356,7 @@ TEST_F(Timeline, LoopMarksAreDraggedAndDoNotCross) {
   EXPECT_EQ(data.loop->last, data.loop->first);
 }
 
-TEST_F(Timeline, WheelZoomsAboutThePointerAndTheMiddleButtonPans) {
+TEST_F(TimelineTrack, WheelZoomsAboutThePointerAndTheMiddleButtonPans) {
   scroll("track", 5);
   click(mark("track").rect.at(0.5f, 0.5f));
   EXPECT_NEAR(seek, 500, 2);
@@ -381,7 +381,7 @@ TEST_F(Timeline, WheelZoomsAboutThePointerAndTheMiddleButtonPans) {
   EXPECT_EQ(seek, 0);
 }
 
-TEST_F(Timeline, FollowsThePlayheadWhenZoomed) {
+TEST_F(TimelineTrack, FollowsThePlayheadWhenZoomed) {
   data.loop.reset();
   click(mark("track").rect.at(0.1f, 0.5f));
   for (int i = 0; i < 3; ++i) scroll("track", 5);
@@ -390,7 +390,7 @@ TEST_F(Timeline, FollowsThePlayheadWhenZoomed) {
   EXPECT_TRUE(shown("track.playhead"));
 }
 
-TEST_F(Timeline, AnEmptySequenceAsksForNothing) {
+TEST_F(TimelineTrack, AnEmptySequenceAsksForNothing) {
   data = TrackData();
   click("track");
   EXPECT_EQ(seek, -1);

@@ -135,7 +135,7 @@ TEST(BlendSkin, EqualsLinearBlendSkinning) {
   const Pose pose = testing::random_test_pose(9);
   Pose centred = pose;
   centred.root = Vec3::Zero();
-  auto transforms = joint_transforms(body.joints, forward_kinematics(body.joints, pose));
+  auto transforms = joint_transforms(body.joints, forward_kinematics(body.joints, centred));
   const auto tensor = [](const auto& m) {
     return torch::from_blob(const_cast<float*>(m.data()), {m.rows(), m.cols()}).clone();
   };
