@@ -4,6 +4,7 @@
 
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/extractor_input.hpp"
+#include "retarget/training/losses/length_loss.hpp"
 #include "retarget/training/losses/skeleton_losses.hpp"
 
 namespace understudy::training {
@@ -64,6 +65,7 @@ LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch
   loss.add("part_loss", torch::nn::functional::cross_entropy(out.parts.flatten(0, 1), truth.parts.flatten()),
            0.05);
   loss.add("rotation_loss", (out.rotations - truth.rotations).abs().mean(), 0.3);
+  loss.add("length_loss", length_loss(out.joints, truth.joints), 0.3);
   loss.add("spread_loss", spread_loss(error, out.log_spread), 0.01);
   return loss;
 }
