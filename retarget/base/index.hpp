@@ -3,8 +3,6 @@
 
 #include <cstddef>
 
-#include "retarget/base/index.hpp"
-
 namespace understudy {
 
 /// The number of elements, signed: C++20's std::ssize.
