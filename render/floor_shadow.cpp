@@ -12,7 +12,7 @@ namespace understudy::render {
 namespace {
 
 constexpr int kSide = FloorShadow::kSide;
-constexpr float kMargin = 0.45f;                                  // metres of free floor around what casts it
+constexpr float kFreeFloor = 0.45f;                               // metres of free floor around what casts it
 using Grid = Eigen::Array<float, kSide, kSide, Eigen::RowMajor>;  // rows along z
 
 /// The height of the lowest thing above each cell.
@@ -69,7 +69,7 @@ class LowestHeights {
 Vec3 area_below(const Points& points) {
   if (points.rows() == 0) return Vec3(-1, -1, 2);
   const Eigen::RowVector3f low = points.colwise().minCoeff(), high = points.colwise().maxCoeff();
-  const float side = std::max(high.x() - low.x(), high.z() - low.z()) + 2 * kMargin;
+  const float side = std::max(high.x() - low.x(), high.z() - low.z()) + 2 * kFreeFloor;
   return Vec3((low.x() + high.x() - side) / 2, (low.z() + high.z() - side) / 2, side);
 }
 

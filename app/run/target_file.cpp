@@ -13,10 +13,6 @@
 namespace understudy::app {
 namespace {
 
-Eigen::VectorXf as_vector(const std::vector<float>& values) {
-  return Eigen::Map<const Eigen::VectorXf>(values.data(), values.size());
-}
-
 CharacterOptions character_options(const TargetOptions& options) {
   CharacterOptions result;
   result.choices = options.bones;
@@ -46,7 +42,7 @@ Character read_target(const std::string& path, const std::vector<float>& betas) 
   if (can_be(path, kBody)) {
     const Npz npz = read_npz(path);
     if (npz.count("v_template")) {
-      const ShapedBody person = read_smpl_body(path).shaped(as_vector(betas));
+      const ShapedBody person = read_smpl_body(path).shaped(Eigen::VectorXf::Map(betas.data(), betas.size()));
       return character_of_mesh({person.vertices, person.faces}, std::filesystem::path(path).stem().string());
     }
     US_CHECK(!npz.count("poses"), path, ": is a motion, not a character");

@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kPrefix = "autosave_";
 constexpr const char* kSuffix = ".understudy";
-constexpr const char* kFormat = "understudy autosave";
+constexpr const char* kAutosaveFormat = "understudy autosave";
 
 /// A process that no other has ever been: numbers are given again, but not within one boot at one moment.
 struct Owner {
@@ -108,7 +108,7 @@ bool is_newer(const Json& copy) {
 
 /// The document in a copy. Throws Error.
 SavedDocument document_in(const Json& copy, const std::string& file) {
-  US_CHECK(copy.is_object() && text_in(copy, "format") == kFormat && copy.contains("document"), file,
+  US_CHECK(copy.is_object() && text_in(copy, "format") == kAutosaveFormat && copy.contains("document"), file,
            ": is not an autosaved document");
   return from_json(copy["document"], "", file);
 }
@@ -126,7 +126,7 @@ void write_autosave(const std::string& folder, const SavedDocument& saved, const
   std::error_code error;
   fs::create_directories(folder, error);
   US_CHECK(!error, folder, ": cannot be made (", error.message(), ")");
-  const Json json{{"format", kFormat},
+  const Json json{{"format", kAutosaveFormat},
                   {"document_path", document_path},
                   {"time", local_time()},
                   {"document", to_json(saved, "")}};

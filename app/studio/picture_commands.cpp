@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLargest = 16384;    // pixels a side
-constexpr int64_t kCacheMb = 128;  // of frames, for a job
+constexpr int kLargestPicture = 16384;  // pixels a side
+constexpr int64_t kCacheMb = 128;       // of frames, for a job
 
 struct Saving {
   std::string path;
@@ -83,8 +83,9 @@ Saving saving_of(const Arguments& arguments, int active_pane) {
     }
   }
   const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
-  US_CHECK(width >= 16 && height >= 16 && width <= kLargest && height <= kLargest, "a picture of ", width,
-           " x ", height, " pixels cannot be made: 16 to ", kLargest, " a side");
+  US_CHECK(width >= 16 && height >= 16 && width <= kLargestPicture && height <= kLargestPicture,
+           "a picture of ", width, " x ", height, " pixels cannot be made: 16 to ", kLargestPicture,
+           " a side");
   return saving;
 }
 

@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 namespace gl = render::gl;
 namespace {
 
-constexpr uintmax_t kLargest = 256u << 20;  // bytes of a file that is read only to be looked at
-constexpr size_t kKept = 64;                // pictures
-constexpr size_t kWaiting = 4;              // what was asked for before is no longer looked at
+constexpr uintmax_t kLargestFile = 256u << 20;  // bytes of a file that is read only to be looked at
+constexpr size_t kKept = 64;                    // pictures
+constexpr size_t kWaiting = 4;                  // what was asked for before is no longer looked at
 
 std::string described(const Mesh& mesh) {
   return mesh.is_cloud()
@@ -140,7 +140,7 @@ Previews::Content Previews::read(const std::string& path) {
     }
     if (!fs::is_directory(at)) {
       if (!can_be(path, kTarget | kScanSequence)) return content;
-      if (fs::file_size(at) > kLargest) return {{}, "too large for a preview"};
+      if (fs::file_size(at) > kLargestFile) return {{}, "too large for a preview"};
     }
     if (!fs::is_directory(at) && can_be(path, kTarget)) {
       const Character character = read_target(path, {});

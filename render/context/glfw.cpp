@@ -50,7 +50,7 @@ GLFWwindow* opened(const WindowOptions& options) {
   return window;
 }
 
-Key key_of(int code) {
+Key key_from_glfw(int code) {
   const auto from = [&](int first, Key key) {
     return static_cast<Key>(static_cast<int>(key) + code - first);
   };
@@ -112,11 +112,11 @@ Key key_of(int code) {
 
 /// GLFW names keys by their place on a US keyboard; for letters, the key's label counts (AZERTY).
 Key key_as_labelled(int code, int scancode) {
-  const Key placed = key_of(code);
+  const Key placed = key_from_glfw(code);
   if (code < GLFW_KEY_APOSTROPHE || code > GLFW_KEY_GRAVE_ACCENT) return placed;
   const char* label = glfwGetKeyName(code, scancode);
   if (label == nullptr || label[0] == 0 || label[1] != 0) return placed;
-  if (label[0] >= 'a' && label[0] <= 'z') return key_of(GLFW_KEY_A + label[0] - 'a');
+  if (label[0] >= 'a' && label[0] <= 'z') return key_from_glfw(GLFW_KEY_A + label[0] - 'a');
   return placed;
 }
 

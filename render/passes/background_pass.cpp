@@ -6,7 +6,7 @@
 namespace understudy::render {
 namespace {
 
-constexpr const char* kFragment = R"(
+constexpr const char* kBackgroundFragment = R"(
 uniform vec3 u_top, u_bottom;
 in vec2 v_place;
 out vec4 o_color;
@@ -15,7 +15,7 @@ void main() { o_color = vec4(mix(u_bottom, u_top, smoothstep(0.0, 1.0, v_place.y
 
 }  // namespace
 
-BackgroundPass::BackgroundPass() : program_("background", kCoverGlsl, kFragment) {}
+BackgroundPass::BackgroundPass() : program_("background", kCoverGlsl, kBackgroundFragment) {}
 
 void BackgroundPass::draw(const BackgroundView& view) {
   if (view.transparent) {

@@ -10,7 +10,7 @@ namespace understudy::render {
 namespace {
 
 // Each line is a rectangle on the screen, half a pixel wider on each side for its soft rim.
-const std::string kVertex = std::string(kFrameGlsl) + R"(
+const std::string kLinesVertex = std::string(kFrameGlsl) + R"(
 layout(location = 0) in vec3 a_here;
 layout(location = 1) in vec3 a_other;
 layout(location = 2) in vec3 a_color;
@@ -32,7 +32,7 @@ void main() {
   v_color = vec4(a_color * a_opacity, a_opacity);
 }
 )";
-const std::string kFragment = R"(
+const std::string kLinesFragment = R"(
 uniform float u_width;
 in vec4 v_color;
 in float v_across;
@@ -75,7 +75,7 @@ void use(unsigned index, const gl::Buffer& buffer, const std::vector<float>& val
 
 }  // namespace
 
-LinesPass::LinesPass() : program_("lines", kVertex, kFragment) {}
+LinesPass::LinesPass() : program_("lines", kLinesVertex, kLinesFragment) {}
 
 void LinesPass::draw(const LinesView& view) {
   check_rows("colours", view.colors.rows(), view.positions.rows());

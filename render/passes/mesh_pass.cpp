@@ -7,7 +7,7 @@
 namespace understudy::render {
 namespace {
 
-const std::string kVertex = std::string(kFrameGlsl) + R"(
+const std::string kMeshVertex = std::string(kFrameGlsl) + R"(
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec3 a_color;
@@ -23,7 +23,7 @@ void main() {
 }
 )";
 
-const std::string kFragment = std::string(kFrameGlsl) + kShadeGlsl + R"(
+const std::string kMeshFragment = std::string(kFrameGlsl) + kShadeGlsl + R"(
 uniform float u_opacity, u_occlusion;
 uniform int u_two_sided;
 in vec3 v_position, v_normal, v_color;
@@ -55,7 +55,7 @@ void check(const MeshView& view) {
   check_rows("ambient values", view.ambient->rows(), view.vertices->rows());
 }
 
-MeshPass::MeshPass(gl::ArrayCache& arrays) : arrays_(arrays), program_("mesh", kVertex, kFragment) {}
+MeshPass::MeshPass(gl::ArrayCache& arrays) : arrays_(arrays), program_("mesh", kMeshVertex, kMeshFragment) {}
 
 void MeshPass::bind(const MeshView& view) {
   gl::use_attribute(0, arrays_.of(view.vertices), 3);

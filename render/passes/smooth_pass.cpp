@@ -8,7 +8,7 @@ namespace {
 
 // Lottes, "FXAA", 2009, in its short form: mixes pixels along the direction in which brightness changes
 // least.
-const std::string kFragment = R"(
+const std::string kSmoothFragment = R"(
 uniform sampler2D u_source;
 in vec2 v_place;
 out vec4 o_color;
@@ -34,7 +34,7 @@ void main() {
 
 }  // namespace
 
-SmoothPass::SmoothPass() : program_("smoothing", kCoverGlsl, kFragment) {}
+SmoothPass::SmoothPass() : program_("smoothing", kCoverGlsl, kSmoothFragment) {}
 
 void SmoothPass::draw(unsigned texture) {
   const gl::CapabilityScope depth(GL_DEPTH_TEST, false);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kDegrees = kPi / 180;
 
-float ramp(float x, float from, float to) {
+float smoother_step(float x, float from, float to) {
   const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
   return t * t * t * (t * (6 * t - 15) + 10);
 }
@@ -61,7 +61,7 @@ class PlanPlayer {
       // The heel rises before the ball leaves.
       const float lead = 0.35f * (step.end - step.start);
       if (t > step.start - lead && t < step.start)
-        state.heel_deg = step.heel_deg * 0.7f * ramp(t, step.start - lead, step.start);
+        state.heel_deg = step.heel_deg * 0.7f * smoother_step(t, step.start - lead, step.start);
       if (t < step.start) return state;
       const Vec3 to = on_floor(step.x, step.z);
       if (t < step.end) return in_the_air(step, state, to, (t - step.start) / (step.end - step.start));
@@ -74,18 +74,19 @@ class PlanPlayer {
   FootState in_the_air(const Step& step, const FootState& from, const Vec3& to, float s) const {
     FootState state = from;
     state.planted = false;
-    const float along = ramp(s, 0.08f, 0.92f);
+    const float along = smoother_step(s, 0.08f, 0.92f);
     state.ball = from.ball + along * (to - from.ball);
-    const float up = ramp(s, -0.08f, 0.24f) - ramp(0, -0.08f, 0.24f);
+    const float up = smoother_step(s, -0.08f, 0.24f) - smoother_step(0, -0.08f, 0.24f);
     state.ball.y() += std::max(step.lift * unit_, 0.085f) * std::min(1.0f, 1.15f * up) *
-                      (1 - ramp(s, 0.80f, 1.02f)) * (1 - 0.25f * ramp(s, 0.3f, 0.7f));
+                      (1 - smoother_step(s, 0.80f, 1.02f)) * (1 - 0.25f * smoother_step(s, 0.3f, 0.7f));
     if (!step.via.empty()) state.ball = through(step, from.ball, to, s);
     state.yaw_deg = from.yaw_deg + along * (step.yaw_deg - from.yaw_deg);
-    const float leaving = (0.7f + 0.5f * ramp(s, 0, 0.3f)) * (1 - ramp(s, 0.25f, 0.65f));
-    state.heel_deg = step.heel_deg * leaving - 8 * ramp(s, 0.4f, 0.62f) * (1 - ramp(s, 0.62f, 0.86f));
-    state.toes_flat = 1 - 0.6f * ramp(s, 0.06f, 0.35f);
-    state.follows_shin =
-        (step.via.empty() ? 0.25f : 0.9f) * ramp(s, 0.08f, 0.25f) * (1 - ramp(s, 0.72f, 0.92f));
+    const float leaving = (0.7f + 0.5f * smoother_step(s, 0, 0.3f)) * (1 - smoother_step(s, 0.25f, 0.65f));
+    state.heel_deg =
+        step.heel_deg * leaving - 8 * smoother_step(s, 0.4f, 0.62f) * (1 - smoother_step(s, 0.62f, 0.86f));
+    state.toes_flat = 1 - 0.6f * smoother_step(s, 0.06f, 0.35f);
+    state.follows_shin = (step.via.empty() ? 0.25f : 0.9f) * smoother_step(s, 0.08f, 0.25f) *
+                         (1 - smoother_step(s, 0.72f, 0.92f));
     return state;
   }
 

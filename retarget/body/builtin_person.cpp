@@ -5,14 +5,10 @@
 #include <set>
 
 #include "retarget/body/builtin_shape.hpp"
+#include "retarget/math/smooth_step.hpp"
 
 namespace understudy {
 namespace {
-
-float smooth_ramp(float x, float from, float to) {
-  const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
 
 /// How much a point belongs to each part, summing to 1: nearer the part's own solid counts more. Measured
 /// through the solids, so an arm beside the trunk or a leg beside the other does not take the other's skin.
@@ -38,23 +34,23 @@ Eigen::RowVectorXf initial_weights(const PersonShape& shape, const Vec3& p) {
     }
   };
   const auto above = [&](Joint joint, float half) {
-    return smooth_ramp(p.y(), j(joint, 1) - half, j(joint, 1) + half);
+    return smooth_step(j(joint, 1) - half, j(joint, 1) + half, p.y());
   };
   const auto below = [&](Joint joint, float half) { return 1 - above(joint, half); };
   const auto outside = [&](Joint joint, float half) {
-    return smooth_ramp(p.x(), j(joint, 0) - half, j(joint, 0) + half);
+    return smooth_step(j(joint, 0) - half, j(joint, 0) + half, p.x());
   };
 
   const float groin = p.y() - j(LeftHip, 1) + 0.45f * (j(LeftHip, 0) - std::min(p.x(), 1.6f * j(LeftHip, 0)));
-  const float to_hip = smooth_ramp(groin, 0.055f, -0.065f);  // the groin slants up and out
-  const float to_shoulder = smooth_ramp(p.x(), j(LeftShoulder, 0) - 0.055f, j(LeftShoulder, 0) + 0.035f);
-  const float to_collar = smooth_ramp(p.x(), 0.02f, 0.10f) *
-                          smooth_ramp(p.y(), j(LeftShoulder, 1) - 0.11f, j(LeftShoulder, 1) - 0.01f);
-  const float toes = smooth_ramp(p.z(), j(LeftFoot, 2) - 0.03f, j(LeftFoot, 2) + 0.03f);
+  const float to_hip = smooth_step(0.055f, -0.065f, groin);  // the groin slants up and out
+  const float to_shoulder = smooth_step(j(LeftShoulder, 0) - 0.055f, j(LeftShoulder, 0) + 0.035f, p.x());
+  const float to_collar = smooth_step(0.02f, 0.10f, p.x()) *
+                          smooth_step(j(LeftShoulder, 1) - 0.11f, j(LeftShoulder, 1) - 0.01f, p.y());
+  const float toes = smooth_step(j(LeftFoot, 2) - 0.03f, j(LeftFoot, 2) + 0.03f, p.z());
 
   chain(share[0] * to_collar, {LeftCollar, LeftShoulder}, {to_shoulder});
   const float trunk = share[0] * (1 - to_collar);
-  const float seat = to_hip * smooth_ramp(p.x(), 0.01f, 0.06f);
+  const float seat = to_hip * smooth_step(0.01f, 0.06f, p.x());
   w[LeftHip] += trunk * seat;
   chain(trunk * (1 - seat), {Pelvis, Spine1, Spine2, Spine3, Neck},
         {above(Spine1, .05f), above(Spine2, .04f), above(Spine3, .05f), above(Neck, .04f)});
@@ -64,7 +60,7 @@ Eigen::RowVectorXf initial_weights(const PersonShape& shape, const Vec3& p) {
         {to_shoulder, outside(LeftElbow, .045f), outside(LeftWrist, .025f)});
   // The skull turns about a hinge behind the jaw: the neck's skin ends lower at the back than under the chin.
   const float hinge = p.y() - j(Head, 1) + 0.5f * (p.z() - j(Head, 2));
-  chain(share[3], {Spine3, Neck, Head}, {above(Neck, .045f), smooth_ramp(hinge + .015f, -.045f, .03f)});
+  chain(share[3], {Spine3, Neck, Head}, {above(Neck, .045f), smooth_step(-.045f, .03f, hinge + .015f)});
   return w;
 }
 

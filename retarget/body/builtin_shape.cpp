@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/segment.hpp"
+#include "retarget/math/smooth_step.hpp"
 
 namespace understudy {
 namespace {
@@ -42,11 +43,6 @@ float mix(float a, float b, float t) {
 float ramp(float x, float from, float to) {
   return std::clamp((x - from) / (to - from), 0.0f, 1.0f);
 }
-float smooth_ramp(float x, float from, float to) {
-  const float t = ramp(x, from, to);
-  return t * t * (3 - 2 * t);
-}
-
 /// Smooth minimum, polynomial: melts over `k` metres.
 float smooth_min(float a, float b, float k) {
   const float h = std::max(k - std::abs(a - b), 0.0f) / k;
@@ -94,7 +90,7 @@ Proportions proportions(const PersonOptions& o) {
   Proportions p;
   p.child = ramp(o.age, 18, 2);
   p.old = ramp(o.age, 50, 90);
-  p.female = o.sex * smooth_ramp(o.age, 7, 15);
+  p.female = o.sex * smooth_step(7, 15, o.age);
   p.fat = o.girth - 1;
   const float c = p.child;
   p.head = o.head * (1 + 0.45f * std::pow(c, 1.4f));
@@ -116,7 +112,7 @@ Vec3 BodyMap::operator()(Region region, const Vec3& q) const {
   };
   switch (region) {
     case Region::Trunk: {
-      const float width = mix(p_.hips, p_.shoulders, smooth_ramp(q.y(), 0.05f, 0.40f));
+      const float width = mix(p_.hips, p_.shoulders, smooth_step(0.05f, 0.40f, q.y()));
       return Vec3(q.x() * width, q.y() > 0 ? q.y() * p_.trunk : q.y(), q.z());
     }
     case Region::Leg: {
@@ -343,8 +339,8 @@ void PersonShape::add_trunk() {
   const float f = who_.female, fat = who_.fat;
   std::vector<Loft::Section> sections;
   for (const Row& r : kRows) {
-    const float width = mix(who_.hips, who_.shoulders, smooth_ramp(r.y, 0.05f, 0.40f));
-    const float belly = smooth_ramp(r.y, 0, .12f) * smooth_ramp(r.y, .30f, .18f);
+    const float width = mix(who_.hips, who_.shoulders, smooth_step(0.05f, 0.40f, r.y));
+    const float belly = smooth_step(0, .12f, r.y) * smooth_step(.30f, .18f, r.y);
     const float straight = 1 + 0.07f * who_.child * belly;  // a small child has no waist, but a belly
     const float side = mix(r.m_side, r.f_side, f) * width * straight * (1 + r.fat_side * fat);
     const float front = (mix(r.m_front, r.f_front, f) + (.010f * who_.child + .014f * who_.old) * belly) *
@@ -395,7 +391,7 @@ void PersonShape::add_leg() {
       {-.862f, .150f, -.022f, .030f, .030f, .034f, .0f}};
   std::vector<Loft::Section> sections;
   for (const Row& r : kRows) {
-    const float thigh = smooth_ramp(r.y, -.40f, -.15f);
+    const float thigh = smooth_step(-.40f, -.15f, r.y);
     const float female = 1 + who_.female * mix(-.06f, .06f, thigh);
     const float child = 1 - who_.child * mix(-.02f, .06f, thigh) - .06f * who_.old * (1 - thigh);
     const float k = female * child * (1 + r.fat * who_.fat);
@@ -450,9 +446,9 @@ void PersonShape::add_arm() {
       {.665f, .457f, .008f, .028f, .017f, .018f, .05f}};
   std::vector<Loft::Section> sections;
   for (const Row& r : kRows) {
-    const float hand = mix(1, who_.hand, smooth_ramp(r.x, .55f, .64f));
+    const float hand = mix(1, who_.hand, smooth_step(.55f, .64f, r.x));
     const float build = mix(1.10f, .92f, who_.female) * (1 - .10f * who_.child - .06f * who_.old);
-    const float k = mix(build, 1, smooth_ramp(r.x, .45f, .64f)) * hand * (1 + r.fat * who_.fat);
+    const float k = mix(build, 1, smooth_step(.45f, .64f, r.x)) * hand * (1 + r.fat * who_.fat);
     sections.push_back({r.x, r.z, r.y, r.wide * k, r.up * k, r.down * k});
   }
   loft(Part::Arm, Region::Arm, 0, sections, {.03f, .015f, 2.0f, .02f});
@@ -603,10 +599,10 @@ float PersonShape::value(const Vec3& q) const {
 float PersonShape::detail(const Vec3& p) const {
   const float wrist = joints_(LeftWrist, 0), ankle = joints_(LeftAnkle, 1), neck = joints_(Neck, 1);
   const float x = std::abs(p.x());
-  const float hand = mix(1, .38f, smooth_ramp(x, wrist - .10f, wrist + .03f));
-  const float foot = mix(1, .58f, smooth_ramp(p.y(), ankle + .03f, ankle - .04f));
-  const float face = smooth_ramp(p.z(), .03f, .09f);
-  const float head = mix(1, mix(.60f, .34f, face), smooth_ramp(p.y(), neck - .02f, neck + .05f));
+  const float hand = mix(1, .38f, smooth_step(wrist - .10f, wrist + .03f, x));
+  const float foot = mix(1, .58f, smooth_step(ankle + .03f, ankle - .04f, p.y()));
+  const float face = smooth_step(.03f, .09f, p.z());
+  const float head = mix(1, mix(.60f, .34f, face), smooth_step(neck - .02f, neck + .05f, p.y()));
   return std::min({hand, foot, head});
 }
 

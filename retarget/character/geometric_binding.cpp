@@ -11,8 +11,10 @@
 #include <queue>
 #include <unordered_map>
 
+#include "retarget/character/rest_pose.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/segment.hpp"
+#include "retarget/math/smooth_step.hpp"
 
 namespace understudy {
 namespace {
@@ -23,15 +25,6 @@ constexpr float kSharpness = 5.0f;  // of the fall of weights with distance
 constexpr float kBigHead = 0.36f;   // of the leg: width and height of a head that no human has
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr int kSlices = 48;  // of the legs, looking for a skirt
-
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
-Vec3 bone(const Joints& joints, int from, int to) {
-  return (joints.row(to) - joints.row(from)).transpose();
-}
 
 using Segments = std::array<std::vector<std::pair<Vec3, Vec3>>, kJointCount>;
 

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::json;
 using Attributes = std::map<std::string, int>;  // accessors by their names
 
-constexpr int kMaxDepth = 1000, kMostParts = 10000;
+constexpr int kMaxNodeDepth = 1000, kMostParts = 10000;
 constexpr int64_t kMostPrimitives = 1000000;
 
 class CharacterReader {
@@ -86,7 +86,7 @@ void CharacterReader::order_nodes(const std::vector<int>& parents) {
   for (int n = 0; n < count; ++n) {
     for (int p = n; p >= 0 && depth[n] <= count; p = parents[p]) ++depth[n];
     US_CHECK(depth[n] <= count, path_, ": its nodes go round in a circle");
-    US_CHECK(depth[n] <= kMaxDepth, path_, ": its nodes are more than 1000 levels deep");
+    US_CHECK(depth[n] <= kMaxNodeDepth, path_, ": its nodes are more than 1000 levels deep");
     in_order = in_order && parents[n] < n;
   }
   std::vector<size_t> order(parents.size());

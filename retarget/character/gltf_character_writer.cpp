@@ -14,7 +14,7 @@
 namespace understudy {
 namespace {
 
-enum Target {
+enum BufferTarget {
   NoTarget = 0,
   VertexData = TINYGLTF_TARGET_ARRAY_BUFFER,
   Indices = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER
@@ -33,7 +33,7 @@ class ModelMaker {
  public:
   ModelMaker() { model.buffers.resize(1); }
 
-  int add_view(const void* data, size_t size, Target target) {
+  int add_view(const void* data, size_t size, BufferTarget target) {
     auto& bytes = model.buffers[0].data;
     tinygltf::BufferView view;
     view.buffer = 0;
@@ -46,14 +46,14 @@ class ModelMaker {
     return model.bufferViews.size() - 1;
   }
   template <class T>
-  int add(const std::vector<T>& values, int type, Target target, bool bounds = false) {
+  int add(const std::vector<T>& values, int type, BufferTarget target, bool bounds = false) {
     const size_t width = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
     tinygltf::Accessor accessor = accessor_of(component_of<T>(), type, values.size() / width);
     accessor.bufferView = add_view(values.data(), values.size() * sizeof(T), target);
     if (bounds) add_bounds(values.data(), values.size(), width, accessor);
     return add(std::move(accessor));
   }
-  int add(const RowMatrix& values, Target target, bool bounds = false) {
+  int add(const RowMatrix& values, BufferTarget target, bool bounds = false) {
     return add(std::vector<float>(values.data(), values.data() + values.size()),
                values.cols() == 1 ? TINYGLTF_TYPE_SCALAR : static_cast<int>(values.cols()), target, bounds);
   }

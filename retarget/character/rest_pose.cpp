@@ -9,11 +9,12 @@
 #include "retarget/skeleton/skinning.hpp"
 
 namespace understudy {
-namespace {
 
 Vec3 bone(const Joints& joints, int from, int to) {
   return (joints.row(to) - joints.row(from)).transpose();
 }
+
+namespace {
 
 float angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));

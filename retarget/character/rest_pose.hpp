@@ -7,6 +7,9 @@
 
 namespace understudy {
 
+/// The way from one joint to another, metres.
+Vec3 bone(const Joints& joints, int from, int to);
+
 /// How the joints of a bind pose turn to the T-pose.
 struct RestPose {
   Joints bind = Joints::Zero();              ///< as the character came, metres, y up, facing +z

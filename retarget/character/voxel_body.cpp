@@ -13,7 +13,7 @@ namespace {
 
 constexpr char kSurface = 1, kReached = 2, kEnclosed = 4;
 constexpr int kBorder = 5;  // empty cubes about the body, more than a point of a cloud is wide
-constexpr float kFar = std::numeric_limits<float>::max();
+constexpr float kUnreached = std::numeric_limits<float>::max();
 
 struct Step {
   int x, y, z;
@@ -62,7 +62,7 @@ VoxelBody::VoxelBody(const Mesh& mesh, int resolution) {
 }
 
 void VoxelBody::lay_grid(const Points& vertices, int resolution) {
-  Vec3 low = Vec3::Constant(kFar), high = Vec3::Constant(-kFar);
+  Vec3 low = Vec3::Constant(kUnreached), high = Vec3::Constant(-kUnreached);
   for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
     if (!vertices.row(v).allFinite()) continue;
     low = low.cwiseMin(vertices.row(v).transpose());
@@ -180,7 +180,7 @@ int VoxelBody::cell_at(const Vec3& point) const {
 
 int VoxelBody::nearest_cell(const Vec3& point) const {
   int best = 0;
-  float least = kFar;
+  float least = kUnreached;
   for (int c = 0; c < count(); ++c) {
     const float d = (centre(c) - point).squaredNorm();
     if (d < least) {
@@ -249,7 +249,7 @@ void VoxelBody::join_parts() {
   }
   bridges_.assign(cells_.size(), {});
   for (auto& [pair, found] : meetings) {
-    float least = kFar;
+    float least = kUnreached;
     for (const Bridge& b : found) least = std::min(least, b.length);
     for (const Bridge& b : found) {
       if (b.length > least + 1.5f * size_) continue;
@@ -260,7 +260,7 @@ void VoxelBody::join_parts() {
 }
 
 std::vector<float> VoxelBody::ways_from(const std::vector<std::pair<Vec3, Vec3>>& segments) const {
-  std::vector<float> way(cells_.size(), kFar);
+  std::vector<float> way(cells_.size(), kUnreached);
   std::vector<std::vector<int>> buckets(1);  // a cube wide each: no way within one is shorter than a step
   const auto reach = [&](int cell, float length) {
     if (length >= way[cell]) return;
@@ -305,7 +305,7 @@ float VoxelBody::at(const std::vector<float>& ways, const Vec3& point) const {
               y = std::min(dims_[1] - 1, low[1] + (corner >> 1 & 1)),
               z = std::min(dims_[2] - 1, low[2] + (corner >> 2));
     const int cell = cell_of_[grid_index(x, y, z)];
-    if (cell < 0 || ways[cell] == kFar) continue;
+    if (cell < 0 || ways[cell] == kUnreached) continue;
     const Vec3 off = (centre(cell) - point).cwiseAbs() / size_;
     const float weight = std::max(1e-4f, (1 - off.x()) * (1 - off.y()) * (1 - off.z()));
     sum += weight * ways[cell];

@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kPoseWidth = 156;  // 52 joints: the 22, and 15 of each hand
 constexpr int64_t kBetas = 16;
-enum Array : size_t { Poses, Trans };
+enum AmassArray : size_t { Poses, Trans };
 
 /// y up to z up: x stays.
 Mat3 to_z_up() {

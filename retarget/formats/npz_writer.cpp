@@ -7,7 +7,8 @@
 namespace understudy {
 namespace {
 
-constexpr size_t kHeaderBytes = 128;  // room for any shape; written again when the number of frames is known
+constexpr size_t kNpyHeaderBytes =
+    128;  // room for any shape; written again when the number of frames is known
 constexpr zip_int64_t kFixedDate = 315532800;  // the same result, the same bytes
 
 /// (3, 2), (3,) or ().
@@ -19,10 +20,10 @@ std::string shape_text(const std::vector<int64_t>& shape) {
 
 std::string npy_header(const std::string& type, const std::vector<int64_t>& shape) {
   std::string header("\x93NUMPY\x01\x00", 8);
-  header += static_cast<char>(kHeaderBytes - 10);
+  header += static_cast<char>(kNpyHeaderBytes - 10);
   header += '\0';
   header += "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
-  header.resize(kHeaderBytes - 1, ' ');
+  header.resize(kNpyHeaderBytes - 1, ' ');
   return header + '\n';
 }
 
@@ -32,20 +33,20 @@ std::string frames_header(int64_t frames, std::vector<int64_t> shape) {
 }
 
 /// An archive that is given up unless it is closed.
-struct Archive {
-  explicit Archive(const std::string& path) : file(path) {
+struct ZipWriter {
+  explicit ZipWriter(const std::string& path) : file(path) {
     int code = 0;
     zip = zip_open(file.part().c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
     US_CHECK(zip, path, ": cannot be written");
   }
-  ~Archive() {
+  ~ZipWriter() {
     if (zip) zip_discard(zip);
   }
   PartFile file;
   zip_t* zip = nullptr;
 };
 
-void add_entry(Archive& archive, const std::string& name, zip_source_t* source, const std::string& path) {
+void add_entry(ZipWriter& archive, const std::string& name, zip_source_t* source, const std::string& path) {
   const zip_int64_t index = source ? zip_file_add(archive.zip, (name + ".npy").c_str(), source, 0) : -1;
   if (index < 0 && source) zip_source_free(source);
   US_CHECK(index >= 0, path, ": cannot be packed");
@@ -90,7 +91,7 @@ void NpzWriter::add(const std::string& name, const std::string& text) {
 }
 
 void NpzWriter::finish() {
-  Archive archive(path_);
+  ZipWriter archive(path_);
   for (Array& array : arrays_) {
     if (!array.file) {
       add_entry(archive, array.name,

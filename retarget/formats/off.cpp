@@ -8,14 +8,14 @@
 namespace understudy {
 namespace {
 
-struct Header {
+struct OffHeader {
   bool texture = false, colours = false, normals = false, binary = false;
   int64_t vertices = 0, faces = 0;
 };
 
 // [ST][C][N]OFF; the 4 and n of higher dimensions are refused.
-Header read_keyword(std::string_view keyword, const std::string& source) {
-  Header header;
+OffHeader read_keyword(std::string_view keyword, const std::string& source) {
+  OffHeader header;
   US_CHECK(keyword.size() >= 3 && keyword.substr(keyword.size() - 3) == "OFF", source,
            ": does not begin with OFF");
   std::string_view prefix = keyword.substr(0, keyword.size() - 3);
@@ -36,7 +36,7 @@ Header read_keyword(std::string_view keyword, const std::string& source) {
 }
 
 // Counts are checked against the bytes that are left before anything is allocated for them.
-void check_counts(const Header& header, uint64_t left, uint64_t vertex_bytes, uint64_t face_bytes,
+void check_counts(const OffHeader& header, uint64_t left, uint64_t vertex_bytes, uint64_t face_bytes,
                   const std::string& source) {
   US_CHECK(header.vertices >= 0 && header.faces >= 0, source, ": the header has a negative count");
   US_CHECK(static_cast<uint64_t>(header.vertices) <= left / vertex_bytes, source, ": the header says ",
@@ -52,7 +52,7 @@ void scale_colours(Points& colours) {
 
 class AsciiOff {
  public:
-  AsciiOff(TextCursor text, const Header& header, const std::string& source)
+  AsciiOff(TextCursor text, const OffHeader& header, const std::string& source)
       : text_(text), header_(header), source_(source) {}
 
   Mesh read() {
@@ -106,7 +106,7 @@ class AsciiOff {
   }
 
   TextCursor text_;
-  const Header& header_;
+  const OffHeader& header_;
   const std::string& source_;
   std::vector<std::string_view> words_;
   std::vector<int64_t> corners_;
@@ -115,7 +115,7 @@ class AsciiOff {
 // Geomview's binary OFF: 32-bit big-endian integers and floats.
 class BinaryOff {
  public:
-  BinaryOff(std::string_view body, Header header, const std::string& source)
+  BinaryOff(std::string_view body, OffHeader header, const std::string& source)
       : body_(body), header_(header), source_(source) {}
 
   Mesh read() {
@@ -165,7 +165,7 @@ class BinaryOff {
   }
 
   std::string_view body_;
-  Header header_;
+  OffHeader header_;
   const std::string& source_;
   size_t at_ = 0;
   std::vector<int64_t> corners_;
@@ -177,7 +177,7 @@ class BinaryOff {
 Mesh parse_off(std::string_view bytes, const std::string& source) {
   TextCursor text(bytes, source);
   text.skip_comments();
-  Header header = read_keyword(text.word(), source);
+  OffHeader header = read_keyword(text.word(), source);
   TextCursor ahead = text;
   if (ahead.word() == "BINARY") {
     ahead.line();

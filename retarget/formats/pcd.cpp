@@ -15,7 +15,7 @@ struct Field {
   uint64_t offset = 0;  // inside a point
 };
 
-struct Header {
+struct PcdHeader {
   std::vector<Field> fields;
   uint64_t points = 0;
   uint64_t stride = 0;   // bytes a point
@@ -24,7 +24,7 @@ struct Header {
   size_t size = 0;
 };
 
-NumberType number_type(std::string_view kind, int64_t size, const std::string& source) {
+NumberType pcd_number_type(std::string_view kind, int64_t size, const std::string& source) {
   const char k = kind.size() == 1 ? kind[0] : '?';
   if (k == 'F' && size == 4) return NumberType::F32;
   if (k == 'F' && size == 8) return NumberType::F64;
@@ -53,8 +53,8 @@ std::vector<int64_t> integers(const std::vector<std::string_view>& words, const 
   return values;
 }
 
-Header assemble(const Lines& lines, const std::string& source) {
-  Header header;
+PcdHeader assemble(const Lines& lines, const std::string& source) {
+  PcdHeader header;
   const size_t n = lines.fields.size();
   US_CHECK(n > 0 && lines.sizes.size() == n && lines.types.size() == n &&
                (lines.counts.empty() || lines.counts.size() == n),
@@ -63,8 +63,8 @@ Header assemble(const Lines& lines, const std::string& source) {
     const uint64_t count = lines.counts.empty() ? 1 : static_cast<uint64_t>(lines.counts[i]);
     US_CHECK(count <= 100000 && n <= 10000, source, ": the header says ", n, " fields, one of ", count,
              " numbers");
-    header.fields.push_back({lower_case(lines.fields[i]), number_type(lines.types[i], lines.sizes[i], source),
-                             count, header.stride});
+    header.fields.push_back({lower_case(lines.fields[i]),
+                             pcd_number_type(lines.types[i], lines.sizes[i], source), count, header.stride});
     header.stride += count * static_cast<uint64_t>(lines.sizes[i]);
     header.columns += count;
   }
@@ -81,7 +81,7 @@ Header assemble(const Lines& lines, const std::string& source) {
   return header;
 }
 
-Header read_header(std::string_view bytes, const std::string& source) {
+PcdHeader read_pcd_header(std::string_view bytes, const std::string& source) {
   Lines lines;
   TextCursor text(bytes, source);
   std::vector<std::string_view> words;
@@ -100,7 +100,7 @@ Header read_header(std::string_view bytes, const std::string& source) {
                          : lines.points) = integers(words, source)[0];
     if (key != "data") continue;
     US_CHECK(words.size() > 1, source, ": the header's DATA line is cut off");
-    Header header = assemble(lines, source);
+    PcdHeader header = assemble(lines, source);
     header.encoding = lower_case(words[1]);
     header.size = text.position();
     return header;
@@ -146,26 +146,26 @@ struct Column {
   NumberType type = NumberType::F32;
 };
 
-const Field* find_field(const Header& header, const char* name) {
+const Field* find_field(const PcdHeader& header, const char* name) {
   for (const auto& field : header.fields)
     if (field.name == name && field.count == 1) return &field;
   return nullptr;
 }
 
 // Compressed bodies hold one field after the other, plain ones one point after the other.
-Column column(const Header& header, const Field& field, std::string_view body, bool by_field) {
+Column column(const PcdHeader& header, const Field& field, std::string_view body, bool by_field) {
   const uint64_t width = field.count * size_of(field.type);
   if (by_field) return {body.data() + field.offset * header.points, width, field.type};
   return {body.data() + field.offset, header.stride, field.type};
 }
 
-const Field& required(const Header& header, const char* name, const std::string& source) {
+const Field& required(const PcdHeader& header, const char* name, const std::string& source) {
   const Field* const field = find_field(header, name);
   US_CHECK(field, source, ": its points have no ", name);
   return *field;
 }
 
-const Field* packed_colour(const Header& header) {
+const Field* packed_colour(const PcdHeader& header) {
   const Field* field = find_field(header, "rgb");
   if (field == nullptr) field = find_field(header, "rgba");
   return field != nullptr && size_of(field->type) == 4 ? field : nullptr;
@@ -175,7 +175,7 @@ void unpack_colour(uint32_t packed, Eigen::Index row, Points& colours) {
   for (int c = 0; c < 3; ++c) colours(row, c) = static_cast<float>(packed >> (16 - 8 * c) & 255u) / 255.0f;
 }
 
-Mesh read_binary(const Header& header, std::string_view body, bool by_field, const std::string& source) {
+Mesh read_binary(const PcdHeader& header, std::string_view body, bool by_field, const std::string& source) {
   Mesh mesh;
   const Eigen::Index rows = header.points;
   mesh.vertices.resize(rows, 3);
@@ -203,7 +203,7 @@ uint32_t packed_from_text(double value, NumberType type) {
   return load<uint32_t>(reinterpret_cast<const char*>(&bits), false);
 }
 
-Mesh read_ascii(const Header& header, std::string_view body, const std::string& source) {
+Mesh read_ascii(const PcdHeader& header, std::string_view body, const std::string& source) {
   const Field *const x = &required(header, "x", source), *const y = &required(header, "y", source),
                      *const z = &required(header, "z", source), *const colour = packed_colour(header);
   US_CHECK(header.points <= (body.size() + 1) / (2 * header.columns), source, ": the header says ",
@@ -231,7 +231,7 @@ Mesh read_ascii(const Header& header, std::string_view body, const std::string& 
 /// A cloud from the bytes of a .pcd, any fields in any order, packed colours; the NaN points of organised
 /// clouds are kept. Throws Error, naming `source`.
 Mesh parse_pcd(std::string_view bytes, const std::string& source) {
-  const Header header = read_header(bytes, source);
+  const PcdHeader header = read_pcd_header(bytes, source);
   const std::string_view body = bytes.substr(header.size);
   if (header.encoding == "ascii") return read_ascii(header, body, source);
   required(header, "x", source);  // so a point has bytes

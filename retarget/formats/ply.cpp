@@ -22,13 +22,13 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   bool ascii = false, swap = false;
   std::vector<Element> elements;
   size_t size = 0;
 };
 
-NumberType number_type(std::string_view name, const std::string& source) {
+NumberType ply_number_type(std::string_view name, const std::string& source) {
   static const std::array<std::pair<const char*, NumberType>, 18> kNames = {{{"char", NumberType::I8},
                                                                              {"int8", NumberType::I8},
                                                                              {"uchar", NumberType::U8},
@@ -52,7 +52,7 @@ NumberType number_type(std::string_view name, const std::string& source) {
   throw Error(source + ": the header names an unknown type '" + excerpt(name) + "'");
 }
 
-void read_format(const std::vector<std::string_view>& words, Header& header, const std::string& source) {
+void read_format(const std::vector<std::string_view>& words, PlyHeader& header, const std::string& source) {
   US_CHECK(words.size() >= 2, source, ": the header's format line is cut off");
   header.ascii = words[1] == "ascii";
   header.swap = words[1] == "binary_big_endian";
@@ -63,12 +63,12 @@ void read_format(const std::vector<std::string_view>& words, Header& header, con
 Property read_property(const std::vector<std::string_view>& words, const std::string& source) {
   const bool list = words.size() >= 2 && words[1] == "list";
   US_CHECK(words.size() >= (list ? 5u : 3u), source, ": a property line of the header is cut off");
-  if (!list) return {lower_case(words[2]), number_type(words[1], source), {}};
-  return {lower_case(words[4]), number_type(words[3], source), number_type(words[2], source)};
+  if (!list) return {lower_case(words[2]), ply_number_type(words[1], source), {}};
+  return {lower_case(words[4]), ply_number_type(words[3], source), ply_number_type(words[2], source)};
 }
 
-Header read_header(std::string_view bytes, const std::string& source) {
-  Header header;
+PlyHeader read_ply_header(std::string_view bytes, const std::string& source) {
+  PlyHeader header;
   bool has_format = false;
   TextCursor text(bytes, source);
   std::vector<std::string_view> words;
@@ -99,7 +99,7 @@ Header read_header(std::string_view bytes, const std::string& source) {
 // The values of a body one after the other, whatever its encoding.
 class Values {
  public:
-  Values(std::string_view body, const Header& header, const std::string& source)
+  Values(std::string_view body, const PlyHeader& header, const std::string& source)
       : body_(body), ascii_(header.ascii), swap_(header.swap), source_(source), text_(body, source) {}
 
   double next(NumberType type) {
@@ -293,7 +293,7 @@ bool is_wanted(const Element& element) {
 /// strips, colours where there are any; all other elements are stepped over. NaN and infinite coordinates are
 /// kept. Throws Error, naming `source`.
 Mesh parse_ply(std::string_view bytes, const std::string& source) {
-  const Header header = read_header(bytes, source);
+  const PlyHeader header = read_ply_header(bytes, source);
   Values values(bytes.substr(header.size), header, source);
   size_t wanted = 0;
   for (const auto& element : header.elements) wanted += is_wanted(element);

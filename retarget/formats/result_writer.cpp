@@ -5,7 +5,7 @@
 namespace understudy {
 namespace {
 
-enum Array : size_t { Vertices, JointsArray, RotationsArray, SourceJoints };
+enum ResultArray : size_t { Vertices, JointsArray, RotationsArray, SourceJoints };
 
 }  // namespace
 

@@ -111,7 +111,7 @@ std::string_view dictionary_value(std::string_view text, std::string_view key, c
   return text.substr(begin + 1, stop == text.npos ? text.npos : stop - begin - 1);
 }
 
-NpyHeader read_header(ByteStream& stream, const std::string& source) {
+NpyHeader read_npy_header(ByteStream& stream, const std::string& source) {
   std::string start(10, '\0');
   US_CHECK(stream.read(start.data(), 10) == 10 && starts_with(start, "\x93NUMPY"), source,
            ": is not the NumPy array that it should be");
@@ -215,7 +215,7 @@ zip_int64_t find_array(const Archive& archive, const std::string& path) {
     const zip_int64_t index = zip_name_locate(archive.zip.get(), name, 0);
     if (index < 0) continue;
     ZipStream stream(archive, static_cast<zip_uint64_t>(index));
-    const auto shape = read_header(stream, path + " (" + name + ")").shape;
+    const auto shape = read_npy_header(stream, path + " (" + name + ")").shape;
     if (is_sequence(shape) || is_frame(shape)) return index;
   }
   const zip_int64_t count = zip_get_num_entries(archive.zip.get(), 0);
@@ -223,7 +223,7 @@ zip_int64_t find_array(const Archive& archive, const std::string& path) {
     const std::string name = entry_name(archive.zip.get(), i);
     if (!ends_with(name, ".npy")) continue;
     ZipStream stream(archive, static_cast<zip_uint64_t>(i));
-    if (is_sequence(read_header(stream, path + " (" + name + ")").shape)) return i;
+    if (is_sequence(read_npy_header(stream, path + " (" + name + ")").shape)) return i;
   }
   return -1;
 }
@@ -233,7 +233,7 @@ Faces read_faces(const Archive& archive, int64_t points, const std::string& path
   const zip_int64_t index = zip_name_locate(archive.zip.get(), "faces.npy", 0);
   if (index < 0) return Faces(0, 3);
   ZipStream stream(archive, static_cast<zip_uint64_t>(index));
-  const NpyHeader header = read_header(stream, path + " (faces)");
+  const NpyHeader header = read_npy_header(stream, path + " (faces)");
   const uint64_t width = 3 * size_of(header.type);
   if (!header.readable || !is_frame(header.shape) ||
       static_cast<uint64_t>(header.shape[0]) > stream.size / width)
@@ -254,7 +254,7 @@ Faces read_faces(const Archive& archive, int64_t points, const std::string& path
 
 std::unique_ptr<ScanSource::Frames> npy_frames(const std::string& path) {
   auto stream = std::make_unique<FileStream>(path);
-  const NpyHeader header = read_header(*stream, path);
+  const NpyHeader header = read_npy_header(*stream, path);
   US_CHECK(is_sequence(header.shape) || is_frame(header.shape), path,
            ": its array is not frames x points x 3");
   US_CHECK(header.readable, path,
@@ -273,7 +273,7 @@ std::unique_ptr<ScanSource::Frames> npz_frames(const std::string& path) {
   const zip_int64_t index = find_array(archive, path);
   US_CHECK(index >= 0, path, ": holds no array of frames x points x 3");
   auto stream = std::make_unique<ZipStream>(archive, static_cast<zip_uint64_t>(index));
-  const NpyHeader header = read_header(*stream, path);
+  const NpyHeader header = read_npy_header(*stream, path);
   US_CHECK(header.readable, path,
            ": its numbers are not in C order or of a type that is read; save it as float32");
   auto frames = std::make_unique<ArrayFrames>(path, std::move(stream), header);

@@ -9,7 +9,7 @@
 namespace understudy {
 namespace {
 
-constexpr size_t kHeaderBytes = 84, kFaceBytes = 50;
+constexpr size_t kStlHeaderBytes = 84, kFaceBytes = 50;
 
 // Corners at exactly the same position become one vertex.
 class VertexMerger {
@@ -50,15 +50,15 @@ Mesh finish(const VertexMerger& merger, const FaceList& faces, const std::string
 }
 
 Mesh parse_binary(std::string_view bytes, const std::string& source) {
-  const uint64_t count = load<uint32_t>(bytes.data() + kHeaderBytes - 4, false);
-  const uint64_t room = (bytes.size() - kHeaderBytes) / kFaceBytes;
+  const uint64_t count = load<uint32_t>(bytes.data() + kStlHeaderBytes - 4, false);
+  const uint64_t room = (bytes.size() - kStlHeaderBytes) / kFaceBytes;
   US_CHECK(count <= room, source, ": the header says ", count, " triangles, the file has ", room);
   VertexMerger merger;
   merger.reserve(3 * count);
   FaceList faces;
   faces.reserve(count);
   for (uint64_t i = 0; i < count; ++i) {
-    const char* at = bytes.data() + kHeaderBytes + i * kFaceBytes + 12;  // behind the normal
+    const char* at = bytes.data() + kStlHeaderBytes + i * kFaceBytes + 12;  // behind the normal
     std::array<int64_t, 3> corners{};
     for (auto& corner : corners) {
       corner = merger.add({load<float>(at, false), load<float>(at + 4, false), load<float>(at + 8, false)});
@@ -103,10 +103,10 @@ Mesh parse_ascii(std::string_view bytes, const std::string& source) {
 
 bool is_ascii(std::string_view bytes) {
   if (lower_case(bytes.substr(0, 5)) != "solid") return false;
-  if (bytes.size() < kHeaderBytes) return true;
+  if (bytes.size() < kStlHeaderBytes) return true;
   // Some binary files begin with "solid" too: their size gives them away, or a zero in what should be text.
-  const uint64_t count = load<uint32_t>(bytes.data() + kHeaderBytes - 4, false);
-  if (bytes.size() == kHeaderBytes + count * kFaceBytes) return false;
+  const uint64_t count = load<uint32_t>(bytes.data() + kStlHeaderBytes - 4, false);
+  if (bytes.size() == kStlHeaderBytes + count * kFaceBytes) return false;
   return bytes.substr(0, 512).find('\0') == bytes.npos;
 }
 
@@ -116,7 +116,7 @@ bool is_ascii(std::string_view bytes) {
 /// naming `source`.
 Mesh parse_stl(std::string_view bytes, const std::string& source) {
   if (is_ascii(bytes)) return parse_ascii(bytes, source);
-  US_CHECK(bytes.size() >= kHeaderBytes, source, ": is too short for an STL file");
+  US_CHECK(bytes.size() >= kStlHeaderBytes, source, ": is too short for an STL file");
   return parse_binary(bytes, source);
 }
 

@@ -12,7 +12,7 @@ double bone_asymmetry(const MetricSequence& p, const MetricSequence& q, double f
 namespace {
 
 using Sequence = MetricSequence;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 constexpr unsigned kOfJoints = kNeedsJoints | kNeedsTruth, kOfRotations = kNeedsRotations | kNeedsTruth,
                    kOfSource = kNeedsSource | kNeedsTruth;
 
@@ -36,7 +36,7 @@ Joints bend(const JointSequence& joints, size_t t, double fps) {
 }
 
 std::vector<float> acceleration_errors(const Sequence& p, const Sequence& q, double fps) {
-  std::vector<float> values(p.joints.size(), kNan);
+  std::vector<float> values(p.joints.size(), kNoValue);
   for (size_t t = 1; t + 1 < values.size(); ++t)
     values[t] = (bend(p.joints, t, fps) - bend(q.joints, t, fps)).rowwise().norm().mean();
   return values;
@@ -166,10 +166,10 @@ bool is_known(const Metric& metric, const MetricSequence& p, const MetricSequenc
 
 std::vector<float> per_frame_figures(const Metric& metric, const MetricSequence& p, const MetricSequence& q,
                                      size_t frames, double fps) {
-  std::vector<float> values(frames, kNan);
+  std::vector<float> values(frames, kNoValue);
   if (metric.series) {
     values = metric.series(p, q, fps);
-    values.resize(frames, kNan);
+    values.resize(frames, kNoValue);
     return values;
   }
   const auto after = static_cast<size_t>(metric.after);

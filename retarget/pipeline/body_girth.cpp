@@ -11,12 +11,12 @@
 namespace understudy {
 namespace {
 
-constexpr int kLooked = 500;       // points of a scan
-constexpr float kNewest = 90;      // frames that the running mean remembers
-constexpr float kDoubt = 0.06f;    // of the leg: an arm this near as well leaves it open what a point is of
-constexpr float kFarthest = 2.5f;  // human radii: what is further out is no skin
+constexpr int kLooked = 500;        // points of a scan
+constexpr float kGirthFrames = 90;  // frames that the running mean remembers
+constexpr float kDoubt = 0.06f;     // of the leg: an arm this near as well leaves it open what a point is of
+constexpr float kFarthest = 2.5f;   // human radii: what is further out is no skin
 
-enum Group { Trunk, Leg, LeftArm, RightArm };
+enum Group { Trunk, Legs, LeftArm, RightArm };
 
 /// A bone and what is around it. Radius: a human's, of the leg.
 struct Bone {
@@ -33,20 +33,20 @@ constexpr std::array<Bone, 19> kBones = {{
     {Spine2, Spine3, Trunk, 0.15f, 2, 1, 0.0f, 1.0f},
     {Spine3, Neck, Trunk, 0.15f, 3, 1, 0.0f, 0.7f},
     {Head, -1, Trunk, 0.11f, 4, 1, -0.1f, 0.8f},
-    {LeftHip, LeftKnee, Leg, 0.1f, 5, 2, 0.1f, 1.0f},
-    {RightHip, RightKnee, Leg, 0.1f, 7, 2, 0.1f, 1.0f},
+    {LeftHip, LeftKnee, Legs, 0.1f, 5, 2, 0.1f, 1.0f},
+    {RightHip, RightKnee, Legs, 0.1f, 7, 2, 0.1f, 1.0f},
     {LeftShoulder, LeftElbow, LeftArm, 0.055f, 9, 1, 0.3f, 1.0f},
     {RightShoulder, RightElbow, RightArm, 0.055f, 10, 1, 0.3f, 1.0f},
     {LeftElbow, LeftWrist, LeftArm, 0.042f, 11, 1, 0.0f, 0.9f},
     {RightElbow, RightWrist, RightArm, 0.042f, 12, 1, 0.0f, 0.9f},
     {LeftWrist, -1, LeftArm, 0.035f, -1, 0, 0, 1},
     {RightWrist, -1, RightArm, 0.035f, -1, 0, 0, 1},
-    {LeftKnee, LeftAnkle, Leg, 0.06f, -1, 0, 0, 1},
-    {RightKnee, RightAnkle, Leg, 0.06f, -1, 0, 0, 1},
-    {LeftAnkle, LeftFoot, Leg, 0.05f, -1, 0, 0, 1},
-    {RightAnkle, RightFoot, Leg, 0.05f, -1, 0, 0, 1},
-    {LeftFoot, -1, Leg, 0.03f, -1, 0, 0, 1},
-    {RightFoot, -1, Leg, 0.03f, -1, 0, 0, 1},
+    {LeftKnee, LeftAnkle, Legs, 0.06f, -1, 0, 0, 1},
+    {RightKnee, RightAnkle, Legs, 0.06f, -1, 0, 0, 1},
+    {LeftAnkle, LeftFoot, Legs, 0.05f, -1, 0, 0, 1},
+    {RightAnkle, RightFoot, Legs, 0.05f, -1, 0, 0, 1},
+    {LeftFoot, -1, Legs, 0.03f, -1, 0, 0, 1},
+    {RightFoot, -1, Legs, 0.03f, -1, 0, 0, 1},
 }};
 
 constexpr size_t kSpineBones = 4;  // the first
@@ -171,7 +171,7 @@ void RunningGirth::push(const BodyGirth& seen) {
   for (size_t s = 0; s < count_.size(); ++s)
     for (size_t d = 0; d < BodyGirth::kDirections; ++d) {
       if (seen.radius[s][d] <= 0) continue;
-      count_[s][d] = std::min(count_[s][d] + 1, kNewest);
+      count_[s][d] = std::min(count_[s][d] + 1, kGirthFrames);
       mean_.radius[s][d] += (seen.radius[s][d] - mean_.radius[s][d]) / count_[s][d];
     }
 }

@@ -16,9 +16,9 @@ namespace {
 constexpr int kTrunkSamples = 600, kHandSamples = 40, kArmSamples = 40;
 constexpr int kHandActors = 14, kForearmActors = 6;  // what is kept out and held
 constexpr int kInfluences = 4;
-constexpr float kNewest = 90;    // frames that the mean bone lengths remember
-constexpr float kReach = 0.15f;  // metres around a hand in which surfaces count
-constexpr float kBlur = 0.02f;   // metres over which neighbouring samples are blended
+constexpr float kMeanFrames = 90;  // frames that the mean bone lengths remember
+constexpr float kReach = 0.15f;    // metres around a hand in which surfaces count
+constexpr float kBlur = 0.02f;     // metres over which neighbouring samples are blended
 
 /// The vertices, or an even share of them where they are very many.
 std::vector<int> thinned(const std::vector<int>& vertices) {
@@ -148,7 +148,7 @@ void HandContacts::reset() {
 }
 
 void HandContacts::learn(const Joints& source, const std::optional<BodyGirth>& girth) {
-  frames_ = std::min(frames_ + 1, kNewest);
+  frames_ = std::min(frames_ + 1, kMeanFrames);
   lengths_ += (bone_lengths(source) - lengths_) / frames_;
   if (girth) girth_.push(*girth);
 }

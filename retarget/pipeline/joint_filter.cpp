@@ -10,10 +10,10 @@ namespace understudy {
 
 namespace {
 
-using Group = std::vector<int>;  // joints of the left side; kMirror has the other
+using SwapGroup = std::vector<int>;  // joints of the left side; kMirror has the other
 
-const std::array<Group, 4>& swap_groups() {
-  static const std::array<Group, 4> groups = {
+const std::array<SwapGroup, 4>& swap_groups() {
+  static const std::array<SwapGroup, 4> groups = {
       {{LeftHip, LeftKnee, LeftAnkle, LeftFoot, LeftCollar, LeftShoulder, LeftElbow, LeftWrist},
        {LeftHip, LeftKnee, LeftAnkle, LeftFoot},
        {LeftKnee, LeftAnkle, LeftFoot},
@@ -38,7 +38,7 @@ void JointFilter::reset() {
 void JointFilter::repair_swaps(Extraction& frame) {
   if (frames_ == 0) return;
   const Joints predicted = frames_ > 1 ? Joints(last_ + 0.5f * (last_ - before_last_)) : last_;
-  for (const Group& group : swap_groups()) {
+  for (const SwapGroup& group : swap_groups()) {
     float kept = 0, exchanged = 0, confidence = 0;
     for (const int j : group) {
       const int m = kMirror[j];

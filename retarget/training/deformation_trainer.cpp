@@ -6,7 +6,7 @@
 namespace understudy::training {
 namespace {
 
-Schedule schedule() {
+Schedule deformation_schedule() {
   Schedule schedule;
   schedule.rate = 2e-3;
   schedule.last_rate = 0.005;
@@ -33,7 +33,7 @@ DeformationBatch to_device(DeformationBatch batch, const torch::Device& device) 
 class DeformationTrainer final : public TrainingRun {
  public:
   explicit DeformationTrainer(const nn::DeformationTrainOptions& options)
-      : TrainingRun(options, options.kNetwork, schedule()),
+      : TrainingRun(options, options.kNetwork, deformation_schedule()),
         train_(load_training_data(options.data, Split::Train)),
         evaluator_(load_training_data(options.data, Split::Dev)),
         sampler_(train_, data_options(options), options.seed) {

@@ -5,7 +5,7 @@
 namespace understudy::training {
 namespace {
 
-constexpr int64_t kShortest = 15;  // frames that the convolutions need
+constexpr int64_t kShortestInput = 15;  // frames that the convolutions need
 
 torch::nn::Conv1d halving(int64_t inputs, int64_t outputs) {
   return torch::nn::Conv1d(torch::nn::Conv1dOptions(inputs, outputs, 4).stride(2));
@@ -32,7 +32,7 @@ torch::Tensor MotionDiscriminatorImpl::forward(const torch::Tensor& joints, cons
   const auto velocity = 10 * torch::matmul(step, heading.slice(1, 1)).flatten(2);  // [B, T-1, 66]
   const auto body = rest.flatten(1).unsqueeze(1).expand({-1, frames - 1, -1});
   auto x = torch::cat({place.slice(1, 1), velocity, body}, -1).transpose(1, 2);  // [B, 198, T-1]
-  if (const int64_t missing = kShortest - x.size(2); missing > 0)
+  if (const int64_t missing = kShortestInput - x.size(2); missing > 0)
     x = torch::cat({x, x.slice(2, -1).expand({-1, -1, missing})}, 2);  // the last frame stays
   const auto relu = [](const torch::Tensor& t) { return torch::leaky_relu(t, 0.2); };
   const auto y = relu(third(relu(second(relu(first(x))))));  // [B, width, T/4]

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kDevNoise = 0.02f;  // metres
 
-Schedule schedule() {
+Schedule motion_schedule() {
   Schedule schedule;
   schedule.most_gradient = 0.1;
   return schedule;
@@ -57,7 +57,7 @@ class MotionTrainer final : public TrainingRun {
 };
 
 MotionTrainer::MotionTrainer(const nn::MotionTrainOptions& options)
-    : TrainingRun(options, options.kNetwork, schedule()),
+    : TrainingRun(options, options.kNetwork, motion_schedule()),
       form_(form_of(options)),
       rng_(options.seed),
       data_(load_training_data(options.data, Split::Train)),

@@ -10,9 +10,9 @@
 namespace understudy::training {
 namespace {
 
-constexpr int kScansAStep = 24, kDevScans = 120;
+constexpr int kScansAStep = 24, kDevCrops = 120;
 
-Schedule schedule() {
+Schedule part_schedule() {
   Schedule schedule;
   schedule.warm_up = 200;
   schedule.average_decay = 0.998;
@@ -23,11 +23,11 @@ Schedule schedule() {
 class PartTrainer final : public TrainingRun {
  public:
   explicit PartTrainer(const nn::PartTrainOptions& options)
-      : TrainingRun(options, options.kNetwork, schedule()),
+      : TrainingRun(options, options.kNetwork, part_schedule()),
         scans_(options.batch > 0 ? options.batch : kScansAStep),
         seed_(options.seed),
         train_(load_training_data(options.data, Split::Train)),
-        dev_(PartSampler(load_training_data(options.data, Split::Dev), 12345).next(kDevScans)) {
+        dev_(PartSampler(load_training_data(options.data, Split::Dev), 12345).next(kDevCrops)) {
     net_->to(device());
     own(net_.ptr(), average_.ptr(),
         std::make_unique<torch::optim::AdamW>(net_->parameters(),

@@ -30,7 +30,7 @@ struct Replica {
   std::exception_ptr failure;
 };
 
-Schedule schedule(const nn::SkeletonTrainOptions& options) {
+Schedule skeleton_schedule(const nn::SkeletonTrainOptions& options) {
   Schedule schedule;
   schedule.rate = options.init.empty() ? kLearningRate : kContinuedRate;
   schedule.warm_up = 400;
@@ -70,7 +70,7 @@ class SkeletonTrainer final : public TrainingRun {
 };
 
 SkeletonTrainer::SkeletonTrainer(const nn::SkeletonTrainOptions& options)
-    : TrainingRun(options, options.kNetwork, schedule(options)),
+    : TrainingRun(options, options.kNetwork, skeleton_schedule(options)),
       options_(options),
       train_(load_training_data(options.data, Split::Train)),
       dev_(load_training_data(options.data, Split::Dev)),

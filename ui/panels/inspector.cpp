@@ -228,7 +228,7 @@ void draw_target_facts(const app::TakeState& state, Ui& ui) {
   for (const std::string& warning : state.target->warnings) warn(ui, warning);
 }
 
-void draw_target(const app::Session& session, PanelContext& context) {
+void draw_target_facts(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::Take* take = selected_take(session);
   if (take == nullptr || !section(ui, "inspector.target", "Target")) return;
@@ -322,7 +322,7 @@ void draw_method(const app::Session& session, PanelContext& context) {
 void draw_inspector(const app::Session& session, PanelContext& context) {
   draw_source(session, context);
   draw_takes(session, context);
-  draw_target(session, context);
+  draw_target_facts(session, context);
   draw_rig(session, context);
   draw_method(session, context);
 }

@@ -24,10 +24,6 @@ constexpr float kDabStep = 0.35f;           // of the brush's radius, between da
 constexpr double kSettleSeconds = 1.5;      // an edit shows within this time, or never
 constexpr Eigen::Index kMostPosed = 60000;  // vertices posed for a preview on the thread that draws
 
-const app::TakeState* take_of(const Session& session, int k) {
-  return at_or_null(session.takes, k);
-}
-
 const Pose* pose_of(const Session& session, int take, int frame) {
   const app::TakeState* state = take_of(session, take);
   return state != nullptr ? at_or_null(state->shown.poses, frame) : nullptr;

@@ -12,10 +12,6 @@ using app::Session;
 constexpr size_t kAsked = 3;  // frames asked for that may still be shown when they come late
 constexpr int kAhead = 4;     // frames made before playback comes to them
 
-const app::TakeState* take_of(const Session& session, int k) {
-  return at_or_null(session.takes, k);
-}
-
 bool wants_scan(const Session& session, const PaneContent& pane) {
   return pane.source && (session.view.source.surface || session.tool == app::Tool::Crop);
 }
@@ -33,12 +29,6 @@ app::FrameCache::Wanted wanted(const Session& session, int k, int frame) {
   return what;
 }
 
-int frames_of(const Session& session, const PaneContent& pane) {
-  if (pane.source || pane.takes.empty()) return session.source.frames.size();
-  const app::TakeState* take = take_of(session, pane.takes[0]);
-  return take != nullptr ? ssize(take->joints) : 0;
-}
-
 std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCache& cache,
                                            const PaneContent& pane, int frame) {
   const app::View& view = session.view;
@@ -46,7 +36,7 @@ std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCac
   for (int side = -1; side <= 1; side += 2)
     for (int i = 1; i <= view.ghost_count; ++i) {
       const int f = frame + side * i * view.ghost_step;
-      if (f < 0 || f >= frames_of(session, pane)) continue;
+      if (f < 0 || f >= frame_count(session, pane)) continue;
       PanePictures::Ghost ghost;
       ghost.frame = f;
       if (view.source.ghosts && wants_scan(session, pane)) ghost.scan = cache.scan(f);
@@ -140,7 +130,7 @@ void PictureKeeper::forget_others(const Session& session, const PaneContent& pan
 }
 
 void prefetch(const Session& session, app::FrameCache& cache, const PaneContent& pane) {
-  const int frame = pane_frame(session, pane), count = frames_of(session, pane);
+  const int frame = pane_frame(session, pane), count = frame_count(session, pane);
   if (frame < 0) return;
   const app::FrameRange range = play_range(session.playback, count);
   for (int i = 1; i <= kAhead; ++i) {

@@ -41,12 +41,6 @@ const app::TakeState* state_of_take(const Session& session, const PaneContent& p
   return pane.takes.empty() ? nullptr : at_or_null(session.takes, pane.takes[0]);
 }
 
-int frames_of(const Session& session, const PaneContent& pane) {
-  if (pane.source) return session.source.frames.size();
-  const app::TakeState* take = state_of_take(session, pane);
-  return take != nullptr ? ssize(take->joints) : 0;
-}
-
 /// The T-pose is seen where the person would be.
 Vec3 rest_offset(const Session& session, const PaneContent& pane) {
   const Target& target = *shown_target(*state_of_take(session, pane));
@@ -64,6 +58,16 @@ Vec3 rest_offset(const Session& session, const PaneContent& pane) {
 }
 
 }  // namespace
+
+const app::TakeState* take_of(const Session& session, int take) {
+  return at_or_null(session.takes, take);
+}
+
+int frame_count(const Session& session, const PaneContent& pane) {
+  if (pane.source) return session.source.frames.size();
+  const app::TakeState* take = state_of_take(session, pane);
+  return take != nullptr ? ssize(take->joints) : 0;
+}
 
 std::vector<PaneContent> panes_of(const Session& session) {
   const int takes = session.takes.size();
@@ -118,7 +122,7 @@ std::string pane_hint(const Session& session, const PaneContent& pane) {
 }
 
 int pane_frame(const Session& session, const PaneContent& pane) {
-  const int count = frames_of(session, pane);
+  const int count = frame_count(session, pane);
   const int shown = shown_frame(session);
   if (shown < 0 && count > 0) return shown_frame(session.playback, count);  // the selected take has none yet
   return std::min(shown, count - 1);

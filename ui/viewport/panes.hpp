@@ -33,6 +33,10 @@ std::string pane_title(const app::Session& session, const PaneContent& pane);
 /// Why the pane is empty, for the user; empty when it is not.
 std::string pane_hint(const app::Session& session, const PaneContent& pane);
 
+/// A take's state; null where there is no such take.
+const app::TakeState* take_of(const app::Session& session, int take);
+/// How many frames a pane has to show.
+int frame_count(const app::Session& session, const PaneContent& pane);
 /// The frame a pane shows: the current frame, or the pane's last one if that is earlier; -1 without any.
 int pane_frame(const app::Session& session, const PaneContent& pane);
 /// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited, and before

@@ -28,10 +28,6 @@ std::shared_ptr<const Part> part_of(const std::shared_ptr<const Whole>& whole, c
   return {whole, &part};
 }
 
-const app::TakeState* take_of(const Session& session, int k) {
-  return at_or_null(session.takes, k);
-}
-
 template <class Array>
 void append(std::vector<float>& values, const Array& array) {
   values.insert(values.end(), array.data(), array.data() + array.size());

@@ -7,9 +7,9 @@
 namespace understudy::nn {
 namespace {
 
-constexpr int64_t kBones = kJointCount - 1;
-constexpr int64_t kShape = 3 * kBones + 3 * kBones + kBones;  // places, directions, lengths
-constexpr int64_t kSourceFeatures = kShape + 3 * kBones + 3;  // and velocities, turning, the interval
+constexpr int64_t kMotionBones = kJointCount - 1;
+constexpr int64_t kShape = 3 * kMotionBones + 3 * kMotionBones + kMotionBones;  // places, directions, lengths
+constexpr int64_t kSourceFeatures = kShape + 3 * kMotionBones + 3;  // and velocities, turning, the interval
 constexpr int64_t kRestWidth = 48;
 constexpr double kRate = 30;  // velocities are per frame at 30 frames/s
 

@@ -14,14 +14,14 @@
 namespace understudy {
 namespace {
 
-struct Walker {
+struct EditedWalker {
   ShapedBody shape = builtin_person();
   EditedBody body = EditedBody::from(shape.vertices, shape.joints);
   Motion walk = builtin_motion("walk", shape.joints);
 };
 
-const Walker& walker() {
-  static const Walker w;
+const EditedWalker& walker() {
+  static const EditedWalker w;
   return w;
 }
 

@@ -12,7 +12,7 @@ namespace understudy {
 namespace {
 
 template <class T>
-std::string bytes_of(const std::vector<T>& values) {
+std::string array_bytes(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
@@ -26,7 +26,7 @@ NpyArray parsed(const std::string& descr, const std::string& shape, const std::s
 
 TEST(Npz, IntegersAbove2To24AreReadWithoutLoss) {
   const std::vector<int32_t> faces = {16777216, 16777217, 16777219};
-  const IntegerMatrix read = parsed("<i4", "(1, 3)", bytes_of(faces)).integers(3, "x");
+  const IntegerMatrix read = parsed("<i4", "(1, 3)", array_bytes(faces)).integers(3, "x");
   EXPECT_EQ(read(0, 0), 16777216);
   EXPECT_EQ(read(0, 1), 16777217);
   EXPECT_EQ(read(0, 2), 16777219);
@@ -35,14 +35,16 @@ TEST(Npz, IntegersAbove2To24AreReadWithoutLoss) {
 TEST(Npz, IntegersOfEightBytesAreReadWithoutLoss) {
   const int64_t most = 9000000000000000;
   const IntegerMatrix read =
-      parsed("<i8", "(3,)", bytes_of(std::vector<int64_t>{most - 1, -5, int64_t{1} << 62})).integers(1, "x");
+      parsed("<i8", "(3,)", array_bytes(std::vector<int64_t>{most - 1, -5, int64_t{1} << 62}))
+          .integers(1, "x");
   EXPECT_EQ(read(0, 0), most - 1);
   EXPECT_EQ(read(1, 0), -5);
   EXPECT_EQ(read(2, 0), -1);
 }
 
 TEST(Npz, IntegersInFortranOrderStandWhereTheFloatsStand) {
-  const NpyArray array = parsed("<u4", "(2, 3)", bytes_of(std::vector<uint32_t>{0, 3, 1, 4, 2, 5}), "True");
+  const NpyArray array =
+      parsed("<u4", "(2, 3)", array_bytes(std::vector<uint32_t>{0, 3, 1, 4, 2, 5}), "True");
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(array.values[i], static_cast<float>(i));
     EXPECT_EQ(array.whole[i], i);
@@ -51,7 +53,7 @@ TEST(Npz, IntegersInFortranOrderStandWhereTheFloatsStand) {
 
 TEST(Npz, FloatsServeAsIntegersAndWhatIsNoNumberIsNone) {
   const IntegerMatrix read =
-      parsed("<f4", "(3,)", bytes_of(std::vector<float>{7, 2.5f, NAN})).integers(1, "x");
+      parsed("<f4", "(3,)", array_bytes(std::vector<float>{7, 2.5f, NAN})).integers(1, "x");
   EXPECT_EQ(read(0, 0), 7);
   EXPECT_EQ(read(1, 0), 2);
   EXPECT_EQ(read(2, 0), -1);

@@ -10,7 +10,7 @@
 namespace understudy {
 namespace {
 
-Joints standing() {
+Joints standing_person() {
   Joints x = Joints::Zero();
   for (int j = 0; j < kJointCount; ++j)
     x.row(j) << (kMirror[j] == j ? 0.f : kMirror[j] > j ? .2f : -.2f), .08f * j, 0;
@@ -19,7 +19,7 @@ Joints standing() {
 
 FrameFailures evaluated(const JointSequence& seen, const JointSequence& performed,
                         const Rotations& rotations) {
-  const JointSequence truth(3, standing());
+  const JointSequence truth(3, standing_person());
   const std::vector<Rotations> turned(3, rotations), straight(3, identity_rotations());
   return failures_of({seen, truth, performed, truth, turned, straight, 30}).back();
 }
@@ -30,7 +30,7 @@ FrameFailures expected(std::initializer_list<Failure> failures) {
   return frame;
 }
 
-const JointSequence kStill(3, standing());
+const JointSequence kStill(3, standing_person());
 
 TEST(Failures, FindsNoneInTheTruth) {
   EXPECT_EQ(evaluated(kStill, kStill, identity_rotations()), expected({}));

@@ -28,12 +28,12 @@ const ShapedBody& person(float girth, float stature = 1.70f) {
 }
 
 /// A source, a target, and what the target does.
-struct Stage {
+struct HandStage {
   ShapedBody source, target;
   HandContacts hands;
   HandContact evaluator;
 
-  Stage(ShapedBody from, ShapedBody onto)
+  HandStage(ShapedBody from, ShapedBody onto)
       : source(std::move(from)),
         target(std::move(onto)),
         evaluator(target.vertices, target.faces, target.joints) {
@@ -63,7 +63,7 @@ Pose hand_on_belly(const ShapedBody& body) {
 }
 
 TEST(HandContacts, AHandOnTheBellyIsOnTheBellyOfAHeavierPerson) {
-  Stage stage(person(0.8f), person(1.6f));
+  HandStage stage(person(0.8f), person(1.6f));
   const Pose copied = hand_on_belly(stage.source), kept = stage.settled(copied);
   EXPECT_GT(stage.buried(copied), 0.15);
   EXPECT_LT(stage.buried(kept), 0.3 * stage.buried(copied));
@@ -71,7 +71,7 @@ TEST(HandContacts, AHandOnTheBellyIsOnTheBellyOfAHeavierPerson) {
 }
 
 TEST(HandContacts, AHandOnTheBellyIsOnTheBellyOfAThinnerPerson) {
-  Stage stage(person(1.6f), person(0.8f));
+  HandStage stage(person(1.6f), person(0.8f));
   const Pose copied = hand_on_belly(stage.source), kept = stage.settled(copied);
   EXPECT_GT(stage.gaps(copied)[0][TouchTorso], 0.04f);
   EXPECT_LT(stage.gaps(kept)[0][TouchTorso], 0.02f);
@@ -79,7 +79,7 @@ TEST(HandContacts, AHandOnTheBellyIsOnTheBellyOfAThinnerPerson) {
 }
 
 TEST(HandContacts, HandsThatTouchEachOtherDoSoAfterATransferThatTookThemApartAndMeetHalfWay) {
-  Stage stage(person(1.0f), person(1.0f));
+  HandStage stage(person(1.0f), person(1.0f));
   const Vec3 middle = front_of(stage.source, 0.2f) + Vec3(0, 0.05f, 0.12f);
   Pose pose;
   place_hand(stage.source, 0, middle + Vec3(0.075f, 0, 0), pose);  // the fingertips meet
@@ -96,7 +96,7 @@ TEST(HandContacts, HandsThatTouchEachOtherDoSoAfterATransferThatTookThemApartAnd
 }
 
 TEST(HandContacts, TheSamePersonDoesTheSame) {
-  Stage stage(person(1.0f), person(1.0f));
+  HandStage stage(person(1.0f), person(1.0f));
   const Pose copied = hand_on_belly(stage.source), kept = stage.settled(copied);
   const Joints before = forward_kinematics(stage.target.joints, copied).joints,
                after = forward_kinematics(stage.target.joints, kept).joints;
@@ -104,13 +104,13 @@ TEST(HandContacts, TheSamePersonDoesTheSame) {
 }
 
 TEST(HandContacts, ChangesNothingFarFromTheBody) {
-  Stage stage(person(0.8f), person(1.6f));
+  HandStage stage(person(0.8f), person(1.6f));
   const Pose kept = stage.settled(Pose{});
   for (const Mat3& R : kept.local) EXPECT_EQ(R, Mat3(Mat3::Identity()));
 }
 
 TEST(HandContacts, ChangesArmsOnlyAndKeepsTheHandsRotations) {
-  Stage stage(person(1.6f), person(0.8f));
+  HandStage stage(person(1.6f), person(0.8f));
   const Pose copied = hand_on_belly(stage.source), kept = stage.settled(copied);
   const auto before = forward_kinematics(stage.target.joints, copied),
              after = forward_kinematics(stage.target.joints, kept);
@@ -121,7 +121,7 @@ TEST(HandContacts, ChangesArmsOnlyAndKeepsTheHandsRotations) {
 }
 
 TEST(HandContacts, WithoutScansASourceIsAsThickAsAHuman) {
-  Stage stage(person(1.0f), person(1.7f));
+  HandStage stage(person(1.0f), person(1.7f));
   const Pose copied = hand_on_belly(stage.source);
   const Joints seen = forward_kinematics(stage.source.joints, copied).joints;
   Pose kept;
@@ -143,7 +143,7 @@ std::vector<Pose> strokes(const ShapedBody& body) {
 }
 
 TEST(HandContacts, NothingPops) {
-  Stage stage(person(1.6f), person(0.8f));
+  HandStage stage(person(1.6f), person(0.8f));
   float most = 0, most_before = 0;
   std::array<Vec3, 3> path, path_before;
   int t = 0;
@@ -160,7 +160,7 @@ TEST(HandContacts, NothingPops) {
 }
 
 TEST(HandContacts, LooksOnlyBackAndStartsAnew) {
-  Stage stage(person(1.6f), person(0.8f));
+  HandStage stage(person(1.6f), person(0.8f));
   const auto poses = strokes(stage.source);
   std::vector<Pose> all;
   for (const Pose& pose : poses) all.push_back(stage.push(pose));

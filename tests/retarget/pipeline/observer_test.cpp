@@ -8,7 +8,7 @@ namespace understudy {
 namespace {
 
 using namespace fixtures;
-constexpr float kFrame = 1 / 30.0f;
+constexpr float kInterval = 1 / 30.0f;
 
 /// Keeps what it was told of the frames before.
 class RememberingExtractor final : public SkeletonExtractor {
@@ -31,7 +31,7 @@ struct Watch {
   Mesh scan(int i) const { return scan_of(body, human_rest(), dance(static_cast<float>(i) / 30)); }
   Observation see(int i, float confidence = 1) {
     extractor->telltale.confidence = confidence;
-    return observer.observe(scan(i), kFrame);
+    return observer.observe(scan(i), kInterval);
   }
 };
 
@@ -61,7 +61,7 @@ TEST(Observer, TellsNothingOfAFrameThatIsNotBelieved) {
 TEST(Observer, ForgetsThePastOverAPause) {
   Watch watch;
   for (int i = 0; i < 2; ++i) watch.see(i);
-  for (int i = 0; i < 3; ++i) watch.observer.skip("nothing there", kFrame);
+  for (int i = 0; i < 3; ++i) watch.observer.skip("nothing there", kInterval);
   watch.see(5);
   EXPECT_TRUE(watch.extractor->told[2].last());  // a short one
   for (int i = 0; i < 10; ++i) watch.see(6 + i, 0.02f);
@@ -75,11 +75,11 @@ TEST(Observer, ForgetsThePastOverAPause) {
 
 TEST(Observer, SaysWhyThereIsNoSkeletonAndHasNoConfidenceThen) {
   Watch watch;
-  const Observation few = watch.observer.observe(Mesh{Points::Zero(20, 3)}, kFrame);
+  const Observation few = watch.observer.observe(Mesh{Points::Zero(20, 3)}, kInterval);
   EXPECT_EQ(few.problem, "the scan has 20 usable points");
   EXPECT_EQ(few.points, 20);
   EXPECT_EQ(few.confidence.maxCoeff(), 0);
-  const Observation skipped = watch.observer.skip("it cannot be read", kFrame);
+  const Observation skipped = watch.observer.skip("it cannot be read", kInterval);
   EXPECT_EQ(skipped.problem, "it cannot be read");
   EXPECT_EQ(skipped.confidence.maxCoeff(), 0);
 }
@@ -91,14 +91,14 @@ TEST(Observer, MeasuresSolesAndGirthOnTheScan) {
   EXPECT_EQ(seen.sole_height, sole_height(seen.joints, scan.vertices));
   ASSERT_TRUE(seen.girth);
   EXPECT_EQ(seen.girth->radius, measure_girth(seen, scan.vertices).radius);
-  const Observation told = watch.observer.observe(fixtures::seen(seen.joints), scan, kFrame);
+  const Observation told = watch.observer.observe(fixtures::seen(seen.joints), scan, kInterval);
   EXPECT_EQ(told.sole_height, seen.sole_height);
   EXPECT_EQ(told.girth->radius, seen.girth->radius);
-  EXPECT_FALSE(watch.observer.observe(fixtures::seen(seen.joints), kFrame).girth);
+  EXPECT_FALSE(watch.observer.observe(fixtures::seen(seen.joints), kInterval).girth);
 }
 
 TEST(Observer, WantsAnExtractorForScans) {
-  EXPECT_THROW(Observer().observe(Mesh{Points::Zero(100, 3)}, kFrame), Error);
+  EXPECT_THROW(Observer().observe(Mesh{Points::Zero(100, 3)}, kInterval), Error);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace understudy {
 namespace {
 
 using namespace fixtures;
-constexpr float kFrame = 1 / 30.0f;
+constexpr float kStep = 1 / 30.0f;
 
 /// Skins rigidly, or refuses to.
 class MoodyDeformer final : public Deformer {
@@ -52,7 +52,7 @@ class IdentityStyle final : public MotionStyle {
   int& frames_;
 };
 
-struct Stage {
+struct PerformerStage {
   Joints rest = other_body();
   PointBody target{rest};
   std::shared_ptr<MoodyDeformer> deformer = std::make_shared<MoodyDeformer>(target.weights);
@@ -63,7 +63,7 @@ struct Stage {
     observation.joints = forward_kinematics(human_rest(), dance(static_cast<float>(i) / 30)).joints;
     return observation;
   }
-  PerformedFrame push(int i) { return performer.perform(seen(i), kFrame); }
+  PerformedFrame push(int i) { return performer.perform(seen(i), kStep); }
 };
 
 bool same_bytes(const Points& a, const Points& b) {
@@ -72,13 +72,13 @@ bool same_bytes(const Points& a, const Points& b) {
 }
 
 TEST(Performer, ARefusedFrameLeavesNoTrace) {
-  Stage refusing, skipping;
+  PerformerStage refusing, skipping;
   for (int i = 0; i < 30; ++i) {
     const bool bad = i % 7 == 3;
     if (bad) refusing.deformer->fail_once();
     const PerformedFrame a = refusing.push(i);
     const PerformedFrame b =
-        bad ? skipping.performer.perform(without_skeleton("left out"), kFrame) : skipping.push(i);
+        bad ? skipping.performer.perform(without_skeleton("left out"), kStep) : skipping.push(i);
     EXPECT_EQ(a.flagged, bad);
     EXPECT_TRUE(same_bytes(a.vertices, b.vertices)) << i;
     EXPECT_EQ(a.source.joints, b.source.joints) << i;
@@ -86,7 +86,7 @@ TEST(Performer, ARefusedFrameLeavesNoTrace) {
 }
 
 TEST(Performer, AnIdentityStyleChangesNoByte) {
-  Stage plain, styled;
+  PerformerStage plain, styled;
   int frames = 0;
   styled.performer.add_style(std::make_unique<IdentityStyle>(frames));
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(same_bytes(plain.push(i).vertices, styled.push(i).vertices)) << i;
@@ -94,7 +94,7 @@ TEST(Performer, AnIdentityStyleChangesNoByte) {
 }
 
 TEST(Performer, AStyleForgetsARefusedFrameAndStartsAnew) {
-  Stage stage;
+  PerformerStage stage;
   int frames = 0;
   stage.performer.add_style(std::make_unique<IdentityStyle>(frames));
   stage.push(0);
@@ -106,14 +106,14 @@ TEST(Performer, AStyleForgetsARefusedFrameAndStartsAnew) {
 }
 
 TEST(Performer, AFrameThatFailsHasNoConfidenceAndTheLastSkeleton) {
-  Stage stage;
+  PerformerStage stage;
   const PerformedFrame good = stage.push(0);
   EXPECT_EQ(good.confidence.minCoeff(), 1);
-  Observation weak = Stage::seen(1);
+  Observation weak = PerformerStage::seen(1);
   weak.confidence.setConstant(0.02f);
   stage.deformer->fail_once();
-  for (const PerformedFrame& bad : {stage.push(1), stage.performer.perform(weak, kFrame),
-                                    stage.performer.perform(without_skeleton("nobody there"), kFrame)}) {
+  for (const PerformedFrame& bad : {stage.push(1), stage.performer.perform(weak, kStep),
+                                    stage.performer.perform(without_skeleton("nobody there"), kStep)}) {
     EXPECT_TRUE(bad.flagged);
     EXPECT_NE(bad.reason, "");
     EXPECT_EQ(bad.confidence.maxCoeff(), 0);
@@ -122,10 +122,10 @@ TEST(Performer, AFrameThatFailsHasNoConfidenceAndTheLastSkeleton) {
 }
 
 TEST(Performer, WithoutATargetItRepairsAndSmoothsAlone) {
-  Stage stage;
+  PerformerStage stage;
   Performer alone;
   for (int i = 0; i < 20; ++i) {
-    const PerformedFrame frame = alone.perform(Stage::seen(i), kFrame);
+    const PerformedFrame frame = alone.perform(PerformerStage::seen(i), kStep);
     EXPECT_EQ(frame.source.joints, stage.push(i).source.joints) << i;
     EXPECT_EQ(frame.vertices.rows(), 0);
   }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace fixtures;
 
-struct Stage {
+struct RetargeterStage {
   Joints rest = other_body();
   PointBody source{human_rest()}, target{rest};
   TellTaleExtractor* extractor = nullptr;
@@ -45,7 +45,7 @@ bool same_bytes(const PerformedFrame& a, const PerformedFrame& b) {
 }
 
 TEST(Retargeter, MovesTheTargetAsTheSource) {
-  const auto frames = Stage().run(40);
+  const auto frames = RetargeterStage().run(40);
   for (const auto& frame : frames) {
     EXPECT_FALSE(frame.flagged) << frame.reason;
     EXPECT_TRUE(frame.vertices.allFinite());
@@ -57,17 +57,17 @@ TEST(Retargeter, MovesTheTargetAsTheSource) {
 }
 
 TEST(Retargeter, GivesTheSameBytesTwice) {
-  const auto a = Stage().run(20), b = Stage().run(20);
+  const auto a = RetargeterStage().run(20), b = RetargeterStage().run(20);
   for (size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(same_bytes(a[i], b[i])) << i;
 }
 
 TEST(Retargeter, DoesNotLookIntoTheFuture) {
-  const auto whole = Stage().run(30), cut = Stage().run(12);
+  const auto whole = RetargeterStage().run(30), cut = RetargeterStage().run(12);
   for (size_t i = 0; i < cut.size(); ++i) EXPECT_TRUE(same_bytes(whole[i], cut[i])) << i;
 }
 
 TEST(Retargeter, StartsAnewAfterRestart) {
-  Stage stage;
+  RetargeterStage stage;
   Retargeter retargeter = stage.make();
   const auto first = retargeter.push(stage.scan(0), 1 / 30.0f);
   for (int i = 1; i < 10; ++i) retargeter.push(stage.scan(i), 1 / 30.0f);
@@ -76,7 +76,7 @@ TEST(Retargeter, StartsAnewAfterRestart) {
 }
 
 TEST(Retargeter, RepeatsThePoseAndFlagsAFrameWithoutPoints) {
-  Stage stage;
+  RetargeterStage stage;
   Retargeter retargeter = stage.make();
   const auto good = retargeter.push(stage.scan(0), 1 / 30.0f);
   const auto empty = retargeter.push(Mesh{Points(0, 3)}, 1 / 30.0f);
@@ -86,7 +86,7 @@ TEST(Retargeter, RepeatsThePoseAndFlagsAFrameWithoutPoints) {
 }
 
 TEST(Retargeter, FlagsNumbersThatAreNotFinite) {
-  Stage stage;
+  RetargeterStage stage;
   Retargeter retargeter = stage.make();
   const auto good = retargeter.push(stage.scan(0), 1 / 30.0f);
   Mesh bad = stage.scan(1);
@@ -98,7 +98,7 @@ TEST(Retargeter, FlagsNumbersThatAreNotFinite) {
 }
 
 TEST(Retargeter, FlagsAFrameOfLowConfidence) {
-  Stage stage;
+  RetargeterStage stage;
   Retargeter retargeter = stage.make();
   retargeter.push(stage.scan(0), 1 / 30.0f);
   stage.extractor->confidence = 0.01f;
@@ -108,7 +108,7 @@ TEST(Retargeter, FlagsAFrameOfLowConfidence) {
 }
 
 TEST(Retargeter, StandsInTPoseBeforeTheFirstGoodFrame) {
-  Stage stage;
+  RetargeterStage stage;
   Retargeter retargeter = stage.make();
   const auto frame = retargeter.push(Mesh{Points(0, 3)}, 1 / 30.0f);
   EXPECT_TRUE(frame.flagged);
@@ -116,7 +116,7 @@ TEST(Retargeter, StandsInTPoseBeforeTheFirstGoodFrame) {
 }
 
 TEST(Retargeter, GoesOnAfterABadFrame) {
-  Stage stage;
+  RetargeterStage stage;
   Retargeter retargeter = stage.make();
   for (int i = 0; i < 20; ++i) retargeter.push(i == 10 ? Mesh{Points(0, 3)} : stage.scan(i), 1 / 30.0f);
   const auto frame = retargeter.push(stage.scan(20), 1 / 30.0f);
@@ -126,7 +126,7 @@ TEST(Retargeter, GoesOnAfterABadFrame) {
 }
 
 TEST(Retargeter, KeepsLittleOfAFrame) {
-  Stage stage;
+  RetargeterStage stage;
   const auto frame = stage.make().push(stage.scan(3), 1 / 30.0f);
   EXPECT_EQ(kept(frame).pose.root, frame.pose.root);
   EXPECT_EQ(kept(frame).source, frame.source.joints);

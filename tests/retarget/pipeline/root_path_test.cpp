@@ -11,7 +11,7 @@ namespace {
 
 using namespace fixtures;
 
-struct Walk {
+struct SideSteps {
   Joints rest_b = 0.6f * human_rest();
   PointBody a{human_rest()}, b{rest_b};
   /// The target's pelvis after each of 60 frames of a source that steps sideways, standing.
@@ -35,35 +35,35 @@ struct Walk {
 };
 
 TEST(RootPath, StartsWhereTheSourceStarts) {
-  const Vec3 first = Walk().path(RootMode::Scaled).front();
+  const Vec3 first = SideSteps().path(RootMode::Scaled).front();
   EXPECT_FLOAT_EQ(first.x(), 1);
   EXPECT_FLOAT_EQ(first.z(), 2);
 }
 
 TEST(RootPath, ScalesThePathByTheLegs) {
-  const auto path = Walk().path(RootMode::Scaled);
+  const auto path = SideSteps().path(RootMode::Scaled);
   EXPECT_NEAR(path.back().x() - path.front().x(), 0.6f * 59 * 0.02f, 1e-3f);
 }
 
 TEST(RootPath, KeepsTheOriginalPathWhenAsked) {
-  const auto path = Walk().path(RootMode::Original);
+  const auto path = SideSteps().path(RootMode::Original);
   EXPECT_NEAR(path.back().x() - path.front().x(), 59 * 0.02f, 1e-3f);
 }
 
 TEST(RootPath, StaysInPlaceWhenAsked) {
-  const auto path = Walk().path(RootMode::InPlace);
+  const auto path = SideSteps().path(RootMode::InPlace);
   EXPECT_FLOAT_EQ(path.back().x(), path.front().x());
 }
 
 TEST(RootPath, PutsTheSolesOnTheFloorWhereTheSourcesAre) {
-  const Walk walk;  // the source's soles are 1.1153 below its pelvis, the target's at 0.6 of the ankles'
-                    // height and 0.1
+  const SideSteps walk;  // the source's soles are 1.1153 below its pelvis, the target's at 0.6 of the ankles'
+                         // height and 0.1
   const float sole_b = -walk.b.mesh.vertices.col(1).minCoeff();
   for (const Vec3& root : walk.path(RootMode::Scaled)) EXPECT_NEAR(root.y(), sole_b, 0.006f);
 }
 
 TEST(RootPath, LiftsTheTargetAsTheSourceIsInTheAir) {
-  const Walk walk;
+  const SideSteps walk;
   const float sole_b = -walk.b.mesh.vertices.col(1).minCoeff();
   const float up = walk.path(RootMode::Scaled, 1.1153f + 0.3f).back().y();
   EXPECT_NEAR(up, sole_b + 0.6f * 0.3f, 0.01f);
@@ -101,7 +101,7 @@ TEST(SoleHeight, IsUnknownWhereNoFootWasSeen) {
 }
 
 TEST(RootPath, DoesNotJumpWhenTheLegsTurnOutShorter) {
-  const Walk walk;
+  const SideSteps walk;
   RootPath root;
   root.reset(walk.b.mesh.vertices, walk.rest_b);
   Vec3 last = Vec3::Zero();

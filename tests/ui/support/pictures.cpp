@@ -9,16 +9,17 @@
 namespace understudy::ui {
 namespace {
 
-using Place = std::array<float, 4>;  // u0, v0, u1, v1
+using GlyphRect = std::array<float, 4>;  // u0, v0, u1, v1
 
-std::set<Place> glyph_places(const ImFontAtlas& atlas) {
-  std::set<Place> places;
+std::set<GlyphRect> glyph_places(const ImFontAtlas& atlas) {
+  std::set<GlyphRect> places;
   for (const ImFont* font : atlas.Fonts)
     for (const ImFontGlyph& glyph : font->Glyphs) places.insert({glyph.U0, glyph.V0, glyph.U1, glyph.V1});
   return places;
 }
 
-bool is_cut(const ImDrawVert& from, const ImDrawVert& to, const std::set<Place>& glyphs, const Rect& seen) {
+bool is_cut(const ImDrawVert& from, const ImDrawVert& to, const std::set<GlyphRect>& glyphs,
+            const Rect& seen) {
   if (from.uv.x == to.uv.x || from.uv.y == to.uv.y) return false;  // a line or an area
   if (from.col >> IM_COL32_A_SHIFT == 0) return false;
   if (glyphs.count({from.uv.x, from.uv.y, to.uv.x, to.uv.y}) == 0) return true;
@@ -29,7 +30,7 @@ bool is_cut(const ImDrawVert& from, const ImDrawVert& to, const std::set<Place>&
 }  // namespace
 
 std::vector<Rect> cut_letters(const ImDrawData& data, const ImFontAtlas& atlas) {
-  const std::set<Place> glyphs = glyph_places(atlas);
+  const std::set<GlyphRect> glyphs = glyph_places(atlas);
   const Rect display{{0, 0}, data.DisplaySize};
   std::vector<Rect> cut;
   for (int i = 0; i < data.CmdListsCount; ++i) {
