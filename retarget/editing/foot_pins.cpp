@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "retarget/base/index.hpp"
 #include "retarget/editing/pose_edits.hpp"
+#include "retarget/math/smooth_step.hpp"
 #include "retarget/skeleton/leg_ik.hpp"
 
 namespace understudy {
@@ -24,11 +24,6 @@ struct Foot {
   std::vector<Vec3> offset;            // [T] added to the ankle
   bool stands(int t) const { return on_ball[t] || on_heel[t]; }
 };
-
-float smoothstep(float x) {
-  x = std::clamp(x, 0.0f, 1.0f);
-  return x * x * (3 - 2 * x);
-}
 
 /// A height that a share of the values is below.
 float quantile(std::vector<float> values, float share) {
@@ -161,9 +156,9 @@ void blend_gap(Foot& foot, int begin, int end, float blend_frames) {
     const float since = static_cast<float>(t - begin + 1), until = static_cast<float>(end - t);
     auto& offset = foot.offset[t];
     if (both)
-      offset = before + smoothstep(since / gap) * (after - before);
+      offset = before + smooth_step(0, gap, since) * (after - before);
     else
-      offset = (1 - smoothstep(since / reach)) * before + (1 - smoothstep(until / reach)) * after;
+      offset = (1 - smooth_step(0, reach, since)) * before + (1 - smooth_step(0, reach, until)) * after;
   }
 }
 
@@ -237,30 +232,15 @@ void settle(Motion& motion, std::vector<Foot>& feet, float limit) {
     }
 }
 
-/// Both feet with their contacts; a foot that is not to be pinned never stands.
-std::vector<Foot> observed_feet(const PinEdit& edit, const Motion& motion, const EditedBody& body) {
-  std::vector<Foot> feet = {observed(motion, body, 0), observed(motion, body, 1)};
-  const float leg_m = leg_length(body.rest);
-  if (edit.left) find_contacts(feet[0], edit, leg_m, motion.fps);
-  if (edit.right) find_contacts(feet[1], edit, leg_m, motion.fps);
-  return feet;
-}
-
 }  // namespace
-
-std::vector<std::array<bool, 2>> foot_contacts(const PinEdit& edit, const Motion& motion,
-                                               const EditedBody& body) {
-  std::vector<std::array<bool, 2>> result;
-  if (motion.poses.empty()) return result;
-  const std::vector<Foot> feet = observed_feet(edit, motion, body);
-  for (int t = 0; t < ssize(motion.poses); ++t) result.push_back({feet[0].stands(t), feet[1].stands(t)});
-  return result;
-}
 
 void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body) {
   if (motion.poses.empty()) return;
   const float leg_m = leg_length(body.rest);
-  std::vector<Foot> feet = observed_feet(edit, motion, body);
+  std::vector<Foot> feet = {observed(motion, body, 0), observed(motion, body, 1)};
+  // A foot that is not to be pinned never stands.
+  if (edit.left) find_contacts(feet[0], edit, leg_m, motion.fps);
+  if (edit.right) find_contacts(feet[1], edit, leg_m, motion.fps);
   if (edit.to_floor) settle(motion, feet, kOnFloor * leg_m);
   for (Foot& foot : feet)
     if (foot.leg.hip == LeftHip ? edit.left : edit.right) find_offsets(foot, edit, leg_m, motion.fps);

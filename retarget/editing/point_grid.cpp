@@ -47,11 +47,13 @@ int PointGrid::find(const Cell& cell) const {
 
 int PointGrid::nearest(const Vec3& query, float reach) const {
   int best = -1;
-  float best_distance = reach * reach;
-  around(query, reach, [&](int i) {
-    const float d = (points_.row(i).transpose() - query).squaredNorm();
-    if (d < best_distance || (d == best_distance && (best < 0 || i < best))) best = i, best_distance = d;
-  });
+  for (; best < 0; reach *= 2) {
+    float best_distance = reach * reach;
+    around(query, reach, [&](int i) {
+      const float d = (points_.row(i).transpose() - query).squaredNorm();
+      if (d < best_distance || (d == best_distance && (best < 0 || i < best))) best = i, best_distance = d;
+    });
+  }
   return best;
 }
 

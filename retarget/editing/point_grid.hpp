@@ -27,7 +27,8 @@ class PointGrid {
   const int* begin(int number) const { return order_.data() + start_[number]; }
   const int* end(int number) const { return order_.data() + start_[number + 1]; }
 
-  /// Index of the nearest point within `reach`, -1 where there is none; of equals the first.
+  /// Index of the nearest point, of which there must be one; of equals the first. Quickest where it lies
+  /// within `reach`.
   int nearest(const Vec3& query, float reach) const;
   /// Calls visit(index) for at least all points in the cells that a ball touches.
   template <class Visit>

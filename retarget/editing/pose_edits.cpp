@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "retarget/base/error.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
@@ -12,10 +11,6 @@ namespace understudy {
 namespace {
 
 using Quat = Eigen::Quaternionf;
-
-int frames(const Motion& motion) {
-  return motion.poses.size();
-}
 
 /// Half a Gaussian: weights at 0, 1, 2 ... frames away, up to three standard deviations.
 std::vector<float> half_gaussian(float sigma_frames) {
@@ -79,26 +74,14 @@ void check(const Motion& motion) {
            motion.flags.size(), " flags for ", motion.poses.size(), " frames");
 }
 
-}  // namespace
-
-bool PoseEdits::empty() const {
-  return rotate.empty() && !smooth && !floor && !pin && !heading && !trim && skip.empty();
-}
-
-EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_joints) {
-  return {rest_joints, SupportPoints::from(rest_vertices, rest_joints)};
-}
-
 void rotate(const RotateEdit& edit, Motion& motion) {
   US_CHECK(edit.joint >= 0 && edit.joint < kJointCount, "a rotated bone has number ", edit.joint,
            ", there are ", kJointCount);
   US_CHECK(edit.axis_angle.allFinite(), "a bone is rotated by an angle that is not finite");
-  for (int t = 0; t < frames(motion); ++t) {
-    const long long distance = std::llabs(static_cast<long long>(t) - edit.frame);
-    if (distance > std::max(edit.falloff, 0)) continue;
-    auto& R = motion.poses[t].local[edit.joint];
-    const float amount = falloff_weight(static_cast<int>(distance), edit.falloff);
-    R = R * rotation_from_axis_angle(amount * edit.axis_angle);
+  for (size_t t = 0; t < motion.poses.size(); ++t) {
+    const float amount = falloff_weight(t, edit.frame, edit.falloff);
+    Mat3& R = motion.poses[t].local[edit.joint];
+    if (amount > 0) R = R * rotation_from_axis_angle(amount * edit.axis_angle);
   }
 }
 
@@ -125,6 +108,16 @@ void turn(const HeadingEdit& edit, Motion& motion) {
   }
 }
 
+}  // namespace
+
+bool PoseEdits::empty() const {
+  return rotate.empty() && !smooth && !floor && !pin && !heading && !trim && skip.empty();
+}
+
+EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_joints) {
+  return {rest_joints, SupportPoints::from(rest_vertices, rest_joints)};
+}
+
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
   check(motion);
   Motion result = motion;
@@ -149,20 +142,6 @@ std::vector<int> kept_frames(const PoseEdits& edits, int count) {
   for (int t = first; t <= last; ++t)
     if (edits.skip.count(t) == 0) kept.push_back(t);
   return kept;
-}
-
-Motion apply(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
-  Motion all = apply_poses(edits, motion, body), result;
-  result.fps = all.fps;
-  for (const int t : kept_frames(edits, frames(all))) {
-    result.poses.push_back(all.poses[t]);
-    if (!all.flags.empty()) result.flags.push_back(all.flags[t]);
-  }
-  return result;
-}
-
-Motion apply(const PoseEdits& edits, const Motion& motion, const Joints& rest) {
-  return apply(edits, motion, EditedBody{rest, {}});
 }
 
 EditCost edit_cost(const Motion& before, const Motion& after, const Joints& rest) {

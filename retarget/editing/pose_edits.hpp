@@ -1,7 +1,6 @@
 // Edits of the result: rotated bones, smoothing, floor, pinned feet, heading, trim.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <set>
 #include <vector>
@@ -116,27 +115,16 @@ struct EditedBody {
   static EditedBody from(const Points& rest_vertices, const Joints& rest_joints);
 };
 
-/// All edits in this order, whatever order they were made in: rotate (as listed), smooth, floor, pin,
-/// heading, then trim and skip. So a foot rotated by hand is still pinned, pins see the final floor, and
-/// frame numbers are always the original ones. Deterministic. Flags go with their frames. Throws Error for
-/// joints that are none, a strength outside 0..1 or a trim that leaves nothing.
-Motion apply(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
-/// The same without soles: pinned feet keep their heights.
-Motion apply(const PoseEdits& edits, const Motion& motion, const Joints& rest);
-/// The same without trim and skip: as many frames as before, for a timeline that still shows them.
+/// All edits in this order, whatever order they were made in: rotate (as listed), smooth, floor, pin, heading.
+/// So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are always the
+/// original ones: frames that trim and skip leave out stay, for a timeline that still shows them. Deterministic.
+/// Without soles pinned feet keep their heights. Throws Error for joints that are none or a strength outside
+/// 0..1.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
-/// Original numbers of the frames that trim and skip leave of `count`.
+/// Original numbers of the frames that trim and skip leave of `count`. Throws Error for a trim that leaves none.
 std::vector<int> kept_frames(const PoseEdits& edits, int count);
-
-/// One step each.
-void rotate(const RotateEdit& edit, Motion& motion);
-void smooth(const SmoothEdit& edit, Motion& motion);
+/// One step of it.
 void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body);
-void turn(const HeadingEdit& edit, Motion& motion);
-/// When each foot (left, right) stands, as pin_feet sees it: for a timeline to show. Of the motion that pins
-/// get, that is after rotate, smooth and floor. [T]
-std::vector<std::array<bool, 2>> foot_contacts(const PinEdit& edit, const Motion& motion,
-                                               const EditedBody& body);
 
 /// What an edit does to a motion, in figures; both of one length.
 struct EditCost {

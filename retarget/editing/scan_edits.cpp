@@ -3,11 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/union_find.hpp"
 #include "retarget/editing/point_grid.hpp"
+#include "retarget/geometry/finite_rows.hpp"
 
 namespace understudy {
 namespace {
@@ -39,12 +40,6 @@ std::vector<int> indices(const Kept& kept) {
   return result;
 }
 
-Points rows(const Points& points, const std::vector<int>& which) {
-  Points result(which.size(), 3);
-  for (size_t i = 0; i < which.size(); ++i) result.row(i) = points.row(which[i]);
-  return result;
-}
-
 /// Points seen from above the floor: two directions in it, the third coordinate 0.
 class FromAbove {
  public:
@@ -72,7 +67,7 @@ void cut_floor(const FloorCut& cut, const Points& all, Kept& kept) {
     if (h > cut.tolerance_m && h <= cut.tolerance_m + cut.sole_band_m) above.push_back(i);
   }
   const FromAbove view(plane.normal);
-  const Points lows = view.flat(rows(all, low)), aboves = view.flat(rows(all, above));
+  const Points lows = view.flat(all(low, Eigen::all)), aboves = view.flat(all(above, Eigen::all));
   const PointGrid grid(aboves, cut.sole_radius_m);
   // One stray point above the floor is noise; a foot has several.
   constexpr int kEnough = 3;
@@ -85,26 +80,6 @@ void cut_floor(const FloorCut& cut, const Points& all, Kept& kept) {
     if (near < kEnough) kept[low[i]] = 0;
   }
 }
-
-class UnionFind {
- public:
-  explicit UnionFind(int count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int i) {
-    while (parent_[i] != i) {
-      int& p = parent_[i];
-      p = parent_[p];
-      i = p;
-    }
-    return i;
-  }
-  void join(int a, int b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 bool within(const Points& points, const PointGrid& grid, int a, int b, float gap) {
   for (const int* i = grid.begin(a); i != grid.end(a); ++i)
@@ -147,7 +122,7 @@ void join_near(const Points& points, float gap, UnionFind& sets) {
 void keep_largest(const Mesh& scan, float gap, Kept& kept) {
   const std::vector<int> which = indices(kept);
   if (which.empty()) return;
-  const Points points = rows(scan.vertices, which);
+  const Points points = scan.vertices(which, Eigen::all);
   UnionFind sets(which.size());
   join_near(points, gap, sets);
 
@@ -171,7 +146,6 @@ void keep_largest(const Mesh& scan, float gap, Kept& kept) {
 Kept kept_flags(const ScanEdits& edits, const Mesh& scan) {
   check(edits);
   Kept kept(scan.vertices.rows(), 1);
-  if (edits.empty()) return kept;
   for (int i = 0; i < ssize(kept); ++i) {
     const Vec3 p = point(scan.vertices, i);
     kept[i] = p.allFinite() && (!edits.crop || edits.crop->contains(p));
@@ -181,22 +155,23 @@ Kept kept_flags(const ScanEdits& edits, const Mesh& scan) {
   return kept;
 }
 
-/// Area over which points within `tolerance` of the plane lie, square metres, in cells of 5 cm.
-float covered_area(const Points& points, const FloorPlane& plane, float tolerance) {
-  constexpr float kCell = 0.05f;
+Points within(const Points& points, const FloorPlane& plane, float tolerance) {
   std::vector<int> on;
   for (int i = 0; i < points.rows(); ++i)
     if (std::abs(plane.above(point(points, i))) < tolerance) on.push_back(i);
-  const Points flat = FromAbove(plane.normal).flat(rows(points, on));
+  return points(on, Eigen::all);
+}
+
+/// Area over which points within `tolerance` of the plane lie, square metres, in cells of 5 cm.
+float covered_area(const Points& points, const FloorPlane& plane, float tolerance) {
+  constexpr float kCell = 0.05f;
+  const Points flat = FromAbove(plane.normal).flat(within(points, plane, tolerance));
   return static_cast<float>(PointGrid(flat, kCell).cells()) * kCell * kCell;
 }
 
 /// Least squares plane through the points within `tolerance` of a plane; the normal keeps pointing up.
 FloorPlane refined(const Points& points, const FloorPlane& plane, float tolerance) {
-  std::vector<int> on;
-  for (int i = 0; i < points.rows(); ++i)
-    if (std::abs(plane.above(point(points, i))) < tolerance) on.push_back(i);
-  const Points p = rows(points, on);
+  const Points p = within(points, plane, tolerance);
   const Vec3 mean = p.colwise().mean().transpose();
   const Points centred = p.rowwise() - mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(Mat3(centred.transpose() * centred));
@@ -213,14 +188,11 @@ std::optional<FloorPlane> detect_floor(const Points& all) {
   constexpr float kNear = 0.015f, kLevel = 0.966f;  // metres; cosine of 15 degrees
   constexpr float kArea = 0.15f;                    // square metres; two soles have 0.05
   constexpr int kTries = 300, kLooked = 4000;
-  std::vector<int> finite;
-  for (int i = 0; i < all.rows(); ++i)
-    if (point(all, i).allFinite()) finite.push_back(i);
-  if (finite.size() < 32) return std::nullopt;
+  const Points finite = finite_rows(all);
+  if (finite.rows() < 32) return std::nullopt;
   Rng rng(1);
-  std::vector<int> looked;
-  for (int i = 0; i < kLooked; ++i) looked.push_back(finite[rng.below(finite.size())]);
-  const Points points = rows(all, looked);
+  Points points(kLooked, 3);
+  for (auto row : points.rowwise()) row = finite.row(rng.below(finite.rows()));
 
   FloorPlane best;
   int best_score = 0;
@@ -242,35 +214,25 @@ std::optional<FloorPlane> detect_floor(const Points& all) {
   return plane;
 }
 
-std::vector<int> kept_vertices(const ScanEdits& edits, const Mesh& scan) {
-  return indices(kept_flags(edits, scan));
-}
-
 Mesh apply(const ScanEdits& edits, const Mesh& scan) {
   if (edits.empty()) return scan;
-  Kept kept = kept_flags(edits, scan);
-  const auto stays = [&](Eigen::Index f) {
-    return kept[scan.faces(f, 0)] && kept[scan.faces(f, 1)] && kept[scan.faces(f, 2)];
-  };
+  const Kept kept = kept_flags(edits, scan);
+  Kept used(kept.size(), 0);
   std::vector<Eigen::Index> faces;
-  for (Eigen::Index f = 0; f < scan.faces.rows(); ++f)
-    if (stays(f)) faces.push_back(f);
-  if (!scan.is_cloud()) {
-    Kept used(kept.size(), 0);
-    for (const Eigen::Index f : faces)
-      for (int k = 0; k < 3; ++k) used[scan.faces(f, k)] = 1;
-    kept = used;
+  for (Eigen::Index f = 0; f < scan.faces.rows(); ++f) {
+    const auto corners = scan.faces.row(f);
+    if (!std::all_of(corners.begin(), corners.end(), [&](int v) { return kept[v]; })) continue;
+    faces.push_back(f);
+    for (const int v : corners) used[v] = 1;
   }
 
-  const std::vector<int> which = indices(kept);
+  const std::vector<int> which = indices(scan.is_cloud() ? kept : used);
   std::vector<int> renumbered(kept.size(), -1);
   for (size_t i = 0; i < which.size(); ++i) renumbered[which[i]] = i;
   Mesh result;
-  result.vertices = rows(scan.vertices, which);
-  if (scan.colors.rows() == scan.vertices.rows()) result.colors = rows(scan.colors, which);
-  result.faces.resize(faces.size(), 3);
-  for (size_t f = 0; f < faces.size(); ++f)
-    for (int k = 0; k < 3; ++k) result.faces(f, k) = renumbered[scan.faces(faces[f], k)];
+  result.vertices = scan.vertices(which, Eigen::all);
+  if (scan.colors.rows() == scan.vertices.rows()) result.colors = scan.colors(which, Eigen::all);
+  result.faces = scan.faces(faces, Eigen::all).unaryExpr([&](int v) { return renumbered[v]; });
   return result;
 }
 

@@ -71,12 +71,10 @@ FieldsOf<S, ScanEdits> fields(V& visit, S& edits) {
   visit("cluster_gap_m", edits.cluster_gap_m);
 }
 
-/// Indices of the vertices that stay, ascending: crop, then floor, then cluster. Vertices that are not finite
-/// go with any edit. Throws Error for a crop box with no inside or sizes that are not positive.
-std::vector<int> kept_vertices(const ScanEdits& edits, const Mesh& scan);
-
-/// The scan that is left, in its old order, colours too: vertices that stay, and of a mesh the faces whose
-/// three corners stay and the vertices that these use. May be empty.
+/// The scan that is left after crop, then floor, then cluster, in its old order, colours too: vertices that
+/// stay, and of a mesh the faces whose three corners stay and the vertices that these use. May be empty.
+/// Vertices that are not finite go with any edit. Throws Error for a crop box with no inside or sizes that are
+/// not positive.
 Mesh apply(const ScanEdits& edits, const Mesh& scan);
 
 }  // namespace understudy

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
@@ -29,10 +29,7 @@ int only_child(int joint) {
 }
 
 float weight(const DragEdit& edit, int frame) {
-  // In 64 bits: frames come from files.
-  const long long distance = std::llabs(static_cast<long long>(frame) - edit.frame);
-  return distance > std::max(edit.falloff, 0) ? 0.0f
-                                              : falloff_weight(static_cast<int>(distance), edit.falloff);
+  return falloff_weight(frame, edit.frame, edit.falloff);
 }
 float weight(const SwapEdit& edit, int frame) {
   return frame >= edit.first && frame <= edit.last ? 1.0f : 0.0f;
@@ -86,7 +83,8 @@ void check(const SwapEdit&) {}
 
 }  // namespace
 
-float falloff_weight(int distance, int falloff) {
+float falloff_weight(int frame, int edited, int falloff) {
+  const int64_t distance = int64_t{frame} - edited;  // frames come from files: in 64 bits
   const float reach = static_cast<float>(std::max(falloff, 0)) + 1;
   const float x = std::abs(static_cast<float>(distance)) / reach;
   return x >= 1 ? 0.0f : 0.5f + 0.5f * std::cos(kPi * x);

@@ -9,9 +9,9 @@
 
 namespace understudy {
 
-/// How much of an edit of frame 0 there is `distance` frames away: 1 at 0, then half a cosine down to 0 at
-/// falloff + 1 frames.
-float falloff_weight(int distance, int falloff);
+/// How much of an edit of frame `edited` there is at another frame: 1 there, then half a cosine down to 0 at
+/// falloff + 1 frames away.
+float falloff_weight(int frame, int edited, int falloff);
 
 /// A joint taken by the hand at one frame; the frames around follow less and less.
 struct DragEdit {

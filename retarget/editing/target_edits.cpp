@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <queue>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -34,25 +36,17 @@ Row mirrored(const Row& row) {
   return result;
 }
 
-/// Collects rows in ascending order of vertices.
-class RowCollector {
- public:
-  void add(int vertex, const Row& row) {
-    vertex_.push_back(vertex);
-    rows_.push_back(row);
-  }
-  WeightRows finish() const {
-    WeightRows result;
-    result.vertex = vertex_;
-    result.rows.resize(rows_.size(), kJointCount);
-    for (size_t i = 0; i < rows_.size(); ++i) result.rows.row(i) = rows_[i];
-    return result;
-  }
+using RowsByVertex = std::map<int, Row>;
 
- private:
-  std::vector<int> vertex_;
-  std::vector<Row> rows_;
-};
+WeightRows in_order(const RowsByVertex& rows) {
+  WeightRows result;
+  result.rows.resize(rows.size(), kJointCount);
+  for (const auto& [vertex, row] : rows) {
+    result.rows.row(result.vertex.size()) = row;
+    result.vertex.push_back(vertex);
+  }
+  return result;
+}
 
 using Pairs = std::vector<std::pair<int, int>>;
 
@@ -62,27 +56,18 @@ Pairs edges(const Faces& faces, int vertices) {
     for (int k = 0; k < 3; ++k) {
       const int a = faces(f, k), b = faces(f, (k + 1) % 3);
       US_CHECK(a >= 0 && a < vertices, "face ", f, " has vertex ", a, " of ", vertices);
-      if (a != b) pairs.emplace_back(a, b), pairs.emplace_back(b, a);
+      if (a != b) pairs.emplace_back(a, b);
     }
   return pairs;
 }
 
 /// Joins vertices at one place: exporters split them where textures have seams.
 void add_seams(const Points& vertices, Pairs& pairs) {
-  std::vector<int> order(vertices.rows());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto key = [&](int v) {
-    return std::array<float, 3>{vertices(v, 0), vertices(v, 1), vertices(v, 2)};
-  };
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    const auto ka = key(a), kb = key(b);
-    return ka < kb || (ka == kb && a < b);
-  });
-  for (size_t i = 1; i < order.size(); ++i)
-    if (key(order[i - 1]) == key(order[i])) {
-      pairs.emplace_back(order[i - 1], order[i]);
-      pairs.emplace_back(order[i], order[i - 1]);
-    }
+  std::map<std::array<float, 3>, int> last;  // at each place
+  for (int v = 0; v < vertices.rows(); ++v) {
+    const auto [at, is_first] = last.try_emplace({vertices(v, 0), vertices(v, 1), vertices(v, 2)}, v);
+    if (!is_first) pairs.emplace_back(std::exchange(at->second, v), v);
+  }
 }
 
 Vec3 extent(const Points& points) {
@@ -96,7 +81,7 @@ float cell_size(const Points& points) {
   return std::max(2 * std::sqrt(area / static_cast<float>(points.rows())), 1e-5f * size.norm() + 1e-9f);
 }
 
-/// The six nearest of each point of a cloud, both ways.
+/// The six nearest of each point of a cloud.
 Pairs nearest_pairs(const Points& points) {
   constexpr int kNearest = 6;
   Pairs pairs;
@@ -115,14 +100,13 @@ Pairs nearest_pairs(const Points& points) {
     }
     const size_t count = std::min<size_t>(kNearest, found.size());
     std::partial_sort(found.begin(), found.begin() + static_cast<long>(count), found.end());
-    for (size_t i = 0; i < count; ++i)
-      pairs.emplace_back(v, found[i].second), pairs.emplace_back(found[i].second, v);
+    for (size_t i = 0; i < count; ++i) pairs.emplace_back(v, found[i].second);
   }
   return pairs;
 }
 
 /// Path lengths over the surface from the vertex nearest to `hit`, only inside the ball of the brush and up
-/// to `reach`: pairs (vertex, length), ascending by vertex.
+/// to `reach`: pairs (vertex, length).
 std::vector<std::pair<int, float>> hanging_together(const PaintSurface& surface, const Vec3& hit,
                                                     float radius, float reach) {
   const Points& p = surface.vertices;
@@ -151,7 +135,6 @@ std::vector<std::pair<int, float>> hanging_together(const PaintSurface& surface,
       open.push({next, n});
     }
   }
-  std::sort(found.begin(), found.end());
   return found;
 }
 
@@ -248,43 +231,20 @@ WeightRows reprojected(const WeightRows& edit, const Points& vertices) {
            "weights cannot be brought to a surface without finite vertices");
   const float cell = cell_size(vertices);
   const PointGrid grid(vertices, cell);
-  std::map<int, Row> sums;
+  RowsByVertex rows;
   for (Eigen::Index i = 0; i < edit.places.rows(); ++i) {
-    const Vec3 place = edit.places.row(i);
-    int nearest = -1;
-    for (float reach = cell; nearest < 0; reach *= 2) nearest = grid.nearest(place, reach);
-    sums.try_emplace(nearest, Row::Zero()).first->second += edit.rows.row(i);
+    const int nearest = grid.nearest(edit.places.row(i), cell);
+    rows.try_emplace(nearest, Row::Zero()).first->second += edit.rows.row(i);
   }
-  RowCollector rows;
-  for (const auto& [vertex, sum] : sums) rows.add(vertex, normalised(sum, sum));
-  return placed(rows.finish(), vertices);
+  for (auto& [vertex, row] : rows) row = normalised(row, row);
+  return placed(in_order(rows), vertices);
 }
 
 WeightRows merged(const WeightRows& older, const WeightRows& newer) {
-  RowCollector rows;
-  size_t i = 0, k = 0;
-  while (i < older.vertex.size() || k < newer.vertex.size()) {
-    const bool from_newer =
-        i == older.vertex.size() || (k < newer.vertex.size() && newer.vertex[k] <= older.vertex[i]);
-    if (from_newer) {
-      if (i < older.vertex.size() && older.vertex[i] == newer.vertex[k]) ++i;
-      rows.add(newer.vertex[k], newer.rows.row(k));
-      ++k;
-    } else {
-      rows.add(older.vertex[i], older.rows.row(i));
-      ++i;
-    }
-  }
-  return rows.finish();
-}
-
-WeightRows changed_rows(const RowMatrix& before, const RowMatrix& after) {
-  check_weights(after, before.rows());
-  check_weights(before, after.rows());
-  RowCollector rows;
-  for (Eigen::Index v = 0; v < after.rows(); ++v)
-    if (before.row(v) != after.row(v)) rows.add(v, after.row(v));
-  return rows.finish();
+  RowsByVertex rows;
+  for (const WeightRows* from : {&newer, &older})  // of a vertex in both the first stays
+    for (size_t i = 0; i < from->vertex.size(); ++i) rows.try_emplace(from->vertex[i], from->rows.row(i));
+  return in_order(rows);
 }
 
 Neighbours Neighbours::from(const Mesh& mesh) {
@@ -292,6 +252,7 @@ Neighbours Neighbours::from(const Mesh& mesh) {
   US_CHECK(mesh.vertices.allFinite(), "a vertex of the target is not finite");
   Pairs pairs = mesh.is_cloud() ? nearest_pairs(mesh.vertices) : edges(mesh.faces, count);
   if (!mesh.is_cloud()) add_seams(mesh.vertices, pairs);
+  for (size_t i = pairs.size(); i-- > 0;) pairs.emplace_back(pairs[i].second, pairs[i].first);
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   Neighbours result;
@@ -312,16 +273,16 @@ WeightRows stroke(const RowMatrix& weights, const PaintSurface& surface, const V
            " vertices do not fit ", weights.rows());
   check(brush, hit);
   constexpr float kDetour = 1.3f;  // paths along edges are longer than straight ones
-  RowCollector rows;
-  if (weights.rows() == 0) return rows.finish();
+  RowsByVertex rows;
+  if (weights.rows() == 0) return {};
   for (const auto& [v, path] : hanging_together(surface, hit, brush.radius_m, kDetour * brush.radius_m)) {
     const float straight = (surface.vertices.row(v).transpose() - hit).norm();
     const float x = std::min(std::max(straight, path / kDetour) / brush.radius_m, 1.0f);
     const float amount = brush.strength * (1 - x * x) * (1 - x * x);
     const Row row = painted(weights, surface.neighbours, v, brush, amount);
-    if (row != weights.row(v)) rows.add(v, row);
+    if (row != weights.row(v)) rows.emplace(v, row);
   }
-  return rows.finish();
+  return in_order(rows);
 }
 
 WeightRows smoothed(const RowMatrix& weights, const Neighbours& neighbours, const std::vector<int>& vertex,
@@ -329,8 +290,10 @@ WeightRows smoothed(const RowMatrix& weights, const Neighbours& neighbours, cons
   check_weights(weights, neighbours.vertices());
   US_CHECK(strength >= 0 && strength <= 1, "smoothing must be in 0..1, not ", strength);
   std::vector<int> which = vertex;
-  if (which.empty())
-    for (int v = 0; v < weights.rows(); ++v) which.push_back(v);
+  if (which.empty()) {
+    which.resize(weights.rows());
+    std::iota(which.begin(), which.end(), 0);
+  }
   for (const int v : which) US_CHECK(v >= 0 && v < weights.rows(), "vertex ", v, " of ", weights.rows());
   RowMatrix now = weights, next = weights;
   for (int round = 0; round < rounds; ++round) {
@@ -340,23 +303,25 @@ WeightRows smoothed(const RowMatrix& weights, const Neighbours& neighbours, cons
     }
     now = next;
   }
-  return changed_rows(weights, now);
+  RowsByVertex rows;
+  for (const int v : which)
+    if (now.row(v) != weights.row(v)) rows.emplace(v, now.row(v));
+  return in_order(rows);
 }
 
 WeightRows mirrored_weights(const RowMatrix& weights, const Points& vertices, BodySide from, float centre) {
   check_weights(weights, vertices.rows());
   US_CHECK(vertices.allFinite() && std::isfinite(centre), "a vertex of the target is not finite");
-  RowCollector rows;
-  if (vertices.rows() == 0) return rows.finish();
-  const Vec3 size = (vertices.colwise().maxCoeff() - vertices.colwise().minCoeff()).transpose();
+  RowsByVertex rows;
+  if (vertices.rows() == 0) return {};
+  const Vec3 size = extent(vertices);
   const float middle = 1e-4f * size.norm(), cell = std::max(0.02f * size.norm(), 1e-6f);
   const float sign = from == BodySide::Left ? 1.0f : -1.0f;  // left is +x
   std::vector<int> sources;
   for (int v = 0; v < vertices.rows(); ++v)
     if (sign * (vertices(v, 0) - centre) > -middle) sources.push_back(v);
-  if (sources.empty()) return rows.finish();
-  Points places(sources.size(), 3);
-  for (size_t i = 0; i < sources.size(); ++i) places.row(i) = vertices.row(sources[i]);
+  if (sources.empty()) return {};
+  const Points places = vertices(sources, Eigen::all);
   const PointGrid grid(places, cell);
 
   for (int v = 0; v < vertices.rows(); ++v) {
@@ -367,14 +332,12 @@ WeightRows mirrored_weights(const RowMatrix& weights, const Points& vertices, Bo
       row = 0.5f * (weights.row(v) + mirrored(weights.row(v)));
     } else {
       const Vec3 image(2 * centre - vertices(v, 0), vertices(v, 1), vertices(v, 2));
-      int nearest = -1;
-      for (float reach = 0.25f * cell; nearest < 0; reach *= 2) nearest = grid.nearest(image, reach);
-      row = mirrored(weights.row(sources[nearest]));
+      row = mirrored(weights.row(sources[grid.nearest(image, 0.25f * cell)]));
     }
     row = normalised(row, weights.row(v));
-    if (row != weights.row(v)) rows.add(v, row);
+    if (row != weights.row(v)) rows.emplace(v, row);
   }
-  return rows.finish();
+  return in_order(rows);
 }
 
 }  // namespace understudy

@@ -54,8 +54,6 @@ WeightRows placed(WeightRows edit, const Points& vertices);
 WeightRows reprojected(const WeightRows& edit, const Points& vertices);
 /// Both; where both have a vertex, the newer row. The places are not kept.
 WeightRows merged(const WeightRows& older, const WeightRows& newer);
-/// The rows of `after` that differ from `before`.
-WeightRows changed_rows(const RowMatrix& before, const RowMatrix& after);
 
 /// Which vertices are joined, from the faces; vertices at one place (seams of textures) are joined too. Of a
 /// cloud: the six nearest. Make it once per target.

@@ -25,6 +25,15 @@ Mesh walker(int frame) {
   return mesh;
 }
 
+/// Numbers of the vertices of a cloud that the edits leave.
+std::vector<int> kept_vertices(const ScanEdits& edits, Mesh cloud) {
+  cloud.colors = Points::Zero(cloud.vertices.rows(), 3);  // they go with their vertices
+  for (Eigen::Index i = 0; i < cloud.colors.rows(); ++i) cloud.colors(i, 0) = static_cast<float>(i);
+  std::vector<int> kept;
+  for (const float number : apply(edits, cloud).colors.col(0)) kept.push_back(static_cast<int>(number));
+  return kept;
+}
+
 /// A scan of the person: `count` points, then floor points over a disc of 0.7 m, then a few strays.
 struct Scan {
   Mesh cloud;

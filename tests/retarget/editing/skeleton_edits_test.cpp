@@ -110,10 +110,12 @@ TEST(SkeletonEdits, RefuseAJointThatIsNone) {
 }
 
 TEST(FalloffWeight, IsOneAtTheFrameAndNothingPastTheReach) {
-  EXPECT_EQ(falloff_weight(0, 0), 1);
-  EXPECT_EQ(falloff_weight(1, 0), 0);
-  EXPECT_GT(falloff_weight(5, 5), 0);
-  EXPECT_EQ(falloff_weight(6, 5), 0);
+  EXPECT_EQ(falloff_weight(7, 7, 0), 1);
+  EXPECT_EQ(falloff_weight(8, 7, 0), 0);
+  EXPECT_GT(falloff_weight(2, 7, 5), 0);
+  EXPECT_EQ(falloff_weight(13, 7, 5), 0);
+  constexpr int kLast = std::numeric_limits<int>::max();
+  EXPECT_EQ(falloff_weight(kLast, -kLast, kLast), 0);  // their difference fits no int
 }
 
 }  // namespace
