@@ -8,16 +8,6 @@
 #include "retarget/metrics/surface_metrics.hpp"
 
 namespace understudy::app {
-namespace {
-
-/// Vertices of a file's parts as the vertices of the surface that they were made of.
-Points merged(const MergedSurface& surface, const Points& of_parts) {
-  Points out(surface.mesh.vertices.rows(), 3);
-  for (Eigen::Index v = 0; v < of_parts.rows(); ++v) out.row(surface.map[v]) = of_parts.row(v);
-  return out;
-}
-
-}  // namespace
 
 Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Truth& truth) {
   US_CHECK(!truth.vertices.empty() && truth.frames == static_cast<int64_t>(clip.poses.size()),
@@ -33,7 +23,7 @@ Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Tr
   for (int64_t t = 0; t < truth.frames; ++t) {
     check_interrupt("while the file was evaluated");
     const auto at = static_cast<float>(static_cast<double>(t) / clip.fps);
-    const Points seen = merged(surface, vertices_at(written, 0, at));
+    const Points seen = surface.merged(vertices_at(written, 0, at));
     const Points in_file = surface.in_file_order(seen), right = truth.frame_vertices(t);
     medl += edge_length_error(in_file, right) / count;
     mpvd += mean_vertex_error(in_file, right) / count;

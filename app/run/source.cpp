@@ -15,7 +15,6 @@
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion/clip.hpp"
-#include "retarget/motion/moving_surface.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/motion/skeletal_motion.hpp"
 
@@ -220,8 +219,8 @@ class ScannedCharacter final : public AnimatedSource {
         character_(std::move(character)),
         clip_(clip),
         times_(times),
-        surface_(character_),
-        decision_(decide_import(surface_.at(nodes_at(character_, clip_, times_.at(0))), options.import)) {
+        merged_(merged_surface(character_, bind_pose(character_).vertices)),
+        decision_(decide_import(surface(0), options.import)) {
     set_clips(character_, clip_);
     if (!options.quiet)
       log::info(options.path + ": its surface is looked at as a scan, " + in_words(fps()) + ", " +
@@ -235,15 +234,21 @@ class ScannedCharacter final : public AnimatedSource {
     constexpr int kPoints = 8000;
     Rng rng(static_cast<uint64_t>(frame) + 1);
     SourceFrame out;
-    out.mesh.vertices = decision_.apply(
-        sample_points(surface_.at(nodes_at(character_, clip_, times_.at(frame))), kPoints, rng));
+    out.mesh.vertices = decision_.apply(sample_points(surface(frame), kPoints, rng));
     return out;
+  }
+  /// In the file's units and axes.
+  Mesh surface(int64_t frame) const {
+    Mesh mesh;
+    mesh.vertices = merged_.merged(vertices_at(character_, clip_, times_.at(frame)));
+    mesh.faces = merged_.mesh.faces;
+    return mesh;
   }
 
   Character character_;
   int clip_;
   ClipTimes times_;
-  MovingSurface surface_;
+  MergedSurface merged_;
   ImportDecision decision_;
 };
 

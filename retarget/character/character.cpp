@@ -312,6 +312,12 @@ Points MergedSurface::in_file_order(const Points& rows) const {
   return out;
 }
 
+Points MergedSurface::merged(const Points& of_parts) const {
+  Points out(mesh.vertices.rows(), 3);
+  for (Eigen::Index v = 0; v < of_parts.rows(); ++v) out.row(map[v]) = of_parts.row(v);
+  return out;
+}
+
 MergedSurface merged_surface(const Character& character, const Points& positions) {
   US_CHECK(positions.rows() == character.vertex_count(), "the surface has ", positions.rows(),
            " positions for ", character.vertex_count(), " vertices");

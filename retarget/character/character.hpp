@@ -134,6 +134,8 @@ struct MergedSurface {
   std::vector<int> in_file;  ///< of each vertex of the file, the vertex in mesh
   /// Rows [V, 3] of the mesh's vertices as rows of the file's: its own count and order.
   Points in_file_order(const Points& rows) const;
+  /// Rows [V, 3] of the parts' vertices as rows of the mesh's.
+  Points merged(const Points& of_parts) const;
 };
 /// positions [V, 3]: of all the parts' vertices.
 MergedSurface merged_surface(const Character& character, const Points& positions);

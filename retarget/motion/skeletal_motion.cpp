@@ -1,19 +1,13 @@
 #include "retarget/motion/skeletal_motion.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/character/prepared_character.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion/bone_shapes.hpp"
-#include "retarget/motion/clip.hpp"
-#include "retarget/motion/moving_surface.hpp"
-#include "retarget/pipeline/root_path.hpp"
 
 namespace understudy {
 namespace {
@@ -67,12 +61,6 @@ Vec3 place(const Mat4& matrix) {
   return matrix.topRightCorner<3, 1>();
 }
 
-std::string in_words(const char* format, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 Mat3 upright(const std::string& up) {
   static const std::array<const char*, 6> names = {"x", "y", "z", "-x", "-y", "-z"};
   const auto found = std::find(names.begin(), names.end(), up);
@@ -83,66 +71,40 @@ Mat3 upright(const std::string& up) {
 
 }  // namespace
 
-struct SkeletalMotion::Impl {
-  Impl(Character character, const SkeletalMotionOptions& options);
-
-  int clip;
-  ClipTimes times;
-  PreparedCharacter c;
-  MovingSurface surface;
-  SupportPoints support;
-  std::array<int, kJointCount> bearer;      // of each joint the node that moves it
-  std::array<Mat3, kJointCount> from_bind;  // of its node
-  Mat3 axes;                                // the motion's to y up
-  float floor = 0;                          // after axes and scale
-  bool has_skin;                            // no bones drawn
-
-  PosedNodes posed(int64_t frame) const { return nodes_at(c.character, clip, times.at(frame)); }
-  Points to_world(const Points& points) const {
-    return ((c.to_world.scale * points * axes.transpose()).rowwise() + Eigen::RowVector3f(0, -floor, 0))
-        .eval();
-  }
-  PosedSkeleton joints(const PosedNodes& nodes) const;
-  float lowest(const PosedSkeleton& skeleton) const {
-    return skeleton.joints(Pelvis, 1) + support.lowest(skeleton);
-  }
-  void bear_joints();
-  std::string up_of_motion() const;
-  void find_axes(const ImportOptions& import);
-  void find_floor(const ImportOptions& import);
-  void say();
-};
-
-SkeletalMotion::Impl::Impl(Character character, const SkeletalMotionOptions& options)
-    : clip(chosen_clip(character, options.clip)),
-      times(clip_times(character, clip, options.fps)),
-      c(in_bind_pose(character, clip, times, options)),
-      surface(c.character),
-      support(SupportPoints::from(c.target.mesh.vertices, c.target.joints)),
-      has_skin(character.vertex_count() > 0) {
+SkeletalMotion::SkeletalMotion(const Character& character, const SkeletalMotionOptions& options)
+    : clip_(chosen_clip(character, options.clip)),
+      times_(clip_times(character, clip_, options.fps)),
+      c_(in_bind_pose(character, clip_, times_, options)),
+      support_(SupportPoints::from(c_.target.mesh.vertices, c_.target.joints)),
+      has_skin_(character.vertex_count() > 0) {
   bear_joints();
   find_axes(options.import);
   find_floor(options.import);
-  say();
+  note_decisions();
 }
 
-void SkeletalMotion::Impl::bear_joints() {
+Points SkeletalMotion::to_world(const Points& points) const {
+  return ((c_.to_world.scale * points * axes_.transpose()).rowwise() + Eigen::RowVector3f(0, -floor_, 0))
+      .eval();
+}
+
+void SkeletalMotion::bear_joints() {
   for (int j = 0; j < kJointCount; ++j) {
     int above = j;
-    while (above >= 0 && !c.map.has(above)) above = kParents[above];
-    const int node = c.map.node[std::max(0, above)];
-    bearer[j] = node;
-    from_bind[j] = linear(c.bind.nodes[node]).inverse();
+    while (above >= 0 && !c_.map.has(above)) above = kParents[above];
+    const int node = c_.map.node[std::max(0, above)];
+    bearer_[j] = node;
+    from_bind_[j] = linear(c_.bind.nodes[node]).inverse();
   }
 }
 
 /// The axis that heads point along: of a file of bones alone the offsets may be y up, the motion z up.
-std::string SkeletalMotion::Impl::up_of_motion() const {
+std::string SkeletalMotion::up_of_motion() const {
   Vec3 sum = Vec3::Zero();
-  const int64_t step = std::max<int64_t>(1, times.count / kLookedAt);
-  for (int64_t f = 0; f < times.count; f += step) {
+  const int64_t step = std::max<int64_t>(1, times_.count / kLookedAt);
+  for (int64_t f = 0; f < times_.count; f += step) {
     const PosedNodes nodes = posed(f);
-    const auto at = [&](int j) { return place(nodes.world[bearer[j]]); };
+    const auto at = [&](int j) { return place(nodes.world[bearer_[j]]); };
     sum += (at(LeftShoulder) + at(RightShoulder) - at(LeftHip) - at(RightHip)).normalized();
   }
   Eigen::Index axis = 1;
@@ -151,123 +113,95 @@ std::string SkeletalMotion::Impl::up_of_motion() const {
   return std::string(sum[axis] < 0 ? "-" : "") + "xyz"[axis];
 }
 
-void SkeletalMotion::Impl::find_axes(const ImportOptions& import) {
-  axes = c.to_world.R;
+void SkeletalMotion::find_axes(const ImportOptions& import) {
+  axes_ = c_.to_world.R;
   std::string up = import.up == "auto" ? "" : import.up;
-  if (up.empty() && !has_skin) up = up_of_motion();
+  if (up.empty() && !has_skin_) up = up_of_motion();
   // Where the bind pose has the same up, the heading that it was turned to counts, too.
-  if (!up.empty() && (axes * upright(up).transpose() * Vec3::UnitY()).y() < 0.9f) axes = upright(up);
-  axes = rotation_about_y(import.yaw_deg * kPi / 180) * axes;
+  if (!up.empty() && (axes_ * upright(up).transpose() * Vec3::UnitY()).y() < 0.9f) axes_ = upright(up);
+  axes_ = rotation_about_y(import.yaw_deg * kPi / 180) * axes_;
 }
 
 /// Of a skin the floor under its bind pose or the file's zero, where the soles come near to one of them; else
 /// where the soles are mostly at their lowest.
-void SkeletalMotion::Impl::find_floor(const ImportOptions& import) {
-  floor = import.floor.value_or(-c.to_world.t.y());
+void SkeletalMotion::find_floor(const ImportOptions& import) {
+  floor_ = import.floor.value_or(-c_.to_world.t.y());
   if (import.floor) return;
   std::vector<float> soles;
-  const int64_t step = std::max<int64_t>(1, times.count / kLookedAt);
-  for (int64_t f = 0; f < times.count; f += step) soles.push_back(lowest(joints(posed(f))));
+  const int64_t step = std::max<int64_t>(1, times_.count / kLookedAt);
+  for (int64_t f = 0; f < times_.count; f += step) soles.push_back(lowest(joints(posed(f))));
   std::sort(soles.begin(), soles.end());
   const float low = soles[soles.size() / 20];
-  US_CHECK(std::isfinite(low), c.character.called(), ": its animation has numbers that are not finite");
-  const float near = kNearFloor * leg_length(c.target.joints), over_zero = low + floor;
-  if (has_skin && std::abs(over_zero) < std::min(near, std::abs(low)))
-    floor = 0;
-  else if (!has_skin || std::abs(low) > near)
-    floor += low;
+  US_CHECK(std::isfinite(low), c_.character.called(), ": its animation has numbers that are not finite");
+  const float near = kNearFloor * leg_length(c_.target.joints), over_zero = low + floor_;
+  if (has_skin_ && std::abs(over_zero) < std::min(near, std::abs(low)))
+    floor_ = 0;
+  else if (!has_skin_ || std::abs(low) > near)
+    floor_ += low;
 }
 
-PosedSkeleton SkeletalMotion::Impl::joints(const PosedNodes& nodes) const {
+PosedSkeleton SkeletalMotion::joints(const PosedNodes& nodes) const {
   PosedSkeleton out;
   Points places(kJointCount, 3);
   std::array<Mat3, kJointCount> moved;  // from the bind pose in the program's world to now
   for (size_t j = 0; j < kJointCount; ++j) {
-    const Mat4& node = nodes.world[bearer[j]];
-    moved[j] = axes * nearest_rotation(linear(node) * from_bind[j]) * c.to_world.R.transpose();
-    out.global[j] = moved[j] * c.pose.to_rest[j].transpose();
+    const Mat4& node = nodes.world[bearer_[j]];
+    moved[j] = axes_ * nearest_rotation(linear(node) * from_bind_[j]) * c_.to_world.R.transpose();
+    out.global[j] = moved[j] * c_.pose.to_rest[j].transpose();
     places.row(j) = place(node).transpose();
   }
   out.joints = to_world(places);
   for (int j = 1; j < kJointCount; ++j) {
     const int p = kParents[j];
-    if (!c.map.has(j))  // fixed to what is above it
+    if (!c_.map.has(j))  // fixed to what is above it
       out.joints.row(j) =
-          out.joints.row(p) + (c.pose.bind.row(j) - c.pose.bind.row(p)) * moved[j].transpose();
+          out.joints.row(p) + (c_.pose.bind.row(j) - c_.pose.bind.row(p)) * moved[j].transpose();
   }
   return out;
 }
 
-void SkeletalMotion::Impl::say() {
-  const auto& all = c.character.animations;
-  std::string text = "animation '" + excerpt(all[clip].name) + "'";
-  if (all.size() > 1) text += " (" + std::to_string(clip + 1) + " of " + std::to_string(all.size()) + ")";
-  text += ", " + std::to_string(times.count) + " frames at " + in_words("%g frames/s", times.fps);
+void SkeletalMotion::note_decisions() {
+  const auto& all = c_.character.animations;
+  std::string text = "animation '" + excerpt(all[clip_].name) + "'";
+  if (all.size() > 1) text += " (" + std::to_string(clip_ + 1) + " of " + std::to_string(all.size()) + ")";
+  text += ", " + std::to_string(times_.count) + " frames at " + printed("%g frames/s", times_.fps);
   // What was decided of the bind pose gives way to what is so of the motion.
   const auto of_bind = [](const std::string& note) { return starts_with(note, "units: "); };
-  c.notes.erase(std::remove_if(c.notes.begin(), c.notes.end(), of_bind), c.notes.end());
-  c.notes.insert(c.notes.begin(), text);
+  c_.notes.erase(std::remove_if(c_.notes.begin(), c_.notes.end(), of_bind), c_.notes.end());
+  c_.notes.insert(c_.notes.begin(), text);
   Eigen::Index up = 1;
-  const Vec3 direction = axes.transpose() * Vec3::UnitY();
+  const Vec3 direction = axes_.transpose() * Vec3::UnitY();
   direction.cwiseAbs().maxCoeff(&up);
-  c.notes.push_back("a unit is " + in_words("%g m", static_cast<double>(c.to_world.scale)) +
-                    ", up: " + (direction[up] < 0 ? "-" : "") + "xyz"[up] + ", floor at " +
-                    in_words("%.2f m", static_cast<double>(floor)));
-  c.notes.push_back(std::to_string(c.map.count()) + " of 22 joints are mapped " + c.map.how);
-}
-
-SkeletalMotion::SkeletalMotion(Character character, const SkeletalMotionOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(character), options)) {}
-SkeletalMotion::~SkeletalMotion() = default;
-SkeletalMotion::SkeletalMotion(SkeletalMotion&&) noexcept = default;
-
-int64_t SkeletalMotion::count() const {
-  return impl_->times.count;
+  c_.notes.push_back("a unit is " + printed("%g m", static_cast<double>(c_.to_world.scale)) +
+                     ", up: " + (direction[up] < 0 ? "-" : "") + "xyz"[up] + ", floor at " +
+                     printed("%.2f m", static_cast<double>(floor_)));
+  c_.notes.push_back(std::to_string(c_.map.count()) + " of 22 joints are mapped " + c_.map.how);
 }
 
 Eigen::Matrix4d SkeletalMotion::to_file() const {
   ImportDecision decision;
-  decision.scale = impl_->c.to_world.scale;
-  decision.axes = impl_->axes;
-  decision.floor = impl_->floor;
+  decision.scale = c_.to_world.scale;
+  decision.axes = axes_;
+  decision.floor = floor_;
   return decision.to_file();
 }
 
-double SkeletalMotion::fps() const {
-  return impl_->times.fps;
-}
-
 Extraction SkeletalMotion::skeleton(int64_t frame) const {
-  const PosedSkeleton skeleton = impl_->joints(impl_->posed(frame));
+  const PosedSkeleton skeleton = joints(posed(frame));
   Extraction out;
   out.joints = skeleton.joints;
   out.global = skeleton.global;
-  out.sole_height = impl_->lowest(skeleton);
+  out.sole_height = lowest(skeleton);
   out.exact = true;
-  for (int j = 0; j < kJointCount; ++j) out.confidence[j] = impl_->c.map.has(j) ? 1.0f : 0.5f;
+  for (int j = 0; j < kJointCount; ++j) out.confidence[j] = c_.map.has(j) ? 1.0f : 0.5f;
   return out;
 }
 
 Mesh SkeletalMotion::surface(int64_t frame) const {
-  Mesh mesh = impl_->surface.at(impl_->posed(frame));
-  mesh.vertices = impl_->to_world(mesh.vertices);
+  Mesh mesh;
+  mesh.vertices = to_world(c_.surface.merged(vertices_at(c_.character, clip_, times_.at(frame))));
+  mesh.faces = c_.surface.mesh.faces;
   return mesh;
-}
-
-const BoneMap& SkeletalMotion::map() const {
-  return impl_->c.map;
-}
-
-int SkeletalMotion::clip() const {
-  return impl_->clip;
-}
-
-const Character& SkeletalMotion::character() const {
-  return impl_->c.character;
-}
-
-const std::vector<std::string>& SkeletalMotion::notes() const {
-  return impl_->c.notes;
 }
 
 }  // namespace understudy
