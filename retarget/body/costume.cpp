@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "retarget/math/random_direction.hpp"
+#include "retarget/math/directions.hpp"
 
 namespace understudy {
 namespace {

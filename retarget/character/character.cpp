@@ -21,20 +21,6 @@ bool invertible(const Mat4& M) {
   return M.allFinite() && scale > 1e-12f && std::abs((linear / scale).determinant()) > 1e-6f;
 }
 
-// The nearest turn by quarters: the nodes' pose of the root may lean and look aside, but a bind pose is
-// modelled along the axes.
-Mat3 snapped(const Mat3& R) {
-  Mat3 out = Mat3::Zero();
-  for (int c = 0; c < 3; ++c) {
-    Eigen::Index row = 0;
-    R.col(c).cwiseAbs().maxCoeff(&row);
-    out(row, c) = R(row, c) > 0 ? 1.0f : -1.0f;
-  }
-  const bool is_rotation =
-      std::abs(out.determinant() - 1.0f) < 1e-3f && (out * out.transpose()).isIdentity(1e-3f);
-  return is_rotation ? out : R;
-}
-
 float uniform_scale(const Mat4& M) {
   const Mat3 linear = M.topLeftCorner<3, 3>();
   return std::cbrt(std::abs(linear.determinant()));
@@ -52,7 +38,7 @@ Mat4 bind_to_world(const Mat4& root_world, const Mat4& inverse_bind, const Mat4*
     if (std::abs(uniform_scale(*mesh_world) / scale - 1) < 0.02f && geodesic_angle(a, b) < 1.75f)
       return *mesh_world;
   }
-  const Mat3 upright = snapped(posed.topLeftCorner<3, 3>() / scale) * scale;
+  const Mat3 upright = nearest_quarter_turn(posed.topLeftCorner<3, 3>() / scale) * scale;
   const Vec3 joint = inverse_bind.inverse().topRightCorner<3, 1>();  // in the bind pose
   const Vec3 there = root_world.topRightCorner<3, 1>();
   Mat4 out = Mat4::Identity();

@@ -5,7 +5,7 @@
 
 #include "retarget/editing/pose_edits.hpp"
 #include "retarget/math/smooth_step.hpp"
-#include "retarget/skeleton/leg_ik.hpp"
+#include "retarget/skeleton/limb_ik.hpp"
 
 namespace understudy {
 namespace {

@@ -1,7 +1,6 @@
 #include "retarget/formats/file_formats.hpp"
 
 #include "retarget/base/text.hpp"
-#include "retarget/formats/gltf_mesh.hpp"
 
 namespace understudy {
 
@@ -13,6 +12,7 @@ Mesh parse_stl(std::string_view bytes, const std::string& source);
 Mesh parse_xyz(std::string_view bytes, const std::string& source);
 Mesh parse_pts(std::string_view bytes, const std::string& source);
 Mesh parse_pcd(std::string_view bytes, const std::string& source);
+Mesh parse_gltf(std::string_view bytes, const std::string& path);
 bool is_obj(std::string_view bytes);
 bool is_off(std::string_view bytes);
 bool is_stl(std::string_view bytes);

@@ -1,5 +1,4 @@
-#include "retarget/formats/gltf_mesh.hpp"
-
+// The surface in a glTF or GLB file: what a target or a single scan needs of it.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
@@ -7,25 +6,13 @@
 
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/gltf_file.hpp"
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/math/rotation.hpp"
 
 namespace understudy {
 namespace {
 
 using Mat4 = Eigen::Matrix4f;
-
-// The nearest turn by quarters: the rest pose of the root joint may lean and look aside, but a bind pose is
-// modelled along the axes.
-Mat3 snapped(const Mat3& R) {
-  Mat3 out = Mat3::Zero();
-  for (int c = 0; c < 3; ++c) {
-    Eigen::Index row = 0;
-    R.col(c).cwiseAbs().maxCoeff(&row);
-    out(row, c) = R(row, c) > 0 ? 1.0f : -1.0f;
-  }
-  const bool is_rotation =
-      std::abs(out.determinant() - 1.0f) < 1e-3f && (out * out.transpose()).isIdentity(1e-3f);
-  return is_rotation ? out : R;
-}
 
 // Where the bind pose of a skin stands in the world: as its root joint carries it there.
 Mat4 bind_transform(GltfFile& file, const tinygltf::Skin& skin, const GltfSceneNodes& nodes) {
@@ -49,7 +36,7 @@ Mat4 bind_transform(GltfFile& file, const tinygltf::Skin& skin, const GltfSceneN
     return world;
   const Vec3 joint = inverse_bind.inverse().topRightCorner<3, 1>();  // in the bind pose
   const Vec3 there = M * joint + world.topRightCorner<3, 1>();
-  const Mat3 upright = snapped(M / scale) * scale;
+  const Mat3 upright = nearest_quarter_turn(M / scale) * scale;
   world.topLeftCorner<3, 3>() = upright;
   world.topRightCorner<3, 1>() = there - upright * joint;
   return world;
@@ -114,6 +101,11 @@ class MeshCollector {
 
 }  // namespace
 
+/// All triangles and points of the default scene in one mesh, with the transforms of their nodes; skinned
+/// meshes in their bind pose, placed by the root of their skeleton. Metres and y up are the format's own;
+/// colours from COLOR_0 when every primitive has them. Every accessor is checked against its buffer before it
+/// is read. `path` is where outside buffers are looked for, and names the file in complaints. Throws Error,
+/// also for Draco and meshopt compression.
 Mesh parse_gltf(std::string_view bytes, const std::string& path) {
   GltfFile file(bytes, path, GltfFile::Use::Surface);
   const tinygltf::Model& model = file.model();

@@ -29,18 +29,4 @@ Mesh read_mesh(const std::string& path) {
   return parse_mesh(read_file(path), path);
 }
 
-Eigen::Index finite_count(const Points& points) {
-  Eigen::Index count = 0;
-  for (Eigen::Index i = 0; i < points.rows(); ++i) count += points.row(i).allFinite();
-  return count;
-}
-
-Points finite_points(const Points& points) {
-  Points out(finite_count(points), 3);
-  Eigen::Index to = 0;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (points.row(i).allFinite()) out.row(to++) = points.row(i);
-  return out;
-}
-
 }  // namespace understudy

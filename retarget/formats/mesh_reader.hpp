@@ -15,9 +15,4 @@ Mesh read_mesh(const std::string& path);
 /// The same from bytes in memory; `path` gives the suffix and names the file in complaints.
 Mesh parse_mesh(std::string_view bytes, const std::string& path);
 
-/// The points without NaN and infinities, in their order.
-Points finite_points(const Points& points);
-/// How many points are finite.
-Eigen::Index finite_count(const Points& points);
-
 }  // namespace understudy

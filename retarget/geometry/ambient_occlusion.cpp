@@ -7,18 +7,12 @@
 #include <vector>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/directions.hpp"
 
 namespace understudy {
 namespace {
 
 constexpr int kDirections = 96, kSide = 160;  // pixels of a depth map
-
-/// Evenly spread directions: a Fibonacci spiral on the sphere.
-Vec3 direction(int i) {
-  const float y = 1 - 2 * (static_cast<float>(i) + 0.5f) / kDirections;
-  const float angle = 2.3999632f * static_cast<float>(i), r = std::sqrt(1 - y * y);
-  return {r * std::cos(angle), y, r * std::sin(angle)};
-}
 
 /// What a light far away along a direction sees: for each pixel how far towards it the surface reaches.
 class DepthMap {
@@ -98,7 +92,7 @@ Eigen::VectorXf ambient_occlusion(const Points& vertices, const Faces& faces, co
   Eigen::VectorXf light = Eigen::VectorXf::Zero(vertices.rows()), sky = light;
   DepthMap map;
   for (int i = 0; i < kDirections; ++i) {
-    const Vec3 towards_light = direction(i);
+    const Vec3 towards_light = spread_direction(i, kDirections);
     map.draw(vertices, faces, towards_light);
     const Eigen::VectorXf cosines = normals * towards_light;
     for (Eigen::Index v = 0; v < vertices.rows(); ++v) {

@@ -95,6 +95,25 @@ std::vector<int> farthest_points(const Points& points, int count, int first) {
   return chosen;
 }
 
+std::vector<int> far_apart(const Points& points, const std::vector<int>& of, int count) {
+  if (of.empty()) return {};
+  std::vector<int> chosen = farthest_points(points(of, Eigen::all), std::min<int>(count, of.size()));
+  for (int& i : chosen) i = of[i];
+  return chosen;
+}
+
+Points finite_points(const Points& points) {
+  Points kept(points.rows(), 3);
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (points.row(i).allFinite()) kept.row(count++) = points.row(i);
+  return kept.topRows(count);
+}
+
+Eigen::Index finite_count(const Points& points) {
+  return points.array().isFinite().rowwise().all().count();
+}
+
 namespace {
 
 /// nanoflann's view of our points.

@@ -42,6 +42,13 @@ Points sample_points(const Mesh& mesh, int count, Rng& rng);
 /// Indices of `count` points that lie far apart (farthest point sampling from `first`); count <=
 /// points.rows().
 std::vector<int> farthest_points(const Points& points, int count, int first = 0);
+/// The same among the points `of`, from the first of them; at most `count`.
+std::vector<int> far_apart(const Points& points, const std::vector<int>& of, int count);
+
+/// The points without NaN and infinities, in their order.
+Points finite_points(const Points& points);
+/// How many points are finite.
+Eigen::Index finite_count(const Points& points);
 
 /// For each query the indices of its k nearest points, nearest first, [Q, k]; k <= points.rows(). Exact.
 Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,

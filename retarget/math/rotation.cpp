@@ -56,6 +56,18 @@ float geodesic_angle(const Mat3& A, const Mat3& B) {
   return std::atan2(sine.norm(), R.trace() - 1.0f);
 }
 
+Mat3 nearest_quarter_turn(const Mat3& R) {
+  Mat3 out = Mat3::Zero();
+  for (int c = 0; c < 3; ++c) {
+    Eigen::Index row = 0;
+    R.col(c).cwiseAbs().maxCoeff(&row);
+    out(row, c) = R(row, c) > 0 ? 1.0f : -1.0f;
+  }
+  const bool is_rotation =
+      std::abs(out.determinant() - 1.0f) < 1e-3f && (out * out.transpose()).isIdentity(1e-3f);
+  return is_rotation ? out : R;
+}
+
 Mat3 nearest_rotation(const Mat3& M) {
   const Eigen::JacobiSVD<Mat3> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vec3 sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1.0f : 1.0f);

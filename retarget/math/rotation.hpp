@@ -26,6 +26,9 @@ float heading_of(const Mat3& R);
 Mat3 rotation_between(const Vec3& from, const Vec3& to);
 /// Angle of A^T B in radians, [0, pi].
 float geodesic_angle(const Mat3& A, const Mat3& B);
+/// The nearest turn by quarters; R itself where its columns agree on none. A rest pose may lean and look
+/// aside, but a bind pose is modelled along the axes.
+Mat3 nearest_quarter_turn(const Mat3& R);
 /// The nearest rotation to any 3x3 matrix in the Frobenius norm, by SVD.
 Mat3 nearest_rotation(const Mat3& M);
 /// R minimising sum_i w_i |R a_i - b_i|^2 over rotations (Kabsch). a, b [N, 3] already centred; w [N].

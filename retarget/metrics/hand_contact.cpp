@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/geometry/far_apart.hpp"
 #include "retarget/math/segment.hpp"
 
 namespace understudy {

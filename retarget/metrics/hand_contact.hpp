@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
-#include "retarget/metrics/windings.hpp"
+#include "retarget/metrics/inside.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy {

@@ -109,13 +109,6 @@ double flip_rate(const JointSequence& predicted, const JointSequence& truth) {
   return static_cast<double>(flipped) / static_cast<double>(truth.size());
 }
 
-Rotations global_rotations(const Rotations& local) {
-  Rotations global;
-  for (int j = 0; j < kJointCount; ++j)
-    global[j] = kParents[j] < 0 ? local[j] : Mat3(global[kParents[j]] * local[j]);
-  return global;
-}
-
 RotationError rotation_error(const std::vector<Rotations>& predicted, const std::vector<Rotations>& truth) {
   check_same_length(predicted.size(), truth.size());
   std::array<double, kJointCount> angle{};  // summed over frames, radians

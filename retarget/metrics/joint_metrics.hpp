@@ -35,8 +35,6 @@ struct RotationError {
 };
 /// Frames of local rotations; equally many of both, at least one.
 RotationError rotation_error(const std::vector<Rotations>& predicted, const std::vector<Rotations>& truth);
-/// World rotations from local ones.
-Rotations global_rotations(const Rotations& local);
 
 // Without truth.
 

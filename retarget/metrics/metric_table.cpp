@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace understudy {
-
-// Metrics in files of their own.
-double bone_asymmetry(const MetricSequence& p, const MetricSequence& q, double fps);
 
 namespace {
 
@@ -62,6 +60,24 @@ std::vector<float> bone_drifts(const Sequence& p, const Sequence&, double) {
     values.push_back(sum / (kJointCount - 1));
   }
   return values;
+}
+
+/// Mean over frames and the eight pairs of bones of the source's skeleton of |left - right| over the mean of both
+/// lengths: 0 where the sides are alike, 2 where one has none. Without truth. The left joint of a pair stands
+/// directly before the right one (SMPL's order).
+double bone_asymmetry(const Sequence& p, const Sequence&, double) {
+  const auto length = [](const Joints& joints, int j) {
+    return (joints.row(j) - joints.row(kParents[j])).cast<double>().norm();
+  };
+  const int lefts[] = {LeftHip,    LeftKnee,     LeftAnkle, LeftFoot,
+                       LeftCollar, LeftShoulder, LeftElbow, LeftWrist};
+  double sum = 0;
+  for (const Joints& joints : p.source_joints)
+    for (const int left : lefts) {
+      const double l = length(joints, left), r = length(joints, left + 1);
+      if (l + r > 0) sum += std::abs(l - r) / ((l + r) / 2);
+    }
+  return sum / (static_cast<double>(p.source_joints.size()) * std::size(lefts));
 }
 
 std::vector<float> confidences(const Sequence& p, const Sequence&, double) {

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "retarget/base/error.hpp"
-#include "retarget/geometry/finite_rows.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -62,7 +61,7 @@ ScanPatches cut_patches(const Points& points) {
 Points thin_scan(const Mesh& scan, uint64_t seed) {
   Rng rng(seed);
   Mesh finite = scan;
-  if (!scan.vertices.allFinite()) finite = Mesh{finite_rows(scan.vertices), Faces(0, 3), Points(0, 3)};
+  if (!scan.vertices.allFinite()) finite = Mesh{finite_points(scan.vertices), Faces(0, 3), Points(0, 3)};
   const Eigen::Index count = finite.vertices.rows();
   US_CHECK(count >= 32, "the scan has only ", count, " usable points; at least 32 are needed");
   Points points = sample_points(finite, kScanPoints, rng);

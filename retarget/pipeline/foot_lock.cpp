@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/skeleton/leg_ik.hpp"
+#include "retarget/skeleton/limb_ik.hpp"
 
 namespace understudy {
 namespace {

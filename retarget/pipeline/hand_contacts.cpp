@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/geometry/far_apart.hpp"
 #include "retarget/math/segment.hpp"
 #include "retarget/math/smooth_step.hpp"
 #include "retarget/pipeline/human_rest.hpp"
-#include "retarget/skeleton/arm_ik.hpp"
+#include "retarget/skeleton/limb_ik.hpp"
 
 namespace understudy {
 namespace {

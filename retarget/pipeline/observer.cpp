@@ -12,12 +12,6 @@ namespace {
 constexpr int kFewestPoints = 32;  // finite ones below which a scan is not looked at
 constexpr float kPast_s = 0.25f;   // how long joints are told on: some frames at any usual rate
 
-int finite_points(const Points& points) {
-  int count = 0;
-  for (Eigen::Index i = 0; i < points.rows(); ++i) count += points.row(i).allFinite() ? 1 : 0;
-  return count;
-}
-
 /// What the scan shows around a skeleton.
 void look_around(Observation& seen, const Mesh& scan) {
   if (!seen.joints.allFinite()) return;
@@ -46,7 +40,7 @@ Observation Observer::observe(const Mesh& scan, float dt) {
   pass(dt);
   Observation seen;
   try {
-    const int usable = finite_points(scan.vertices);
+    const Eigen::Index usable = finite_count(scan.vertices);
     US_CHECK(usable >= kFewestPoints, "the scan has ", usable, " usable points");
     static_cast<Extraction&>(seen) = extractor_->extract_after(recent_, scan);
     look_around(seen, scan);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/geometry/finite_rows.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 
@@ -60,7 +59,7 @@ std::vector<std::string> complaints(const Mesh& mesh, const Joints& joints) {
 
 Mesh finite_part(const Mesh& mesh) {
   if (mesh.vertices.allFinite() && !mesh.is_cloud()) return mesh;
-  return Mesh{finite_rows(mesh.vertices)};
+  return Mesh{finite_points(mesh.vertices)};
 }
 
 /// One look at the target: a sample of it turned and perhaps mirrored, the joints brought back.

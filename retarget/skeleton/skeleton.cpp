@@ -16,18 +16,21 @@ Rotations identity_rotations() {
 
 PosedSkeleton forward_kinematics(const Joints& rest, const Pose& pose) {
   PosedSkeleton posed;
-  for (int j = 0; j < kJointCount; ++j) {
+  posed.global = global_rotations(pose.local);
+  posed.joints.row(Pelvis) = pose.root.transpose();
+  for (int j = Pelvis + 1; j < kJointCount; ++j) {
     const int p = kParents[j];
-    if (p < 0) {
-      posed.global[j] = pose.local[j];
-      posed.joints.row(j) = pose.root.transpose();
-      continue;
-    }
-    posed.global[j] = posed.global[p] * pose.local[j];
     const Vec3 bone = (rest.row(j) - rest.row(p)).transpose();
     posed.joints.row(j) = posed.joints.row(p) + (posed.global[p] * bone).transpose();
   }
   return posed;
+}
+
+Rotations global_rotations(const Rotations& local) {
+  Rotations global;
+  for (int j = 0; j < kJointCount; ++j)
+    global[j] = kParents[j] < 0 ? local[j] : Mat3(global[kParents[j]] * local[j]);
+  return global;
 }
 
 Rotations local_rotations(const Rotations& global) {

@@ -76,7 +76,9 @@ struct PosedSkeleton {
 /// World rotations and positions of the joints of a body whose T-pose joints are `rest`.
 PosedSkeleton forward_kinematics(const Joints& rest, const Pose& pose);
 
-/// Local rotations from world rotations, the inverse of what forward kinematics does to rotations.
+/// World rotations from local ones.
+Rotations global_rotations(const Rotations& local);
+/// The inverse.
 Rotations local_rotations(const Rotations& global);
 
 /// Thigh plus shin in metres, mean of both sides. Bone lengths do not change with pose: any pose will do.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "retarget/math/random_direction.hpp"
+#include "retarget/math/directions.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::training {

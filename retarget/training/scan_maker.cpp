@@ -5,7 +5,7 @@
 
 #include "retarget/body/costume.hpp"
 #include "retarget/body/partial_view.hpp"
-#include "retarget/math/random_direction.hpp"
+#include "retarget/math/directions.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::training {

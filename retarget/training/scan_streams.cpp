@@ -2,7 +2,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
-#include "retarget/math/random_direction.hpp"
+#include "retarget/math/directions.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::training {

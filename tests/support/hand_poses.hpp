@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "retarget/body/builtin_person.hpp"
-#include "retarget/skeleton/arm_ik.hpp"
+#include "retarget/skeleton/limb_ik.hpp"
 
 namespace understudy::fixtures {
 

@@ -1,4 +1,4 @@
-#include "retarget/skeleton/leg_ik.hpp"
+#include "retarget/skeleton/limb_ik.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,3 @@
-#include "retarget/formats/gltf_mesh.hpp"
-
 #include "retarget/formats/mesh_reader.hpp"
 #include "tests/retarget/formats/support.hpp"
 

@@ -1,5 +1,4 @@
 // What surfaces wind around, many points at once.
-#include "retarget/metrics/windings.hpp"
 
 #include <gtest/gtest.h>
 

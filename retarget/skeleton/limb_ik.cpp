@@ -1,4 +1,4 @@
-#include "retarget/skeleton/two_bone_ik.hpp"
+#include "retarget/skeleton/limb_ik.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,11 @@ namespace {
 
 constexpr float kSoft = 0.012f;       // share of the limb's length in which it straightens softly
 constexpr float kStraight = 0.9995f;  // share of its length that it is never straighter than
+
+struct TwoBones {
+  int upper, hinge, end;  // joints, parent first
+  Vec3 axis;              // about which the hinge bends near the T-pose, in T-pose axes
+};
 
 /// How far the end may go from the upper joint: as wanted when the limb is bent or gets no longer than it
 /// was.
@@ -32,8 +37,7 @@ Vec3 hinge_axis(const Joints& rest, const TwoBones& limb, const Pose& pose, cons
   return (posed.global[limb.upper] * (axis.norm() > 1e-3f ? axis : bend)).normalized();
 }
 
-}  // namespace
-
+/// What legs and arms share; see place_ankle.
 Vec3 place_end(const Joints& rest, const TwoBones& limb, const Vec3& wanted, Pose& pose) {
   const PosedSkeleton posed = forward_kinematics(rest, pose);
   const Vec3 top = posed.joints.row(limb.upper).transpose();
@@ -65,6 +69,19 @@ Vec3 place_end(const Joints& rest, const TwoBones& limb, const Vec3& wanted, Pos
   set_local(limb.hinge, limb.upper);
   set_local(limb.end, limb.hinge);  // its world rotation stays
   return top + aim * bent;
+}
+
+}  // namespace
+
+Vec3 place_ankle(const Joints& rest, int side, const Vec3& ankle, Pose& pose) {
+  const Leg leg = Leg::of(side);
+  return place_end(rest, {leg.hip, leg.knee, leg.ankle, Vec3::UnitX()}, ankle, pose);
+}
+
+Vec3 place_wrist(const Joints& rest, int side, const Vec3& wrist, Pose& pose) {
+  const float sign = side == 0 ? 1.0f : -1.0f;  // elbows flex the forearm forward and a little up
+  const TwoBones arm{LeftShoulder + side, LeftElbow + side, LeftWrist + side, sign * Vec3(0, -0.87f, 0.49f)};
+  return place_end(rest, arm, wrist, pose);
 }
 
 }  // namespace understudy
