@@ -9,10 +9,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/formats/amass_writer.hpp"
-#include "retarget/formats/bvh_writer.hpp"
-#include "retarget/formats/joint_table.hpp"
-#include "retarget/formats/result_writer.hpp"
+#include "retarget/formats/motion_writers.hpp"
 #include "retarget/formats/surface_writer.hpp"
 
 namespace understudy::app {

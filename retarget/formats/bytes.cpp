@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace understudy {
@@ -17,62 +18,44 @@ float half_to_float(uint16_t half) {
   return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
 }
 
+template <class T>
+double loaded(const char* at, bool swap) {
+  return static_cast<double>(load<T>(at, swap));
+}
+
+struct TypeRow {
+  std::string_view name;  // NumPy's
+  size_t size;
+  double (*load)(const char* at, bool swap);
+};
+// In the order of NumberType.
+constexpr TypeRow kTypes[] = {
+    {"i1", 1, loaded<int8_t>},
+    {"u1", 1, loaded<uint8_t>},
+    {"i2", 2, loaded<int16_t>},
+    {"u2", 2, loaded<uint16_t>},
+    {"i4", 4, loaded<int32_t>},
+    {"u4", 4, loaded<uint32_t>},
+    {"i8", 8, loaded<int64_t>},
+    {"u8", 8, loaded<uint64_t>},
+    {"f2", 2, [](const char* at, bool swap) -> double { return half_to_float(load<uint16_t>(at, swap)); }},
+    {"f4", 4, loaded<float>},
+    {"f8", 8, loaded<double>}};
+
 }  // namespace
 
 std::optional<NumberType> number_type(std::string_view descr) {
-  static const std::pair<const char*, NumberType> kTypes[] = {
-      {"f2", NumberType::F16}, {"f4", NumberType::F32}, {"f8", NumberType::F64}, {"i1", NumberType::I8},
-      {"u1", NumberType::U8},  {"i2", NumberType::I16}, {"u2", NumberType::U16}, {"i4", NumberType::I32},
-      {"u4", NumberType::U32}, {"i8", NumberType::I64}, {"u8", NumberType::U64}};
-  for (const auto& [name, type] : kTypes)
-    if (descr == name) return type;
+  for (size_t i = 0; i < std::size(kTypes); ++i)
+    if (descr == kTypes[i].name) return static_cast<NumberType>(i);
   return {};
 }
 
 size_t size_of(NumberType type) {
-  switch (type) {
-    case NumberType::I8:
-    case NumberType::U8:
-      return 1;
-    case NumberType::I16:
-    case NumberType::U16:
-    case NumberType::F16:
-      return 2;
-    case NumberType::I32:
-    case NumberType::U32:
-    case NumberType::F32:
-      return 4;
-    default:
-      return 8;
-  }
+  return kTypes[static_cast<size_t>(type)].size;
 }
 
 double load_number(NumberType type, const char* at, bool swap) {
-  switch (type) {
-    case NumberType::I8:
-      return load<int8_t>(at, false);
-    case NumberType::U8:
-      return load<uint8_t>(at, false);
-    case NumberType::I16:
-      return load<int16_t>(at, swap);
-    case NumberType::U16:
-      return load<uint16_t>(at, swap);
-    case NumberType::I32:
-      return load<int32_t>(at, swap);
-    case NumberType::U32:
-      return load<uint32_t>(at, swap);
-    case NumberType::I64:
-      return static_cast<double>(load<int64_t>(at, swap));
-    case NumberType::U64:
-      return static_cast<double>(load<uint64_t>(at, swap));
-    case NumberType::F16:
-      return half_to_float(load<uint16_t>(at, swap));
-    case NumberType::F32:
-      return load<float>(at, swap);
-    case NumberType::F64:
-      return load<double>(at, swap);
-  }
-  return 0;
+  return kTypes[static_cast<size_t>(type)].load(at, swap);
 }
 
 float narrow(double value) {

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/formats/mesh_reader.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -49,11 +48,10 @@ Range dense_range(const std::vector<float>& sorted) {
   return {sorted[low], sorted[high]};
 }
 
-std::vector<float> sorted_column(const Points& points, int axis) {
-  std::vector<float> values(points.rows());
-  for (Eigen::Index i = 0; i < points.rows(); ++i) values[i] = points(i, axis);
-  std::sort(values.begin(), values.end());
-  return values;
+std::vector<float> sorted(const Eigen::VectorXf& values) {
+  std::vector<float> result(values.begin(), values.end());
+  std::sort(result.begin(), result.end());
+  return result;
 }
 
 // What one axis of the scan looks like.
@@ -62,25 +60,13 @@ struct AxisView {
   float middle_half = 0;  // between the quartiles of the mass
 };
 
-// Points with equal mass each: of a mesh the corners' thirds of triangles count by area, or dense hands would
-// pull.
+// Points with equal mass each: of a mesh by area, or dense hands would pull. Triangles that are not finite have
+// none.
 Points even_points(const Mesh& mesh) {
   if (mesh.is_cloud()) return finite_points(mesh.vertices);
-  Mesh clean = mesh;
-  for (Eigen::Index i = 0; i < clean.vertices.rows(); ++i)
-    if (!clean.vertices.row(i).allFinite()) clean.vertices.row(i).setZero();
-  std::vector<Eigen::Index> good;
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
-    if (mesh.vertices.row(mesh.faces(f, 0)).allFinite() && mesh.vertices.row(mesh.faces(f, 1)).allFinite() &&
-        mesh.vertices.row(mesh.faces(f, 2)).allFinite())
-      good.push_back(f);
-  Faces faces(good.size(), 3);
-  for (size_t i = 0; i < good.size(); ++i) faces.row(i) = mesh.faces.row(good[i]);
-  clean.faces = faces;
-  if (faces.rows() == 0) return finite_points(mesh.vertices);
   try {
     Rng rng(1);
-    return sample_points(clean, 8000, rng);
+    return sample_points(mesh, 8000, rng);
   } catch (const Error&) {  // no area
     return finite_points(mesh.vertices);
   }
@@ -95,10 +81,8 @@ struct FloorSlab {
 };
 
 float spread(const Points& points, const std::vector<Eigen::Index>& rows, int axis) {
-  std::vector<float> values;
-  for (const auto row : rows) values.push_back(points(row, axis));
-  if (values.size() < 8) return 0;
-  std::sort(values.begin(), values.end());
+  if (rows.size() < 8) return 0;
+  const std::vector<float> values = sorted(points(rows, axis));
   return values[values.size() * 19 / 20] - values[values.size() / 20];
 }
 
@@ -107,15 +91,9 @@ FloorSlab find_floor(const Points& points, int axis, const AxisView& view) {
   for (const bool high : {false, true}) {
     const float end = high ? view.range.high : view.range.low;
     std::vector<Eigen::Index> slab, rest;
-    std::vector<float> heights;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       const float depth = high ? end - points(i, axis) : points(i, axis) - end;
-      if (depth < thickness) {
-        slab.push_back(i);
-        heights.push_back(points(i, axis));
-      } else {
-        rest.push_back(i);
-      }
+      (depth < thickness ? slab : rest).push_back(i);
     }
     if (slab.size() < static_cast<size_t>(points.rows()) / 20 || rest.size() < slab.size() / 4) continue;
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -123,9 +101,7 @@ FloorSlab find_floor(const Points& points, int axis, const AxisView& view) {
     const bool wider = spread(points, slab, a) > 0.9f * spread(points, rest, a) &&
                        spread(points, slab, b) > 0.9f * spread(points, rest, b);
     if (!wider || wide < 0.25f * extent) continue;
-    std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
-                     heights.end());
-    return {true, high, heights[heights.size() / 2]};
+    return {true, high, sorted(points(slab, axis))[slab.size() / 2]};
   }
   return {};
 }
@@ -170,36 +146,17 @@ UpGuess forced_up(const std::string& up, const Points& points, const std::array<
 Mat3 to_y_up(const UpGuess& up) {
   Mat3 R;
   const float s = up.negative ? -1.0f : 1.0f;
-  switch (up.axis) {
-    case 0:
-      R << 0, -s, 0, s, 0, 0, 0, 0, 1;
-      break;
-    case 2:
-      R << 1, 0, 0, 0, 0, s, 0, -s, 0;
-      break;
-    default:
-      R << 1, 0, 0, 0, s, 0, 0, 0, s;
-      break;
-  }
+  if (up.axis == 0)
+    R << 0, -s, 0, s, 0, 0, 0, 0, 1;
+  else if (up.axis == 1)
+    R << 1, 0, 0, 0, s, 0, 0, 0, s;
+  else
+    R << 1, 0, 0, 0, 0, s, 0, -s, 0;
   return R;
 }
 
 std::string short_number(float value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", static_cast<double>(value));
-  return text;
-}
-
-std::string metres(float value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", static_cast<double>(value));
-  return text;
-}
-
-const Unit* find_unit(const std::string& name) {
-  for (const auto& unit : kUnits)
-    if (name == unit.name) return &unit;
-  return nullptr;
+  return printed("%.4g", static_cast<double>(value));
 }
 
 // No person has this height in any unit. Somebody who lies, or a giant, is still in metres; the rest, small or
@@ -217,18 +174,16 @@ std::string decide_odd_size(float height, float extent, ImportDecision& decision
 // Writes unit and scale into the decision; returns the words about it. extent: the largest along any axis.
 std::string decide_units(float height, float extent, const std::string& forced, ImportDecision& decision) {
   const bool guess = forced.empty() || forced == "auto";
-  const Unit* unit = guess ? nullptr : find_unit(forced);
+  const Unit* unit = nullptr;
+  for (const auto& candidate : kUnits)
+    if (guess ? height >= candidate.low && height < candidate.high : forced == candidate.name)
+      unit = &candidate;
   US_CHECK(guess || unit, "the unit '", forced, "' is none of m, dm, cm, mm, in");
-  std::string why = ", as told";
-  if (guess) {
-    for (const auto& candidate : kUnits)
-      if (height >= candidate.low && height < candidate.high) unit = &candidate;
-    why = " (from the height " + short_number(height) + ")";
-    if (!unit) return decide_odd_size(height, extent, decision);
-  }
+  if (!unit) return decide_odd_size(height, extent, decision);
   decision.units = unit->name;
   decision.scale = unit->metres;
-  return std::string("units: ") + unit->plural + why;
+  return std::string("units: ") + unit->plural +
+         (guess ? " (from the height " + short_number(height) + ")" : ", as told");
 }
 
 }  // namespace
@@ -256,8 +211,8 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   US_CHECK(points.rows() > 0, "the first frame has no finite point to decide units and axes from");
   std::array<AxisView, 3> views;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto sorted = sorted_column(points, axis);
-    views[axis] = {dense_range(sorted), sorted[sorted.size() * 3 / 4] - sorted[sorted.size() / 4]};
+    const auto values = sorted(points.col(axis));
+    views[axis] = {dense_range(values), values[values.size() * 3 / 4] - values[values.size() / 4]};
   }
   const bool guess = forced.up.empty() || forced.up == "auto";
   const UpGuess up = guess ? guess_up(points, views) : forced_up(forced.up, points, views);
@@ -276,8 +231,8 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   // Within 2 cm the file's own zero is the better floor: the lowest points are a noisy measure of it.
   decision.floor = forced.floor ? *forced.floor : std::abs(measured) <= 0.02f ? 0.0f : measured;
   decision.sentence += ", up: " + decision.up + (guess ? "" : ", as told") +
-                       (up.floor.seen ? " (from the floor)" : "") + ", floor at " + metres(decision.floor) +
-                       " m";
+                       (up.floor.seen ? " (from the floor)" : "") + ", floor at " +
+                       printed("%.2f", static_cast<double>(decision.floor)) + " m";
   if (forced.yaw_deg != 0) decision.sentence += ", turned by " + short_number(forced.yaw_deg) + " degrees";
   return decision;
 }

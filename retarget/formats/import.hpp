@@ -42,8 +42,8 @@ struct ImportDecision {
 
 /// Decides from the first usable frame. Outliers are left aside; a flat floor in the scan shows where down
 /// is. What is not 0.5 to 2.6 m tall in any unit is taken as metres where its largest extent is 0.5 to 5 m
-/// (somebody who lies, a giant), else made 1.7 m tall, with a warning. Axes can only be guessed positive unless a floor is seen. Throws Error when the options are not
-/// among those named, or there is no finite point.
+/// (somebody who lies, a giant), else made 1.7 m tall, with a warning. Axes can only be guessed positive unless
+/// a floor is seen. Throws Error when the options are not among those named, or there is no finite point.
 ImportDecision decide_import(const Mesh& first, const ImportOptions& forced);
 
 }  // namespace understudy

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 
 #include "retarget/base/error.hpp"
@@ -56,17 +55,11 @@ std::vector<int64_t> shape_of(const std::string& dict, const std::string& source
 
 Header parse_header(const std::string& bytes, const std::string& source) {
   US_CHECK(bytes.size() >= 10 && starts_with(bytes, "\x93NUMPY"), source, ": not a NumPy array");
-  const int version = static_cast<unsigned char>(bytes[6]);
-  const auto byte = [&bytes](size_t i) {
-    return static_cast<uint64_t>(static_cast<unsigned char>(bytes[i]));
-  };
-  uint64_t length = byte(8) | byte(9) << 8;
-  size_t start = 10;
-  if (version >= 2) {
-    US_CHECK(bytes.size() >= 12, source, ": the array header is cut off");
-    length |= byte(10) << 16 | byte(11) << 24;
-    start = 12;
-  }
+  const bool is_wide = static_cast<unsigned char>(bytes[6]) >= 2;
+  const size_t start = is_wide ? 12 : 10;
+  US_CHECK(bytes.size() >= start, source, ": the array header is cut off");
+  const uint64_t length =
+      is_wide ? load<uint32_t>(bytes.data() + 8, false) : load<uint16_t>(bytes.data() + 8, false);
   US_CHECK(start + length <= bytes.size(), source, ": the array header is cut off");
   const std::string dict = bytes.substr(start, length);
   const std::string descr = quoted_value(dict, "descr");
@@ -132,6 +125,14 @@ Zip open_archive(const std::string& path) {
   return archive;
 }
 
+/// The name of the array in an entry; none for entries of other kinds.
+std::optional<std::string> array_name(zip_t* archive, zip_int64_t index) {
+  const char* const name = zip_get_name(archive, index, 0);
+  const std::string_view text = name ? name : "";
+  if (!ends_with(text, ".npy")) return {};
+  return std::string(text.substr(0, text.size() - 4));
+}
+
 std::string read_entry(zip_t* archive, zip_int64_t index, uint64_t archive_size, const std::string& source) {
   zip_stat_t stat;
   US_CHECK(zip_stat_index(archive, index, 0, &stat) == 0, source, ": the archive is damaged");
@@ -163,10 +164,6 @@ std::string npy_bytes(const NpyArray& array) {
 }
 
 }  // namespace
-
-int64_t NpyArray::size() const {
-  return static_cast<int64_t>(values.size());
-}
 
 RowMatrix NpyArray::matrix(int64_t cols, const std::string& what) const {
   US_CHECK(cols > 0 && size() % cols == 0, what, ": ", size(), " numbers do not make rows of ", cols);
@@ -217,29 +214,22 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source) {
 std::vector<std::string> npz_names(const std::string& path) {
   const Zip archive = open_archive(path);
   std::vector<std::string> names;
-  const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
-  for (zip_int64_t i = 0; i < entries; ++i) {
-    const std::string name = zip_get_name(archive.get(), i, 0);
-    if (name.size() > 4 && ends_with(name, ".npy")) names.push_back(name.substr(0, name.size() - 4));
-  }
+  for (zip_int64_t i = 0; i < zip_get_num_entries(archive.get(), 0); ++i)
+    if (const auto name = array_name(archive.get(), i)) names.push_back(*name);
   return names;
 }
 
 Npz read_npz(const std::string& path) {
   const Zip archive = open_archive(path);
-  std::error_code ignored;
-  const uint64_t archive_size = std::filesystem::file_size(path, ignored);
+  const uint64_t archive_size = check_file(path);
   Npz npz;
-  const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
-  for (zip_int64_t i = 0; i < entries; ++i) {
-    const char* const entry_name = zip_get_name(archive.get(), i, 0);
-    std::string name = entry_name != nullptr ? entry_name : "";
-    if (!ends_with(name, ".npy")) continue;
-    name.resize(name.size() - 4);
-    const std::string source = path + ": " + name;
+  for (zip_int64_t i = 0; i < zip_get_num_entries(archive.get(), 0); ++i) {
+    const auto name = array_name(archive.get(), i);
+    if (!name) continue;
+    const std::string source = path + ": " + *name;
     const std::string bytes = read_entry(archive.get(), i, archive_size, source);
     const Header header = parse_header(bytes, source);
-    if (header.kind == 'U' || type_of(header)) npz[name] = parse_npy(bytes, source);
+    if (header.kind == 'U' || type_of(header)) npz[*name] = parse_npy(bytes, source);
   }
   return npz;
 }
@@ -262,8 +252,7 @@ void write_npz(const std::string& path, const Npz& npz) {
     zip_source_t* source = zip_source_buffer(archive.get(), kept.back().data(), kept.back().size(), 0);
     const zip_int64_t index = zip_file_add(archive.get(), (name + ".npy").c_str(), source, ZIP_FL_OVERWRITE);
     US_CHECK(index >= 0, path, ": cannot be written");
-    zip_file_set_mtime(archive.get(), index, 315532800,
-                       0);  // a fixed date: the same arrays give the same bytes
+    zip_file_set_mtime(archive.get(), index, 315532800, 0);  // a fixed date: the same arrays, the same bytes
   }
   US_CHECK(zip_close(archive.get()) == 0, path, ": cannot be written (", zip_strerror(archive.get()), ")");
   archive.release();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <istream>
 #include <map>
 #include <string>
 #include <vector>
@@ -19,7 +18,7 @@ struct NpyArray {
   std::vector<float> values;        ///< C order
   std::string text;                 ///< for a scalar string
   std::vector<int64_t> whole = {};  ///< of an array of integers the same without loss, up to 9e15; beyond: -1
-  int64_t size() const;
+  int64_t size() const { return static_cast<int64_t>(values.size()); }
   /// As a matrix of `cols` columns. Throws Error (naming `what`) when it does not divide.
   RowMatrix matrix(int64_t cols, const std::string& what) const;
   /// The same of whole numbers without loss; what a float array has behind the point is cut off.

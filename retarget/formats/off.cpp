@@ -19,17 +19,11 @@ OffHeader read_keyword(std::string_view keyword, const std::string& source) {
   US_CHECK(keyword.size() >= 3 && keyword.substr(keyword.size() - 3) == "OFF", source,
            ": does not begin with OFF");
   std::string_view prefix = keyword.substr(0, keyword.size() - 3);
-  if (prefix.substr(0, 2) == "ST") {
-    header.texture = true;
-    prefix.remove_prefix(2);
-  }
-  if (prefix.substr(0, 1) == "C") {
-    header.colours = true;
-    prefix.remove_prefix(1);
-  }
-  if (prefix.substr(0, 1) == "N") {
-    header.normals = true;
-    prefix.remove_prefix(1);
+  const std::pair<std::string_view, bool*> flags[] = {
+      {"ST", &header.texture}, {"C", &header.colours}, {"N", &header.normals}};
+  for (const auto& [letters, flag] : flags) {
+    *flag = starts_with(prefix, letters);
+    if (*flag) prefix.remove_prefix(letters.size());
   }
   US_CHECK(prefix.empty(), source, ": ", excerpt(keyword), " is a kind of OFF that is not read");
   return header;

@@ -25,17 +25,10 @@ struct PcdHeader {
 };
 
 NumberType pcd_number_type(std::string_view kind, int64_t size, const std::string& source) {
-  const char k = kind.size() == 1 ? kind[0] : '?';
-  if (k == 'F' && size == 4) return NumberType::F32;
-  if (k == 'F' && size == 8) return NumberType::F64;
-  if (k == 'I' || k == 'U') {
-    const bool s = k == 'I';
-    if (size == 1) return s ? NumberType::I8 : NumberType::U8;
-    if (size == 2) return s ? NumberType::I16 : NumberType::U16;
-    if (size == 4) return s ? NumberType::I32 : NumberType::U32;
-    if (size == 8) return s ? NumberType::I64 : NumberType::U64;
-  }
-  throw Error(source + ": the header names an unknown type '" + excerpt(kind) + std::to_string(size) + "'");
+  const auto type = number_type(lower_case(kind) + std::to_string(size));
+  US_CHECK(type && type != NumberType::F16 && (kind == "F" || kind == "I" || kind == "U"), source,
+           ": the header names an unknown type '", excerpt(kind), size, "'");
+  return *type;
 }
 
 // The header's lines as read, before they are put together.

@@ -29,24 +29,13 @@ struct PlyHeader {
 };
 
 NumberType ply_number_type(std::string_view name, const std::string& source) {
-  static const std::array<std::pair<const char*, NumberType>, 18> kNames = {{{"char", NumberType::I8},
-                                                                             {"int8", NumberType::I8},
-                                                                             {"uchar", NumberType::U8},
-                                                                             {"uint8", NumberType::U8},
-                                                                             {"short", NumberType::I16},
-                                                                             {"int16", NumberType::I16},
-                                                                             {"ushort", NumberType::U16},
-                                                                             {"uint16", NumberType::U16},
-                                                                             {"int", NumberType::I32},
-                                                                             {"int32", NumberType::I32},
-                                                                             {"uint", NumberType::U32},
-                                                                             {"uint32", NumberType::U32},
-                                                                             {"int64", NumberType::I64},
-                                                                             {"uint64", NumberType::U64},
-                                                                             {"float", NumberType::F32},
-                                                                             {"float32", NumberType::F32},
-                                                                             {"double", NumberType::F64},
-                                                                             {"float64", NumberType::F64}}};
+  static const std::pair<const char*, NumberType> kNames[] = {
+      {"char", NumberType::I8},     {"int8", NumberType::I8},    {"uchar", NumberType::U8},
+      {"uint8", NumberType::U8},    {"short", NumberType::I16},  {"int16", NumberType::I16},
+      {"ushort", NumberType::U16},  {"uint16", NumberType::U16}, {"int", NumberType::I32},
+      {"int32", NumberType::I32},   {"uint", NumberType::U32},   {"uint32", NumberType::U32},
+      {"int64", NumberType::I64},   {"uint64", NumberType::U64}, {"float", NumberType::F32},
+      {"float32", NumberType::F32}, {"double", NumberType::F64}, {"float64", NumberType::F64}};
   for (const auto& [known, type] : kNames)
     if (name == known) return type;
   throw Error(source + ": the header names an unknown type '" + excerpt(name) + "'");
@@ -126,15 +115,6 @@ class Values {
     US_CHECK(least == 0 || static_cast<uint64_t>(element.rows) <= room, source_, ": the header says ",
              element.rows, " rows of '", excerpt(element.name), "', the file has room for at most ", room);
   }
-  // A block of fixed-size rows of a binary body.
-  const char* block(uint64_t size) {
-    US_CHECK(size <= body_.size() - at_, source_, ": ends before the last value that the header promises");
-    const char* const begin = body_.data() + at_;
-    at_ += size;
-    return begin;
-  }
-  bool ascii() const { return ascii_; }
-  bool swap() const { return swap_; }
 
  private:
   size_t left() const { return ascii_ ? text_.left() : body_.size() - at_; }
@@ -146,16 +126,32 @@ class Values {
   size_t at_ = 0;
 };
 
-int colour_channel(const std::string& name) {
-  if (name == "red" || name == "r" || name == "diffuse_red") return 0;
-  if (name == "green" || name == "g" || name == "diffuse_green") return 1;
-  if (name == "blue" || name == "b" || name == "diffuse_blue") return 2;
+/// Every row's properties in turn: use(row, number of the property, its value or the values of its list).
+template <class Use>
+void read_rows(const Element& element, Values& values, Use use) {
+  if (element.properties.empty()) return;
+  std::vector<double> numbers;
+  for (Eigen::Index row = 0; row < element.rows; ++row)
+    for (size_t i = 0; i < element.properties.size(); ++i) {
+      const Property& p = element.properties[i];
+      numbers.resize(p.count ? values.list_size(p) : 1);
+      for (double& number : numbers) number = values.next(p.type);
+      use(row, i, numbers);
+    }
+}
+
+// Where a property of the vertex element goes: 0..2 position, 3..5 colour, -1 nowhere.
+int slot_of(const std::string& name) {
+  static const std::pair<const char*, int> kSlots[] = {{"x", 0}, {"red", 3},   {"r", 3}, {"diffuse_red", 3},
+                                                       {"y", 1}, {"green", 4}, {"g", 4}, {"diffuse_green", 4},
+                                                       {"z", 2}, {"blue", 5},  {"b", 5}, {"diffuse_blue", 5}};
+  for (const auto& [known, slot] : kSlots)
+    if (name == known) return slot;
   return -1;
 }
 
-// Where each property of the vertex element goes: 0..2 position, 3..5 colour, -1 nowhere.
 struct VertexLayout {
-  std::vector<int> slot;
+  std::vector<int> slot;  // of each property
   std::array<int, 6> property = {-1, -1, -1, -1, -1, -1};
   bool has_colours = false;
 };
@@ -164,8 +160,7 @@ VertexLayout vertex_layout(const Element& element, const std::string& source) {
   VertexLayout layout;
   for (size_t i = 0; i < element.properties.size(); ++i) {
     const Property& p = element.properties[i];
-    int slot = p.name == "x" ? 0 : p.name == "y" ? 1 : p.name == "z" ? 2 : -1;
-    if (slot < 0 && colour_channel(p.name) >= 0) slot = 3 + colour_channel(p.name);
+    int slot = slot_of(p.name);
     if (p.count || (slot >= 0 && layout.property[slot] >= 0))
       slot = -1;  // a list, or the second of this name
     if (slot >= 0) layout.property[slot] = i;
@@ -182,64 +177,17 @@ float colour_scale(NumberType type) {
   return size_of(type) == 1 ? 1 / 255.0f : 1 / 65535.0f;
 }
 
-bool has_list(const Element& element) {
-  for (const auto& p : element.properties)
-    if (p.count) return true;
-  return false;
-}
-
-// One column of fixed-size rows, with the type decided outside of the loop.
-void copy_column(const char* at, size_t stride, NumberType type, bool swap, Points& out, int column) {
-  const Eigen::Index rows = out.rows();
-  if (type == NumberType::F32 && !swap) {
-    for (Eigen::Index i = 0; i < rows; ++i, at += stride) std::memcpy(&out(i, column), at, sizeof(float));
-  } else {
-    for (Eigen::Index i = 0; i < rows; ++i, at += stride)
-      out(i, column) = narrow(load_number(type, at, swap));
-  }
-}
-
-void read_vertex_block(const Element& element, const VertexLayout& layout, Values& values, Mesh& mesh) {
-  size_t stride = 0;
-  std::vector<size_t> offset;
-  for (const auto& p : element.properties) {
-    offset.push_back(stride);
-    stride += size_of(p.type);
-  }
-  const char* const begin = values.block(static_cast<uint64_t>(element.rows) * stride);
-  for (int slot = 0; slot < (layout.has_colours ? 6 : 3); ++slot) {
-    const int p = layout.property[slot];
-    copy_column(begin + offset[p], stride, element.properties[p].type, values.swap(),
-                slot < 3 ? mesh.vertices : mesh.colors, slot % 3);
-  }
-}
-
-void read_vertex_rows(const Element& element, const VertexLayout& layout, Values& values, Mesh& mesh) {
-  for (Eigen::Index row = 0; row < element.rows; ++row) {
-    for (size_t i = 0; i < element.properties.size(); ++i) {
-      const Property& p = element.properties[i];
-      if (p.count) {
-        for (size_t n = values.list_size(p); n > 0; --n) values.next(p.type);
-        continue;
-      }
-      const float value = narrow(values.next(p.type));
-      const int slot = layout.slot[i];
-      if (slot >= 0 && slot < 3) mesh.vertices(row, slot) = value;
-      if (slot >= 3 && layout.has_colours) mesh.colors(row, slot - 3) = value;
-    }
-  }
-}
-
 void read_vertices(const Element& element, Values& values, Mesh& mesh, const std::string& source) {
   const VertexLayout layout = vertex_layout(element, source);
   US_CHECK(mesh.vertices.rows() == 0, source, ": has two lists of vertices");
   US_CHECK(element.rows < (int64_t{1} << 31), source, ": has more than 2 billion vertices");
   mesh.vertices.resize(element.rows, 3);
   if (layout.has_colours) mesh.colors.resize(element.rows, 3);
-  if (values.ascii() || has_list(element))
-    read_vertex_rows(element, layout, values, mesh);
-  else
-    read_vertex_block(element, layout, values, mesh);
+  read_rows(element, values, [&](Eigen::Index row, size_t property, const std::vector<double>& numbers) {
+    const int slot = layout.slot[property];
+    if (slot >= 0 && slot < 3) mesh.vertices(row, slot) = narrow(numbers[0]);
+    if (slot >= 3 && layout.has_colours) mesh.colors(row, slot - 3) = narrow(numbers[0]);
+  });
   if (!layout.has_colours) return;
   for (int c = 0; c < 3; ++c)
     mesh.colors.col(c) *= colour_scale(element.properties[layout.property[3 + c]].type);
@@ -259,28 +207,18 @@ void add_strip(const std::vector<int64_t>& strip, FaceList& faces) {
 }
 
 void read_faces(const Element& element, bool strips, Values& values, FaceList& faces) {
-  if (!strips) faces.reserve(element.rows);
+  if (!strips && !element.properties.empty()) faces.reserve(element.rows);
   std::vector<int64_t> corners;
-  for (int64_t row = 0; row < element.rows; ++row) {
-    for (const Property& p : element.properties) {
-      const bool wanted = p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
-      const size_t count = p.count ? values.list_size(p) : 1;
-      corners.clear();
-      for (size_t i = 0; i < count; ++i) {
-        const double value = values.next(p.type);
-        if (wanted) corners.push_back(whole(value));
-      }
-      if (wanted && strips) add_strip(corners, faces);
-      if (wanted && !strips) faces.add(corners.data(), corners.size());
-    }
-  }
-}
-
-void skip_rows(const Element& element, Values& values) {
-  if (element.properties.empty()) return;
-  for (int64_t row = 0; row < element.rows; ++row)
-    for (const Property& p : element.properties)
-      for (size_t n = p.count ? values.list_size(p) : 1; n > 0; --n) values.next(p.type);
+  read_rows(element, values, [&](Eigen::Index, size_t property, const std::vector<double>& numbers) {
+    const Property& p = element.properties[property];
+    if (!p.count || (p.name != "vertex_indices" && p.name != "vertex_index")) return;
+    corners.resize(numbers.size());
+    std::transform(numbers.begin(), numbers.end(), corners.begin(), whole);
+    if (strips)
+      add_strip(corners, faces);
+    else
+      faces.add(corners.data(), corners.size());
+  });
 }
 
 bool is_wanted(const Element& element) {
@@ -308,9 +246,9 @@ Mesh parse_ply(std::string_view bytes, const std::string& source) {
       read_vertices(element, values, mesh, source);
       has_vertices = true;
     } else if (is_wanted(element)) {
-      if (!element.properties.empty()) read_faces(element, element.name == "tristrips", values, faces);
+      read_faces(element, element.name == "tristrips", values, faces);
     } else {
-      skip_rows(element, values);
+      read_rows(element, values, [](Eigen::Index, size_t, const std::vector<double>&) {});
     }
     wanted -= is_wanted(element);
   }

@@ -7,7 +7,6 @@
 
 #include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
-#include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/scan_frames.hpp"
 
 namespace understudy {
@@ -155,6 +154,8 @@ class ArrayFrames : public ScanSource::Frames {
  public:
   ArrayFrames(const std::string& path, std::unique_ptr<ByteStream> stream, const NpyHeader& header)
       : path_(path), stream_(std::move(stream)), header_(header) {
+    US_CHECK(header.readable, path,
+             ": its numbers are not in C order or of a type that is read; save it as float32");
     const bool sequence = is_sequence(header.shape);
     frames_ = sequence ? header.shape[0] : 1;
     points_ = header.shape[sequence ? 1 : 0];
@@ -257,8 +258,6 @@ std::unique_ptr<ScanSource::Frames> npy_frames(const std::string& path) {
   const NpyHeader header = read_npy_header(*stream, path);
   US_CHECK(is_sequence(header.shape) || is_frame(header.shape), path,
            ": its array is not frames x points x 3");
-  US_CHECK(header.readable, path,
-           ": its numbers are not in C order or of a type that is read; save it as float32");
   return std::make_unique<ArrayFrames>(path, std::move(stream), header);
 }
 
@@ -274,8 +273,6 @@ std::unique_ptr<ScanSource::Frames> npz_frames(const std::string& path) {
   US_CHECK(index >= 0, path, ": holds no array of frames x points x 3");
   auto stream = std::make_unique<ZipStream>(archive, static_cast<zip_uint64_t>(index));
   const NpyHeader header = read_npy_header(*stream, path);
-  US_CHECK(header.readable, path,
-           ": its numbers are not in C order or of a type that is read; save it as float32");
   auto frames = std::make_unique<ArrayFrames>(path, std::move(stream), header);
   frames->faces = read_faces(archive, frames->points(), path);
   return frames;

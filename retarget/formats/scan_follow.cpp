@@ -1,6 +1,4 @@
 // A folder that is still being written, frame by frame.
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <chrono>
 #include <deque>
@@ -18,18 +16,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Size and time of change: two equal looks mean that nobody wrote in between.
-struct FileState {
-  int64_t size = -1, seconds = 0, nanoseconds = 0;
-  bool operator==(const FileState& other) const {
-    return size == other.size && seconds == other.seconds && nanoseconds == other.nanoseconds;
-  }
-};
+// Size and time of change: two equal looks mean that nobody wrote in between. Size 0: there is no such file.
+using FileState = std::pair<uintmax_t, fs::file_time_type>;
 
 FileState state_of(const std::string& path) {
-  struct stat about {};
-  if (::stat(path.c_str(), &about) != 0) return {};
-  return {about.st_size, about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
+  std::error_code no_size, no_time;
+  const FileState state{fs::file_size(path, no_size), fs::last_write_time(path, no_time)};
+  return no_size || no_time ? FileState() : state;
 }
 
 class FollowedFolder : public ScanSource::Frames {
@@ -49,6 +42,7 @@ class FollowedFolder : public ScanSource::Frames {
     return {};
   }
   std::optional<int64_t> count() const override { return {}; }
+  void seek(int64_t) override { throw Error("frames that are still being written cannot be gone back to"); }
 
  private:
   // One look at the folder: a frame that is complete, or none yet, or the end.
@@ -92,7 +86,7 @@ class FollowedFolder : public ScanSource::Frames {
 
   bool stands_still(const std::string& name) {
     const FileState now = state_of((fs::path(folder_) / name).string());
-    const bool still = name == watched_ && now == state_ && now.size > 0;
+    const bool still = name == watched_ && now == state_ && now.first > 0;
     watched_ = name;
     state_ = now;
     return still;
@@ -109,7 +103,7 @@ class FollowedFolder : public ScanSource::Frames {
     const std::string path = (fs::path(folder_) / name).string();
     const auto number = frame_number(name);
     ScanFrame frame = load_frame(path, number ? *number : handed_out_);
-    if (!written && (!frame.usable || !(state_of(path) == state_))) return {};
+    if (!written && (!frame.usable || state_of(path) != state_)) return {};
     waiting_.pop_front();
     if (!format_) format_ = format_of_suffix(name, kScanFrame);
     note_gap(name);

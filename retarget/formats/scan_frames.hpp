@@ -1,22 +1,9 @@
 // The kinds of scan sequence behind ScanSource.
 #pragma once
 
-#include <memory>
-
 #include "retarget/formats/scan_source.hpp"
 
 namespace understudy {
-
-/// What a ScanSource draws its frames from.
-class ScanSource::Frames {
- public:
-  virtual ~Frames() = default;
-  virtual std::optional<ScanFrame> next() = 0;
-  virtual std::optional<int64_t> count() const = 0;
-  /// See ScanSource::seek(). Here: for what cannot.
-  virtual void seek(int64_t frame);
-  std::vector<FrameGap> gaps;
-};
 
 /// The file as a frame; a problem is written into it, not thrown.
 ScanFrame load_frame(const std::string& path, int64_t number);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <system_error>
 
 #include "retarget/base/log.hpp"
@@ -20,14 +21,11 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// The length of the run of digits at `at`, and the run without leading zeros.
-std::string_view digits_at(const std::string& text, size_t at, size_t& length) {
-  size_t end = at;
-  while (end < text.size() && is_digit(text[end])) ++end;
-  length = end - at;
-  size_t begin = at;
-  while (begin + 1 < end && text[begin] == '0') ++begin;
-  return std::string_view(text).substr(begin, end - begin);
+// The run of digits at `at`, and how long it is without leading zeros.
+std::pair<std::string_view, size_t> digits_at(std::string_view text, size_t at) {
+  const size_t end = std::min(text.find_first_not_of("0123456789", at), text.size());
+  const size_t begin = std::min(text.find_first_not_of('0', at), end - 1);
+  return {text.substr(begin, end - begin), end - at};
 }
 
 // Numbers of the frames: from their names when these rise all along, else their positions.
@@ -37,7 +35,7 @@ std::vector<int64_t> frame_numbers(const std::vector<std::string>& files) {
     const auto number = frame_number(file);
     if (!number || (!numbers.empty() && *number <= numbers.back())) {
       numbers.resize(files.size());
-      for (size_t i = 0; i < files.size(); ++i) numbers[i] = static_cast<int64_t>(i);
+      std::iota(numbers.begin(), numbers.end(), int64_t{0});
       return numbers;
     }
     numbers.push_back(*number);
@@ -123,8 +121,7 @@ std::vector<std::string> listed_files(const std::string& path) {
   std::vector<std::string_view> words;
   double number = 0;
   while (!text.at_end()) {
-    std::string_view line = text.line();
-    line = trim_end(line);
+    const std::string_view line = trim_end(text.line());
     if (line.empty() || line[0] == '#') continue;
     split_words(line, ",;", words);
     if (!surely && files.empty() && (words.empty() || parse_number(words[0], number))) return {};
@@ -154,8 +151,8 @@ bool natural_less(const std::string& a, const std::string& b) {
   size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
     if (is_digit(a[i]) && is_digit(b[j])) {
-      size_t length_a = 0, length_b = 0;
-      const auto x = digits_at(a, i, length_a), y = digits_at(b, j, length_b);
+      const auto [x, length_a] = digits_at(a, i);
+      const auto [y, length_b] = digits_at(b, j);
       if (x.size() != y.size()) return x.size() < y.size();
       if (x != y) return x < y;
       i += length_a;
@@ -258,25 +255,6 @@ ScanSource::ScanSource(const std::string& path, const ScanSourceOptions& options
 ScanSource::ScanSource(const std::vector<std::string>& files) {
   US_CHECK(!files.empty(), "the list of scans is empty");
   frames_ = std::make_unique<FileFrames>(files, "the list of scans");
-}
-
-ScanSource::~ScanSource() = default;
-ScanSource::ScanSource(ScanSource&&) noexcept = default;
-ScanSource& ScanSource::operator=(ScanSource&&) noexcept = default;
-std::optional<ScanFrame> ScanSource::next() {
-  return frames_->next();
-}
-void ScanSource::seek(int64_t frame) {
-  frames_->seek(frame);
-}
-void ScanSource::Frames::seek(int64_t) {
-  throw Error("frames that are still being written cannot be gone back to");
-}
-std::optional<int64_t> ScanSource::count() const {
-  return frames_->count();
-}
-const std::vector<FrameGap>& ScanSource::gaps() const {
-  return frames_->gaps;
 }
 
 }  // namespace understudy

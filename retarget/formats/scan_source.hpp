@@ -44,30 +44,34 @@ struct FrameGap {
 /// there. Any other file: one frame. Move-only; one thread at a time.
 class ScanSource {
  public:
+  /// What the frames come from; see scan_frames.hpp.
+  class Frames {
+   public:
+    virtual ~Frames() = default;
+    virtual std::optional<ScanFrame> next() = 0;
+    virtual std::optional<int64_t> count() const = 0;
+    virtual void seek(int64_t frame) = 0;
+    std::vector<FrameGap> gaps;
+  };
+
   /// Throws Error, one sentence, when there is no such path, no permission, no frame in it, or two formats
   /// are equally frequent.
   explicit ScanSource(const std::string& path, const ScanSourceOptions& options = {});
   explicit ScanSource(const std::vector<std::string>& files);
-  ~ScanSource();
-  ScanSource(ScanSource&&) noexcept;
-  ScanSource& operator=(ScanSource&&) noexcept;
 
   /// The next frame; none at the end. A frame that cannot be read comes back with usable = false; only a
   /// sequence that is broken as a whole (an array that ends early, a followed folder that never gets a frame)
   /// throws Error. The file of a sequence of one frame throws when it cannot be read.
-  std::optional<ScanFrame> next();
+  std::optional<ScanFrame> next() { return frames_->next(); }
 
   /// next() goes on with this frame, 0 the first. At once for files and .npy; a packed .npz is read up to
   /// there. Throws Error when there is no such frame or the folder is followed.
-  void seek(int64_t frame);
+  void seek(int64_t frame) { frames_->seek(frame); }
 
   /// How many frames there are; none while a folder is followed.
-  std::optional<int64_t> count() const;
+  std::optional<int64_t> count() const { return frames_->count(); }
   /// Missing numbers found so far: all of them from the start, but for a followed folder.
-  const std::vector<FrameGap>& gaps() const;
-
-  /// What the frames come from; see scan_source.cpp.
-  class Frames;
+  const std::vector<FrameGap>& gaps() const { return frames_->gaps; }
 
  private:
   std::unique_ptr<Frames> frames_;

@@ -57,30 +57,16 @@ Label label_of(const Vec3& point, const std::vector<Piece>& pieces) {
 
 /// The part that `label` is to a hand of `side`; kTouchedParts for its own arm and for shins.
 TouchedPart part_for(int side, const Label& label) {
-  switch (label.region) {
-    case Trunk:
-      return TouchTorso;
-    case Skull:
-      return TouchHead;
-    case Thigh:
-      return TouchThighs;
-    case UpperArm:
-    case Forearm:
-      return label.side == side ? kTouchedParts : TouchOtherArm;
-    case Hand:
-      return label.side == side ? kTouchedParts : TouchOtherHand;
-    default:
-      return kTouchedParts;
-  }
+  constexpr TouchedPart kOf[] = {TouchTorso,    TouchHead,     TouchThighs,   kTouchedParts,
+                                 TouchOtherArm, TouchOtherArm, TouchOtherHand};  // of each Region
+  return label.region >= UpperArm && label.side == side ? kTouchedParts : kOf[label.region];
 }
 
 Faces faces_where(const Faces& faces, const std::vector<bool>& in) {
-  Faces result(faces.rows(), 3);
-  Eigen::Index count = 0;
-  const auto has = [&](int v) { return in[v]; };
+  std::vector<Eigen::Index> kept;
   for (Eigen::Index f = 0; f < faces.rows(); ++f)
-    if (has(faces(f, 0)) && has(faces(f, 1)) && has(faces(f, 2))) result.row(count++) = faces.row(f);
-  return result.topRows(count);
+    if (in[faces(f, 0)] && in[faces(f, 1)] && in[faces(f, 2)]) kept.push_back(f);
+  return faces(kept, Eigen::all);
 }
 
 float squared_to_box(const Vec3& p, const Eigen::AlignedBox3f& box) {

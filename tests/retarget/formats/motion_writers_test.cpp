@@ -6,13 +6,10 @@
 #include <sstream>
 
 #include "retarget/body/body.hpp"
-#include "retarget/formats/amass_writer.hpp"
-#include "retarget/formats/bvh_writer.hpp"
 #include "retarget/formats/bytes.hpp"
-#include "retarget/formats/joint_table.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "retarget/formats/motion_writers.hpp"
 #include "retarget/formats/npz.hpp"
-#include "retarget/formats/result_writer.hpp"
 #include "retarget/formats/surface_writer.hpp"
 #include "retarget/motion/bvh.hpp"
 #include "tests/retarget/formats/support.hpp"

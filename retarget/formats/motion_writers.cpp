@@ -1,4 +1,4 @@
-#include "retarget/formats/bvh_writer.hpp"
+#include "retarget/formats/motion_writers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,20 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/math/rotation.hpp"
 
 namespace understudy {
 namespace {
+
+void check_rate(double fps, const std::string& path) {
+  US_CHECK(fps > 0 && std::isfinite(fps), path, ": ", fps, " frames a second cannot be");
+}
+
+void check_pose(const Pose& pose, int64_t frame, const std::string& path) {
+  const bool finite = pose.root.allFinite() && std::all_of(pose.local.begin(), pose.local.end(),
+                                                           [](const Mat3& R) { return R.allFinite(); });
+  US_CHECK(finite, path, ": the pose of frame ", frame, " is not finite");
+}
 
 constexpr double kCentimetres = 100;
 constexpr size_t kCountWidth = 10;
@@ -89,11 +100,24 @@ std::string count_text(int64_t frames) {
   return std::string(kCountWidth - std::min(kCountWidth, digits.size()), ' ') + digits;
 }
 
+constexpr size_t kPoseWidth = 156;  // 52 joints: the 22, and 15 of each hand
+constexpr int64_t kBetas = 16;
+enum AmassArray : size_t { Poses, Trans };
+
+/// y up to z up: x stays.
+Mat3 to_z_up() {
+  Mat3 C;
+  C << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return C;
+}
+
+enum ResultArray : size_t { Vertices, JointsArray, RotationsArray, SourceJoints };
+
 }  // namespace
 
 BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps) : file_(path) {
   US_CHECK(rest.allFinite(), path, ": a joint of the target is not finite");
-  US_CHECK(fps > 0 && std::isfinite(fps), path, ": ", fps, " frames a second cannot be");
+  check_rate(fps, path);
   std::string head = "HIERARCHY\n";
   append_joint(head, rest, Pelvis, 0);
   head += "MOTION\nFrames: ";
@@ -105,9 +129,7 @@ BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps) : 
 
 void BvhWriter::push(const Pose& pose) {
   static const std::vector<size_t> order = file_order();
-  bool finite = pose.root.allFinite();
-  for (const Mat3& R : pose.local) finite = finite && R.allFinite();
-  US_CHECK(finite, file_.path(), ": the pose of frame ", frames_, " is not finite");
+  check_pose(pose, frames_, file_.path());
   std::string line;
   for (int axis = 0; axis < 3; ++axis) {
     append_fixed(line, kCentimetres * static_cast<double>(pose.root[axis]), 5);
@@ -128,6 +150,77 @@ void BvhWriter::push(const Pose& pose) {
 void BvhWriter::finish() {
   file_.rewrite(count_at_, count_text(frames_));
   file_.finish();
+}
+
+AmassWriter::AmassWriter(const std::string& path, double fps) : path_(path), npz_(path) {
+  check_rate(fps, path);
+  npz_.add_frames("poses", {static_cast<int64_t>(kPoseWidth)});
+  npz_.add_frames("trans", {3});
+  npz_.add("betas", {kBetas}, std::vector<double>(kBetas, 0.0));
+  npz_.add("gender", "neutral");
+  npz_.add("mocap_framerate", {}, {fps});
+}
+
+void AmassWriter::push(const Pose& pose) {
+  check_pose(pose, frames_, path_);
+  std::array<float, kPoseWidth> angles{};
+  for (size_t j = 0; j < kJointCount; ++j) {
+    // The world turns, and with it the pelvis; all other joints turn relative to their parents.
+    const Mat3 R = j == Pelvis ? Mat3(to_z_up() * pose.local[j]) : pose.local[j];
+    const Vec3 turn = rotation_to_axis_angle(R);
+    std::copy(turn.data(), turn.data() + 3, angles.data() + 3 * j);
+  }
+  const Vec3 place = to_z_up() * pose.root;
+  npz_.push(Poses, angles.data());
+  npz_.push(Trans, place.data());
+  ++frames_;
+}
+
+JointTable::JointTable(const std::string& path, double fps) : file_(path), fps_(fps) {
+  check_rate(fps, path);
+  std::string header = "frame,seconds";
+  for (const char* joint : kJointNames)
+    for (const char* axis : {"_x", "_y", "_z"}) header += std::string(",") + joint + axis;
+  file_.write(header + '\n');
+}
+
+void JointTable::push(const Joints& joints) {
+  US_CHECK(joints.allFinite(), file_.path(), ": a joint of frame ", frames_, " is not finite");
+  std::string line = std::to_string(frames_) + ',';
+  append_fixed(line, static_cast<double>(frames_) / fps_, 6);
+  for (Eigen::Index i = 0; i < joints.size(); ++i) {
+    line += ',';
+    append_fixed(line, static_cast<double>(joints.data()[i]), 6);
+  }
+  file_.write(line + '\n');
+  ++frames_;
+}
+
+ResultWriter::ResultWriter(const std::string& path, int64_t vertex_count)
+    : path_(path), vertex_count_(vertex_count), npz_(path) {
+  npz_.add_frames("vertices", {vertex_count, 3});
+  npz_.add_frames("joints", {kJointCount, 3});
+  npz_.add_frames("rotations", {kJointCount, 3, 3});
+  npz_.add_frames("source_joints", {kJointCount, 3});
+}
+
+void ResultWriter::push(const Points& vertices, const Joints& joints, const Rotations& local,
+                        const Joints& source_joints) {
+  US_CHECK(vertices.rows() == vertex_count_, path_, ": a frame has ", vertices.rows(),
+           " vertices, the first had ", vertex_count_);
+  std::array<float, kJointCount * 9> rotations;
+  for (size_t j = 0; j < kJointCount; ++j)
+    for (int i = 0; i < 9; ++i) rotations[9 * j + static_cast<size_t>(i)] = local[j](i / 3, i % 3);
+  npz_.push(Vertices, vertices.data());
+  npz_.push(JointsArray, joints.data());
+  npz_.push(RotationsArray, rotations.data());
+  npz_.push(SourceJoints, source_joints.data());
+}
+
+void ResultWriter::finish(const Eigen::Matrix4d& source_to_scan) {
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = source_to_scan;
+  npz_.add("source_to_scan", {4, 4}, {rows.data(), rows.data() + rows.size()});
+  npz_.finish();
 }
 
 }  // namespace understudy

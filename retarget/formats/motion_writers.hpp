@@ -1,0 +1,78 @@
+// Motions as files that are written frame by frame: Biovision, AMASS, a table of joints, a result.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "retarget/base/part_file.hpp"
+#include "retarget/formats/npz_writer.hpp"
+#include "retarget/skeleton/skeleton.hpp"
+
+namespace understudy {
+
+// All of them throw Error when the file cannot be written or the disk is full, those of poses and joints also
+// when a number is not finite. Frames go to files as they come; without finish() nothing is left behind.
+
+/// BVH: centimetres, y up, the T-pose where all angles are zero; the pelvis has position and rotation, the
+/// others rotation, Z X Y in degrees, unwound so that curves have no jumps.
+class BvhWriter {
+ public:
+  /// rest: T-pose joints, metres.
+  BvhWriter(const std::string& path, const Joints& rest, double fps);
+  void push(const Pose& pose);
+  void finish();
+
+ private:
+  PartFile file_;
+  size_t count_at_ = 0;  // where the number of frames is
+  int64_t frames_ = 0;
+  std::array<std::array<double, 3>, kJointCount> before_{};  // degrees
+};
+
+/// A .npz as the AMASS data set has them: poses [T, 156] axis-angle (22 body joints, hands at rest), trans
+/// [T, 3] of the pelvis, betas [16] zero, gender "neutral", mocap_framerate. z up.
+class AmassWriter {
+ public:
+  AmassWriter(const std::string& path, double fps);
+  void push(const Pose& pose);
+  void finish() { npz_.finish(); }
+
+ private:
+  std::string path_;
+  NpzWriter npz_;
+  int64_t frames_ = 0;
+};
+
+/// CSV with a line a frame: frame (from 0), seconds, and x, y, z in metres of each joint: pelvis_x, pelvis_y,
+/// pelvis_z, left_hip_x ...
+class JointTable {
+ public:
+  JointTable(const std::string& path, double fps);
+  void push(const Joints& joints);
+  void finish() { file_.finish(); }
+
+ private:
+  PartFile file_;
+  double fps_;
+  int64_t frames_ = 0;
+};
+
+/// A .npz of vertices [T, V, 3], joints [T, 22, 3], rotations [T, 22, 3, 3] (local) and source_joints [T, 22,
+/// 3], float32, and source_to_scan [4, 4], float64.
+class ResultWriter {
+ public:
+  ResultWriter(const std::string& path, int64_t vertex_count);
+
+  /// Throws Error when the number of vertices changes.
+  void push(const Points& vertices, const Joints& joints, const Rotations& local,
+            const Joints& source_joints);
+  /// source_to_scan takes source_joints to the coordinates of the source's file.
+  void finish(const Eigen::Matrix4d& source_to_scan = Eigen::Matrix4d::Identity());
+
+ private:
+  std::string path_;
+  int64_t vertex_count_;
+  NpzWriter npz_;
+};
+
+}  // namespace understudy
