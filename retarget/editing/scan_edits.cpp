@@ -8,7 +8,6 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/union_find.hpp"
 #include "retarget/editing/point_grid.hpp"
-#include "retarget/geometry/finite_rows.hpp"
 
 namespace understudy {
 namespace {
@@ -188,7 +187,7 @@ std::optional<FloorPlane> detect_floor(const Points& all) {
   constexpr float kNear = 0.015f, kLevel = 0.966f;  // metres; cosine of 15 degrees
   constexpr float kArea = 0.15f;                    // square metres; two soles have 0.05
   constexpr int kTries = 300, kLooked = 4000;
-  const Points finite = finite_rows(all);
+  const Points finite = finite_points(all);
   if (finite.rows() < 32) return std::nullopt;
   Rng rng(1);
   Points points(kLooked, 3);
