@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cstdarg>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 
 #include "retarget/base/error.hpp"
@@ -14,6 +13,16 @@ namespace {
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
+}
+
+/// The word as a number; `what` names it in complaints.
+template <class T>
+T parsed(std::string_view word, bool (*parse)(std::string_view, T&), const std::string& source,
+         const char* what) {
+  T value = 0;
+  US_CHECK(!word.empty(), source, ": ends before ", what);
+  US_CHECK(parse(word, value), source, ": '", excerpt(word), "' stands where ", what, " should be");
+  return value;
 }
 
 }  // namespace
@@ -130,30 +139,19 @@ std::string_view TextCursor::word() {
 
 std::string_view TextCursor::line() {
   if (at_end()) return {};
-  const char* const begin = text_.data() + at_;
-  const void* const found = std::memchr(begin, '\n', text_.size() - at_);
-  const size_t length =
-      found ? static_cast<size_t>(static_cast<const char*>(found) - begin) : text_.size() - at_;
-  std::string_view line = text_.substr(at_, length);
-  at_ += length + (found ? 1 : 0);
+  const size_t end = std::min(text_.find('\n', at_), text_.size());
+  std::string_view line = text_.substr(at_, end - at_);
+  at_ = std::min(end + 1, text_.size());
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   return line;
 }
 
 double TextCursor::number(const char* what) {
-  const std::string_view text = word();
-  US_CHECK(!text.empty(), source_, ": ends before ", what);
-  double value = 0;
-  US_CHECK(parse_number(text, value), source_, ": '", excerpt(text), "' stands where ", what, " should be");
-  return value;
+  return parsed(word(), parse_number, source_, what);
 }
 
 int64_t TextCursor::integer(const char* what) {
-  const std::string_view text = word();
-  US_CHECK(!text.empty(), source_, ": ends before ", what);
-  int64_t value = 0;
-  US_CHECK(parse_integer(text, value), source_, ": '", excerpt(text), "' stands where ", what, " should be");
-  return value;
+  return parsed(word(), parse_integer, source_, what);
 }
 
 void TextCursor::skip_comments() {

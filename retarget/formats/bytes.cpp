@@ -110,4 +110,13 @@ Points rows_of_three(const std::vector<float>& values) {
   return Eigen::Map<const Points>(values.data(), values.size() / 3, 3);
 }
 
+Mesh mesh_of(const std::vector<float>& positions, const std::vector<float>& colours, const FaceList& faces,
+             const std::string& source) {
+  Mesh mesh;
+  mesh.vertices = rows_of_three(positions);
+  if (colours.size() == positions.size()) mesh.colors = rows_of_three(colours);
+  mesh.faces = faces.finish(mesh.vertices.rows(), source);
+  return mesh;
+}
+
 }  // namespace understudy

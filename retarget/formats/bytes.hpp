@@ -11,7 +11,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/math/types.hpp"
+#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 
@@ -62,5 +62,8 @@ class FaceList {
 
 /// Rows of three from a flat list.
 Points rows_of_three(const std::vector<float>& values);
+/// A mesh from flat lists; its colours where every vertex has one. Throws Error as FaceList::finish.
+Mesh mesh_of(const std::vector<float>& positions, const std::vector<float>& colours, const FaceList& faces,
+             const std::string& source);
 
 }  // namespace understudy

@@ -6,7 +6,6 @@
 
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/gltf_file.hpp"
-#include "retarget/geometry/mesh.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -66,13 +65,7 @@ class MeshCollector {
     }
   }
 
-  Mesh finish() const {
-    Mesh mesh;
-    mesh.vertices = rows_of_three(positions_);
-    if (colours_.size() == positions_.size()) mesh.colors = rows_of_three(colours_);
-    mesh.faces = faces_.finish(mesh.vertices.rows(), file_.path());
-    return mesh;
-  }
+  Mesh finish() const { return mesh_of(positions_, colours_, faces_, file_.path()); }
 
  private:
   void add_vertices(const tinygltf::Primitive& primitive, const GltfAccessor& positions,

@@ -56,10 +56,8 @@ Angles nearest_angles(const Eigen::Matrix3d& R, const Angles& before) {
 
 void append_offset(std::string& out, const std::string& indent, const Vec3& metres) {
   out += indent + "OFFSET";
-  for (int axis = 0; axis < 3; ++axis) {
-    out += ' ';
-    append_fixed(out, kCentimetres * static_cast<double>(metres[axis]), 5);
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    append_fixed(out += ' ', kCentimetres * static_cast<double>(metres[axis]), 5);
   out += '\n';
 }
 
@@ -131,19 +129,13 @@ void BvhWriter::push(const Pose& pose) {
   static const std::vector<size_t> order = file_order();
   check_pose(pose, frames_, file_.path());
   std::string line;
-  for (int axis = 0; axis < 3; ++axis) {
-    append_fixed(line, kCentimetres * static_cast<double>(pose.root[axis]), 5);
-    line += ' ';
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    append_fixed(line += ' ', kCentimetres * static_cast<double>(pose.root[axis]), 5);
   for (const size_t j : order) {
     before_[j] = nearest_angles(pose.local[j].cast<double>(), before_[j]);
-    for (const double angle : before_[j]) {
-      append_fixed(line, angle, 5);
-      line += ' ';
-    }
+    for (const double angle : before_[j]) append_fixed(line += ' ', angle, 5);
   }
-  line.back() = '\n';
-  file_.write(line);
+  file_.write(line.substr(1) + '\n');
   ++frames_;
 }
 
@@ -188,10 +180,8 @@ void JointTable::push(const Joints& joints) {
   US_CHECK(joints.allFinite(), file_.path(), ": a joint of frame ", frames_, " is not finite");
   std::string line = std::to_string(frames_) + ',';
   append_fixed(line, static_cast<double>(frames_) / fps_, 6);
-  for (Eigen::Index i = 0; i < joints.size(); ++i) {
-    line += ',';
-    append_fixed(line, static_cast<double>(joints.data()[i]), 6);
-  }
+  for (Eigen::Index i = 0; i < joints.size(); ++i)
+    append_fixed(line += ',', static_cast<double>(joints.data()[i]), 6);
   file_.write(line + '\n');
   ++frames_;
 }

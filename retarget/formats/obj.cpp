@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
-#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -20,13 +19,7 @@ class ObjParser {
     if (words_[0] == "f" || words_[0] == "fo") face();
   }
 
-  Mesh finish() const {
-    Mesh mesh;
-    mesh.vertices = rows_of_three(positions_);
-    if (colours_.size() == positions_.size()) mesh.colors = rows_of_three(colours_);
-    mesh.faces = faces_.finish(mesh.vertices.rows(), source_);
-    return mesh;
-  }
+  Mesh finish() const { return mesh_of(positions_, colours_, faces_, source_); }
 
  private:
   float value(size_t word) const {
@@ -77,18 +70,13 @@ Mesh parse_obj(std::string_view bytes, const std::string& source) {
   TextCursor text(bytes, source);
   std::string joined;  // lines that end in a backslash go on in the next
   for (int64_t number = 1; !text.at_end(); ++number) {
-    std::string_view line = text.line();
-    if (!line.empty() && line.back() == '\\') {
+    const std::string_view line = text.line();
+    if (ends_with(line, "\\")) {
       joined.append(line.substr(0, line.size() - 1)).push_back(' ');
       continue;
     }
-    if (joined.empty()) {
-      parser.line(line, number);
-    } else {
-      joined.append(line);
-      parser.line(joined, number);
-      joined.clear();
-    }
+    parser.line(joined.append(line), number);
+    joined.clear();
   }
   if (!joined.empty()) parser.line(joined, 0);
   return parser.finish();

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
-#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -197,8 +196,9 @@ uint32_t packed_from_text(double value, NumberType type) {
 }
 
 Mesh read_ascii(const PcdHeader& header, std::string_view body, const std::string& source) {
-  const Field *const x = &required(header, "x", source), *const y = &required(header, "y", source),
-                     *const z = &required(header, "z", source), *const colour = packed_colour(header);
+  const Field* const at[] = {&required(header, "x", source), &required(header, "y", source),
+                             &required(header, "z", source)};
+  const Field* const colour = packed_colour(header);
   US_CHECK(header.points <= (body.size() + 1) / (2 * header.columns), source, ": the header says ",
            header.points, " points, the file has room for at most ",
            (body.size() + 1) / (2 * header.columns));
@@ -211,9 +211,8 @@ Mesh read_ascii(const PcdHeader& header, std::string_view body, const std::strin
     for (const Field& field : header.fields)
       for (uint64_t i = 0; i < field.count; ++i) {
         const double value = text.number("the last point that the header promises");
-        if (&field == x) mesh.vertices(row, 0) = narrow(value);
-        if (&field == y) mesh.vertices(row, 1) = narrow(value);
-        if (&field == z) mesh.vertices(row, 2) = narrow(value);
+        for (int c = 0; c < 3; ++c)
+          if (&field == at[c]) mesh.vertices(row, c) = narrow(value);
         if (&field == colour) unpack_colour(packed_from_text(value, field.type), row, mesh.colors);
       }
   return mesh;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
-#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {

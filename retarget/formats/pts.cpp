@@ -5,7 +5,6 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/bytes.hpp"
-#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 

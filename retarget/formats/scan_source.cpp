@@ -47,13 +47,9 @@ std::vector<int64_t> frame_numbers(const std::vector<std::string>& files) {
 std::vector<FrameGap> find_gaps(const std::vector<int64_t>& numbers) {
   std::map<int64_t, size_t> steps;
   for (size_t i = 1; i < numbers.size(); ++i) ++steps[numbers[i] - numbers[i - 1]];
-  int64_t usual = 1;
-  size_t most = 0;
-  for (const auto& [step, count] : steps)
-    if (count > most) {
-      usual = step;
-      most = count;
-    }
+  const auto rarer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto most = std::max_element(steps.begin(), steps.end(), rarer);
+  const int64_t usual = most == steps.end() ? 1 : most->first;
   std::vector<FrameGap> gaps;
   for (size_t i = 1; i < numbers.size(); ++i)
     if (numbers[i] - numbers[i - 1] > usual) gaps.push_back({numbers[i - 1] + usual, numbers[i] - usual});

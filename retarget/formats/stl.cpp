@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
-#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {
@@ -15,39 +14,20 @@ constexpr size_t kStlHeaderBytes = 84, kFaceBytes = 50;
 class VertexMerger {
  public:
   int64_t add(const std::array<float, 3>& position) {
-    Key key{};
-    for (size_t c = 0; c < 3; ++c) {
-      const float value = position[c] == 0.0f ? 0.0f : position[c];  // -0 is 0
-      std::memcpy(&key[c], &value, sizeof(float));
-    }
+    std::array<float, 3> at = position;
+    for (float& value : at) value += 0.0f;  // -0 is 0
+    const std::string key(reinterpret_cast<const char*>(at.data()), sizeof at);
     const auto [found, is_new] = index_.try_emplace(key, static_cast<int64_t>(index_.size()));
-    if (is_new) values_.insert(values_.end(), position.begin(), position.end());
+    if (is_new) positions_.insert(positions_.end(), position.begin(), position.end());
     return found->second;
   }
   void reserve(size_t corners) { index_.reserve(corners / 6 + 16); }
-  Points vertices() const { return rows_of_three(values_); }
+  const std::vector<float>& positions() const { return positions_; }
 
  private:
-  using Key = std::array<uint32_t, 3>;
-  struct Hash {
-    size_t operator()(const Key& key) const {
-      uint64_t h = key[0];
-      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull + key[1];
-      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull + key[2];
-      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull;
-      return static_cast<size_t>(h ^ (h >> 32));
-    }
-  };
-  std::unordered_map<Key, int64_t, Hash> index_;
-  std::vector<float> values_;
+  std::unordered_map<std::string, int64_t> index_;  // by the bytes of the position
+  std::vector<float> positions_;
 };
-
-Mesh finish(const VertexMerger& merger, const FaceList& faces, const std::string& source) {
-  Mesh mesh;
-  mesh.vertices = merger.vertices();
-  mesh.faces = faces.finish(mesh.vertices.rows(), source);
-  return mesh;
-}
 
 Mesh parse_binary(std::string_view bytes, const std::string& source) {
   const uint64_t count = load<uint32_t>(bytes.data() + kStlHeaderBytes - 4, false);
@@ -66,7 +46,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& source) {
     }
     faces.add(corners[0], corners[1], corners[2]);
   }
-  return finish(merger, faces, source);
+  return mesh_of(merger.positions(), {}, faces, source);
 }
 
 Mesh parse_ascii(std::string_view bytes, const std::string& source) {
@@ -98,7 +78,7 @@ Mesh parse_ascii(std::string_view bytes, const std::string& source) {
   }
   US_CHECK(!in_facet, source, ": ends inside a facet");
   US_CHECK(ended, source, ": ends before 'endsolid'");
-  return finish(merger, faces, source);
+  return mesh_of(merger.positions(), {}, faces, source);
 }
 
 bool is_ascii(std::string_view bytes) {

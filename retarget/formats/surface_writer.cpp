@@ -112,15 +112,14 @@ PointCacheWriter::PointCacheWriter(const std::string& path, const SurfaceTopolog
   check_frame(rest, vertex_count_, path);
   US_CHECK(vertex_count_ < INT32_MAX, path, ": has too many vertices for a point cache");
   mesh_.write(obj_text(topology, rest, "the mesh that the point cache beside it moves"));
-  const int32_t version = 1, points = static_cast<int32_t>(vertex_count_), samples = 0;
-  const float start = 0, rate = 1;  // in frames: a cache has no seconds
-  std::string head("POINTCACHE2\0", 12);
-  append_raw(head, &version, 1);
-  append_raw(head, &points, 1);
-  append_raw(head, &start, 1);
-  append_raw(head, &rate, 1);
-  append_raw(head, &samples, 1);
-  cache_.write(head);
+  struct {
+    char magic[12] = "POINTCACHE2";
+    int32_t version = 1, points;
+    float start = 0, rate = 1;  // in frames: a cache has no seconds
+    int32_t samples = 0;
+  } head;
+  head.points = static_cast<int32_t>(vertex_count_);
+  cache_.write(&head, sizeof head);
 }
 
 void PointCacheWriter::push(const Points& vertices) {

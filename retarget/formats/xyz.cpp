@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
-#include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
 namespace {

@@ -131,13 +131,11 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<fl
 
 }  // namespace
 
-Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,
-                                                                                       const Points& queries,
-                                                                                       int k) {
+IntMatrix nearest_neighbours(const Points& points, const Points& queries, int k) {
   US_CHECK(k <= points.rows(), k, " neighbours wanted of ", points.rows(), " points");
   const TreePoints seen{points};
   const Tree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(/*part_max_size=*/16));
-  Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(queries.rows(), k);
+  IntMatrix result(queries.rows(), k);
   std::vector<uint32_t> found(k);
   std::vector<float> squared(k);
   for (Eigen::Index q = 0; q < queries.rows(); ++q) {

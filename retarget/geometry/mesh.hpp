@@ -50,9 +50,8 @@ Points finite_points(const Points& points);
 /// How many points are finite.
 Eigen::Index finite_count(const Points& points);
 
+using IntMatrix = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 /// For each query the indices of its k nearest points, nearest first, [Q, k]; k <= points.rows(). Exact.
-Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_neighbours(const Points& points,
-                                                                                       const Points& queries,
-                                                                                       int k);
+IntMatrix nearest_neighbours(const Points& points, const Points& queries, int k);
 
 }  // namespace understudy
