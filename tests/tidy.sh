@@ -1,9 +1,10 @@
 #!/bin/bash
 # tidy.sh [--all]: clang-tidy (.clang-tidy) on the product's files that changed since origin/main, or since the commit
 # before where this is origin/main itself; --all: on every one. LibTorch's headers take minutes a file: what includes
-# them stays out. A finding is an error. Wants build/compile_commands.json.
+# them stays out. A finding is an error.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
+cmake --preset dev >/dev/null  # only for its compile_commands.json: it names every file
 with_torch=$(awk '/^[^#].*\+torch/ { print "^" $1 "/" }' tests/layers.txt | paste -sd '|')
 if [ "${1:-}" = --all ]; then
   changed=$(git ls-files app render ui retarget)
@@ -19,4 +20,4 @@ for file in $(sed 's/\.hpp$/.cpp/' <<<"$changed" | grep '\.cpp$' | grep -vE "$wi
 done
 echo "clang-tidy on ${#files[@]} files"
 [ ${#files[@]} -gt 0 ] || exit 0
-printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build --quiet --warnings-as-errors='*' 2>/dev/null
+printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build-dev --quiet --warnings-as-errors='*' 2>/dev/null

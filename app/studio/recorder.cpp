@@ -8,7 +8,7 @@
 
 namespace understudy::app {
 
-using Kind = render::InputEvent::Kind;
+using EventKind = render::InputEvent::Kind;
 
 Recorder::Recorder(const std::string& path, Application& application) : path_(path), file_(path) {
   US_CHECK(file_, path, ": the recording cannot be written");
@@ -38,9 +38,9 @@ void Recorder::input(double dt, const std::vector<render::InputEvent>& events, c
   write("frames " + std::to_string(frames));
   waited_s_ = 0;
   for (const render::InputEvent& event : events) {
-    if (event.kind == Kind::Resize)
+    if (event.kind == EventKind::Resize)
       write("resize " + std::to_string(event.width) + " " + std::to_string(event.height));
-    else if (event.kind == Kind::Close)
+    else if (event.kind == EventKind::Close)
       write("close");
     else
       write(join_line("event", event_words(event)));

@@ -13,7 +13,7 @@ namespace {
 // within kLevelSettle (seconds), and rises by kLevelRise (m/s) in any case.
 constexpr float kLevelFall = 0.2f, kLevelSettle = 0.3f, kLevelRise = 0.01f;
 constexpr float kLevelReach = 0.06f;  // metres, leg 0.8 m
-constexpr std::array<int, 4> kPoints = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
+constexpr std::array<int, 4> kFootPoints = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
 
 Vec3 over_floor(const Vec3& v) {
   return Vec3(v.x(), 0, v.z());
@@ -27,9 +27,9 @@ void FootLock::reset() {
 
 void FootLock::start(const Joints& source) {
   const float leg_m = leg_length(source);
-  for (size_t k = 0; k < kPoints.size(); ++k) {
+  for (size_t k = 0; k < kFootPoints.size(); ++k) {
     switches_[k] = ContactSwitch(options_.contact, leg_m);
-    levels_[k] = source(kPoints[k], 1);
+    levels_[k] = source(kFootPoints[k], 1);
   }
   offset_.fill(Vec3::Zero());
   standing_.fill(false);
@@ -39,8 +39,8 @@ void FootLock::start(const Joints& source) {
 std::array<bool, 4> FootLock::contacts(const Joints& source, float dt) {
   std::array<bool, 4> on{};
   const float leg_m = leg_length(source);
-  for (size_t k = 0; k < kPoints.size(); ++k) {
-    const Vec3 point = source.row(kPoints[k]).transpose();
+  for (size_t k = 0; k < kFootPoints.size(); ++k) {
+    const Vec3 point = source.row(kFootPoints[k]).transpose();
     const float above = point.y() - levels_[k];
     const bool settling =
         above < kLevelReach * leg_m / 0.8f && switches_[k].speed() < options_.contact.begin_speed;
