@@ -55,11 +55,12 @@ QuestionAnswer draw_recover(const app::Session& session, PanelContext& context) 
     const std::string what = copy.document_path.empty() ? "Never saved" : file_name(copy.document_path);
     text_cut(ui, what + ", " + copy.time);
     ButtonRow buttons(2);
-    ButtonOptions recover, discard;
+    ButtonOptions recover;
     recover.look = i == 0 ? ButtonLook::Main : ButtonLook::Plain;
-    discard.tooltip = "Deletes this work for good";
     if (buttons.add(ui, "recover." + std::to_string(i), "Recover", recover))
       context.ask("document.recover", {copy.file});
+    ButtonOptions discard;
+    discard.tooltip = "Deletes this work for good";
     if (buttons.add(ui, "discard." + std::to_string(i), "Discard", discard))
       context.ask("document.discard_recovery", {copy.file});
   }
@@ -96,16 +97,12 @@ QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) 
 }
 
 void draw_method_rows(app::Method& method, Ui& ui) {
-  if (const auto name = method_row(ui, {"compare.engine", "Transfer", ""}, engines(), method.engine))
-    method.engine = *name;
-  if (const auto name =
-          method_row(ui, {"compare.extractor", "Extractor", ""}, extractors(), method.extractor))
-    method.extractor = *name;
-  if (const auto on = toggle_row(ui, {"compare.offsets", "Offsets", ""}, method.offsets))
-    method.offsets = *on;
-  if (const auto i = choice_row(ui, {"compare.root", "Path", ""}, {"Scaled", "Original", "In place"},
-                                static_cast<int>(method.root)))
-    method.root = static_cast<RootMode>(*i);
+  method_row(ui, {"compare.engine", "Transfer"}, engines(), method.engine);
+  method_row(ui, {"compare.extractor", "Extractor"}, extractors(), method.extractor);
+  toggle_row(ui, {"compare.offsets", "Offsets"}, method.offsets);
+  int root = static_cast<int>(method.root);
+  if (choice_row(ui, {"compare.root", "Path"}, {"Scaled", "Original", "In place"}, root))
+    method.root = static_cast<RootMode>(root);
 }
 
 /// The settings in which `other` differs from `base`, as arguments of compare.add.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/text.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
@@ -42,11 +43,9 @@ void tool_button(const app::Session& session, PanelContext& context, const std::
   }
 }
 
-void clear_button(PanelContext& context, const std::string& name, const std::string& command, bool any,
-                  const app::Arguments& arguments = {}) {
-  ButtonOptions options;
-  options.width = -1, options.disabled = !any, options.tooltip = "Clears these edits; can be undone";
-  if (button(context.ui, name, "Clear", options)) context.ask(command, arguments);
+/// `command`: also the button's name. `take`: its argument, where it has one.
+void clear_button(PanelContext& context, const std::string& command, bool any, const std::string& take = {}) {
+  ask_button(context, {command, "Clear", "Clears these edits; can be undone", command + " " + take}, any);
 }
 
 void ask_for_crop(PanelContext& context, const Box& box) {
@@ -59,13 +58,7 @@ void ask_for_crop(PanelContext& context, const Box& box) {
 void draw_crop(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const std::optional<Box>& crop = session.document.scan_edits.crop;
-  if (const auto on =
-          toggle_row(ui, {"edit.crop", "Crop", "Uses only the points inside a box"}, crop.has_value())) {
-    if (*on)
-      context.ask("edit.crop", {"on"});
-    else
-      context.ask("edit.crop", {"off"});
-  }
+  ask_toggle(context, {"edit.crop", "Crop", "Uses only the points inside a box"}, crop.has_value());
   if (!crop) return;
   tool_button(session, context, "edit.crop_tool", app::Tool::Crop);
   const char* axes = "xyz";
@@ -93,28 +86,22 @@ void draw_scan(const app::Session& session, PanelContext& context) {
   const DisabledScope disabled(!possible(session, "edit.crop"));
   draw_crop(session, context);
   const ScanEdits& edits = session.document.scan_edits;
-  if (const auto on = toggle_row(
-          ui, {"edit.floor_removal", "Remove floor", "Removes the points of the floor but keeps the soles"},
-          edits.floor.has_value()))
-    context.ask("edit.floor_removal", {on_off(*on)});
-  if (edits.floor && !edits.floor->plane) {
-    NumberOptions height{-5, 5, 0.002f, "%.3f m", 0, true};
-    if (const auto h = number_row(ui, {"edit.floor_height", "Floor at", "Height of the floor to remove"},
-                                  edits.floor->height_m, height))
-      context.ask("edit.floor_removal", {"on", argument(*h)});
-  }
-  if (const auto on =
-          toggle_row(ui, {"edit.cluster", "Largest part only", "Removes a second person or a prop"},
-                     edits.largest_cluster))
-    context.ask("edit.cluster", {on_off(*on)});
+  ask_toggle(context,
+             {"edit.floor_removal", "Remove floor", "Removes the points of the floor but keeps the soles"},
+             edits.floor.has_value());
+  if (edits.floor && !edits.floor->plane)
+    ask_number(context,
+               {"edit.floor_height", "Floor at", "Height of the floor to remove", "edit.floor_removal on"},
+               edits.floor->height_m, {-5, 5, 0.002f, "%.3f m", 0, true});
+  ask_toggle(context, {"edit.cluster", "Largest part only", "Removes a second person or a prop"},
+             edits.largest_cluster);
 }
 
 void draw_falloff(const app::Session& session, PanelContext& context, const std::string& name) {
-  NumberOptions frames{0, 120, 0.1f, "\u00b1 %.0f frames", 5, true};
-  if (const auto n =
-          number_row(context.ui, {name, "Falloff", "How many frames to each side follow, less and less"},
-                     static_cast<float>(session.falloff), frames))
-    context.ask("tool.falloff", {argument(std::round(*n))});
+  float frames = static_cast<float>(session.falloff);
+  row(context.ui, "Falloff", "How many frames to each side follow, less and less");
+  if (number(context.ui, name, frames, {0, 120, 0.1f, "\u00b1 %.0f frames", 5, true}))
+    context.ask("tool.falloff", {argument(std::round(frames))});
 }
 
 std::string describe(const SkeletonEdit& edit) {
@@ -176,16 +163,15 @@ void draw_skeleton(const app::Session& session, PanelContext& context) {
   const DisabledScope disabled(!possible(session, "edit.swap"));
   tool_button(session, context, "edit.joints_tool", app::Tool::Joints);
   draw_falloff(session, context, "edit.falloff");
-  if (const auto on =
-          toggle_row(ui, {"edit.children", "Whole limb", "The children of a dragged joint move with it"},
-                     session.drag_children))
-    context.ask("tool.children", {on_off(*on)});
+  ask_toggle(context,
+             {"edit.children", "Whole limb", "The children of a dragged joint move with it", "tool.children"},
+             session.drag_children);
   draw_swap(session, context);
   const auto& edits = session.document.skeleton_edits;
   for (size_t i = edits.size() > 50 ? edits.size() - 50 : 0; i < edits.size(); ++i)
     edit_line(context, "edit.skeleton." + std::to_string(i), describe(edits[i]), frame_of(edits[i]),
               {"skeleton", std::to_string(i)});
-  clear_button(context, "edit.skeleton_clear", "edit.skeleton_clear", !edits.empty());
+  clear_button(context, "edit.skeleton_clear", !edits.empty());
 }
 
 void draw_cost(const app::TakeState* state, Ui& ui) {
@@ -198,47 +184,40 @@ void draw_cost(const app::TakeState* state, Ui& ui) {
 }
 
 void draw_amounts(const PoseEdits& edits, PanelContext& context, const std::string& k) {
-  Ui& ui = context.ui;
-  if (const auto on = toggle_row(ui, {"edit.pin", "Pin feet", "Keeps feet that stand on the floor in place"},
-                                 edits.pin.has_value()))
-    context.ask("edit.pin", {k, on_off(*on)});
-  NumberOptions strength{0, 1, 0.005f, "%.2f", 0, true};
-  if (const auto s = number_row(ui, {"edit.smooth", "Smooth", "0: not at all, 1: strongly"},
-                                edits.smooth ? edits.smooth->strength : 0, strength))
-    context.ask("edit.smooth", {k, argument(*s)});
-  NumberOptions floor{-1, 1, 0.001f, "%.3f m", 0, true};
-  if (const auto m = number_row(ui, {"edit.floor_offset", "Raise by", "Moves the whole motion up or down"},
-                                edits.floor ? edits.floor->offset_m : 0, floor))
-    context.ask("edit.floor_offset", {k, argument(*m)});
-  NumberOptions heading{-180, 180, 0.5f, "%.1f\u00b0", 0, true};
-  if (const auto deg =
-          number_row(ui, {"edit.heading", "Turn by", "Turns the whole motion about the vertical axis"},
-                     edits.heading ? edits.heading->yaw_deg : 0, heading))
-    context.ask("edit.heading", {k, argument(*deg)});
+  ask_toggle(context,
+             {"edit.pin", "Pin feet", "Keeps feet that stand on the floor in place", "edit.pin " + k},
+             edits.pin.has_value());
+  ask_number(context, {"edit.smooth", "Smooth", "0: not at all, 1: strongly", "edit.smooth " + k},
+             edits.smooth ? edits.smooth->strength : 0, {0, 1, 0.005f, "%.2f", 0, true});
+  ask_number(context,
+             {"edit.floor_offset", "Raise by", "Moves the whole motion up or down", "edit.floor_offset " + k},
+             edits.floor ? edits.floor->offset_m : 0, {-1, 1, 0.001f, "%.3f m", 0, true});
+  ask_number(
+      context,
+      {"edit.heading", "Turn by", "Turns the whole motion about the vertical axis", "edit.heading " + k},
+      edits.heading ? edits.heading->yaw_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
 }
 
 void draw_trim(const app::Session& session, PanelContext& context, const PoseEdits& edits,
                const std::string& k) {
-  Ui& ui = context.ui;
   const app::FrameRange range = app::play_range(session.playback, app::frame_count(session));
   ButtonRow buttons(2);
-  ButtonOptions trim, off;
   const bool marked = session.playback.in >= 0 || session.playback.out >= 0;
-  trim.disabled = !marked || range.empty();
-  trim.tooltip =
+  const char* const tip =
       marked ? "Keeps only the frames between the loop marks" : "Set the loop marks first (In, Out)";
-  if (buttons.add(ui, "edit.trim", "Trim to marks", trim))
-    context.ask("edit.trim", {k, std::to_string(range.first), std::to_string(range.last)});
-  off.disabled = !edits.trim;
-  off.tooltip = edits.trim ? "Frames " + std::to_string(edits.trim->first) + " to " +
-                                 std::to_string(edits.trim->last) + " are kept"
-                           : "Nothing is trimmed";
-  if (buttons.add(ui, "edit.trim_off", "Untrim", off)) context.ask("edit.trim", {k, "off"});
+  const std::string frames = std::to_string(range.first) + " " + std::to_string(range.last);
+  buttons.ask(context, {"edit.trim", "Trim to marks", tip, "edit.trim " + k + " " + frames},
+              marked && !range.empty());
+  const std::string kept = edits.trim
+                               ? printed("Frames %d to %d are kept", edits.trim->first, edits.trim->last)
+                               : "Nothing is trimmed";
+  buttons.ask(context, {"edit.trim_off", "Untrim", kept, "edit.trim " + k + " off"}, edits.trim.has_value());
   const int frame = app::shown_frame(session);
   const DisabledScope disabled(frame < 0);
-  if (const auto on = toggle_row(ui, {"edit.skip", "Skip this frame", "Playback and export leave it out"},
-                                 edits.skip.count(frame) > 0))
-    context.ask("edit.skip", {k, std::to_string(frame), on_off(*on)});
+  ask_toggle(context,
+             {"edit.skip", "Skip this frame", "Playback and export leave it out",
+              "edit.skip " + k + " " + std::to_string(frame)},
+             edits.skip.count(frame) > 0);
 }
 
 void draw_result(const app::Session& session, PanelContext& context) {
@@ -260,7 +239,7 @@ void draw_result(const app::Session& session, PanelContext& context) {
                   figure(edit.axis_angle.norm() * 180 / kPi, "\u00b0"),
               edit.frame, {"rotation", k, std::to_string(i)});
   }
-  clear_button(context, "edit.poses_clear", "edit.poses_clear", !edits.empty(), {k});
+  clear_button(context, "edit.poses_clear", !edits.empty(), k);
 }
 
 void draw_target(const app::Session& session, PanelContext& context) {
@@ -269,37 +248,31 @@ void draw_target(const app::Session& session, PanelContext& context) {
   const app::Take* take = selected_take(session);
   if (take == nullptr) return hint(ui, "Add a target first.");
   tool_button(session, context, "edit.target_tool", app::Tool::TargetJoints);
-  if (const auto on = toggle_row(ui, {"edit.mirror", "Both sides", "The joint on the other side follows"},
-                                 session.mirror_joint))
-    context.ask("tool.mirror", {on_off(*on)});
+  ask_toggle(context, {"edit.mirror", "Both sides", "The joint on the other side follows", "tool.mirror"},
+             session.mirror_joint);
   const auto& moved = take->target_edits.joints;
   for (size_t i = 0; i < moved.size(); ++i)
     edit_line(context, "edit.moved." + std::to_string(i),
               joint_label(moved[i].joint) + (moved[i].mirror ? ", both sides" : ""), -1,
               {"joint", std::to_string(session.selected_take), std::to_string(i)});
   if (!moved.empty()) hint(ui, plural(moved.size(), "joint") + " moved by hand.");
-  clear_button(context, "edit.target_joints_clear", "edit.target_joints_clear", !moved.empty(),
-               {std::to_string(session.selected_take)});
+  clear_button(context, "edit.target_joints_clear", !moved.empty(), std::to_string(session.selected_take));
 }
 
 void draw_brush(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   row(ui, "Joint", "The joint whose weights you paint");
-  std::vector<std::string> joints;
-  for (int j = 0; j < kJointCount; ++j) joints.push_back(joint_label(j));
   int joint = session.selected_joint;
-  if (dropdown(ui, "edit.joint", joints, joint)) context.ask("select.joint", {joint_name(joint)});
-  NumberOptions radius{0.005f, 0.5f, 0.0005f, "%.3f m"}, strength{0.01f, 1, 0.005f, "%.2f"};
-  if (const auto r = number_row(ui, {"edit.brush_radius", "Radius", "Radius of the brush on the surface"},
-                                session.brush.radius_m, radius))
-    context.ask("tool.brush_radius", {argument(*r)});
-  if (const auto s = number_row(ui, {"edit.brush_strength", "Strength", "Strength of one dab at its centre"},
-                                session.brush.strength, strength))
-    context.ask("tool.brush_strength", {argument(*s)});
-  constexpr const char* kModes[] = {"add", "subtract", "smooth"};
-  if (const auto i = choice_row(ui, {"edit.brush_mode", "Brush", "What a dab does"},
-                                {"Add", "Take", "Smooth"}, static_cast<int>(session.brush.mode)))
-    context.ask("tool.brush_mode", {kModes[*i]});
+  if (dropdown(ui, "edit.joint", joint_labels(), joint)) context.ask("select.joint", {joint_name(joint)});
+  ask_number(context,
+             {"edit.brush_radius", "Radius", "Radius of the brush on the surface", "tool.brush_radius"},
+             session.brush.radius_m, {0.005f, 0.5f, 0.0005f, "%.3f m"});
+  ask_number(context,
+             {"edit.brush_strength", "Strength", "Strength of one dab at its centre", "tool.brush_strength"},
+             session.brush.strength, {0.01f, 1, 0.005f, "%.2f"});
+  const std::vector<std::string> modes = {"add", "subtract", "smooth"};
+  ask_choice(context, {"edit.brush_mode", "Brush", "What a dab does", "tool.brush_mode"},
+             {"Add", "Take", "Smooth"}, modes, modes[static_cast<size_t>(session.brush.mode)]);
 }
 
 void draw_weights(const app::Session& session, PanelContext& context) {
@@ -311,20 +284,19 @@ void draw_weights(const app::Session& session, PanelContext& context) {
   tool_button(session, context, "edit.paint_tool", app::Tool::Paint);
   draw_brush(session, context);
   ButtonRow buttons(2);
-  ButtonOptions left, right, smooth;
-  left.tooltip = "Makes the right side a mirror image of the left";
-  right.tooltip = "Makes the left side a mirror image of the right";
-  if (buttons.add(ui, "edit.weights_mirror.left", "Mirror left", left))
-    context.ask("edit.weights_mirror", {k, "left"});
-  if (buttons.add(ui, "edit.weights_mirror.right", "Mirror right", right))
-    context.ask("edit.weights_mirror", {k, "right"});
-  smooth.width = -1, smooth.tooltip = "Smooths the weights of the whole surface by the brush's strength";
-  if (button(ui, "edit.weights_smooth", "Smooth all", smooth))
-    context.ask("edit.weights_smooth", {k, argument(session.brush.strength)});
+  for (const std::string from : {"left", "right"}) {
+    const std::string to = from == "left" ? "right" : "left";
+    const std::string tip = "Makes the " + to + " side a mirror image of the " + from;
+    buttons.ask(context, {"edit.weights_mirror." + from, "Mirror " + from, tip,
+                          "edit.weights_mirror " + k + " " + from});
+  }
+  ask_button(context, {"edit.weights_smooth", "Smooth all",
+                       "Smooths the weights of the whole surface by the brush's strength",
+                       "edit.weights_smooth " + k + " " + argument(session.brush.strength)});
   const auto& weights = take->target_edits.weights;
   const bool painted = weights != nullptr && !weights->empty();
   if (painted) hint(ui, plural(weights->vertex.size(), "vertex weight") + " changed by hand.");
-  clear_button(context, "edit.weights_clear", "edit.weights_clear", painted, {k});
+  clear_button(context, "edit.weights_clear", painted, k);
 }
 
 }  // namespace

@@ -45,42 +45,37 @@ void draw_format(Ui& ui, ExportState& state) {
   std::vector<std::string> labels;
   for (const app::ExportFormat& info : app::export_formats()) labels.push_back(info.label);
   labels.push_back("Figures");
-  if (const auto i = choice_row(ui, {"export.format", "Format", ""}, labels, state.format)) {
-    const bool own = !state.path.empty() && file_suffix(state.path) == suffix_of(state);
-    state.format = *i;
-    if (own) state.path = fs::path(state.path).replace_extension(suffix_of(state)).string();
-  }
+  const bool own = !state.path.empty() && file_suffix(state.path) == suffix_of(state);
+  if (choice_row(ui, {"export.format", "Format"}, labels, state.format) && own)
+    state.path = fs::path(state.path).replace_extension(suffix_of(state)).string();
 }
 
 /// What only an animated character has.
 void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, ExportState& state) {
   CharacterExportOptions& file = state.choice.file;
+  int rig = state.choice.theirs.value_or(true) ? 0 : 1, many = file.influences == 8 ? 1 : 0;
   if (on_own_bones)
-    if (const auto i = choice_row(ui, {"export.rig", "Skeleton", "Which bones the file animates"},
-                                  {"Its own", "22 joints"}, state.choice.theirs.value_or(true) ? 0 : 1))
-      state.choice.theirs = *i == 0;
-  if (const auto i = choice_row(ui, {"export.influences", "Bones a vertex", "Older engines read only four"},
-                                {"4", "8"}, file.influences == 8 ? 1 : 0))
-    file.influences = *i == 1 ? 8 : 4;
+    if (choice_row(ui, {"export.rig", "Skeleton", "Which bones the file animates"}, {"Its own", "22 joints"},
+                   rig))
+      state.choice.theirs = rig == 0;
+  if (choice_row(ui, {"export.influences", "Bones a vertex", "Older engines read only four"}, {"4", "8"},
+                 many))
+    file.influences = many == 1 ? 8 : 4;
   constexpr std::array<int, 4> kShapes = {0, 4, 8, 16};
-  const auto shapes = std::find(kShapes.begin(), kShapes.end(), file.shapes);
-  if (const auto i = choice_row(
+  int shapes = static_cast<int>(std::find(kShapes.begin(), kShapes.end(), file.shapes) - kShapes.begin());
+  if (choice_row(
           ui, {"export.morphs", "Morph targets", "Deformations that bones alone cannot make; the file grows"},
-          {"None", "4", "8", "16"}, static_cast<int>(shapes - kShapes.begin())))
-    file.shapes = kShapes[*i];
+          {"None", "4", "8", "16"}, shapes))
+    file.shapes = kShapes[shapes];
   if (const auto mm = typed_number_row(ui,
                                        {"export.reduce", "Leave out keys, mm",
                                         "Removes keys that move no vertex further than this; 0 keeps all"},
                                        static_cast<double>(file.reduce_mm), 1))
     file.reduce_mm = static_cast<float>(std::clamp(*mm, 0.0, 1000.0));
-  if (const auto on = toggle_row(ui, {"export.t_pose", "T-pose first", "Adds the T-pose as its own clip"},
-                                 file.t_pose_clip))
-    file.t_pose_clip = *on;
+  toggle_row(ui, {"export.t_pose", "T-pose first", "Adds the T-pose as its own clip"}, file.t_pose_clip);
   if (!on_own_bones || !take.character || take.character->character.animations.empty()) return;
-  if (const auto on =
-          toggle_row(ui, {"export.keep_clips", "Its own clips", "Keeps the file's own clips, after ours"},
-                     file.keep_clips))
-    file.keep_clips = *on;
+  toggle_row(ui, {"export.keep_clips", "Its own clips", "Keeps the file's own clips, after ours"},
+             file.keep_clips);
 }
 
 /// The takes that go into the file, one clip each.
@@ -114,11 +109,9 @@ std::string frames_words(const app::Session& session, size_t k) {
 void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
   const auto takes = takes_of_one_body(session.document, session.selected_take);
   if (takes.size() < 2) return;
-  if (const auto on = toggle_row(
-          ui,
-          {"export.all_takes", "All takes as clips", "All takes of this target in one file, one clip each"},
-          state.all_takes))
-    state.all_takes = *on;
+  toggle_row(
+      ui, {"export.all_takes", "All takes as clips", "All takes of this target in one file, one clip each"},
+      state.all_takes);
   if (!state.all_takes) return;
   for (const size_t k : takes) {
     bool in_file = state.left_out.count(k) == 0;
@@ -151,9 +144,8 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     const bool own_bones = made->character && on_their_rig(take->target, *made->character);
     if (format->is_character) draw_clip_rows(session, ui, state);
     if (format->is_character) draw_character_rows(ui, *made, own_bones, state);
-    if (const auto on = toggle_row(ui, {"export.in_place", "In place", "Leaves out the path over the floor"},
-                                   state.choice.file.in_place))
-      state.choice.file.in_place = *on;
+    toggle_row(ui, {"export.in_place", "In place", "Leaves out the path over the floor"},
+               state.choice.file.in_place);
     hint(ui, frames_words(session, session.selected_take) + ", " +
                  figure(frames_per_second(session), "frames/s"));
   }
@@ -196,16 +188,12 @@ void draw_size_rows(Ui& ui, ExportState& state) {
 
 void draw_picture_rows(Ui& ui, ExportState& state) {
   draw_size_rows(ui, state);
-  if (const auto i =
-          choice_row(ui, {"export.all", "What", ""}, {"All views", "Active view"}, state.all ? 0 : 1))
-    state.all = *i == 0;
-  if (state.kind == ExportKind::Picture) {
-    if (const auto on = toggle_row(ui, {"export.transparent", "Transparent", "Leaves out the background"},
-                                   state.transparent))
-      state.transparent = *on;
-  } else {
+  int what = state.all ? 0 : 1;
+  if (choice_row(ui, {"export.all", "What"}, {"All views", "Active view"}, what)) state.all = what == 0;
+  if (state.kind == ExportKind::Picture)
+    toggle_row(ui, {"export.transparent", "Transparent", "Leaves out the background"}, state.transparent);
+  else
     hint(ui, "A name ending in .mp4 gives a film, any other name a folder of PNG pictures.");
-  }
 }
 
 /// The path to write; true when the user wants to browse.

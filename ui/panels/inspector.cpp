@@ -20,11 +20,6 @@ namespace {
 const std::vector<std::string> kUnits = {"auto", "m", "cm", "mm", "dm", "in"};
 const std::vector<std::string> kAxes = {"auto", "x", "y", "z", "-x", "-y", "-z"};
 
-int index_of(const std::vector<std::string>& choices, const std::string& value) {
-  const auto found = std::find(choices.begin(), choices.end(), value.empty() ? "auto" : value);
-  return found == choices.end() ? -1 : static_cast<int>(found - choices.begin());
-}
-
 void warn(Ui& ui, const std::string& sentence) {
   icon_label(ui, Icon::Warning, ui.theme().warning);
   ImGui::SameLine();
@@ -33,21 +28,14 @@ void warn(Ui& ui, const std::string& sentence) {
   ImGui::PopTextWrapPos();
 }
 
-/// Units and axis, alike for scans and targets. `before`: what comes first in the commands.
+/// Units and axis, alike for scans and targets. `take`: the commands' first argument, where they have one.
 void draw_import(PanelContext& context, const std::string& group, const ImportOptions& import,
-                 const app::Arguments& before) {
-  Ui& ui = context.ui;
-  const auto ask = [&](const char* what, const std::string& value) {
-    app::Arguments arguments = before;
-    arguments.push_back(value);
-    context.ask(group + "." + what, arguments);
-  };
-  if (const auto i =
-          choice_row(ui, {group + ".units", "Units", "Of the file"}, kUnits, index_of(kUnits, import.units)))
-    ask("units", kUnits[*i]);
-  if (const auto i = choice_row(ui, {group + ".up", "Up", "The axis of the file that points up"}, kAxes,
-                                index_of(kAxes, import.up)))
-    ask("up", kAxes[*i]);
+                 const std::string& take = {}) {
+  const auto word = [](const std::string& value) { return value.empty() ? "auto" : value; };
+  ask_choice(context, {group + ".units", "Units", "Of the file", group + ".units " + take}, kUnits, kUnits,
+             word(import.units));
+  ask_choice(context, {group + ".up", "Up", "The axis of the file that points up", group + ".up " + take},
+             kAxes, kAxes, word(import.up));
 }
 
 void draw_target_yaw(const app::TargetOptions& target, PanelContext& context, const std::string& k) {
@@ -122,9 +110,7 @@ void draw_animation_fields(const app::SourceState& state, const app::SourceOptio
   else if (const auto text =
                text_row(ui, {"source.clip", "Animation", "Its name or number, or longest"}, clip))
     context.ask("source.clip", {text->empty() ? "longest" : *text});
-  if (const auto on = toggle_row(ui, {"source.as_scan", "As a scan", "Uses its surface, not its skeleton"},
-                                 source.as_scan))
-    context.ask("source.as_scan", {*on ? "on" : "off"});
+  ask_toggle(context, {"source.as_scan", "As a scan", "Uses its surface, not its skeleton"}, source.as_scan);
 }
 
 void draw_source_fields(const app::Session& session, PanelContext& context) {
@@ -134,7 +120,7 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
   if (const auto text = text_row(ui, {"source.fps", "Frames/s", "auto: as the file says, or 30"}, fps))
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
   if (may_move(source)) draw_animation_fields(session.source, source, context);
-  draw_import(context, "source", source.import, {});
+  draw_import(context, "source", source.import);
   if (const auto deg = typed_number_row(ui, {"source.yaw", "Turned by", "Degrees about the vertical"},
                                         source.import.yaw_deg, 1))
     context.ask("source.yaw", {argument(*deg)});
@@ -145,9 +131,8 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
   }
   const app::Take* take = session.document.takes.empty() ? nullptr : &session.document.takes.front();
   const std::string extractor = take != nullptr ? take->method.extractor : extractors().front().name;
-  if (const auto name = method_row(ui, {"source.extractor", "Extractor", "The network that finds the joints"},
-                                   extractors(), extractor))
-    context.ask("source.extractor", {*name});
+  ask_method(context, {"source.extractor", "Extractor", "The network that finds the joints"}, extractors(),
+             extractor);
 }
 
 void draw_source(const app::Session& session, PanelContext& context) {
@@ -160,8 +145,8 @@ void draw_source(const app::Session& session, PanelContext& context) {
     draw_source_fields(session, context);
   }
   ButtonRow buttons(2);
-  if (buttons.add(ui, "source.open", "Open scan\u2026")) context.ask("dialog.open", {"open_scan"});
-  if (buttons.add(ui, "source.motion", "Open motion\u2026")) context.ask("dialog.open", {"open_motion"});
+  buttons.ask(context, {"source.open", "Open scan\u2026", "", "dialog.open open_scan"});
+  buttons.ask(context, {"source.motion", "Open motion\u2026", "", "dialog.open open_motion"});
 }
 
 void draw_takes(const app::Session& session, PanelContext& context) {
@@ -187,13 +172,12 @@ void draw_takes(const app::Session& session, PanelContext& context) {
                  cut_to(takes[i].name, width - room - ui.px(10)).c_str());
     list.AddText({at.x + width - room + ui.px(8), y}, color(ui.theme().text_dim), how.c_str());
   }
-  const bool any = selected_take(session) != nullptr;
   ButtonRow buttons(2);
-  if (buttons.add(ui, "take.add", "Add target\u2026")) context.ask("dialog.open", {"open_target"});
-  ButtonOptions remove;
-  remove.disabled = !any, remove.tooltip = "Removes the selected take; can be undone";
-  if (buttons.add(ui, "take.remove", "Remove", remove))
-    context.ask("target.remove", {std::to_string(session.selected_take)});
+  buttons.ask(context, {"take.add", "Add target\u2026", "", "dialog.open open_target"});
+  const std::string k = std::to_string(session.selected_take);
+  buttons.ask(context,
+              {"take.remove", "Remove", "Removes the selected take; can be undone", "target.remove " + k},
+              selected_take(session) != nullptr);
 }
 
 /// How much of it the shape binds; the view can be coloured by it.
@@ -237,7 +221,7 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
     if (!name->empty()) context.ask("take.rename", {k, *name});
   row_text(ui, "File", file_name(take->target.path));
   if (const app::TakeState* state = selected_state(session)) draw_target_facts(*state, ui);
-  draw_import(context, "target", take->target.import, {k});
+  draw_import(context, "target", take->target.import, k);
   draw_target_yaw(take->target, context, k);
   std::ostringstream betas;
   for (size_t i = 0; i < take->target.betas.size(); ++i)
@@ -246,16 +230,12 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
           text_row(ui, {"target.betas", "Shape", "Shape parameters of an SMPL-format body: 1.2, -0.5"},
                    betas.str(), "only SMPL bodies"))
     context.ask("target.betas", {k, *text});
-  ButtonOptions wide;
-  wide.width = -1;
-  if (button(ui, "take.replace", "Replace\u2026", wide)) context.ask("dialog.open", {"replace_target"});
+  ask_button(context, {"take.replace", "Replace\u2026", "", "dialog.open replace_target"});
 }
 
 void draw_filter(const app::Method& method, PanelContext& context, const std::string& k) {
   struct Switch {
-    const char* name;
-    const char* label;
-    const char* explanation;
+    std::string name, label, explanation;
     bool on;
   };
   const Switch switches[] = {
@@ -267,24 +247,19 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
        method.keep_contacts},
       {"near", "Second look", "Limbs and head are looked at again from near", method.near}};
   for (const Switch& s : switches)
-    if (const auto on =
-            toggle_row(context.ui, {std::string("method.") + s.name, s.label, s.explanation}, s.on))
-      context.ask("method.filter", {k, s.name, on_off(*on)});
+    ask_toggle(context, {"method." + s.name, s.label, s.explanation, "method.filter " + k + " " + s.name},
+               s.on);
 }
 
 void draw_work(const app::Session& session, PanelContext& context) {
-  Ui& ui = context.ui;
   ButtonRow buttons(2);
-  ButtonOptions pause, restart;
-  pause.disabled = !possible(session, "work.pause") && !session.paused;
-  pause.tooltip =
-      session.paused ? "Continues with the remaining frames" : "Stops making frames until you continue";
-  if (buttons.add(ui, session.paused ? "work.resume" : "work.pause", session.paused ? "Continue" : "Pause",
-                  pause))
-    context.ask(session.paused ? "work.resume" : "work.pause");
-  restart.disabled = !possible(session, "work.restart");
-  restart.tooltip = "Computes all frames again";
-  if (buttons.add(ui, "work.restart", "Again", restart)) context.ask("work.restart");
+  if (session.paused)
+    buttons.ask(context, {"work.resume", "Continue", "Continues with the remaining frames"});
+  else
+    buttons.ask(context, {"work.pause", "Pause", "Stops making frames until you continue"},
+                possible(session, "work.pause"));
+  buttons.ask(context, {"work.restart", "Again", "Computes all frames again"},
+              possible(session, "work.restart"));
 }
 
 void draw_method(const app::Session& session, PanelContext& context) {
@@ -293,27 +268,25 @@ void draw_method(const app::Session& session, PanelContext& context) {
   if (take == nullptr || !section(ui, "inspector.method", "Method")) return;
   const std::string k = std::to_string(session.selected_take);
   const app::Method& method = take->method;
-  if (const auto name =
-          method_row(ui,
-                     {"method.engine", "Transfer",
-                      "The method that transfers the motion to the target; " + help_of(engines())},
-                     engines(), method.engine))
-    context.ask("method.engine", {k, *name});
-  if (const auto name = method_row(ui, {"method.extractor", "Extractor", "The network that finds the joints"},
-                                   extractors(), method.extractor))
-    context.ask("method.extractor", {k, *name});
-  if (const auto on = toggle_row(ui, {"method.offsets", "Offsets", "Pose-corrective offsets of the skin"},
-                                 method.offsets))
-    context.ask("method.offsets", {k, on_off(*on)});
-  if (const auto i = choice_row(
-          ui,
-          {"method.root", "Path", "The path over the floor: scaled by leg length, the source's own, or none"},
-          {"Scaled", "Original", "In place"}, static_cast<int>(method.root)))
-    context.ask("method.root", {k, kRootNames[*i]});
+  ask_method(
+      context,
+      {"method.engine", "Transfer",
+       "The method that transfers the motion to the target; " + help_of(engines()), "method.engine " + k},
+      engines(), method.engine);
+  ask_method(context,
+             {"method.extractor", "Extractor", "The network that finds the joints", "method.extractor " + k},
+             extractors(), method.extractor);
+  ask_toggle(context,
+             {"method.offsets", "Offsets", "Pose-corrective offsets of the skin", "method.offsets " + k},
+             method.offsets);
+  ask_choice(context,
+             {"method.root", "Path",
+              "The path over the floor: scaled by leg length, the source's own, or none", "method.root " + k},
+             {"Scaled", "Original", "In place"}, {kRootNames.begin(), kRootNames.end()},
+             kRootNames[static_cast<int>(method.root)]);
   draw_filter(method, context, k);
-  ButtonOptions compare;
-  compare.width = -1, compare.tooltip = "Adds a second take of this target, made with another method";
-  if (button(ui, "method.compare", "Compare with\u2026", compare)) context.ask("dialog.open", {"compare"});
+  ask_button(context, {"method.compare", "Compare with\u2026",
+                       "Adds a second take of this target, made with another method", "dialog.open compare"});
   draw_work(session, context);
 }
 

@@ -16,9 +16,7 @@ namespace {
 using app::Colouring;
 
 struct Layer {
-  const char* name;
-  const char* label;
-  const char* explanation;
+  const char *name, *label, *explanation;
   bool app::Layers::*on;
 };
 
@@ -33,35 +31,28 @@ constexpr Layer kLayers[] = {
 
 struct Colour {
   Colouring colouring;
-  const char* argument;
   const char* label;
 };
-constexpr Colour kSourceColours[] = {{Colouring::Plain, "plain", "Plain"},
-                                     {Colouring::Confidence, "confidence", "Confidence"}};
-constexpr Colour kTakeColours[] = {{Colouring::Plain, "plain", "Plain"},
-                                   {Colouring::Weights, "weights", "Skin weights"},
-                                   {Colouring::Doubt, "doubt", "Binding uncertainty, %"},
-                                   {Colouring::Offsets, "offsets", "Corrective offsets, mm"},
-                                   {Colouring::Error, "error", "Error to the truth, mm"},
-                                   {Colouring::Difference, "difference", "Difference to take 1, mm"}};
+const std::vector<Colour> kSourceColours = {{Colouring::Plain, "Plain"},
+                                            {Colouring::Confidence, "Confidence"}};
+const std::vector<Colour> kTakeColours = {{Colouring::Plain, "Plain"},
+                                          {Colouring::Weights, "Skin weights"},
+                                          {Colouring::Doubt, "Binding uncertainty, %"},
+                                          {Colouring::Offsets, "Corrective offsets, mm"},
+                                          {Colouring::Error, "Error to the truth, mm"},
+                                          {Colouring::Difference, "Difference to take 1, mm"}};
 
-std::vector<std::string> joints_and_all() {
-  std::vector<std::string> names = {"All joints"};
-  for (int j = 0; j < kJointCount; ++j) names.push_back(joint_label(j));
-  return names;
-}
-
-template <size_t N>
-void draw_colour(PanelContext& context, const std::string& pane, const Colour (&colours)[N], Colouring now) {
+void draw_colour(PanelContext& context, const std::string& pane, const std::vector<Colour>& colours,
+                 Colouring now) {
   std::vector<std::string> labels;
   int chosen = -1;
-  for (size_t i = 0; i < N; ++i) {
-    labels.push_back(colours[i].label);
-    if (colours[i].colouring == now) chosen = i;
+  for (const Colour& colour : colours) {
+    if (colour.colouring == now) chosen = labels.size();
+    labels.push_back(colour.label);
   }
   row(context.ui, "Colour", "What the surface's colour shows");
   if (dropdown(context.ui, "layers." + pane + ".colour", labels, chosen))
-    context.ask("view.colour", {pane, colours[chosen].argument});
+    context.ask("view.colour", {pane, app::kColouringNames[static_cast<size_t>(colours[chosen].colouring)]});
 }
 
 /// Switches in two columns.
@@ -69,11 +60,11 @@ class SwitchGrid {
  public:
   explicit SwitchGrid(PanelContext& context)
       : context_(context), start_(ImGui::GetCursorPosX()), half_(ImGui::GetContentRegionAvail().x / 2) {}
-  std::optional<bool> add(const std::string& name, const char* label, const char* explanation, bool on) {
+  void add(const Control& control, bool on) {
     if (count_++ % 2 == 1) ImGui::SameLine(start_ + half_);
-    const bool changed = toggle(context_.ui, name, label, on);
-    tooltip(context_.ui, explanation);
-    return changed ? std::optional<bool>(on) : std::nullopt;
+    const bool changed = toggle(context_.ui, control.name, control.label, on);
+    tooltip(context_.ui, control.explanation);
+    if (changed) push(context_, control, on_off(on));
   }
 
  private:
@@ -88,29 +79,23 @@ void draw_pane(const app::Session& session, PanelContext& context, bool source) 
   if (!section(context.ui, "layers." + pane, source ? "Source" : "Takes")) return;
   SwitchGrid grid(context);
   const auto add = [&](const char* name, const char* label, const char* explanation, bool on) {
-    if (const auto wanted = grid.add("layers." + pane + "." + name, label, explanation, on))
-      context.ask("view.layer", {pane, name, on_off(*wanted)});
+    grid.add({"layers." + pane + "." + name, label, explanation, "view.layer " + pane + " " + name}, on);
   };
   add("surface", source ? "Scan" : "Mesh", source ? "The scan of this frame" : "The target's surface",
       layers.surface);
   if (source && session.source.has_faces)
     add("as_points", "As points", "Shows the scan's points without its faces", layers.as_points);
   for (const Layer& layer : kLayers) add(layer.name, layer.label, layer.explanation, layers.*layer.on);
-  if (source)
-    draw_colour(context, pane, kSourceColours, layers.colouring);
-  else
-    draw_colour(context, pane, kTakeColours, layers.colouring);
+  draw_colour(context, pane, source ? kSourceColours : kTakeColours, layers.colouring);
 }
 
 void draw_trails(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
-  std::vector<std::string> names;
-  for (int j = 0; j < kJointCount; ++j) names.push_back(joint_label(j));
   row(ui, "Trail of", "Adds or removes the path of a joint");
   int chosen = -1;
   const auto& joints = session.view.trail_joints;
   const auto is_on = [&](int j) { return std::find(joints.begin(), joints.end(), j) != joints.end(); };
-  if (dropdown(ui, "layers.trail_joint", names, chosen))
+  if (dropdown(ui, "layers.trail_joint", joint_labels(), chosen))
     context.ask("view.trail_joint", {joint_name(chosen), on_off(!is_on(chosen))});
   for (const int j : joints) {
     if (j < 0 || j >= kJointCount) continue;
@@ -127,24 +112,20 @@ void draw_colours(const app::Session& session, PanelContext& context) {
   if (!section(ui, "layers.colours", "Weights, trails, ghosts")) return;
   row(ui, "Weights of", "All joints: one colour each; one joint: its weight from 0 to 1");
   int joint = session.view.weights_joint + 1;
-  if (dropdown(ui, "layers.weights_joint", joints_and_all(), joint))
+  std::vector<std::string> joints = joint_labels();
+  joints.insert(joints.begin(), "All joints");
+  if (dropdown(ui, "layers.weights_joint", joints, joint))
     context.ask("view.weights_joint", {joint_name(joint - 1)});
   draw_trails(session, context);
-  NumberOptions count{1, 12, 0.05f, "%.0f"}, step{1, 120, 0.2f, "%.0f frames"};
-  const int ghosts = session.view.ghost_count, apart = session.view.ghost_step;
-  const auto ghost = [&](float n, float every) {
-    context.ask("view.ghosts", {argument(std::round(n)), argument(std::round(every))});
-  };
-  if (const auto n = number_row(ui, {"layers.ghost_count", "Ghosts", "To each side of this frame"},
-                                static_cast<float>(ghosts), count))
-    ghost(*n, static_cast<float>(apart));
-  if (const auto every = number_row(ui, {"layers.ghost_step", "Apart", "Frames between two ghosts"},
-                                    static_cast<float>(apart), step))
-    ghost(static_cast<float>(ghosts), *every);
-  NumberOptions scale{1, 1000, 0.5f, "%.0f mm", 50, true};
-  if (const auto mm = number_row(ui, {"layers.error_scale", "Scale to", "Upper end of the error scales"},
-                                 session.view.error_scale_mm, scale))
-    context.ask("view.error_scale", {argument(*mm)});
+  float count = static_cast<float>(session.view.ghost_count),
+        step = static_cast<float>(session.view.ghost_step);
+  row(ui, "Ghosts", "To each side of this frame");
+  bool changed = number(ui, "layers.ghost_count", count, {1, 12, 0.05f, "%.0f"});
+  row(ui, "Apart", "Frames between two ghosts");
+  changed |= number(ui, "layers.ghost_step", step, {1, 120, 0.2f, "%.0f frames"});
+  if (changed) context.ask("view.ghosts", {argument(std::round(count)), argument(std::round(step))});
+  ask_number(context, {"layers.error_scale", "Scale to", "Upper end of the error scales", "view.error_scale"},
+             session.view.error_scale_mm, {1, 1000, 0.5f, "%.0f mm", 50, true});
 }
 
 void draw_presets(PanelContext& context) {
@@ -170,18 +151,12 @@ void draw_camera(const app::Session& session, PanelContext& context) {
   if (button(ui, "layers.fit", "Fit", fit)) context.ask("view.fit");
   const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
   SwitchGrid grid(context);
-  if (const auto on = grid.add("layers.ortho", "Orthographic", "Turns perspective off", ortho))
-    context.ask("view.ortho", {on_off(*on)});
-  if (const auto on =
-          grid.add("layers.linked", "Linked", "Uses one camera for all views", session.view.linked))
-    context.ask("view.link", {on_off(*on)});
-  if (const auto on =
-          grid.add("layers.follow", "Follow", "Moves the camera with the person", session.view.follow))
-    context.ask("view.follow", {on_off(*on)});
-  NumberOptions speed{-180, 180, 0.5f, "%.0f\u00b0/s", 0, true};
-  if (const auto deg = number_row(ui, {"layers.turntable", "Turntable", "Turns the camera on its own"},
-                                  session.view.turntable_deg_s, speed))
-    context.ask("view.turntable", {argument(*deg)});
+  grid.add({"layers.ortho", "Orthographic", "Turns perspective off", "view.ortho"}, ortho);
+  grid.add({"layers.linked", "Linked", "Uses one camera for all views", "view.link"}, session.view.linked);
+  grid.add({"layers.follow", "Follow", "Moves the camera with the person", "view.follow"},
+           session.view.follow);
+  ask_number(context, {"layers.turntable", "Turntable", "Turns the camera on its own", "view.turntable"},
+             session.view.turntable_deg_s, {-180, 180, 0.5f, "%.0f\u00b0/s", 0, true});
 }
 
 }  // namespace

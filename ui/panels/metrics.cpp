@@ -149,14 +149,15 @@ void draw_metrics(const app::Session& session, PanelContext& context) {
   auto& timeline = panel_state<TimelineState>(context);
   timeline.follow(session);
   const app::TakeState* take = selected_state(session);
-  ButtonOptions csv;
-  csv.width = -1, csv.disabled = take == nullptr || take->series.empty();
-  csv.tooltip = "Exports every figure of every frame as a table for other programs";
   if (section(ui, "metrics.curves", "Over time")) {
-    if (take == nullptr || take->series.empty()) hint(ui, "Figures appear as frames are made.");
-    if (take != nullptr)
+    const bool any = take != nullptr && !take->series.empty();
+    if (!any) hint(ui, "Figures appear as frames are made.");
+    if (any)
       for (const app::Series& series : take->series) draw_curve_of(session, context, timeline, series);
-    if (button(ui, "metrics.csv", "Export CSV\u2026", csv)) context.ask("dialog.open", {"csv"});
+    ask_button(context,
+               {"metrics.csv", "Export CSV\u2026",
+                "Exports every figure of every frame as a table for other programs", "dialog.open csv"},
+               any);
   }
   if (section(ui, "metrics.table", "Whole sequence")) draw_figures(session, ui);
   if (section(ui, "metrics.latency", "Latency"))

@@ -35,6 +35,12 @@ std::string joint_label(int joint) {
   return label;
 }
 
+std::vector<std::string> joint_labels() {
+  std::vector<std::string> labels;
+  for (int j = 0; j < kJointCount; ++j) labels.push_back(joint_label(j));
+  return labels;
+}
+
 std::string joint_name(int joint) {
   return joint < 0 || joint >= kJointCount ? "all" : kJointNames[joint];
 }

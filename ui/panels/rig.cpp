@@ -1,8 +1,5 @@
 #include "ui/panels/rig.hpp"
 
-#include <algorithm>
-#include <array>
-
 #include "ui/panels/rows.hpp"
 #include "ui/widgets/lists.hpp"
 
@@ -30,16 +27,6 @@ std::string how_sure(const app::Take& take, const BoneMap& map, size_t joint) {
   if (map.node[joint] < 0) return "";
   if (map.confidence[joint] >= 0.95f) return "sure";
   return map.confidence[joint] >= 0.7f ? "by name" : "by place";
-}
-
-void draw_choice(const app::Take& take, PanelContext& context, const std::string& k) {
-  static constexpr std::array<const char*, 3> kRigs = {"auto", "theirs", "ours"};
-  const auto at = std::find(kRigs.begin(), kRigs.end(), take.target.rig);
-  if (const auto i = choice_row(context.ui,
-                                {"rig.choice", "Performs on",
-                                 "Its own bones and weights, or the 22 joints with weights found here"},
-                                {"Auto", "Its own", "Ours"}, static_cast<int>(at - kRigs.begin())))
-    context.ask("target.rig", {k, kRigs[*i]});
 }
 
 void draw_facts(const PreparedCharacter& character, Ui& ui) {
@@ -98,17 +85,20 @@ void draw_rig(const app::Session& session, PanelContext& context) {
   const app::TakeState* state = selected_state(session);
   if (take == nullptr || !section(ui, "inspector.rig", "Rig")) return;
   const std::string k = std::to_string(session.selected_take);
-  draw_choice(*take, context, k);
+  ask_choice(context,
+             {"rig.choice", "Performs on",
+              "Its own bones and weights, or the 22 joints with weights found here", "target.rig " + k},
+             {"Auto", "Its own", "Ours"}, {"auto", "theirs", "ours"}, take->target.rig);
   if (state == nullptr || !state->character) return;
   const PreparedCharacter& character = *state->character;
   draw_facts(character, ui);
   if (bones_of(character).size() < 2 || !section(ui, "inspector.bones", "Bones", false)) return;
   draw_table(session, *take, character, context);
   draw_bones(session, character, context, k);
-  ButtonOptions reset;
-  reset.width = -1, reset.disabled = take->target.bones.empty();
-  reset.tooltip = "Gives every joint the bone found for it; can be undone";
-  if (button(ui, "rig.reset", "Reset", reset)) context.ask("target.bones_clear", {k});
+  ask_button(context,
+             {"rig.reset", "Reset", "Gives every joint the bone found for it; can be undone",
+              "target.bones_clear " + k},
+             !take->target.bones.empty());
 }
 
 }  // namespace understudy::ui

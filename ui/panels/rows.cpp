@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
+
+#include "retarget/base/text.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -20,44 +21,46 @@ float words_width(Ui& ui, const std::vector<std::string>& choices) {
   return (widest + ui.px(10)) * static_cast<float>(choices.size());
 }
 
+ButtonOptions options_of(const Control& control, bool enabled) {
+  ButtonOptions options;
+  options.tooltip = control.explanation, options.disabled = !enabled, options.width = -1;
+  return options;
+}
+
 }  // namespace
 
-std::optional<bool> toggle_row(Ui& ui, const RowText& text, bool on) {
-  row(ui, text.label, text.explanation);
-  return toggle(ui, text.name, "", on) ? std::optional<bool>(on) : std::nullopt;
+void push(PanelContext& context, const Control& control, const std::string& value) {
+  app::Arguments words = app::split_line(control.command.empty() ? control.name : control.command);
+  if (!value.empty()) words.push_back(value);
+  context.ask(words[0], {words.begin() + 1, words.end()});
 }
 
-std::optional<int> choice_row(Ui& ui, const RowText& text, const std::vector<std::string>& choices,
-                              int chosen) {
-  row(ui, text.label, text.explanation);
+bool toggle_row(Ui& ui, const Control& control, bool& on) {
+  row(ui, control.label, control.explanation);
+  return toggle(ui, control.name, "", on);
+}
+
+bool choice_row(Ui& ui, const Control& control, const std::vector<std::string>& choices, int& chosen) {
+  row(ui, control.label, control.explanation);
   const bool fits = choices.size() <= 4 && words_width(ui, choices) <= ImGui::GetContentRegionAvail().x;
-  const bool changed =
-      fits ? segmented(ui, text.name, choices, chosen) : dropdown(ui, text.name, choices, chosen);
-  return changed ? std::optional<int>(chosen) : std::nullopt;
+  return (fits ? segmented : dropdown)(ui, control.name, choices, chosen);
 }
 
-std::optional<std::string> method_row(Ui& ui, const RowText& text, const MethodChoices& choices,
-                                      const std::string& chosen) {
-  const auto i = choice_row(ui, text, labels_of(choices), index_of(choices, chosen));
-  if (!i) return std::nullopt;
-  return choices[static_cast<size_t>(*i)].name;
+bool method_row(Ui& ui, const Control& control, const MethodChoices& choices, std::string& chosen) {
+  int i = index_of(choices, chosen);
+  const bool changed = choice_row(ui, control, labels_of(choices), i);
+  if (changed) chosen = choices[i].name;
+  return changed;
 }
 
-std::optional<float> number_row(Ui& ui, const RowText& text, float value, const NumberOptions& options) {
-  row(ui, text.label, text.explanation);
-  return number(ui, text.name, value, options) ? std::optional<float>(value) : std::nullopt;
-}
-
-std::optional<std::string> text_row(Ui& ui, const RowText& text, const std::string& value,
+std::optional<std::string> text_row(Ui& ui, const Control& control, const std::string& value,
                                     const std::string& hint) {
-  row(ui, text.label, text.explanation);
-  return committed_text(ui, text.name, value, hint);
+  row(ui, control.label, control.explanation);
+  return committed_text(ui, control.name, value, hint);
 }
 
-std::optional<double> typed_number_row(Ui& ui, const RowText& text, double value, int decimals) {
-  char words[64];
-  std::snprintf(words, sizeof words, "%.*f", decimals, value);
-  const std::optional<std::string> typed = text_row(ui, text, words);
+std::optional<double> typed_number_row(Ui& ui, const Control& control, double value, int decimals) {
+  const std::optional<std::string> typed = text_row(ui, control, printed("%.*f", decimals, value));
   return typed ? parse_number(*typed) : std::nullopt;
 }
 
@@ -79,7 +82,34 @@ std::optional<double> parse_number(const std::string& text) {
   return end != plain.c_str() && std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
-ButtonRow::ButtonRow(int count) : left_(count) {}
+void ask_toggle(PanelContext& context, const Control& control, bool on) {
+  if (toggle_row(context.ui, control, on)) push(context, control, on_off(on));
+}
+
+void ask_choice(PanelContext& context, const Control& control, const std::vector<std::string>& choices,
+                const std::vector<std::string>& words, const std::string& chosen) {
+  const auto found = std::find(words.begin(), words.end(), chosen);
+  int i = found == words.end() ? -1 : static_cast<int>(found - words.begin());
+  if (choice_row(context.ui, control, choices, i)) push(context, control, words[i]);
+}
+
+void ask_method(PanelContext& context, const Control& control, const MethodChoices& choices,
+                const std::string& chosen) {
+  ask_choice(context, control, labels_of(choices), names_of(choices), chosen);
+}
+
+void ask_number(PanelContext& context, const Control& control, float value, const NumberOptions& options) {
+  row(context.ui, control.label, control.explanation);
+  if (number(context.ui, control.name, value, options)) push(context, control, argument(value));
+}
+
+void ask_button(PanelContext& context, const Control& control, bool enabled) {
+  if (button(context.ui, control.name, control.label, options_of(control, enabled))) push(context, control);
+}
+
+void ButtonRow::ask(PanelContext& context, const Control& control, bool enabled) {
+  if (add(context.ui, control.name, control.label, options_of(control, enabled))) push(context, control);
+}
 
 bool ButtonRow::add(Ui& ui, const std::string& name, const std::string& label, ButtonOptions options) {
   const float gap = ImGui::GetStyle().ItemSpacing.x, count = static_cast<float>(left_);

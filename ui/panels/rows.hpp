@@ -1,4 +1,4 @@
-// Rows of panels: they show the session's value and return the user's new one.
+// Rows and buttons of panels: they change a value of their caller, or ask for a command.
 #pragma once
 
 #include <optional>
@@ -6,32 +6,47 @@
 #include <vector>
 
 #include "retarget/pipeline/method_table.hpp"
+#include "ui/panels/panel.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
 
-// All return the user's choice, nothing while the value stays.
-
-struct RowText {
-  std::string name;         ///< id and mark
-  std::string label;        ///< grey, on the left
-  std::string explanation;  ///< when the pointer rests on the label
+struct Control {
+  std::string name;              ///< id and mark
+  std::string label;             ///< of a row: grey, on the left
+  std::string explanation = {};  ///< when the pointer rests on the label
+  std::string command = {};      ///< as a line of a script: "edit.pin 0"; empty: the name
 };
 
-std::optional<bool> toggle_row(Ui& ui, const RowText& text, bool on);
+/// Pushes its command, with the user's new value as its last argument where there is one.
+void push(PanelContext& context, const Control& control, const std::string& value = {});
+
+// Rows whose value the caller keeps. True when the user changed it.
+
+bool toggle_row(Ui& ui, const Control& control, bool& on);
 /// A few choices beside each other, or a list where there are many.
-std::optional<int> choice_row(Ui& ui, const RowText& text, const std::vector<std::string>& choices,
-                              int chosen);
+bool choice_row(Ui& ui, const Control& control, const std::vector<std::string>& choices, int& chosen);
 /// The name of an engine or extractor; a name that is in no row leaves nothing chosen.
-std::optional<std::string> method_row(Ui& ui, const RowText& text, const MethodChoices& choices,
-                                      const std::string& chosen);
-/// Changes with every movement of the mouse: for values that take effect at once.
-std::optional<float> number_row(Ui& ui, const RowText& text, float value, const NumberOptions& options);
-/// Changes on Enter or when the field loses focus: for values that cost work.
-std::optional<std::string> text_row(Ui& ui, const RowText& text, const std::string& value,
+bool method_row(Ui& ui, const Control& control, const MethodChoices& choices, std::string& chosen);
+/// Changes on Enter or when the field loses focus: for values that cost work. Nothing while the value stays.
+std::optional<std::string> text_row(Ui& ui, const Control& control, const std::string& value,
                                     const std::string& hint = {});
 /// As text_row; ignores text that is not a number.
-std::optional<double> typed_number_row(Ui& ui, const RowText& text, double value, int decimals = 2);
+std::optional<double> typed_number_row(Ui& ui, const Control& control, double value, int decimals = 2);
+
+// Controls that push their command; rows with the user's new value as its last argument.
+
+void ask_toggle(PanelContext& context, const Control& control, bool on);
+/// As choice_row; `words` are what the choices are called in the command, `chosen` one of them.
+void ask_choice(PanelContext& context, const Control& control, const std::vector<std::string>& choices,
+                const std::vector<std::string>& words, const std::string& chosen);
+/// As method_row.
+void ask_method(PanelContext& context, const Control& control, const MethodChoices& choices,
+                const std::string& chosen);
+/// Changes with every movement of the mouse: for values that take effect at once.
+void ask_number(PanelContext& context, const Control& control, float value, const NumberOptions& options);
+/// Over the whole width.
+void ask_button(PanelContext& context, const Control& control, bool enabled = true);
 
 /// The field alone, over the width that is left.
 std::optional<std::string> committed_text(Ui& ui, const std::string& name, const std::string& value,
@@ -39,10 +54,12 @@ std::optional<std::string> committed_text(Ui& ui, const std::string& name, const
 /// The number at the beginning of the text, units may follow; none without one.
 std::optional<double> parse_number(const std::string& text);
 
-/// A button over a share of the width that is left, for several beside each other: `share` of 1 / count.
+/// Buttons beside each other, each over its share of the width.
 struct ButtonRow {
-  explicit ButtonRow(int count);
+  explicit ButtonRow(int count) : left_(count) {}
   bool add(Ui& ui, const std::string& name, const std::string& label, ButtonOptions options = {});
+  /// Pushes its command.
+  void ask(PanelContext& context, const Control& control, bool enabled = true);
 
  private:
   int left_;

@@ -24,19 +24,16 @@ void draw_scale(const app::Settings& settings, PanelContext& context) {
 
 void draw_rows(const app::Settings& settings, PanelContext& context) {
   Ui& ui = context.ui;
-  if (const auto i =
-          choice_row(ui, {"settings.theme", "Theme", ""}, {"Dark", "Light"}, settings.dark ? 0 : 1))
-    context.ask("settings.theme", {*i == 0 ? "dark" : "light"});
+  ask_choice(context, {"settings.theme", "Theme"}, {"Dark", "Light"}, {"dark", "light"},
+             settings.dark ? "dark" : "light");
   draw_scale(settings, context);
-  const int samples = settings.samples >= 4 ? 2 : settings.samples >= 2 ? 1 : 0;
-  if (const auto i =
-          choice_row(ui, {"settings.samples", "Antialiasing", "Samples per pixel; fewer are faster"},
-                     {"Off", "2", "4"}, samples))
-    context.ask("settings.samples", {std::to_string(1 << *i)});
-  NumberOptions mouse{0.2f, 4, 0.01f, "%.2f \u00d7", 1, true};
-  if (const auto x = number_row(ui, {"settings.mouse", "Mouse", "How fast the views turn when you drag"},
-                                settings.mouse_sensitivity, mouse))
-    context.ask("settings.mouse", {argument(*x)});
+  ask_choice(context, {"settings.samples", "Antialiasing", "Samples per pixel; fewer are faster"},
+             {"Off", "2", "4"}, {"1", "2", "4"},
+             settings.samples >= 4   ? "4"
+             : settings.samples >= 2 ? "2"
+                                     : "1");
+  ask_number(context, {"settings.mouse", "Mouse", "How fast the views turn when you drag"},
+             settings.mouse_sensitivity, {0.2f, 4, 0.01f, "%.2f \u00d7", 1, true});
   if (const auto mb = typed_number_row(
           ui, {"settings.cache", "Frames kept, MB", "Memory for frames already shown"}, settings.cache_mb, 0))
     context.ask("settings.cache_mb", {argument(std::round(*mb))});
