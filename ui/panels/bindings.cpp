@@ -6,6 +6,7 @@
 #include <array>
 
 #include "ui/gui/gui.hpp"
+#include "ui/panels/files.hpp"
 #include "ui/panels/panels.hpp"
 
 namespace understudy::ui {
@@ -44,18 +45,12 @@ Chord parse(const std::string& keys) {
     from = plus + 1;
   }
   std::string key = keys.substr(from);
-  constexpr std::array<std::pair<const char*, const char*>, 7> kSigns = {{{",", "Comma"},
-                                                                          {".", "Period"},
-                                                                          {"/", "Slash"},
-                                                                          {"+", "Equal"},
-                                                                          {"-", "Minus"},
-                                                                          {"[", "LeftBracket"},
-                                                                          {"]", "RightBracket"}}};
+  constexpr const char* kSigns[][2] = {{",", "Comma"},        {".", "Period"},   {"/", "Slash"},
+                                       {"+", "Equal"},        {"-", "Minus"},    {"[", "LeftBracket"},
+                                       {"]", "RightBracket"}, {"Esc", "Escape"}, {"Del", "Delete"}};
   for (const auto& [sign, name] : kSigns)
     if (key == sign) key = name;
   if (key == "?") key = "Slash", chord.modifiers.shift = true;
-  if (key == "Esc") key = "Escape";
-  if (key == "Del") key = "Delete";
   chord.key = render::key_of_name(key).value_or(render::Key::Unknown);
   return chord;
 }
@@ -69,21 +64,10 @@ bool same_or_toggles(const app::Arguments& keys, const app::Arguments& asked) {
 /// The dialog that asks for what a command without arguments misses; null where nothing is missing.
 const char* dialog_for(const app::Session& session, const std::string& command) {
   if (command == "document.save") return session.path.empty() ? "save_as" : nullptr;
-  constexpr std::array<std::pair<const char*, const char*>, 11> kDialogs = {
-      {{"open", "open"},
-       {"document.open", "open_document"},
-       {"document.save_as", "save_as"},
-       {"source.open", "open_scan"},
-       {"source.motion", "open_motion"},
-       {"target.add", "open_target"},
-       {"target.replace", "replace_target"},
-       {"export.run", "export"},
-       {"picture.save", "picture"},
-       {"video.save", "video"},
-       {"compare.add", "compare"}}};
-  for (const auto& [name, dialog] : kDialogs)
-    if (command == name) return dialog;
-  return nullptr;
+  if (command == "export.run") return "export";
+  if (command == "picture.save") return "picture";
+  if (command == "video.save") return "video";
+  return command == "compare.add" ? "compare" : file_dialog_for(command);
 }
 
 }  // namespace

@@ -1,34 +1,35 @@
 #include "ui/panels/files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace understudy::ui {
 namespace fs = std::filesystem;
 namespace {
 
-BrowseRequest request_for(FilePurpose purpose) {
-  switch (purpose) {
-    case FilePurpose::Scan:
-      return {"Open scan", "Open", false, {scan_filter(), any_filter()}, "", ""};
-    case FilePurpose::MotionBody:
-      return {"Open motion: first the body", "Next", false, {body_filter(), any_filter()}, "", ""};
-    case FilePurpose::Motion:
-      return {"Open motion: now the motion", "Open", false, {motion_filter(), any_filter()}, "", ""};
-    case FilePurpose::Target:
-      return {"Add target", "Add", false, {target_filter(), any_filter()}, "", ""};
-    case FilePurpose::ReplaceTarget:
-      return {"Replace target", "Replace", false, {target_filter(), any_filter()}, "", ""};
-    case FilePurpose::Document:
-      return {"Open document", "Open", false, {document_filter(), any_filter()}, "", ""};
-    case FilePurpose::SaveDocument:
-      return {"Save document", "Save", true, {document_filter()}, "", ""};
-    case FilePurpose::Relocate:
-      return {"Find a missing file", "Use this file", false, {any_filter()}, "", ""};
-    case FilePurpose::Export:
-      return {"Where to", "Choose", true, {{"All files", {}, false}}, "", ""};
-    default:
-      return {"Open", "Open", false, {known_filter(), any_filter()}, "", ""};
-  }
+struct FileDialog {
+  const char* name;     ///< for dialog.open; empty: only the window opens it
+  const char* command;  ///< gets the path as its last argument
+  const char *title, *accept;
+  FileFilter (*filter)();
+  bool save = false;
+};
+
+// In the order of FilePurpose.
+constexpr FileDialog kDialogs[] = {
+    {"open", "open", "Open", "Open", known_filter},
+    {"open_scan", "source.open", "Open scan", "Open", scan_filter},
+    {"open_motion", "source.motion", "Open motion: first the body", "Next", body_filter},
+    {"", "source.motion", "Open motion: now the motion", "Open", motion_filter},
+    {"open_target", "target.add", "Add target", "Add", target_filter},
+    {"replace_target", "target.replace", "Replace target", "Replace", target_filter},
+    {"open_document", "document.open", "Open document", "Open", document_filter},
+    {"save_as", "document.save_as", "Save document", "Save", document_filter, true},
+    {"", "document.relocate", "Find ", "Use this file", any_filter},
+    {"", "", "Where to", "Choose", any_filter, true}};
+
+const FileDialog& dialog_of(FilePurpose purpose) {
+  return kDialogs[static_cast<size_t>(purpose)];
 }
 
 std::string document_name(const app::Session& session) {
@@ -38,25 +39,33 @@ std::string document_name(const app::Session& session) {
   return name + ".understudy";
 }
 
-void ask_to_save(const app::Session& session, PanelContext& context, const std::string& path) {
-  context.ask("document.save_as", {path});
-  const bool waits = session.question && session.question->kind == app::Question::Kind::UnsavedChanges;
-  if (waits) context.ask("question.answer", {"save"});
+}  // namespace
+
+std::optional<FilePurpose> purpose_of(const std::string& dialog) {
+  for (const FileDialog& one : kDialogs)
+    if (!dialog.empty() && dialog == one.name) return static_cast<FilePurpose>(&one - kDialogs);
+  return std::nullopt;
 }
 
-}  // namespace
+const char* file_dialog_for(const std::string& command) {
+  for (const FileDialog& one : kDialogs)
+    if (command == one.command && *one.name != 0) return one.name;
+  return nullptr;
+}
 
 void choose_file(const app::Session& session, FilesState& state, FilePurpose purpose,
                  const std::string& name) {
-  BrowseRequest request = request_for(purpose);
+  const FileDialog& dialog = dialog_of(purpose);
+  BrowseRequest request{dialog.title, dialog.accept, dialog.save, {dialog.filter()}, "", ""};
   state.purpose = purpose;
-  if (purpose == FilePurpose::Relocate) state.first = name;
-  if (request.save) {
+  if (purpose == FilePurpose::Relocate) state.first = name, request.title += file_name(name);
+  if (dialog.save) {
     const fs::path proposed = name.empty() ? fs::path(document_name(session)) : fs::path(name);
     request.name = proposed.filename().string();
-    request.folder = proposed.has_parent_path() ? proposed.parent_path().string() : "";
+    request.folder = proposed.parent_path().string();
+  } else if (dialog.filter != any_filter) {
+    request.filters.push_back(any_filter());
   }
-  if (purpose == FilePurpose::Relocate) request.title = "Find " + file_name(name);
   const bool first_time = state.browser.folder().empty();
   if (request.folder.empty() && first_time) request.folder = session.settings.last_folder;
   state.browser.open(std::move(request));
@@ -64,38 +73,20 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
 
 std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state) {
   const std::optional<std::string> path = state.browser.draw(context.ui);
-  if (!path) return std::nullopt;
-  switch (state.purpose) {
-    case FilePurpose::Scan:
-      context.ask("source.open", {*path});
-      break;
-    case FilePurpose::MotionBody:
-      state.first = *path;
-      choose_file(session, state, FilePurpose::Motion);
-      break;
-    case FilePurpose::Motion:
-      context.ask("source.motion", {state.first, *path});
-      break;
-    case FilePurpose::Target:
-      context.ask("target.add", {*path});
-      break;
-    case FilePurpose::ReplaceTarget:
-      context.ask("target.replace", {std::to_string(session.selected_take), *path});
-      break;
-    case FilePurpose::Document:
-      context.ask("document.open", {*path});
-      break;
-    case FilePurpose::SaveDocument:
-      ask_to_save(session, context, *path);
-      break;
-    case FilePurpose::Relocate:
-      context.ask("document.relocate", {state.first, *path});
-      break;
-    case FilePurpose::Export:
-      return path;
-    default:
-      context.ask("open", {*path});
+  if (!path || state.purpose == FilePurpose::Export) return path;
+  if (state.purpose == FilePurpose::MotionBody) {
+    state.first = *path;
+    choose_file(session, state, FilePurpose::Motion);
+    return std::nullopt;
   }
+  app::Arguments arguments = {*path};
+  if (state.purpose == FilePurpose::ReplaceTarget)
+    arguments.insert(arguments.begin(), std::to_string(session.selected_take));
+  if (state.purpose == FilePurpose::Motion || state.purpose == FilePurpose::Relocate)
+    arguments.insert(arguments.begin(), state.first);
+  context.ask(dialog_of(state.purpose).command, arguments);
+  const bool waits = session.question && session.question->kind == app::Question::Kind::UnsavedChanges;
+  if (state.purpose == FilePurpose::SaveDocument && waits) context.ask("question.answer", {"save"});
   return std::nullopt;
 }
 

@@ -9,18 +9,18 @@
 
 namespace understudy::ui {
 
-/// The purpose of a path.
+/// The purpose of a path: a row of the table in files.cpp.
 enum class FilePurpose {
-  Anything,       ///< open PATH
-  Scan,           ///< source.open PATH
-  MotionBody,     ///< the first of source.motion BODY MOTION; the motion is asked for next
-  Motion,         ///< the second
-  Target,         ///< target.add PATH
-  ReplaceTarget,  ///< target.replace K PATH
-  Document,       ///< document.open PATH
-  SaveDocument,   ///< document.save_as PATH; answers the question about unsaved changes where one waits
-  Relocate,       ///< document.relocate OLD NEW
-  Export          ///< comes back to the export dialog
+  Anything,
+  Scan,
+  MotionBody,  ///< the first of two; the motion is asked for next
+  Motion,
+  Target,
+  ReplaceTarget,
+  Document,
+  SaveDocument,  ///< answers the question about unsaved changes where one waits
+  Relocate,
+  Export  ///< comes back to the export dialog
 };
 
 struct FilesState {
@@ -28,6 +28,11 @@ struct FilesState {
   FilePurpose purpose = FilePurpose::Anything;
   std::string first;  ///< Motion: the body; Relocate: the old place
 };
+
+/// The purpose of a dialog that dialog.open names ("open_scan"); none where it asks for no path.
+std::optional<FilePurpose> purpose_of(const std::string& dialog);
+/// The dialog that asks for the path of a command; null where there is none.
+const char* file_dialog_for(const std::string& command);
 
 /// Opens the browser. `name`: when saving, the path proposed; Relocate: the old place.
 void choose_file(const app::Session& session, FilesState& state, FilePurpose purpose,

@@ -169,19 +169,7 @@ std::string Workspace::dialog() const {
 }
 
 void Workspace::open_dialog(const app::Session& session, const std::string& name) {
-  struct Chooser {
-    const char* name;
-    FilePurpose purpose;
-  };
-  constexpr Chooser kChoosers[] = {{"open", FilePurpose::Anything},
-                                   {"open_scan", FilePurpose::Scan},
-                                   {"open_motion", FilePurpose::MotionBody},
-                                   {"open_target", FilePurpose::Target},
-                                   {"replace_target", FilePurpose::ReplaceTarget},
-                                   {"open_document", FilePurpose::Document},
-                                   {"save_as", FilePurpose::SaveDocument}};
-  for (const Chooser& chooser : kChoosers)
-    if (name == chooser.name) return choose_file(session, files_, chooser.purpose);
+  if (const auto purpose = purpose_of(name)) return choose_file(session, files_, *purpose);
   const bool exports = name == "export" || name == "csv" || name == "picture" || name == "video";
   if (exports)
     begin_export(export_,
