@@ -11,11 +11,11 @@
 #include "app/run/interrupt.hpp"
 #include "app/studio/event_text.hpp"
 #include "app/studio/facts.hpp"
-#include "app/studio/key_chord.hpp"
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
+#include "ui/gui/key_chord.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -89,7 +89,7 @@ render::Modifiers take_modifiers(Arguments& words) {
 
 /// The modifier keys go down and up around the events.
 std::vector<InputEvent> held(const render::Modifiers& modifiers, std::vector<InputEvent> events) {
-  const auto keys = key_events({render::Key::Unknown, modifiers});
+  const auto keys = ui::key_events({render::Key::Unknown, modifiers});
   const size_t half = keys.size() / 2 - 1;  // the key itself is in the middle twice
   std::vector<InputEvent> all(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(half));
   all.insert(all.end(), events.begin(), events.end());
@@ -381,7 +381,7 @@ void Script::type(const Words& words) {
 }
 
 void Script::key(const Words& words) {
-  const auto chord = chord_of(words[1]);
+  const auto chord = ui::chord_of(words[1]);
   US_CHECK(chord, words[1], " is not a key");
   send(key_events(*chord));
 }

@@ -1,9 +1,8 @@
-// Keys, events and facts as text.
+// Events and facts as text.
 #include <gtest/gtest.h>
 
 #include "app/studio/event_text.hpp"
 #include "app/studio/facts.hpp"
-#include "app/studio/key_chord.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {
@@ -12,30 +11,6 @@ namespace {
 using render::InputEvent;
 using render::Key;
 using Kind = InputEvent::Kind;
-
-TEST(KeyChord, ReadsModifiersAndSigns) {
-  const auto save = chord_of("Ctrl+Shift+S");
-  ASSERT_TRUE(save);
-  EXPECT_EQ(save->key, Key::S);
-  EXPECT_TRUE(save->modifiers.control && save->modifiers.shift && !save->modifiers.alt);
-  EXPECT_EQ(chord_of("Space")->key, Key::Space);
-  EXPECT_EQ(chord_of("1")->key, Key::Digit1);
-  EXPECT_EQ(chord_of("[")->key, Key::LeftBracket);
-  EXPECT_TRUE(chord_of("?")->modifiers.shift);
-  EXPECT_EQ(chord_of("Ctrl++")->key, Key::Equal);
-  EXPECT_FALSE(chord_of("Hyper+S"));
-  EXPECT_FALSE(chord_of("Ctrl+"));
-  EXPECT_FALSE(chord_of("NoSuchKey"));
-}
-
-TEST(KeyChord, PressesModifiersAroundTheKey) {
-  const auto events = key_events(*chord_of("Ctrl+Z"));
-  ASSERT_EQ(events.size(), 4u);
-  EXPECT_EQ(events[0].key, Key::LeftControl);
-  EXPECT_TRUE(events[1].pressed && events[1].modifiers.control && events[1].key == Key::Z);
-  EXPECT_FALSE(events[2].pressed);
-  EXPECT_TRUE(events[3].key == Key::LeftControl && !events[3].pressed);
-}
 
 std::vector<InputEvent> one_of_each() {
   std::vector<InputEvent> events(7);

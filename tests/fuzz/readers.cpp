@@ -17,7 +17,6 @@
 #include "app/session/document_text.hpp"
 #include "app/session/settings.hpp"
 #include "app/studio/event_text.hpp"
-#include "app/studio/key_chord.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
@@ -36,6 +35,7 @@
 #include "retarget/motion/bvh.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/networks/weights_layout.hpp"
+#include "ui/gui/key_chord.hpp"
 
 namespace understudy::fuzz {
 namespace {
@@ -363,7 +363,7 @@ void script(const std::string& bytes) {
       app::Arguments with_name = words;
       with_name[0] = "x";
       must(app::split_line(app::join_line("x", rest)) == with_name, "lines can be joined and split again");
-      for (const std::string& word : rest) app::chord_of(word);
+      for (const std::string& word : rest) ui::chord_of(word);
       if (words[0] == "event") app::event_of_words(rest);
       for (const std::string& word : rest) app::number_of(word);
     } catch (const Error&) {  // of one line

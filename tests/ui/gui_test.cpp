@@ -4,6 +4,7 @@
 #include "render/context/context.hpp"
 #include "tests/ui/support/ui_test.hpp"
 #include "ui/gui/draw_pass.hpp"
+#include "ui/gui/key_chord.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -217,6 +218,30 @@ TEST_F(UiTest, DrawsOnTheNullContextAndLeavesNoNames) {
     EXPECT_EQ(render::null_counts().draws, draws);  // nothing has changed
   }
   EXPECT_EQ(render::null_counts().live_names, 0);
+}
+
+TEST(KeyChord, ReadsModifiersAndSigns) {
+  const auto save = chord_of("Ctrl+Shift+S");
+  ASSERT_TRUE(save);
+  EXPECT_EQ(save->key, Key::S);
+  EXPECT_TRUE(save->modifiers.control && save->modifiers.shift && !save->modifiers.alt);
+  EXPECT_EQ(chord_of("Space")->key, Key::Space);
+  EXPECT_EQ(chord_of("1")->key, Key::Digit1);
+  EXPECT_EQ(chord_of("[")->key, Key::LeftBracket);
+  EXPECT_TRUE(chord_of("?")->modifiers.shift);
+  EXPECT_EQ(chord_of("Ctrl++")->key, Key::Equal);
+  EXPECT_FALSE(chord_of("Hyper+S"));
+  EXPECT_FALSE(chord_of("Ctrl+"));
+  EXPECT_FALSE(chord_of("NoSuchKey"));
+}
+
+TEST(KeyChord, PressesModifiersAroundTheKey) {
+  const auto events = key_events(*chord_of("Ctrl+Z"));
+  ASSERT_EQ(events.size(), 4u);
+  EXPECT_EQ(events[0].key, Key::LeftControl);
+  EXPECT_TRUE(events[1].pressed && events[1].modifiers.control && events[1].key == Key::Z);
+  EXPECT_FALSE(events[2].pressed);
+  EXPECT_TRUE(events[3].key == Key::LeftControl && !events[3].pressed);
 }
 
 }  // namespace

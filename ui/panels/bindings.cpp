@@ -3,9 +3,9 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <array>
 
 #include "ui/gui/gui.hpp"
+#include "ui/gui/key_chord.hpp"
 #include "ui/panels/files.hpp"
 #include "ui/panels/panels.hpp"
 
@@ -26,33 +26,6 @@ const std::vector<Binding>& built_in() {
       {"H", "help.keys", {}, "All keys"},
       {"?", "help.keys", {}, "All keys"}};
   return kBuiltIn;
-}
-
-struct Chord {
-  render::Key key = render::Key::Unknown;
-  render::Modifiers modifiers;
-};
-
-Chord parse(const std::string& keys) {
-  Chord chord;
-  size_t from = 0;
-  for (size_t plus = keys.find('+'); plus != std::string::npos && plus + 1 < keys.size();
-       plus = keys.find('+', from)) {
-    const std::string modifier = keys.substr(from, plus - from);
-    chord.modifiers.control |= modifier == "Ctrl";
-    chord.modifiers.shift |= modifier == "Shift";
-    chord.modifiers.alt |= modifier == "Alt";
-    from = plus + 1;
-  }
-  std::string key = keys.substr(from);
-  constexpr const char* kSigns[][2] = {{",", "Comma"},        {".", "Period"},   {"/", "Slash"},
-                                       {"+", "Equal"},        {"-", "Minus"},    {"[", "LeftBracket"},
-                                       {"]", "RightBracket"}, {"Esc", "Escape"}, {"Del", "Delete"}};
-  for (const auto& [sign, name] : kSigns)
-    if (key == sign) key = name;
-  if (key == "?") key = "Slash", chord.modifiers.shift = true;
-  chord.key = render::key_of_name(key).value_or(render::Key::Unknown);
-  return chord;
 }
 
 /// Whether keys with these arguments do, or undo, what `asked` does.
@@ -104,11 +77,10 @@ std::string keys_of(const app::Commands& commands, const std::string& command,
 }
 
 bool pressed(const std::string& keys) {
-  const Chord chord = parse(keys);
-  if (chord.key == render::Key::Unknown) return false;
+  const auto chord = chord_of(keys);
   const ImGuiIO& io = ImGui::GetIO();
-  const render::Modifiers held{io.KeyShift, io.KeyCtrl, io.KeyAlt, false};
-  return held == chord.modifiers && key_pressed(chord.key);
+  return chord && render::Modifiers{io.KeyShift, io.KeyCtrl, io.KeyAlt, false} == chord->modifiers &&
+         key_pressed(chord->key);
 }
 
 void ask_or_open(const app::Session& session, PanelContext& context, const std::string& command,

@@ -1,10 +1,10 @@
-#include "app/studio/key_chord.hpp"
+#include "ui/gui/key_chord.hpp"
 
 #include <utility>
 
 #include "retarget/base/text.hpp"
 
-namespace understudy::app {
+namespace understudy::ui {
 namespace {
 
 using render::InputEvent;
@@ -78,4 +78,4 @@ std::vector<InputEvent> key_events(const KeyChord& chord) {
   return events;
 }
 
-}  // namespace understudy::app
+}  // namespace understudy::ui

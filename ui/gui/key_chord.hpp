@@ -7,12 +7,11 @@
 
 #include "render/context/input_event.hpp"
 
-namespace understudy::app {
+namespace understudy::ui {
 
 struct KeyChord {
   render::Key key = render::Key::Unknown;
   render::Modifiers modifiers;
-  bool operator==(const KeyChord& o) const { return key == o.key && modifiers == o.modifiers; }
 };
 
 /// "Ctrl+Shift+S", "F1", "Space", "Left", "[", "?"; none when it names no key.
@@ -21,4 +20,4 @@ std::optional<KeyChord> chord_of(const std::string& text);
 /// Presses and releases, modifier keys around them.
 std::vector<render::InputEvent> key_events(const KeyChord& chord);
 
-}  // namespace understudy::app
+}  // namespace understudy::ui
