@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/run/version.hpp"
+#include "app/session/follow.hpp"
 #include "app/studio/facts.hpp"
 #include "app/studio/picture_commands.hpp"
 #include "app/studio/window_commands.hpp"
@@ -318,7 +319,7 @@ std::vector<ui::Mark> Application::marks() const {
   std::vector<ui::Mark> all = gui_->marks();
   for (const ui::PaneContent& pane : ui::panes_of(session())) {
     const ui::Mark* view = gui_->find("view." + std::to_string(pane.number));
-    const auto joints = ui::pane_joints(session(), pane, ui::pane_frame(session(), pane));
+    const auto joints = pane_joints(session(), pane.number, ui::pane_frame(session(), pane));
     if (!view || view->rect.empty() || !joints) continue;
     const ui::PaneView seen{view->rect, ui::pane_camera(session(), pane)};
     for (int j = 0; j < kJointCount; ++j) {

@@ -3,8 +3,6 @@
 #include "render/gizmo.hpp"
 #include "tests/ui/support/ui_test.hpp"
 #include "tests/ui/support/viewport_stage.hpp"
-#include "ui/viewport/hand.hpp"
-#include "ui/viewport/pane_pictures.hpp"
 #include "ui/viewport/views.hpp"
 
 namespace understudy::ui {
@@ -60,6 +58,9 @@ class ViewsTest : public UiTest {
     int n = 0;
     for (const auto& command : queue) n += command.first == name ? 1 : 0;
     return n;
+  }
+  static float metres_a_pixel(const PaneView& view, const Vec3& point) {
+    return render::metres_a_pixel(view.camera, view.size(), point);
   }
   static Vec3 vector_at(const app::Arguments& words, size_t first) {
     return {std::stof(words.at(first)), std::stof(words.at(first + 1)), std::stof(words.at(first + 2))};
@@ -157,7 +158,7 @@ TEST_F(ViewsTest, DraggingAJointAsksForTheEditOnce) {
   stage.session.tool = app::Tool::Joints, stage.session.drag_children = true, stage.session.falloff = 7;
   const Vec3 elbow = source_joint(LeftElbow);
   const ImVec2 from = seen(0, elbow);
-  const float metres = pane(0).metres_a_pixel(elbow);
+  const float metres = metres_a_pixel(pane(0), elbow);
   drag(from, {from.x, from.y - 40});
   EXPECT_EQ(count("edit.drag"), 1);
   EXPECT_EQ(count("view.camera_state"), 0);
@@ -234,7 +235,7 @@ TEST_F(ViewsTest, ABoneIsSeenTurnedUntilTheEditShows) {
   // Somewhere on the circle of the gizmo a ring is met.
   const ImVec2 middle = seen(1, take_joint(RightElbow));
   const float reach = render::gizmo_reach(*hand.preview(place).gizmo, view.camera) /
-                      view.metres_a_pixel(take_joint(RightElbow));
+                      metres_a_pixel(view, take_joint(RightElbow));
   Pointer pointer;
   pointer.over = true;
   for (int i = 0; i < 360 && !hand.busy(); ++i) {
@@ -271,7 +272,7 @@ TEST_F(ViewsTest, ATPoseJointGoesWhereItIsDragged) {
   drag(from, {from.x, from.y - 20});
   const app::Arguments words = asked("edit.target_joint");
   EXPECT_EQ(words[1], "left_knee");
-  EXPECT_NEAR(vector_at(words, 2).y(), knee.y() + 20 * pane(1).metres_a_pixel(knee), 0.01f);
+  EXPECT_NEAR(vector_at(words, 2).y(), knee.y() + 20 * metres_a_pixel(pane(1), knee), 0.01f);
   EXPECT_EQ(words[5], "mirror");
 }
 

@@ -4,8 +4,7 @@
 #include "app/session/follow.hpp"
 #include "render/colors.hpp"
 #include "tests/ui/support/viewport_stage.hpp"
-#include "ui/viewport/pane_pictures.hpp"
-#include "ui/viewport/scene_builder.hpp"
+#include "ui/viewport/pane.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -23,7 +22,7 @@ struct SceneTest : testing::Test {
   }
   PaneScene scene(int pane, const EditPreview& preview = {}) {
     last = pictures(pane);
-    return build_scene({session, pane_of(pane), last, {}, preview, ThemeKind::Dark}, &memory);
+    return build_scene({session, pane_of(pane), last, {}, preview, ThemeKind::Dark}, memory);
   }
   Stage stage;
   app::Session& session = stage.session;
@@ -162,13 +161,13 @@ TEST_F(SceneTest, NothingChangedIsTheSamePicture) {
 
 TEST_F(SceneTest, WhatIsNotThereYetIsLeftOut) {
   const PanePictures nothing;
-  const PaneScene made = build_scene({session, pane_of(1), nothing, {}, {}, ThemeKind::Light});
+  const PaneScene made = build_scene({session, pane_of(1), nothing, {}, {}, ThemeKind::Light}, memory);
   EXPECT_TRUE(made.scene.meshes.empty());
-  const PanePictures null_inside{10, nullptr, {nullptr}, nullptr, {{2, nullptr, nullptr}}};
+  const PanePictures null_inside{10, nullptr, {nullptr}, nullptr, {{nullptr, nullptr}}};
   session.view.take.ghosts = true;
-  EXPECT_EQ(
-      build_scene({session, pane_of(1), null_inside, {nullptr}, {}, ThemeKind::Light}).scene.skeletons.size(),
-      1u);
+  EXPECT_EQ(build_scene({session, pane_of(1), null_inside, {nullptr}, {}, ThemeKind::Light}, memory)
+                .scene.skeletons.size(),
+            1u);
 }
 
 TEST_F(SceneTest, TheLastPictureStaysUntilTheNextIsThere) {
@@ -195,7 +194,7 @@ TEST_F(SceneTest, TheCropToolShowsItsBoxWithSixHandles) {
   const render::Scene made = scene(0).scene;
   EXPECT_EQ(made.clouds.back().positions->rows(), 6);
   EXPECT_EQ(made.lines.size(), 1u);
-  EXPECT_EQ(face_centre(*session.document.scan_edits.crop, 3), Vec3(0, 2, 0));
+  EXPECT_EQ(Vec3(face_centres(*session.document.scan_edits.crop).row(3)), Vec3(0, 2, 0));
 }
 
 TEST_F(SceneTest, ANewCropBoxHoldsThePersonInAllFrames) {
@@ -241,7 +240,7 @@ TEST_F(SceneTest, ACharacterIsSeenAsItCameUntilItIsBound) {
   looks.wait();
   const PanePictures shown = keeper.update(session, *stage.cache, looks, pane_of(1));
   EXPECT_FALSE(keeper.waiting());
-  const PaneScene made = build_scene({session, pane_of(1), shown, {}, {}, ThemeKind::Dark});
+  const PaneScene made = build_scene({session, pane_of(1), shown, {}, {}, ThemeKind::Dark}, memory);
   ASSERT_EQ(made.scene.meshes.size(), 1u);
   EXPECT_EQ(*made.scene.meshes[0].vertices, came->mesh.vertices);
   EXPECT_EQ(*made.scene.meshes[0].colors, came->mesh.colors);
@@ -287,8 +286,8 @@ TEST(Panes, PixelsGoThereAndBack) {
   const render::Ray ray = view.ray(*at);
   EXPECT_LT((Vec3(0.2f, 1.1f, 0.1f) - ray.origin).cross(ray.direction).norm(), 2e-3f);
   Joints joints = render::make_joints();
-  EXPECT_EQ(joint_at(view, joints, *view.project(joints.row(LeftElbow)), 5), LeftElbow);
-  EXPECT_EQ(joint_at(view, joints, {101, 51}, 5), -1);
+  EXPECT_EQ(point_at(view, joints, *view.project(joints.row(LeftElbow)), 5), LeftElbow);
+  EXPECT_EQ(point_at(view, joints, {101, 51}, 5), -1);
 }
 
 TEST(TargetLook, OtherJointsKeepTheLook) {
@@ -315,7 +314,7 @@ TEST(TargetLook, WhatIsShownForAMomentStaysPlainAndIsShadedLater) {
   const auto plain = looks.plain_of(stage.target);
   ASSERT_NE(plain, nullptr);
   EXPECT_EQ(plain->ambient->size(), 0);
-  EXPECT_EQ(plain->rest.normals.rows(), stage.mesh.vertices.rows());
+  EXPECT_EQ(plain->rest->normals.rows(), stage.mesh.vertices.rows());
   EXPECT_EQ(looks.of(stage.target), plain);  // at once, while the rest is made
   looks.wait();
   EXPECT_EQ(looks.of(stage.target)->ambient->size(), stage.mesh.vertices.rows());

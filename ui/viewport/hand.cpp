@@ -9,6 +9,7 @@
 #include "retarget/math/rotation.hpp"
 #include "retarget/skeleton/skinning.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/viewport/pane.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -24,9 +25,10 @@ constexpr float kDabStep = 0.35f;           // of the brush's radius, between da
 constexpr double kSettleSeconds = 1.5;      // an edit shows within this time, or never
 constexpr Eigen::Index kMostPosed = 60000;  // vertices posed for a preview on the thread that draws
 
+/// Null where the take has no such frame, or no target to pose.
 const Pose* pose_of(const Session& session, int take, int frame) {
-  const app::TakeState* state = take_of(session, take);
-  return state != nullptr ? at_or_null(state->shown.poses, frame) : nullptr;
+  const app::TakeState* state = at_or_null(session.takes, take);
+  return state != nullptr && state->target != nullptr ? at_or_null(state->shown.poses, frame) : nullptr;
 }
 
 app::Arguments& operator<<(app::Arguments& words, const Vec3& v) {
@@ -38,37 +40,30 @@ int axis_of(GizmoHandle handle) {
   return std::clamp(static_cast<int>(handle) - static_cast<int>(GizmoHandle::AxisX), 0, 2);
 }
 
-/// The pose with one bone turned in its own frame.
-Pose turned(Pose pose, int joint, const Vec3& axis_angle) {
-  Mat3& R = pose.local[joint];
-  R = R * rotation_from_axis_angle(axis_angle);
-  return pose;
-}
-
 }  // namespace
 
 std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
   const Session& session = place.session;
-  const int frame = place.pictures.frame, joint = session.selected_joint;
+  const app::TakeState* take = first_take(session, place.pane);
+  const bool rest = shows_rest(session, place.pane);
   Subject subject;
   subject.take = place.pane.takes.empty() ? -1 : place.pane.takes[0];
-  const app::TakeState* take = take_of(session, subject.take);
-  if (session.tool == Tool::TargetJoints && shows_rest(session, place.pane)) {
+  if (session.tool == Tool::TargetJoints && rest) {
     subject.grip = Grip::RestJoint;
     subject.joints = take->target->joints;
     return subject;
   }
-  const int person = session.tool == Tool::Bones ? subject.take + 1 : 0;
-  const bool there =
-      session.tool == Tool::Joints ? place.pane.source : session.tool == Tool::Bones && take != nullptr;
-  const Joints* joints = there ? app::pane_joints(session, person, frame) : nullptr;
-  if (joints == nullptr || shows_rest(session, place.pane)) return std::nullopt;
+  if (session.tool == Tool::Joints && place.pane.source)
+    subject.grip = Grip::Joint, subject.take = -1;
+  else if (session.tool == Tool::Bones && take != nullptr)
+    subject.grip = Grip::Bone;
+  const int frame = place.pictures.frame;
+  const Joints* joints = app::pane_joints(session, subject.take + 1, frame);
+  if (subject.grip == Grip::None || joints == nullptr || rest) return std::nullopt;
   subject.joints = *joints;
-  subject.grip = session.tool == Tool::Joints ? Grip::Joint : Grip::Bone;
-  if (subject.grip == Grip::Joint) subject.take = -1;
   const Pose* pose = subject.grip == Grip::Bone ? pose_of(session, subject.take, frame) : nullptr;
-  if (pose != nullptr && take->target != nullptr && joint >= 0)
-    subject.axes = forward_kinematics(take->target->joints, *pose).global[joint];
+  if (pose != nullptr && session.selected_joint >= 0)
+    subject.axes = forward_kinematics(take->target->joints, *pose).global[session.selected_joint];
   return subject;
 }
 
@@ -82,6 +77,11 @@ render::GizmoView Hand::gizmo_of(const Subject& subject, int joint) {
 
 void Hand::let_go() {
   grip_ = settling_ = Grip::None;
+  leave();
+}
+
+/// Nothing is under the pointer any longer.
+void Hand::leave() {
   handle_ = GizmoHandle::None;
   hovered_ = face_ = -1;
   brush_.reset();
@@ -92,21 +92,15 @@ bool Hand::work(const HandPlace& place, const Pointer& pointer, app::CommandQueu
   const bool here = pointer.over || pointer.held || pointer.released;
   if (busy() && !(place.pane == pane_)) return false;
   if (!here && !busy()) {
-    if (place.pane == pane_)
-      hovered_ = -1, brush_.reset(), tip_.clear(), handle_ = GizmoHandle::None, face_ = -1;
+    if (place.pane == pane_) leave();
     return false;
   }
   pane_ = place.pane;
   tip_.clear();
-  if (place.session.tool != Tool::Paint) brush_.reset();
-  switch (place.session.tool) {
-    case Tool::Crop:
-      return work_on_box(place, pointer, queue);
-    case Tool::Paint:
-      return paint(place, pointer, queue);
-    default:
-      return work_on_joints(place, pointer, queue);
-  }
+  const Tool tool = place.session.tool;
+  if (tool == Tool::Paint) return paint(place, pointer, queue);
+  brush_.reset();
+  return tool == Tool::Crop ? work_on_box(place, pointer, queue) : work_on_joints(place, pointer, queue);
 }
 
 bool Hand::work_on_joints(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
@@ -116,11 +110,9 @@ bool Hand::work_on_joints(const HandPlace& place, const Pointer& pointer, app::C
     return true;
   }
   const auto subject = subject_of(place);
-  const Joints* any = app::pane_joints(
-      place.session, place.pane.source || place.pane.takes.empty() ? 0 : place.pane.takes[0] + 1,
-      place.pictures.frame);
+  const Joints* any = app::pane_joints(place.session, place.pane.number, place.pictures.frame);
   const Joints* joints = subject ? &subject->joints : any;
-  hovered_ = joints == nullptr ? -1 : joint_at(place.view, *joints, pointer.at, kReach * place.scale);
+  hovered_ = joints == nullptr ? -1 : point_at(place.view, *joints, pointer.at, kReach * place.scale);
   handle_ = GizmoHandle::None;
   if (!subject) return false;
   const int selected = place.session.selected_joint;
@@ -148,10 +140,9 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   start_ = last_ = place.view.ray(pointer.at);
   offset_.setZero();
   corrections_.resize(0, 3);
-  const app::TakeState* take = take_of(session, take_);
-  const Pose* pose = pose_of(session, take_, frame_);
-  const bool posed = grip_ == Grip::Bone && take != nullptr && pose != nullptr && take->deformer != nullptr;
-  if (posed && take->target->mesh.vertices.rows() <= kMostPosed)
+  const app::TakeState* take = at_or_null(session.takes, take_);
+  const Pose* pose = grip_ == Grip::Bone ? pose_of(session, take_, frame_) : nullptr;
+  if (pose != nullptr && take->deformer != nullptr && take->target->mesh.vertices.rows() <= kMostPosed)
     corrections_ = take->deformer->offsets(*pose);
 }
 
@@ -201,7 +192,7 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
 
 /// Whether the drag, or the edit just pushed, belongs to this pane and is not in its pictures yet.
 bool Hand::shown_in(const HandPlace& place) const {
-  const Grip grip = busy() ? grip_ : settling_;
+  const Grip grip = current();
   if (grip != Grip::Joint && grip != Grip::Bone && grip != Grip::RestJoint) return false;
   if (!(place.pane == pane_)) return false;
   if (busy()) return true;
@@ -210,21 +201,27 @@ bool Hand::shown_in(const HandPlace& place) const {
          (grip == Grip::RestJoint || place.pictures.frame == frame_) && subject->joints == before_;
 }
 
+/// The take's skeleton with the bone turned in its own frame; none where the pose is not there.
+std::optional<PosedSkeleton> Hand::turned_skeleton(const Session& session) const {
+  const Pose* pose = pose_of(session, take_, frame_);
+  if (pose == nullptr) return std::nullopt;
+  Pose turned = *pose;
+  turned.local[joint_] = pose->local[joint_] * rotation_from_axis_angle(offset_);
+  return forward_kinematics(session.takes[take_].target->joints, turned);
+}
+
 Joints Hand::moved_joints(const HandPlace& place) const {
   const Session& session = place.session;
-  const Grip grip = busy() ? grip_ : settling_;
   Joints joints = before_;
-  if (grip == Grip::RestJoint) {
+  if (current() == Grip::RestJoint) {
     JointMove move;
     move.joint = joint_, move.position = before_.row(joint_).transpose() + offset_;
     move.mirror = session.mirror_joint;
     return understudy::apply({move}, before_);
   }
-  if (grip == Grip::Bone) {
-    const app::TakeState* take = take_of(session, take_);
-    const Pose* pose = pose_of(session, take_, frame_);
-    if (take == nullptr || take->target == nullptr || pose == nullptr) return joints;
-    return forward_kinematics(take->target->joints, turned(*pose, joint_, offset_)).joints;
+  if (current() == Grip::Bone) {
+    const auto skeleton = turned_skeleton(session);
+    return skeleton ? skeleton->joints : joints;
   }
   std::array<bool, kJointCount> moves{};
   for (int j = 0; j < kJointCount; ++j) {  // parents come first
@@ -240,7 +237,7 @@ EditPreview Hand::preview(const HandPlace& place) const {
   auto subject = subject_of(place);
   if (shown_in(place)) {
     const Joints moved = moved_joints(place);
-    (grip_ == Grip::Joint || settling_ == Grip::Joint ? preview.source_joints : preview.take_joints) = moved;
+    (current() == Grip::Joint ? preview.source_joints : preview.take_joints) = moved;
     if (subject) subject->joints = moved;
   }
   const bool chosen = session.selected_joint >= 0 && subject && !session.playback.playing &&
@@ -258,20 +255,17 @@ EditPreview Hand::preview(const HandPlace& place) const {
 }
 
 std::shared_ptr<const app::PosedPicture> Hand::turned_picture(const HandPlace& place) const {
-  const Grip grip = busy() ? grip_ : settling_;
-  const app::TakeState* take = take_of(place.session, take_);
-  const Pose* pose = pose_of(place.session, take_, frame_);
-  if (grip != Grip::Bone || !shown_in(place) || pose == nullptr || take->weights == nullptr ||
-      corrections_.rows() == 0)
-    return nullptr;
-  const Target& target = *take->target;
-  if (corrections_.rows() != target.mesh.vertices.rows()) return nullptr;
-  const PosedSkeleton skeleton = forward_kinematics(target.joints, turned(*pose, joint_, offset_));
+  if (current() != Grip::Bone || !shown_in(place)) return nullptr;
+  const auto skeleton = turned_skeleton(place.session);
+  if (!skeleton) return nullptr;
+  const app::TakeState& take = place.session.takes[take_];
+  const Mesh& mesh = take.target->mesh;
+  if (take.weights == nullptr || corrections_.rows() != mesh.vertices.rows()) return nullptr;
   app::PosedPicture picture;
   picture.vertices =
-      linear_blend_skinning(target.mesh.vertices + corrections_, *take->weights, target.joints, skeleton);
+      linear_blend_skinning(mesh.vertices + corrections_, *take.weights, take.target->joints, *skeleton);
   picture.offsets = corrections_;
-  if (!target.mesh.is_cloud()) picture.normals = vertex_normals(picture.vertices, target.mesh.faces);
+  if (!mesh.is_cloud()) picture.normals = vertex_normals(picture.vertices, mesh.faces);
   return std::make_shared<const app::PosedPicture>(std::move(picture));
 }
 
@@ -279,16 +273,12 @@ bool Hand::work_on_box(const HandPlace& place, const Pointer& pointer, app::Comm
   if (!place.pane.source) return false;
   if (!busy()) {
     box_ = crop_box(place.session, place.pictures);
-    Points centres(6, 3);
-    for (int face = 0; face < 6; ++face) centres.row(face) = face_centre(box_, face);
-    const Eigen::Vector2f pixel(pointer.at.x - place.view.rect.min.x, pointer.at.y - place.view.rect.min.y);
-    face_ =
-        render::point_under(centres, place.view.camera, place.view.size(), pixel, 1.3f * kReach * place.scale)
-            .value_or(-1);
+    const Points centres = face_centres(box_);
+    face_ = point_at(place.view, centres, pointer.at, 1.3f * kReach * place.scale);
     if (!pointer.pressed || face_ < 0) return face_ >= 0;
     grip_ = Grip::Face;
     gizmo_ = {};
-    gizmo_.position = face_centre(box_, face_);
+    gizmo_.position = centres.row(face_);
     start_ = place.view.ray(pointer.at);
     return true;
   }
@@ -312,20 +302,15 @@ bool Hand::work_on_box(const HandPlace& place, const Pointer& pointer, app::Comm
 bool Hand::paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
   brush_.reset();
   hovered_ = -1;
-  const int k = place.pane.takes.empty() ? -1 : place.pane.takes[0];
-  const app::TakeState* take = take_of(place.session, k);
-  const auto posed = place.pictures.takes.empty() ? nullptr : place.pictures.takes[0];
   if (busy() && (pointer.released || !pointer.held)) grip_ = Grip::None;
-  if (take == nullptr || take->target == nullptr || posed == nullptr) return busy();
-  const Mesh& mesh = take->target->mesh;
-  if (mesh.is_cloud() || posed->vertices.rows() != mesh.vertices.rows()) return busy();
-  const auto hit = render::surface_under(place.view.ray(pointer.at), posed->vertices, mesh.faces);
+  const auto hit = take_under(place.session, place.pane, place.pictures, place.view.ray(pointer.at));
   if (!hit) return busy();
+  const Mesh& mesh = first_take(place.session, place.pane)->target->mesh;
+  const Points& normals = place.pictures.takes[0]->normals;
   Vec3 rest = Vec3::Zero();
   for (int c = 0; c < 3; ++c)
     rest += hit->barycentric[c] * mesh.vertices.row(mesh.faces(hit->face, c)).transpose();
-  const Vec3 normal =
-      posed->normals.rows() > hit->vertex ? Vec3(posed->normals.row(hit->vertex)) : Vec3::UnitY();
+  const Vec3 normal = normals.rows() > hit->vertex ? Vec3(normals.row(hit->vertex)) : Vec3::UnitY();
   brush_ = BrushPlace{hit->position, normal};
   if (place.session.selected_joint < 0) tip_ = "Choose the joint to paint first";
   if (place.session.selected_joint < 0) return true;
@@ -334,15 +319,11 @@ bool Hand::paint(const HandPlace& place, const Pointer& pointer, app::CommandQue
     if (pointer.pressed && place.session.playback.playing) queue.push_back({"playback.pause", {}});
     grip_ = Grip::Paint;
     last_dab_ = rest;
-    app::Arguments words{std::to_string(k)};
+    app::Arguments words{std::to_string(place.pane.takes[0])};
     words << rest;
     queue.push_back({"edit.paint", words});
   }
   return true;
-}
-
-std::optional<Hand::BrushPlace> Hand::brush(const PaneContent& pane) const {
-  return pane == pane_ ? brush_ : std::nullopt;
 }
 
 }  // namespace understudy::ui

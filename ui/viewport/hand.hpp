@@ -6,8 +6,6 @@
 #include <string>
 
 #include "app/session/commands.hpp"
-#include "render/picking.hpp"
-#include "ui/viewport/navigation.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::ui {
@@ -44,7 +42,9 @@ class Hand {
   struct BrushPlace {
     Vec3 position, normal;
   };
-  std::optional<BrushPlace> brush(const PaneContent& pane) const;
+  std::optional<BrushPlace> brush(const PaneContent& pane) const {
+    return pane == pane_ ? brush_ : std::nullopt;
+  }
   /// A tip beside the pointer: what a click would do; often empty.
   const std::string& tip() const { return tip_; }
 
@@ -57,6 +57,7 @@ class Hand {
     Joints joints;
     Mat3 axes = Mat3::Identity();  ///< of the selected joint
   };
+  void leave();
   static std::optional<Subject> subject_of(const HandPlace& place);
   static render::GizmoView gizmo_of(const Subject& subject, int joint);
   bool work_on_joints(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
@@ -65,7 +66,10 @@ class Hand {
   void finish(const HandPlace& place, app::CommandQueue& queue);
   bool work_on_box(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
   bool paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
+  /// The drag, or else the edit just pushed.
+  Grip current() const { return busy() ? grip_ : settling_; }
   Joints moved_joints(const HandPlace& place) const;
+  std::optional<PosedSkeleton> turned_skeleton(const app::Session& session) const;
   bool shown_in(const HandPlace& place) const;
 
   Grip grip_ = Grip::None;

@@ -31,6 +31,10 @@ class Writer {
   void text(const ImVec2& at, const ImVec4& ink, const std::string& words) {
     list_.AddText(at, color(ink), words.c_str());
   }
+  static Rect around(const ImVec2& at, const ImVec2& size, float x, float y) {
+    return {{at.x - x, at.y - y}, {at.x + size.x + x, at.y + size.y + y}};
+  }
+  ImVec2 legend_box(const ImVec2& inner, const ImVec4& ink, const std::string& words);
   void draw_title();
   void draw_warning(float top);
   void draw_hint();
@@ -66,7 +70,7 @@ void Writer::draw() {
 void Writer::draw_title() {
   const float pad = px(8), room = in_.rect.width() - px(20) - 2 * pad;
   if (room < px(30)) return;
-  std::string title, subtitle;
+  std::string title;
   ImVec2 title_size, subtitle_size(0, 0);
   {
     const FontScope strong(ui_.fonts().strong);
@@ -74,7 +78,7 @@ void Writer::draw_title() {
     title_size = ImGui::CalcTextSize(title.c_str());
   }
   const FontScope small(ui_.fonts().small);
-  if (!in_.subtitle.empty()) subtitle = cut_to(in_.subtitle, room);
+  const std::string subtitle = cut_to(in_.subtitle, room);
   if (!subtitle.empty()) subtitle_size = ImGui::CalcTextSize(subtitle.c_str());
   const float width = std::max(title_size.x, subtitle_size.x) + 2 * pad;
   const float height = title_size.y + subtitle_size.y + px(8);
@@ -108,37 +112,41 @@ void Writer::draw_hint() {
   const ImVec2 size = ImGui::CalcTextSize(in_.hint.c_str(), nullptr, false, room);
   const ImVec2 middle = in_.rect.at(0.5f, 0.5f);
   const ImVec2 at(middle.x - size.x / 2, middle.y - size.y / 2);
-  box({{at.x - px(14), at.y - px(10)}, {at.x + size.x + px(14), at.y + size.y + px(10)}}, ui_.theme().panel);
+  box(around(at, size, px(14), px(10)), ui_.theme().panel);
   list_.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color(ui_.theme().text_dim), in_.hint.c_str(),
                 nullptr, room);
+}
+
+/// The box at the bottom left around an area of this size, its first line written; the box's top left corner.
+ImVec2 Writer::legend_box(const ImVec2& inner, const ImVec4& ink, const std::string& words) {
+  const ImVec2 at(in_.rect.min.x + px(10), in_.rect.max.y - px(10) - inner.y);
+  const Rect rect{at, {at.x + inner.x + px(16), at.y + inner.y}};
+  box(rect, ui_.theme().panel);
+  ui_.mark("view.legend", rect);
+  text({at.x + px(8), at.y + px(4)}, ink, words);
+  return at;
 }
 
 void Writer::draw_scale() {
   const FontScope small(ui_.fonts().small);
   const float width = std::min(px(170), in_.rect.width() - px(36)), bar = px(9);
   if (width < px(50)) return;
-  const float height = 2 * line() + bar + px(16);
-  const ImVec2 at(in_.rect.min.x + px(10), in_.rect.max.y - px(10) - height);
-  const Rect rect{at, {at.x + width + px(16), at.y + height}};
-  box(rect, ui_.theme().panel);
-  ui_.mark("view.legend", rect);
-  const float left = at.x + px(8), top = at.y + px(6) + line();
   const std::string unit = in_.legend.unit.empty() ? "" : ", " + in_.legend.unit;
-  text({left, at.y + px(4)}, ui_.theme().text, cut_to(in_.legend.title + unit, width));
+  const ImVec2 at = legend_box({width, 2 * line() + bar + px(16)}, ui_.theme().text,
+                               cut_to(in_.legend.title + unit, width));
+  const float left = at.x + px(8), top = at.y + px(6) + line();
   for (int i = 0; i < kBarSteps; ++i) {
     const float from = static_cast<float>(i) / kBarSteps, to = static_cast<float>(i + 1) / kBarSteps;
     const ImU32 a = color_of(scale_color(in_.legend.scale, from)),
                 b = color_of(scale_color(in_.legend.scale, to));
     list_.AddRectFilledMultiColor({left + from * width, top}, {left + to * width, top + bar}, a, b, b, a);
   }
-  const auto number_at = [&](float share, float value) {
-    const std::string words = argument(static_cast<double>(value));
+  for (const float share : {0.f, 0.5f, 1.f}) {
+    if (share == 0.5f && width <= px(110)) continue;
+    const std::string words = argument(static_cast<double>(share * in_.legend.high));
     const float x = left + share * (width - ImGui::CalcTextSize(words.c_str()).x);
     text({x, top + bar + px(2)}, ui_.theme().text_dim, words);
-  };
-  number_at(0, in_.legend.low);
-  if (width > px(110)) number_at(0.5f, (in_.legend.low + in_.legend.high) / 2);
-  number_at(1, in_.legend.high);
+  }
 }
 
 /// All of them in one column, or nothing but the title where there is no room.
@@ -152,11 +160,7 @@ void Writer::draw_categories() {
   const float whole = step * static_cast<float>(all.size() + 1) + px(12);
   const bool room = whole < in_.rect.height() - px(70) && widest < 0.4f * in_.rect.width();
   const float height = room ? whole : step + px(8);
-  const ImVec2 at(in_.rect.min.x + px(10), in_.rect.max.y - px(10) - height);
-  const Rect rect{at, {at.x + widest + px(16), at.y + height}};
-  box(rect, ui_.theme().panel);
-  ui_.mark("view.legend", rect);
-  text({at.x + px(8), at.y + px(4)}, ui_.theme().text, in_.legend.title);
+  const ImVec2 at = legend_box({widest, height}, ui_.theme().text, in_.legend.title);
   if (!room) return;
   for (size_t i = 0; i < all.size(); ++i) {
     const float y = at.y + px(6) + step * static_cast<float>(i + 1), middle = y + line() / 2 - swatch / 2;
@@ -171,11 +175,7 @@ void Writer::draw_missing() {
   const FontScope small(ui_.fonts().small);
   const std::string words = cut_to(in_.legend.title + ": " + in_.legend.missing, in_.rect.width() - px(36));
   const ImVec2 size = ImGui::CalcTextSize(words.c_str());
-  const ImVec2 at(in_.rect.min.x + px(10), in_.rect.max.y - px(18) - size.y);
-  const Rect rect{at, {at.x + size.x + px(16), at.y + size.y + px(8)}};
-  box(rect, ui_.theme().panel);
-  ui_.mark("view.legend", rect);
-  text({at.x + px(8), at.y + px(4)}, ui_.theme().text_dim, words);
+  legend_box({size.x, size.y + px(8)}, ui_.theme().text_dim, words);
 }
 
 void Writer::draw_labels() {
@@ -188,8 +188,7 @@ void Writer::draw_labels() {
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
     const float away = label.strong ? px(14) : px(7);
     const ImVec2 at(label.at.x + away, label.at.y - size.y / 2);
-    box({{at.x - px(3), at.y - px(1)}, {at.x + size.x + px(3), at.y + size.y + px(1)}}, ui_.theme().panel,
-        label.strong ? 0.85f : 0.6f);
+    box(around(at, size, px(3), px(1)), ui_.theme().panel, label.strong ? 0.85f : 0.6f);
     text(at, label.strong ? ui_.theme().text : ui_.theme().text_dim, label.text);
   }
 }
@@ -201,7 +200,7 @@ void Writer::draw_tip() {
   ImVec2 at(in_.tip_at.x + px(16), in_.tip_at.y + px(14));
   at.x = std::min(at.x, in_.rect.max.x - size.x - px(10));
   at.y = std::min(at.y, in_.rect.max.y - size.y - px(8));
-  const Rect rect{{at.x - px(6), at.y - px(3)}, {at.x + size.x + px(6), at.y + size.y + px(3)}};
+  const Rect rect = around(at, size, px(6), px(3));
   box(rect, ui_.theme().raised, 0.95f);
   ui_.mark("view.tip", rect);
   text(at, ui_.theme().text, in_.tip);

@@ -1,13 +1,52 @@
-// One pane: what it shows, its picture on the graphics card, and when to draw it again.
+// One pane: its frames from the cache, its picture on the graphics card, and what is under the pointer.
 #pragma once
 
+#include <deque>
+#include <optional>
+
 #include "render/gl/object.hpp"
+#include "render/picking.hpp"
 #include "render/renderer.hpp"
-#include "ui/viewport/hand.hpp"
-#include "ui/viewport/pane_pictures.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::ui {
+
+/// Everything that a pane needs for a frame, requested at once; none while a part is being made. Does not
+/// wait for ghosts: takes those that are ready.
+std::optional<PanePictures> pictures_of(const app::Session& session, app::FrameCache& cache,
+                                        const PaneContent& pane, int frame);
+/// Whether all ghosts of a pane's pictures are made.
+bool ghosts_ready(const app::Session& session, const PaneContent& pane, const PanePictures& pictures);
+/// Requests the next frames of playback, or the neighbours of a still frame.
+void prefetch(const app::Session& session, app::FrameCache& cache, const PaneContent& pane);
+
+/// The looks of a pane's targets, as pane.takes; null where they are being made.
+std::vector<std::shared_ptr<const TargetLook>> looks_of(const app::Session& session, TargetLooks& looks,
+                                                        const PaneContent& pane);
+/// The look of a pane's first target where the pane shows its T-pose, or the mesh as loaded, instead of a
+/// frame (null while it is being made); else none.
+std::optional<std::shared_ptr<const TargetLook>> unposed_look(const app::Session& session, TargetLooks& looks,
+                                                              const PaneContent& pane);
+
+/// Keeps the last frames until the next are ready.
+class PictureKeeper {
+ public:
+  /// What to show now: the current frame, or the newest requested frame that is ready.
+  const PanePictures& update(const app::Session& session, app::FrameCache& cache, TargetLooks& looks,
+                             const PaneContent& pane);
+  const PanePictures& pictures() const { return pictures_; }
+  bool waiting() const { return waiting_; }
+
+ private:
+  bool show_unposed(const app::Session& session, TargetLooks& looks, const PaneContent& pane);
+  void forget_others(const app::Session& session, const PaneContent& pane);
+
+  PanePictures pictures_;
+  std::deque<int> asked_;  // frames, the newest first
+  std::vector<std::shared_ptr<const Target>> targets_;
+  std::string source_;
+  bool waiting_ = false;
+};
 
 /// A picture that is drawn into and shown by ImGui.
 class PaneCanvas {
@@ -23,8 +62,6 @@ class PaneCanvas {
   void forget() { drawn_ = false; }
 
  private:
-  void resize(render::PixelSize size);
-
   render::gl::Texture texture_;
   render::gl::Framebuffer framebuffer_;
   render::PixelSize size_;
@@ -43,6 +80,9 @@ struct Pane {
   PaneCanvas canvas;
 };
 
+/// Where a ray meets the mesh of a pane's first take, as its pictures show it.
+std::optional<render::SurfaceHit> take_under(const app::Session& session, const PaneContent& pane,
+                                             const PanePictures& pictures, const render::Ray& ray);
 /// The figure under the pointer where a surface shows figures: "12.4 mm", "left knee 0.83"; else empty.
 std::string value_under(const app::Session& session, const Pane& pane, const ImVec2& at);
 /// The place on a pane's surface under the pointer.

@@ -16,14 +16,12 @@ namespace {
 using app::Layout;
 using app::Session;
 
-int clamped_take(const Session& session, int take) {
-  return std::clamp<int>(take, 0, session.takes.size() - 1);
-}
+constexpr float kNotch = 0.88f;  // of the distance, a notch of the wheel
 
 PaneContent overlay(const Session& session) {
   PaneContent pane = pane_of(0);
   const int takes = session.takes.size();
-  if (takes > 0) pane.takes.push_back(clamped_take(session, session.selected_take));
+  if (takes > 0) pane.takes.push_back(std::clamp(session.selected_take, 0, takes - 1));
   for (int k = 0; k < takes; ++k)
     if (k != pane.takes.front()) pane.takes.push_back(k);
   return pane;
@@ -37,13 +35,9 @@ std::string method_words(const app::Method& method) {
   return words;
 }
 
-const app::TakeState* state_of_take(const Session& session, const PaneContent& pane) {
-  return pane.takes.empty() ? nullptr : at_or_null(session.takes, pane.takes[0]);
-}
-
 /// The T-pose is seen where the person would be.
 Vec3 rest_offset(const Session& session, const PaneContent& pane) {
-  const Target& target = *shown_target(*state_of_take(session, pane));
+  const Target& target = *shown_target(*first_take(session, pane));
   const Points& vertices = target.mesh.vertices;
   const float floor = vertices.rows() > 0 ? vertices.col(1).minCoeff() : 0;
   Vec3 offset(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
@@ -51,23 +45,34 @@ Vec3 rest_offset(const Session& session, const PaneContent& pane) {
     const Vec3 middle = 0.5f * (vertices.colwise().minCoeff() + vertices.colwise().maxCoeff()).transpose();
     offset = Vec3(middle.x(), floor, middle.z());
   }
-  const PaneContent moving = pane_of(pane.number);
-  const Joints* now = app::pane_joints(session, pane.number, pane_frame(session, moving));
+  const Joints* now = app::pane_joints(session, pane.number, pane_frame(session, pane));
   if (!session.view.follow && now != nullptr) offset -= Vec3((*now)(Pelvis, 0), 0, (*now)(Pelvis, 2));
   return offset;
 }
 
+/// Which of View::cameras a pane looks through.
+int camera_index(const Session& session, const PaneContent& pane) {
+  return session.view.linked ? 0 : pane.number;
+}
+
+/// Where a ray meets the plane through the target that faces the camera.
+Vec3 on_target_plane(const render::Camera& camera, const render::Ray& ray) {
+  const Vec3 back = render::axes(camera).col(2);
+  const float along = (camera.target - ray.origin).dot(back) / ray.direction.dot(back);
+  return ray.origin + along * ray.direction;
+}
+
+/// What is under the pointer at the target's distance stays there.
+render::Camera wheel_zoom(const PaneView& view, const ImVec2& at, float notches) {
+  const render::Camera camera = render::zoomed(view.camera, std::pow(kNotch, notches));
+  const float factor = camera.distance / view.camera.distance;
+  const Vec3 under = on_target_plane(view.camera, view.ray(at));
+  render::Camera moved = camera;
+  moved.target = under + factor * (view.camera.target - under);
+  return moved;
+}
+
 }  // namespace
-
-const app::TakeState* take_of(const Session& session, int take) {
-  return at_or_null(session.takes, take);
-}
-
-int frame_count(const Session& session, const PaneContent& pane) {
-  if (pane.source) return session.source.frames.size();
-  const app::TakeState* take = state_of_take(session, pane);
-  return take != nullptr ? ssize(take->joints) : 0;
-}
 
 std::vector<PaneContent> panes_of(const Session& session) {
   const int takes = session.takes.size();
@@ -109,9 +114,8 @@ std::string pane_title(const Session& session, const PaneContent& pane) {
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {
   if (pane.source && session.document.source.path.empty()) return "Drop a scan folder or a motion here";
-  if (pane.empty() || (!pane.source && state_of_take(session, pane) == nullptr))
-    return "Drop a character here";
-  if (const app::TakeState* take = pane.source ? nullptr : state_of_take(session, pane)) {
+  if (!pane.source && first_take(session, pane) == nullptr) return "Drop a character here";
+  if (const app::TakeState* take = pane.source ? nullptr : first_take(session, pane)) {
     if (!take->problem.empty()) return take->problem;
     if (shows_as_loaded(session, pane)) return "";
     if (!take->ready) return "Preparing the target\u2026";
@@ -119,6 +123,16 @@ std::string pane_hint(const Session& session, const PaneContent& pane) {
   }
   if (pane_frame(session, pane) < 0) return "Reading the first frame\u2026";
   return "";
+}
+
+const app::TakeState* first_take(const Session& session, const PaneContent& pane) {
+  return pane.takes.empty() ? nullptr : at_or_null(session.takes, pane.takes[0]);
+}
+
+int frame_count(const Session& session, const PaneContent& pane) {
+  if (pane.source) return session.source.frames.size();
+  const app::TakeState* take = first_take(session, pane);
+  return take != nullptr ? ssize(take->joints) : 0;
 }
 
 int pane_frame(const Session& session, const PaneContent& pane) {
@@ -129,14 +143,14 @@ int pane_frame(const Session& session, const PaneContent& pane) {
 }
 
 bool shows_rest(const Session& session, const PaneContent& pane) {
-  const app::TakeState* take = state_of_take(session, pane);
+  const app::TakeState* take = first_take(session, pane);
   if (take == nullptr || take->target == nullptr) return false;
   const bool edited = session.tool == app::Tool::TargetJoints && pane.takes[0] == session.selected_take;
   return edited || (take->joints.empty() && !pane.source);
 }
 
 bool shows_as_loaded(const Session& session, const PaneContent& pane) {
-  const app::TakeState* take = state_of_take(session, pane);
+  const app::TakeState* take = first_take(session, pane);
   return take != nullptr && !pane.source && take->target == nullptr && take->as_loaded != nullptr &&
          take->problem.empty();
 }
@@ -145,54 +159,22 @@ std::shared_ptr<const Target> shown_target(const app::TakeState& take) {
   return take.target != nullptr ? take.target : take.as_loaded;
 }
 
-const Joints* pane_joints(const Session& session, const PaneContent& pane, int frame) {
-  return app::pane_joints(session, pane.source || pane.takes.empty() ? 0 : pane.takes[0] + 1, frame);
-}
-
-render::Camera camera_of(const app::CameraState& state) {
-  render::Camera camera;
-  camera.target = state.target;
-  camera.yaw = state.yaw, camera.pitch = state.pitch;
-  camera.distance = state.distance, camera.fov = state.fov;
-  camera.orthographic = state.orthographic;
-  return camera;
-}
-
-app::CameraState state_of(const render::Camera& camera) {
-  app::CameraState state;
-  state.target = camera.target;
-  state.yaw = camera.yaw, state.pitch = camera.pitch;
-  state.distance = camera.distance, state.fov = camera.fov;
-  state.orthographic = camera.orthographic;
-  return state;
-}
-
-int camera_index(const app::View& view, const PaneContent& pane) {
-  return view.linked ? 0 : pane.number;
-}
-
-app::CameraState camera_state(const app::View& view, const PaneContent& pane) {
-  const size_t index = camera_index(view, pane);
-  if (index < view.cameras.size()) return view.cameras[index];
-  return view.cameras.empty() ? app::CameraState{} : view.cameras[0];
-}
-
 Vec3 follow_offset(const Session& session, const PaneContent& pane) {
   if (shows_rest(session, pane) || shows_as_loaded(session, pane)) return rest_offset(session, pane);
-  const int person = pane.source || pane.takes.empty() ? 0 : pane.takes[0] + 1;
-  return app::follow_offset(session, person, pane_frame(session, pane));
+  return app::follow_offset(session, pane.number, pane_frame(session, pane));
 }
 
 render::Camera pane_camera(const Session& session, const PaneContent& pane) {
-  render::Camera camera = camera_of(camera_state(session.view, pane));
-  camera.target += follow_offset(session, pane);
-  return camera;
+  const auto& cameras = session.view.cameras;
+  const app::CameraState* state = at_or_null(cameras, camera_index(session, pane));
+  const app::CameraState s = state != nullptr ? *state : cameras.empty() ? app::CameraState{} : cameras[0];
+  return {s.target + follow_offset(session, pane), s.yaw, s.pitch, s.distance, s.fov, s.orthographic};
 }
 
 std::vector<std::string> camera_arguments(const Session& session, const PaneContent& pane,
                                           const render::Camera& camera) {
   const Vec3 target = camera.target - follow_offset(session, pane);
-  std::vector<std::string> words{std::to_string(camera_index(session.view, pane))};
+  std::vector<std::string> words{std::to_string(camera_index(session, pane))};
   for (const float x : {target.x(), target.y(), target.z(), camera.yaw, camera.pitch, camera.distance})
     words.push_back(argument(static_cast<double>(x)));
   return words;
@@ -208,9 +190,37 @@ std::optional<ImVec2> PaneView::project(const Vec3& point) const {
   return ImVec2(rect.min.x + seen.x(), rect.min.y + seen.y());
 }
 
-int joint_at(const PaneView& view, const Joints& joints, const ImVec2& at, float reach) {
+int point_at(const PaneView& view, const Points& points, const ImVec2& at, float reach) {
   const Eigen::Vector2f pixel(at.x - view.rect.min.x, at.y - view.rect.min.y);
-  return render::point_under(joints, view.camera, view.size(), pixel, reach).value_or(-1);
+  return render::point_under(points, view.camera, view.size(), pixel, reach).value_or(-1);
+}
+
+Pointer pointer_of_item() {
+  const ImGuiIO& io = ImGui::GetIO();
+  Pointer pointer;
+  pointer.at = io.MousePos, pointer.moved = io.MouseDelta;
+  pointer.over = ImGui::IsItemHovered();
+  const bool active = ImGui::IsItemActive();
+  pointer.wheel = pointer.over ? io.MouseWheel : 0;
+  pointer.pressed = ImGui::IsItemActivated() && ImGui::IsMouseClicked(0);
+  pointer.held = active && ImGui::IsMouseDown(0);
+  pointer.released = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(0);
+  pointer.doubled = pointer.over && ImGui::IsMouseDoubleClicked(0);
+  pointer.turning = active && ImGui::IsMouseDown(1);
+  pointer.panning = active && (ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift));
+  return pointer;
+}
+
+std::optional<render::Camera> navigated(const PaneView& view, const Pointer& pointer, bool free_left,
+                                        float turn) {
+  const ImVec2& moved = pointer.moved;
+  if (pointer.wheel != 0) return wheel_zoom(view, pointer.at, pointer.wheel);
+  if (moved.x == 0 && moved.y == 0) return std::nullopt;
+  const float height = view.rect.height();  // what is at the target's distance stays under the pointer
+  if (pointer.panning) return render::panned(view.camera, {moved.x / height, -moved.y / height});
+  if (pointer.turning || (pointer.held && free_left && !pointer.pressed))
+    return render::orbited(view.camera, -turn * moved.x, turn * moved.y);
+  return std::nullopt;
 }
 
 }  // namespace understudy::ui

@@ -1,4 +1,4 @@
-// The panes of the views: what each one shows, and from which camera.
+// The panes of the views: what each one shows, from which camera, and how the mouse moves that camera.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,13 @@
 
 namespace understudy::ui {
 
-/// The content of one picture. Numbers as in View::active_pane: 0 the source, k the take k - 1.
+/// The content of one picture.
 struct PaneContent {
   bool source = false;
   std::vector<int> takes;  ///< indices of takes, the first is the one that tools and hovering are about
-  int number = 0;          ///< of View::active_pane after a click on it
-  bool empty() const { return !source && takes.empty(); }
+  /// As in View::active_pane: 0 the source, k the take k - 1. Whose person tools, hovering and the camera are
+  /// about, as app::pane_joints() numbers people.
+  int number = 0;
   bool operator==(const PaneContent& o) const {
     return source == o.source && takes == o.takes && number == o.number;
   }
@@ -33,9 +34,9 @@ std::string pane_title(const app::Session& session, const PaneContent& pane);
 /// Why the pane is empty, for the user; empty when it is not.
 std::string pane_hint(const app::Session& session, const PaneContent& pane);
 
-/// A take's state; null where there is no such take.
-const app::TakeState* take_of(const app::Session& session, int take);
-/// How many frames a pane has to show.
+/// The state of the pane's first take; null where there is none.
+const app::TakeState* first_take(const app::Session& session, const PaneContent& pane);
+/// The number of frames of the pane: of the source, or of its first take.
 int frame_count(const app::Session& session, const PaneContent& pane);
 /// The frame a pane shows: the current frame, or the pane's last one if that is earlier; -1 without any.
 int pane_frame(const app::Session& session, const PaneContent& pane);
@@ -46,14 +47,6 @@ bool shows_rest(const app::Session& session, const PaneContent& pane);
 bool shows_as_loaded(const app::Session& session, const PaneContent& pane);
 /// The mesh drawn for a take: its target, or before that the character as loaded; null before both.
 std::shared_ptr<const Target> shown_target(const app::TakeState& take);
-/// The joints of the pane's first person in a frame (extracted or performed); null where there are none.
-const Joints* pane_joints(const app::Session& session, const PaneContent& pane, int frame);
-
-render::Camera camera_of(const app::CameraState& state);
-app::CameraState state_of(const render::Camera& camera);
-/// Which of View::cameras a pane looks through, and that camera.
-int camera_index(const app::View& view, const PaneContent& pane);
-app::CameraState camera_state(const app::View& view, const PaneContent& pane);
 
 /// What a pane's camera adds to its target: app::follow_offset() of its person, or the way to the T-pose.
 Vec3 follow_offset(const app::Session& session, const PaneContent& pane);
@@ -73,11 +66,26 @@ struct PaneView {
   render::Ray ray(const ImVec2& at) const;
   /// Where a point of the world is seen; none behind the eye.
   std::optional<ImVec2> project(const Vec3& point) const;
-  /// Metres that a pixel covers at a point of the world.
-  float metres_a_pixel(const Vec3& point) const { return render::metres_a_pixel(camera, size(), point); }
 };
 
-/// The joint seen nearest to a pixel, at most `reach` pixels away; -1 for none.
-int joint_at(const PaneView& view, const Joints& joints, const ImVec2& at, float reach);
+/// The point (joint) seen nearest to a pixel, at most `reach` pixels away; -1 for none.
+int point_at(const PaneView& view, const Points& points, const ImVec2& at, float reach);
+
+/// What the mouse does in a pane in one frame.
+struct Pointer {
+  ImVec2 at{0, 0}, moved{0, 0};                          ///< pixels; moved since the last frame
+  float wheel = 0;                                       ///< notches, > 0 away from the user
+  bool over = false;                                     ///< over the pane, and nothing else has the mouse
+  bool pressed = false, held = false, released = false;  ///< left button; pressed: over the pane
+  bool doubled = false;                                  ///< double click of the left button
+  bool turning = false, panning = false;  ///< right, or middle and shift-left, pressed over the pane
+};
+/// Of the pane's item, just made.
+Pointer pointer_of_item();
+
+/// The camera after all that the pointer does in this frame; none when it stays. free_left: the tool leaves
+/// the left button to the camera. turn: radians for each pixel of dragging.
+std::optional<render::Camera> navigated(const PaneView& view, const Pointer& pointer, bool free_left,
+                                        float turn);
 
 }  // namespace understudy::ui

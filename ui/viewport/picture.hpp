@@ -20,21 +20,20 @@ struct PictureOptions {
 /// current; keep it for all pictures of a video.
 class PictureMaker {
  public:
-  explicit PictureMaker(int samples = 4);
-  ~PictureMaker();
-  PictureMaker(PictureMaker&&) noexcept;
-
-  /// Waits for the cache until every part is ready. Without frames: the empty stage. Throws Error for an
-  /// impossible size or a pane that does not exist.
+  /// Waits for the cache until every part is ready. Without frames: the empty stage. Throws Error for a pane
+  /// that does not exist.
   render::Image picture(const app::Session& session, app::FrameCache& cache,
                         const PictureOptions& options = {});
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
+  render::Image one(const app::Session& session, app::FrameCache& cache, const PaneContent& pane,
+                    const render::Camera& camera, const PictureOptions& options);
+  render::Image wiped(const app::Session& session, app::FrameCache& cache,
+                      const std::vector<PaneContent>& panes, const PictureOptions& options);
 
-/// Writes the legend onto a picture; `height` of its words in pixels.
-void draw_legend(render::Image& image, const Legend& legend, float height, const Vec3& ink);
+  render::Renderer renderer_;
+  TargetLooks looks_;
+  ColourMemory colours_;
+};
 
 }  // namespace understudy::ui

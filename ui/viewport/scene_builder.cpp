@@ -40,7 +40,7 @@ SharedPoints scale_colors(const SurfaceValues& surface) {
     return render::error_colors(*surface.values, surface.legend.high);
   if (surface.legend.scale == Legend::Scale::Doubt)
     return render::diverging_colors(*surface.values, surface.legend.high);
-  return render::viridis_colors(*surface.values, surface.legend.low, surface.legend.high);
+  return render::viridis_colors(*surface.values, 0, surface.legend.high);
 }
 
 Vec3 trail_color(int joint, ThemeKind theme) {
@@ -51,24 +51,30 @@ Vec3 trail_color(int joint, ThemeKind theme) {
   return theme == ThemeKind::Dark ? Vec3(0.65f * side + Vec3::Constant(0.35f)) : side;
 }
 
+/// The plain surface of a take.
+Vec3 take_color(int k) {
+  static const std::array<Vec3, 4> kTints = {Vec3(0.77f, 0.74f, 0.71f), Vec3(0.66f, 0.75f, 0.69f),
+                                             Vec3(0.72f, 0.68f, 0.78f), Vec3(0.79f, 0.69f, 0.64f)};
+  return kTints[std::max(0, k) % kTints.size()];
+}
+
 class Builder {
  public:
-  Builder(const SceneInput& input, ColourMemory* memory)
-      : in_(input), session_(input.session), memory_(memory != nullptr ? *memory : own_) {}
+  Builder(const SceneInput& input, ColourMemory& memory)
+      : in_(input),
+        session_(input.session),
+        unposed_(shows_rest(session_, in_.pane) || shows_as_loaded(session_, in_.pane)),
+        memory_(memory) {}
 
   PaneScene build();
 
  private:
-  void add_frame();
-  void add_rest();
-  void add_as_loaded();
+  void add_unposed();
   void add_scan();
   void add_take(size_t i);
-  struct Look {
-    float opacity = 1;
-    bool coloured = true;
-  };
-  void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, const Look& how);
+  void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, float opacity,
+                          bool coloured = true);
+  void add_surface(render::MeshView view, bool as_points, float radius);
   void add_skeleton(const Joints& joints, const app::Layers& layers, int person);
   void add_trails();
   void add_trail(int person, int joint);
@@ -76,17 +82,15 @@ class Builder {
   void add_crop_box();
   void add_cropped_away();
   void set_ground();
-  bool layer(bool app::Layers::*which) const {
-    return (in_.pane.source && session_.view.source.*which) ||
-           (!in_.pane.takes.empty() && session_.view.take.*which);
-  }
+  /// The colour behind everything, for what is drawn faintly.
+  Vec3 air() const { return (out_.scene.background.top + out_.scene.background.bottom) / 2; }
   const ColourMemory::Made& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
   const ColourMemory::Made& scan_colors();
-  void tell(const ColourMemory::Made& made, int take);
+  void explain(const ColourMemory::Made& made, int take);
 
   const SceneInput& in_;
   const Session& session_;
-  ColourMemory own_;
+  const bool unposed_;  ///< in T-pose or as loaded instead of in a frame
   ColourMemory& memory_;
   PaneScene out_;
 };
@@ -94,36 +98,36 @@ class Builder {
 PaneScene Builder::build() {
   out_.scene.background = background_of(in_.theme);
   out_.values_take = in_.pane.takes.empty() ? -1 : in_.pane.takes[0];
-  if (shows_rest(session_, in_.pane))
-    add_rest();
-  else if (shows_as_loaded(session_, in_.pane))
-    add_as_loaded();
-  else
-    add_frame();
+  if (unposed_) {
+    add_unposed();
+  } else {
+    if (in_.pane.source) add_scan();
+    for (size_t i = 0; i < in_.pane.takes.size(); ++i) add_take(i);
+    add_ghosts();
+    add_trails();
+    add_crop_box();
+  }
   if (in_.preview.gizmo) out_.scene.gizmos.push_back(*in_.preview.gizmo);
   set_ground();
   return std::move(out_);
 }
 
-void Builder::add_frame() {
-  if (in_.pane.source) add_scan();
-  for (size_t i = 0; i < in_.pane.takes.size(); ++i) add_take(i);
-  add_ghosts();
-  add_trails();
-  add_crop_box();
+void Builder::add_unposed() {
+  const auto& takes = in_.pictures.takes;
+  if (!takes.empty() && takes[0] != nullptr) add_target_surface(0, takes[0], 1);
+  if (!shows_rest(session_, in_.pane)) return;
+  const Joints& joints = first_take(session_, in_.pane)->target->joints;
+  out_.scene.skeletons.push_back(render::skeleton_view(in_.preview.take_joints.value_or(joints)));
 }
 
-void Builder::add_rest() {
-  const app::TakeState& take = *take_of(session_, in_.pane.takes[0]);
-  if (!in_.pictures.takes.empty() && in_.pictures.takes[0] != nullptr)
-    add_target_surface(0, in_.pictures.takes[0], {});
-  render::SkeletonView view = render::skeleton_view(in_.preview.take_joints.value_or(take.target->joints));
-  out_.scene.skeletons.push_back(std::move(view));
-}
-
-void Builder::add_as_loaded() {
-  if (!in_.pictures.takes.empty() && in_.pictures.takes[0] != nullptr)
-    add_target_surface(0, in_.pictures.takes[0], {});
+/// As a lit mesh, or as discs of a radius in metres (0: of the usual one).
+void Builder::add_surface(render::MeshView view, bool as_points, float radius) {
+  if (!as_points) return out_.scene.meshes.push_back(std::move(view));
+  render::PointsView points;
+  points.positions = view.vertices, points.normals = view.normals;
+  points.colors = view.colors, points.color = view.color;
+  if (radius > 0) points.radius = radius;
+  out_.scene.clouds.push_back(std::move(points));
 }
 
 void Builder::add_scan() {
@@ -131,26 +135,16 @@ void Builder::add_scan() {
   if (layers.surface && in_.pictures.scan != nullptr) {
     const auto& scan = in_.pictures.scan;
     const ColourMemory::Made& made = scan_colors();
-    const SharedPoints colors =
-        made.colors->rows() > 0 ? made.colors : SharedPoints(part_of(scan, scan->mesh.colors));
-    if (scan->mesh.is_cloud() || layers.as_points) {
-      render::PointsView view;
-      view.positions = part_of(scan, scan->mesh.vertices);
-      view.normals = part_of(scan, scan->normals);
-      view.colors = colors, view.color = kScanColor;
-      if (scan->spacing > 0) view.radius = kDisc * scan->spacing;
-      out_.scene.clouds.push_back(std::move(view));
-    } else {
-      render::MeshView view;
-      view.vertices = part_of(scan, scan->mesh.vertices), view.faces = part_of(scan, scan->mesh.faces);
-      view.normals = part_of(scan, scan->normals);
-      view.colors = colors, view.color = kScanColor;
-      out_.scene.meshes.push_back(std::move(view));
-    }
-    tell(made, -1);
+    render::MeshView view;
+    view.vertices = part_of(scan, scan->mesh.vertices), view.faces = part_of(scan, scan->mesh.faces);
+    view.normals = part_of(scan, scan->normals);
+    view.colors = made.colors->rows() > 0 ? made.colors : SharedPoints(part_of(scan, scan->mesh.colors));
+    view.color = kScanColor;
+    add_surface(std::move(view), scan->mesh.is_cloud() || layers.as_points, kDisc * scan->spacing);
+    explain(made, -1);
   }
   add_cropped_away();
-  const Joints* joints = pane_joints(session_, pane_of(0), in_.pictures.frame);
+  const Joints* joints = app::pane_joints(session_, 0, in_.pictures.frame);
   if (in_.preview.source_joints) joints = &*in_.preview.source_joints;
   if (joints != nullptr) add_skeleton(*joints, layers, 0);
 }
@@ -160,44 +154,35 @@ void Builder::add_take(size_t i) {
   const int k = in_.pane.takes[i];
   const bool over = in_.pane.source || in_.pane.takes.size() > 1;
   if (layers.surface && i < in_.pictures.takes.size() && in_.pictures.takes[i] != nullptr)
-    add_target_surface(i, in_.pictures.takes[i], {over ? kOverlaidOpacity : 1});
-  const Joints* joints = pane_joints(session_, pane_of(k + 1), in_.pictures.frame);
+    add_target_surface(i, in_.pictures.takes[i], over ? kOverlaidOpacity : 1);
+  const Joints* joints = app::pane_joints(session_, k + 1, in_.pictures.frame);
   if (i == 0 && in_.preview.take_joints) joints = &*in_.preview.take_joints;
   if (joints != nullptr) add_skeleton(*joints, layers, k + 1);
 }
 
 void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed,
-                                 const Look& how) {
+                                 float opacity, bool coloured) {
   const int k = in_.pane.takes[i];
-  const app::TakeState* take = take_of(session_, k);
+  const app::TakeState* take = at_or_null(session_.takes, k);
   const auto target = take != nullptr ? shown_target(*take) : nullptr;
   if (target == nullptr || posed->vertices.rows() == 0 ||
       posed->vertices.rows() != target->mesh.vertices.rows())
     return;
-  const auto& look = i < in_.looks.size() ? in_.looks[i] : nullptr;
   const Mesh& mesh = target->mesh;
-  SharedPoints colors;
-  if (how.coloured) {
-    const ColourMemory::Made& made = take_colors(k, posed);
-    colors = made.colors;
-    if (colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
-      colors = part_of(target, mesh.colors);
-    if (i == 0 || out_.legend.title.empty()) tell(made, k);
-  }
-  if (mesh.is_cloud()) {
-    render::PointsView view;
-    view.positions = part_of(posed, posed->vertices);
-    view.colors = colors, view.color = take_color(k);
-    if (look != nullptr && look->spacing > 0) view.radius = look->spacing;
-    out_.scene.clouds.push_back(std::move(view));
-    return;
-  }
   render::MeshView view;
   view.vertices = part_of(posed, posed->vertices), view.faces = part_of(target, mesh.faces);
   view.normals = part_of(posed, posed->normals);
-  view.colors = colors, view.color = take_color(k), view.opacity = how.opacity;
+  view.color = take_color(k), view.opacity = opacity;
+  if (coloured) {
+    const ColourMemory::Made& made = take_colors(k, posed);
+    view.colors = made.colors;
+    if (made.colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
+      view.colors = part_of(target, mesh.colors);
+    if (i == 0 || out_.legend.title.empty()) explain(made, k);
+  }
+  const auto& look = i < in_.looks.size() ? in_.looks[i] : nullptr;
   if (look != nullptr) view.ambient = look->ambient, view.two_sided = !look->closed;
-  out_.scene.meshes.push_back(std::move(view));
+  add_surface(std::move(view), mesh.is_cloud(), look != nullptr ? look->spacing : 0);
 }
 
 /// Several people in one space each get their own shade of the two sides' colours.
@@ -217,19 +202,16 @@ void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int 
 
 /// Poses before and after, fainter than the one shown.
 void Builder::add_ghosts() {
-  if (!layer(&app::Layers::ghosts)) return;
-  const render::BackgroundView behind = out_.scene.background;
-  const Vec3 air = (behind.top + behind.bottom) / 2;
   for (const PanePictures::Ghost& ghost : in_.pictures.ghosts) {
     if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts)
-      add_target_surface(0, ghost.take, {kGhostOpacity, false});
+      add_target_surface(0, ghost.take, kGhostOpacity, false);
     if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
-      render::PointsView view;
-      view.positions = part_of(ghost.scan, ghost.scan->mesh.vertices);
+      const float spacing = ghost.scan->spacing > 0 ? ghost.scan->spacing : render::PointsView().radius;
+      render::MeshView view;
+      view.vertices = part_of(ghost.scan, ghost.scan->mesh.vertices);
       view.normals = part_of(ghost.scan, ghost.scan->normals);
-      view.color = 0.75f * air + 0.25f * kScanColor;
-      view.radius = 0.6f * (ghost.scan->spacing > 0 ? ghost.scan->spacing : view.radius);
-      out_.scene.clouds.push_back(std::move(view));
+      view.color = 0.75f * air() + 0.25f * kScanColor;
+      add_surface(std::move(view), true, 0.6f * spacing);
     }
   }
 }
@@ -248,14 +230,13 @@ void Builder::add_trail(int person, int joint) {
   const int now = in_.pictures.frame,
             reach = static_cast<int>(std::lround(kTrailSeconds * session_.source.fps));
   const Vec3 color = trail_color(joint, in_.theme);
-  for (const int step :
-       {1, -1}) {  // what was comes up to now, what comes goes back to it: both fade outwards
+  // The past runs up to now, the future back to it: both fade outwards.
+  for (const int step : {1, -1}) {
     std::vector<Vec3> path;
     for (int f = now - step * reach; f != now + step; f += step)
       if (const Joints* joints = app::pane_joints(session_, person, f)) path.push_back(joints->row(joint));
     if (path.size() < 2) continue;
-    Points points(path.size(), 3);
-    for (size_t i = 0; i < path.size(); ++i) points.row(i) = path[i];
+    const Points points = Eigen::Map<const Points>(path.front().data(), path.size(), 3);
     render::LinesView line = render::trail(points, color, step == 1 ? 3.f : 1.5f);
     line.x_ray = true;
     out_.scene.lines.push_back(std::move(line));
@@ -266,12 +247,10 @@ void Builder::add_trail(int person, int joint) {
 void Builder::add_cropped_away() {
   const auto& scan = in_.pictures.scan;
   if (session_.tool != app::Tool::Crop || scan == nullptr || scan->cropped_away.rows() == 0) return;
-  const Vec3 air = (out_.scene.background.top + out_.scene.background.bottom) / 2;
-  render::PointsView view;
-  view.positions = part_of(scan, scan->cropped_away);
-  view.color = 0.72f * air + 0.28f * kScanColor;
-  if (scan->spacing > 0) view.radius = 0.6f * scan->spacing;
-  out_.scene.clouds.push_back(std::move(view));
+  render::MeshView view;
+  view.vertices = part_of(scan, scan->cropped_away);
+  view.color = 0.72f * air() + 0.28f * kScanColor;
+  add_surface(std::move(view), true, 0.6f * scan->spacing);
 }
 
 void Builder::add_crop_box() {
@@ -282,26 +261,24 @@ void Builder::add_crop_box() {
   lines.x_ray = true, lines.opacity = 0.9f;
   out_.scene.lines.push_back(std::move(lines));
   render::PointsView handles;
-  Points centres(6, 3), colors(6, 3);
-  for (int face = 0; face < 6; ++face) {
-    centres.row(face) = face_centre(box, face);
-    colors.row(face) = face == in_.preview.crop_face ? Vec3(1, 0.85f, 0.4f) : color;
-  }
-  handles.positions = std::move(centres), handles.colors = std::move(colors);
+  Points colors = color.transpose().replicate(6, 1);
+  if (in_.preview.crop_face >= 0) colors.row(in_.preview.crop_face) = Vec3(1, 0.85f, 0.4f);
+  handles.positions = face_centres(box), handles.colors = std::move(colors);
   handles.radius = kHandleRadius;
   out_.scene.clouds.push_back(std::move(handles));
 }
 
 void Builder::set_ground() {
   render::GroundView& ground = out_.scene.ground;
-  ground.visible = layer(&app::Layers::ground);
+  ground.visible = (in_.pane.source && session_.view.source.ground) ||
+                   (!in_.pane.takes.empty() && session_.view.take.ground);
   if (in_.theme == ThemeKind::Dark) ground.line = Vec3(0.42f, 0.45f, 0.50f), ground.shadow = 0.8f;
-  if (!shows_rest(session_, in_.pane) && !shows_as_loaded(session_, in_.pane)) return;
-  const Points& rest = shown_target(*take_of(session_, in_.pane.takes[0]))->mesh.vertices;
+  if (!unposed_) return;
+  const Points& rest = shown_target(*first_take(session_, in_.pane))->mesh.vertices;
   if (rest.rows() > 0) ground.height = rest.col(1).minCoeff();
 }
 
-void Builder::tell(const ColourMemory::Made& made, int take) {
+void Builder::explain(const ColourMemory::Made& made, int take) {
   if (made.values.legend.title.empty()) return;
   out_.legend = made.values.legend;
   out_.values = made.values.values;
@@ -309,26 +286,24 @@ void Builder::tell(const ColourMemory::Made& made, int take) {
 }
 
 const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed) {
-  const app::TakeState& take = *take_of(session_, k);
+  const app::TakeState& take = session_.takes[k];
   ColourMemory::Made now;
   const Colouring colouring = take_colouring(session_);
-  const float frame = static_cast<float>(in_.pictures.frame);
   now.settings = {static_cast<float>(colouring), session_.view.error_scale_mm,
                   static_cast<float>(weights_joint(session_))};
   if (colouring == Colouring::Weights || colouring == Colouring::Doubt) {  // the same in every frame
     now.kept = {take.weights, take.binding};
   } else if (colouring != Colouring::Plain) {
     now.kept = {posed, in_.pictures.reference, session_.truth};
-    now.settings.push_back(frame);
+    now.settings.push_back(static_cast<float>(in_.pictures.frame));
   }
   const int f = std::max(0, in_.pictures.frame);
   if (colouring == Colouring::Confidence && f < ssize(session_.source.frames) && f < ssize(take.joints)) {
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, take.joints[f]);
   }
-  for (const auto& pointer : now.kept) now.from.push_back(pointer.get());
   ColourMemory::Made& made = memory_.made[k];
-  if (!made.from.empty() && made.from == now.from && made.settings == now.settings) return made;
+  if (made.kept == now.kept && made.settings == now.settings) return made;
   now.values = take_values(session_, k, in_.pictures, posed);
   const bool categories = colouring == Colouring::Weights && !now.values.legend.categories.empty();
   now.colors = categories ? SharedPoints(render::weight_colors(*take.weights)) : scale_colors(now.values);
@@ -344,9 +319,8 @@ const ColourMemory::Made& Builder::scan_colors() {
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, session_.source.frames[f].joints);
   }
-  now.from = {in_.pictures.scan.get()};
   ColourMemory::Made& made = memory_.made[-1];
-  if (made.from == now.from && made.settings == now.settings) return made;
+  if (made.kept == now.kept && made.settings == now.settings) return made;
   now.values = scan_values(session_, in_.pictures);
   now.colors = scale_colors(now.values);
   return made = std::move(now);
@@ -354,7 +328,7 @@ const ColourMemory::Made& Builder::scan_colors() {
 
 }  // namespace
 
-PaneScene build_scene(const SceneInput& input, ColourMemory* memory) {
+PaneScene build_scene(const SceneInput& input, ColourMemory& memory) {
   return Builder(input, memory).build();
 }
 
@@ -368,16 +342,11 @@ Box crop_box(const Session& session, const PanePictures& pictures) {
   return {points.colwise().minCoeff().transpose() - around, points.colwise().maxCoeff().transpose() + around};
 }
 
-Vec3 face_centre(const Box& box, int face) {
-  Vec3 centre = (box.low + box.high) / 2;
-  centre[face / 2] = face % 2 == 1 ? box.high[face / 2] : box.low[face / 2];
-  return centre;
-}
-
-Vec3 take_color(int k) {
-  static const std::array<Vec3, 4> kTints = {Vec3(0.77f, 0.74f, 0.71f), Vec3(0.66f, 0.75f, 0.69f),
-                                             Vec3(0.72f, 0.68f, 0.78f), Vec3(0.79f, 0.69f, 0.64f)};
-  return kTints[std::max(0, k) % kTints.size()];
+Points face_centres(const Box& box) {
+  Points centres = ((box.low + box.high) / 2).transpose().replicate(6, 1);
+  for (int face = 0; face < 6; ++face)
+    centres(face, face / 2) = face % 2 == 1 ? box.high[face / 2] : box.low[face / 2];
+  return centres;
 }
 
 render::BackgroundView background_of(ThemeKind theme) {

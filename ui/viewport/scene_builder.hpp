@@ -25,9 +25,8 @@ struct EditPreview {
 /// Colours kept while their inputs stay the same; one for each pane.
 struct ColourMemory {
   struct Made {
-    std::vector<const void*> from;
     std::vector<float> settings;
-    std::vector<std::shared_ptr<const void>> kept;  ///< so that no address in `from` is used again
+    std::vector<std::shared_ptr<const void>> kept;  ///< the inputs: one and the same has not changed
     SurfaceValues values;
     render::SharedPoints colors;
   };
@@ -47,20 +46,18 @@ struct SceneInput {
 struct PaneScene {
   render::Scene scene;
   Legend legend;
-  std::shared_ptr<const Eigen::VectorXf> values;  ///< of the first surface: what hovering tells
+  std::shared_ptr<const Eigen::VectorXf> values;  ///< of the first surface, for the tip under the pointer
   int values_take = -1;                           ///< whose surface; -1 the scan
 };
 
 /// Follows View and Layers: surfaces and their colouring, skeletons, trails, ghosts, ground, the crop box
-/// while that tool is active. What is not there yet is left out. memory: null to make all colours anew.
-PaneScene build_scene(const SceneInput& input, ColourMemory* memory = nullptr);
+/// while that tool is active. What is not there yet is left out.
+PaneScene build_scene(const SceneInput& input, ColourMemory& memory);
 
 /// The box that the crop tool shows: the document's, or one around the person in all frames so far.
 Box crop_box(const app::Session& session, const PanePictures& pictures);
-/// The middle of a face of a box, numbered as EditPreview::crop_face.
-Vec3 face_centre(const Box& box, int face);
-/// The plain surface of a take.
-Vec3 take_color(int k);
+/// The middles of a box's faces, [6, 3], in the order of EditPreview::crop_face.
+Points face_centres(const Box& box);
 /// What is behind everything.
 render::BackgroundView background_of(ThemeKind theme);
 

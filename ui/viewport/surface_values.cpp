@@ -1,7 +1,6 @@
 #include "ui/viewport/surface_values.hpp"
 
-#include <algorithm>
-
+#include "app/session/follow.hpp"
 #include "render/colors.hpp"
 #include "retarget/base/index.hpp"
 #include "ui/panels/panel.hpp"
@@ -11,43 +10,35 @@ namespace {
 
 using app::Colouring;
 using app::Session;
+using Scale = Legend::Scale;
 using Picture = std::shared_ptr<const app::PosedPicture>;
 
 SurfaceValues missing(const std::string& title, const std::string& why) {
   SurfaceValues none;
-  none.legend.title = title;
-  none.legend.missing = why;
+  none.legend.title = title, none.legend.missing = why;
   return none;
 }
 
-Legend scale(const std::string& title, const std::string& unit, float high) {
-  Legend legend;
-  legend.title = title, legend.unit = unit, legend.high = high;
-  return legend;
-}
-
-SurfaceValues millimetres(const Session& session, const std::string& title, Eigen::VectorXf values) {
+/// Values on a scale from 0 to `high`.
+SurfaceValues scaled(const std::string& title, const std::string& unit, float high, Scale scale,
+                     Eigen::VectorXf values) {
   SurfaceValues out;
-  out.legend = scale(title, "mm", session.view.error_scale_mm);
+  out.legend.title = title, out.legend.unit = unit, out.legend.high = high, out.legend.scale = scale;
   out.values = std::make_shared<const Eigen::VectorXf>(std::move(values));
   return out;
 }
 
-SurfaceValues errors(const Session& session, const std::string& title, Eigen::VectorXf values) {
-  SurfaceValues out = millimetres(session, title, std::move(values));
-  out.legend.scale = Legend::Scale::Error;
-  return out;
+/// Millimetres between rows of the same number; both [V, 3].
+SurfaceValues distances(const Session& session, const std::string& title, const Points& a, const Points& b) {
+  return scaled(title, "mm", session.view.error_scale_mm, Scale::Error, 1000 * (a - b).rowwise().norm());
 }
 
 SurfaceValues weights(const Session& session, const app::TakeState& take) {
   if (take.weights == nullptr) return missing("Skin weights", "not ready yet");
   const int joint = weights_joint(session);
+  if (joint >= 0 && joint < take.weights->cols())
+    return scaled("Weight, " + joint_label(joint), "", 1, Scale::Viridis, take.weights->col(joint));
   SurfaceValues out;
-  if (joint >= 0 && joint < take.weights->cols()) {
-    out.legend = scale("Weight, " + joint_label(joint), "", 1);
-    out.values = std::make_shared<const Eigen::VectorXf>(take.weights->col(joint));
-    return out;
-  }
   out.legend.title = "Skin weights";
   for (int j = 0; j < kJointCount; ++j)
     out.legend.categories.push_back({joint_label(j), render::kCategories[j]});
@@ -58,11 +49,7 @@ SurfaceValues doubt(const app::TakeState& take, Eigen::Index vertices) {
   const char* const title = "Binding uncertainty";
   if (take.binding == nullptr || take.binding->doubt.size() != vertices)
     return missing(title, "it uses its own skin weights");
-  SurfaceValues out;
-  out.legend = scale(title, "%", 100);
-  out.legend.scale = Legend::Scale::Doubt;
-  out.values = std::make_shared<const Eigen::VectorXf>(100 * take.binding->doubt);
-  return out;
+  return scaled(title, "%", 100, Scale::Doubt, 100 * take.binding->doubt);
 }
 
 SurfaceValues error(const Session& session, const Points& vertices, int frame) {
@@ -72,18 +59,20 @@ SurfaceValues error(const Session& session, const Points& vertices, int frame) {
   if (truth.vertices.empty()) return missing(title, "the truth has no vertices");
   if (truth.vertex_count != vertices.rows()) return missing(title, "the truth is of another mesh");
   if (frame < 0 || frame >= truth.frames) return missing(title, "the truth is shorter");
-  return errors(session, title, distances_mm(vertices, truth.frame_vertices(frame)));
+  return distances(session, title, vertices, truth.frame_vertices(frame));
 }
 
+/// Each point has the confidence of the joint nearest to it.
 SurfaceValues confidence(const Session& session, const Points& points, const Joints* joints, int frame) {
-  const char* const title = "Confidence";
-  if (joints == nullptr || frame < 0 || frame >= ssize(session.source.frames))
-    return missing(title, "not ready yet");
-  SurfaceValues out;
-  out.legend = scale(title, "", 1);
-  const app::KeptSource& seen = session.source.frames[frame];
-  out.values = std::make_shared<const Eigen::VectorXf>(of_nearest_joint(points, *joints, seen.confidence_of));
-  return out;
+  const app::KeptSource* seen = at_or_null(session.source.frames, frame);
+  if (joints == nullptr || seen == nullptr) return missing("Confidence", "not ready yet");
+  Eigen::VectorXf values(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    Eigen::Index nearest = 0;
+    (joints->rowwise() - points.row(i)).rowwise().squaredNorm().minCoeff(&nearest);
+    values[i] = seen->confidence_of[nearest];
+  }
+  return scaled("Confidence", "", 1, Scale::Viridis, std::move(values));
 }
 
 }  // namespace
@@ -116,17 +105,18 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
       return weights(session, take);
     case Colouring::Offsets:
       if (posed->offsets.rows() != posed->vertices.rows()) return missing("Offsets", "not ready yet");
-      return millimetres(session, "Offsets", 1000 * posed->offsets.rowwise().norm());
+      return scaled("Offsets", "mm", session.view.error_scale_mm, Scale::Viridis,
+                    1000 * posed->offsets.rowwise().norm());
     case Colouring::Doubt:
       return doubt(take, posed->vertices.rows());
     case Colouring::Error:
       return error(session, posed->vertices, pictures.frame);
     case Colouring::Difference:
-      if (k == 0) return errors(session, "Difference", Eigen::VectorXf::Zero(posed->vertices.rows()));
+      if (k == 0) return distances(session, "Difference", posed->vertices, posed->vertices);
       if (pictures.reference == nullptr) return missing("Difference", "the first take is not ready");
       if (pictures.reference->vertices.rows() != posed->vertices.rows())
         return missing("Difference", "the first take is of another mesh");
-      return errors(session, "Difference", distances_mm(posed->vertices, pictures.reference->vertices));
+      return distances(session, "Difference", posed->vertices, pictures.reference->vertices);
     case Colouring::Confidence:
       return confidence(session, posed->vertices, at_or_null(take.joints, pictures.frame), pictures.frame);
   }
@@ -135,24 +125,8 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
 
 SurfaceValues scan_values(const Session& session, const PanePictures& pictures) {
   if (session.view.source.colouring != Colouring::Confidence || pictures.scan == nullptr) return {};
-  const app::KeptSource* seen = at_or_null(session.source.frames, pictures.frame);
-  return confidence(session, pictures.scan->mesh.vertices, seen != nullptr ? &seen->joints : nullptr,
+  return confidence(session, pictures.scan->mesh.vertices, app::pane_joints(session, 0, pictures.frame),
                     pictures.frame);
-}
-
-Eigen::VectorXf distances_mm(const Points& a, const Points& b) {
-  return 1000 * (a - b).rowwise().norm();
-}
-
-Eigen::VectorXf of_nearest_joint(const Points& points, const Joints& joints,
-                                 const Eigen::Array<float, kJointCount, 1>& value) {
-  Eigen::VectorXf out(points.rows());
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    Eigen::Index nearest = 0;
-    (joints.rowwise() - points.row(i)).rowwise().squaredNorm().minCoeff(&nearest);
-    out[i] = value[nearest];
-  }
-  return out;
 }
 
 }  // namespace understudy::ui

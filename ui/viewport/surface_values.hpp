@@ -17,7 +17,6 @@ struct PanePictures {
   std::vector<std::shared_ptr<const app::PosedPicture>> takes;  ///< as PaneContent::takes
   std::shared_ptr<const app::PosedPicture> reference;           ///< the first take, for differences
   struct Ghost {
-    int frame = 0;
     std::shared_ptr<const app::ScanPicture> scan;
     std::shared_ptr<const app::PosedPicture> take;
   };
@@ -29,7 +28,7 @@ struct Legend {
   enum class Scale { Viridis, Error, Doubt };
   std::string title;  ///< "Offsets"; empty: no legend
   std::string unit;   ///< "mm"
-  float low = 0, high = 1;
+  float high = 1;     ///< the scale begins at 0
   Scale scale = Scale::Viridis;
   struct Category {
     std::string label;
@@ -58,11 +57,5 @@ SurfaceValues take_values(const app::Session& session, int k, const PanePictures
                           const std::shared_ptr<const app::PosedPicture>& posed);
 /// Of the source's scan.
 SurfaceValues scan_values(const app::Session& session, const PanePictures& pictures);
-
-/// Millimetres between rows of the same number; both [V, 3].
-Eigen::VectorXf distances_mm(const Points& a, const Points& b);
-/// Each point's joint, the nearest one, and of that its value: [N].
-Eigen::VectorXf of_nearest_joint(const Points& points, const Joints& joints,
-                                 const Eigen::Array<float, kJointCount, 1>& value);
 
 }  // namespace understudy::ui

@@ -16,31 +16,39 @@ constexpr size_t kKept = 8;  // targets; a document rarely shows more
 
 using Look = std::shared_ptr<const TargetLook>;
 
-Look guarded_plain_look(const Target& target) {
-  try {
-    return std::make_shared<const TargetLook>(plain_look_of(target));
-  } catch (const Error& error) {
-    log::warn(std::string("the shading of a target: ") + error.what());
-    TargetLook bare;
-    bare.rest.vertices = target.mesh.vertices;
-    return std::make_shared<const TargetLook>(std::move(bare));
-  }
+/// Makes a part of a look; a target of which it cannot be made is drawn without.
+template <class Part>
+void attempt(const Part& part) {
+  if (const std::string problem = failure_of(part); !problem.empty())
+    log::warn("the shading of a target: " + problem);
 }
 
-void shade(TargetLook& look, const Target& target) {
-  look.shaded = true;
-  if (!target.mesh.is_cloud() && look.rest.normals.rows() > 0)
-    look.ambient = ambient_occlusion(target.mesh.vertices, target.mesh.faces, look.rest.normals);
+/// All but `ambient`, within some hundredths of a second.
+Look plain_look_of(const Target& target) {
+  const Mesh& mesh = target.mesh;
+  TargetLook look;
+  app::PosedPicture rest;
+  rest.vertices = mesh.vertices;
+  attempt([&] {
+    if (mesh.is_cloud()) {
+      look.spacing = point_spacing(mesh.vertices);
+    } else {
+      rest.normals = vertex_normals(mesh.vertices, mesh.faces);
+      look.closed = is_closed(mesh.faces);
+    }
+    rest.offsets = Points::Zero(mesh.vertices.rows(), 3);
+  });
+  look.rest = std::make_shared<const app::PosedPicture>(std::move(rest));
+  return std::make_shared<const TargetLook>(std::move(look));
 }
 
-/// A target that cannot be shaded is drawn without.
-Look guarded_shaded_look(const Look& plain, const Target& target) {
+Look shaded_look_of(const Look& plain, const Target& target) {
   TargetLook look = *plain;
-  try {
-    shade(look, target);
-  } catch (const Error& error) {
-    log::warn(std::string("the shading of a target: ") + error.what());
-  }
+  look.shaded = true;
+  attempt([&] {
+    if (!target.mesh.is_cloud() && look.rest->normals.rows() > 0)
+      look.ambient = ambient_occlusion(target.mesh.vertices, target.mesh.faces, look.rest->normals);
+  });
   return std::make_shared<const TargetLook>(std::move(look));
 }
 
@@ -59,26 +67,10 @@ bool is_closed(const Faces& faces) {
       edges.push_back(std::min(a, b) << 32 | std::max(a, b));
     }
   std::sort(edges.begin(), edges.end());
-  for (size_t i = 0; i < edges.size();) {
-    size_t end = i;
-    while (end < edges.size() && edges[end] == edges[i]) ++end;
-    if (end - i != 2) return false;
-    i = end;
-  }
-  return !edges.empty();
-}
-
-TargetLook plain_look_of(const Target& target) {
-  TargetLook look;
-  look.rest.vertices = target.mesh.vertices;
-  look.rest.offsets = Points::Zero(target.mesh.vertices.rows(), 3);
-  if (target.mesh.is_cloud()) {
-    look.spacing = point_spacing(target.mesh.vertices);
-    return look;
-  }
-  look.rest.normals = vertex_normals(target.mesh.vertices, target.mesh.faces);
-  look.closed = is_closed(target.mesh.faces);
-  return look;
+  const size_t n = edges.size();
+  for (size_t i = 0; i < n; i += 2)  // each edge twice, never four times
+    if (i + 1 == n || edges[i] != edges[i + 1] || (i + 2 < n && edges[i] == edges[i + 2])) return false;
+  return n > 0;
 }
 
 bool same_surface(const Target* a, const Target* b) {
@@ -115,15 +107,15 @@ Look TargetLooks::of(const std::shared_ptr<const Target>& target) {
   if (shaded || entry.shaded.valid()) return entry.look;
   if (entry.look != nullptr) {
     entry.shaded = std::async(std::launch::async,
-                              [target, plain = entry.look] { return guarded_shaded_look(plain, *target); });
+                              [target, plain = entry.look] { return shaded_look_of(plain, *target); });
     return entry.look;
   }
   std::promise<Look> early;
   entry.plain = early.get_future();
   entry.shaded = std::async(std::launch::async, [target, early = std::move(early)]() mutable {
-    const Look plain = guarded_plain_look(*target);
+    const Look plain = plain_look_of(*target);
     early.set_value(plain);
-    return guarded_shaded_look(plain, *target);
+    return shaded_look_of(plain, *target);
   });
   return nullptr;
 }
@@ -133,7 +125,7 @@ Look TargetLooks::plain_of(const std::shared_ptr<const Target>& target) {
   Entry& entry = entry_of(target);
   take_in(entry, false);
   if (entry.look == nullptr && !entry.plain.valid())
-    entry.plain = std::async(std::launch::async, [target] { return guarded_plain_look(*target); });
+    entry.plain = std::async(std::launch::async, [target] { return plain_look_of(*target); });
   return entry.look;
 }
 

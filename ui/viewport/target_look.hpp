@@ -11,17 +11,15 @@
 namespace understudy::ui {
 
 struct TargetLook {
-  render::SharedValues ambient;  ///< light from all around, in the T-pose; empty for a cloud
-  bool closed = false;           ///< its inside is never visible
-  float spacing = 0;             ///< of a cloud's points, metres
-  app::PosedPicture rest;        ///< the T-pose as a picture
-  bool shaded = false;           ///< `ambient` is made, too
+  render::SharedValues ambient;                   ///< light from all around, in the T-pose; empty for a cloud
+  bool closed = false;                            ///< its inside is never visible
+  float spacing = 0;                              ///< of a cloud's points, metres
+  bool shaded = false;                            ///< `ambient` is made, too
+  std::shared_ptr<const app::PosedPicture> rest;  ///< the T-pose as a picture
 };
 
 /// Whether every edge has a face on either side, so that the inside cannot be seen.
 bool is_closed(const Faces& faces);
-/// All but `ambient`, within some hundredths of a second.
-TargetLook plain_look_of(const Target& target);
 
 /// Whether a picture of one can be shown as the other: vertices of one number and order, the same faces.
 bool same_surface(const Target* a, const Target* b);

@@ -3,14 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "app/session/follow.hpp"
 #include "retarget/base/index.hpp"
 #include "ui/gui/draw_pass.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/panel.hpp"
-#include "ui/viewport/overlay.hpp"
-#include "ui/viewport/pane.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -19,13 +17,7 @@ using app::Session;
 
 constexpr float kLeastSide = 24;  // pixels; a smaller pane is not drawn
 constexpr float kGap = 2;         // points between panes
-
-struct Frame {
-  const Session& session;
-  app::FrameCache& cache;
-  app::CommandQueue& queue;
-  Ui& ui;
-};
+constexpr float kTurn = 0.0075f;  // radians a point of dragging
 
 Rect whole_pixels(const Rect& rect) {
   const auto down = [](const ImVec2& p) { return ImVec2(std::floor(p.x), std::floor(p.y)); };
@@ -48,59 +40,30 @@ std::vector<Rect> cells(const Rect& area, int count, float gap) {
   return all;
 }
 
-}  // namespace
-
-struct Views::Impl {
-  void draw(const Frame& f);
-  void prepare(const Frame& f, size_t count);
-  void draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
-  void draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
-  float wipe_line(const Frame& f, const Rect& area);
-  void set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view);
-  void interact(const Frame& f, Pane& pane);
-  void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
-  void make_picture(const Frame& f, Pane& pane);
-  void draw_picture(const Frame& f, Pane& pane);
-  bool moving(const Session& session) const;
-  void show(const Frame& f, Pane& pane, const Rect& part, bool right);
-  void describe(const Session& session, const Pane& pane, Overlay& overlay) const;
-  void draw_brush(const Frame& f, const Pane& pane);
-  void keep_view_when_following_changes(const Frame& f);
-
-  std::optional<render::Renderer> renderer, sketcher;  // as the settings say, and for while things move
-  int samples = 0;
-  std::vector<std::unique_ptr<Pane>> panes;
-  TargetLooks looks;
-  Hand hand;
-  Pointer pointer;        // of the pane that it is in
-  Pane* under = nullptr;  // which
-  app::Tool tool = app::Tool::Look;
-  std::optional<bool> followed;
-  bool hold = false;  // cameras stay for this frame as they were
-  int64_t drawn = 0;
-};
-
-Views::Views() : impl_(std::make_unique<Impl>()) {}
-Views::~Views() = default;
-
-void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui) {
-  impl_->draw({session, cache, queue, ui});
+/// The item that the mouse uses in a picture.
+void picture_button(const char* name, const Rect& rect) {
+  ImGui::SetCursorScreenPos(rect.min);
+  ImGui::InvisibleButton(name, {rect.width(), rect.height()},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
 }
 
+}  // namespace
+
 void Views::forget() {
-  impl_->hand.let_go();
-  impl_->under = nullptr;
-  impl_->panes.clear();
-  impl_->looks.forget();
+  hand_.let_go();
+  under_ = nullptr;
+  panes_.clear();
+  looks_.forget();
 }
 
 bool Views::waiting() const {
-  return std::any_of(impl_->panes.begin(), impl_->panes.end(),
+  return std::any_of(panes_.begin(), panes_.end(),
                      [](const auto& pane) { return pane->keeper.waiting() || !pane->canvas.fine(); });
 }
 
 bool Views::shows_take(int k) const {
-  return std::any_of(impl_->panes.begin(), impl_->panes.end(), [k](const auto& pane) {
+  return std::any_of(panes_.begin(), panes_.end(), [k](const auto& pane) {
     const auto& takes = pane->content.takes;
     const auto& shown = pane->keeper.pictures().takes;
     for (size_t i = 0; i < takes.size() && i < shown.size(); ++i)
@@ -109,15 +72,8 @@ bool Views::shows_take(int k) const {
   });
 }
 
-int64_t Views::arrived() const {
-  return impl_->looks.arrived();
-}
-
-int64_t Views::drawn() const {
-  return impl_->drawn;
-}
-
-void Views::Impl::draw(const Frame& f) {
+void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui) {
+  const Frame f{session, cache, queue, ui};
   constexpr int kFlags = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
   if (ImGui::BeginChild("##views", {0, 0}, false, kFlags)) {
@@ -136,34 +92,31 @@ void Views::Impl::draw(const Frame& f) {
   ImGui::EndChild();
 }
 
-void Views::Impl::prepare(const Frame& f, size_t count) {
-  if (!renderer || samples != f.session.settings.samples) {
-    samples = f.session.settings.samples;
-    renderer.emplace(render::RendererOptions{samples, render::Quality::Interactive});
-    sketcher.reset();
+void Views::prepare(const Frame& f, size_t count) {
+  if (!renderer_ || samples_ != f.session.settings.samples) {
+    samples_ = f.session.settings.samples;
+    renderer_.emplace(render::RendererOptions{samples_, render::Quality::Interactive});
+    sketcher_.reset();
     // One sample, and no smoothing of its edges: a third of the time on software OpenGL.
-    if (samples > 1) sketcher.emplace(render::RendererOptions{1, render::Quality::Interactive, false});
-    for (auto& pane : panes) pane->canvas.forget();
+    if (samples_ > 1) sketcher_.emplace(render::RendererOptions{1, render::Quality::Interactive, false});
+    for (auto& pane : panes_) pane->canvas.forget();
   }
-  if (panes.size() != count) hand.let_go();
-  while (panes.size() < count) panes.push_back(std::make_unique<Pane>());
-  panes.resize(count);
-  if (tool != f.session.tool || (hand.busy() && key_pressed(render::Key::Escape, false))) hand.let_go();
-  tool = f.session.tool;
-  under = nullptr;
+  if (panes_.size() != count) hand_.let_go();
+  while (panes_.size() < count) panes_.push_back(std::make_unique<Pane>());
+  panes_.resize(count);
+  if (tool_ != f.session.tool || (hand_.busy() && key_pressed(render::Key::Escape, false))) hand_.let_go();
+  tool_ = f.session.tool;
+  under_ = nullptr;
 }
 
-void Views::Impl::draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
+void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
   const auto rects = cells(area, contents.size(), f.ui.px(kGap));
   for (size_t i = 0; i < contents.size(); ++i) {
     if (rects[i].width() < kLeastSide || rects[i].height() < kLeastSide) continue;
-    Pane& pane = *panes[i];
+    Pane& pane = *panes_[i];
     set_up(f, pane, contents[i], {rects[i], pane_camera(f.session, contents[i])});
-    ImGui::SetCursorScreenPos(rects[i].min);
     const std::string name = "view." + std::to_string(contents[i].number);
-    ImGui::InvisibleButton(name.c_str(), {rects[i].width(), rects[i].height()},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                               ImGuiButtonFlags_MouseButtonMiddle);
+    picture_button(name.c_str(), rects[i]);
     f.ui.mark(name);
     interact(f, pane);
     make_picture(f, pane);
@@ -172,22 +125,19 @@ void Views::Impl::draw_row(const Frame& f, const std::vector<PaneContent>& conte
 }
 
 /// Two pictures over each other in one place, seen through the camera of the first.
-void Views::Impl::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
+void Views::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
   const float line = wipe_line(f, area);
   const render::Camera camera = pane_camera(f.session, contents[0]);
-  ImGui::SetCursorScreenPos(area.min);
-  ImGui::InvisibleButton("view.both", {area.width(), area.height()},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                             ImGuiButtonFlags_MouseButtonMiddle);
+  picture_button("view.both", area);
   const size_t mouse_in = ImGui::GetIO().MousePos.x < line ? 0 : 1;
-  for (size_t i = 0; i < 2; ++i) set_up(f, *panes[i], contents[i], {area, camera});
-  const size_t gripped = hand.pane() == contents[0] ? 0 : 1;
-  interact(f, *panes[hand.busy() ? gripped : mouse_in]);
+  for (size_t i = 0; i < 2; ++i) set_up(f, *panes_[i], contents[i], {area, camera});
+  const size_t gripped = hand_.pane() == contents[0] ? 0 : 1;
+  interact(f, *panes_[hand_.busy() ? gripped : mouse_in]);
   for (size_t i = 0; i < 2; ++i) {
-    make_picture(f, *panes[i]);
+    make_picture(f, *panes_[i]);
     const Rect part = i == 0 ? Rect{area.min, {line, area.max.y}} : Rect{{line, area.min.y}, area.max};
     f.ui.mark("view." + std::to_string(contents[i].number), part);
-    show(f, *panes[i], part, i == 1);
+    show(f, *panes_[i], part, i == 1);
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float middle = area.min.y + 0.5f * area.height();
@@ -196,7 +146,7 @@ void Views::Impl::draw_wipe(const Frame& f, const std::vector<PaneContent>& cont
 }
 
 /// The handle comes before the picture's item, so that it is met first.
-float Views::Impl::wipe_line(const Frame& f, const Rect& area) {
+float Views::wipe_line(const Frame& f, const Rect& area) {
   const float line = std::floor(area.min.x + std::clamp(f.session.view.wipe, 0.f, 1.f) * area.width());
   const float reach = f.ui.px(6);
   ImGui::SetCursorScreenPos({line - reach, area.min.y});
@@ -210,24 +160,24 @@ float Views::Impl::wipe_line(const Frame& f, const Rect& area) {
   return line;
 }
 
-void Views::Impl::set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view) {
+void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view) {
   if (!(pane.content == content)) pane.colours = {};
   const render::Camera before = pane.view.camera;
-  const bool held = hold && pane.content == content && !pane.view.rect.empty();
+  const bool held = hold_ && pane.content == content && !pane.view.rect.empty();
   pane.content = content;
   pane.view = view;
   if (held) pane.view.camera = before;
-  pane.keeper.update(f.session, f.cache, looks, content);
+  pane.keeper.update(f.session, f.cache, looks_, content);
   prefetch(f.session, f.cache, content);
 }
 
 /// The item just made is the pane's.
-void Views::Impl::interact(const Frame& f, Pane& pane) {
+void Views::interact(const Frame& f, Pane& pane) {
   const Pointer now = pointer_of_item();
   const HandPlace place{f.session, pane.content, pane.view, pane.keeper.pictures(), f.ui.scale()};
-  const bool taken = hand.work(place, now, f.queue);
+  const bool taken = hand_.work(place, now, f.queue);
   if (now.over || now.held) {
-    pointer = now, under = &pane;
+    pointer_ = now, under_ = &pane;
     const bool steering = now.turning || now.panning || now.wheel != 0;
     if ((now.pressed || steering) && pane.content.number != f.session.view.active_pane)
       f.queue.push_back({"view.pane", {std::to_string(pane.content.number)}});
@@ -235,11 +185,10 @@ void Views::Impl::interact(const Frame& f, Pane& pane) {
   steer(f, pane, now, !taken);
 }
 
-void Views::Impl::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left) {
-  NavigationOptions options;
-  options.sensitivity = f.session.settings.mouse_sensitivity, options.scale = f.ui.scale();
+void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left) {
+  const float turn = kTurn * f.session.settings.mouse_sensitivity / f.ui.scale();
   std::optional<render::Camera> camera;
-  if (!hand.busy()) camera = navigated(pane.view, now, free_left, options);
+  if (!hand_.busy()) camera = navigated(pane.view, now, free_left, turn);
   if (now.doubled && free_left) {
     if (const auto place = surface_place(f.session, pane, now.at)) {
       camera = pane.view.camera;
@@ -250,41 +199,37 @@ void Views::Impl::steer(const Frame& f, Pane& pane, const Pointer& now, bool fre
   f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, *camera)});
 }
 
-void Views::Impl::make_picture(const Frame& f, Pane& pane) {
+void Views::make_picture(const Frame& f, Pane& pane) {
   const HandPlace place{f.session, pane.content, pane.view, pane.keeper.pictures(), f.ui.scale()};
   PanePictures pictures = pane.keeper.pictures();
-  pane.preview = hand.preview(place);
-  if (const auto turned = hand.turned_picture(place); turned != nullptr && !pictures.takes.empty())
+  pane.preview = hand_.preview(place);
+  if (const auto turned = hand_.turned_picture(place); turned != nullptr && !pictures.takes.empty())
     pictures.takes[0] = turned;
-  std::vector<std::shared_ptr<const TargetLook>> found;
-  for (const int k : pane.content.takes) {
-    const app::TakeState* take = at_or_null(f.session.takes, k);
-    found.push_back(take != nullptr ? looks.of(take->target) : nullptr);
-  }
-  if (shows_as_loaded(f.session, pane.content)) found = {*look_of_standing(f.session, looks, pane.content)};
+  auto found = looks_of(f.session, looks_, pane.content);
+  if (shows_as_loaded(f.session, pane.content)) found = {*unposed_look(f.session, looks_, pane.content)};
   const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.ui.theme().kind};
-  pane.made = build_scene(input, &pane.colours);
+  pane.made = build_scene(input, pane.colours);
   draw_picture(f, pane);
 }
 
 /// What has changed is drawn quickly first, and well as soon as nothing moves.
-void Views::Impl::draw_picture(const Frame& f, Pane& pane) {
+void Views::draw_picture(const Frame& f, Pane& pane) {
   const render::PixelSize size = pane.view.size();
   const bool changed = !pane.canvas.shows(pane.made.scene, pane.view.camera, size);
-  const bool fine = samples <= 1 || (!changed && !moving(f.session));
+  const bool fine = samples_ <= 1 || (!changed && !moving(f.session));
   if (!changed && (pane.canvas.fine() || !fine)) return;
-  pane.canvas.draw(fine ? *renderer : *sketcher, pane.made.scene, pane.view.camera, size, fine);
-  ++drawn;
+  pane.canvas.draw(fine ? *renderer_ : *sketcher_, pane.made.scene, pane.view.camera, size, fine);
+  ++drawn_;
 }
 
-bool Views::Impl::moving(const Session& session) const {
+bool Views::moving(const Session& session) const {
   const bool live =
       session.working && !session.paused && session.playback.live && app::shown_frame(session) >= 0;
-  const bool steering = under != nullptr && (pointer.held || pointer.turning || pointer.panning);
-  return session.playback.playing || live || steering || hand.busy() || session.view.turntable_deg_s != 0;
+  const bool steering = under_ != nullptr && (pointer_.held || pointer_.turning || pointer_.panning);
+  return session.playback.playing || live || steering || hand_.busy() || session.view.turntable_deg_s != 0;
 }
 
-void Views::Impl::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
+void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
   const Rect& rect = pane.view.rect;
   const float from = (part.min.x - rect.min.x) / rect.width(), to = (part.max.x - rect.min.x) / rect.width();
   if (part.empty()) return;
@@ -293,14 +238,14 @@ void Views::Impl::show(const Frame& f, Pane& pane, const Rect& part, bool right)
   Overlay overlay;
   overlay.rect = part, overlay.title_right = right;
   describe(f.session, pane, overlay);
-  overlay.active = panes.size() > 1 && f.session.view.layout == app::Layout::SideBySide &&
+  overlay.active = panes_.size() > 1 && f.session.view.layout == app::Layout::SideBySide &&
                    pane.content.number == f.session.view.active_pane;
   draw_overlay(f.ui, overlay);
   draw_brush(f, pane);
 }
 
 /// The words and labels over a pane.
-void Views::Impl::describe(const Session& session, const Pane& pane, Overlay& overlay) const {
+void Views::describe(const Session& session, const Pane& pane, Overlay& overlay) const {
   const int frame = pane.keeper.pictures().frame;
   const bool rest = shows_rest(session, pane.content);
   overlay.title = pane_title(session, pane.content);
@@ -312,27 +257,26 @@ void Views::Impl::describe(const Session& session, const Pane& pane, Overlay& ov
                                                               : "";
     overlay.legend = pane.made.legend;
   }
-  const size_t seen = std::max(0, frame);
-  if (frame >= 0 && seen < session.source.frames.size() && session.source.frames[seen].flagged)
-    overlay.warning = session.source.frames[seen].reason;
+  const app::KeptSource* seen = at_or_null(session.source.frames, frame);
+  if (seen != nullptr && seen->flagged) overlay.warning = seen->reason;
   const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
-  const Joints* joints = pane_joints(session, pane.content, frame);
-  if (rest) joints = &session.takes[pane.content.takes[0]].target->joints;
+  const Joints* joints = app::pane_joints(session, pane.content.number, frame);
+  if (rest) joints = &first_take(session, pane.content)->target->joints;
   const auto& moved = pane.content.source ? pane.preview.source_joints : pane.preview.take_joints;
   if (moved) joints = &*moved;
   const int selected = pane.preview.gizmo ? session.selected_joint : -1;
   if (joints != nullptr)
     overlay.labels = joint_labels(pane.view, *joints, layers.joint_names && layers.skeleton,
-                                  hand.hovered_joint(pane.content), selected);
-  if (under != &pane) return;
-  overlay.tip_at = pointer.at;
-  overlay.tip = hand.tip();
-  if (overlay.tip.empty() && !session.playback.playing) overlay.tip = value_under(session, pane, pointer.at);
+                                  hand_.hovered_joint(pane.content), selected);
+  if (under_ != &pane) return;
+  overlay.tip_at = pointer_.at;
+  overlay.tip = hand_.tip();
+  if (overlay.tip.empty() && !session.playback.playing) overlay.tip = value_under(session, pane, pointer_.at);
 }
 
 /// The brush's circle, flat on the surface.
-void Views::Impl::draw_brush(const Frame& f, const Pane& pane) {
-  const auto brush = hand.brush(pane.content);
+void Views::draw_brush(const Frame& f, const Pane& pane) {
+  const auto brush = hand_.brush(pane.content);
   if (!brush) return;
   const Vec3 u = brush->normal.unitOrthogonal(), v = brush->normal.cross(u);
   std::vector<ImVec2> circle;
@@ -349,13 +293,13 @@ void Views::Impl::draw_brush(const Frame& f, const Pane& pane) {
 }
 
 /// Switching the following camera on or off keeps the current picture.
-void Views::Impl::keep_view_when_following_changes(const Frame& f) {
+void Views::keep_view_when_following_changes(const Frame& f) {
   const bool now = f.session.view.follow;
-  hold = followed && *followed != now;
-  followed = now;
-  if (!hold) return;
-  for (size_t i = 0; i < panes.size(); ++i) {
-    const Pane& pane = *panes[i];
+  hold_ = followed_ && *followed_ != now;
+  followed_ = now;
+  if (!hold_) return;
+  for (size_t i = 0; i < panes_.size(); ++i) {
+    const Pane& pane = *panes_[i];
     if (i > 0 && f.session.view.linked) break;
     if (pane.view.rect.empty() || shows_rest(f.session, pane.content)) continue;
     f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, pane.view.camera)});

@@ -2,22 +2,18 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
-#include "app/session/commands.hpp"
-#include "app/session/frame_cache.hpp"
-#include "app/session/session.hpp"
-#include "ui/gui/ui.hpp"
+#include "ui/viewport/hand.hpp"
+#include "ui/viewport/overlay.hpp"
+#include "ui/viewport/pane.hpp"
 
 namespace understudy::ui {
 
 /// Owns the pictures of the panes. Make, use and destroy it with one GL context current (a null one will do).
 class Views {
  public:
-  Views();
-  ~Views();
-  Views(const Views&) = delete;
-  Views& operator=(const Views&) = delete;
-
   /// Fills what is left of the current window with the panes of the layout. Redraws a pane only when
   /// its content, camera or size has changed. Marks: "view.0" the source, "view.1" the first take
   /// ..., "view.wipe" the line of a wipe, "view.legend", "view.warning", "view.tip". Throws Error where the
@@ -31,13 +27,43 @@ class Views {
   /// Whether the surface of this take was in the last frame drawn: as loaded, in T-pose or performing.
   bool shows_take(int k) const;
   /// Grows when the background has made something to draw that is not part of the session.
-  int64_t arrived() const;
+  int64_t arrived() const { return looks_.arrived(); }
   /// Pictures of panes drawn since the start; for tests and figures.
-  int64_t drawn() const;
+  int64_t drawn() const { return drawn_; }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  struct Frame {
+    const app::Session& session;
+    app::FrameCache& cache;
+    app::CommandQueue& queue;
+    Ui& ui;
+  };
+  void prepare(const Frame& f, size_t count);
+  void draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
+  void draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
+  static float wipe_line(const Frame& f, const Rect& area);
+  void set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view);
+  void interact(const Frame& f, Pane& pane);
+  void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
+  void make_picture(const Frame& f, Pane& pane);
+  void draw_picture(const Frame& f, Pane& pane);
+  bool moving(const app::Session& session) const;
+  void show(const Frame& f, Pane& pane, const Rect& part, bool right);
+  void describe(const app::Session& session, const Pane& pane, Overlay& overlay) const;
+  void draw_brush(const Frame& f, const Pane& pane);
+  void keep_view_when_following_changes(const Frame& f);
+
+  std::optional<render::Renderer> renderer_, sketcher_;  ///< as the settings say, and for while things move
+  int samples_ = 0;
+  std::vector<std::unique_ptr<Pane>> panes_;
+  TargetLooks looks_;
+  Hand hand_;
+  Pointer pointer_;        ///< of the pane that it is in
+  Pane* under_ = nullptr;  ///< which
+  app::Tool tool_ = app::Tool::Look;
+  std::optional<bool> followed_;
+  bool hold_ = false;  ///< cameras stay for this frame as they were
+  int64_t drawn_ = 0;
 };
 
 }  // namespace understudy::ui
