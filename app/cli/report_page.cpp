@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <sstream>
 
@@ -34,86 +33,81 @@ const std::vector<Column> kPerformance = {{"mean", "mpjpe_m"},   {"mean", "pa_mp
                                           {"mean", "acc"},       {"mean", "pa_acc"},
                                           {"mean", "rot_deg"},   {"ms", "total", "s a frame", 0.001, 3}};
 
+/// Of hands, feet and skin.
+const std::vector<Column> kContacts = {{"mean", "foot_skate", "feet slide, m/s"},
+                                       {"mean", "floor_mm", "floor, mm"},
+                                       {"mean", "floor_worst_mm", "worst, mm"},
+                                       {"mean", "hand_contact_kept", "hand contacts, %", 100, 0},
+                                       {"mean", "hand_contact_gap_mm", "gap, mm"},
+                                       {"mean", "arm_buried_added", "arms buried, %", 100, 2},
+                                       {"mean", "self_penetration", "skin buried, %", 100, 2},
+                                       {"mean", "hand_stretch", "hands stretch, %", 100, 2},
+                                       {"mean", "hand_stretch_true", "true, %", 100, 2},
+                                       {"mean", "head_stretch", "head stretches, %", 100, 2},
+                                       {"mean", "head_stretch_true", "true, %", 100, 2}};
+const std::vector<Column> kExtraction = {{"mean", "extraction_mpjpe_mm", "mm"},
+                                         {"mean", "extraction_raw_mpjpe_mm", "raw, mm"},
+                                         {"mean", "extraction_swap_rate", "swapped, %", 100, 2},
+                                         {"mean", "extraction_flip_rate", "flipped, %", 100, 2},
+                                         {"mean", "inside", "inside, %", 100, 1},
+                                         {"ms", "extract", "ms a frame", 1, 1}};
+const std::vector<Column> kOffsets = {{"mean", "mpvd_m", nullptr, 1, 5},
+                                      {"mean", "pa_mpvd_m", nullptr, 1, 5},
+                                      {"mean", "medl_mm"},
+                                      {"mean", "bent_volume", "volume, %", 100, 1},
+                                      {"mean", "bent_volume_true", "true, %", 100, 1}};
+const std::vector<Column> kRotations = {{"mean", "rot_deg"},
+                                        {"mean", "head_deg"},
+                                        {"mean", "wrist_deg"},
+                                        {"mean", "foot_deg"},
+                                        {"mean", "pa_mpjpe_m"}};
+const std::vector<Column> kAligned = {{"mean", "pa_mpjpe_m"},
+                                      {"mean", "pa_mpvd_m"},
+                                      {"mean", "medl_mm"},
+                                      {"mean", "pa_acc"},
+                                      {"mean", "rot_deg"}};
+
 const std::vector<Table>& tables() {
   static const std::vector<Table> all = {
       {"baselines", "Against baselines",
-       "`copy` and `paper` are the program's engines. `fit`: a parametric body is fitted to each "
-       "scan by "
+       "`copy` and `paper` are the program's engines. `fit`: a parametric body is fitted to each scan by "
        "optimisation from the scans alone, and its rotations are copied; where the people evaluated on are "
        "of "
-       "that very "
-       "body, as in suites made from one data folder, it knows them better than it would know strangers.",
+       "that very body, as in suites made from one data folder, it knows them better than it would know "
+       "strangers.",
        kPerformance},
-      {"baselines",
-       "Contacts, penetration, and what has no joints of its own",
+      {"baselines", "Contacts, penetration, and what has no joints of its own",
        "Of the same rows. Floor: how deep the lowest vertex lies below it, mean and worst. Hand contacts: of "
-       "those "
-       "of the source's own surface (a hand within 2 cm of the body) how many the target keeps. Arms, hands "
-       "and "
-       "skin buried: shares inside the rest of the target's own body, of arms and hands less the source's. "
-       "Stretch: change of edges' lengths beyond the wrists and above the head's joint, and the truth's.",
-       {{"mean", "foot_skate", "feet slide, m/s"},
-        {"mean", "floor_mm", "floor, mm"},
-        {"mean", "floor_worst_mm", "worst, mm"},
-        {"mean", "hand_contact_kept", "hand contacts, %", 100, 0},
-        {"mean", "hand_contact_gap_mm", "gap, mm"},
-        {"mean", "arm_buried_added", "arms buried, %", 100, 2},
-        {"mean", "self_penetration", "skin buried, %", 100, 2},
-        {"mean", "hand_stretch", "hands stretch, %", 100, 2},
-        {"mean", "hand_stretch_true", "true, %", 100, 2},
-        {"mean", "head_stretch", "head stretches, %", 100, 2},
-        {"mean", "head_stretch_true", "true, %", 100, 2}}},
-      {"seen",
-       "Rotations seen on the surface",
+       "those of the source's own surface (a hand within 2 cm of the body) how many the target keeps. Arms, "
+       "hands and skin buried: shares inside the rest of the target's own body, of arms and hands less the "
+       "source's. Stretch: change of edges' lengths beyond the wrists and above the head's joint, and the "
+       "truth's.",
+       kContacts},
+      {"seen", "Rotations seen on the surface",
        "Positions alone do not say how a bone is turned about itself, nor how head, hands and feet are.",
-       {{"mean", "rot_deg"},
-        {"mean", "head_deg"},
-        {"mean", "wrist_deg"},
-        {"mean", "foot_deg"},
-        {"mean", "pa_mpjpe_m"}}},
-      {"contexts",
-       "Contexts",
+       kRotations},
+      {"contexts", "Contexts",
        "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
        "of "
        "that length. Places start anew, so only figures after alignment are compared.",
-       {{"mean", "pa_mpjpe_m"},
-        {"mean", "pa_mpvd_m"},
-        {"mean", "medl_mm"},
-        {"mean", "pa_acc"},
-        {"mean", "rot_deg"}}},
+       kAligned},
       {"rotation", "What the network says of rotations, with and without a loss on them",
        "All trained with the same budget, shorter than that of the shipped weights.", kPerformance},
-      {"extraction",
-       "Skeleton extraction",
-       "Of the source's 22 joints, repaired and smoothed; raw: as extracted.",
-       {{"mean", "extraction_mpjpe_mm", "mm"},
-        {"mean", "extraction_raw_mpjpe_mm", "raw, mm"},
-        {"mean", "extraction_swap_rate", "swapped, %", 100, 2},
-        {"mean", "extraction_flip_rate", "flipped, %", 100, 2},
-        {"mean", "inside", "inside, %", 100, 1},
-        {"ms", "extract", "ms a frame", 1, 1}}},
-      {"offsets",
-       "Pose-corrective offsets",
+      {"extraction", "Skeleton extraction",
+       "Of the source's 22 joints, repaired and smoothed; raw: as extracted.", kExtraction},
+      {"offsets", "Pose-corrective offsets",
        "With true poses weights and offsets alone are evaluated. Without: the same network, its offsets left "
-       "out. Volume: what flesh about elbows, knees, "
-       "shoulders "
-       "and hips "
-       "keeps of its volume where they are turned by more than 90 degrees, and what it should.",
-       {{"mean", "mpvd_m", nullptr, 1, 5},
-        {"mean", "pa_mpvd_m", nullptr, 1, 5},
-        {"mean", "medl_mm"},
-        {"mean", "bent_volume", "volume, %", 100, 1},
-        {"mean", "bent_volume_true", "true, %", 100, 1}}}};
+       "out. Volume: what flesh about elbows, knees, shoulders and hips keeps of its volume where they are "
+       "turned by more than 90 degrees, and what it should.",
+       kOffsets}};
   return all;
 }
 
 std::string figure(const Json& report, const Column& column) {
   if (!report.contains(column.group) || !report[column.group].contains(column.key)) return "";
   const Metric* const metric = find_metric(column.key);
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", column.digits >= 0 || !metric ? column.digits : metric->digits,
-                column.scale * report[column.group][column.key].get<double>());
-  return text;
+  return printed("%.*f", column.digits >= 0 || !metric ? column.digits : metric->digits,
+                 column.scale * report[column.group][column.key].get<double>());
 }
 
 std::string name_of(const ReportRow& row) {
@@ -189,14 +183,11 @@ double number_of(const Json& json, const char* key) {
 
 void write_confidence(std::ostream& page, const std::string& folder, const std::string& suite,
                       const Json& confidence) {
-  char text[300];
-  std::snprintf(
-      text, sizeof text,
+  page << printed(
       "\nConfidence against error, rank correlation: %.2f over joints (errors drawn from exactly what "
       "it expects: %.2f), %.2f over frames.\n\n",
       number_of(confidence, "rank_correlation"), number_of(confidence, "best_rank_correlation"),
       number_of(confidence, "frame_rank_correlation"));
-  page << text;
   render::Curve mean{"mean error", {}, {}}, p90{"90 % stay below", {}, {}}, expected{"expected", {}, {}};
   write_head(page, {"confidence", "expected, mm", "mean error, mm", "90 % below, mm", "joints"});
   for (const Json& bin : confidence["bins"]) {
@@ -204,10 +195,9 @@ void write_confidence(std::ostream& page, const std::string& folder, const std::
       curve->x.push_back(bin["confidence"]);
       curve->y.push_back(bin[key]);
     }
-    std::snprintf(text, sizeof text, "| %.3f | %.1f | %.1f | %.1f | %lld |\n",
-                  bin["confidence"].get<double>(), bin["expected_mm"].get<double>(),
-                  bin["error_mm"].get<double>(), bin["p90_mm"].get<double>(), bin["count"].get<long long>());
-    page << text;
+    page << printed("| %.3f | %.1f | %.1f | %.1f | %lld |\n", bin["confidence"].get<double>(),
+                    bin["expected_mm"].get<double>(), bin["error_mm"].get<double>(),
+                    bin["p90_mm"].get<double>(), bin["count"].get<long long>());
   }
   const std::string file = "confidence_" + suite + ".png";
   render::write_png(folder + "/" + file,
@@ -246,10 +236,8 @@ void write_breakdown(std::ostream& page, const std::string& folder, const Report
   write_head(page, {"failure", "frames", "share, %"});
   for (const auto& failure : breakdown["failures"].items()) {
     if (failure.value()["evaluated"] == 0) continue;
-    char text[96];
-    std::snprintf(text, sizeof text, "| %s | %lld | %.2f |\n", failure.key().c_str(),
-                  failure.value()["frames"].get<long long>(), 100 * failure.value()["share"].get<double>());
-    page << text;
+    page << printed("| %s | %lld | %.2f |\n", failure.key().c_str(),
+                    failure.value()["frames"].get<long long>(), 100 * failure.value()["share"].get<double>());
   }
   if (breakdown.contains("confidence"))
     write_confidence(page, folder, result.row.suite, breakdown["confidence"]);
