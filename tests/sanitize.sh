@@ -20,7 +20,7 @@ for what in "${ARGUMENTS[@]:-fuzz fast threads}"; do
     case $one in
       fuzz) sanitized asan fuzz_readers -L fuzz ;;
       fast) sanitized asan fast_tests -L '^fast$' ;;
-      threads) sanitized tsan "session_test base_test" -R '^(session|base)_test$' ;;
+      threads) sanitized tsan threads_tests -L '^threads$' ;;
       *) echo "sanitize.sh: there is no '$one': fuzz, fast or threads" >&2; exit 2 ;;
     esac
   done

@@ -7,6 +7,7 @@
 
 #include "app/studio/application.hpp"
 #include "app/studio/script.hpp"
+#include "retarget/base/error.hpp"
 #include "tests/session/studio_fixture.hpp"
 
 namespace understudy::app {

@@ -28,7 +28,7 @@ class AutosaveTest : public testing::Test {
     const pid_t child = fork();
     if (child == 0) {
       // A new program in effect: who it is must not be remembered from the parent.
-      execl("/proc/self/exe", "session_test", "--gtest_filter=AutosaveChild.SavesAndIsKilled",
+      execl("/proc/self/exe", "autosave_test", "--gtest_filter=AutosaveChild.SavesAndIsKilled",
             "--gtest_brief=1", nullptr);
       _exit(1);
     }

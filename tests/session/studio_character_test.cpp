@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "app/session/document_file.hpp"
+#include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
 #include "tests/retarget/character/characters.hpp"

@@ -2,76 +2,25 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <filesystem>
 #include <fstream>
 
 #include "app/session/studio.hpp"
-#include "retarget/formats/npz.hpp"
-#include "tests/retarget/pipeline/fixtures.hpp"
 
 namespace understudy::app {
 
 namespace fs = std::filesystem;
 
-/// Knows where the joints of any target in T-pose are: a mean human's.
-class RestExtractor final : public SkeletonExtractor {
- public:
-  Extraction extract(const Mesh& scan) override {
-    Extraction e;
-    const Joints& human = human_rest();
-    const Vec3 middle = 0.5f * (human.colwise().maxCoeff() + human.colwise().minCoeff()).transpose();
-    const Vec3 centre =
-        0.5f * (scan.vertices.colwise().maxCoeff() + scan.vertices.colwise().minCoeff()).transpose();
-    e.joints = human.rowwise() + (centre - middle).transpose();
-    return e;
-  }
-  std::string name() const override { return "rest"; }
-};
-
-/// Tells the joints hidden in a scan and counts how often it was asked; in targets, and in points drawn from
-/// them, it sees a person in T-pose.
-class CountingExtractor final : public SkeletonExtractor {
- public:
-  explicit CountingExtractor(std::shared_ptr<std::atomic<int>> count) : count_(std::move(count)) {}
-  Extraction extract(const Mesh& scan) override {
-    if (!scan.is_cloud() || scan.vertices.rows() > 5000) return rest_.extract(scan);
-    ++*count_;
-    return telltale_.extract(scan);
-  }
-  std::string name() const override { return "counting"; }
-
- private:
-  std::shared_ptr<std::atomic<int>> count_;
-  fixtures::TellTaleExtractor telltale_;
-  RestExtractor rest_;
-};
-
 /// A vertex follows the nearest joint.
 class NearestDeformer : public Deformer {
  public:
-  void bind(const Points& rest, const Joints& joints) override {
-    rest_ = rest;
-    joints_ = joints;
-    weights_ = RowMatrix::Zero(rest.rows(), kJointCount);
-    for (Eigen::Index v = 0; v < rest.rows(); ++v) {
-      Eigen::Index nearest = 0;
-      (joints.rowwise() - rest.row(v)).rowwise().squaredNorm().minCoeff(&nearest);
-      weights_(v, nearest) = 1;
-    }
-  }
+  void bind(const Points& rest, const Joints& joints) override;
   const RowMatrix& weights() const override { return weights_; }
-  std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override {
-    auto other = std::make_shared<NearestDeformer>(*this);
-    other->weights_ = std::move(weights);
-    return other;
-  }
-  Points deform(const Pose& pose) const override {
-    return linear_blend_skinning(rest_, weights_, joints_, forward_kinematics(joints_, pose));
-  }
-  Points offsets(const Pose&) const override { return Points::Zero(rest_.rows(), 3); }
+  std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override;
+  Points deform(const Pose& pose) const override;
+  Points offsets(const Pose& pose) const override;
   std::string name() const override { return "nearest"; }
 
  private:
@@ -80,72 +29,24 @@ class NearestDeformer : public Deformer {
   RowMatrix weights_;
 };
 
+/// The same poses to the last bit.
+bool same_poses(const Motion& a, const Motion& b);
+
+/// Each test works in a folder of its own, with a dance of kFrames scans and a target in it.
 class StudioTest : public ::testing::Test {
  protected:
   static constexpr int kFrames = 24;
 
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("understudy_studio_" + std::to_string(::getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    before_ = fs::current_path();
-    fs::current_path(folder_);  // whatever is written without a folder lands here
-    write_scans();
-    write_target("target.obj");
-  }
-  void TearDown() override {
-    fs::current_path(before_);
-    fs::remove_all(folder_);
-  }
+  void SetUp() override;
+  void TearDown() override;
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  /// A dance as an array; the joints are each frame's last points.
-  void write_scans() const {
-    const fixtures::PointBody body(human_rest());
-    NpyArray points;
-    for (int t = 0; t < kFrames; ++t) {
-      const Mesh scan = fixtures::scan_of(body, human_rest(), fixtures::dance(0.1f * static_cast<float>(t)));
-      points.shape = {kFrames, scan.vertices.rows(), 3};
-      points.values.insert(points.values.end(), scan.vertices.data(),
-                           scan.vertices.data() + scan.vertices.size());
-    }
-    write_npz(path("scan.npz"), {{"points", points}});
-  }
-
-  void write_target(const std::string& name) const {
-    const fixtures::PointBody body(human_rest());
-    std::ofstream file(path(name));
-    for (Eigen::Index v = 0; v < body.mesh.vertices.rows(); ++v)
-      file << "v " << body.mesh.vertices.row(v) << '\n';
-    for (Eigen::Index v = 0; v + 2 < body.mesh.vertices.rows(); v += 3)
-      file << "f " << v + 1 << ' ' << v + 2 << ' ' << v + 3 << '\n';
-  }
-
-  StudioServices services() {
-    StudioServices services;
-    services.networks = [count = extractions_](const Method& method, const NetworkParts& parts) {
-      Networks networks;
-      CopyOptions options;
-      if (method.engine == "paper") options.seen.setZero();
-      if (parts.extractor) networks.extractor = std::make_shared<CountingExtractor>(count);
-      if (parts.rest_extractor) networks.rest_extractor = std::make_shared<RestExtractor>();
-      if (parts.transfer) networks.transfer = std::make_shared<CopyTransfer>(options);
-      if (parts.deformer) networks.deformer = std::make_shared<NearestDeformer>();
-      return networks;
-    };
-    services.weights = [] { return std::string("stand-ins:00000000"); };
-    services.autosave_folder = path("state");
-    return services;
-  }
+  /// Stand-ins for the networks; the extractor counts in extractions_ how many frames it saw.
+  StudioServices services();
 
   /// The dance, performed by the target.
-  void open_both(Studio& studio) {
-    studio.run("open", {path("scan.npz")});
-    studio.run("open", {path("target.obj")});
-    studio.wait_idle(60);
-  }
+  void open_both(Studio& studio);
 
   fs::path folder_, before_;
   std::shared_ptr<std::atomic<int>> extractions_ = std::make_shared<std::atomic<int>>(0);

@@ -1,0 +1,260 @@
+#include "app/session/engine.hpp"
+
+#include "retarget/formats/npz.hpp"
+#include "tests/retarget/pipeline/fixtures.hpp"
+#include "tests/session/studio_fixture.hpp"
+
+namespace understudy::app {
+namespace {
+
+TEST_F(StudioTest, PerformsAScanThatWasOpened) {
+  Studio studio(services());
+  open_both(studio);
+  const Session& session = studio.session();
+  ASSERT_TRUE(session.errors.empty()) << session.errors.front().text;
+  EXPECT_EQ(session.source.frames.size(), static_cast<size_t>(kFrames));
+  EXPECT_EQ(session.source.count, kFrames);
+  ASSERT_EQ(session.takes.size(), 1u);
+  EXPECT_EQ(frame_count(session), kFrames);
+  EXPECT_NE(find(session.takes[0].series, "foot_skate"), nullptr);
+  EXPECT_FALSE(session.takes[0].metrics.empty());
+  EXPECT_EQ(session.takes[0].latency.frames(), kFrames);
+}
+
+TEST_F(StudioTest, ExtractsSkeletonsBeforeThereIsATarget) {
+  Studio studio(services());
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle(60);
+  EXPECT_EQ(studio.session().source.frames.size(), static_cast<size_t>(kFrames));
+  studio.run("open", {path("target.obj")});
+  studio.wait_idle(60);
+  EXPECT_EQ(frame_count(studio.session()), kFrames);
+  EXPECT_EQ(*extractions_, kFrames);  // the target came later; nothing was extracted twice
+}
+
+TEST_F(StudioTest, ADraggedJointIsPerformedWithoutExtractingAgainAndUndone) {
+  Studio studio(services());
+  open_both(studio);
+  const Motion before = studio.session().takes[0].shown;
+  const Joints seen = studio.session().source.frames[10].joints;
+  const int extracted = *extractions_;
+  studio.run("edit.drag", {"10", "left_wrist", "0", "0.2", "0", "2"});
+  studio.wait_idle(60);
+  EXPECT_GT((studio.session().source.frames[10].joints - seen).row(LeftWrist).norm(), 0.02f);
+  EXPECT_FALSE(same_poses(studio.session().takes[0].shown, before));
+  studio.run("edit.undo");
+  studio.wait_idle(60);
+  EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
+  studio.run("edit.redo");
+  studio.wait_idle(60);
+  EXPECT_FALSE(same_poses(studio.session().takes[0].shown, before));
+  EXPECT_EQ(*extractions_, extracted);
+}
+
+TEST_F(StudioTest, FramesBeforeAnEditStayAsTheyWere) {
+  Studio studio(services());
+  open_both(studio);
+  const Motion before = studio.session().takes[0].shown;
+  studio.run("edit.drag", {"15", "left_wrist", "0", "0.3", "0", "0"});
+  studio.wait_idle(60);
+  const Motion& after = studio.session().takes[0].shown;
+  for (size_t t = 0; t < 15; ++t)
+    EXPECT_EQ(after.poses[t].local[LeftElbow], before.poses[t].local[LeftElbow]) << t;
+  EXPECT_NE(after.poses[15].local[LeftElbow], before.poses[15].local[LeftElbow]);
+}
+
+TEST_F(StudioTest, CroppingTheScanExtractsAgain) {
+  Studio studio(services());
+  open_both(studio);
+  const int extracted = *extractions_;
+  studio.run("edit.crop", {"-9", "-9", "-9", "9", "9", "9"});
+  studio.wait_idle(60);
+  EXPECT_EQ(*extractions_, extracted + kFrames);
+}
+
+TEST_F(StudioTest, TwoMethodsOfOneTargetStandSideBySide) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("compare.add", {"0", "engine=paper", "root=in-place"});
+  studio.wait_idle(60);
+  ASSERT_EQ(studio.session().takes.size(), 2u);
+  EXPECT_EQ(studio.session().takes[1].shown.poses.size(), static_cast<size_t>(kFrames));
+  EXPECT_FALSE(same_poses(studio.session().takes[0].shown, studio.session().takes[1].shown));
+}
+
+TEST_F(StudioTest, ABrokenTargetIsToldAndTheScanGoesOn) {
+  std::ofstream(path("broken.obj")) << "v 1 2\n";
+  Studio studio(services());
+  studio.run("open", {path("scan.npz")});
+  studio.run("target.add", {path("broken.obj")});
+  studio.wait_idle(60);
+  ASSERT_FALSE(studio.session().errors.empty());
+  EXPECT_NE(studio.session().errors.front().text.find("broken.obj"), std::string::npos);
+  EXPECT_EQ(studio.session().source.frames.size(), static_cast<size_t>(kFrames));
+}
+
+TEST_F(StudioTest, AFrameThatCannotBeReadIsFlaggedAndTheRestPerformed) {
+  fs::create_directory(path("scans"));
+  const fixtures::PointBody body(human_rest());
+  for (int t = 0; t < 6; ++t) {
+    const Mesh scan = fixtures::scan_of(body, human_rest(), fixtures::dance(0.1f * static_cast<float>(t)));
+    std::ofstream file(path("scans/" + std::to_string(t) + ".xyz"));
+    for (Eigen::Index v = 0; t != 3 && v < scan.vertices.rows(); ++v) file << scan.vertices.row(v) << '\n';
+  }
+  Studio studio(services());
+  studio.run("open", {path("scans"), path("target.obj")});
+  studio.wait_idle(60);
+  const Session& session = studio.session();
+  ASSERT_TRUE(session.errors.empty()) << session.errors.front().text;
+  ASSERT_EQ(frame_count(session), 6);
+  for (size_t t = 0; t < 6; ++t) {
+    EXPECT_EQ(session.source.frames[t].flagged, t == 3) << t;
+    EXPECT_EQ(session.takes[0].shown.flags[t] != 0, t == 3) << t;
+  }
+  EXPECT_EQ(session.takes[0].shown.poses[3].local[LeftHip], session.takes[0].shown.poses[2].local[LeftHip]);
+}
+
+/// Has no place for any target.
+class RefusingDeformer : public NearestDeformer {
+ public:
+  void bind(const Points&, const Joints&) override { throw Error("the target cannot be bound"); }
+};
+
+TEST_F(StudioTest, ATargetThatNoNetworkTakesIsToldAndExchanged) {
+  auto refusing = std::make_shared<std::atomic<bool>>(true);
+  StudioServices own = services();
+  own.networks = [refusing, usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (*refusing && parts.deformer) networks.deformer = std::make_shared<RefusingDeformer>();
+    return networks;
+  };
+  Studio studio(own);
+  open_both(studio);
+  ASSERT_EQ(studio.session().errors.size(), 1u);
+  EXPECT_EQ(studio.session().errors.front().text, "the target cannot be bound");
+  studio.run("edit.swap", {"2", "4", "arms"});  // what is at work is brought in line with this
+  studio.wait_idle(60);
+  *refusing = false;
+  studio.run("method.engine", {"0", "paper"});
+  studio.wait_idle(60);
+  EXPECT_EQ(frame_count(studio.session()), kFrames);
+}
+
+/// Fails at its tenth frame with what is no Error of ours.
+class RunningOut final : public MotionTransfer {
+ public:
+  void reset(const Joints&) override { frames_ = 0; }
+  Rotations push(const Extraction&, float) override {
+    if (++frames_ == 10) throw std::bad_alloc();
+    return identity_rotations();
+  }
+  std::any memory() const override { return frames_; }
+  void restore(const std::any& memory) override { frames_ = std::any_cast<int>(memory); }
+  std::string name() const override { return "running out"; }
+
+ private:
+  int frames_ = 0;
+};
+
+TEST_F(StudioTest, ATakeThatFailsLeavesTheOthersAtWork) {
+  StudioServices own = services();
+  own.networks = [usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (method.engine == "paper" && parts.transfer) networks.transfer = std::make_shared<RunningOut>();
+    return networks;
+  };
+  Studio studio(own);
+  studio.run("open", {path("target.obj")});
+  studio.run("compare.add", {"0", "engine=paper"});
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle(60);
+  const Session& session = studio.session();
+  EXPECT_EQ(session.source.frames.size(), static_cast<size_t>(kFrames));
+  EXPECT_EQ(session.takes[0].performed.size(), static_cast<size_t>(kFrames));
+  EXPECT_TRUE(session.takes[0].problem.empty());
+  EXPECT_EQ(session.takes[1].problem, "there is not enough memory");
+  ASSERT_EQ(session.errors.size(), 1u);
+}
+
+TEST_F(StudioTest, ASkeletonIsShownAndExportedAsItsTakeTransferredIt) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("compare.add", {"0", "smooth=off", "lengths=off", "swaps=off"});
+  studio.wait_idle(60);
+  const auto& frames = studio.session().source.frames;
+  const auto exported = [&](const char* take) {
+    studio.run("export.run", {take, path("out.npz")});
+    studio.wait_idle(60);
+    EXPECT_TRUE(studio.session().errors.empty());
+    const NpyArray joints = read_npz(path("out.npz")).at("source_joints");
+    return Joints(Eigen::Map<const Joints>(joints.values.data() + 10 * kJointCount * 3));
+  };
+  EXPECT_EQ(exported("0"), frames[10].joints);
+  EXPECT_NE(exported("0"), frames[10].raw);
+  EXPECT_EQ(exported("1"), frames[10].raw);  // nothing was to be done to it
+  studio.run("target.remove", {"0"});
+  studio.wait_idle(60);
+  EXPECT_EQ(frames[10].joints, frames[10].raw);
+  studio.run("target.remove", {"0"});
+  studio.wait_idle(60);
+  EXPECT_NE(frames[10].joints, frames[10].raw);  // as before there was a target
+}
+
+TEST_F(StudioTest, ASkeletonIsShownRepairedWhereTheTargetIsBroken) {
+  Studio alone(services());
+  alone.run("open", {path("scan.npz")});
+  alone.wait_idle(60);
+  std::ofstream(path("broken.obj")) << "v 1 2\n";
+  Studio studio(services());
+  studio.run("target.add", {path("broken.obj")});
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle(60);
+  for (size_t t = 0; t < kFrames; ++t)
+    EXPECT_EQ(studio.session().source.frames[t].joints, alone.session().source.frames[t].joints) << t;
+}
+
+TEST_F(StudioTest, NetworksAreLoadedWhenTheyAreNeeded) {
+  std::map<std::string, int> loads;
+  StudioServices own = services();
+  own.networks = [&loads, usual = own.networks](const Method& method, const NetworkParts& parts) {
+    loads["extractor"] += parts.extractor;
+    loads["rest extractor"] += parts.rest_extractor;
+    loads["transfer"] += parts.transfer;
+    loads["deformer"] += parts.deformer;
+    return usual(method, parts);
+  };
+  const auto expect = [&](int extractor, int rest, int performer) {
+    EXPECT_EQ(loads["extractor"], extractor);
+    EXPECT_EQ(loads["rest extractor"], rest);
+    EXPECT_EQ(loads["transfer"], performer);
+    EXPECT_EQ(loads["deformer"], performer);
+  };
+  Studio studio(own);
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle(60);
+  expect(1, 0, 0);
+  studio.run("open", {path("target.obj")});
+  studio.wait_idle(60);
+  expect(1, 1, 1);  // a mesh without a rig is looked at
+  studio.run("compare.add", {"0", "feet=off"});
+  studio.wait_idle(60);
+  expect(1, 2, 2);
+  studio.run("method.engine", {"0", "paper"});
+  studio.wait_idle(60);
+  expect(1, 2, 3);
+}
+
+TEST_F(StudioTest, RetargetingAgainMakesEveryFrameAnew) {
+  Studio studio(services());
+  open_both(studio);
+  const Motion before = studio.session().takes[0].shown;
+  for (int round = 2; round <= 4; ++round) {
+    studio.run("work.restart");
+    studio.wait_idle(60);
+    EXPECT_EQ(*extractions_, round * kFrames);
+  }
+  EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
+}
+
+}  // namespace
+}  // namespace understudy::app

@@ -1,0 +1,146 @@
+#include "app/session/document_file.hpp"
+#include "retarget/formats/npz.hpp"
+#include "tests/retarget/pipeline/fixtures.hpp"
+#include "tests/session/studio_fixture.hpp"
+
+namespace understudy::app {
+namespace {
+
+TEST_F(StudioTest, ASavedDocumentGivesTheSameResult) {
+  Motion before;
+  {
+    Studio studio(services());
+    open_both(studio);
+    studio.run("edit.drag", {"4", "right_wrist", "0.1", "0", "0"});
+    studio.run("edit.rotate", {"0", "6", "head", "0", "0.4", "0", "3"});
+    studio.run("edit.skip", {"0", "3", "on"});
+    studio.wait_idle(60);
+    before = studio.session().takes[0].shown;
+    studio.run("document.save_as", {path("dance")});
+    EXPECT_FALSE(studio.session().changed);
+  }
+  Studio studio(services());
+  studio.run("document.open", {path("dance.understudy")});
+  studio.wait_idle(60);
+  ASSERT_TRUE(studio.session().errors.empty());
+  EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
+  EXPECT_EQ(studio.session().document.takes[0].pose_edits.skip.count(3), 1u);
+}
+
+TEST_F(StudioTest, AsksBeforeUnsavedWorkIsLost) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("app.quit");
+  ASSERT_TRUE(studio.session().question);
+  EXPECT_FALSE(studio.session().quit);
+  studio.run("question.answer", {"cancel"});
+  EXPECT_FALSE(studio.session().quit);
+  studio.run("app.quit");
+  studio.run("question.answer", {"discard"});
+  EXPECT_TRUE(studio.session().quit);
+}
+
+TEST_F(StudioTest, WhatWasSavedOrClosedLeavesNoCopyForRecovery) {
+  const auto no_copy = [this] { return !fs::exists(path("state")) || fs::is_empty(path("state")); };
+  for (int round = 0; round < 20; ++round) {
+    Studio studio(services());
+    studio.session().settings.autosave_s = 0;
+    studio.run("target.add", {path("target.obj")});
+    studio.tick(1);  // starts writing the copy
+    if (round % 2) studio.run("document.save_as", {path("saved.understudy")});
+    if (round % 2) {
+      while (studio.jobs().running()) studio.tick(0);
+      EXPECT_TRUE(no_copy()) << round;
+    } else {
+      studio.run("app.quit");
+      studio.run("question.answer", {"discard"});
+    }
+  }
+  EXPECT_TRUE(no_copy());
+}
+
+TEST_F(StudioTest, WhatEndsUnsavedKeepsItsCopy) {
+  { Studio(services()).run("target.add", {path("target.obj")}); }
+  ASSERT_TRUE(fs::exists(path("state")));
+  const fs::path copy = fs::directory_iterator(path("state"))->path();
+  EXPECT_EQ(read_autosave({copy.string(), "", ""}).document.takes.size(), 1u);
+}
+
+TEST_F(StudioTest, ACopyForRecoveryThatCannotBeWrittenIsToldOnceAndInNoDialog) {
+  std::ofstream(path("state")) << "a file where the folder should be";
+  Studio studio(services());
+  studio.session().settings.autosave_s = 0;
+  studio.run("target.add", {path("target.obj")});
+  int told = 0;
+  for (int i = 0; i < 5; ++i) {
+    studio.session().notices.clear();
+    studio.tick(1);
+    studio.wait_idle(60);
+    for (const Notice& notice : studio.session().notices) told += notice.kind == Notice::Kind::Warning;
+  }
+  EXPECT_TRUE(studio.session().errors.empty());
+  EXPECT_EQ(told, 1);
+}
+
+TEST_F(StudioTest, MissingFilesAreAskedForAndFound) {
+  {
+    Studio studio(services());
+    open_both(studio);
+    studio.run("document.save_as", {path("dance.understudy")});
+  }
+  fs::create_directory(path("elsewhere"));
+  fs::rename(path("scan.npz"), path("elsewhere/scan.npz"));
+  Studio studio(services());
+  studio.run("document.open", {path("dance.understudy")});
+  ASSERT_TRUE(studio.session().question);
+  EXPECT_EQ(studio.session().question->missing, std::vector<std::string>{path("scan.npz")});
+  studio.wait_idle(60);
+  EXPECT_TRUE(studio.session().errors.empty()) << "told twice: " << studio.session().errors.front().text;
+  EXPECT_TRUE(studio.session().takes[0].ready);
+  studio.run("document.relocate", {path("scan.npz"), path("elsewhere/scan.npz")});
+  studio.wait_idle(60);
+  EXPECT_FALSE(studio.session().question);
+  EXPECT_EQ(frame_count(studio.session()), kFrames);
+}
+
+TEST_F(StudioTest, ACaseComesWithItsTruth) {
+  const fs::path folder = folder_ / "case";
+  fs::create_directory(folder);
+  fs::copy_file(path("scan.npz"), folder / "source.npz");
+  fs::copy_file(path("target.obj"), folder / "target.obj");
+  std::ofstream(folder / "case.json") << R"({"fps": 30, "source": "source.npz", "target": "target.obj",
+    "truth": "truth.npz", "tags": []})";
+  NpyArray joints;
+  joints.shape = {kFrames, kJointCount, 3};
+  for (int t = 0; t < kFrames; ++t) {
+    const Joints posed =
+        forward_kinematics(human_rest(), fixtures::dance(0.1f * static_cast<float>(t))).joints;
+    joints.values.insert(joints.values.end(), posed.data(), posed.data() + posed.size());
+  }
+  write_npz((folder / "truth.npz").string(), {{"joints", joints}, {"source_joints", joints}});
+  Studio studio(services());
+  studio.run("open", {folder.string()});
+  studio.wait_idle(60);
+  ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
+  const Series* const error = find(studio.session().takes[0].series, "extraction_mpjpe_mm");
+  ASSERT_NE(error, nullptr);
+  EXPECT_NEAR(error->values[10], 120,
+              30);  // the import lifts the scan onto the floor, the truth here does not
+  EXPECT_NE(find(studio.session().takes[0].series, "pa_mpjpe_m"), nullptr);
+}
+
+TEST_F(StudioTest, ANewDocumentIsEmptyWhateverWasBeingMade) {
+  Studio studio(services());
+  for (int round = 0; round < 40; ++round) {
+    studio.run("source.open", {path("scan.npz")});
+    studio.run("target.add", {path("target.obj")});
+    for (int i = 0; i < round; ++i) studio.tick(0.001);
+    studio.replace_document({}, "");
+    studio.wait_idle(60);
+    ASSERT_TRUE(studio.session().source.frames.empty()) << round;
+    ASSERT_TRUE(studio.session().takes.empty());
+  }
+}
+
+}  // namespace
+}  // namespace understudy::app

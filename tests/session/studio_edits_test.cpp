@@ -1,0 +1,200 @@
+#include "retarget/base/error.hpp"
+#include "tests/session/studio_fixture.hpp"
+
+namespace understudy::app {
+namespace {
+
+TEST_F(StudioTest, OneEditIsRemovedAndTheOthersStay) {
+  Studio studio(services());
+  open_both(studio);
+  for (const char* frame : {"5", "10", "15"})
+    studio.run("edit.drag", {frame, "left_wrist", "0", "0.2", "0", "2"});
+  studio.run("edit.remove", {"skeleton", "1"});
+  const auto& edits = studio.session().document.skeleton_edits;
+  ASSERT_EQ(edits.size(), 2u);
+  EXPECT_EQ(std::get<DragEdit>(edits[0]).frame, 5);
+  EXPECT_EQ(std::get<DragEdit>(edits[1]).frame, 15);
+  studio.run("edit.undo");
+  EXPECT_EQ(edits.size(), 3u);
+  studio.run("edit.rotate", {"0", "5", "left_elbow", "0", "0", "1"});
+  studio.run("edit.remove", {"rotation", "0", "0"});
+  EXPECT_TRUE(studio.session().document.takes[0].pose_edits.rotate.empty());
+  EXPECT_THROW(studio.run("edit.remove", {"skeleton", "3"}), Error);
+}
+
+TEST_F(StudioTest, ANewCropHoldsThePerson) {
+  Studio studio(services());
+  open_both(studio);
+  const auto person = person_box(studio.session());
+  ASSERT_TRUE(person);
+  for (const KeptSource& frame : studio.session().source.frames)
+    for (int j = 0; j < kJointCount; ++j) {
+      EXPECT_TRUE((frame.joints.row(j).transpose().array() > person->low.array()).all());
+      EXPECT_TRUE((frame.joints.row(j).transpose().array() < person->high.array()).all());
+    }
+  studio.run("edit.crop", {"on"});
+  ASSERT_TRUE(studio.session().document.scan_edits.crop);
+  EXPECT_EQ(studio.session().document.scan_edits.crop->low, person->low);
+}
+
+TEST_F(StudioTest, PaintedWeightsShowAtOnceAndAreUndone) {
+  Studio studio(services());
+  open_both(studio);
+  const RowMatrix before = *studio.session().takes[0].weights;
+  const Vec3 at = studio.session().takes[0].target->mesh.vertices.row(100).transpose();
+  studio.run("select.joint", {"head"});
+  studio.run("edit.paint", {"0", std::to_string(at.x()), std::to_string(at.y()), std::to_string(at.z())});
+  EXPECT_GT((*studio.session().takes[0].weights)(100, Head), 0.1f);
+  studio.run("edit.undo");
+  EXPECT_EQ(*studio.session().takes[0].weights, before);
+}
+
+/// Paints the head's weights at a vertex of the only take.
+void paint(Studio& studio, int vertex) {
+  const Vec3 at = studio.session().takes[0].target->mesh.vertices.row(vertex).transpose();
+  studio.run("select.joint", {"head"});
+  studio.run("edit.paint", {"0", std::to_string(at.x()), std::to_string(at.y()), std::to_string(at.z())});
+}
+
+/// The same surface with fewer vertices: each face but every sixth.
+void thin_out(const std::string& path) {
+  std::ifstream in(path);
+  std::vector<std::string> vertices;
+  for (std::string line; std::getline(in, line);)
+    if (line[0] == 'v') vertices.push_back(line);
+  std::ofstream out(path);
+  int kept = 0;
+  for (size_t v = 0; v + 2 < vertices.size(); v += 3) {
+    if (v % 18 == 15) continue;
+    for (size_t k = 0; k < 3; ++k) out << vertices[v + k] << '\n';
+    kept += 3;
+  }
+  for (int v = 1; v <= kept; v += 3) out << "f " << v << ' ' << v + 1 << ' ' << v + 2 << '\n';
+}
+
+TEST_F(StudioTest, PaintOfAnotherSurfaceIsAskedAboutAndBroughtOver) {
+  {
+    Studio studio(services());
+    open_both(studio);
+    paint(studio, 100);
+    studio.run("document.save_as", {path("painted.understudy")});
+  }
+  thin_out(path("target.obj"));
+  Studio studio(services());
+  studio.run("document.open", {path("painted.understudy")});
+  studio.wait_idle(60);  // "weights were painted at vertex ..." ended the studio
+  const Session& session = studio.session();
+  const auto take = [&session]() -> const TakeState& { return session.takes[0]; };
+  ASSERT_TRUE(session.question);
+  EXPECT_EQ(session.question->kind, Question::Kind::PaintMisfit);
+  EXPECT_NE(session.question->text.find("target: weights were painted on "), std::string::npos);
+  EXPECT_TRUE(take().ready && session.errors.empty());
+  EXPECT_EQ(take().shown.poses.size(), static_cast<size_t>(kFrames));
+  EXPECT_EQ(take().weights->col(Head).head(100).cwiseEqual(0.5f).count(), 0);  // as the networks gave them
+  EXPECT_THROW(paint(studio, 90), Error);
+  studio.run("question.answer", {"cancel"});
+  studio.wait_idle(60);
+  EXPECT_FALSE(session.question);  // asked once
+  studio.run("edit.weights_reproject", {"0"});
+  EXPECT_EQ(take().paint_problem, "");
+  const WeightRows& brought = *session.document.takes[0].target_edits.weights;
+  EXPECT_EQ(brought.of, take().target->mesh.vertices.rows());
+  EXPECT_EQ(take().weights->row(brought.vertex[0]), brought.rows.row(0));
+  studio.run("edit.undo");
+  EXPECT_NE(take().paint_problem, "");
+  studio.run("edit.weights_clear", {"0"});
+  EXPECT_EQ(take().paint_problem, "");
+}
+
+TEST_F(StudioTest, PaintThatDoesNotFitKeepsNothingElseFromBeingDone) {
+  Studio studio(services());
+  open_both(studio);
+  WeightRows rows;  // as documents of before have them: where they were painted is not known
+  rows.vertex = {1000000};
+  rows.rows = RowMatrix::Identity(1, kJointCount);
+  studio.session().document.takes[0].target_edits.weights = std::make_shared<const WeightRows>(rows);
+  studio.run("compare.add", {"0", "engine=paper"});
+  studio.wait_idle(60);
+  ASSERT_EQ(studio.session().takes.size(), 2u);
+  for (const TakeState& take : studio.session().takes) {
+    EXPECT_EQ(take.shown.poses.size(), static_cast<size_t>(kFrames));
+    EXPECT_NE(take.paint_problem, "");
+  }
+  EXPECT_THROW(studio.run("edit.weights_reproject", {"0"}), Error);
+  studio.run("edit.weights_clear", {"0"});
+  EXPECT_EQ(studio.session().takes[0].paint_problem, "");
+}
+
+TEST_F(StudioTest, ARemovedTakeGivesItsMemoryBack) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("compare.add", {"0", "engine=paper"});
+  studio.wait_idle(60);
+  const TakeState& take = studio.session().takes[1];
+  studio.neighbours(1);
+  studio.cache().posed(take, {1, 3, false});
+  studio.cache().wait();
+  const int64_t bytes = studio.cache().bytes();
+  const std::weak_ptr<const Deformer> deformer = take.deformer;
+  const std::weak_ptr<const Target> target = take.target;
+  const std::weak_ptr<const PreparedCharacter> character = take.character;
+  studio.run("target.remove", {"1"});
+  studio.wait_idle(60);
+  EXPECT_TRUE(deformer.expired());
+  EXPECT_TRUE(target.expired());
+  EXPECT_TRUE(character.expired());
+  EXPECT_LT(studio.cache().bytes(), bytes);
+}
+
+TEST_F(StudioTest, AMovedTargetJointIsKeptAndPerformedAgain) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("edit.target_joint", {"0", "left_elbow", "0.5", "1.3", "0", "mirror"});
+  studio.wait_idle(60);
+  const Joints& joints = studio.session().takes[0].target->joints;
+  EXPECT_NEAR(joints(LeftElbow, 0), 0.5f, 1e-5f);
+  EXPECT_NEAR(joints(RightElbow, 0), 2 * symmetry_centre(joints) - 0.5f, 0.02f);
+  EXPECT_EQ(frame_count(studio.session()), kFrames);
+}
+
+TEST_F(StudioTest, ARemovedTakeComesBackWithUndo) {
+  Studio studio(services());
+  open_both(studio);
+  const Motion before = studio.session().takes[0].shown;
+  studio.run("target.remove", {"0"});
+  EXPECT_TRUE(studio.session().takes.empty());
+  studio.run("edit.undo");
+  studio.wait_idle(60);
+  ASSERT_EQ(studio.session().takes.size(), 1u);
+  EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
+}
+
+TEST_F(StudioTest, EditsOfTheResultComeAndGo) {
+  Studio studio(services());
+  open_both(studio);
+  const Motion before = studio.session().takes[0].shown;
+  studio.run("edit.smooth", {"0", "0.8"});
+  studio.run("edit.floor_offset", {"0", "0.25"});
+  studio.wait_idle(60);
+  EXPECT_NEAR(studio.session().takes[0].shown.poses[5].root.y(), before.poses[5].root.y() + 0.25f, 0.03f);
+  EXPECT_GT(studio.session().takes[0].cost.mean_displacement_m, 0);
+  studio.run("edit.poses_clear", {"0"});
+  studio.wait_idle(60);
+  EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
+}
+
+TEST_F(StudioTest, UndoGoesBackThroughManySteps) {
+  Studio studio(services());
+  open_both(studio);
+  const int steps = 190;
+  for (int i = 1; i <= steps; ++i) studio.run("edit.rotate", {"0", "5", "left_elbow", "0", "0.01", "0", "1"});
+  EXPECT_EQ(studio.session().document.takes[0].pose_edits.rotate.size(), static_cast<size_t>(steps));
+  for (int i = 1; i <= steps; ++i) studio.run("edit.undo");
+  EXPECT_TRUE(studio.session().document.takes[0].pose_edits.rotate.empty());
+  EXPECT_EQ(studio.session().document.takes.size(), 1u);
+  for (int i = 1; i <= steps; ++i) studio.run("edit.redo");
+  EXPECT_EQ(studio.session().document.takes[0].pose_edits.rotate.size(), static_cast<size_t>(steps));
+}
+
+}  // namespace
+}  // namespace understudy::app
