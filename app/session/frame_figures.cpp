@@ -21,7 +21,7 @@ MetricSequence seen_in(const FigureInput& input, size_t count) {
   seen.joints = first_of(input.joints, count);
   for (size_t t = 0; t < count; ++t) seen.rotations.push_back(input.shown.poses[t].local);
   for (size_t t = 0; t < count && input.source.size() >= count; ++t) {
-    seen.source_joints.push_back(input.source[t].joints);
+    seen.source_joints.push_back(input.performed[t].source);
     seen.confidence.push_back(input.source[t].confidence);
   }
   return seen;

@@ -8,12 +8,13 @@
 
 namespace understudy::app {
 
-/// The inputs of the figures; every sequence is at least as long as `shown`.
+/// The inputs of the figures; `joints` and `performed` are as long as `shown`.
 struct FigureInput {
   const Motion& shown;
-  const std::vector<Joints>& joints;  ///< of the target
-  const std::vector<KeptSource>& source;
-  const Truth* truth = nullptr;  ///< may be null
+  const std::vector<Joints>& joints;         ///< of the target
+  const SharedFrames<KeptFrame>& performed;  ///< with the source's joints as the take transferred them
+  const SharedFrames<KeptSource>& source;    ///< may be shorter: then nothing is measured against it
+  const Truth* truth = nullptr;              ///< may be null
 };
 
 /// Every metric of the table that frames have and joints and poses tell, as far as what it needs is known. As

@@ -10,24 +10,44 @@
 
 namespace understudy::app {
 
+namespace {
+
+/// Room behind the frames refined, so that those that came meanwhile are appended without a copy of all.
+constexpr size_t kRoomForNewFrames = 1024;
+
+Motion motion_of(const SharedFrames<KeptFrame>& frames, float fps) {
+  Motion motion;
+  motion.fps = fps;
+  for (const KeptFrame& frame : frames) {
+    motion.poses.push_back(frame.pose);
+    motion.flags.push_back(frame.flagged);
+  }
+  return motion;
+}
+
+}  // namespace
+
 Refined refine(const RefineRequest& request) {
+  const Motion performed = motion_of(request.performed, request.fps);
   Refined result;
   result.take_id = request.take_id;
-  result.shown = request.performed;
-  if (!request.edits.empty() && !request.performed.poses.empty()) {
+  result.shown = performed;
+  if (!request.edits.empty() && !performed.poses.empty()) {
     try {
       const EditedBody body = EditedBody::from(request.target->mesh.vertices, request.target->joints);
-      result.shown = apply_poses(request.edits, request.performed, body);
-      result.cost = edit_cost(request.performed, result.shown, request.target->joints);
+      result.shown = apply_poses(request.edits, performed, body);
+      result.cost = edit_cost(performed, result.shown, request.target->joints);
     } catch (const Error& error) {
-      result.shown = request.performed;
+      result.shown = performed;
       result.problem = error.what();
     }
   }
-  result.joints.reserve(result.shown.poses.size());
+  result.shown.poses.reserve(performed.poses.size() + kRoomForNewFrames);
+  result.joints.reserve(performed.poses.size() + kRoomForNewFrames);
   for (const Pose& pose : result.shown.poses)
     result.joints.push_back(forward_kinematics(request.target->joints, pose).joints);
-  result.series = joint_figures({result.shown, result.joints, request.source, request.truth.get()});
+  result.series =
+      joint_figures({result.shown, result.joints, request.performed, request.source, request.truth.get()});
   return result;
 }
 

@@ -10,10 +10,11 @@ namespace understudy::app {
 
 struct RefineRequest {
   int64_t take_id = 0;
-  Motion performed;
+  SharedFrames<KeptFrame> performed;
+  float fps = 30;
   PoseEdits edits;
   std::shared_ptr<const Target> target;
-  std::vector<KeptSource> source;
+  SharedFrames<KeptSource> source;
   std::shared_ptr<const Truth> truth;  ///< may be null
 };
 

@@ -26,7 +26,7 @@ std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCou
 }
 
 /// Each bone's mean length over the good frames, metres.
-Eigen::Array<float, kJointCount, 1> usual_lengths(const std::vector<KeptSource>& frames) {
+Eigen::Array<float, kJointCount, 1> usual_lengths(const SharedFrames<KeptSource>& frames) {
   Eigen::Array<float, kJointCount, 1> sum = Eigen::Array<float, kJointCount, 1>::Zero();
   int good = 0;
   for (const KeptSource& frame : frames) {

@@ -17,6 +17,7 @@
 #include "app/session/playback.hpp"
 #include "app/session/series.hpp"
 #include "app/session/settings.hpp"
+#include "app/session/shared_frames.hpp"
 #include "app/session/view.hpp"
 #include "retarget/character/careful_deformer.hpp"
 
@@ -42,9 +43,9 @@ struct SourceState {
   std::string decision;  ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
   /// from the frames' joints to the file's coordinates
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
-  std::vector<SourceClip> clips;   ///< animations in the file; none of scans
-  int clip = -1;                   ///< the one that is played
-  std::vector<KeptSource> frames;  ///< of the extractor of the first take
+  std::vector<SourceClip> clips;    ///< animations in the file; none of scans
+  int clip = -1;                    ///< the one that is played
+  SharedFrames<KeptSource> frames;  ///< of the extractor of the first take
   bool has_faces = false;
   int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
 };
@@ -63,7 +64,7 @@ struct TakeState {
   std::shared_ptr<const SafeBinding> binding;
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
-  std::vector<KeptFrame> performed;          ///< the engine's frames
+  SharedFrames<KeptFrame> performed;         ///< the engine's frames
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
   std::vector<Joints> joints;  ///< of `shown`
   std::vector<Series> series;  ///< as many values as frames shown

@@ -14,12 +14,18 @@ constexpr double kRefineEvery = 0.4;  // seconds between two passes over a resul
 
 /// Puts `frames` at `first`, over what is there and behind it. True when earlier ones were replaced.
 template <class Frame>
-bool put(std::vector<Frame>& all, int first, std::vector<Frame> frames) {
-  const size_t at = first;
-  const bool replaces = at < all.size();
-  if (at + frames.size() > all.size()) all.resize(at + frames.size());
-  std::move(frames.begin(), frames.end(), all.begin() + first);
+bool put(SharedFrames<Frame>& all, size_t first, std::vector<Frame> frames) {
+  const bool replaces = first < all.size();
+  all.write(first, first + frames.size(),
+            [&](size_t t, Frame& frame) { frame = std::move(frames[t - first]); });
   return replaces;
+}
+
+/// Puts newer items in the place of the first ones of a list that may have grown meanwhile.
+template <class Item>
+void replace_first(std::vector<Item>& all, std::vector<Item> newer) {
+  newer.insert(newer.end(), all.begin() + ssize(newer), all.end());
+  all = std::move(newer);
 }
 
 /// Shows frames appended to a result without edits at once.
@@ -100,10 +106,10 @@ void Studio::take_in(SourceFailed& event) {
 /// The skeleton shown is the first take's: repaired and smoothed as it was transferred.
 void Studio::show_skeleton(int first) {
   if (session_.takes.empty()) return;
-  const std::vector<KeptFrame>& performed = session_.takes[0].performed;
-  auto& frames = session_.source.frames;
-  for (size_t t = first; t < std::min(performed.size(), frames.size()); ++t)
-    frames[t].joints = performed[t].source;
+  const SharedFrames<KeptFrame>& performed = session_.takes[0].performed;
+  SharedFrames<KeptSource>& frames = session_.source.frames;
+  frames.write(first, std::min(performed.size(), frames.size()),
+               [&](size_t t, KeptSource& frame) { frame.joints = performed[t].source; });
 }
 
 template <>
@@ -174,8 +180,8 @@ void Studio::take_in_refined() {
                     take->joints.begin() + static_cast<long>(std::min(count, take->joints.size())),
                     refined.joints.begin());
     if (edited && count <= take->shown.poses.size()) {
-      std::move(refined.shown.poses.begin(), refined.shown.poses.end(), take->shown.poses.begin());
-      std::move(refined.joints.begin(), refined.joints.end(), take->joints.begin());
+      replace_first(take->shown.poses, std::move(refined.shown.poses));
+      replace_first(take->joints, std::move(refined.joints));
       ++take->generation;
     }
     take->cost = refined.cost;
@@ -199,17 +205,9 @@ void Studio::refine_dirty() {
     }
     if (take && !take->performed.empty()) {
       const size_t k = take - session_.takes.data();
-      RefineRequest request{
-          *id,           {}, session_.document.takes[k].pose_edits, take->target, session_.source.frames,
-          session_.truth};
-      request.performed.fps = static_cast<float>(session_.source.fps);
-      for (const KeptFrame& frame : take->performed) {
-        const size_t t = request.performed.poses.size();
-        if (t < request.source.size()) request.source[t].joints = frame.source;
-        request.performed.poses.push_back(frame.pose);
-        request.performed.flags.push_back(frame.flagged);
-      }
-      b.refiner.request(std::move(request));
+      b.refiner.request({*id, take->performed, static_cast<float>(session_.source.fps),
+                         session_.document.takes[k].pose_edits, take->target, session_.source.frames,
+                         session_.truth});
       applied.refined_at = session_.time;
       applied.measured = false;
     }

@@ -265,7 +265,7 @@ TEST_F(StudioCharacter, ItsOwnSkinTakesMovedJointsAndPaintedWeights) {
 }
 
 TEST_F(StudioCharacter, RigAndBonesAreSaved) {
-  std::vector<KeptFrame> performed;
+  SharedFrames<KeptFrame> performed;
   {
     Studio studio(services());
     open(studio);
@@ -282,7 +282,8 @@ TEST_F(StudioCharacter, RigAndBonesAreSaved) {
   EXPECT_EQ(target.rig, "theirs");
   EXPECT_EQ(target.bones, (BoneChoices{{"left_collar", ""}}));
   ASSERT_EQ(take(studio).performed.size(), performed.size());
-  EXPECT_EQ(take(studio).performed.back().pose.root, performed.back().pose.root);
+  const size_t last = performed.size() - 1;
+  EXPECT_EQ(take(studio).performed[last].pose.root, performed[last].pose.root);
 }
 
 }  // namespace

@@ -8,10 +8,7 @@ class BadFrames : public PanelsTest {
  protected:
   BadFrames() {
     input.size = {500, 300};
-    for (const int i : {40, 41, 42}) {
-      session.source.frames[i].flagged = true;
-      session.source.frames[i].reason = "too few points";
-    }
+    for (const int i : {40, 41, 42}) flag_frame(i, "too few points");
     panel("bad_frames");
   }
 };

@@ -63,7 +63,7 @@ TEST_F(Timeline, KnowsTheBadFramesAndWhy) {
   EXPECT_EQ(state.why(20), "no points");
   EXPECT_EQ(state.why(31), "low confidence");
   EXPECT_EQ(state.why(21), "");
-  session.source.frames[21].flagged = true, session.source.frames[21].reason = "too few points";
+  flag_frame(21, "too few points");
   ++session.source.generation;
   frame();
   EXPECT_EQ(state.why(21), "too few points");

@@ -140,7 +140,8 @@ TEST_F(SceneTest, DoubtOfTheBindingIsNeutralToWarm) {
 
 TEST_F(SceneTest, ConfidenceIsOfTheNearestJoint) {
   session.view.source.colouring = app::Colouring::Confidence;
-  session.source.frames[10].confidence_of[LeftWrist] = 0.2f;
+  session.source.frames.write(10, 11,
+                              [](size_t, app::KeptSource& frame) { frame.confidence_of[LeftWrist] = 0.2f; });
   const PaneScene made = scene(0);
   const Joints& joints = session.source.frames[10].joints;
   const Points& points = last.scan->mesh.vertices;

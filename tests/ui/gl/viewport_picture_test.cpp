@@ -188,8 +188,8 @@ TEST_F(ViewsPicture, ShowToolsAndWordsInLightAndDark) {
   Stage stage;
   stage.add_take("adult");
   stage.show_frame(6);
-  stage.session.source.frames[6].flagged = true;
-  stage.session.source.frames[6].reason = "no points";
+  stage.session.source.frames.write(
+      6, 7, [](size_t, app::KeptSource& frame) { frame.flagged = true, frame.reason = "no points"; });
   stage.session.selected_joint = LeftElbow;
   stage.session.view.source.trails = stage.session.view.take.ghosts = true;
   stage.session.view.take.joint_names = true;

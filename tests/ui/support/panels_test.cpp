@@ -98,6 +98,11 @@ app::Session loaded_session() {
   return session;
 }
 
+void PanelsTest::flag_frame(int frame, const std::string& reason) {
+  session.source.frames.write(frame, frame + 1,
+                              [&](size_t, app::KeptSource& bad) { bad.flagged = true, bad.reason = reason; });
+}
+
 void PanelsTest::panel(std::function<void()> draw) {
   in_window([draw = std::move(draw)](Ui&) { draw(); });
   frame(3);

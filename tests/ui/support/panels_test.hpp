@@ -26,6 +26,8 @@ class PanelsTest : public UiTest {
   app::CommandQueue queue;
   PanelContext context{gui.ui(), queue, studio.commands()};
 
+  /// Flags a frame of the source.
+  void flag_frame(int frame, const std::string& reason);
   /// Shows one panel in a window that covers the display.
   void panel(std::function<void()> draw);
   /// The panel of this name in the table.
