@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
 
 #include "app/run/case_folder.hpp"
 #include "app/session/command_sets.hpp"
@@ -156,7 +159,10 @@ void add_recovery(Commands& commands) {
                 }});
 }
 
-enum class Kind { Document, Case, Scans, Body, Motion, Mesh };
+constexpr uint64_t kGlance = 1 << 20;  // bytes of a glTF that may be read before the UI thread draws on
+
+/// Gltf: a motion or a mesh; which of them, only more than a glance tells.
+enum class Kind { Document, Case, Scans, Body, Motion, Mesh, Gltf };
 
 Kind kind_of_npz(const std::string& path) {
   const std::vector<std::string> names = npz_names(path);
@@ -166,11 +172,9 @@ Kind kind_of_npz(const std::string& path) {
   return has("v_template") ? Kind::Body : has("poses") ? Kind::Motion : Kind::Scans;
 }
 
-/// Decides about a file that may be a character or a motion: with a target and no source it is a motion.
-bool wanted_as_source(const Document& document, const std::string& path) {
-  if (!can_be(path, kTarget)) return can_be(path, kMotion | kScanSequence);
-  if (!document.source.path.empty() || document.takes.empty()) return false;
-  return is_motion_file(path) || is_animated_gltf(path);
+/// Whether a file that may be a character or a motion is opened as the motion: with a target and no source.
+bool wants_motion(const Document& document) {
+  return document.source.path.empty() && !document.takes.empty();
 }
 
 Kind kind_of(const Document& document, const std::string& path) {
@@ -181,9 +185,29 @@ Kind kind_of(const Document& document, const std::string& path) {
   if (can_be(path, kDocument)) return Kind::Document;
   if (fs::path(path).filename() == "case.json") return Kind::Case;
   if (can_be(path, kBody)) return kind_of_npz(path);
-  if (wanted_as_source(document, path)) return Kind::Scans;
-  US_CHECK(can_be(path, kTarget), path, ": is neither a scan, a target, a motion nor a document");
-  return Kind::Mesh;
+  if (!can_be(path, kTarget)) {
+    US_CHECK(can_be(path, kMotion | kScanSequence), path,
+             ": is neither a scan, a target, a motion nor a document");
+    return Kind::Scans;
+  }
+  if (!wants_motion(document)) return Kind::Mesh;
+  if (is_motion_file(path)) return Kind::Scans;
+  const std::optional<bool> animated = is_animated_gltf(path, kGlance);
+  return !animated ? Kind::Gltf : *animated ? Kind::Scans : Kind::Mesh;
+}
+
+/// Reads a large glTF on a worker, then opens it as what it is.
+void open_large_gltf(Studio& studio, const std::string& path) {
+  const auto animated = std::make_shared<bool>();
+  studio.jobs().start(
+      "Reading " + fs::path(path).filename().string(),
+      [animated, path](JobControl&) {
+        *animated = is_animated_gltf(path, std::numeric_limits<uint64_t>::max()).value_or(false);
+      },
+      [&studio, animated, path] {
+        const bool motion = *animated && wants_motion(studio.session().document);
+        studio.run(motion ? "source.open" : "target.add", {path});
+      });
 }
 
 void open_case(Studio& studio, std::string folder) {
@@ -240,6 +264,8 @@ void Studio::open(const std::string& path) {
     case Kind::Body:
     case Kind::Mesh:
       return run("target.add", {whole});
+    case Kind::Gltf:
+      return open_large_gltf(*this, whole);
   }
 }
 

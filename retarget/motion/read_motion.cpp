@@ -75,6 +75,31 @@ struct Reader {
 };
 constexpr Reader kReaders[] = {{"BVH", read_bvh}, {"NPZ", read_amass_character}};
 
+/// Whether a glTF's JSON has an animation with channels, told at the first one. None where the text ends before that
+/// and is not `whole`.
+std::optional<bool> has_animation(const std::string& text, bool whole) {
+  using Json = nlohmann::json;
+  struct Known {
+    bool animated;
+  };
+  const auto look = [within = false](int depth, Json::parse_event_t event, const Json& parsed) mutable {
+    if (depth > kDeepestJson) throw Known{false};
+    if (depth == 1 && event == Json::parse_event_t::key) within = parsed == "animations";
+    const bool one_ends = within && depth == 2 && event == Json::parse_event_t::object_end;
+    if (one_ends && parsed.contains("channels") && !parsed["channels"].empty()) throw Known{true};
+    return depth == 0 || within;  // the rest is skipped
+  };
+  try {
+    static_cast<void>(Json::parse(text, look));
+    return false;
+  } catch (const Known& known) {
+    return known.animated;
+  } catch (const Json::parse_error& error) {
+    if (whole || error.byte < text.size()) return false;
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 bool is_motion_file(const std::string& path) {
@@ -91,24 +116,19 @@ bool may_hold_motion(const std::string& path) {
   return format && format->parse;
 }
 
-bool is_animated_gltf(const std::string& path) {
+std::optional<bool> is_animated_gltf(const std::string& path, uint64_t most) {
   if (!may_hold_motion(path)) return false;
   const uint64_t size = check_file(path);
   std::ifstream file(path, std::ios::binary);
   std::string head(20, '\0');
   file.read(head.data(), 20);
   const bool is_glb = starts_with(head, "glTF");
-  std::string text(is_glb ? std::min<uint64_t>(load<uint32_t>(head.data() + 12, false), size) : size, '\0');
+  const uint64_t json = is_glb ? std::min<uint64_t>(load<uint32_t>(head.data() + 12, false), size) : size;
+  std::string text(std::min(json, most), '\0');
   file.clear();
   file.seekg(is_glb ? 20 : 0);
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (json_depth(text) > kDeepestJson) return false;
-  const auto root = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!root.is_object() || !root.contains("animations") || !root["animations"].is_array()) return false;
-  const auto& all = root["animations"];
-  return std::any_of(all.begin(), all.end(), [](const auto& one) {
-    return one.is_object() && one.contains("channels") && !one["channels"].empty();
-  });
+  return has_animation(text, text.size() == json);
 }
 
 std::optional<Character> read_motion(const std::string& path, const ReadCharacterOptions& options) {

@@ -146,6 +146,23 @@ TEST_F(StudioTest, ASuffixInCapitalsOpensAsTheSameInSmallLetters) {
   EXPECT_EQ(studio.session().document.takes.size(), 1u);
 }
 
+TEST_F(StudioTest, OfALargeGltfOnlyWhatTellsItsKindIsReadAtOnce) {
+  const std::string animations = R"("animations":[{"channels":[{"sampler":0,"target":{}}]}])";
+  std::ofstream(path("first.gltf")) << "{" << animations << R"(,"buffers":[{"uri":")";
+  fs::resize_file(path("first.gltf"), uint64_t{5} << 30);  // sparse, more than would ever be read
+  std::ofstream(path("last.gltf")) << "{" << std::string(3 << 20, ' ') << animations << "}";
+  for (const char* name : {"first.gltf", "last.gltf"}) {
+    Studio studio(services());
+    studio.run("open", {path("target.obj")});
+    studio.run("open", {path(name)});
+    const std::string& source = studio.session().document.source.path;
+    EXPECT_EQ(source, name == std::string("first.gltf") ? path(name) : "");
+    studio.wait_idle(60);
+    EXPECT_EQ(source, path(name));
+    EXPECT_EQ(studio.session().document.takes.size(), 1u);
+  }
+}
+
 TEST_F(StudioTest, WhateverCanBeATargetOpensAsOne) {
   Studio studio(services());
   studio.run("open", {path("scan.npz")});  // without a source what moves would become it
