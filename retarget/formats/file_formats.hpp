@@ -11,7 +11,7 @@
 
 namespace understudy {
 
-/// What a file may be. Of some formats only the content tells which.
+/// What a file may be. Of some formats only the content decides.
 enum FileUse : unsigned {
   kScanFrame = 1,     ///< a mesh or cloud: one frame of a scan
   kScanSequence = 2,  ///< all frames of a scan, or a list of them
@@ -22,7 +22,7 @@ enum FileUse : unsigned {
   kCase = 64,
 };
 
-/// One row. Readers of characters and motions stand in read_character.cpp and read_motion.cpp, by name.
+/// One row. Readers of characters and motions are in read_character.cpp and read_motion.cpp, by name.
 struct FileFormat {
   const char* name;                   ///< for people: "PLY"
   std::vector<const char*> suffixes;  ///< lower case, with the dot

@@ -1,6 +1,4 @@
 // The surface in a glTF or GLB file: what a target or a single scan needs of it.
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -13,7 +11,7 @@ namespace {
 
 using Mat4 = Eigen::Matrix4f;
 
-// Where the bind pose of a skin stands in the world: as its root joint carries it there.
+// From the bind pose of a skin to the world: as its root joint carries it there.
 Mat4 bind_transform(GltfFile& file, const tinygltf::Skin& skin, const GltfSceneNodes& nodes) {
   const std::vector<float> matrices = file.inverse_bind(skin);
   std::vector<size_t> ranks(nodes.world.size(), nodes.order.size());

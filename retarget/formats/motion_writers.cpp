@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
@@ -61,7 +60,9 @@ void append_offset(std::string& out, const std::string& indent, const Vec3& metr
   out += '\n';
 }
 
-void append_joint(std::string& out, const Joints& rest, int joint, int depth) {
+/// A joint and those below it; `order` gets their numbers as the file names them: depth first.
+void append_joint(std::string& out, const Joints& rest, int joint, int depth, std::vector<size_t>& order) {
+  order.push_back(static_cast<size_t>(joint));
   const std::string indent(static_cast<size_t>(2 * depth), ' '), inside = indent + "  ";
   const int parent = kParents[joint];
   out += indent + (parent < 0 ? "ROOT " : "JOINT ") + kJointNames[joint] + '\n' + indent + "{\n";
@@ -73,7 +74,7 @@ void append_joint(std::string& out, const Joints& rest, int joint, int depth) {
   bool has_child = false;
   for (int child = joint + 1; child < kJointCount; ++child)
     if (kParents[child] == joint) {
-      append_joint(out, rest, child, depth + 1);
+      append_joint(out, rest, child, depth + 1, order);
       has_child = true;
     }
   if (!has_child) {  // half as long as the bone before
@@ -82,15 +83,6 @@ void append_joint(std::string& out, const Joints& rest, int joint, int depth) {
     out += inside + "}\n";
   }
   out += indent + "}\n";
-}
-
-/// Joints in the order in which the file names them: depth first.
-std::vector<size_t> file_order(int joint = Pelvis) {
-  std::vector<size_t> order = {static_cast<size_t>(joint)};
-  for (int child = joint + 1; child < kJointCount; ++child)
-    if (kParents[child] == joint)
-      for (const size_t below : file_order(child)) order.push_back(below);
-  return order;
 }
 
 std::string count_text(int64_t frames) {
@@ -117,7 +109,7 @@ BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps) : 
   US_CHECK(rest.allFinite(), path, ": a joint of the target is not finite");
   check_rate(fps, path);
   std::string head = "HIERARCHY\n";
-  append_joint(head, rest, Pelvis, 0);
+  append_joint(head, rest, Pelvis, 0, order_);
   head += "MOTION\nFrames: ";
   count_at_ = head.size();
   head += count_text(0) + "\nFrame Time: ";
@@ -126,12 +118,11 @@ BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps) : 
 }
 
 void BvhWriter::push(const Pose& pose) {
-  static const std::vector<size_t> order = file_order();
   check_pose(pose, frames_, file_.path());
   std::string line;
   for (int axis = 0; axis < 3; ++axis)
     append_fixed(line += ' ', kCentimetres * static_cast<double>(pose.root[axis]), 5);
-  for (const size_t j : order) {
+  for (const size_t j : order_) {
     before_[j] = nearest_angles(pose.local[j].cast<double>(), before_[j]);
     for (const double angle : before_[j]) append_fixed(line += ' ', angle, 5);
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "retarget/base/part_file.hpp"
 #include "retarget/formats/npz_writer.hpp"
@@ -26,6 +27,7 @@ class BvhWriter {
   PartFile file_;
   size_t count_at_ = 0;  // where the number of frames is
   int64_t frames_ = 0;
+  std::vector<size_t> order_;                                // joints as the file names them
   std::array<std::array<double, 3>, kJointCount> before_{};  // degrees
 };
 

@@ -1,5 +1,4 @@
 // OFF, Geomview's format, ascii and binary, with its prefixes for colours, normals and texture coordinates.
-#include <algorithm>
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
@@ -99,10 +97,9 @@ SequenceWriter::SequenceWriter(const std::string& folder, SequenceFormat format,
 void SequenceWriter::push(const Points& vertices) {
   check_frame(vertices, topology_.vertex_count, folder_.path());
   const bool ply = format_ == SequenceFormat::Ply;
-  char name[40];
-  std::snprintf(name, sizeof name, "frame_%05lld.%s", static_cast<long long>(++frames_), ply ? "ply" : "obj");
-  folder_.add(name, ply ? ply_bytes(topology_, vertices, PartFolder::kMark)
-                        : obj_text(topology_, vertices, PartFolder::kMark));
+  folder_.add(printed("frame_%05lld.%s", static_cast<long long>(++frames_), ply ? "ply" : "obj"),
+              ply ? ply_bytes(topology_, vertices, PartFolder::kMark)
+                  : obj_text(topology_, vertices, PartFolder::kMark));
 }
 
 PointCacheWriter::PointCacheWriter(const std::string& path, const SurfaceTopology& topology,

@@ -1,7 +1,6 @@
 // Surfaces over time: folders of PLY or OBJ frames, and vertex caches.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "retarget/base/part_file.hpp"

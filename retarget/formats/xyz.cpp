@@ -1,7 +1,6 @@
 // XYZ, TXT, CSV, ASC, PTS: a point a line.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "retarget/math/rotation.hpp"
 
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 
 #include "retarget/base/error.hpp"

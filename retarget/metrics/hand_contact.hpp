@@ -13,7 +13,7 @@ namespace understudy {
 /// What a hand may touch, apart from its own arm.
 enum TouchedPart : int { TouchTorso, TouchHead, TouchThighs, TouchOtherArm, TouchOtherHand, kTouchedParts };
 
-/// Metres between each hand (left, right) and each part; no more than kFarGap is told.
+/// Metres between each hand (left, right) and each part; at most kFarGap.
 using HandGaps = std::array<std::array<float, kTouchedParts>, 2>;
 constexpr float kFarGap = 0.3f;
 

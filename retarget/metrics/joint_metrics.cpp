@@ -102,7 +102,7 @@ double swap_rate(const JointSequence& predicted, const JointSequence& truth) {
 
 double flip_rate(const JointSequence& predicted, const JointSequence& truth) {
   check_same_length(predicted.size(), truth.size());
-  // The hip line itself, not its shadow on the floor: it says the heading of a lying body too.
+  // The hip line itself, not its shadow on the floor: it gives the heading of a lying body too.
   const auto hip_line = [](const Joints& x) { return Vec3(x.row(LeftHip) - x.row(RightHip)); };
   int flipped = 0;
   for (size_t t = 0; t < truth.size(); ++t) flipped += hip_line(predicted[t]).dot(hip_line(truth[t])) < 0;

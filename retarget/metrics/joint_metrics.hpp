@@ -1,4 +1,4 @@
-// Errors of joints and rotations against the truth, and what can be said of a motion without truth.
+// Errors of joints and rotations against the truth, and figures of a motion without truth.
 #pragma once
 
 #include <vector>

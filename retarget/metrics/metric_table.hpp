@@ -1,4 +1,4 @@
-// The table of metrics: key, name, unit and function of every figure that reports, the studio and CSV tell.
+// The table of metrics: key, name, unit and function of every figure in reports, the studio and CSV.
 #pragma once
 
 #include <string>
@@ -37,8 +37,8 @@ struct Metric {
   bool per_frame;           ///< frames have it, too: it can be plotted
   Better better;
   unsigned needs = 0;  ///< MetricNeeds, together
-  /// The figure of a sequence p, its truth q, at so many frames a second; NaN where it says nothing. Null: it
-  /// is of surfaces, which nobody keeps, and is summed as frames come (app/run/evaluator.hpp).
+  /// The figure of a sequence p, its truth q, at so many frames a second; NaN where it is undefined. Null: it
+  /// is of surfaces, which are not kept, and is summed as frames come (app/run/evaluator.hpp).
   double (*of)(const MetricSequence& p, const MetricSequence& q, double fps) = nullptr;
   int after = 0;  ///< frames behind a frame that its own figure looks at
   /// The figures of all frames, where that is not `of` each frame and those after it.
@@ -52,7 +52,7 @@ const Metric* find_metric(const std::string& key);
 
 /// Whether all that the metric looks at is known in p, and in q where it wants the truth.
 bool is_known(const Metric& metric, const MetricSequence& p, const MetricSequence& q);
-/// The figure of every frame, `frames` in all, NaN where it says nothing. For metrics with a function and
+/// The figure of every frame, `frames` in all, NaN where it is undefined. For metrics with a function and
 /// `per_frame`.
 std::vector<float> per_frame_figures(const Metric& metric, const MetricSequence& p, const MetricSequence& q,
                                      size_t frames, double fps);

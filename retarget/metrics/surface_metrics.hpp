@@ -1,4 +1,4 @@
-// Errors of a surface against the true one, frame by frame, and what a surface says without truth.
+// Errors of a surface against the true one, frame by frame, and figures of a surface without truth.
 #pragma once
 
 #include <vector>

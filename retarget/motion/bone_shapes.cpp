@@ -1,7 +1,5 @@
 #include "retarget/motion/bone_shapes.hpp"
 
-#include <cmath>
-
 #include "retarget/base/error.hpp"
 
 namespace understudy {
@@ -10,8 +8,8 @@ namespace {
 constexpr float kThickness = 0.09f, kRingAt = 0.15f;  // of the bone's length
 
 struct Shapes {
-  std::vector<Vec3> vertices;
-  std::vector<int> bone, corners;
+  std::vector<float> vertices;     // [V, 3]
+  std::vector<int> bone, corners;  // of each vertex; [F, 3]
 };
 
 /// Both ends and a ring of four.
@@ -20,10 +18,10 @@ void add_octahedron(Shapes& shapes, int node, const Vec3& from, const Vec3& to) 
   const float radius = kThickness * along.norm();
   const Vec3 side = along.unitOrthogonal() * radius, other = along.normalized().cross(side);
   const Vec3 ring = from + kRingAt * along;
-  const auto first = static_cast<int>(shapes.vertices.size());
+  const auto first = static_cast<int>(shapes.bone.size());
   for (const Vec3& v :
        {from, to, Vec3(ring + side), Vec3(ring + other), Vec3(ring - side), Vec3(ring - other)}) {
-    shapes.vertices.push_back(v);
+    shapes.vertices.insert(shapes.vertices.end(), v.data(), v.data() + 3);
     shapes.bone.push_back(node);
   }
   for (int i = 0; i < 4; ++i) {
@@ -68,15 +66,12 @@ void add_bone_shapes(Character& character, const BoneChoices& choices) {
   part.name = "bones";
   part.node = character.nodes.size();
   part.skin = static_cast<int>(character.skins.size()) - 1;
-  const Eigen::Index count = shapes.vertices.size();
-  part.vertices.resize(count, 3);
+  const Eigen::Index count = shapes.bone.size();
+  part.vertices = Eigen::Map<const Points>(shapes.vertices.data(), count, 3);
   part.joints.setZero(count, 4);
+  part.joints.col(0) = Eigen::Map<const Eigen::VectorXi>(shapes.bone.data(), count);
   part.weights.setZero(count, 4);
-  for (Eigen::Index v = 0; v < count; ++v) {
-    part.vertices.row(v) = shapes.vertices[v].transpose();
-    part.joints(v, 0) = shapes.bone[v];
-    part.weights(v, 0) = 1;
-  }
+  part.weights.col(0).setOnes();
   part.faces =
       Eigen::Map<const Faces>(shapes.corners.data(), static_cast<Eigen::Index>(shapes.corners.size() / 3), 3);
   character.nodes.push_back(std::move(carrier));

@@ -9,11 +9,11 @@
 
 namespace understudy {
 
-/// Whether a file holds a skeletal motion, told quickly: .bvh, .fbx and .dae by their names, .npz by the
-/// names of its arrays. A glTF may be one, too: that only reading it tells. Throws Error when there is no
+/// Whether a file holds a skeletal motion, decided quickly: .bvh, .fbx and .dae by their names, .npz by the
+/// names of its arrays. A glTF may be one, too: only reading it shows that. Throws Error when there is no
 /// such file.
 bool is_motion_file(const std::string& path);
-/// Whether a file of this name may hold a motion, and only reading it tells.
+/// Whether a file of this name may hold a motion, and only reading it shows that.
 bool may_hold_motion(const std::string& path);
 
 /// Whether a glTF or GLB has an animation, by the first `most` bytes of its JSON alone: of a GLB the numbers are not

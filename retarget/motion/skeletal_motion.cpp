@@ -38,7 +38,7 @@ PreparedCharacter prepared(Character character, const SkeletalMotionOptions& opt
   return prepare_character(std::move(character), nullptr, nullptr, how);
 }
 
-/// A skin knows its bind pose. Bones alone stand in it, or take it in the first frame.
+/// A skin knows its bind pose. Bones alone are in it, or take it in the first frame.
 PreparedCharacter in_bind_pose(const Character& character, int clip, const ClipTimes& times,
                                const SkeletalMotionOptions& options) {
   PreparedCharacter own = prepared(character, options);

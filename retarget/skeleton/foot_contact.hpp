@@ -1,8 +1,6 @@
 // When a foot stands on the floor, decided from the past only.
 #pragma once
 
-#include <array>
-
 #include "retarget/base/fields.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
