@@ -7,8 +7,6 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -20,10 +18,12 @@
 #include "app/run/target_file.hpp"
 #include "app/studio/application.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/rng.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
-#include "retarget/geometry/mesh.hpp"
+#include "retarget/formats/surface_writer.hpp"
 
 namespace understudy::app {
 namespace {
@@ -45,34 +45,8 @@ double quantile(std::vector<double> values, double q) {
 
 // What is shown: the bundled samples, brought to the sizes asked for.
 
-/// Every face cut into four.
-Mesh subdivided(const Mesh& mesh) {
-  std::map<std::pair<int, int>, int> middles;
-  std::vector<Vec3> vertices;
-  for (int v = 0; v < mesh.vertices.rows(); ++v) vertices.emplace_back(mesh.vertices.row(v));
-  const auto middle = [&](int a, int b) {
-    const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), vertices.size());
-    if (is_new) {
-      const Vec3 between = 0.5f * (mesh.vertices.row(a) + mesh.vertices.row(b)).transpose();
-      vertices.push_back(between);
-    }
-    return at->second;
-  };
-  Mesh finer;
-  finer.faces.resize(4 * mesh.faces.rows(), 3);
-  for (int f = 0; f < mesh.faces.rows(); ++f) {
-    const int a = mesh.faces(f, 0), b = mesh.faces(f, 1), c = mesh.faces(f, 2);
-    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    finer.faces.middleRows(4 * f, 4) << a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca;
-  }
-  finer.vertices.resize(vertices.size(), 3);
-  for (size_t v = 0; v < vertices.size(); ++v) finer.vertices.row(v) = vertices[v].transpose();
-  return finer;
-}
-
-/// Exactly `count` vertices: faces cut into four while they are too few, then into three one by one.
+/// Exactly `count` vertices: faces are cut into three, one after the other, then those made so.
 Mesh with_vertices(Mesh mesh, int count) {
-  while (mesh.vertices.rows() + mesh.faces.rows() < count) mesh = subdivided(mesh);
   const int first = mesh.vertices.rows(), faces = mesh.faces.rows();
   const int more = std::max(0, count - first);
   mesh.vertices.conservativeResize(first + more, 3);
@@ -87,31 +61,16 @@ Mesh with_vertices(Mesh mesh, int count) {
   return mesh;
 }
 
-void write_obj(const std::string& path, const Mesh& mesh) {
-  std::ofstream file(path);
-  for (int v = 0; v < mesh.vertices.rows(); ++v)
-    file << "v " << mesh.vertices(v, 0) << ' ' << mesh.vertices(v, 1) << ' ' << mesh.vertices(v, 2) << '\n';
-  for (int f = 0; f < mesh.faces.rows(); ++f)
-    file << "f " << mesh.faces(f, 0) + 1 << ' ' << mesh.faces(f, 1) + 1 << ' ' << mesh.faces(f, 2) + 1
-         << '\n';
-  US_CHECK(file.flush(), path, ": cannot be written");
-}
-
 /// Points drawn again from the scan, some millimetres aside, until there are as many as asked for.
-void write_scan(const std::string& path, const Points& points) {
+Points dense_scan(const Points& points) {
   Rng rng(1);
-  Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> dense(kScanPoints, 3);
+  Points dense(kScanPoints, 3);
   for (int i = 0; i < kScanPoints; ++i) {
     const auto from = static_cast<Eigen::Index>(i) < points.rows() ? i : rng.below(points.rows());
     for (int axis = 0; axis < 3; ++axis)
       dense(i, axis) = points(from, axis) + (i < points.rows() ? 0 : 0.004f * rng.normal());
   }
-  std::ofstream file(path, std::ios::binary);
-  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << kScanPoints
-       << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  file.write(reinterpret_cast<const char*>(dense.data()),
-             dense.size() * static_cast<std::streamsize>(sizeof(float)));
-  US_CHECK(file.flush(), path, ": cannot be written");
+  return dense;
 }
 
 /// A folder that goes when the measuring is over.
@@ -126,16 +85,18 @@ class BenchFiles {
     from.path = samples + "/scan";
     from.quiet = true;
     const auto source = open_source(from);
-    for (int i = 0; const auto frame = source->next(); ++i) {
-      char file[32];
-      std::snprintf(file, sizeof file, "/frame_%05d.ply", i);
-      write_scan(scan() + file, frame->mesh.vertices);
-    }
+    for (int i = 0; const auto frame = source->next(); ++i)
+      write_file(scan() + printed("/frame_%05d.ply", i),
+                 ply_bytes({}, dense_scan(frame->mesh.vertices), "scan"));
     fs::create_directory_symlink(scan(), scan_again());
     const Character character = read_target(samples + "/target_adult.glb", {});
     const Mesh adult = merged_surface(character, bind_pose(character).vertices).mesh;
-    write_obj(target(kVertices), with_vertices(adult, kVertices));
-    write_obj(target(kManyVertices), with_vertices(adult, kManyVertices));
+    for (const int vertices : {kVertices, kManyVertices}) {
+      const Mesh mesh = with_vertices(adult, vertices);
+      SurfaceTopology topology;
+      topology.faces = mesh.faces;
+      write_file(target(vertices), obj_text(topology, mesh.vertices, "a target"));
+    }
     Mesh person = with_vertices(adult, kImported);
     for (int i = 0; i < kImports; ++i) {  // not one like another: nothing is known of it yet
       write_gltf_character(imported(i), character_of_mesh(person, "imported"));
@@ -213,9 +174,7 @@ class UiBench {
  public:
   explicit UiBench(const UiBenchOptions& options) : seconds_(options.seconds) {
     OffscreenSurface::Options seen;
-    seen.context.kind = options.context == "osmesa" ? render::ContextKind::Osmesa
-                        : options.context == "egl"  ? render::ContextKind::Egl
-                                                    : render::ContextKind::Any;
+    seen.context.kind = context_kind(options.context);
     auto surface = std::make_unique<OffscreenSurface>(seen);
     surface_ = surface.get();
     ApplicationOptions how;
@@ -258,24 +217,19 @@ class UiBench {
     application_->step();
   }
   static std::string milliseconds(const std::vector<double>& times) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.1f ms median (%.0f frames/s), p95 %.1f ms",
-                  1e3 * quantile(times, 0.5), 1 / quantile(times, 0.5), 1e3 * quantile(times, 0.95));
-    return text;
+    return printed("%.1f ms median (%.0f frames/s), p95 %.1f ms", 1e3 * quantile(times, 0.5),
+                   1 / quantile(times, 0.5), 1e3 * quantile(times, 0.95));
   }
 
   /// The start of the program, and the bundled sample performed by a bundled target.
   void start() {
     application_->frame(0);
-    char text[64];
-    std::snprintf(text, sizeof text, "%.2f s", seconds_since_start());
-    line("start to the first frame", text);
+    line("start to the first frame", printed("%.2f s", seconds_since_start()));
     const std::string& samples = application_->studio().services().samples;
     command("open", {samples + "/scan", samples + "/target_adult.glb"});
     while (frame_count(application_->session()) < 1 || !shown_whole()) step();
     application_->frame(0);
-    std::snprintf(text, sizeof text, "%.2f s", seconds_since_start());
-    line("start to the sample performed", text);
+    line("start to the sample performed", printed("%.2f s", seconds_since_start()));
   }
 
   /// Whether scan and target of the shown frame have been made.
@@ -298,11 +252,6 @@ class UiBench {
       step();
   }
 
-  void begin(const std::string& scan, const std::string& target) {
-    clear();
-    command("open", {scan, target});
-  }
-
   /// From the command until a frame with the character in it has been presented, and until it is bound.
   void import(const BenchFiles& files) {
     std::vector<double> seen, bound;
@@ -315,16 +264,16 @@ class UiBench {
       while (!application_->session().takes[0].ready) step();
       bound.push_back(seconds_since(began));
     }
-    char text[96];
-    std::snprintf(text, sizeof text, "%.2f s median of %d, %.2f s at most; bound after %.2f s",
-                  quantile(seen, 0.5), kImports, quantile(seen, 1), quantile(bound, 0.5));
-    line("import of 100,000 vertices to first picture", text);
+    line("import of 100,000 vertices to first picture",
+         printed("%.2f s median of %d, %.2f s at most; bound after %.2f s", quantile(seen, 0.5), kImports,
+                 quantile(seen, 1), quantile(bound, 0.5)));
   }
 
   /// From the command until all frames have been made, and until their surfaces have been evaluated, too.
   void open(const BenchFiles& files, int vertices) {
     const auto began = Clock::now();
-    begin(files.scan(), files.target(vertices));
+    clear();
+    command("open", {files.scan(), files.target(vertices)});
     while (!application_->studio().made()) {
       check_interrupt("while measuring");
       application_->studio().tick(0);
@@ -332,10 +281,9 @@ class UiBench {
     }
     const double made = seconds_since(began);
     settle();
-    char text[128];
-    std::snprintf(text, sizeof text, "%.1f s for %d frames of %d points, %d vertices; evaluated after %.1f s",
-                  made, frame_count(application_->session()), kScanPoints, vertices, seconds_since(began));
-    line("opened and retargeted", text);
+    line("opened and retargeted",
+         printed("%.1f s for %d frames of %d points, %d vertices; evaluated after %.1f s", made,
+                 frame_count(application_->session()), kScanPoints, vertices, seconds_since(began)));
   }
 
   void idle() {
@@ -370,14 +318,14 @@ class UiBench {
       last = shown_frame(application_->session());
     }
     command("playback.pause");
-    char text[64];
-    std::snprintf(text, sizeof text, "; new frames complete %.1f/s", advanced / seconds_since(began));
-    line(what + ", " + std::to_string(vertices) + " vertices", milliseconds(times) + text);
+    line(what + ", " + std::to_string(vertices) + " vertices",
+         milliseconds(times) + printed("; new frames complete %.1f/s", advanced / seconds_since(began)));
   }
 
   /// The shown target advances while frames are made and the mouse moves.
   void live(const BenchFiles& files) {
-    begin(files.scan_again(), files.target(kVertices));
+    clear();
+    command("open", {files.scan_again(), files.target(kVertices)});
     std::vector<double> delays;
     std::set<int> shown;
     while (frame_count(application_->session()) < 1) step();
@@ -392,15 +340,12 @@ class UiBench {
         delays.push_back(seconds_since(moved));
       shown.insert(shown_frame(application_->session()));
     } while (application_->session().working && seconds_since(began) < 60);
-    char text[128];
-    std::snprintf(text, sizeof text, "target advances %.1f/s (%zu frames in %.1f s)",
-                  static_cast<double>(shown.size()) / seconds_since(began), shown.size(),
-                  seconds_since(began));
-    line("retargeting live", text);
-    std::snprintf(text, sizeof text, "p50 %.1f ms, p99 %.1f ms, worst %.1f ms of %zu",
-                  1e3 * quantile(delays, 0.5), 1e3 * quantile(delays, 0.99), 1e3 * quantile(delays, 1),
-                  delays.size());
-    line("  input to presented frame", text);
+    const double seconds = seconds_since(began);
+    line("retargeting live", printed("target advances %.1f/s (%zu frames in %.1f s)",
+                                     static_cast<double>(shown.size()) / seconds, shown.size(), seconds));
+    line("  input to presented frame",
+         printed("p50 %.1f ms, p99 %.1f ms, worst %.1f ms of %zu", 1e3 * quantile(delays, 0.5),
+                 1e3 * quantile(delays, 0.99), 1e3 * quantile(delays, 1), delays.size()));
   }
 
   /// Jumps to frames that have been forgotten since.
@@ -419,10 +364,8 @@ class UiBench {
       application_->frame(0);
       times.push_back(seconds_since(start));
     }
-    char text[96];
-    std::snprintf(text, sizeof text, "%.0f ms median, %.0f ms at most", 1e3 * quantile(times, 0.5),
-                  1e3 * quantile(times, 1));
-    line("scrubbing to any frame", text);
+    line("scrubbing to any frame",
+         printed("%.0f ms median, %.0f ms at most", 1e3 * quantile(times, 0.5), 1e3 * quantile(times, 1)));
   }
 
   void memory() {
@@ -436,10 +379,8 @@ class UiBench {
       }
       mb = resident_mb();
     }
-    char text[96];
-    std::snprintf(text, sizeof text, "%.0f MB, after the second time %.0f MB (x %.3f)", after[0], after[1],
-                  after[1] / after[0]);
-    line("memory, all frames looked at", text);
+    line("memory, all frames looked at",
+         printed("%.0f MB, after the second time %.0f MB (x %.3f)", after[0], after[1], after[1] / after[0]));
   }
 
   double seconds_;

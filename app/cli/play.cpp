@@ -7,7 +7,6 @@
 #include "app/cli/studio.hpp"
 #include "app/studio/application.hpp"
 #include "app/studio/script.hpp"
-#include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 
 namespace understudy::app {
@@ -21,17 +20,9 @@ struct PlayOptions {
   double timeout_s = 600;
 };
 
-render::ContextKind context_kind(const std::string& name) {
-  if (name == "egl") return render::ContextKind::Egl;
-  if (name == "osmesa") return render::ContextKind::Osmesa;
-  return name == "null" ? render::ContextKind::Null : render::ContextKind::Any;
-}
-
 OffscreenSurface::Options surface_options(const PlayOptions& options) {
   OffscreenSurface::Options surface;
-  const size_t x = options.size.find('x');
-  US_CHECK(x != std::string::npos, "--size wants WIDTHxHEIGHT, not ", options.size);
-  surface.width = std::atoi(options.size.c_str()), surface.height = std::atoi(options.size.c_str() + x + 1);
+  std::tie(surface.width, surface.height) = window_size(options.size);
   surface.content_scale = options.scale;
   surface.context = {context_kind(options.context), render::gl::DebugMode::Fatal};
   return surface;

@@ -30,6 +30,18 @@ StudioServices studio_services(const std::string& weights) {
   return services;
 }
 
+std::pair<int, int> window_size(const std::string& text) {
+  const size_t x = text.find('x');
+  US_CHECK(x != std::string::npos, "--size wants WIDTHxHEIGHT, not ", text);
+  return {std::atoi(text.c_str()), std::atoi(text.c_str() + x + 1)};
+}
+
+render::ContextKind context_kind(const std::string& name) {
+  if (name == "egl") return render::ContextKind::Egl;
+  if (name == "osmesa") return render::ContextKind::Osmesa;
+  return name == "null" ? render::ContextKind::Null : render::ContextKind::Any;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,9 +71,7 @@ render::WindowOptions window_options(const StudioOptions& options, const StudioS
   window.software = options.software;
   if (options.gl_debug) window.debug = render::gl::DebugMode::Log;
   if (options.size.empty()) return window;
-  const size_t x = options.size.find('x');
-  US_CHECK(x != std::string::npos, "--size wants WIDTHxHEIGHT, not ", options.size);
-  window.width = std::atoi(options.size.c_str()), window.height = std::atoi(options.size.c_str() + x + 1);
+  std::tie(window.width, window.height) = window_size(options.size);
   US_CHECK(window.width >= 1 && window.height >= 1, "--size wants WIDTHxHEIGHT, not ", options.size);
   return window;
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
+#include <type_traits>
 
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
@@ -64,123 +64,61 @@ SurfaceTopology topology_of(const PreparedCharacter& c) {
   return out;
 }
 
-/// What all formats but glTF do with a pose before it is written.
-class FrameOutput : public MotionOutput {
+/// Who performs what is written.
+class Performer {
  public:
-  FrameOutput(std::string path, const ExportBody& body)
-      : path_(std::move(path)), body_(body), rest_(joints_of(body)) {}
-  void push(const ExportFrame& frame) final {
-    Pose pose = frame.pose;
-    const Points* vertices = frame.vertices;
-    if (body_.file.in_place) {
-      pose.root = Vec3(rest_(Pelvis, 0), pose.root.y(), rest_(Pelvis, 2));
-      vertices = nullptr;
-    }
-    write({pose, frame.source_joints, vertices});
-    ++frames_;
+  explicit Performer(const ExportBody& body) : body_(body), rest_(joints_of(body)) {}
+  /// The frame as the options want it.
+  ExportFrame performed(const ExportFrame& frame, Pose& pose) const {
+    pose = frame.pose;
+    if (!body_.file.in_place) return {pose, frame.source_joints, frame.vertices};
+    pose.root = Vec3(rest_(Pelvis, 0), pose.root.y(), rest_(Pelvis, 2));
+    return {pose, frame.source_joints, nullptr};
   }
-  ExportCost finish() final {
-    US_CHECK(frames_ > 0, path_, ": there is no motion to export");
-    close();
-    ExportCost cost;
-    cost.measured = is_surface();
-    cost.frames = frames_;
-    cost.bytes = bytes_at(path_);
-    return cost;
-  }
-
- protected:
-  virtual void write(const ExportFrame& frame) = 0;
-  virtual void close() = 0;
-  virtual bool is_surface() const { return false; }
-  Joints posed_joints(const Pose& pose) const { return forward_kinematics(rest_, pose).joints; }
+  Joints joints(const ExportFrame& frame) const { return forward_kinematics(rest_, frame.pose).joints; }
   /// In the file's order.
   Points surface(const ExportFrame& frame) const {
     const MergedSurface& merged = body_.character->surface;
     return merged.in_file_order(frame.vertices ? *frame.vertices : body_.screen->deform(frame.pose));
   }
-  const Joints& rest() const { return rest_; }
+
+ private:
+  ExportBody body_;
+  Joints rest_;
+};
+
+/// A format that takes frame after frame. kSurface: its vertices are those of the screen.
+template <class Writer, bool kSurface>
+class FrameOutput final : public MotionOutput {
+ public:
+  using Write = void (*)(Writer& writer, const Performer& performer, const ExportFrame& frame);
+  template <class... Arguments>
+  FrameOutput(const std::string& path, const ExportBody& body, Write write, Arguments&&... of_writer)
+      : path_(path), performer_(body), write_(write), writer_(path, std::forward<Arguments>(of_writer)...) {}
+  void push(const ExportFrame& frame) override {
+    Pose pose;
+    write_(writer_, performer_, performer_.performed(frame, pose));
+    ++frames_;
+  }
+  ExportCost finish() override {
+    US_CHECK(frames_ > 0, path_, ": there is no motion to export");
+    if constexpr (std::is_same_v<Writer, ResultWriter>)
+      writer_.finish(source_to_scan_);
+    else
+      writer_.finish();
+    ExportCost cost;
+    cost.measured = kSurface;
+    cost.frames = frames_;
+    cost.bytes = bytes_at(path_);
+    return cost;
+  }
 
  private:
   std::string path_;
-  ExportBody body_;
-  Joints rest_;
+  Performer performer_;
+  Write write_;
+  Writer writer_;
   int64_t frames_ = 0;
-};
-
-class BvhOutput final : public FrameOutput {
- public:
-  BvhOutput(const std::string& path, const ExportBody& body, double fps)
-      : FrameOutput(path, body), writer_(path, rest(), fps) {}
-
- private:
-  void write(const ExportFrame& frame) override { writer_.push(frame.pose); }
-  void close() override { writer_.finish(); }
-  BvhWriter writer_;
-};
-
-class AmassOutput final : public FrameOutput {
- public:
-  AmassOutput(const std::string& path, const ExportBody& body, double fps)
-      : FrameOutput(path, body), writer_(path, fps) {}
-
- private:
-  void write(const ExportFrame& frame) override { writer_.push(frame.pose); }
-  void close() override { writer_.finish(); }
-  AmassWriter writer_;
-};
-
-class JointsOutput final : public FrameOutput {
- public:
-  JointsOutput(const std::string& path, const ExportBody& body, double fps)
-      : FrameOutput(path, body), table_(path, fps) {}
-
- private:
-  void write(const ExportFrame& frame) override { table_.push(posed_joints(frame.pose)); }
-  void close() override { table_.finish(); }
-  JointTable table_;
-};
-
-/// All figures as arrays, for others to evaluate.
-class ResultOutput final : public FrameOutput {
- public:
-  ResultOutput(const std::string& path, const ExportBody& body)
-      : FrameOutput(path, body),
-        writer_(path, static_cast<int64_t>(body.character->surface.in_file.size())) {}
-
- private:
-  void write(const ExportFrame& frame) override {
-    writer_.push(surface(frame), posed_joints(frame.pose), frame.pose.local, frame.source_joints);
-  }
-  void close() override { writer_.finish(source_to_scan_); }
-  bool is_surface() const override { return true; }
-  ResultWriter writer_;
-};
-
-class SequenceOutput final : public FrameOutput {
- public:
-  SequenceOutput(const std::string& path, const ExportBody& body, SequenceFormat format)
-      : FrameOutput(path, body), writer_(path, format, topology_of(*body.character)) {}
-
- private:
-  void write(const ExportFrame& frame) override { writer_.push(surface(frame)); }
-  void close() override { writer_.finish(); }
-  bool is_surface() const override { return true; }
-  SequenceWriter writer_;
-};
-
-class CacheOutput final : public FrameOutput {
- public:
-  CacheOutput(const std::string& path, const ExportBody& body)
-      : FrameOutput(path, body),
-        writer_(path, topology_of(*body.character),
-                body.character->surface.in_file_order(body.character->target.mesh.vertices)) {}
-
- private:
-  void write(const ExportFrame& frame) override { writer_.push(surface(frame)); }
-  void close() override { writer_.finish(); }
-  bool is_surface() const override { return true; }
-  PointCacheWriter writer_;
 };
 
 /// The animated character: poses are kept, under 1 kB a frame, and written at the end.
@@ -209,30 +147,53 @@ const std::vector<ExportFormat>& export_formats() {
   constexpr auto character = [](P path, B body, P name, double fps) -> Output {
     return std::make_unique<CharacterOutput>(path, body, name, fps);
   };
+  static constexpr auto pose = [](auto& to, const Performer&, const ExportFrame& frame) {
+    to.push(frame.pose);
+  };
+  static constexpr auto joints = [](auto& to, const Performer& by, const ExportFrame& f) {
+    to.push(by.joints(f));
+  };
+  static constexpr auto surface = [](auto& to, const Performer& by, const ExportFrame& f) {
+    to.push(by.surface(f));
+  };
+  static constexpr auto all = [](auto& to, const Performer& by, const ExportFrame& frame) {
+    to.push(by.surface(frame), by.joints(frame), frame.pose.local, frame.source_joints);
+  };
   static const std::vector<ExportFormat> formats = {
       {"glb", ".glb", "GLB", "The animated character, for any engine.", true, true, character},
       {"gltf", ".gltf", "glTF", "The same as text.", true, true, character},
       {"bvh", ".bvh", "BVH", "The motion of 22 joints, in centimetres.", true, false,
-       [](P path, B body, P, double fps) -> Output { return std::make_unique<BvhOutput>(path, body, fps); }},
+       [](P path, B body, P, double fps) -> Output {
+         return std::make_unique<FrameOutput<BvhWriter, false>>(path, body, pose, joints_of(body), fps);
+       }},
       {"amass", ".npz", "AMASS", "The motion as SMPL's joints turn, z up.", false, false,
        [](P path, B body, P, double fps) -> Output {
-         return std::make_unique<AmassOutput>(path, body, fps);
+         return std::make_unique<FrameOutput<AmassWriter, false>>(path, body, pose, fps);
        }},
       {"npz", ".npz", "NPZ", "Vertices, joints and rotations as arrays.", true, false,
-       [](P path, B body, P, double) -> Output { return std::make_unique<ResultOutput>(path, body); }},
+       [](P path, B body, P, double) -> Output {
+         const auto vertices = static_cast<int64_t>(body.character->surface.in_file.size());
+         return std::make_unique<FrameOutput<ResultWriter, true>>(path, body, all, vertices);
+       }},
       {"ply", "", "PLY", "A folder with the surface of every frame.", false, false,
        [](P path, B body, P, double) -> Output {
-         return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Ply);
+         return std::make_unique<FrameOutput<SequenceWriter, true>>(path, body, surface, SequenceFormat::Ply,
+                                                                    topology_of(*body.character));
        }},
       {"obj", "", "OBJ", "The same as text, with texture coordinates.", false, false,
        [](P path, B body, P, double) -> Output {
-         return std::make_unique<SequenceOutput>(path, body, SequenceFormat::Obj);
+         return std::make_unique<FrameOutput<SequenceWriter, true>>(path, body, surface, SequenceFormat::Obj,
+                                                                    topology_of(*body.character));
        }},
       {"pc2", ".pc2", "PC2", "A vertex cache, and the mesh that it moves.", true, false,
-       [](P path, B body, P, double) -> Output { return std::make_unique<CacheOutput>(path, body); }},
+       [](P path, B body, P, double) -> Output {
+         const PreparedCharacter& of = *body.character;
+         return std::make_unique<FrameOutput<PointCacheWriter, true>>(
+             path, body, surface, topology_of(of), of.surface.in_file_order(of.target.mesh.vertices));
+       }},
       {"joints", ".csv", "CSV", "Where the 22 joints are, as a table.", true, false,
        [](P path, B body, P, double fps) -> Output {
-         return std::make_unique<JointsOutput>(path, body, fps);
+         return std::make_unique<FrameOutput<JointTable, false>>(path, body, joints, fps);
        }}};
   return formats;
 }
@@ -307,14 +268,10 @@ ExportCost export_motion(const std::string& path, const ExportFormat& format, co
 }
 
 std::string sentence(const ExportCost& cost) {
-  char text[160];
   const double megabytes = static_cast<double>(cost.bytes) / 1e6;
-  if (cost.measured)
-    std::snprintf(text, sizeof text, "mean %.2f mm, largest %.2f mm off the screen, %.1f MB", cost.mean_mm,
-                  cost.largest_mm, megabytes);
-  else
-    std::snprintf(text, sizeof text, "%s frames, %.1f MB", grouped(cost.frames).c_str(), megabytes);
-  return text;
+  if (!cost.measured) return printed("%s frames, %.1f MB", grouped(cost.frames).c_str(), megabytes);
+  return printed("mean %.2f mm, largest %.2f mm off the screen, %.1f MB", cost.mean_mm, cost.largest_mm,
+                 megabytes);
 }
 
 }  // namespace understudy::app
