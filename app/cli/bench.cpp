@@ -41,8 +41,6 @@ class Repeated final : public Source {
     return frame;
   }
   void seek(int64_t frame) override { inner_->seek(frame); }
-  std::string decision() const override { return inner_->decision(); }
-  Eigen::Matrix4d to_file() const override { return inner_->to_file(); }
   std::optional<int64_t> count() const override { return std::nullopt; }
 
  private:

@@ -30,25 +30,11 @@ Json names_of(const FrameFailures& failures) {
 
 Json groups(const std::map<std::string, std::vector<Metrics>>& by_name) {
   Json json = Json::object();
-  for (const auto& [name, metrics] : by_name) json[name] = app::to_json(mean_metrics(metrics));
+  for (const auto& [name, metrics] : by_name) json[name] = to_json(mean_metrics(metrics));
   return json;
 }
 
 }  // namespace
-
-void Breakdown::put(Figures& figures, const std::string& key, double value) {
-  const auto known =
-      std::find_if(figures.begin(), figures.end(), [&](const auto& f) { return f.first == key; });
-  Mean& mean = known == figures.end() ? figures.emplace_back(key, Mean{}).second : known->second;
-  mean.sum += value;
-  ++mean.count;
-}
-
-Json Breakdown::to_json(const Figures& figures) {
-  Json json = Json::object();
-  for (const auto& [key, mean] : figures) json[key] = mean.sum / static_cast<double>(mean.count);
-  return json;
-}
 
 void Breakdown::add(const std::string& folder, const Case& c, const Evaluator& evaluator,
                     const Truth& truth) {
@@ -98,7 +84,7 @@ void Breakdown::add_joints(const Evaluator& evaluator, const Truth& truth) {
   const auto distances = [this](const char* key, const JointSequence& p, const JointSequence& q) {
     if (p.empty() || q.empty()) return;
     for (size_t t = 0; t < p.size(); ++t)
-      for (int j = 0; j < kJointCount; ++j) put(joints_[j], key, 1000 * (p[t].row(j) - q[t].row(j)).norm());
+      for (int j = 0; j < kJointCount; ++j) joints_[j].add(key, 1000 * (p[t].row(j) - q[t].row(j)).norm());
   };
   distances("extraction_mm", evaluator.source_joints(), truth.source_joints);
   distances("mpjpe_mm", evaluator.joints(), truth.joints);
@@ -107,7 +93,7 @@ void Breakdown::add_joints(const Evaluator& evaluator, const Truth& truth) {
   if (evaluator.rotations().empty() || truth.rotations.empty()) return;
   for (size_t t = 0; t < truth.rotations.size(); ++t) {
     const Rotations p = global_rotations(evaluator.rotations()[t]), q = global_rotations(truth.rotations[t]);
-    for (int j = 0; j < kJointCount; ++j) put(joints_[j], "rot_deg", geodesic_angle(p[j], q[j]) * 180 / kPi);
+    for (int j = 0; j < kJointCount; ++j) joints_[j].add("rot_deg", geodesic_angle(p[j], q[j]) * 180 / kPi);
   }
 }
 
@@ -165,7 +151,8 @@ ConfidenceRecord confidence_record(const Json& json) {
 Json Breakdown::json() const {
   Json json = {{"joints", Json::object()}, {"motions", groups(motions_)}, {"bodies", groups(bodies_)}};
   for (int j = 0; j < kJointCount; ++j)
-    if (!joints_[j].empty()) json["joints"][kJointNames[j]] = to_json(joints_[j]);
+    if (const Metrics means = joints_[j].means(); !means.empty())
+      json["joints"][kJointNames[j]] = to_json(means);
   for (int f = 0; f < kFailureCount; ++f) {
     Json& failure = json["failures"][kFailureNames[f]];
     failure["evaluated"] = evaluated_[f];

@@ -41,35 +41,25 @@ class Breakdown {
   /// A case with its truth, after all of its frames were evaluated. `folder` is the case's. Cases named
   /// BODY_MOTION, the motion being the last tag, count for both.
   void add(const std::string& folder, const Case& c, const Evaluator& evaluator, const Truth& truth);
-  /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
-  /// {"jolt":
-  /// {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(),
-  /// "worst":
-  /// [...]}; without what nothing is known of.
+  /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures": {"jolt":
+  /// {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...]}; without
+  /// what nothing is known of.
   Json json() const;
   const ConfidenceRecord& confidence() const { return confidence_; }
   /// The worst first; those of one case are at least ten frames apart.
   const std::vector<WorstFrame>& worst() const { return worst_; }
 
  private:
-  struct Mean {
-    double sum = 0;
-    int64_t count = 0;
-  };
-  using Figures = std::vector<std::pair<std::string, Mean>>;
   void add_worst(const std::string& folder, const Case& c, const Evaluator& evaluator, const Truth& truth,
                  const std::vector<FrameFailures>& failures);
   void add_joints(const Evaluator& evaluator, const Truth& truth);
   void add_confidence(const Evaluator& evaluator, const Truth& truth);
-  static void put(Figures& figures, const std::string& key, double value);
-  static Json to_json(const Figures& figures);
 
   size_t keep_;
-  std::array<Figures, kJointCount> joints_;
+  std::array<MeanMetrics, kJointCount> joints_;
   std::map<std::string, std::vector<Metrics>> motions_, bodies_;
   std::map<std::string, std::array<int64_t, kFailureCount>> motion_failures_;
-  std::array<int64_t, kFailureCount> failures_{},
-      evaluated_{};  // frames with it, and frames looked at for it
+  std::array<int64_t, kFailureCount> failures_{}, evaluated_{};  // frames with it, and looked at for it
   ConfidenceRecord confidence_;
   std::vector<WorstFrame> worst_;
 };

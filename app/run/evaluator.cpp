@@ -117,25 +117,26 @@ std::map<std::string, double> Evaluator::surface_figures() const {
   return figures;
 }
 
+void MeanMetrics::add(const std::string& key, double value) {
+  const auto known =
+      std::find_if(sums_.begin(), sums_.end(), [&](const auto& sum) { return sum.first == key; });
+  const size_t at = known - sums_.begin();
+  if (known == sums_.end()) sums_.emplace_back(key, 0), counts_.push_back(0);
+  sums_[at].second += value;
+  ++counts_[at];
+}
+
+Metrics MeanMetrics::means() const {
+  Metrics means = sums_;
+  for (size_t i = 0; i < means.size(); ++i) means[i].second /= counts_[i];
+  return means;
+}
+
 Metrics mean_metrics(const std::vector<Metrics>& all) {
-  Metrics mean;
-  std::vector<int> counts;
+  MeanMetrics mean;
   for (const Metrics& one : all)
-    for (const auto& figure : one) {
-      const std::string& key = figure.first;
-      const double value = figure.second;
-      const auto known =
-          std::find_if(mean.begin(), mean.end(), [&](const auto& m) { return m.first == key; });
-      if (known == mean.end()) {
-        mean.emplace_back(key, value);
-        counts.push_back(1);
-      } else {
-        known->second += value;
-        ++counts[known - mean.begin()];
-      }
-    }
-  for (size_t i = 0; i < mean.size(); ++i) mean[i].second /= counts[i];
-  return mean;
+    for (const auto& [key, value] : one) mean.add(key, value);
+  return mean.means();
 }
 
 }  // namespace understudy::app

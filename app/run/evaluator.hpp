@@ -90,6 +90,17 @@ class Evaluator {
   double floor_worst_ = 0;
 };
 
+/// Means of figures, in the order of their first appearance.
+class MeanMetrics {
+ public:
+  void add(const std::string& key, double value);
+  Metrics means() const;
+
+ private:
+  Metrics sums_;
+  std::vector<double> counts_;  // beside sums_
+};
+
 /// The mean of each figure over the sequences that have it, in the order of first appearance.
 Metrics mean_metrics(const std::vector<Metrics>& all);
 

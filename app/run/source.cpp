@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
@@ -24,9 +24,7 @@ namespace {
 constexpr Eigen::Index kFewestPoints = 32;  // that units, axes and floor are read from
 
 std::string in_words(double fps) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g frames/s", fps);
-  return text;
+  return printed("%g frames/s", fps);
 }
 
 /// Scans on disk, brought into the program's units and axes as the first usable frame says.
@@ -55,6 +53,7 @@ class ScanFiles final : public Source {
     }
     if (!decision_) {
       decision_ = decide_import(frame->mesh, import_);
+      set_decision(decision_->sentence, decision_->to_file());
       if (!quiet_) log::info(frame->path + ": " + decision_->sentence);
     }
     decision_->apply(frame->mesh);
@@ -70,8 +69,6 @@ class ScanFiles final : public Source {
     }
     scans_.seek(at_ = frame);
   }
-  std::string decision() const override { return decision_ ? decision_->sentence : ""; }
-  Eigen::Matrix4d to_file() const override { return decision_.value_or(ImportDecision()).to_file(); }
   std::optional<int64_t> count() const override { return scans_.count(); }
 
  private:
@@ -104,65 +101,6 @@ Eigen::VectorXf as_vector(const std::vector<float>& values) {
   return Eigen::Map<const Eigen::VectorXf>(values.data(), values.size());
 }
 
-/// An SMPL-format body that performs an AMASS-format motion.
-class PerformingBody final : public Source {
- public:
-  PerformingBody(const SourceOptions& options, Motion motion)
-      : Source(options.fps > 0 ? options.fps : motion.fps), motion_(std::move(motion)) {
-    const Body body = read_smpl_body(options.path);
-    US_CHECK(!motion_.poses.empty(), options.motion, ": has no frames");
-    const bool turned = turn_upright(motion_, options.import.up);
-    const Eigen::VectorXf own = betas_in(options.motion, body.shape_dirs.cols());
-    person_ = body.shaped(options.betas.empty() ? own : as_vector(options.betas));
-    place(body, options.betas.empty());
-    const Mesh first = posed(0);
-    ImportOptions import = options.import;
-    import.units = "m";
-    import.up = "y";
-    decision_ = decide_import(first, import);
-    if (!options.quiet)
-      log::info(options.motion + ": " + in_words(fps()) + ", " + (turned ? "z up, turned to y up" : "y up"));
-  }
-
-  std::optional<SourceFrame> next() override {
-    if (at_ >= motion_.poses.size()) return std::nullopt;
-    SourceFrame frame;
-    frame.mesh = posed(at_);
-    decision_.apply(frame.mesh);
-    frame.number = static_cast<int64_t>(at_++);
-    return frame;
-  }
-
-  void seek(int64_t frame) override {
-    US_CHECK(frame >= 0 && frame < *count(), "there is no frame ", frame, " in a motion of ", *count());
-    at_ = static_cast<size_t>(frame);
-  }
-  std::string decision() const override { return decision_.sentence; }
-  Eigen::Matrix4d to_file() const override { return decision_.to_file(); }
-  std::optional<int64_t> count() const override { return static_cast<int64_t>(motion_.poses.size()); }
-
- private:
-  /// A motion without shape of its own was recorded for the mean person: another's path is as much longer as
-  /// the legs. The file's translation moves the whole body, the pelvis from where it is in the T-pose.
-  void place(const Body& body, bool own_shape) {
-    const Joints mean = body.shaped(Eigen::VectorXf()).joints;
-    const float scale = own_shape ? 1.0f : leg_length(person_.joints) / leg_length(mean);
-    for (Pose& pose : motion_.poses) pose.root = (pose.root + mean.row(Pelvis).transpose()) * scale;
-  }
-
-  Mesh posed(size_t t) const {
-    Mesh mesh;
-    mesh.vertices = posed_vertices(person_, motion_.poses[t]);
-    mesh.faces = person_.faces;
-    return mesh;
-  }
-
-  Motion motion_;
-  ShapedBody person_;
-  ImportDecision decision_;
-  size_t at_ = 0;
-};
-
 /// Frames of an animation: it counts them.
 class AnimatedSource : public Source {
  public:
@@ -185,19 +123,69 @@ class AnimatedSource : public Source {
   int64_t count_, at_ = 0;
 };
 
+/// An SMPL-format body that performs an AMASS-format motion.
+class PerformingBody final : public AnimatedSource {
+ public:
+  PerformingBody(const SourceOptions& options, Motion motion)
+      : AnimatedSource(options.fps > 0 ? options.fps : motion.fps, ssize(motion.poses)),
+        motion_(std::move(motion)) {
+    const Body body = read_smpl_body(options.path);
+    US_CHECK(!motion_.poses.empty(), options.motion, ": has no frames");
+    const bool turned = turn_upright(motion_, options.import.up);
+    const Eigen::VectorXf own = betas_in(options.motion, body.shape_dirs.cols());
+    person_ = body.shaped(options.betas.empty() ? own : as_vector(options.betas));
+    place(body, options.betas.empty());
+    const Mesh first = posed(0);
+    ImportOptions import = options.import;
+    import.units = "m";
+    import.up = "y";
+    decision_ = decide_import(first, import);
+    set_decision(decision_.sentence, decision_.to_file());
+    if (!options.quiet)
+      log::info(options.motion + ": " + in_words(fps()) + ", " + (turned ? "z up, turned to y up" : "y up"));
+  }
+
+ private:
+  SourceFrame frame_at(int64_t frame) const override {
+    SourceFrame out;
+    out.mesh = posed(frame);
+    decision_.apply(out.mesh);
+    return out;
+  }
+
+  /// A motion without shape of its own was recorded for the mean person: another's path is as much longer as
+  /// the legs. The file's translation moves the whole body, the pelvis from where it is in the T-pose.
+  void place(const Body& body, bool own_shape) {
+    const Joints mean = body.shaped(Eigen::VectorXf()).joints;
+    const float scale = own_shape ? 1.0f : leg_length(person_.joints) / leg_length(mean);
+    for (Pose& pose : motion_.poses) pose.root = (pose.root + mean.row(Pelvis).transpose()) * scale;
+  }
+
+  Mesh posed(size_t t) const {
+    Mesh mesh;
+    mesh.vertices = posed_vertices(person_, motion_.poses[t]);
+    mesh.faces = person_.faces;
+    return mesh;
+  }
+
+  Motion motion_;
+  ShapedBody person_;
+  ImportDecision decision_;
+};
+
 /// A skeleton that moves.
 class MovingSkeleton final : public AnimatedSource {
  public:
   MovingSkeleton(SkeletalMotion motion, const SourceOptions& options)
       : AnimatedSource(motion.fps(), motion.count()), motion_(std::move(motion)) {
     set_clips(motion_.character(), motion_.clip());
+    std::string notes;
     for (const std::string& note : motion_.notes()) {
       if (!options.quiet) log::info(options.path + ": " + note);
-      append_item(decision_, note, "; ");
+      append_item(notes, note, "; ");
     }
+    set_decision(notes, motion_.to_file());
   }
-  std::string decision() const override { return decision_; }
-  Eigen::Matrix4d to_file() const override { return motion_.to_file(); }
 
  private:
   SourceFrame frame_at(int64_t frame) const override {
@@ -208,7 +196,6 @@ class MovingSkeleton final : public AnimatedSource {
   }
 
   SkeletalMotion motion_;
-  std::string decision_;
 };
 
 /// The surface of an animated character, sampled anew in each frame: a scan of it.
@@ -222,12 +209,11 @@ class ScannedCharacter final : public AnimatedSource {
         merged_(merged_surface(character_, bind_pose(character_).vertices)),
         decision_(decide_import(surface(0), options.import)) {
     set_clips(character_, clip_);
+    set_decision(decision_.sentence, decision_.to_file());
     if (!options.quiet)
       log::info(options.path + ": its surface is looked at as a scan, " + in_words(fps()) + ", " +
                 decision_.sentence);
   }
-  std::string decision() const override { return decision_.sentence; }
-  Eigen::Matrix4d to_file() const override { return decision_.to_file(); }
 
  private:
   SourceFrame frame_at(int64_t frame) const override {
@@ -303,6 +289,11 @@ void Source::set_clips(const Character& character, int clip) {
   for (const CharacterAnimation& animation : character.animations)
     clips_.push_back({animation.name, static_cast<double>(animation.duration())});
   clip_ = clip;
+}
+
+void Source::set_decision(const std::string& sentence, const Eigen::Matrix4d& to_file) {
+  decision_ = sentence;
+  to_file_ = to_file;
 }
 
 bool turn_upright(Motion& motion, const std::string& up) {

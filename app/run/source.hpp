@@ -63,10 +63,10 @@ class Source {
   /// Throws Error when there is no such frame.
   virtual void seek(int64_t frame) = 0;
   /// What was decided about units, axes and floor, one sentence; empty before the first usable frame.
-  virtual std::string decision() const = 0;
+  const std::string& decision() const { return decision_; }
   /// From frames as they are handed out back to the file's own units, axes and floor: scale, rotation and offset
   /// in one. Of a body that performs a motion to the body's, y up. The identity before the first usable frame.
-  virtual Eigen::Matrix4d to_file() const { return Eigen::Matrix4d::Identity(); }
+  const Eigen::Matrix4d& to_file() const { return to_file_; }
   /// None while it is not known.
   virtual std::optional<int64_t> count() const = 0;
   /// Frames per second.
@@ -78,9 +78,12 @@ class Source {
  protected:
   explicit Source(double fps) : fps_(fps) {}
   void set_clips(const Character& character, int clip);
+  void set_decision(const std::string& sentence, const Eigen::Matrix4d& to_file);
 
  private:
   double fps_;
+  std::string decision_;
+  Eigen::Matrix4d to_file_ = Eigen::Matrix4d::Identity();
   std::vector<SourceClip> clips_;
   int clip_ = -1;
 };

@@ -75,7 +75,6 @@ class FakeSource final : public Source {
     at_ = static_cast<int>(frame);
   }
   std::optional<int64_t> count() const override { return count_; }
-  std::string decision() const override { return ""; }
 
  private:
   Probe& probe_;
@@ -137,7 +136,6 @@ TEST(FrameCacheScans, CloudsGetEstimatedNormalsAndTheirSpacing) {
       }
       void seek(int64_t) override {}
       std::optional<int64_t> count() const override { return 1; }
-      std::string decision() const override { return ""; }
     };
     return std::make_unique<Plane>();
   });

@@ -71,7 +71,9 @@ inline Pose stage_pose(int frame) {
 class StageSource final : public app::Source {
  public:
   StageSource(std::shared_ptr<const Deformer> person, Mesh mesh, int frames)
-      : Source(30), person_(std::move(person)), mesh_(std::move(mesh)), frames_(frames) {}
+      : Source(30), person_(std::move(person)), mesh_(std::move(mesh)), frames_(frames) {
+    set_decision("metres", Eigen::Matrix4d::Identity());
+  }
   std::optional<app::SourceFrame> next() override {
     if (at_ >= frames_) return std::nullopt;
     Mesh posed = mesh_;
@@ -83,7 +85,6 @@ class StageSource final : public app::Source {
     return frame;
   }
   void seek(int64_t frame) override { at_ = frame; }
-  std::string decision() const override { return "metres"; }
   std::optional<int64_t> count() const override { return frames_; }
 
  private:

@@ -1,0 +1,93 @@
+#include "app/cli/options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "retarget/character/bone_choices.hpp"
+#include "retarget/pipeline/method_table.hpp"
+
+namespace understudy::app {
+
+void add_source_options(CLI::App& command, SourceOptions& source) {
+  command.add_option("--motion", source.motion,
+                     "AMASS-format motion that an SMPL-format source body performs");
+  command.add_option("--source-betas", source.betas, "shape parameters of the source body")->delimiter(',');
+  command.add_option("--clip", source.clip,
+                     "which animation of a skeletal source: its name or number (default: the longest)");
+  CLI::Option* const as_scan =
+      command.add_flag("--as-scan", source.as_scan,
+                       "the surface of an animated source is looked at as a scan, not its skeleton");
+  CLI::Option* const map = command.add_option_function<std::string>(
+      "--source-map", [&source](const std::string& path) { source.bones = read_bone_choices(path); },
+      R"(JSON that names bones of a skeletal source: {"left_wrist": "Hand.L"})");
+  map->excludes(as_scan);
+  command.add_flag("--follow", source.follow, "the source folder is still being written");
+  command
+      .add_option("--fps", source.fps, "frames per second of the source (default: the motion's own, or 30)")
+      ->check(CLI::Range(1.0, 1000.0));
+  command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
+  command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
+  command.add_option("--yaw", source.import.yaw_deg, "turns the source about y, degrees");
+  command.add_option("--floor", source.import.floor,
+                     "height of the source's floor, metres (default: the lowest points)");
+}
+
+void add_target_options(CLI::App& command, TargetOptions& target) {
+  command
+      .add_option("--rig", target.rig,
+                  "theirs: the character's own bones and weights; ours: 22 joints (default: theirs, if any)")
+      ->check(CLI::IsMember({"auto", "theirs", "ours"}));
+  command.add_option_function<std::string>(
+      "--map", [&target](const std::string& path) { target.bones = read_bone_choices(path); },
+      R"(JSON that names the character's bones: {"left_wrist": "Hand.L"})");
+  command.add_option("--betas", target.betas, "shape parameters of an SMPL-format target")->delimiter(',');
+  command.add_option("--target-units", target.import.units, "the target's units: auto, m, dm, cm, mm, in");
+  command.add_option("--target-up", target.import.up, "the target's up axis: auto, y (default), z, ...");
+  command.add_option_function<float>(
+      "--target-yaw",
+      [&target](float yaw_deg) {
+        target.import.yaw_deg = yaw_deg;
+        target.forward = false;
+      },
+      "turns the target about y, degrees (default: so that it faces forward)");
+}
+
+void add_method_options(CLI::App& command, MethodOptions& how) {
+  Method& method = how.method;
+  command.add_option("--engine", method.engine, "motion transfer; " + help_of(engines()))
+      ->check(CLI::IsMember(names_of(engines())));
+  command.add_option("--extractor", method.extractor, "skeleton extraction; " + help_of(extractors()))
+      ->check(CLI::IsMember(names_of(extractors())));
+  command.add_option("--root", method.root, "path: scaled by leg length, original, in-place")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, RootMode>{{"scaled", RootMode::Scaled},
+                                                                          {"original", RootMode::Original},
+                                                                          {"in-place", RootMode::InPlace}},
+                                          CLI::ignore_case));
+  command.add_flag("!--no-near", method.near, "limbs and head are not looked at again from near");
+  command.add_flag("!--no-swap-repair", method.repair_swaps,
+                   "left and right that were taken for each other stay so");
+  command.add_flag("!--no-smoothing", method.smooth_joints, "joints stay as noisy as they are extracted");
+  command.add_flag("!--no-fixed-lengths", method.fix_lengths, "bones may change their length");
+  command.add_flag("!--no-foot-lock", method.lock_feet, "standing feet may slide");
+  command.add_flag("!--no-hand-contacts", method.keep_contacts,
+                   "hands that touch the source's body need not touch the target's");
+  command.add_flag("!--no-offsets", method.offsets, "no pose-corrective offsets");
+  command.add_option("--weights", how.weights, "folder of the weights (default: beside the program)");
+  command.add_option("--engine-weights", how.engine_file,
+                     "weights file of the engine in place of the folder's");
+  command.add_option("--extractor-weights", how.extractor_file,
+                     "weights file of the extractor in place of the folder's");
+}
+
+nn::NetworkOptions network_options(const MethodOptions& how) {
+  nn::NetworkOptions options;
+  options.weights = how.weights;
+  options.engine = how.method.engine;
+  options.offsets = how.method.offsets;
+  options.near = how.method.near;
+  options.extractor = how.method.extractor;
+  options.engine_file = how.engine_file;
+  options.extractor_file = how.extractor_file;
+  return options;
+}
+
+}  // namespace understudy::app
