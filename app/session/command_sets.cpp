@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -10,13 +11,13 @@
 
 namespace understudy::app {
 
-const std::string& word(const Arguments& arguments, size_t i, const char* what) {
+const std::string& ArgumentReader::word(size_t i, const char* what) const {
   US_CHECK(i < arguments.size(), "a ", what, " is missing");
   return arguments[i];
 }
 
-double number(const Arguments& arguments, size_t i, const char* what) {
-  const std::string& text = word(arguments, i, what);
+double ArgumentReader::real_number(size_t i, const char* what) const {
+  const std::string& text = word(i, what);
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   US_CHECK(end != text.c_str() && *end == '\0' && std::abs(value) < 1e12, what, " is a number, not '", text,
@@ -24,15 +25,15 @@ double number(const Arguments& arguments, size_t i, const char* what) {
   return value;
 }
 
-int whole_number(const Arguments& arguments, size_t i, const char* what) {
-  const double value = number(arguments, i, what);
+double ArgumentReader::whole_number(size_t i, const char* what) const {
+  const double value = real_number(i, what);
   US_CHECK(value == std::floor(value) && std::abs(value) < 1e9, what, " is a whole number, not ",
            arguments[i]);
-  return static_cast<int>(value);
+  return value;
 }
 
-size_t choice(const Arguments& arguments, size_t i, const char* what, const std::vector<std::string>& words) {
-  const std::string& text = word(arguments, i, what);
+size_t ArgumentReader::choice(size_t i, const char* what, const std::vector<std::string>& words) const {
+  const std::string& text = word(i, what);
   const auto found = std::find(words.begin(), words.end(), text);
   std::string all;
   for (const std::string& known : words) append_item(all, known);
@@ -40,39 +41,47 @@ size_t choice(const Arguments& arguments, size_t i, const char* what, const std:
   return static_cast<size_t>(found - words.begin());
 }
 
-bool on_off(const Arguments& arguments, size_t i) {
-  return choice(arguments, i, "switch", {"off", "on"}) == 1;
+const std::string& ArgumentReader::one_of(size_t i, const char* what,
+                                          const std::vector<std::string>& words) const {
+  choice(i, what, words);
+  return arguments[i];
 }
 
-bool switched(const Arguments& arguments, size_t i, bool now) {
-  const size_t how = i < arguments.size() ? choice(arguments, i, "switch", {"off", "on", "toggle"}) : 2;
+bool ArgumentReader::on(size_t i) const {
+  return choice(i, "switch", {"off", "on"}) == 1;
+}
+
+bool ArgumentReader::switched(size_t i, bool now) const {
+  const size_t how = i < arguments.size() ? choice(i, "switch", {"off", "on", "toggle"}) : 2;
   return how == 2 ? !now : how == 1;
 }
 
-int joint_argument(const Arguments& arguments, size_t i) {
-  const std::string& text = word(arguments, i, "joint");
+int ArgumentReader::joint(size_t i) const {
+  const std::string& text = word(i, "joint");
   for (int j = 0; j < kJointCount; ++j)
     if (text == kJointNames[j]) return j;
-  const int j = whole_number(arguments, i, "joint");
+  const int j = number<int>(i, "joint");
   US_CHECK(j >= 0 && j < kJointCount, "there is no joint ", j);
   return j;
 }
 
-Vec3 vector_argument(const Arguments& arguments, size_t i, const char* what) {
-  Vec3 value;
-  for (int axis = 0; axis < 3; ++axis) value[axis] = static_cast<float>(number(arguments, i + axis, what));
-  return value;
+Vec3 ArgumentReader::vector(size_t i, const char* what) const {
+  return {number(i, what), number(i + 1, what), number(i + 2, what)};
 }
 
-Take& take_argument(Session& session, const Arguments& arguments, size_t i) {
-  const int k = whole_number(arguments, i, "take");
-  US_CHECK(k >= 0 && k < ssize(session.document.takes), "there is no take ", k);
-  return session.document.takes[k];
+std::string ArgumentReader::path(size_t i, const char* what) const {
+  return std::filesystem::absolute(word(i, what)).lexically_normal().string();
 }
 
-bool has_word(const Arguments& arguments, size_t from, const std::string& wanted) {
+bool ArgumentReader::has(const std::string& wanted, size_t from) const {
   return from < arguments.size() &&
          std::find(arguments.begin() + static_cast<long>(from), arguments.end(), wanted) != arguments.end();
+}
+
+size_t Call::take_number(size_t i) const {
+  const int k = number<int>(i, "take");
+  US_CHECK(k >= 0 && k < ssize(document.takes), "there is no take ", k);
+  return k;
 }
 
 void add_all_commands(Commands& commands) {

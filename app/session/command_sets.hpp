@@ -1,4 +1,4 @@
-// The commands, one file per family.
+// The commands, one file per family, and the call that each of them gets.
 #pragma once
 
 #include "app/session/studio.hpp"
@@ -15,25 +15,71 @@ void add_export_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 
-// Parsed arguments. Each function throws Error naming the argument that is wrong.
+/// Arguments, parsed. Each function throws Error naming the argument that is wrong, as `what`.
+class ArgumentReader {
+ public:
+  explicit ArgumentReader(Arguments given) : arguments(std::move(given)) {}
 
-double number(const Arguments& arguments, size_t i, const char* what);
-int whole_number(const Arguments& arguments, size_t i, const char* what);
-bool on_off(const Arguments& arguments, size_t i);
-/// "on", "off" or "toggle" of what is `now`.
-bool switched(const Arguments& arguments, size_t i, bool now);
-const std::string& word(const Arguments& arguments, size_t i, const char* what);
-/// The index of the argument among `words`.
-size_t choice(const Arguments& arguments, size_t i, const char* what, const std::vector<std::string>& words);
-template <size_t N>
-size_t choice(const Arguments& arguments, size_t i, const char* what, const Names<N>& names) {
-  return choice(arguments, i, what, std::vector<std::string>(names.begin(), names.end()));
+  const std::string& word(size_t i, const char* what) const;
+  /// Finite and below 1e12; an int is a whole number.
+  template <class Number = float>
+  Number number(size_t i, const char* what) const {
+    return static_cast<Number>(std::is_integral_v<Number> ? whole_number(i, what) : real_number(i, what));
+  }
+  template <class Number>
+  Number clamped(size_t i, const char* what, Number low, Number high) const {
+    return std::clamp(number<Number>(i, what), low, high);
+  }
+  /// "on" or "off".
+  bool on(size_t i) const;
+  /// "on", "off" or "toggle" of what is `now`; nothing toggles, too.
+  bool switched(size_t i, bool now) const;
+  /// The index of the argument among `words`.
+  size_t choice(size_t i, const char* what, const std::vector<std::string>& words) const;
+  template <class Enum, size_t N>
+  Enum choice(size_t i, const char* what, const Names<N>& names) const {
+    return static_cast<Enum>(choice(i, what, std::vector<std::string>(names.begin(), names.end())));
+  }
+  /// The argument, which is one of `words`.
+  const std::string& one_of(size_t i, const char* what, const std::vector<std::string>& words) const;
+  /// A joint by name ("left_wrist") or number.
+  int joint(size_t i) const;
+  Vec3 vector(size_t i, const char* what) const;
+  /// A path, made absolute.
+  std::string path(size_t i, const char* what = "path") const;
+  bool has(const std::string& wanted, size_t from) const;
+
+  const Arguments arguments;
+
+ private:
+  double real_number(size_t i, const char* what) const;
+  double whole_number(size_t i, const char* what) const;
+};
+
+/// A command that is being run: its arguments, and what it may change.
+class Call : public ArgumentReader {
+ public:
+  Call(Studio& of, const Arguments& given)
+      : ArgumentReader(given), studio(of), session(of.session()), document(of.session().document) {}
+
+  /// The take that an argument names by its number.
+  size_t take_number(size_t i = 0) const;
+  Take& take(size_t i = 0) const { return document.takes[take_number(i)]; }
+  TakeState& take_state(size_t i = 0) const { return session.takes[take_number(i)]; }
+
+  Studio& studio;
+  Session& session;
+  Document& document;
+};
+
+/// `value` where it is `wanted`, else none.
+template <class Value>
+std::optional<Value> only_if(bool wanted, Value value) {
+  return wanted ? std::optional<Value>(std::move(value)) : std::nullopt;
 }
-/// A joint by name ("left_wrist") or number.
-int joint_argument(const Arguments& arguments, size_t i);
-Vec3 vector_argument(const Arguments& arguments, size_t i, const char* what);
-/// The take with that number.
-Take& take_argument(Session& session, const Arguments& arguments, size_t i);
-bool has_word(const Arguments& arguments, size_t from, const std::string& word);
+
+/// Units and up axes that a file's import may be given; "auto" finds them.
+inline const std::vector<std::string> kUnitNames{"auto", "m", "dm", "cm", "mm", "in"};
+inline const std::vector<std::string> kAxisNames{"auto", "x", "y", "z", "-x", "-y", "-z"};
 
 }  // namespace understudy::app

@@ -9,6 +9,18 @@ void Commands::add(Command command) {
   commands_.push_back(std::move(command));
 }
 
+void Commands::add(CommandText text, std::function<void(Call&)> run) {
+  add(Command{std::move(text), Command::Undo::None, std::move(run)});
+}
+
+void Commands::add_edit(CommandText text, std::function<void(Call&)> run) {
+  add(Command{std::move(text), Command::Undo::Step, std::move(run)});
+}
+
+void Commands::add_slider(CommandText text, std::function<void(Call&)> run) {
+  add(Command{std::move(text), Command::Undo::Merged, std::move(run)});
+}
+
 const Command* Commands::find(const std::string& name) const {
   for (const Command& command : commands_)
     if (command.name == name) return &command;

@@ -8,29 +8,41 @@
 
 namespace understudy::app {
 
-class Studio;
+class Call;
 
 using Arguments = std::vector<std::string>;
 
-struct Command {
-  std::string name;                                    ///< "playback.seek"
-  std::string label;                                   ///< for menus and undo: "Seek"
-  std::string usage;                                   ///< "SECONDS: jumps to a time"
-  std::string shortcut;                                ///< "Ctrl+S", "Space"; empty: none
-  bool undoable = false;                               ///< the document may change: the state before is kept
-  bool merges = false;                                 ///< many in a row (a slider) are one step of undo
-  std::function<void(Studio&, const Arguments&)> run;  ///< throws Error
+/// What people read of a command.
+struct CommandText {
+  std::string name;        ///< "playback.seek"
+  std::string label;       ///< for menus and undo: "Seek"
+  std::string usage{};     ///< "SECONDS: jumps to a time"
+  std::string shortcut{};  ///< "Ctrl+S", "Space"; empty: none
+};
+
+struct Command : CommandText {
+  enum class Undo {
+    None,   ///< the document stays as it is
+    Step,   ///< the state before is kept
+    Merged  ///< many in a row (a slider) are one step
+  };
+  Undo undo;
+  std::function<void(Call&)> run;  ///< throws Error
 };
 
 /// The registry. Names are unique.
 class Commands {
  public:
-  void add(Command command);
+  /// A command that leaves the document as it is; one that edits it; one that edits it many times in a row.
+  void add(CommandText text, std::function<void(Call&)> run);
+  void add_edit(CommandText text, std::function<void(Call&)> run);
+  void add_slider(CommandText text, std::function<void(Call&)> run);
   /// Null when there is none.
   const Command* find(const std::string& name) const;
   const std::vector<Command>& all() const { return commands_; }
 
  private:
+  void add(Command command);
   std::vector<Command> commands_;
 };
 

@@ -63,100 +63,91 @@ void save_document(Studio& studio, const std::string& path) {
   studio.notify("Saved " + fs::path(whole).filename().string());
 }
 
-void answer(Studio& studio, const std::string& how) {
-  Session& session = studio.session();
+void answer(Call& c) {
+  const std::string& how = c.one_of(0, "answer", {"save", "discard", "cancel"});
+  Session& session = c.session;
   US_CHECK(session.question, "there is no question to answer");
   const Question question = *session.question;
   if (how == "save") {
     US_CHECK(!session.path.empty(), "the document has no file yet: save it under a name first");
-    save_document(studio, session.path);
+    save_document(c.studio, session.path);
   }
   session.question.reset();
   if (how == "cancel" || question.kind != Question::Kind::UnsavedChanges) return;
   session.changed = false;
-  Arguments words = split_line(question.then);
-  const std::string name = words.front();
-  words.erase(words.begin());
-  studio.run(name, words);
+  const Arguments words = split_line(question.then);
+  c.studio.run(words.front(), {words.begin() + 1, words.end()});
 }
 
 /// Several things at once: one that cannot be opened does not keep the others out. What fails is tried again
 /// after the rest: a motion may be named before the body that performs it.
-void open_all(Studio& studio, const Arguments& paths) {
-  word(paths, 0, "path");
-  if (paths.size() == 1) return studio.open(paths[0]);
+void open_all(Call& c) {
+  if (c.arguments.size() < 2) return c.studio.open(c.word(0, "path"));
   Arguments later;
-  for (const std::string& path : paths) {
+  for (const std::string& path : c.arguments) {
     try {
-      studio.open(path);
+      c.studio.open(path);
     } catch (const Error&) {
       later.push_back(path);
     }
   }
-  for (const std::string& path : later) studio.try_run("open", {path});
+  for (const std::string& path : later) c.studio.try_run("open", {path});
 }
 
 void add_files(Commands& commands) {
-  commands.add({"document.new", "New", "", "Ctrl+N", false, false, [](Studio& s, const Arguments&) {
-                  if (nothing_unsaved(s, "document.new")) s.replace_document({}, "");
-                }});
-  commands.add(
-      {"document.open", "Open document", "PATH", "", false, false, [](Studio& s, const Arguments& a) {
-         const std::string& path = word(a, 0, "path");
-         if (nothing_unsaved(s, join_line("document.open", {path}))) open_document(s, path);
-       }});
-  commands.add({"document.save", "Save", "", "Ctrl+S", false, false, [](Studio& s, const Arguments&) {
-                  US_CHECK(!s.session().path.empty(), "the document has no file yet: save it under a name");
-                  save_document(s, s.session().path);
-                }});
-  commands.add({"document.save_as", "Save as", "PATH", "", false, false, [](Studio& s, const Arguments& a) {
-                  std::string path = word(a, 0, "path");
-                  if (!can_be(path, kDocument)) path += ".understudy";
-                  save_document(s, path);
-                }});
-  commands.add({"open", "Open", "PATH ...: a scan, target, document or case", "", false, false, open_all});
+  commands.add({"document.new", "New", "", "Ctrl+N"}, [](Call& c) {
+    if (nothing_unsaved(c.studio, "document.new")) c.studio.replace_document({}, "");
+  });
+  commands.add({"document.open", "Open document", "PATH"}, [](Call& c) {
+    const std::string& path = c.word(0, "path");
+    if (nothing_unsaved(c.studio, join_line("document.open", {path}))) open_document(c.studio, path);
+  });
+  commands.add({"document.save", "Save", "", "Ctrl+S"}, [](Call& c) {
+    US_CHECK(!c.session.path.empty(), "the document has no file yet: save it under a name");
+    save_document(c.studio, c.session.path);
+  });
+  commands.add({"document.save_as", "Save as", "PATH"}, [](Call& c) {
+    const std::string& path = c.word(0, "path");
+    save_document(c.studio, can_be(path, kDocument) ? path : path + ".understudy");
+  });
+  commands.add({"open", "Open", "PATH ...: a scan, target, document or case"}, open_all);
+}
+
+void recover(Call& c) {
+  const std::string& file = c.word(0, "file");
+  for (const Autosave& found : found_autosaves(c.studio.services().autosave_folder)) {
+    if (found.file != file) continue;
+    const SavedDocument saved = read_autosave(found);
+    c.session.question.reset();
+    c.studio.replace_document(saved, found.document_path);
+    c.session.changed = true;
+    discard(found);
+    return;
+  }
+  throw Error(file + ": there is no such unsaved work");
+}
+
+void discard_recovery(Call& c) {
+  const std::string& file = c.word(0, "file");
+  const auto is_it = [&](const Autosave& copy) { return copy.file == file; };
+  for (const Autosave& found : found_autosaves(c.studio.services().autosave_folder))
+    if (is_it(found)) discard(found);
+  auto& question = c.session.question;
+  if (!question) return;
+  auto& left = question->autosaves;
+  left.erase(std::remove_if(left.begin(), left.end(), is_it), left.end());
+  if (left.empty()) question.reset();
 }
 
 void add_recovery(Commands& commands) {
-  commands.add({"question.answer", "Answer", "save|discard|cancel", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 0, "answer", {"save", "discard", "cancel"});
-                  answer(s, a[0]);
-                }});
-  commands.add({"document.recover", "Recover", "FILE", "", false, false, [](Studio& s, const Arguments& a) {
-                  const std::string file = word(a, 0, "file");
-                  for (const Autosave& found : found_autosaves(s.services().autosave_folder)) {
-                    if (found.file != file) continue;
-                    const SavedDocument saved = read_autosave(found);
-                    s.session().question.reset();
-                    s.replace_document(saved, found.document_path);
-                    s.session().changed = true;
-                    discard(found);
-                    return;
-                  }
-                  throw Error(file + ": there is no such unsaved work");
-                }});
-  commands.add(
-      {"document.discard_recovery", "Discard", "FILE", "", false, false, [](Studio& s, const Arguments& a) {
-         const std::string file = word(a, 0, "file");
-         for (const Autosave& found : found_autosaves(s.services().autosave_folder))
-           if (found.file == file) discard(found);
-         auto& question = s.session().question;
-         if (!question) return;
-         auto& left = question->autosaves;
-         left.erase(std::remove_if(left.begin(), left.end(),
-                                   [&](const Autosave& copy) { return copy.file == file; }),
-                    left.end());
-         if (left.empty()) question.reset();
-       }});
-  commands.add({"document.relocate", "Find the file", "OLD NEW: where it is now", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  Session& session = s.session();
-                  session.document =
-                      relocated(session.document, word(a, 0, "old place"), word(a, 1, "new place"));
-                  session.question.reset();
-                  ask_for_missing(session);
-                }});
+  commands.add({"question.answer", "Answer", "save|discard|cancel"}, answer);
+  commands.add({"document.recover", "Recover", "FILE"}, recover);
+  commands.add({"document.discard_recovery", "Discard", "FILE"}, discard_recovery);
+  commands.add_edit({"document.relocate", "Find the file", "OLD NEW: where it is now"}, [](Call& c) {
+    c.document = relocated(c.document, c.word(0, "old place"), c.word(1, "new place"));
+    c.session.question.reset();
+    ask_for_missing(c.session);
+  });
 }
 
 constexpr uint64_t kGlance = 1 << 20;  // bytes of a glTF that may be read before the UI thread draws on

@@ -5,35 +5,25 @@
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {
-
-namespace fs = std::filesystem;
 namespace {
 
-size_t take_number(Studio& studio, const Arguments& a) {
-  take_argument(studio.session(), a, 0);
-  return whole_number(a, 0, "take");
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
 }
 
-std::string whole_path(const Arguments& a) {
-  return fs::absolute(word(a, 1, "path")).lexically_normal().string();
-}
-
-void run_export(Studio& studio, const Arguments& a) {
-  const size_t take = take_number(studio, a);
-  const std::string path = whole_path(a);
-  const ExportChoice choice = export_choice(path, {a.begin() + 2, a.end()});
-  const Session& session = studio.session();
-  std::vector<size_t> takes = {take};
-  for (const std::string& name : choice.takes) takes.push_back(take_called(session.document, name));
+void run_export(Call& c) {
+  std::vector<size_t> takes = {c.take_number()};
+  const std::string path = c.path(1);
+  const ExportChoice choice = export_choice(path, {c.arguments.begin() + 2, c.arguments.end()});
+  for (const std::string& name : choice.takes) takes.push_back(take_called(c.document, name));
   const ExportFormat& format = *choice.format;
   US_CHECK(takes.size() == 1 || format.is_character, path, ": ", format.label,
            " holds one motion, these are ", takes.size());
-  const auto input = std::make_shared<ExportInput>(export_input(session, takes, choice));
+  const auto input = std::make_shared<ExportInput>(export_input(c.session, takes, choice));
   check_export(path, format);
-  const std::string name = fs::path(path).filename().string();
   const auto cost = std::make_shared<ExportCost>();
-  studio.jobs().start(
-      "Exporting " + name,
+  c.studio.jobs().start(
+      "Exporting " + file_name(path),
       [input, path, &format, cost](JobControl& control) {
         input->body.file.progress = [&control](float done) {
           control.check();
@@ -41,19 +31,21 @@ void run_export(Studio& studio, const Arguments& a) {
         };
         *cost = export_motion(path, format, *input);
       },
-      [&studio, name, cost] { studio.notify("Exported " + name + ": " + sentence(*cost)); });
+      [&studio = c.studio, path, cost] {
+        studio.notify("Exported " + file_name(path) + ": " + sentence(*cost));
+      });
 }
 
-void export_figures(Studio& studio, const Arguments& a) {
-  const TakeState& state = studio.session().takes[take_number(studio, a)];
+void export_figures(Call& c) {
+  const TakeState& state = c.take_state();
   US_CHECK(!state.series.empty(), "there are no figures yet");
-  const std::string path = whole_path(a), name = fs::path(path).filename().string();
-  studio.jobs().start(
-      "Exporting " + name,
-      [path, series = state.series, fps = studio.session().source.fps](JobControl&) {
+  const std::string path = c.path(1);
+  c.studio.jobs().start(
+      "Exporting " + file_name(path),
+      [path, series = state.series, fps = c.session.source.fps](JobControl&) {
         write_csv(path, series, fps);
       },
-      [&studio, name] { studio.notify("Exported " + name); });
+      [&studio = c.studio, path] { studio.notify("Exported " + file_name(path)); });
 }
 
 }  // namespace
@@ -61,9 +53,9 @@ void export_figures(Studio& studio, const Arguments& a) {
 void add_export_commands(Commands& commands) {
   commands.add({"export.run", "Export animation",
                 "TAKE PATH [format=NAME] [rig=theirs|ours] [influences=4|8] [morphs=COUNT] [reduce=MM] "
-                "[in_place=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]",
-                "", false, false, run_export});
-  commands.add({"export.csv", "Export figures as CSV", "TAKE PATH", "", false, false, export_figures});
+                "[in_place=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]"},
+               run_export);
+  commands.add({"export.csv", "Export figures as CSV", "TAKE PATH"}, export_figures);
 }
 
 }  // namespace understudy::app

@@ -1,144 +1,105 @@
-#include <algorithm>
+#include <utility>
 
 #include "app/session/command_sets.hpp"
-#include "retarget/base/error.hpp"
 
 namespace understudy::app {
 namespace {
 
 /// Goes as far back as the spread arms of a T-pose ask; never nearer.
-void see_whole(Studio& studio) {
-  Session& session = studio.session();
-  if (!session.view.linked) session.view.active_pane = session.selected_take + 1;
-  const size_t i = session.view.linked ? 0 : session.view.active_pane;
-  const View before = session.view;
-  studio.run("view.fit");
-  if (i < before.cameras.size() && session.view.cameras[i].distance <= before.cameras[i].distance)
-    session.view.cameras = before.cameras;
+void see_whole(Call& c) {
+  View& view = c.session.view;
+  if (!view.linked) view.active_pane = c.session.selected_take + 1;
+  const size_t i = view.linked ? 0 : view.active_pane;
+  const View before = view;
+  c.studio.run("view.fit");
+  if (i < before.cameras.size() && view.cameras[i].distance <= before.cameras[i].distance)
+    view.cameras = before.cameras;
 }
 
 void add_tools(Commands& commands) {
   struct Row {
-    const char *name, *label, *key;
+    const char *label, *key;
   };
-  static constexpr Row kTools[] = {{"look", "Look", "Q"},           {"joints", "Extracted joints", "W"},
-                                   {"bones", "Bones", "E"},         {"target-joints", "Target joints", "R"},
-                                   {"paint", "Paint weights", "P"}, {"crop", "Crop", "C"}};
-  for (const Row& row : kTools)
-    commands.add({std::string("tool.") + row.name, row.label, "", row.key, false, false,
-                  [&row](Studio& s, const Arguments&) { s.run("tool", {row.name}); }});
-  commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  const auto tool = static_cast<Tool>(
-                      choice(a, 0, "tool", {"look", "joints", "bones", "target-joints", "paint", "crop"}));
-                  const bool changes = s.session().tool != tool;
-                  s.session().tool = tool;
-                  if (changes && tool == Tool::TargetJoints) see_whole(s);
-                }});
-  commands.add({"tool.falloff", "Falloff", "FRAMES", "", false, false, [](Studio& s, const Arguments& a) {
-                  s.session().falloff = std::clamp(whole_number(a, 0, "falloff"), 0, 10000);
-                }});
-  commands.add({"tool.children", "Children follow", "on|off", "", false, false,
-                [](Studio& s, const Arguments& a) { s.session().drag_children = on_off(a, 0); }});
-  commands.add({"tool.mirror", "Mirror joint follows", "on|off", "", false, false,
-                [](Studio& s, const Arguments& a) { s.session().mirror_joint = on_off(a, 0); }});
-  commands.add(
-      {"select.joint", "Select joint", "JOINT|none", "", false, false, [](Studio& s, const Arguments& a) {
-         s.session().selected_joint = word(a, 0, "joint") == "none" ? -1 : joint_argument(a, 0);
-       }});
+  static constexpr Row kTools[] = {{"Look", "Q"},          {"Extracted joints", "W"}, {"Bones", "E"},
+                                   {"Target joints", "R"}, {"Paint weights", "P"},    {"Crop", "C"}};
+  for (size_t i = 0; i < kToolNames.size(); ++i)
+    commands.add({std::string("tool.") + kToolNames[i], kTools[i].label, "", kTools[i].key},
+                 [name = kToolNames[i]](Call& c) { c.studio.run("tool", {name}); });
+  commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop"}, [](Call& c) {
+    const Tool before = std::exchange(c.session.tool, c.choice<Tool>(0, "tool", kToolNames));
+    if (before != Tool::TargetJoints && c.session.tool == Tool::TargetJoints) see_whole(c);
+  });
+  commands.add({"tool.falloff", "Falloff", "FRAMES"},
+               [](Call& c) { c.session.falloff = c.clamped(0, "falloff", 0, 10000); });
+  commands.add({"tool.children", "Children follow", "on|off"},
+               [](Call& c) { c.session.drag_children = c.on(0); });
+  commands.add({"tool.mirror", "Mirror joint follows", "on|off"},
+               [](Call& c) { c.session.mirror_joint = c.on(0); });
+  commands.add({"select.joint", "Select joint", "JOINT|none"},
+               [](Call& c) { c.session.selected_joint = c.word(0, "joint") == "none" ? -1 : c.joint(0); });
 }
 
 void add_brush(Commands& commands) {
-  commands.add(
-      {"tool.brush_radius", "Brush radius", "METRES", "", false, false, [](Studio& s, const Arguments& a) {
-         s.session().brush.radius_m = std::clamp(static_cast<float>(number(a, 0, "radius")), 0.002f, 1.f);
-       }});
-  commands.add({"tool.brush_strength", "Brush strength", "0 to 1", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().brush.strength =
-                      std::clamp(static_cast<float>(number(a, 0, "strength")), 0.f, 1.f);
-                }});
-  commands.add({"tool.brush_mode", "Brush mode", "add|subtract|smooth", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().brush.mode =
-                      static_cast<Brush::Mode>(choice(a, 0, "mode", {"add", "subtract", "smooth"}));
-                }});
+  commands.add({"tool.brush_radius", "Brush radius", "METRES"},
+               [](Call& c) { c.session.brush.radius_m = c.clamped(0, "radius", 0.002f, 1.f); });
+  commands.add({"tool.brush_strength", "Brush strength", "0 to 1"},
+               [](Call& c) { c.session.brush.strength = c.clamped(0, "strength", 0.f, 1.f); });
+  commands.add({"tool.brush_mode", "Brush mode", "add|subtract|smooth"}, [](Call& c) {
+    c.session.brush.mode = static_cast<Brush::Mode>(c.choice(0, "mode", {"add", "subtract", "smooth"}));
+  });
 }
 
 void add_work(Commands& commands) {
-  commands.add({"work.pause", "Pause retargeting", "", "", false, false,
-                [](Studio& s, const Arguments&) { s.pause_work(true); }});
-  commands.add({"work.resume", "Continue retargeting", "", "", false, false,
-                [](Studio& s, const Arguments&) { s.pause_work(false); }});
-  commands.add({"work.restart", "Retarget again", "", "Ctrl+R", false, false,
-                [](Studio& s, const Arguments&) { s.restart_work(); }});
-  commands.add({"job.cancel", "Cancel", "ID", "", false, false,
-                [](Studio& s, const Arguments& a) { s.jobs().cancel(whole_number(a, 0, "job")); }});
-  commands.add({"error.dismiss", "Close", "", "", false, false, [](Studio& s, const Arguments&) {
-                  if (!s.session().errors.empty()) s.session().errors.pop_front();
-                }});
-  commands.add({"log.clear", "Clear the log", "", "", false, false,
-                [](Studio& s, const Arguments&) { s.session().log.clear(); }});
-  commands.add({"notice", "Notice", "TEXT", "", false, false,
-                [](Studio& s, const Arguments& a) { s.notify(word(a, 0, "text")); }});
-  commands.add({"app.quit", "Quit", "", "Ctrl+Q", false, false, [](Studio& s, const Arguments&) {
-                  Session& session = s.session();
-                  if (session.changed) {
-                    session.question = Question{};
-                    session.question->text = "Save the changes before you quit?";
-                    session.question->then = "app.quit";
-                    return;
-                  }
-                  session.quit = true;
-                }});
+  commands.add({"work.pause", "Pause retargeting"}, [](Call& c) { c.studio.pause_work(true); });
+  commands.add({"work.resume", "Continue retargeting"}, [](Call& c) { c.studio.pause_work(false); });
+  commands.add({"work.restart", "Retarget again", "", "Ctrl+R"}, [](Call& c) { c.studio.restart_work(); });
+  commands.add({"job.cancel", "Cancel", "ID"},
+               [](Call& c) { c.studio.jobs().cancel(c.number<int>(0, "job")); });
+  commands.add({"error.dismiss", "Close"}, [](Call& c) {
+    if (!c.session.errors.empty()) c.session.errors.pop_front();
+  });
+  commands.add({"log.clear", "Clear the log"}, [](Call& c) { c.session.log.clear(); });
+  commands.add({"notice", "Notice", "TEXT"}, [](Call& c) { c.studio.notify(c.word(0, "text")); });
+  commands.add({"app.quit", "Quit", "", "Ctrl+Q"}, [](Call& c) {
+    c.session.quit = !c.session.changed;
+    if (c.session.quit) return;
+    c.session.question = Question{};
+    c.session.question->text = "Save the changes before you quit?";
+    c.session.question->then = "app.quit";
+  });
 }
 
 void add_settings(Commands& commands) {
-  commands.add({"settings.theme", "Theme", "dark|light", "", false, false, [](Studio& s, const Arguments& a) {
-                  s.session().settings.dark = choice(a, 0, "theme", {"dark", "light"}) == 0;
-                  s.save_settings();
-                }});
-  commands.add({"settings.scale", "Scale of the interface", "0.75 to 3 | auto", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  float& scale = s.session().settings.scale;
-                  scale = word(a, 0, "scale") == "auto"
-                              ? 0.f
-                              : std::clamp(static_cast<float>(number(a, 0, "scale")), 0.75f, 3.f);
-                  s.save_settings();
-                }});
-  commands.add(
-      {"settings.samples", "Antialiasing", "1|2|4", "", false, false, [](Studio& s, const Arguments& a) {
-         s.session().settings.samples = 1 << choice(a, 0, "number of samples", {"1", "2", "4"});
-         s.save_settings();
-       }});
-  commands.add(
-      {"settings.cache_mb", "Memory for frames", "MB", "", false, false, [](Studio& s, const Arguments& a) {
-         s.session().settings.cache_mb = std::clamp(whole_number(a, 0, "size"), 64, 8192);
-         s.cache().set_limit(s.session().settings.cache_mb);
-         s.save_settings();
-       }});
-  commands.add(
-      {"settings.autosave_s", "Autosave", "SECONDS", "", false, false, [](Studio& s, const Arguments& a) {
-         s.session().settings.autosave_s = std::clamp(number(a, 0, "time"), 1.0, 600.0);
-         s.save_settings();
-       }});
-  commands.add({"settings.mouse", "Mouse sensitivity", "FACTOR: 0.2 to 4", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().settings.mouse_sensitivity =
-                      std::clamp(static_cast<float>(number(a, 0, "factor")), 0.2f, 4.f);
-                  s.save_settings();
-                }});
-  commands.add({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000; takes effect at the next start", "",
-                false, false, [](Studio& s, const Arguments& a) {
-                  s.session().settings.undo_depth = std::clamp(whole_number(a, 0, "number"), 10, 1000);
-                  s.save_settings();
-                }});
-  commands.add(
-      {"panel.show", "Panel", "NAME on|off|toggle", "", false, false, [](Studio& s, const Arguments& a) {
-         auto& panels = s.session().settings.panels;
-         const auto found = panels.find(word(a, 0, "panel"));
-         panels[a[0]] = switched(a, 1, found == panels.end() || found->second);
-       }});
+  const auto setting = [&commands](CommandText text, auto set) {
+    commands.add(std::move(text), [set](Call& c) {
+      set(c, c.session.settings);
+      c.studio.save_settings();
+    });
+  };
+  setting({"settings.theme", "Theme", "dark|light"}, [](Call& c, Settings& s) {
+    s.dark = c.choice(0, "theme", {"dark", "light"}) == 0;
+  });
+  setting({"settings.scale", "Scale of the interface", "0.75 to 3 | auto"}, [](Call& c, Settings& s) {
+    s.scale = c.word(0, "scale") == "auto" ? 0.f : c.clamped(0, "scale", 0.75f, 3.f);
+  });
+  setting({"settings.samples", "Antialiasing", "1|2|4"}, [](Call& c, Settings& s) {
+    s.samples = 1 << c.choice(0, "number of samples", {"1", "2", "4"});
+  });
+  setting({"settings.cache_mb", "Memory for frames", "MB"}, [](Call& c, Settings& s) {
+    s.cache_mb = c.clamped(0, "size", 64, 8192);
+    c.studio.cache().set_limit(s.cache_mb);
+  });
+  setting({"settings.autosave_s", "Autosave", "SECONDS"},
+          [](Call& c, Settings& s) { s.autosave_s = c.clamped(0, "time", 1.0, 600.0); });
+  setting({"settings.mouse", "Mouse sensitivity", "FACTOR: 0.2 to 4"},
+          [](Call& c, Settings& s) { s.mouse_sensitivity = c.clamped(0, "factor", 0.2f, 4.f); });
+  setting({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000; takes effect at the next start"},
+          [](Call& c, Settings& s) { s.undo_depth = c.clamped(0, "number", 10, 1000); });
+  commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [](Call& c) {
+    auto& panels = c.session.settings.panels;
+    const auto found = panels.find(c.word(0, "panel"));
+    panels[c.arguments[0]] = c.switched(1, found == panels.end() || found->second);
+  });
 }
 
 }  // namespace

@@ -110,6 +110,7 @@ struct Question {
 
 /// What the mouse does in the views.
 enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop };
+constexpr Names<6> kToolNames{"look", "joints", "bones", "target-joints", "paint", "crop"};
 
 struct Session {
   Document document;

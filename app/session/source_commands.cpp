@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
@@ -11,72 +10,60 @@
 namespace understudy::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// For another source: drops the edits and settings of the old one's frames.
-void set_source(Studio& studio, SourceOptions source) {
-  Session& session = studio.session();
-  Document& document = session.document;
+void set_source(Call& c, SourceOptions source) {
+  Document& document = c.document;
   const std::string path = source.motion.empty() ? source.path : source.motion;
   document.source = std::move(source);
   document.truth.clear();
   document.scan_edits = {};
   document.skeleton_edits.clear();
   for (Take& take : document.takes) take.pose_edits = {};
-  session.playback = Playback{};
-  remember(session.settings.recent_sources, path);
+  c.session.playback = Playback{};
+  remember(c.session.settings.recent_sources, path);
 }
 
 void add_opening(Commands& commands) {
-  commands.add({"source.open", "Open scan",
-                "PATH: scans (folder, list, array) or a skeletal motion (" + format_names(kMotion) + ")", "",
-                true, false, [](Studio& s, const Arguments& a) {
-                  SourceOptions source;
-                  source.path = fs::absolute(word(a, 0, "path")).lexically_normal().string();
-                  if (!is_motion_file(source.path))
-                    ScanSource{source.path};  // throws at once when there is no frame
-                  set_source(s, source);
-                }});
-  commands.add({"source.motion", "Open motion", "BODY MOTION: SMPL-format body, AMASS-format motion", "",
-                true, false, [](Studio& s, const Arguments& a) {
-                  SourceOptions source;
-                  source.path = fs::absolute(word(a, 0, "body")).lexically_normal().string();
-                  source.motion = fs::absolute(word(a, 1, "motion")).lexically_normal().string();
-                  set_source(s, source);
-                }});
-  commands.add({"source.fps", "Frame rate", "FRAMES_PER_SECOND; 0: the source's own, or 30", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  const double fps = number(a, 0, "frame rate");
-                  US_CHECK(fps == 0 || (fps >= 1 && fps <= 1000), "a frame rate is 1 to 1000, not ", fps);
-                  s.session().document.source.fps = fps;
-                }});
+  commands.add_edit(
+      {"source.open", "Open scan",
+       "PATH: scans (folder, list, array) or a skeletal motion (" + format_names(kMotion) + ")"},
+      [](Call& c) {
+        SourceOptions source;
+        source.path = c.path(0);
+        if (!is_motion_file(source.path)) ScanSource{source.path};  // throws at once when there is no frame
+        set_source(c, source);
+      });
+  commands.add_edit({"source.motion", "Open motion", "BODY MOTION: SMPL-format body, AMASS-format motion"},
+                    [](Call& c) {
+                      SourceOptions source;
+                      source.path = c.path(0, "body");
+                      source.motion = c.path(1, "motion");
+                      set_source(c, source);
+                    });
+  commands.add_edit({"source.fps", "Frame rate", "FRAMES_PER_SECOND; 0: the source's own, or 30"},
+                    [](Call& c) {
+                      const auto fps = c.number<double>(0, "frame rate");
+                      US_CHECK(fps == 0 || (fps >= 1 && fps <= 1000), "a frame rate is 1 to 1000, not ", fps);
+                      c.document.source.fps = fps;
+                    });
 }
 
 void add_import(Commands& commands) {
-  commands.add({"source.units", "Units of the scan", "auto|m|dm|cm|mm|in", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 0, "unit", {"auto", "m", "dm", "cm", "mm", "in"});
-                  s.session().document.source.import.units = a[0];
-                }});
-  commands.add({"source.up", "Up axis of the scan", "auto|x|y|z|-x|-y|-z", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 0, "axis", {"auto", "x", "y", "z", "-x", "-y", "-z"});
-                  s.session().document.source.import.up = a[0];
-                }});
-  commands.add({"source.yaw", "Turn the scan", "DEGREES", "", true, true, [](Studio& s, const Arguments& a) {
-                  s.session().document.source.import.yaw_deg = static_cast<float>(number(a, 0, "angle"));
-                }});
-  commands.add(
-      {"source.floor", "Floor of the scan", "METRES|auto", "", true, true, [](Studio& s, const Arguments& a) {
-         auto& floor = s.session().document.source.import.floor;
-         floor.reset();
-         if (word(a, 0, "height") != "auto") floor = static_cast<float>(number(a, 0, "height"));
-       }});
-  commands.add({"source.extractor", "Skeleton extraction", names_of(extractors(), "|"), "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 0, "extractor", names_of(extractors()));
-                  for (Take& take : s.session().document.takes) take.method.extractor = a[0];
-                }});
+  commands.add_edit({"source.units", "Units of the scan", "auto|m|dm|cm|mm|in"},
+                    [](Call& c) { c.document.source.import.units = c.one_of(0, "unit", kUnitNames); });
+  commands.add_edit({"source.up", "Up axis of the scan", "auto|x|y|z|-x|-y|-z"},
+                    [](Call& c) { c.document.source.import.up = c.one_of(0, "axis", kAxisNames); });
+  commands.add_slider({"source.yaw", "Turn the scan", "DEGREES"},
+                      [](Call& c) { c.document.source.import.yaw_deg = c.number(0, "angle"); });
+  commands.add_slider({"source.floor", "Floor of the scan", "METRES|auto"}, [](Call& c) {
+    auto& floor = c.document.source.import.floor;
+    floor.reset();
+    if (c.word(0, "height") != "auto") floor = c.number(0, "height");
+  });
+  commands.add_edit({"source.extractor", "Skeleton extraction", names_of(extractors(), "|")}, [](Call& c) {
+    const std::string& extractor = c.one_of(0, "extractor", names_of(extractors()));
+    for (Take& take : c.document.takes) take.method.extractor = extractor;
+  });
 }
 
 /// Refuses an unknown name at once where the file's animations are known.
@@ -92,39 +79,35 @@ void check_clip(const SourceState& source, const std::string& clip) {
 }
 
 /// Refuses an option that does not apply to such a source.
-void set_skeletal(Studio& studio, SourceOptions source) {
+void set_skeletal(Call& c, SourceOptions source) {
   if (!source.path.empty()) check_source_options(source);
-  studio.session().document.source = std::move(source);
+  c.document.source = std::move(source);
 }
 
 void add_skeletal(Commands& commands) {
-  commands.add({"source.clip", "Animation of the source", "NAME|NUMBER|longest", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  const std::string clip = word(a, 0, "animation");
-                  const std::string wanted = clip == "longest" ? "" : clip;
-                  check_clip(s.session().source, wanted);
-                  SourceOptions source = s.session().document.source;
-                  source.clip = wanted;
-                  set_skeletal(s, std::move(source));
-                }});
-  commands.add({"source.as_scan", "Use an animated source as a scan", "on|off", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 0, "switch", {"on", "off"});
-                  SourceOptions source = s.session().document.source;
-                  source.as_scan = a[0] == "on";
-                  set_skeletal(s, std::move(source));
-                }});
-  commands.add({"source.bone", "Bone of the source for a joint",
-                "JOINT BONE|auto|none; auto: the bone found for it", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  SourceOptions source = s.session().document.source;
-                  const std::string joint = word(a, 0, "joint"), bone = word(a, 1, "bone");
-                  US_CHECK(std::find(kJointNames.begin(), kJointNames.end(), joint) != kJointNames.end(),
-                           "there is no joint '", joint, "'");
-                  source.bones[joint] = bone == "none" ? "" : bone;
-                  if (bone == "auto") source.bones.erase(joint);
-                  set_skeletal(s, std::move(source));
-                }});
+  commands.add_edit({"source.clip", "Animation of the source", "NAME|NUMBER|longest"}, [](Call& c) {
+    SourceOptions source = c.document.source;
+    source.clip = c.word(0, "animation");
+    if (source.clip == "longest") source.clip.clear();
+    check_clip(c.session.source, source.clip);
+    set_skeletal(c, std::move(source));
+  });
+  commands.add_edit({"source.as_scan", "Use an animated source as a scan", "on|off"}, [](Call& c) {
+    SourceOptions source = c.document.source;
+    source.as_scan = c.one_of(0, "switch", {"on", "off"}) == "on";
+    set_skeletal(c, std::move(source));
+  });
+  commands.add_edit(
+      {"source.bone", "Bone of the source for a joint", "JOINT BONE|auto|none; auto: the bone found for it"},
+      [](Call& c) {
+        SourceOptions source = c.document.source;
+        const std::string joint = c.word(0, "joint"), bone = c.word(1, "bone");
+        US_CHECK(std::find(kJointNames.begin(), kJointNames.end(), joint) != kJointNames.end(),
+                 "there is no joint '", joint, "'");
+        source.bones[joint] = bone == "none" ? "" : bone;
+        if (bone == "auto") source.bones.erase(joint);
+        set_skeletal(c, std::move(source));
+      });
 }
 
 }  // namespace

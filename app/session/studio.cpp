@@ -86,21 +86,23 @@ void Studio::ask_about_autosaves() {
 void Studio::run(const std::string& name, const Arguments& arguments) {
   const Command* const command = commands_.find(name);
   US_CHECK(command, "there is no command ", name);
-  if (!command->undoable) {
-    command->run(*this, arguments);
+  Call call(*this, arguments);
+  if (command->undo == Command::Undo::None) {
+    command->run(call);
     follow_document();
     return;
   }
   const Document before = session_.document;
   try {
-    command->run(*this, arguments);
+    command->run(call);
     if (same(before, session_.document)) return;
     follow_document();
   } catch (...) {
     session_.document = before;  // a command does all of its work or nothing
     throw;
   }
-  const std::string merge = command->merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
+  const bool merges = command->undo == Command::Undo::Merged;
+  const std::string merge = merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
   session_.history.add(before, command->label, merge);
   session_.changed = true;
 }

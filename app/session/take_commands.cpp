@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <map>
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
@@ -12,8 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 constexpr size_t kMostTakes = 8;
 
-std::string target_file(const Arguments& arguments, size_t i) {
-  const std::string path = fs::absolute(word(arguments, i, "path")).lexically_normal().string();
+std::string target_file(const Call& c, size_t i) {
+  const std::string path = c.path(i);
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file");
   US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
@@ -21,176 +22,137 @@ std::string target_file(const Arguments& arguments, size_t i) {
   return path;
 }
 
-std::vector<float> betas(const std::string& text) {
-  std::vector<float> values;
-  for (const std::string& item : split(text, ','))
-    values.push_back(static_cast<float>(number({item}, 0, "shape parameter")));
-  return values;
+void check_room(const Document& document) {
+  US_CHECK(document.takes.size() < kMostTakes, "there are ", kMostTakes, " takes already");
 }
 
 void add_targets(Commands& commands) {
-  commands.add({"target.add", "Add target", "PATH", "", true, false, [](Studio& s, const Arguments& a) {
-                  Session& session = s.session();
-                  auto& takes = session.document.takes;
-                  US_CHECK(takes.size() < kMostTakes, "there are ", kMostTakes, " takes already");
-                  Take take;
-                  take.target.path = target_file(a, 0);
-                  take.name = fs::path(take.target.path).stem().string();
-                  remember(session.settings.recent_targets, take.target.path);
-                  takes.push_back(std::move(take));
-                  session.selected_take = takes.size() - 1;
-                }});
-  commands.add(
-      {"target.replace", "Replace target", "TAKE PATH", "", true, false, [](Studio& s, const Arguments& a) {
-         Take& take = take_argument(s.session(), a, 0);
-         take.target = TargetOptions{};
-         take.target.path = target_file(a, 1);
-         take.target_edits = {};
-         take.name = fs::path(take.target.path).stem().string();
-       }});
-  commands.add({"target.remove", "Remove take", "TAKE", "", true, false, [](Studio& s, const Arguments& a) {
-                  take_argument(s.session(), a, 0);
-                  auto& takes = s.session().document.takes;
-                  takes.erase(takes.begin() + whole_number(a, 0, "take"));
-                }});
-  commands.add({"target.select", "Select take", "TAKE", "", false, false, [](Studio& s, const Arguments& a) {
-                  take_argument(s.session(), a, 0);
-                  s.session().selected_take = whole_number(a, 0, "take");
-                  s.session().view.active_pane = s.session().selected_take + 1;
-                }});
-  commands.add(
-      {"take.rename", "Rename take", "TAKE NAME", "", true, false,
-       [](Studio& s, const Arguments& a) { take_argument(s.session(), a, 0).name = word(a, 1, "name"); }});
+  commands.add_edit({"target.add", "Add target", "PATH"}, [](Call& c) {
+    check_room(c.document);
+    Take take;
+    take.target.path = target_file(c, 0);
+    take.name = fs::path(take.target.path).stem().string();
+    remember(c.session.settings.recent_targets, take.target.path);
+    c.document.takes.push_back(std::move(take));
+    c.session.selected_take = c.document.takes.size() - 1;
+  });
+  commands.add_edit({"target.replace", "Replace target", "TAKE PATH"}, [](Call& c) {
+    Take& take = c.take();
+    take.target = TargetOptions{};
+    take.target.path = target_file(c, 1);
+    take.target_edits = {};
+    take.name = fs::path(take.target.path).stem().string();
+  });
+  commands.add_edit({"target.remove", "Remove take", "TAKE"}, [](Call& c) {
+    c.document.takes.erase(c.document.takes.begin() + static_cast<std::ptrdiff_t>(c.take_number()));
+  });
+  commands.add({"target.select", "Select take", "TAKE"}, [](Call& c) {
+    c.session.selected_take = c.take_number();
+    c.session.view.active_pane = c.session.selected_take + 1;
+  });
+  commands.add_edit({"take.rename", "Rename take", "TAKE NAME"},
+                    [](Call& c) { c.take().name = c.word(1, "name"); });
 }
 
 void add_target_import(Commands& commands) {
-  commands.add({"target.units", "Units of the target", "TAKE auto|m|dm|cm|mm|in", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 1, "unit", {"auto", "m", "dm", "cm", "mm", "in"});
-                  take_argument(s.session(), a, 0).target.import.units = a[1];
-                }});
-  commands.add({"target.up", "Up axis of the target", "TAKE auto|x|y|z|-x|-y|-z", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 1, "axis", {"auto", "x", "y", "z", "-x", "-y", "-z"});
-                  take_argument(s.session(), a, 0).target.import.up = a[1];
-                }});
-  commands.add({"target.yaw", "Turn the target", "TAKE DEGREES|auto: so that it faces +z", "", true, true,
-                [](Studio& s, const Arguments& a) {
-                  TargetOptions& target = take_argument(s.session(), a, 0).target;
-                  target.forward = word(a, 1, "angle") == "auto";
-                  target.import.yaw_deg = target.forward ? 0 : static_cast<float>(number(a, 1, "angle"));
-                }});
-  commands.add({"target.betas", "Shape of the target", "TAKE \"1.2,-0.5\"", "", true, true,
-                [](Studio& s, const Arguments& a) {
-                  take_argument(s.session(), a, 0).target.betas =
-                      betas(word(a, 1, "list of shape parameters"));
-                }});
+  commands.add_edit({"target.units", "Units of the target", "TAKE auto|m|dm|cm|mm|in"},
+                    [](Call& c) { c.take().target.import.units = c.one_of(1, "unit", kUnitNames); });
+  commands.add_edit({"target.up", "Up axis of the target", "TAKE auto|x|y|z|-x|-y|-z"},
+                    [](Call& c) { c.take().target.import.up = c.one_of(1, "axis", kAxisNames); });
+  commands.add_slider({"target.yaw", "Turn the target", "TAKE DEGREES|auto: so that it faces +z"},
+                      [](Call& c) {
+                        TargetOptions& target = c.take().target;
+                        target.forward = c.word(1, "angle") == "auto";
+                        target.import.yaw_deg = target.forward ? 0 : c.number(1, "angle");
+                      });
+  commands.add_slider({"target.betas", "Shape of the target", "TAKE \"1.2,-0.5\""}, [](Call& c) {
+    std::vector<float>& betas = c.take().target.betas;
+    betas.clear();
+    for (const std::string& item : split(c.word(1, "list of shape parameters"), ','))
+      betas.push_back(ArgumentReader({item}).number(0, "shape parameter"));
+  });
 }
 
-/// Checks the chosen bones where the character is known, so that a wrong choice is refused at once.
-void check_bones(const Studio& studio, size_t k) {
-  const auto& character = studio.session().takes.at(k).character;
-  if (!character) return;
-  map_bones(character->character, character->bind.nodes, studio.session().document.takes[k].target.bones);
+void set_rig(Call& c) {
+  const std::string& rig = c.one_of(1, "rig", {"auto", "theirs", "ours"});
+  const auto& character = c.take_state().character;
+  US_CHECK(rig != "theirs" || !character || character->rigged, c.take().name,
+           " has no skeleton of its own whose bones are known");
+  c.take().target.rig = rig;
+}
+
+/// Refuses a wrong choice at once where the character is known.
+void set_bone(Call& c) {
+  BoneChoices& bones = c.take().target.bones;
+  const std::string joint = kJointNames[c.joint(1)];
+  const std::string& bone = c.word(2, "bone");
+  bones[joint] = bone == "none" ? "" : bone;
+  if (bone == "auto") bones.erase(joint);
+  if (const auto& character = c.take_state().character)
+    map_bones(character->character, character->bind.nodes, bones);
 }
 
 void add_rig(Commands& commands) {
-  commands.add({"target.rig", "Rig of the target", "TAKE auto|theirs|ours", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  choice(a, 1, "rig", {"auto", "theirs", "ours"});
-                  Take& take = take_argument(s.session(), a, 0);
-                  const auto& character = s.session().takes[whole_number(a, 0, "take")].character;
-                  US_CHECK(a[1] != "theirs" || !character || character->rigged, take.name,
-                           " has no skeleton of its own whose bones are known");
-                  take.target.rig = a[1];
-                }});
-  commands.add({"target.bone", "Bone of a joint", "TAKE JOINT BONE|none|auto", "", true, false,
-                [](Studio& s, const Arguments& a) {
-                  BoneChoices& bones = take_argument(s.session(), a, 0).target.bones;
-                  const std::string joint = kJointNames[joint_argument(a, 1)];
-                  const std::string& bone = word(a, 2, "bone");
-                  if (bone == "auto")
-                    bones.erase(joint);
-                  else
-                    bones[joint] = bone == "none" ? "" : bone;
-                  check_bones(s, whole_number(a, 0, "take"));
-                }});
-  commands.add(
-      {"target.bones_clear", "Reset to the bones found", "TAKE", "", true, false,
-       [](Studio& s, const Arguments& a) { take_argument(s.session(), a, 0).target.bones.clear(); }});
+  commands.add_edit({"target.rig", "Rig of the target", "TAKE auto|theirs|ours"}, set_rig);
+  commands.add_edit({"target.bone", "Bone of a joint", "TAKE JOINT BONE|none|auto"}, set_bone);
+  commands.add_edit({"target.bones_clear", "Reset to the bones found", "TAKE"},
+                    [](Call& c) { c.take().target.bones.clear(); });
 }
 
 /// One setting of a method, "engine=paper".
 void set_method(Method& method, const std::string& key, const std::string& value) {
-  const auto on = [&] { return on_off({value}, 0); };
-  switch (choice(
-      {key}, 0, "setting",
-      {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths", "feet", "contacts", "near"})) {
-    case 0:
-      choice({value}, 0, "engine", names_of(engines()));
-      method.engine = value;
-      break;
-    case 1:
-      choice({value}, 0, "extractor", names_of(extractors()));
-      method.extractor = value;
-      break;
-    case 2:
-      method.offsets = on();
-      break;
-    case 3:
-      method.root = static_cast<RootMode>(choice({value}, 0, "path", kRootNames));
-      break;
-    case 4:
-      method.repair_swaps = on();
-      break;
-    case 5:
-      method.smooth_joints = on();
-      break;
-    case 6:
-      method.fix_lengths = on();
-      break;
-    case 7:
-      method.lock_feet = on();
-      break;
-    case 8:
-      method.keep_contacts = on();
-      break;
-    default:
-      method.near = on();
+  static const std::map<std::string, bool Method::*> kSwitches = {{"offsets", &Method::offsets},
+                                                                  {"swaps", &Method::repair_swaps},
+                                                                  {"smooth", &Method::smooth_joints},
+                                                                  {"lengths", &Method::fix_lengths},
+                                                                  {"feet", &Method::lock_feet},
+                                                                  {"contacts", &Method::keep_contacts},
+                                                                  {"near", &Method::near}};
+  ArgumentReader({key}).one_of(
+      0, "setting",
+      {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths", "feet", "contacts", "near"});
+  const ArgumentReader words({value});
+  if (key == "engine")
+    method.engine = words.one_of(0, "engine", names_of(engines()));
+  else if (key == "extractor")
+    method.extractor = words.one_of(0, "extractor", names_of(extractors()));
+  else if (key == "root")
+    method.root = words.choice<RootMode>(0, "path", kRootNames);
+  else
+    method.*kSwitches.at(key) = words.on(0);
+}
+
+void compare(Call& c) {
+  Take other = c.take();
+  check_room(c.document);
+  for (size_t i = 1; i < c.arguments.size(); ++i) {
+    const std::string& setting = c.arguments[i];
+    const size_t equals = setting.find('=');
+    US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", setting);
+    const std::string key = setting.substr(0, equals), value = setting.substr(equals + 1);
+    set_method(other.method, key, value);
+    other.name += (i == 1 ? " (" : ", ") + key + " " + value;
   }
+  other.name += c.arguments.size() > 1 ? ")" : " (2)";
+  c.document.takes.push_back(std::move(other));
 }
 
 void add_methods(Commands& commands) {
-  const auto setting = [&commands](const char* key, const char* label, const std::string& usage) {
-    const std::string name = key;
-    commands.add({"method." + name, label, usage, "", true, false, [name](Studio& s, const Arguments& a) {
-                    set_method(take_argument(s.session(), a, 0).method, name, word(a, 1, "setting"));
-                  }});
+  const auto setting = [&commands](const std::string& key, const char* label, const std::string& usage) {
+    commands.add_edit({"method." + key, label, usage},
+                      [key](Call& c) { set_method(c.take().method, key, c.word(1, "setting")); });
   };
   setting("engine", "Motion transfer", "TAKE " + names_of(engines(), "|"));
   setting("extractor", "Skeleton extraction", "TAKE " + names_of(extractors(), "|"));
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
   setting("root", "Path", "TAKE scaled|original|in-place");
-  commands.add({"method.filter", "Filter", "TAKE swaps|smooth|lengths|feet|contacts|near on|off", "", true,
-                false, [](Studio& s, const Arguments& a) {
-                  choice(a, 1, "filter", {"swaps", "smooth", "lengths", "feet", "contacts", "near"});
-                  set_method(take_argument(s.session(), a, 0).method, a[1], word(a, 2, "switch"));
-                }});
-  commands.add(
-      {"compare.add", "Compare with another method", "TAKE [SETTING=VALUE ...]", "", true, false,
-       [](Studio& s, const Arguments& a) {
-         Session& session = s.session();
-         Take other = take_argument(session, a, 0);
-         US_CHECK(session.document.takes.size() < kMostTakes, "there are ", kMostTakes, " takes already");
-         for (size_t i = 1; i < a.size(); ++i) {
-           const size_t equals = a[i].find('=');
-           US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", a[i]);
-           set_method(other.method, a[i].substr(0, equals), a[i].substr(equals + 1));
-           other.name += (i == 1 ? " (" : ", ") + a[i].substr(0, equals) + " " + a[i].substr(equals + 1);
-         }
-         other.name += a.size() > 1 ? ")" : " (2)";
-         session.document.takes.push_back(std::move(other));
-       }});
+  commands.add_edit({"method.filter", "Filter", "TAKE swaps|smooth|lengths|feet|contacts|near on|off"},
+                    [](Call& c) {
+                      const std::string& filter =
+                          c.one_of(1, "filter", {"swaps", "smooth", "lengths", "feet", "contacts", "near"});
+                      set_method(c.take().method, filter, c.word(2, "switch"));
+                    });
+  commands.add_edit({"compare.add", "Compare with another method", "TAKE [SETTING=VALUE ...]"}, compare);
 }
 
 }  // namespace

@@ -9,31 +9,27 @@
 namespace understudy::app {
 namespace {
 
-bool is_on(const std::string& value) {
-  return choice({value}, 0, "switch", {"off", "on"}) == 1;
-}
-
-double in_range(const std::string& key, const std::string& value, double low, double high) {
-  const double number_of = number({value}, 0, key.c_str());
-  US_CHECK(number_of >= low && number_of <= high, key, " is between ", low, " and ", high, ", not ", value);
-  return number_of;
-}
-
 void set_option(ExportChoice& out, const std::string& key, const std::string& value) {
+  const ArgumentReader words({value});
+  const auto in_range = [&](float high) {
+    const auto number = words.number<double>(0, key.c_str());
+    US_CHECK(number >= 0 && number <= high, key, " is between 0 and ", high, ", not ", value);
+    return number;
+  };
   if (key == "rig")
-    out.theirs = choice({value}, 0, "rig", {"theirs", "ours"}) == 0;
+    out.theirs = words.choice(0, "rig", {"theirs", "ours"}) == 0;
   else if (key == "influences")
-    out.file.influences = choice({value}, 0, "influences", {"4", "8"}) == 0 ? 4 : 8;
+    out.file.influences = words.choice(0, "influences", {"4", "8"}) == 0 ? 4 : 8;
   else if (key == "morphs")
-    out.file.shapes = static_cast<int>(in_range(key, value, 0, 64));
+    out.file.shapes = static_cast<int>(in_range(64));
   else if (key == "reduce")
-    out.file.reduce_mm = static_cast<float>(in_range(key, value, 0, 1000));
+    out.file.reduce_mm = static_cast<float>(in_range(1000));
   else if (key == "in_place")
-    out.file.in_place = is_on(value);
+    out.file.in_place = words.on(0);
   else if (key == "t_pose")
-    out.file.t_pose_clip = is_on(value);
+    out.file.t_pose_clip = words.on(0);
   else if (key == "keep_clips")
-    out.file.keep_clips = is_on(value);
+    out.file.keep_clips = words.on(0);
   else if (key == "take")
     out.takes.push_back(value);
   else

@@ -105,7 +105,4 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("metric", view.metric);
 }
 
-/// Pane by pane: the source and the takes, as the layout says.
-int pane_count(const View& view, int takes);
-
 }  // namespace understudy::app

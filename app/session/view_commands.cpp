@@ -20,8 +20,12 @@ CameraState& camera(Session& session, int pane) {
   return view.cameras[pane];
 }
 
-CameraState& active_camera(Studio& studio) {
-  return camera(studio.session(), studio.session().view.active_pane);
+CameraState& active_camera(Session& session) {
+  return camera(session, session.view.active_pane);
+}
+
+void set_distance(CameraState& camera, float metres) {
+  camera.distance = std::clamp(metres, 0.05f, 500.f);
 }
 
 struct Preset {
@@ -36,38 +40,35 @@ constexpr Preset kPresets[] = {
     {"left", "Left view", "Ctrl+3", -90, 0}, {"three-quarter", "Three-quarter view", "0", 32, 10}};
 
 void add_cameras(Commands& commands) {
-  for (const Preset& preset : kPresets)
-    commands.add({std::string("view.preset_") + preset.name, preset.label, "", preset.key, false, false,
-                  [&preset](Studio& s, const Arguments&) { s.run("view.preset", {preset.name}); }});
-  commands.add({"view.preset", "Camera preset", "front|right|top|back|left|three-quarter", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  std::vector<std::string> names;
-                  for (const Preset& preset : kPresets) names.push_back(preset.name);
-                  const Preset& preset = kPresets[choice(a, 0, "preset", names)];
-                  active_camera(s).yaw = preset.yaw * kDegree;
-                  active_camera(s).pitch = preset.pitch * kDegree;
-                }});
-  commands.add({"view.camera", "Camera", "YAW_DEG PITCH_DEG [DISTANCE]", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  CameraState& c = active_camera(s);
-                  c.yaw = static_cast<float>(number(a, 0, "yaw")) * kDegree;
-                  c.pitch = std::clamp(static_cast<float>(number(a, 1, "pitch")), -89.f, 89.f) * kDegree;
-                  if (a.size() > 2)
-                    c.distance = std::clamp(static_cast<float>(number(a, 2, "distance")), 0.05f, 500.f);
-                }});
-  commands.add({"view.camera_state", "Camera", "PANE X Y Z YAW PITCH DISTANCE: radians, metres", "", false,
-                false, [](Studio& s, const Arguments& a) {
-                  CameraState& c = camera(s.session(), whole_number(a, 0, "pane"));
-                  c.target = vector_argument(a, 1, "target");
-                  c.yaw = static_cast<float>(number(a, 4, "yaw"));
-                  c.pitch = static_cast<float>(number(a, 5, "pitch"));
-                  c.distance = std::clamp(static_cast<float>(number(a, 6, "distance")), 0.05f, 500.f);
-                }});
-  commands.add(
-      {"view.ortho", "Orthographic", "on|off|toggle", "5", false, false, [](Studio& s, const Arguments& a) {
-         CameraState& c = active_camera(s);
-         c.orthographic = switched(a, 0, c.orthographic);
-       }});
+  std::vector<std::string> names;
+  for (const Preset& preset : kPresets) {
+    names.push_back(preset.name);
+    commands.add({std::string("view.preset_") + preset.name, preset.label, "", preset.key},
+                 [&preset](Call& c) { c.studio.run("view.preset", {preset.name}); });
+  }
+  commands.add({"view.preset", "Camera preset", "front|right|top|back|left|three-quarter"}, [names](Call& c) {
+    const Preset& preset = kPresets[c.choice(0, "preset", names)];
+    active_camera(c.session).yaw = preset.yaw * kDegree;
+    active_camera(c.session).pitch = preset.pitch * kDegree;
+  });
+  commands.add({"view.camera", "Camera", "YAW_DEG PITCH_DEG [DISTANCE]"}, [](Call& c) {
+    CameraState& camera = active_camera(c.session);
+    camera.yaw = c.number(0, "yaw") * kDegree;
+    camera.pitch = c.clamped(1, "pitch", -89.f, 89.f) * kDegree;
+    if (c.arguments.size() > 2) set_distance(camera, c.number(2, "distance"));
+  });
+  commands.add({"view.camera_state", "Camera", "PANE X Y Z YAW PITCH DISTANCE: radians, metres"},
+               [](Call& c) {
+                 CameraState& state = camera(c.session, c.number<int>(0, "pane"));
+                 state.target = c.vector(1, "target");
+                 state.yaw = c.number(4, "yaw");
+                 state.pitch = c.number(5, "pitch");
+                 set_distance(state, c.number(6, "distance"));
+               });
+  commands.add({"view.ortho", "Orthographic", "on|off|toggle", "5"}, [](Call& c) {
+    CameraState& camera = active_camera(c.session);
+    camera.orthographic = c.switched(0, camera.orthographic);
+  });
 }
 
 /// The T-pose placed where the person would be: on the floor, under the following camera.
@@ -97,12 +98,12 @@ std::vector<Joints> shown_joints(const Session& session) {
 }
 
 /// Turns the camera to the middle of everyone shown and moves it back until all fit the view's narrow side.
-void fit(Studio& studio) {
+void fit(Call& call) {
   constexpr float kBody = 0.2f;          // metres of a body beyond its outermost joints
   constexpr float kTitle = 0.08f;        // of the height stays free above the heads, for words
   constexpr float kViewsAspect = 1.55f;  // of all views together in a usual window
-  Session& session = studio.session();
-  CameraState& c = active_camera(studio);
+  const Session& session = call.session;
+  CameraState& c = active_camera(call.session);
   const std::vector<Joints> people = shown_joints(session);
   if (people.empty()) {
     c.target = CameraState{}.target;
@@ -116,7 +117,7 @@ void fit(Studio& studio) {
   }
   high.y() += kTitle * (high.y() - low.y() + 2 * kBody);
   c.target = 0.5f * (low + high);
-  const int panes = std::max(1, pane_count(session.view, session.takes.size()));
+  const size_t panes = session.view.layout == Layout::SideBySide ? 1 + session.takes.size() : 1;
   const float aspect = kViewsAspect / static_cast<float>(panes);
   const float tall = 0.5f * (high.y() - low.y()) + kBody;
   const float wide = 0.5f * std::hypot(high.x() - low.x(), high.z() - low.z()) + kBody;
@@ -124,109 +125,82 @@ void fit(Studio& studio) {
 }
 
 void add_camera_motion(Commands& commands) {
-  commands.add({"view.fit", "Fit", "all that is shown", "F", false, false,
-                [](Studio& s, const Arguments&) { fit(s); }});
-  commands.add(
-      {"view.orbit", "Orbit", "YAW_DEG PITCH_DEG", "", false, false, [](Studio& s, const Arguments& a) {
-         CameraState& c = active_camera(s);
-         c.yaw += static_cast<float>(number(a, 0, "yaw")) * kDegree;
-         const float pitch = c.pitch + static_cast<float>(number(a, 1, "pitch")) * kDegree;
-         c.pitch = std::clamp(pitch, -89 * kDegree, 89 * kDegree);
-       }});
-  commands.add({"view.pan", "Pan", "RIGHT UP: metres", "", false, false, [](Studio& s, const Arguments& a) {
-                  CameraState& c = active_camera(s);
-                  const float right = static_cast<float>(number(a, 0, "distance"));
-                  c.target += Vec3(right * std::cos(c.yaw), static_cast<float>(number(a, 1, "distance")),
-                                   -right * std::sin(c.yaw));
-                }});
-  commands.add(
-      {"view.zoom", "Zoom", "FACTOR: of the distance", "", false, false, [](Studio& s, const Arguments& a) {
-         CameraState& c = active_camera(s);
-         c.distance = std::clamp(c.distance * static_cast<float>(number(a, 0, "factor")), 0.05f, 500.f);
-       }});
-  commands.add({"view.turntable", "Turntable", "DEGREES_PER_SECOND", "T", false, false,
-                [](Studio& s, const Arguments& a) {
-                  float& speed = s.session().view.turntable_deg_s;
-                  speed = a.empty() ? (speed == 0 ? 30.f : 0.f) : static_cast<float>(number(a, 0, "speed"));
-                }});
-  commands.add({"view.follow", "Follow the person", "on|off|toggle", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().view.follow = switched(a, 0, s.session().view.follow);
-                }});
-  commands.add(
-      {"view.link", "Link the cameras", "on|off|toggle", "", false, false, [](Studio& s, const Arguments& a) {
-         s.session().view.linked = switched(a, 0, s.session().view.linked);
-       }});
+  commands.add({"view.fit", "Fit", "all that is shown", "F"}, fit);
+  commands.add({"view.orbit", "Orbit", "YAW_DEG PITCH_DEG"}, [](Call& c) {
+    CameraState& camera = active_camera(c.session);
+    camera.yaw += c.number(0, "yaw") * kDegree;
+    camera.pitch = std::clamp(camera.pitch + c.number(1, "pitch") * kDegree, -89 * kDegree, 89 * kDegree);
+  });
+  commands.add({"view.pan", "Pan", "RIGHT UP: metres"}, [](Call& c) {
+    CameraState& camera = active_camera(c.session);
+    const float right = c.number(0, "distance"), up = c.number(1, "distance");
+    camera.target += Vec3(right * std::cos(camera.yaw), up, -right * std::sin(camera.yaw));
+  });
+  commands.add({"view.zoom", "Zoom", "FACTOR: of the distance"}, [](Call& c) {
+    CameraState& camera = active_camera(c.session);
+    set_distance(camera, camera.distance * c.number(0, "factor"));
+  });
+  commands.add({"view.turntable", "Turntable", "DEGREES_PER_SECOND", "T"}, [](Call& c) {
+    float& speed = c.session.view.turntable_deg_s;
+    speed = c.arguments.empty() ? (speed == 0 ? 30.f : 0.f) : c.number(0, "speed");
+  });
+  commands.add({"view.follow", "Follow the person", "on|off|toggle"},
+               [](Call& c) { c.session.view.follow = c.switched(0, c.session.view.follow); });
+  commands.add({"view.link", "Link the cameras", "on|off|toggle"},
+               [](Call& c) { c.session.view.linked = c.switched(0, c.session.view.linked); });
 }
 
-bool& layer(Layers& layers, const Arguments& a) {
+Layers& layers(const Call& c) {
+  return c.choice(0, "pane", {"source", "take"}) == 0 ? c.session.view.source : c.session.view.take;
+}
+
+bool& layer(const Call& c) {
   std::vector<std::string> names;
   std::vector<bool*> which;
   const auto collect = [&](const char* name, auto& value, const auto&...) {
     if constexpr (std::is_same_v<decltype(value), bool&>) names.push_back(name), which.push_back(&value);
   };
-  fields(collect, layers);
-  return *which[choice(a, 1, "layer", names)];
-}
-
-Layers& layers(Session& session, const Arguments& a) {
-  return choice(a, 0, "pane", {"source", "take"}) == 0 ? session.view.source : session.view.take;
+  fields(collect, layers(c));
+  return *which[c.choice(1, "layer", names)];
 }
 
 void add_layers(Commands& commands) {
-  commands.add({"view.layer", "Layer", "source|take LAYER on|off|toggle", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  bool& shown = layer(layers(s.session(), a), a);
-                  shown = switched(a, 2, shown);
-                }});
-  commands.add({"view.colour", "Colour by",
-                "source|take plain|weights|offsets|error|difference|confidence|doubt", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  layers(s.session(), a).colouring =
-                      static_cast<Colouring>(choice(a, 1, "colouring", kColouringNames));
-                }});
+  commands.add({"view.layer", "Layer", "source|take LAYER on|off|toggle"}, [](Call& c) {
+    bool& shown = layer(c);
+    shown = c.switched(2, shown);
+  });
   commands.add(
-      {"view.weights_joint", "Weights of", "JOINT|all", "", false, false, [](Studio& s, const Arguments& a) {
-         s.session().view.weights_joint = word(a, 0, "joint") == "all" ? -1 : joint_argument(a, 0);
-       }});
-  commands.add(
-      {"view.trail_joint", "Trail of", "JOINT on|off", "", false, false, [](Studio& s, const Arguments& a) {
-         std::vector<int>& joints = s.session().view.trail_joints;
-         const int joint = joint_argument(a, 0);
-         joints.erase(std::remove(joints.begin(), joints.end(), joint), joints.end());
-         if (on_off(a, 1)) joints.push_back(joint);
-       }});
-  commands.add({"view.ghosts", "Ghosts", "COUNT STEP: to each side, frames between", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().view.ghost_count = std::clamp(whole_number(a, 0, "count"), 0, 10);
-                  s.session().view.ghost_step = std::clamp(whole_number(a, 1, "step"), 1, 1000);
-                }});
-  commands.add({"view.error_scale", "Error scale", "MM: the upper end of the scale", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().view.error_scale_mm =
-                      std::clamp(static_cast<float>(number(a, 0, "scale")), 0.1f, 1e4f);
-                }});
-  commands.add({"view.metric", "Plot in the timeline", "KEY", "", false, false,
-                [](Studio& s, const Arguments& a) { s.session().view.metric = word(a, 0, "figure"); }});
+      {"view.colour", "Colour by", "source|take plain|weights|offsets|error|difference|confidence|doubt"},
+      [](Call& c) { layers(c).colouring = c.choice<Colouring>(1, "colouring", kColouringNames); });
+  commands.add({"view.weights_joint", "Weights of", "JOINT|all"},
+               [](Call& c) { c.session.view.weights_joint = c.word(0, "joint") == "all" ? -1 : c.joint(0); });
+  commands.add({"view.trail_joint", "Trail of", "JOINT on|off"}, [](Call& c) {
+    std::vector<int>& joints = c.session.view.trail_joints;
+    const int joint = c.joint(0);
+    joints.erase(std::remove(joints.begin(), joints.end(), joint), joints.end());
+    if (c.on(1)) joints.push_back(joint);
+  });
+  commands.add({"view.ghosts", "Ghosts", "COUNT STEP: to each side, frames between"}, [](Call& c) {
+    c.session.view.ghost_count = c.clamped(0, "count", 0, 10);
+    c.session.view.ghost_step = c.clamped(1, "step", 1, 1000);
+  });
+  commands.add({"view.error_scale", "Error scale", "MM: the upper end of the scale"},
+               [](Call& c) { c.session.view.error_scale_mm = c.clamped(0, "scale", 0.1f, 1e4f); });
+  commands.add({"view.metric", "Plot in the timeline", "KEY"},
+               [](Call& c) { c.session.view.metric = c.word(0, "figure"); });
 }
 
 void add_panes(Commands& commands) {
-  commands.add({"view.layout", "Layout", "side-by-side|single|overlay|wipe", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().view.layout = static_cast<Layout>(choice(a, 0, "layout", kLayoutNames));
-                }});
-  commands.add({"view.pane", "Active view", "PANE: 0 the source, K + 1 the take K", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  Session& session = s.session();
-                  const int pane = whole_number(a, 0, "pane");
-                  US_CHECK(pane >= 0 && pane <= ssize(session.document.takes), "there is no view ", pane);
-                  session.view.active_pane = pane;
-                  if (pane > 0) session.selected_take = pane - 1;
-                }});
-  commands.add({"view.wipe", "Wipe line", "SHARE: 0 to 1 of the width", "", false, false,
-                [](Studio& s, const Arguments& a) {
-                  s.session().view.wipe = std::clamp(static_cast<float>(number(a, 0, "share")), 0.f, 1.f);
-                }});
+  commands.add({"view.layout", "Layout", "side-by-side|single|overlay|wipe"},
+               [](Call& c) { c.session.view.layout = c.choice<Layout>(0, "layout", kLayoutNames); });
+  commands.add({"view.pane", "Active view", "PANE: 0 the source, K + 1 the take K"}, [](Call& c) {
+    const int pane = c.number<int>(0, "pane");
+    US_CHECK(pane >= 0 && pane <= ssize(c.document.takes), "there is no view ", pane);
+    c.session.view.active_pane = pane;
+    if (pane > 0) c.session.selected_take = pane - 1;
+  });
+  commands.add({"view.wipe", "Wipe line", "SHARE: 0 to 1 of the width"},
+               [](Call& c) { c.session.view.wipe = c.clamped(0, "share", 0.f, 1.f); });
 }
 
 }  // namespace

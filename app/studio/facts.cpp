@@ -1,5 +1,6 @@
 #include "app/studio/facts.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "retarget/base/error.hpp"
@@ -12,36 +13,9 @@ std::string yes_no(bool yes) {
   return yes ? "yes" : "no";
 }
 
-const char* tool_name(Tool tool) {
-  constexpr const char* kNames[] = {"look", "joints", "bones", "target-joints", "paint", "crop"};
-  return kNames[static_cast<size_t>(tool)];
-}
-
 const char* question_name(const Session& session) {
-  if (!session.question) return "none";
-  switch (session.question->kind) {
-    case Question::Kind::UnsavedChanges:
-      return "unsaved";
-    case Question::Kind::Recover:
-      return "recover";
-    case Question::Kind::PaintMisfit:
-      return "paint";
-    default:
-      return "missing";
-  }
-}
-
-size_t ready_takes(const Session& session) {
-  size_t ready = 0;
-  for (const TakeState& take : session.takes) ready += take.ready;
-  return ready;
-}
-
-/// Those whose file has been read, whether they are bound yet or not.
-size_t seen_takes(const Session& session) {
-  size_t seen = 0;
-  for (const TakeState& take : session.takes) seen += take.as_loaded || take.target;
-  return seen;
+  constexpr Names<4> kNames{"unsaved", "recover", "missing", "paint"};
+  return session.question ? kNames[static_cast<size_t>(session.question->kind)] : "none";
 }
 
 /// Per cent of the selected take's surface; "none" before it is bound and where it uses its own skin weights.
@@ -56,14 +30,18 @@ std::string bound_by_shape(const Session& session) {
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
   const auto count = [](size_t n) { return std::to_string(n); };
+  const auto takes = [&](const auto& counted) {
+    return count(std::count_if(session.takes.begin(), session.takes.end(), counted));
+  };
   return {
       {"frames", std::to_string(frame_count(session))},
       {"frame", std::to_string(shown_frame(session))},
       {"source_frames", count(session.source.frames.size())},
       {"source", session.document.source.path},
       {"takes", count(session.document.takes.size())},
-      {"ready_takes", count(ready_takes(session))},
-      {"seen_takes", count(seen_takes(session))},
+      {"ready_takes", takes([](const TakeState& take) { return take.ready; })},
+      // whose file has been read, whether they are bound yet or not
+      {"seen_takes", takes([](const TakeState& take) { return take.as_loaded || take.target; })},
       {"bound_by_shape", bound_by_shape(session)},
       {"playing", yes_no(session.playback.playing)},
       {"rate", std::to_string(session.playback.rate)},
@@ -75,7 +53,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"skeleton_edits", count(session.document.skeleton_edits.size())},
       {"layout", kLayoutNames[static_cast<size_t>(session.view.layout)]},
       {"active_pane", std::to_string(session.view.active_pane)},
-      {"tool", tool_name(session.tool)},
+      {"tool", kToolNames[static_cast<size_t>(session.tool)]},
       {"joint", session.selected_joint < 0 ? "none" : kJointNames[session.selected_joint]},
       {"selected_take", std::to_string(session.selected_take)},
       {"theme", session.settings.dark ? "dark" : "light"},

@@ -4,10 +4,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
-#include "app/session/frame_cache.hpp"
+#include "app/session/command_sets.hpp"
 #include "render/context/context.hpp"
 #include "render/image.hpp"
 #include "render/video_writer.hpp"
@@ -64,10 +63,11 @@ std::optional<int> whole(const std::string& text) {
 }
 
 /// PATH [WIDTH HEIGHT] [transparent] [view|all].
-Saving saving_of(const Arguments& arguments, int active_pane) {
-  US_CHECK(!arguments.empty() && !arguments[0].empty(), "a path is missing");
+Saving saving_of(const Call& c) {
+  const Arguments& arguments = c.arguments;
+  US_CHECK(!c.word(0, "path").empty(), "a path is missing");
   Saving saving;
-  saving.path = fs::absolute(arguments[0]).lexically_normal().string();
+  saving.path = c.path(0);
   for (size_t i = 1; i < arguments.size(); ++i) {
     const auto width = whole(arguments[i]);
     const auto height = i + 1 < arguments.size() ? whole(arguments[i + 1]) : std::nullopt;
@@ -79,7 +79,7 @@ Saving saving_of(const Arguments& arguments, int active_pane) {
     } else {
       US_CHECK(arguments[i] == "view" || arguments[i] == "all", arguments[i],
                " is not understood: PATH [WIDTH HEIGHT] [transparent] [view|all]");
-      saving.options.pane = arguments[i] == "all" ? -1 : active_pane;
+      saving.options.pane = arguments[i] == "all" ? -1 : c.session.view.active_pane;
     }
   }
   const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
@@ -94,50 +94,47 @@ std::string file_name(const std::string& path) {
 }
 
 /// What the job's thread may look at.
-std::shared_ptr<Session> copied(Studio& studio) {
-  auto session = std::make_shared<Session>(studio.session());
+std::shared_ptr<Session> copied(const Session& of) {
+  auto session = std::make_shared<Session>(of);
   session->history.clear();
   session->log.clear();
   return session;
 }
 
-void save_picture(Studio& studio, const Arguments& arguments) {
-  const Saving saving = saving_of(arguments, studio.session().view.active_pane);
-  const int frame = shown_frame(studio.session());
+void save_picture(Call& c) {
+  const Saving saving = saving_of(c);
+  const int frame = shown_frame(c.session);
   US_CHECK(frame >= 0, "there is nothing to show yet");
-  studio.jobs().start(
+  c.studio.jobs().start(
       "Saving " + file_name(saving.path),
-      [saving, frame, session = copied(studio)](JobControl&) {
+      [saving, frame, session = copied(c.session)](JobControl&) {
         Stage stage(std::move(*session), saving);
         render::write_png(saving.path, stage.picture(frame));
       },
-      [&studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+      [&studio = c.studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
 }
 
 /// The frames that play, without those left out, in order.
 std::vector<int> frames_of(const Session& session) {
   const FrameRange range = play_range(session.playback, frame_count(session));
-  std::set<int> kept;
-  if (!session.document.takes.empty())
-    for (const int frame :
-         kept_frames(session.document.takes[session.selected_take].pose_edits, frame_count(session)))
-      kept.insert(frame);
+  PoseEdits edits;
+  if (!session.document.takes.empty()) edits = session.document.takes[session.selected_take].pose_edits;
   std::vector<int> frames;
-  for (int frame = range.first; frame <= range.last; ++frame)
-    if (session.document.takes.empty() || kept.count(frame)) frames.push_back(frame);
+  for (const int frame : kept_frames(edits, frame_count(session)))
+    if (frame >= range.first && frame <= range.last) frames.push_back(frame);
   return frames;
 }
 
-void save_video(Studio& studio, const Arguments& arguments) {
-  const Saving saving = saving_of(arguments, studio.session().view.active_pane);
-  const std::vector<int> frames = frames_of(studio.session());
+void save_video(Call& c) {
+  const Saving saving = saving_of(c);
+  const std::vector<int> frames = frames_of(c.session);
   US_CHECK(!frames.empty(), "there is nothing to show yet");
   const std::string suffix = file_suffix(saving.path);
   US_CHECK(suffix.empty() || suffix == ".mp4", suffix, " is not a video: .mp4, or a folder for pictures");
-  const double fps = studio.session().source.fps;
-  studio.jobs().start(
+  const double fps = c.session.source.fps;
+  c.studio.jobs().start(
       "Saving " + file_name(saving.path),
-      [saving, frames, fps, session = copied(studio)](JobControl& control) {
+      [saving, frames, fps, session = copied(c.session)](JobControl& control) {
         Stage stage(std::move(*session), saving);
         const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
         render::VideoWriter writer(saving.path, {width, height, fps});
@@ -149,16 +146,15 @@ void save_video(Studio& studio, const Arguments& arguments) {
         control.check();
         writer.finish();
       },
-      [&studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+      [&studio = c.studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
 }
 
 }  // namespace
 
 void add_picture_commands(Commands& commands) {
-  commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]", "", false,
-                false, save_picture});
-  commands.add({"video.save", "Save video", "PATH.mp4 or FOLDER [WIDTH HEIGHT] [view|all]", "", false, false,
-                save_video});
+  commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]"},
+               save_picture);
+  commands.add({"video.save", "Save video", "PATH.mp4 or FOLDER [WIDTH HEIGHT] [view|all]"}, save_video);
 }
 
 }  // namespace understudy::app
