@@ -46,7 +46,8 @@ bool is_dae(std::string_view bytes) {
 
 const std::vector<FileFormat>& file_formats() {
   constexpr unsigned kSurface = kScanFrame | kTarget;
-  static const std::vector<FileFormat> formats = {
+  // Never destroyed: a thread that lists a folder may outlive main().
+  static const std::vector<FileFormat>& formats = *new std::vector<FileFormat>{
       {"PLY", {".ply"}, kSurface, parse_ply, is_ply, true},
       {"OBJ", {".obj"}, kSurface, parse_obj, is_obj},
       {"OFF", {".off", ".coff"}, kSurface, parse_off, is_off, true},

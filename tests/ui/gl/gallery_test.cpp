@@ -62,9 +62,13 @@ TEST_P(Gallery, CutsNoWordAndHidesNoWidget) {
   }
 }
 
-/// Share of the pixels inside the mark that differ from its upper left one.
-double drawn(const render::Image& image, const Rect& rect) {
+/// Share of the pixels inside the mark that differ from its upper left one; of a mark that reaches out of the picture
+/// those that are in it.
+double drawn(const render::Image& image, const Rect& mark) {
+  const Rect rect =
+      intersection(mark, {{0, 0}, {static_cast<float>(image.width), static_cast<float>(image.height)}});
   int different = 0, all = 0;
+  if (rect.max.x - rect.min.x < 3 || rect.max.y - rect.min.y < 3) return 0;
   const uint8_t* ground = image.at(static_cast<int>(rect.min.x) + 1, static_cast<int>(rect.min.y) + 1);
   for (int y = static_cast<int>(rect.min.y) + 1; y < static_cast<int>(rect.max.y) - 1; ++y)
     for (int x = static_cast<int>(rect.min.x) + 1; x < static_cast<int>(rect.max.x) - 1; ++x, ++all) {
@@ -89,8 +93,11 @@ TEST_P(Gallery, DrawsEveryIconAndPlot) {
     EXPECT_GT(drawn(image, mark.rect), mark.enabled ? 0.02 : 0.0) << mark.name << " is empty";
   }
   EXPECT_EQ(icons, static_cast<int>(Icon::Count) - static_cast<int>(Icon::Redo));
-  for (const char* name : {"gallery.mpjpe", "gallery.acc", "gallery.latency", "gallery.track"})
-    EXPECT_GT(drawn(image, gui.find(name)->rect), 0.01) << name;
+  for (const char* name : {"gallery.mpjpe", "gallery.acc", "gallery.latency", "gallery.track"}) {
+    const Mark* const mark = gui.find(name);
+    ASSERT_NE(mark, nullptr) << name;
+    EXPECT_GT(drawn(image, mark->rect), 0.01) << name;
+  }
 }
 
 TEST_P(Gallery, CutsNoWordOfTheBrowserOrADialog) {
@@ -139,7 +146,9 @@ TEST_P(Gallery, PresentingTheDifferencesLooksLikeDrawingAll) {
   const char* visited[] = {"gallery.track", "gallery.mpjpe", "gallery.open",  "gallery.list.3",
                            "edit.undo",     "icon.camera",   "gallery.view.0"};
   for (int i = 0; i < 24; i += std::get<1>(GetParam())) {
-    const Rect rect = gui.find(visited[i / 2 % 7])->rect;
+    const Mark* const mark = gui.find(visited[i / 2 % 7]);
+    ASSERT_NE(mark, nullptr) << visited[i / 2 % 7];
+    const Rect rect = mark->rect;
     render::InputEvent move;
     move.x = rect.at(0.3f, 0).x + static_cast<float>(i), move.y = rect.at(0, 0.5f).y;
     state.frame = 412 + 7 * i;
