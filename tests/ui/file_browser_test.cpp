@@ -58,7 +58,7 @@ class Browser : public UiTest {
 };
 
 TEST_F(Browser, ShowsWhatFitsInNaturalOrder) {
-  open({motion_filter()});
+  open({filter_of(FileKind::Motion)});
   ASSERT_TRUE(shown("browser.entry.take2.bvh"));
   EXPECT_FALSE(shown("browser.entry.notes.md"));
   EXPECT_FALSE(shown("browser.entry..hidden.obj"));
@@ -71,30 +71,30 @@ TEST_F(Browser, ShowsEveryFormatThatCanBeOpenedInAnyCase) {
                                  motions = {"m.BVH", "m.dae", "m.Npz"};
   for (const auto& name : targets) write(name);
   for (const auto& name : motions) write(name);
-  open({target_filter()});
+  open({filter_of(FileKind::Target)});
   for (const auto& name : targets) EXPECT_TRUE(shown("browser.entry." + name)) << name;
   EXPECT_FALSE(shown("browser.entry.m.BVH"));
-  open({motion_filter()});
+  open({filter_of(FileKind::Motion)});
   for (const auto& name : motions) EXPECT_TRUE(shown("browser.entry." + name)) << name;
 }
 
 TEST_F(Browser, AFolderOfGlbFramesIsAScanAndOneOfCharactersIsNot) {
   for (const char* folder : {"scan", "people"}) fs::create_directories(root / folder);
   for (const char* name : {"scan/f_1.glb", "scan/f_2.GLB", "people/anna.glb", "people/bert.glb"}) write(name);
-  open({scan_filter()});
+  open({filter_of(FileKind::Scan)});
   EXPECT_TRUE(shown("browser.look.scan"));
   EXPECT_FALSE(shown("browser.look.people"));
 }
 
 TEST_F(Browser, ADoubleClickChoosesAFile) {
-  open({target_filter()});
+  open({filter_of(FileKind::Target)});
   double_click("browser.entry.body.obj");
   EXPECT_EQ(chosen, path("body.obj"));
   EXPECT_FALSE(browser.is_open());
 }
 
 TEST_F(Browser, AFolderOfFramesIsChosenAsAWhole) {
-  open({scan_filter()});
+  open({filter_of(FileKind::Scan)});
   EXPECT_TRUE(shown("browser.look.walk"));
   EXPECT_FALSE(shown("browser.look.single"));
   click("browser.entry.walk");
@@ -103,7 +103,7 @@ TEST_F(Browser, AFolderOfFramesIsChosenAsAWhole) {
 }
 
 TEST_F(Browser, AFolderOfFramesCanBeLookedInto) {
-  open({scan_filter()});
+  open({filter_of(FileKind::Scan)});
   click("browser.look.walk");
   settle();
   EXPECT_EQ(browser.folder(), path("walk"));
@@ -112,7 +112,7 @@ TEST_F(Browser, AFolderOfFramesCanBeLookedInto) {
 }
 
 TEST_F(Browser, AnOrdinaryFolderIsEntered) {
-  open({scan_filter()});
+  open({filter_of(FileKind::Scan)});
   double_click("browser.entry.single");
   settle();
   EXPECT_EQ(browser.folder(), path("single"));
@@ -120,7 +120,7 @@ TEST_F(Browser, AnOrdinaryFolderIsEntered) {
 }
 
 TEST_F(Browser, IsUsedWithKeysAlone) {
-  open({scan_filter()});
+  open({filter_of(FileKind::Scan)});
   key(Key::End);
   type("wa");
   key(Key::Right);  // looks inside
@@ -134,18 +134,18 @@ TEST_F(Browser, IsUsedWithKeysAlone) {
 }
 
 TEST_F(Browser, ArrowsMoveAndEscapeCloses) {
-  open({target_filter()});
+  open({filter_of(FileKind::Target)});
   key(Key::End), key(Key::Enter);
   EXPECT_EQ(chosen, path("body.obj"));
   chosen.clear();
-  open({target_filter()});
+  open({filter_of(FileKind::Target)});
   key(Key::Escape);
   EXPECT_FALSE(browser.is_open());
   EXPECT_TRUE(chosen.empty());
 }
 
 TEST_F(Browser, ThePathIsEditedAndItsPartsAreClicked) {
-  open({target_filter()});
+  open({filter_of(FileKind::Target)});
   key(Key::L, {false, true});
   type(path("single"));
   key(Key::Enter);
@@ -160,7 +160,7 @@ TEST_F(Browser, ThePathIsEditedAndItsPartsAreClicked) {
 }
 
 TEST_F(Browser, AWrongPathIsASentence) {
-  open({target_filter()});
+  open({filter_of(FileKind::Target)});
   key(Key::L, {false, true});
   type("/nowhere/at/all");
   key(Key::Enter);
@@ -169,11 +169,11 @@ TEST_F(Browser, AWrongPathIsASentence) {
 }
 
 TEST_F(Browser, SavingAddsTheExtensionAndAsksBeforeItReplaces) {
-  open({document_filter()}, true, "new");
+  open({filter_of(FileKind::Document)}, true, "new");
   click("browser.accept");
   EXPECT_EQ(chosen, path("new.understudy"));
   chosen.clear();
-  open({document_filter()}, true, "old");
+  open({filter_of(FileKind::Document)}, true, "old");
   click("browser.accept");
   EXPECT_TRUE(chosen.empty());
   click("browser.overwrite.cancel");
@@ -184,7 +184,7 @@ TEST_F(Browser, SavingAddsTheExtensionAndAsksBeforeItReplaces) {
 }
 
 TEST_F(Browser, SavingTakesTheNameTypedWithEnter) {
-  open({document_filter()}, true);
+  open({filter_of(FileKind::Document)}, true);
   EXPECT_FALSE(mark("browser.accept").enabled);
   click("browser.name");
   type("mine");
@@ -193,7 +193,7 @@ TEST_F(Browser, SavingTakesTheNameTypedWithEnter) {
 }
 
 TEST_F(Browser, MakesFolders) {
-  open({document_filter()}, true, "new");
+  open({filter_of(FileKind::Document)}, true, "new");
   click("browser.new_folder");
   click("browser.folder_name");
   type("results");
@@ -205,7 +205,7 @@ TEST_F(Browser, MakesFolders) {
 
 TEST_F(Browser, PlacesAndFiltersLeadElsewhere) {
   browser.places.push_back({"Samples", path("walk"), Icon::Person});
-  open({target_filter(), motion_filter()});
+  open({filter_of(FileKind::Target), filter_of(FileKind::Motion)});
   click("browser.filter"), click("browser.filter.1");
   settle();
   EXPECT_TRUE(shown("browser.entry.take2.bvh"));
@@ -222,7 +222,7 @@ TEST_F(Browser, AsksForAPreviewOfTheSelection) {
     return FilePreview{nullptr, 0, 0, "1,204 vertices"};
   };
   input.size = {1000, 700};
-  open({target_filter()});
+  open({filter_of(FileKind::Target)});
   EXPECT_TRUE(asked.empty());
   click("browser.entry.body.obj");
   frame();
@@ -232,7 +232,7 @@ TEST_F(Browser, AsksForAPreviewOfTheSelection) {
 TEST_F(Browser, StaysUsableInASmallWindowAndAtThreeTimesTheSize) {
   for (const float scale : {1.f, 3.f}) {
     input.size = {400, 300}, input.scale = scale;
-    open({target_filter()});
+    open({filter_of(FileKind::Target)});
     for (const char* name : {"browser.accept", "browser.cancel"}) {
       const Mark found = mark(name);
       EXPECT_FALSE(found.visible.empty()) << name << " at " << scale;
@@ -248,7 +248,7 @@ TEST_F(Browser, ALargeFolderNeverHoldsUpAFrame) {
   fs::create_directory(large);
   for (int i = 0; i < 20000; ++i) std::ofstream(large / ("scan_" + std::to_string(i) + ".obj")).put('x');
   BrowseRequest request;
-  request.folder = large.string(), request.filters = {target_filter()};
+  request.folder = large.string(), request.filters = {filter_of(FileKind::Target)};
   browser.open(request);
   double longest = 0;
   for (int i = 0; i < 3000 && !shown("browser.entry.scan_3.obj"); ++i) {

@@ -79,17 +79,14 @@ TEST_F(Widgets, DropdownOffersItsChoices) {
   EXPECT_FALSE(shown("method.2"));
 }
 
-TEST_F(Widgets, NumberIsDraggedClampedAndReset) {
+TEST_F(Widgets, NumberIsDraggedAndClamped) {
   float value = 0.5f;
   NumberOptions options;
-  options.min = 0, options.max = 1, options.initial = 0.5f, options.resettable = true;
+  options.min = 0, options.max = 1;
   in_window([&](Ui& ui) { number(ui, "strength", value, options); });
   frame(2);
-  EXPECT_FALSE(shown("strength.reset"));
   drag("strength", 0.1f, 0.9f);
   EXPECT_FLOAT_EQ(value, 1);
-  click("strength.reset");
-  EXPECT_FLOAT_EQ(value, 0.5f);
 }
 
 TEST_F(Widgets, SectionOpensAndCloses) {
@@ -255,17 +252,13 @@ TEST_F(Widgets, DialogsWaitForEachOther) {
 TEST_F(Widgets, PlotSeeksWhereItIsClickedAndDragged) {
   std::vector<float> values(101, 1);
   std::vector<int> seeks;
-  int hovered = -1;
   in_window([&](Ui& ui) {
-    const PlotAnswer answer = plot(ui, "error", {{"MPJPE", values}});
-    if (answer.seek) seeks.push_back(*answer.seek);
-    hovered = answer.hovered;
+    if (const auto frame = plot(ui, "error", {{"MPJPE", values}})) seeks.push_back(*frame);
   });
   const Rect area = mark("error").rect;
   click(area.at(0.25f, 0.5f));
   ASSERT_FALSE(seeks.empty());
   EXPECT_EQ(seeks.back(), 25);
-  EXPECT_EQ(hovered, 25);
   drag(area.at(0.25f, 0.5f), area.at(0.75f, 0.5f));
   EXPECT_EQ(seeks.back(), 75);
 }
@@ -325,20 +318,18 @@ class TimelineTrack : public UiTest {
     data.total = 1001, data.processed = 600;
     in_window([this](Ui& ui) {
       const TrackAnswer now = timeline_track(ui, "track", data);
-      hovered = now.hovered;
       if (now.seek) seek = *now.seek, data.current = seek;
       if (now.loop) data.loop = now.loop;
     });
     frame(2);
   }
   TrackData data;
-  int seek = -1, hovered = -1;
+  int seek = -1;
 };
 
 TEST_F(TimelineTrack, ScrubsToTheFrameUnderThePointer) {
   click(mark("track").rect.at(0.3f, 0.5f));
   EXPECT_EQ(seek, 300);
-  EXPECT_EQ(hovered, 300);
   drag("track", 0.3f, 0.9f);
   EXPECT_EQ(seek, 900);
   const Rect rect = mark("track").rect;

@@ -11,22 +11,22 @@ struct FileDialog {
   const char* name;     ///< for dialog.open; empty: only the window opens it
   const char* command;  ///< gets the path as its last argument
   const char *title, *accept;
-  FileFilter (*filter)();
+  FileKind files;
   bool save = false;
 };
 
 // In the order of FilePurpose.
 constexpr FileDialog kDialogs[] = {
-    {"open", "open", "Open", "Open", known_filter},
-    {"open_scan", "source.open", "Open scan", "Open", scan_filter},
-    {"open_motion", "source.motion", "Open motion: first the body", "Next", body_filter},
-    {"", "source.motion", "Open motion: now the motion", "Open", motion_filter},
-    {"open_target", "target.add", "Add target", "Add", target_filter},
-    {"replace_target", "target.replace", "Replace target", "Replace", target_filter},
-    {"open_document", "document.open", "Open document", "Open", document_filter},
-    {"save_as", "document.save_as", "Save document", "Save", document_filter, true},
-    {"", "document.relocate", "Find ", "Use this file", any_filter},
-    {"", "", "Where to", "Choose", any_filter, true}};
+    {"open", "open", "Open", "Open", FileKind::Known},
+    {"open_scan", "source.open", "Open scan", "Open", FileKind::Scan},
+    {"open_motion", "source.motion", "Open motion: first the body", "Next", FileKind::Body},
+    {"", "source.motion", "Open motion: now the motion", "Open", FileKind::Motion},
+    {"open_target", "target.add", "Add target", "Add", FileKind::Target},
+    {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},
+    {"open_document", "document.open", "Open document", "Open", FileKind::Document},
+    {"save_as", "document.save_as", "Save document", "Save", FileKind::Document, true},
+    {"", "document.relocate", "Find ", "Use this file", FileKind::Any},
+    {"", "", "Where to", "Choose", FileKind::Any, true}};
 
 const FileDialog& dialog_of(FilePurpose purpose) {
   return kDialogs[static_cast<size_t>(purpose)];
@@ -56,15 +56,15 @@ const char* file_dialog_for(const std::string& command) {
 void choose_file(const app::Session& session, FilesState& state, FilePurpose purpose,
                  const std::string& name) {
   const FileDialog& dialog = dialog_of(purpose);
-  BrowseRequest request{dialog.title, dialog.accept, dialog.save, {dialog.filter()}, "", ""};
+  BrowseRequest request{dialog.title, dialog.accept, dialog.save, {filter_of(dialog.files)}, "", ""};
   state.purpose = purpose;
   if (purpose == FilePurpose::Relocate) state.first = name, request.title += file_name(name);
   if (dialog.save) {
     const fs::path proposed = name.empty() ? fs::path(document_name(session)) : fs::path(name);
     request.name = proposed.filename().string();
     request.folder = proposed.parent_path().string();
-  } else if (dialog.filter != any_filter) {
-    request.filters.push_back(any_filter());
+  } else if (dialog.files != FileKind::Any) {
+    request.filters.push_back(filter_of(FileKind::Any));
   }
   const bool first_time = state.browser.folder().empty();
   if (request.folder.empty() && first_time) request.folder = session.settings.last_folder;

@@ -49,8 +49,8 @@ void draw_curve_of(const app::Session& session, PanelContext& context, const Tim
   options.unit = series.unit, options.height = 128;
   options.current = app::shown_frame(session);
   options.bad_frames = timeline.bad_numbers;
-  const PlotAnswer answer = plot(ui, "metrics.plot." + series.key, overlaid(session, series), options);
-  if (answer.seek) context.ask("playback.frame", {std::to_string(*answer.seek)});
+  if (const auto frame = plot(ui, "metrics.plot." + series.key, overlaid(session, series), options))
+    context.ask("playback.frame", {std::to_string(*frame)});
 }
 
 /// The keys of all takes' figures, in the order of first appearance.

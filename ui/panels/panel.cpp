@@ -6,7 +6,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/panels/panels.hpp"
-#include "ui/widgets/axis.hpp"
+#include "ui/widgets/plot.hpp"
 
 namespace understudy::ui {
 

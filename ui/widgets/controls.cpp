@@ -34,12 +34,16 @@ void fill(const Rect& rect, const ImVec4& with, float corner) {
   ImGui::GetWindowDrawList()->AddRectFilled(rect.min, rect.max, color(with), corner);
 }
 
+void write(const ImVec2& at, const std::string& words, const ImVec4& with) {
+  ImGui::GetWindowDrawList()->AddText(at, color(with), words.c_str());
+}
+
 /// Words in the middle of the rectangle, cut to fit.
 void write_centered(const Rect& rect, const std::string& words, const ImVec4& with) {
   const std::string cut = cut_to(words, rect.width() - ImGui::GetStyle().FramePadding.x);
   const ImVec2 size = ImGui::CalcTextSize(cut.c_str());
   const ImVec2 at(std::floor(rect.at(0.5f, 0).x - size.x / 2), std::floor(rect.at(0, 0.5f).y - size.y / 2));
-  ImGui::GetWindowDrawList()->AddText(at, color(with), cut.c_str());
+  write(at, cut, with);
 }
 
 struct Resting {
@@ -81,6 +85,37 @@ ButtonColors button_colors(const Theme& t, ButtonLook look) {
 float width_left(float wanted) {
   const float left = ImGui::GetContentRegionAvail().x;
   return wanted > 0 ? wanted : std::max(1.f, left + wanted);
+}
+
+/// The grey label of a row; what follows begins `width` pixels right of its start.
+void row_label(Ui& ui, const std::string& label, const std::string& explanation, float width) {
+  const float start = ImGui::GetCursorPosX();
+  {
+    const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
+    text_cut(ui, label, width - ui.px(8));
+  }
+  tooltip(ui, explanation);
+  ImGui::SameLine(start + width);
+}
+
+/// Of a section.
+struct Opened {
+  bool seen = false, open = false;
+};
+
+void draw_bar(Ui& ui, const Rect& rect, float fraction) {
+  const Theme& t = ui.theme();
+  const float corner = rect.height() / 2;
+  fill(rect, t.field_hover, corner);
+  float from = 0, to = std::min(fraction, 1.f);
+  if (fraction < 0) {
+    const auto phase = static_cast<float>(std::fmod(ImGui::GetTime() * 0.7, 1.0));
+    from = std::max(0.f, 1.3f * phase - 0.3f), to = std::min(1.f, 1.3f * phase);
+  }
+  if (to > from)
+    fill({{rect.at(from, 0).x, rect.min.y},
+          {std::max(rect.at(to, 0).x, rect.at(from, 0).x + 2 * corner), rect.max.y}},
+         t.accent, corner);
 }
 
 }  // namespace
@@ -148,7 +183,7 @@ bool toggle(Ui& ui, const std::string& name, const std::string& label, bool& on)
   ImGui::GetWindowDrawList()->AddCircleFilled(knob, height / 2 - ui.px(2.5f),
                                               color(on ? t.on_accent : t.text_dim));
   const ImVec2 at(track.max.x + ui.px(9), p.rect.min.y + (frame - ImGui::GetTextLineHeight()) / 2);
-  if (!label.empty()) ImGui::GetWindowDrawList()->AddText(at, color(t.text), label.c_str());
+  write(at, label, t.text);
   return p.clicked;
 }
 
@@ -183,10 +218,8 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
   const std::string popup = name + ".list";
   const float padding = ImGui::GetStyle().FramePadding.x;
   fill(p.rect, p.held ? t.field_active : p.hovered ? t.field_hover : t.field, rounding());
-  const std::string shown = cut_to(known ? choices[chosen] : "", width - 2 * padding - arrow);
-  ImGui::GetWindowDrawList()->AddText(
-      {p.rect.min.x + padding, p.rect.min.y + ImGui::GetStyle().FramePadding.y}, color(t.text),
-      shown.c_str());
+  write({p.rect.min.x + padding, p.rect.min.y + ImGui::GetStyle().FramePadding.y},
+        cut_to(known ? choices[chosen] : "", width - 2 * padding - arrow), t.text);
   draw_icon(*ImGui::GetWindowDrawList(), Icon::ChevronDown,
             {p.rect.max.x - arrow - ui.px(5), p.rect.min.y + (height - arrow) / 2}, arrow, color(t.text_dim));
   if (p.clicked) ImGui::OpenPopup(popup.c_str());
@@ -209,19 +242,10 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
 
 bool number(Ui& ui, const std::string& name, float& value, const NumberOptions& options) {
   const IdScope id(name);
-  const bool reset = options.resettable && value != options.initial;
-  const float size = ImGui::GetFrameHeight(), gap = ImGui::GetStyle().ItemInnerSpacing.x;
-  ImGui::SetNextItemWidth(reset ? -(size + gap) : -FLT_MIN);
-  bool changed = ImGui::DragFloat("##value", &value, options.speed, options.min, options.max, options.format,
-                                  ImGuiSliderFlags_AlwaysClamp);
+  ImGui::SetNextItemWidth(-FLT_MIN);
+  const bool changed = ImGui::DragFloat("##value", &value, options.speed, options.min, options.max,
+                                        options.format, ImGuiSliderFlags_AlwaysClamp);
   ui.mark(name);
-  if (!reset) return changed;
-  ImGui::SameLine(0, gap);
-  char words[64];
-  std::snprintf(words, sizeof words, options.format, options.initial);
-  if (icon_button(ui, name + ".reset", Icon::Reset,
-                  {std::string("Back to ") + words, "", false, false, size / ui.scale()}))
-    value = options.initial, changed = true;
   return changed;
 }
 
@@ -233,32 +257,14 @@ bool text_field(Ui& ui, const std::string& name, std::string& text, const std::s
 }
 
 void row(Ui& ui, const std::string& label, const std::string& explanation, float label_width) {
-  const float width = label_width > 0 ? label_width : 0.4f * ImGui::GetContentRegionAvail().x;
-  const float start = ImGui::GetCursorPosX();
   ImGui::AlignTextToFramePadding();
-  {
-    const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
-    text_cut(ui, label, width - ui.px(8));
-  }
-  tooltip(ui, explanation);
-  ImGui::SameLine(start + width);
+  row_label(ui, label, explanation, label_width > 0 ? label_width : 0.4f * ImGui::GetContentRegionAvail().x);
 }
 
 void row_text(Ui& ui, const std::string& label, const std::string& value) {
-  const float start = ImGui::GetCursorPosX(), width = 0.4f * ImGui::GetContentRegionAvail().x;
-  {
-    const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
-    text_cut(ui, label, width - ui.px(8));
-  }
-  ImGui::SameLine(start + width);
+  row_label(ui, label, "", 0.4f * ImGui::GetContentRegionAvail().x);
   text_cut(ui, value);
 }
-
-namespace {
-struct Opened {
-  bool seen = false, open = false;
-};
-}  // namespace
 
 bool section(Ui& ui, const std::string& name, const std::string& title, bool open_at_first) {
   const Theme& t = ui.theme();
@@ -271,10 +277,8 @@ bool section(Ui& ui, const std::string& name, const std::string& title, bool ope
   draw_icon(*ImGui::GetWindowDrawList(), state.open ? Icon::ChevronDown : Icon::ChevronRight,
             {p.rect.min.x + ui.px(2), p.rect.min.y + (height - icon) / 2}, icon, color(t.text_dim));
   const FontScope strong(ui.fonts().strong);
-  const std::string shown = cut_to(title, p.rect.width() - icon - ui.px(10));
-  ImGui::GetWindowDrawList()->AddText(
-      {p.rect.min.x + icon + ui.px(8), p.rect.min.y + (height - ImGui::GetTextLineHeight()) / 2},
-      color(t.text), shown.c_str());
+  write({p.rect.min.x + icon + ui.px(8), p.rect.min.y + (height - ImGui::GetTextLineHeight()) / 2},
+        cut_to(title, p.rect.width() - icon - ui.px(10)), t.text);
   return state.open;
 }
 
@@ -304,29 +308,8 @@ void text_cut(Ui& ui, const std::string& text, float width) {
 void hint(Ui& ui, const std::string& text) {
   const FontScope small(ui.fonts().small);
   const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
+  ImGui::TextWrapped("%s", text.c_str());
 }
-
-namespace {
-
-void draw_bar(Ui& ui, const Rect& rect, float fraction) {
-  const Theme& t = ui.theme();
-  const float corner = rect.height() / 2;
-  fill(rect, t.field_hover, corner);
-  float from = 0, to = std::min(fraction, 1.f);
-  if (fraction < 0) {
-    const auto phase = static_cast<float>(std::fmod(ImGui::GetTime() * 0.7, 1.0));
-    from = std::max(0.f, 1.3f * phase - 0.3f), to = std::min(1.f, 1.3f * phase);
-  }
-  if (to > from)
-    fill({{rect.at(from, 0).x, rect.min.y},
-          {std::max(rect.at(to, 0).x, rect.at(from, 0).x + 2 * corner), rect.max.y}},
-         t.accent, corner);
-}
-
-}  // namespace
 
 bool progress(Ui& ui, const std::string& name, const ProgressOptions& options) {
   const IdScope id(name);
@@ -334,11 +317,9 @@ bool progress(Ui& ui, const std::string& name, const ProgressOptions& options) {
   const float inner = width - (cancel > 0 ? cancel + ui.px(6) : 0), line = ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = line + ui.px(5) + std::round(ui.px(6));
-  ImDrawList& list = *ImGui::GetWindowDrawList();
   const float right = options.right.empty() ? 0 : ImGui::CalcTextSize(options.right.c_str()).x + ui.px(8);
-  list.AddText(at, color(ui.theme().text), cut_to(options.left, inner - right).c_str());
-  if (right > 0)
-    list.AddText({at.x + inner - right + ui.px(8), at.y}, color(ui.theme().text_dim), options.right.c_str());
+  write(at, cut_to(options.left, inner - right), ui.theme().text);
+  if (right > 0) write({at.x + inner - right + ui.px(8), at.y}, options.right, ui.theme().text_dim);
   draw_bar(ui, {{at.x, at.y + height - std::round(ui.px(6))}, {at.x + inner, at.y + height}},
            options.fraction);
   ImGui::Dummy({inner, height});

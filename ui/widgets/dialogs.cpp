@@ -10,14 +10,6 @@
 namespace understudy::ui {
 namespace {
 
-Icon icon_of(NoticeKind kind) {
-  return kind == NoticeKind::Good ? Icon::Check : kind == NoticeKind::Warning ? Icon::Warning : Icon::Info;
-}
-
-ImVec4 color_of(const Theme& t, NoticeKind kind) {
-  return kind == NoticeKind::Good ? t.good : kind == NoticeKind::Warning ? t.warning : t.series[0];
-}
-
 bool enter_pressed() {
   return key_pressed(render::Key::Enter, false) || key_pressed(render::Key::KeypadEnter, false);
 }
@@ -72,7 +64,8 @@ void Notices::draw(Ui& ui, const Rect& over) {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoSavedSettings);
-    icon_label(ui, icon_of(notice.kind), color_of(ui.theme(), notice.kind));
+    const bool good = notice.kind == NoticeKind::Good;
+    icon_label(ui, good ? Icon::Check : Icon::Warning, good ? ui.theme().good : ui.theme().warning);
     ImGui::SameLine();
     ImGui::PushTextWrapPos(room - ui.px(20));
     ImGui::TextUnformatted(notice.sentence.c_str());
@@ -91,17 +84,20 @@ void Notices::draw(Ui& ui, const Rect& over) {
       notices_.end());
 }
 
-bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width) {
-  const bool inside_another = ImGui::GetCurrentContext()->BeginPopupStack.Size > 0;
+bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width, float height) {
+  const bool inside_another = ImGui::GetCurrentContext()->BeginPopupStack.Size > 0, fixed = height > 0;
   if (!inside_another && !ui.claim_dialog(name)) return false;
   if (!ImGui::IsPopupOpen(name.c_str())) ImGui::OpenPopup(name.c_str());
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(ui.px(width), display.x - ui.px(16)), 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(18), ui.px(16)});
-  const bool open = ImGui::BeginPopupModal(name.c_str(), nullptr,
-                                           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
-                                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::SetNextWindowSize({std::min(ui.px(width), display.x - ui.px(16)),
+                            fixed ? std::min(ui.px(height), display.y - ui.px(16)) : 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding,
+                      fixed ? ImVec2(ui.px(14), ui.px(12)) : ImVec2(ui.px(18), ui.px(16)));
+  ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                           ImGuiWindowFlags_NoSavedSettings;
+  if (fixed) flags |= ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+  const bool open = ImGui::BeginPopupModal(name.c_str(), nullptr, flags);
   ImGui::PopStyleVar();
   if (!open) return false;
   const FontScope strong(ui.fonts().strong);
@@ -115,9 +111,7 @@ void end_dialog() {
 
 Answer ask(Ui& ui, const std::string& name, const QuestionWords& question) {
   if (!begin_dialog(ui, name, question.title, 420)) return Answer::None;
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(question.sentence.c_str());
-  ImGui::PopTextWrapPos();
+  ImGui::TextWrapped("%s", question.sentence.c_str());
   std::vector<Choice> choices;
   if (!question.cancel.empty())
     choices.push_back({Answer::Cancel, name + ".cancel", question.cancel, ButtonLook::Plain});
@@ -138,9 +132,7 @@ bool show_error(Ui& ui, const std::string& name, const std::string& sentence, co
   if (!begin_dialog(ui, name, "That did not work", 480)) return false;
   icon_label(ui, Icon::Warning, ui.theme().danger);
   ImGui::SameLine();
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(sentence.c_str());
-  ImGui::PopTextWrapPos();
+  ImGui::TextWrapped("%s", sentence.c_str());
   const Answer answer = draw_choices(ui, {{Answer::No, name + ".copy", "Copy details", ButtonLook::Plain},
                                           {Answer::Yes, name + ".close", "Close", ButtonLook::Main}});
   if (answer == Answer::No) ImGui::SetClipboardText((sentence + "\n" + details).c_str());

@@ -8,13 +8,13 @@
 
 namespace understudy::ui {
 
-enum class NoticeKind { Info, Good, Warning };
+enum class NoticeKind { Good, Warning };
 
 /// Sentences shown for some seconds, three at most: "Saved walk.understudy". Plain data; the
 /// application keeps one and draws it last.
 class Notices {
  public:
-  void add(const std::string& sentence, NoticeKind kind = NoticeKind::Info, float seconds = 4);
+  void add(const std::string& sentence, NoticeKind kind, float seconds);
   /// Call once a frame, outside any window. A notice stays while the pointer is on it; a click removes it.
   /// The newest is on top, at the top right of `over` (empty: of the window), and marked notice.0.
   void draw(Ui& ui, const Rect& over = {});
@@ -48,8 +48,8 @@ Answer ask(Ui& ui, const std::string& name, const QuestionWords& question);
 bool show_error(Ui& ui, const std::string& name, const std::string& sentence, const std::string& details);
 
 /// Begins a dialog in the middle of the display, which greys out everything else. When true, end it with
-/// end_dialog(). `width` at scale 1; cut to the display.
-bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width);
+/// end_dialog(). Width and height at scale 1, cut to the display; height 0: what it holds.
+bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width, float height = 0);
 void end_dialog();
 
 }  // namespace understudy::ui

@@ -4,6 +4,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -64,31 +65,26 @@ bool pressed(Key key) {
 
 }  // namespace
 
-FileFilter scan_filter() {
-  return {"Scans", format_suffixes(kScanFrame | kScanSequence | kMotion), true};
+bool FileFilter::passes(const std::string& name) const {
+  return suffixes.empty() || std::find(suffixes.begin(), suffixes.end(), file_suffix(name)) != suffixes.end();
 }
-FileFilter target_filter() {
-  return {"Targets", format_suffixes(kTarget)};
-}
-FileFilter motion_filter() {
-  return {"Motions", format_suffixes(kMotion)};
-}
-FileFilter body_filter() {
-  return {"SMPL-format bodies", format_suffixes(kBody)};
-}
-FileFilter document_filter() {
-  return {"Understudy documents", format_suffixes(kDocument)};
-}
-FileFilter known_filter() {
-  return {"All supported files", format_suffixes(~0u), true};
-}
-FileFilter any_filter() {
-  return {"All files", {}, true};
+
+FileFilter filter_of(FileKind kind) {
+  static const std::array<FileFilter, 7> kFilters = {{
+      {"Scans", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
+      {"Targets", format_suffixes(kTarget)},
+      {"Motions", format_suffixes(kMotion)},
+      {"SMPL-format bodies", format_suffixes(kBody)},
+      {"Understudy documents", format_suffixes(kDocument)},
+      {"All supported files", format_suffixes(~0u), true},
+      {"All files", {}, true},
+  }};
+  return kFilters[static_cast<size_t>(kind)];
 }
 
 void FileBrowser::open(BrowseRequest request) {
   request_ = std::move(request);
-  if (request_.filters.empty()) request_.filters.push_back(any_filter());
+  if (request_.filters.empty()) request_.filters.push_back(filter_of(FileKind::Any));
   open_ = true, filter_ = 0, name_ = request_.name, chosen_.reset();
   overwrite_.clear();
   const std::string start = !request_.folder.empty() ? request_.folder : !folder_.empty() ? folder_ : home();
@@ -127,10 +123,16 @@ std::string FileBrowser::path_of(const FolderEntry& entry) const {
   return (fs::path(folder_) / entry.name).string();
 }
 
+/// -1 where nothing is.
+int FileBrowser::selected_row() const {
+  const auto at = std::find_if(rows_.begin(), rows_.end(),
+                               [&](int i) { return contents_->entries[i].name == selected_name_; });
+  return at == rows_.end() ? -1 : static_cast<int>(at - rows_.begin());
+}
+
 const FolderEntry* FileBrowser::selected() const {
-  for (const int row : rows_)
-    if (const FolderEntry& entry = contents_->entries[row]; entry.name == selected_name_) return &entry;
-  return nullptr;
+  const int row = selected_row();
+  return row < 0 ? nullptr : &contents_->entries[rows_[row]];
 }
 
 void FileBrowser::select(int row) {
@@ -148,28 +150,12 @@ std::optional<std::string> FileBrowser::draw(Ui& ui) {
   if (newest != contents_ || rows_of_filter_ != filter_) {
     contents_ = std::move(newest), rows_of_filter_ = filter_;
     rows_.clear();
-    const auto& suffixes = filter().suffixes;
     for (int i = 0; i < ssize(contents_->entries); ++i) {
       const FolderEntry& entry = contents_->entries[i];
-      const bool fits = suffixes.empty() || std::find(suffixes.begin(), suffixes.end(),
-                                                      file_suffix(entry.name)) != suffixes.end();
-      if (entry.is_folder || fits) rows_.push_back(i);
+      if (entry.is_folder || filter().passes(entry.name)) rows_.push_back(i);
     }
   }
-  const char* id = "browser";
-  if (!ui.claim_dialog(id)) return std::nullopt;
-  if (!ImGui::IsPopupOpen(id)) ImGui::OpenPopup(id);
-  const ImVec2 display = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize(
-      {std::min(ui.px(940), display.x - ui.px(16)), std::min(ui.px(580), display.y - ui.px(16))});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(14), ui.px(12)});
-  const bool begun = ImGui::BeginPopupModal(id, nullptr,
-                                            ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
-                                                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoScrollbar |
-                                                ImGuiWindowFlags_NoScrollWithMouse);
-  ImGui::PopStyleVar();
-  if (!begun) return std::nullopt;
+  if (!begin_dialog(ui, "browser", request_.title, 940, 580)) return std::nullopt;
   draw_header(ui);
   const float footer = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y + ui.px(8) +
                        (request_.save ? ImGui::GetFrameHeightWithSpacing() : 0);
@@ -195,16 +181,12 @@ std::optional<std::string> FileBrowser::draw(Ui& ui) {
   if (overwrite_.empty()) take_keys();
   draw_overwrite(ui);
   if (!open_) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
+  end_dialog();
   if (!wanted_.empty()) go_to(std::exchange(wanted_, {}));
   return std::exchange(chosen_, std::nullopt);
 }
 
 void FileBrowser::draw_header(Ui& ui) {
-  {
-    const FontScope strong(ui.fonts().strong);
-    ImGui::TextUnformatted(request_.title.c_str());
-  }
   IconButtonOptions up;
   up.tooltip = "One folder up", up.shortcut = "Backspace", up.disabled = folder_ == "/",
   up.size = ImGui::GetFrameHeight() / ui.scale();
@@ -329,16 +311,12 @@ void FileBrowser::draw_list(Ui& ui) {
   if (!problem.empty()) {
     icon_label(ui, Icon::Warning, ui.theme().warning);
     ImGui::SameLine();
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(problem.c_str());
-    ImGui::PopTextWrapPos();
+    ImGui::TextWrapped("%s", problem.c_str());
     ui.mark("browser.problem");
   }
   const float height = ImGui::GetTextLineHeight() + ui.px(8);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
-  int wanted = -1;
-  for (int i = 0; scroll_to_selected_ && i < ssize(rows_); ++i)
-    if (contents_->entries[rows_[i]].name == selected_name_) wanted = i;
+  const int wanted = scroll_to_selected_ ? selected_row() : -1;
   if (wanted >= 0) {
     const float y = ImGui::GetCursorPosY() + height * static_cast<float>(wanted), top = ImGui::GetScrollY(),
                 view = ImGui::GetWindowHeight() - ui.px(20);
@@ -451,9 +429,7 @@ void FileBrowser::draw_overwrite(Ui& ui) {
 void FileBrowser::take_keys() {
   if (ImGui::GetIO().WantTextInput || ImGui::IsWindowAppearing()) return;
   if (pressed(Key::Escape)) open_ = false;
-  const auto at = std::find_if(rows_.begin(), rows_.end(),
-                               [&](int i) { return contents_->entries[i].name == selected_name_; });
-  const int row_number = at == rows_.end() ? -1 : static_cast<int>(at - rows_.begin());
+  const int row_number = selected_row();
   if (key_pressed(Key::Down)) select(row_number + 1);
   if (key_pressed(Key::Up)) select(std::max(0, row_number - 1));
   if (key_pressed(Key::PageDown)) select(row_number + 12);
@@ -502,10 +478,7 @@ void FileBrowser::accept() {
     return;
   }
   if (name_.empty()) return;
-  const auto& suffixes = filter().suffixes;
-  std::string name = name_;
-  if (!suffixes.empty() && std::find(suffixes.begin(), suffixes.end(), file_suffix(name)) == suffixes.end())
-    name += suffixes.front();
+  const std::string name = filter().passes(name_) ? name_ : name_ + filter().suffixes.front();
   const fs::path path = fs::path(folder_) / name;
   std::error_code error;
   if (fs::is_directory(path, error))

@@ -18,14 +18,10 @@ struct FileFilter {
   std::string label;
   std::vector<std::string> suffixes;  ///< lower case, with the dot; none: every file
   bool folders = false;               ///< a folder of scan frames, or a case, may be chosen
+  bool passes(const std::string& name) const;
 };
-FileFilter scan_filter();
-FileFilter target_filter();
-FileFilter motion_filter();
-FileFilter body_filter();
-FileFilter document_filter();
-FileFilter known_filter();  ///< all that opens
-FileFilter any_filter();
+enum class FileKind { Scan, Target, Motion, Body, Document, Known, Any };  ///< Known: all that opens
+FileFilter filter_of(FileKind kind);
 
 struct Place {
   std::string label, path;
@@ -69,6 +65,7 @@ class FileBrowser {
   const FileFilter& filter() const;
   bool can_choose(const FolderEntry& entry) const;
   std::string path_of(const FolderEntry& entry) const;
+  int selected_row() const;
   const FolderEntry* selected() const;
   void select(int row);
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -14,6 +13,7 @@
 #include <thread>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_frames.hpp"
 
@@ -138,9 +138,7 @@ std::string file_size(uint64_t bytes) {
   auto size = static_cast<double>(bytes);
   size_t unit = 0;
   while (size >= 999.5 && unit + 1 < kUnits.size()) size /= 1000, ++unit;
-  char words[32];
-  std::snprintf(words, sizeof words, unit == 0 || size >= 9.95 ? "%.0f %s" : "%.1f %s", size, kUnits[unit]);
-  return words;
+  return printed(unit == 0 || size >= 9.95 ? "%.0f %s" : "%.1f %s", size, kUnits[unit]);
 }
 
 }  // namespace understudy::ui

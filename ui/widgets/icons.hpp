@@ -11,9 +11,9 @@ namespace understudy::ui {
 
 enum class Icon : int {
   // clang-format off
-  Play, Pause, StepBack, StepForward, ToStart, ToEnd, Loop, Undo, Redo, Reset,
+  Play, Pause, StepBack, StepForward, ToStart, ToEnd, Loop, Undo, Redo,
   Folder, File, Image, Video, Home, Clock, Copy, Trash,
-  Warning, Info, Check, Close, ChevronRight, ChevronDown, ChevronUp,
+  Warning, Check, Close, ChevronRight, ChevronDown, ChevronUp,
   Person, Skeleton, Mesh, Points, Brush, Camera, Chart, Select, Move, Layers, Menu,
   // clang-format on
   Count

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "retarget/base/index.hpp"
@@ -99,10 +98,7 @@ Table::Table(Ui& ui, const std::string& name, std::vector<Column> columns, float
   const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
   for (size_t i = 0; i < columns_.size(); ++i) {
     ImGui::TableSetColumnIndex(i);
-    const std::string& title = columns_[i].title;
-    const float left = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(title.c_str()).x;
-    if (columns_[i].number && left > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
-    text_cut(ui, title);
+    write(columns_[i], columns_[i].title);
   }
 }
 
@@ -124,16 +120,17 @@ bool Table::row(bool selected, bool selectable) {
 
 void Table::cell(const std::string& text) {
   if (column_ != ImGui::TableGetColumnIndex()) ImGui::TableSetColumnIndex(column_);
-  const size_t at = std::min<int>(column_++, columns_.size() - 1);
-  const float left = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
-  if (columns_[at].number && left > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
-  text_cut(ui_, text);
+  write(columns_[std::min<int>(column_++, columns_.size() - 1)], text);
 }
 
-void Table::cell(double value, const char* format) {
-  char words[64];
-  std::snprintf(words, sizeof words, format, value);
-  cell(std::isfinite(value) ? words : "\u2013");
+void Table::cell(double value) {
+  cell(std::isfinite(value) ? printed("%.1f", value) : "\u2013");
+}
+
+void Table::write(const Column& column, const std::string& text) {
+  const float left = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+  if (column.number && left > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
+  text_cut(ui_, text);
 }
 
 }  // namespace understudy::ui

@@ -38,9 +38,11 @@ class Table {
   bool row(bool selected = false, bool selectable = true);
   /// The next cell of the row. Text is cut to fit; numbers align to the right.
   void cell(const std::string& text);
-  void cell(double value, const char* format = "%.1f");
+  void cell(double value);
 
  private:
+  void write(const Column& column, const std::string& text);
+
   Ui& ui_;
   std::string name_;
   std::vector<Column> columns_;

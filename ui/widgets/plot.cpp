@@ -3,10 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/text.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
 namespace {
+
+constexpr int kBins = 32;                // of a histogram
+constexpr float kHistogramHeight = 110;  // at scale 1
+
+/// Draws what the path holds and empties it; a point alone becomes a dot.
+void finish_stroke(ImDrawList& list, ImU32 color, float thickness) {
+  if (list._Path.Size == 1) {
+    list.AddCircleFilled(list._Path[0], thickness, color);
+    list.PathClear();
+  } else {
+    list.PathStroke(color, 0, thickness);
+  }
+}
 
 /// Everything one plot's drawing needs.
 struct Plot {
@@ -33,15 +47,11 @@ double tick_step(const std::vector<double>& ticks) {
   return ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
 }
 
-/// The values' range with a margin, or the range in the options.
-Range value_range(const std::vector<PlotLine>& series, const PlotOptions& options, double first,
-                  double last) {
-  if (!options.range.empty()) return options.range;
+/// The range of all values, with a margin.
+Range value_range(const std::vector<PlotLine>& series) {
   Range range;
   for (const PlotLine& one : series)
-    for (int i = std::max(0, static_cast<int>(first));
-         i <= std::min(one.values.size - 1, static_cast<int>(last)); ++i)
-      range.include(one.values.data[i]);
+    for (int i = 0; i < one.values.size; ++i) range.include(one.values.data[i]);
   if (range.empty()) return {0, 1};
   const float air =
       range.high > range.low ? 0.06f * (range.high - range.low) : std::max(0.5f, std::abs(range.low) * 0.1f);
@@ -126,15 +136,82 @@ int frame_count(const std::vector<PlotLine>& series) {
 
 }  // namespace
 
-PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<PlotLine>& series,
-                const PlotOptions& options) {
+std::vector<Range> reduce(const Values& values, double first, double last, int columns) {
+  std::vector<Range> reduced(std::max(columns, 0));
+  const double span = std::max(last - first, 1e-9);
+  const int from = std::max(0, static_cast<int>(std::floor(first))),
+            to = std::min(values.size - 1, static_cast<int>(std::ceil(last)));
+  for (int i = from; i <= to; ++i) {
+    const double at = (i - first) / span * columns;
+    if (at < 0 || at > columns) continue;
+    if (columns > 0) reduced[std::min(static_cast<int>(at), columns - 1)].include(values.data[i]);
+  }
+  return reduced;
+}
+
+std::vector<double> round_ticks(double low, double high, int most) {
+  if (!(high > low) || most < 1) return {};
+  const double rough = (high - low) / most, power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double times : {5.0, 2.0, 1.0})
+    if (times * power >= rough) step = times * power;
+  std::vector<double> ticks;
+  for (double at = std::ceil(low / step - 1e-9) * step; at <= high + 1e-9 * step; at += step)
+    ticks.push_back(std::abs(at) < 1e-9 * step ? 0 : at);
+  return ticks;
+}
+
+std::string tick_label(double value, double step) {
+  const bool thousands = std::abs(value) >= 10000 && std::fmod(step, 100) == 0;
+  if (thousands) return printed(std::fmod(step, 1000) == 0 ? "%.0fk" : "%.1fk", value / 1000);
+  const int decimals =
+      step >= 1 || !(step > 0) ? 0 : std::min(9, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+  return printed("%.*f", decimals, value);
+}
+
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return "\u2013";
+  const double size = std::abs(value);
+  return printed("%.*f", size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3, value);
+}
+
+void draw_curve(ImDrawList& list, const FrameAxis& axis, const Values& values, const Range& range,
+                ImU32 color, float thickness) {
+  const double frames = axis.last - axis.first;
+  const float height = axis.area.height(), span = std::max(range.high - range.low, 1e-12f);
+  const auto y = [&](float value) { return axis.area.max.y - (value - range.low) / span * height; };
+  const int columns = static_cast<int>(axis.area.width());
+  if (frames <= columns) {
+    const int from = std::max(0, static_cast<int>(std::floor(axis.first))),
+              to = std::min(values.size - 1, static_cast<int>(std::ceil(axis.last)));
+    for (int i = from; i <= to; ++i) {
+      if (std::isfinite(values.data[i]))
+        list.PathLineTo({axis.x(i), y(values.data[i])});
+      else
+        finish_stroke(list, color, thickness);
+    }
+  } else {
+    const std::vector<Range> reduced = reduce(values, axis.first, axis.last, columns);
+    for (int c = 0; c < columns; ++c) {
+      const Range& column = reduced[c];
+      const float x = axis.area.min.x + static_cast<float>(c) + 0.5f;
+      if (column.empty()) finish_stroke(list, color, thickness);
+      if (!column.empty()) list.PathLineTo({x, y(column.low)});
+      if (column.high > column.low) list.PathLineTo({x, y(column.high)});
+    }
+  }
+  finish_stroke(list, color, thickness);
+}
+
+std::optional<int> plot(Ui& ui, const std::string& name, const std::vector<PlotLine>& series,
+                        const PlotOptions& options) {
   const FontScope small(ui.fonts().small);
   const ImVec2 at = ImGui::GetCursorScreenPos(),
                size(std::max(ImGui::GetContentRegionAvail().x, ui.px(60)), ui.px(options.height));
   Plot p{ui, series, options, *ImGui::GetWindowDrawList(), {at, {at.x + size.x, at.y + size.y}}, {}, {}};
-  p.axis.first = options.first, p.axis.last = options.last;
-  if (options.last < options.first) p.axis.first = 0, p.axis.last = std::max(1, frame_count(series) - 1);
-  p.range = value_range(series, options, p.axis.first, p.axis.last);
+  const int count = frame_count(series);
+  p.axis.last = std::max(1, count - 1);
+  p.range = value_range(series);
   const float line = ImGui::GetTextLineHeight();
   const auto ticks = round_ticks(p.range.low, p.range.high,
                                  std::max(1, static_cast<int>((size.y - 3 * line) / (1.6f * line))));
@@ -156,20 +233,17 @@ PlotAnswer plot(Ui& ui, const std::string& name, const std::vector<PlotLine>& se
     p.list.AddLine({now, p.axis.area.min.y}, {now, p.axis.area.max.y}, color(ui.theme().accent), ui.px(1.5f));
   p.list.PopClipRect();
 
-  PlotAnswer answer;
   const int frame = std::clamp(static_cast<int>(std::lround(p.axis.frame(ImGui::GetIO().MousePos.x))), 0,
-                               std::max(0, frame_count(series) - 1));
+                               std::max(0, count - 1));
   const bool held = ImGui::IsItemActive();
-  if (frame_count(series) == 0) return answer;
-  if (held || pressed) answer.seek = frame;
-  if (held || ImGui::IsItemHovered()) answer.hovered = frame, draw_hover(p, frame);
-  return answer;
+  if (count > 0 && (held || ImGui::IsItemHovered())) draw_hover(p, frame);
+  return count > 0 && (held || pressed) ? std::optional<int>(frame) : std::nullopt;
 }
 
 void histogram(Ui& ui, const std::string& name, const Values& values, const HistogramOptions& options) {
   const FontScope small(ui.fonts().small);
   const ImVec2 at = ImGui::GetCursorScreenPos(),
-               size(std::max(ImGui::GetContentRegionAvail().x, ui.px(60)), ui.px(options.height));
+               size(std::max(ImGui::GetContentRegionAvail().x, ui.px(60)), ui.px(kHistogramHeight));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::Dummy(size);
   ui.mark(name);
@@ -177,7 +251,7 @@ void histogram(Ui& ui, const std::string& name, const Values& values, const Hist
   for (int i = 0; i < values.size; ++i) range.include(values.data[i]);
   if (range.empty()) return list.AddText(at, color(ui.theme().text_dim), "No values yet.");
   if (range.high == range.low) range.high += 1;
-  std::vector<int> counts(std::max(1, options.bins));
+  std::vector<int> counts(kBins);
   for (int i = 0; i < values.size; ++i)
     if (std::isfinite(values.data[i])) {
       const size_t bin =

@@ -1,10 +1,11 @@
 #include "ui/widgets/timeline_track.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include <imgui_internal.h>
+#include "retarget/base/text.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -146,15 +147,11 @@ void draw_hover(Track& t, int frame) {
   ImGui::PopStyleVar();
 }
 
-double everything(const TrackData& data) {
-  return std::max(1, data.total - 1);
-}
-
 /// Zooms, pans and follows; leaves the shown part inside the sequence.
 void move_view(Track& t, bool hovered) {
   const ImGuiIO& io = ImGui::GetIO();
   TrackState& s = t.state;
-  const double all = everything(t.data);
+  const double all = std::max(1, t.data.total - 1);
   if (s.count <= 0) s.first = 0, s.count = all;
   const bool whole = s.count >= all;
   if (hovered && io.MouseWheel != 0 && !io.KeyShift) {
@@ -181,7 +178,7 @@ Grip grip_at(const Track& t, const ImVec2& mouse) {
 
 /// What a drag that is held at `frame` asks for.
 void answer_drag(const Track& t, int frame, TrackAnswer& answer) {
-  if (t.state.grip == Grip::Playhead) answer.seek = frame, answer.scrubbing = true;
+  if (t.state.grip == Grip::Playhead) answer.seek = frame;
   if (!t.data.loop) return;
   LoopRange loop = *t.data.loop;
   if (t.state.grip == Grip::LoopFirst) loop.first = std::min(frame, loop.last);
@@ -193,10 +190,7 @@ void answer_drag(const Track& t, int frame, TrackAnswer& answer) {
 
 std::string clock_time(double seconds) {
   const auto hundredths = static_cast<long long>(std::llround(std::max(0.0, seconds) * 100));
-  char words[48];
-  std::snprintf(words, sizeof words, "%lld:%02lld.%02lld", hundredths / 6000, hundredths / 100 % 60,
-                hundredths % 100);
-  return words;
+  return printed("%lld:%02lld.%02lld", hundredths / 6000, hundredths / 100 % 60, hundredths % 100);
 }
 
 TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& data) {
@@ -216,7 +210,7 @@ TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& dat
   const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive(), began = ImGui::IsItemActivated();
   if (hovered) ImGui::SetItemUsingMouseWheel();
   const auto set_axis = [&] {
-    const double count = state.count > 0 ? state.count : everything(data);
+    const double count = state.count > 0 ? state.count : std::max(1, data.total - 1);
     t.axis = {{{t.body.min.x + margin, t.body.min.y}, {t.body.max.x - margin, t.body.max.y}},
               state.first,
               state.first + count};
@@ -239,7 +233,7 @@ TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& dat
   if (data.total <= 0) return answer;
   const int frame = std::clamp(static_cast<int>(std::lround(t.axis.frame(mouse.x))), 0, data.total - 1);
   if (held) answer_drag(t, frame, answer);
-  if (hovered || held) answer.hovered = frame, draw_hover(t, frame);
+  if (hovered || held) draw_hover(t, frame);
   return answer;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ui/gui/ui.hpp"
-#include "ui/widgets/axis.hpp"
+#include "ui/widgets/plot.hpp"
 
 namespace understudy::ui {
 
@@ -33,8 +33,6 @@ struct TrackData {
 struct TrackAnswer {
   std::optional<int> seek;        ///< clicked or dragged there
   std::optional<LoopRange> loop;  ///< a loop mark was dragged
-  int hovered = -1;
-  bool scrubbing = false;  ///< held down: more seeks will come
 };
 
 /// Over the width that is left. Wheel zooms about the pointer, Shift+wheel or the middle button pans, a

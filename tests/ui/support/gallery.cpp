@@ -48,7 +48,7 @@ void draw_controls(Ui& ui, GalleryState& state) {
     dropdown(ui, "gallery.method", {"Full method", "Without offsets", "Skeleton only"}, state.method);
     row(ui, "Smoothing");
     NumberOptions smoothing;
-    smoothing.min = 0, smoothing.max = 1, smoothing.resettable = true, smoothing.initial = 0.2f;
+    smoothing.min = 0, smoothing.max = 1;
     number(ui, "gallery.smoothing", state.smoothing, smoothing);
     row(ui, "Brush radius");
     NumberOptions radius;
@@ -84,10 +84,9 @@ void draw_plots(Ui& ui, GalleryState& state) {
   for (int i = 500; i < 560; ++i) full[static_cast<size_t>(i)] = std::numeric_limits<float>::quiet_NaN();
   PlotOptions options;
   options.unit = "mm", options.current = state.frame, options.bad_frames = {120, 121, 500, 530, 559, 900};
-  if (const auto answer =
-          plot(ui, "gallery.mpjpe", {{"Full method", full}, {"Without offsets", without}}, options);
-      answer.seek)
-    state.frame = *answer.seek;
+  if (const auto frame =
+          plot(ui, "gallery.mpjpe", {{"Full method", full}, {"Without offsets", without}}, options))
+    state.frame = *frame;
   std::vector<float> few = wave(40, 0.004f, 0.01f, 0.4f);
   few[20] = few[22] = std::numeric_limits<float>::quiet_NaN();
   PlotOptions small;
