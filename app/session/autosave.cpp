@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "app/session/document_file.hpp"
-#include "app/session/document_text.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"

@@ -19,14 +19,9 @@ namespace {
 bool nothing_unsaved(Studio& studio, const std::string& then) {
   Session& session = studio.session();
   if (!session.changed) return true;
-  Question question;
-  question.kind = Question::Kind::UnsavedChanges;
-  question.text =
-      "Save the changes to " +
-      (session.path.empty() ? std::string("this document") : fs::path(session.path).filename().string()) +
-      "?";
-  question.then = then;
-  session.question = question;
+  const std::string name =
+      session.path.empty() ? "this document" : fs::path(session.path).filename().string();
+  session.question = Question{Question::Kind::UnsavedChanges, "Save the changes to " + name + "?", then};
   return false;
 }
 
@@ -34,12 +29,9 @@ bool nothing_unsaved(Studio& studio, const std::string& then) {
 void ask_for_missing(Session& session) {
   const std::vector<std::string> missing = missing_files(session.document);
   if (missing.empty()) return;
-  Question question;
-  question.kind = Question::Kind::MissingFiles;
-  question.text = missing.size() == 1 ? "A file of this document is missing."
-                                      : "Some files of this document are missing.";
-  question.missing = missing;
-  session.question = question;
+  const char* const text = missing.size() == 1 ? "A file of this document is missing."
+                                               : "Some files of this document are missing.";
+  session.question = Question{Question::Kind::MissingFiles, text, "", missing};
 }
 
 void open_document(Studio& studio, const std::string& path) {

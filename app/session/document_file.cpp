@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "app/session/document_text.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 #include "retarget/base/part_file.hpp"

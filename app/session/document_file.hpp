@@ -40,6 +40,13 @@ void write_document(const std::string& path, const SavedDocument& saved);
 /// Throws Error when the file is missing, no document, damaged or from a newer version.
 SavedDocument read_document(const std::string& path);
 
+/// JSON as text: indented, but for lists of numbers.
+std::string document_text(const nlohmann::ordered_json& json);
+/// Throws Error, one sentence that names `path`: empty, damaged.
+nlohmann::ordered_json parse_document(const std::string& text, const std::string& path);
+/// Throws Error, one sentence: no such file, too large, damaged.
+nlohmann::ordered_json read_document_json(const std::string& path);
+
 /// Files and folders that the document names and that are missing.
 std::vector<std::string> missing_files(const Document& document);
 /// The document with `from`, and every path under it, replaced by `to`.

@@ -34,10 +34,8 @@ Json shortest(float value) {
   return static_cast<float>(decimal) == value ? decimal : static_cast<double>(value);
 }
 
-Json shortest(double value) {
-  return value;
-}
-Json shortest(int value) {
+template <class Number>
+Json shortest(Number value) {
   return value;
 }
 

@@ -63,9 +63,8 @@ void add_work(Commands& commands) {
   commands.add({"app.quit", "Quit", "", "Ctrl+Q"}, [](Call& c) {
     c.session.quit = !c.session.changed;
     if (c.session.quit) return;
-    c.session.question = Question{};
-    c.session.question->text = "Save the changes before you quit?";
-    c.session.question->then = "app.quit";
+    c.session.question =
+        Question{Question::Kind::UnsavedChanges, "Save the changes before you quit?", "app.quit"};
   });
 }
 

@@ -101,11 +101,11 @@ struct LogLine {
 struct Question {
   enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit };
   Kind kind = Kind::UnsavedChanges;
-  std::string text;
-  std::string then;                  ///< the command to continue with ("app.quit", "document.open PATH")
-  std::vector<std::string> missing;  ///< MissingFiles: the missing paths
-  std::vector<Autosave> autosaves;   ///< Recover
-  int take = -1;                     ///< PaintMisfit: whose weights were painted on another surface
+  std::string text{};
+  std::string then{};                  ///< the command to continue with ("app.quit", "document.open PATH")
+  std::vector<std::string> missing{};  ///< MissingFiles: the missing paths
+  std::vector<Autosave> autosaves{};   ///< Recover
+  int take = -1;                       ///< PaintMisfit: whose weights were painted on another surface
 };
 
 /// What the mouse does in the views.

@@ -76,11 +76,8 @@ void Studio::ask_about_autosaves() {
   if (services_.autosave_folder.empty()) return;
   const auto found = found_autosaves(services_.autosave_folder);
   if (found.empty()) return;
-  Question question;
-  question.kind = Question::Kind::Recover;
-  question.text = "The studio was not closed properly. Unsaved work was saved.";
-  question.autosaves = found;
-  session_.question = question;
+  session_.question = Question{
+      Question::Kind::Recover, "The studio was not closed properly. Unsaved work was saved.", "", {}, found};
 }
 
 void Studio::run(const std::string& name, const Arguments& arguments) {
@@ -259,10 +256,9 @@ void Studio::ask_about_paint() {
     bool& asked = background_->applied[background_->take_ids[k]].asked_about_paint;
     if (session_.takes[k].paint_problem.empty() || asked) continue;
     asked = true;
-    session_.question = Question{};
-    session_.question->kind = Question::Kind::PaintMisfit;
-    session_.question->text = session_.takes[k].paint_problem + ". They are left out.";
-    session_.question->take = static_cast<int>(k);
+    session_.question = Question{
+        Question::Kind::PaintMisfit, session_.takes[k].paint_problem + ". They are left out.", "", {}, {},
+        static_cast<int>(k)};
   }
 }
 

@@ -10,7 +10,6 @@
 #include "app/run/version.hpp"
 #include "app/session/follow.hpp"
 #include "app/studio/facts.hpp"
-#include "app/studio/picture_commands.hpp"
 #include "app/studio/window_commands.hpp"
 #include "render/gl/functions.hpp"
 #include "retarget/base/error.hpp"
@@ -99,7 +98,6 @@ Application::Application(StudioServices services, std::unique_ptr<Surface> surfa
   previews_ = std::make_unique<Previews>();
   workspace_ = make_workspace();
   add_window_commands(studio_->commands(), *workspace_);
-  add_picture_commands(studio_->commands());
   ticked_at_ = drawn_at_ = input_at_ = Clock::now();
 }
 
@@ -233,22 +231,11 @@ void Application::show_previews() {
 }
 
 void Application::handle(const InputEvent& event) {
-  switch (event.kind) {
-    case Kind::Drop:
-      queue_.emplace_back("open", event.paths);
-      break;
-    case Kind::Close:
-      queue_.emplace_back("app.quit", Arguments{});
-      break;
-    case Kind::Resize:
-      if (options_.remember_size && event.width > 0 && event.scale > 0) {
-        studio_->session().settings.window_width = event.width;
-        studio_->session().settings.window_height = event.height;
-      }
-      break;
-    default:
-      break;
-  }
+  if (event.kind == Kind::Drop) queue_.emplace_back("open", event.paths);
+  if (event.kind == Kind::Close) queue_.emplace_back("app.quit", Arguments{});
+  if (event.kind != Kind::Resize || !options_.remember_size || event.width <= 0 || event.scale <= 0) return;
+  Settings& settings = studio_->session().settings;
+  settings.window_width = event.width, settings.window_height = event.height;
 }
 
 void Application::draw(double dt, const std::vector<InputEvent>& events) {

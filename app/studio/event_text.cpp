@@ -1,11 +1,14 @@
 #include "app/studio/event_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "retarget/base/error.hpp"
+#include "ui/gui/key_chord.hpp"
 
 namespace understudy::app {
 float number_of(const std::string& text) {
@@ -30,26 +33,15 @@ std::string text_of(float value) {
 }
 
 void add_modifiers(Arguments& words, const render::Modifiers& modifiers) {
-  if (modifiers.control) words.push_back("ctrl");
-  if (modifiers.shift) words.push_back("shift");
-  if (modifiers.alt) words.push_back("alt");
-  if (modifiers.super) words.push_back("super");
+  for (const ui::Modifier& modifier : ui::kModifiers)
+    if (modifiers.*modifier.held) words.push_back(modifier.name);
 }
 
 render::Modifiers modifiers_from(const Arguments& words, size_t first) {
   render::Modifiers modifiers;
-  for (size_t i = first; i < words.size(); ++i) {
-    if (words[i] == "ctrl")
-      modifiers.control = true;
-    else if (words[i] == "shift")
-      modifiers.shift = true;
-    else if (words[i] == "alt")
-      modifiers.alt = true;
-    else if (words[i] == "super")
-      modifiers.super = true;
-    else
-      US_CHECK(words[i] == "repeat", words[i], " is not a modifier: ctrl, shift, alt, super");
-  }
+  for (size_t i = first; i < words.size(); ++i)
+    US_CHECK(ui::set_modifier(modifiers, words[i]) || words[i] == "repeat", words[i],
+             " is not a modifier: ctrl, shift, alt, super");
   return modifiers;
 }
 
@@ -61,10 +53,9 @@ void place_from(InputEvent& event, const Arguments& words, size_t first) {
 InputEvent button_of(const Arguments& words) {
   InputEvent event;
   event.kind = Kind::MouseButton;
-  size_t which = 0;
-  while (which < kButtons.size() && words[1] != kButtons[which]) ++which;
-  US_CHECK(which < kButtons.size(), words[1], " is not a mouse button");
-  event.button = static_cast<render::MouseButton>(which);
+  const auto found = std::find(kButtons.begin(), kButtons.end(), words[1]);
+  US_CHECK(found != kButtons.end(), words[1], " is not a mouse button");
+  event.button = static_cast<render::MouseButton>(found - kButtons.begin());
   event.pressed = words[2] == "down";
   place_from(event, words, 3);
   event.modifiers = modifiers_from(words, 5);
@@ -118,16 +109,12 @@ Arguments event_words(const InputEvent& event) {
 }
 
 InputEvent event_of_words(const Arguments& words) {
-  static const std::pair<const char*, size_t> kLeast[] = {
-      {"move", 3}, {"button", 5}, {"scroll", 5}, {"key", 3}, {"char", 2}, {"focus", 2}, {"drop", 4}};
+  static const std::map<std::string, size_t> kLeast = {{"move", 3}, {"button", 5}, {"scroll", 5}, {"key", 3},
+                                                       {"char", 2}, {"focus", 2},  {"drop", 4}};
   const std::string kind = words.empty() ? "" : words[0];
-  bool known = false;
-  for (const auto& [name, least] : kLeast)
-    if (kind == name) {
-      US_CHECK(words.size() >= least, "event ", kind, " wants ", least - 1, " words or more");
-      known = true;
-    }
-  US_CHECK(known, "there is no event ", kind);
+  const auto least = kLeast.find(kind);
+  US_CHECK(least != kLeast.end(), "there is no event ", kind);
+  US_CHECK(words.size() >= least->second, "event ", kind, " wants ", least->second - 1, " words or more");
   InputEvent event;
   if (kind == "button") return button_of(words);
   if (kind == "key") return key_of(words);

@@ -72,18 +72,8 @@ std::vector<char32_t> characters_of(const std::string& text) {
 /// Takes "ctrl", "shift", "alt" off the end of the words.
 render::Modifiers take_modifiers(Arguments& words) {
   render::Modifiers modifiers;
-  while (!words.empty()) {
-    const std::string& last = words.back();
-    if (last == "ctrl")
-      modifiers.control = true;
-    else if (last == "shift")
-      modifiers.shift = true;
-    else if (last == "alt")
-      modifiers.alt = true;
-    else
-      break;
+  while (!words.empty() && words.back() != "super" && ui::set_modifier(modifiers, words.back()))
     words.pop_back();
-  }
   return modifiers;
 }
 
@@ -106,47 +96,349 @@ Comparison comparison_of(const Arguments& words) {
   return {words[1], "=", words.size() > 2 ? words[2] : ""};
 }
 
-}  // namespace
-
 /// What a line points at: a place, what follows it, and the keys held meanwhile.
-struct Script::Pointing {
+struct Pointing {
   ImVec2 at;
   Arguments rest;
   render::Modifiers modifiers;
 };
 
-Script::Script(Application& application, OffscreenSurface& surface, ScriptOptions options)
-    : application_(application), surface_(surface), options_(std::move(options)) {}
+}  // namespace
 
-const std::vector<Script::Row>& Script::rows() {
-  static const std::vector<Row> table = {
-      {"wait", 0, 1, &Script::wait},
-      {"wait_frames", 1, 1, &Script::wait_frames},
-      {"wait_value", 1, 3, &Script::wait_value},
-      {"frames", 1, 1, &Script::frames},
-      {"screenshot", 1, 2, &Script::screenshot},
-      {"resize", 2, 2, &Script::resize},
-      {"log", 1, 99, &Script::log},
-      {"click", 1, 5, &Script::click},
-      {"double_click", 1, 5, &Script::double_click},
-      {"right_click", 1, 5, &Script::right_click},
-      {"hover", 1, 5, &Script::hover},
-      {"drag", 3, 7, &Script::drag},
-      {"drag_to", 2, 5, &Script::drag_to},
-      {"scroll", 2, 6, &Script::scroll},
-      {"type", 1, 1, &Script::type},
-      {"key", 1, 1, &Script::key},
-      {"drop", 1, 99, &Script::drop},
-      {"close", 0, 0, &Script::close},
-      {"expect", 1, 1, &Script::expect},
-      {"expect_no", 1, 1, &Script::expect_no},
-      {"expect_text", 1, 1, &Script::expect_text},
-      {"expect_value", 1, 3, &Script::expect_value},
-      {"expect_error", 1, 1, &Script::expect_error},
-      {"event", 1, 99, &Script::event},
+/// Plays lines.
+struct Script::Player {
+  using Words = Arguments;
+  struct Row {
+    const char* name;
+    size_t least, most;
+    void (Player::*play)(const Words&);
   };
-  return table;
-}
+
+  Application& application;
+  OffscreenSurface& surface;
+  ScriptOptions options;
+
+  static const std::vector<Row>& rows() {
+    static const std::vector<Row> table = {
+        {"wait", 0, 1, &Player::wait},
+        {"wait_frames", 1, 1, &Player::wait_frames},
+        {"wait_value", 1, 3, &Player::wait_value},
+        {"frames", 1, 1, &Player::frames},
+        {"screenshot", 1, 2, &Player::screenshot},
+        {"resize", 2, 2, &Player::resize},
+        {"log", 1, 99, &Player::log},
+        {"click", 1, 5, &Player::click},
+        {"double_click", 1, 5, &Player::double_click},
+        {"right_click", 1, 5, &Player::right_click},
+        {"hover", 1, 5, &Player::hover},
+        {"drag", 3, 7, &Player::drag},
+        {"drag_to", 2, 5, &Player::drag_to},
+        {"scroll", 2, 6, &Player::scroll},
+        {"type", 1, 1, &Player::type},
+        {"key", 1, 1, &Player::key},
+        {"drop", 1, 99, &Player::drop},
+        {"close", 0, 0, &Player::close},
+        {"expect", 1, 1, &Player::expect},
+        {"expect_no", 1, 1, &Player::expect_no},
+        {"expect_text", 1, 1, &Player::expect_text},
+        {"expect_value", 1, 3, &Player::expect_value},
+        {"expect_error", 1, 1, &Player::expect_error},
+        {"event", 1, 99, &Player::event},
+    };
+    return table;
+  }
+
+  /// Empty lines and comments do nothing.
+  void play_line(const std::string& line) {
+    const Arguments words = split_line(line);
+    if (words.empty()) return;
+    for (const Row& row : rows())
+      if (words[0] == row.name) {
+        US_CHECK(words.size() > row.least && words.size() <= row.most + 1, row.name, " wants ", row.least,
+                 row.least == row.most ? "" : " to " + std::to_string(row.most), " words, not ",
+                 words.size() - 1);
+        (this->*row.play)(words);
+        return;
+      }
+    US_CHECK(application.studio().commands().find(words[0]), "there is no command ", words[0]);
+    Arguments arguments;
+    for (size_t i = 1; i < words.size(); ++i) arguments.push_back(path_of(words[i]));
+    application.studio().run(words[0], arguments);
+    draw(2);
+  }
+
+  // Waiting and looking.
+
+  void draw(int count = 1) {
+    for (int i = 0; i < count && !application.session().quit; ++i) {
+      US_CHECK(!interrupted(), "interrupted");
+      application.frame(kFrame);
+    }
+  }
+
+  /// Draws until everything on the screen is made and the widgets have settled.
+  void settle() {
+    for (int i = 0; i < 4; ++i) {
+      draw();
+      application.studio().cache().wait();
+    }
+    until([this] { return !application.waiting(); }, "the picture", options.timeout_s);
+    draw(3);
+  }
+
+  void until(const std::function<bool()>& done, const std::string& what, double timeout_s) {
+    const auto began = std::chrono::steady_clock::now();
+    while (!done()) {
+      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
+      US_CHECK(passed.count() < timeout_s, what, " has not arrived after ", timeout_s, " s");
+      US_CHECK(!application.session().quit, "the studio was closed");
+      draw();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+  void wait(const Words& words) {
+    application.studio().wait_idle(words.size() > 1 ? static_cast<double>(number_of(words[1]))
+                                                    : options.timeout_s);
+    settle();
+  }
+
+  void wait_frames(const Words& words) {
+    const int wanted = static_cast<int>(number_of(words[1]));
+    until([&] { return frame_count(application.session()) >= wanted; }, "frame " + words[1],
+          options.timeout_s);
+  }
+
+  void wait_value(const Words& words) {
+    const auto [key, sign, value] = comparison_of(words);
+    until([&, k = key, s = sign, v = value] { return holds(fact(application.session(), k), s, v); },
+          key + " " + sign + " " + value, options.timeout_s);
+  }
+
+  void frames(const Words& words) { draw(static_cast<int>(number_of(words[1]))); }
+
+  void screenshot(const Words& words) {
+    const render::PixelSize before = surface.target().size;
+    if (words.size() > 2) {
+      const render::PixelSize size = size_of(words[2]);
+      surface.resize(size.width, size.height);
+    }
+    settle();
+    const fs::path path = fs::path(options.out) / path_of(words[1]);
+    std::error_code failed;
+    fs::create_directories(path.parent_path(), failed);
+    render::write_png(path.string(), surface.picture());
+    surface.resize(before.width, before.height);
+  }
+
+  void resize(const Words& words) {
+    surface.resize(static_cast<int>(number_of(words[1])), static_cast<int>(number_of(words[2])));
+    draw(2);
+  }
+
+  void log(const Words& words) {
+    std::string text;
+    for (size_t i = 1; i < words.size(); ++i) text += (i > 1 ? " " : "") + words[i];
+    understudy::log::info(text);
+  }
+
+  // Doing.
+
+  void send(std::vector<InputEvent> events) {
+    for (InputEvent& event : events) surface.push(std::move(event));
+    draw();
+    while (application.gui().pending() && !application.session().quit) draw();
+    draw(2);
+  }
+
+  ImVec2 place_of(const std::string& name) {
+    const size_t at = name.find('@');
+    const std::string mark = name.substr(0, at);
+    if (!application.find(mark)) draw(3);  // windows appear after a frame
+    auto found = application.find(mark);
+    US_CHECK(found, "nothing on the screen is called ", mark);
+    if (found->visible.empty()) {
+      application.gui().ui().reveal(mark);
+      draw(4);
+      found = application.find(mark);
+      US_CHECK(found && !found->visible.empty(), mark, " is not visible");
+    }
+    US_CHECK(found->enabled, mark, " is greyed out");
+    if (at == std::string::npos) return found->visible.at(0.5f, 0.5f);
+    const std::string shares = name.substr(at + 1);
+    const size_t comma = shares.find(',');
+    US_CHECK(comma != std::string::npos, name, ": wants two shares after the @");
+    return found->rect.at(number_of(shares.substr(0, comma)), number_of(shares.substr(comma + 1)));
+  }
+
+  /// `places`: how many numbers follow NAME; a place is X Y when its words are numbers.
+  Pointing pointing(Words words, size_t places) {
+    Pointing p;
+    p.modifiers = take_modifiers(words);
+    words.erase(words.begin());
+    const bool numbers = words.size() >= 2 && is_number(words[0]) && is_number(words[1]);
+    const size_t used = numbers ? 2 : 1;
+    US_CHECK(words.size() >= used, "no place is given");
+    p.at = numbers ? ImVec2(number_of(words[0]), number_of(words[1])) : place_of(words[0]);
+    p.rest.assign(words.begin() + static_cast<std::ptrdiff_t>(used), words.end());
+    US_CHECK(p.rest.size() == places, "wants NAME or X Y", places ? ", and numbers" : "", "; there are ",
+             p.rest.size(), " words more, not ", places);
+    return p;
+  }
+
+  void press(const Pointing& p, MouseButton button, int times) {
+    send({mouse_event(Kind::MouseMove, p.at)});
+    std::vector<InputEvent> events;
+    for (int i = 0; i < times; ++i) {
+      events.push_back(button_event(p.at, button, true, p.modifiers));
+      events.push_back(button_event(p.at, button, false, p.modifiers));
+    }
+    send(held(p.modifiers, std::move(events)));
+  }
+
+  void click(const Words& words) { press(pointing(words, 0), MouseButton::Left, 1); }
+  void double_click(const Words& words) { press(pointing(words, 0), MouseButton::Left, 2); }
+  void right_click(const Words& words) { press(pointing(words, 0), MouseButton::Right, 1); }
+
+  void hover(const Words& words) {
+    send({mouse_event(Kind::MouseMove, pointing(words, 0).at)});
+    draw(60);  // until its tooltip shows
+  }
+
+  void drag_between(ImVec2 from, ImVec2 to, render::Modifiers modifiers) {
+    send({mouse_event(Kind::MouseMove, from)});
+    std::vector<InputEvent> events = {button_event(from, MouseButton::Left, true, modifiers)};
+    constexpr int kSteps = 6;
+    for (int i = 1; i <= kSteps; ++i) {
+      const float t = static_cast<float>(i) / kSteps;
+      events.push_back(mouse_event(Kind::MouseMove,
+                                   {from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)}, modifiers));
+    }
+    send(held(modifiers, {events.front()}));
+    for (size_t i = 1; i < events.size(); ++i) send({events[i]});
+    send({button_event(to, MouseButton::Left, false, modifiers)});
+  }
+
+  void drag(const Words& words) {
+    const Pointing p = pointing(words, 2);
+    const ImVec2 by(number_of(p.rest[0]), number_of(p.rest[1]));
+    const bool from_place = is_number(words[1]) && is_number(words[2]);
+    drag_between(p.at, from_place ? by : ImVec2(p.at.x + by.x, p.at.y + by.y), p.modifiers);
+  }
+
+  void drag_to(const Words& words) {
+    Words rest = words;
+    const render::Modifiers modifiers = take_modifiers(rest);
+    US_CHECK(rest.size() == 3, "drag_to wants two names");
+    const ImVec2 from = place_of(rest[1]), to = place_of(rest[2]);
+    drag_between(from, to, modifiers);
+  }
+
+  void scroll(const Words& words) {
+    const Pointing p = pointing(words, 1);
+    InputEvent event = mouse_event(Kind::Scroll, p.at, p.modifiers);
+    event.dy = number_of(p.rest[0]);
+    send({mouse_event(Kind::MouseMove, p.at)});
+    send(held(p.modifiers, {event}));
+  }
+
+  void type(const Words& words) {
+    std::vector<InputEvent> events;
+    for (const char32_t character : characters_of(words[1])) {
+      InputEvent event;
+      event.kind = Kind::Char;
+      event.codepoint = character;
+      events.push_back(event);
+    }
+    send(std::move(events));
+  }
+
+  void key(const Words& words) {
+    const auto chord = ui::chord_of(words[1]);
+    US_CHECK(chord, words[1], " is not a key");
+    send(key_events(*chord));
+  }
+
+  void drop(const Words& words) {
+    InputEvent event;
+    event.kind = Kind::Drop;
+    for (size_t i = 1; i < words.size(); ++i) event.paths.push_back(path_of(words[i]));
+    send({event});
+  }
+
+  void close(const Words&) {
+    InputEvent event;
+    event.kind = Kind::Close;
+    send({event});
+  }
+
+  void event(const Words& words) {
+    Words rest(words.begin() + 1, words.end());
+    if (rest[0] == "drop")
+      for (size_t i = 3; i < rest.size(); ++i) rest[i] = path_of(rest[i]);
+    surface.push(event_of_words(rest));  // seen by the next frame that is drawn
+  }
+
+  // Looking.
+
+  void expect(const Words& words) {
+    if (!application.find(words[1])) draw(3);
+    US_CHECK(application.find(words[1]), "nothing on the screen is called ", words[1]);
+  }
+
+  void expect_no(const Words& words) {
+    draw(2);
+    auto found = application.find(words[1]);
+    US_CHECK(!found || found->visible.empty(), words[1], " is on the screen");
+  }
+
+  void expect_text(const Words& words) {
+    const Session& session = application.session();
+    std::string texts;
+    const auto add = [&texts](const std::string& text) { texts += text + "\n"; };
+    for (const Notice& notice : session.errors) add(notice.text);
+    for (const Notice& notice : session.notices) add(notice.text);
+    if (session.question) add(session.question->text);
+    for (const LogLine& line : session.log) add(line.text);
+    US_CHECK(texts.find(words[1]) != std::string::npos, "no dialog, notice or line of the log says \"",
+             words[1], "\"");
+  }
+
+  void expect_value(const Words& words) {
+    const auto [key, sign, wanted] = comparison_of(words);
+    const std::string value = fact(application.session(), key);
+    US_CHECK(holds(value, sign, wanted), key, " is \"", value, "\", not ", sign == "=" ? "" : sign + " ",
+             "\"", wanted, "\"");
+  }
+
+  void expect_error(const Words& words) {
+    draw(2);
+    const Session& session = application.session();
+    US_CHECK(!session.errors.empty(), "no error is shown, \"", words[1], "\" was expected");
+    US_CHECK(session.errors.front().text.find(words[1]) != std::string::npos, "the error is \"",
+             session.errors.front().text, "\", not \"", words[1], "\"");
+    application.studio().run("error.dismiss");
+  }
+
+  std::string path_of(const std::string& argument) const {
+    if (starts_with(argument, "samples/")) {
+      US_CHECK(!application.studio().services().samples.empty(), "the bundled samples are missing");
+      return (fs::path(application.studio().services().samples) / argument.substr(8)).string();
+    }
+    if (starts_with(argument, "out/")) {
+      const fs::path path = fs::absolute(fs::path(options.out) / argument.substr(4));
+      std::error_code failed;
+      fs::create_directories(path.parent_path(), failed);
+      return path.string();
+    }
+    return argument;
+  }
+};
+
+Script::Script(Application& application, OffscreenSurface& surface, ScriptOptions options)
+    : player_(std::make_unique<Player>(Player{application, surface, std::move(options)})) {}
+
+Script::~Script() = default;
 
 void Script::play(const std::string& text) {
   std::istringstream lines(text);
@@ -154,311 +446,18 @@ void Script::play(const std::string& text) {
   for (std::string line; std::getline(lines, line);) {
     ++number;
     try {
-      play_line(line);
-      if (application_.session().quit) return;
+      player_->play_line(line);
+      if (player_->application.session().quit) return;
     } catch (const Error& error) {
-      throw Error(options_.name + ":" + std::to_string(number) + ": " + error.what());
+      throw Error(player_->options.name + ":" + std::to_string(number) + ": " + error.what());
     }
   }
-}
-
-void Script::play_line(const std::string& line) {
-  const Arguments words = split_line(line);
-  if (words.empty()) return;
-  for (const Row& row : rows())
-    if (words[0] == row.name) {
-      US_CHECK(words.size() > row.least && words.size() <= row.most + 1, row.name, " wants ", row.least,
-               row.least == row.most ? "" : " to " + std::to_string(row.most), " words, not ",
-               words.size() - 1);
-      (this->*row.play)(words);
-      return;
-    }
-  US_CHECK(application_.studio().commands().find(words[0]), "there is no command ", words[0]);
-  Arguments arguments;
-  for (size_t i = 1; i < words.size(); ++i) arguments.push_back(path_of(words[i]));
-  application_.studio().run(words[0], arguments);
-  draw(2);
 }
 
 void Script::check_no_error() const {
-  const Session& session = application_.session();
-  US_CHECK(session.errors.empty(), options_.name, ": ended with an error: ", session.errors.front().text);
-}
-
-// Waiting and looking.
-
-void Script::draw(int count) {
-  for (int i = 0; i < count && !application_.session().quit; ++i) {
-    US_CHECK(!interrupted(), "interrupted");
-    application_.frame(kFrame);
-  }
-}
-
-/// Draws until everything on the screen is made and the widgets have settled.
-void Script::settle() {
-  for (int i = 0; i < 4; ++i) {
-    draw();
-    application_.studio().cache().wait();
-  }
-  until([this] { return !application_.waiting(); }, "the picture", options_.timeout_s);
-  draw(3);
-}
-
-void Script::until(const std::function<bool()>& done, const std::string& what, double timeout_s) {
-  const auto began = std::chrono::steady_clock::now();
-  while (!done()) {
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
-    US_CHECK(passed.count() < timeout_s, what, " has not arrived after ", timeout_s, " s");
-    US_CHECK(!application_.session().quit, "the studio was closed");
-    draw();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-}
-
-void Script::wait(const Words& words) {
-  application_.studio().wait_idle(words.size() > 1 ? static_cast<double>(number_of(words[1]))
-                                                   : options_.timeout_s);
-  settle();
-}
-
-void Script::wait_frames(const Words& words) {
-  const int wanted = static_cast<int>(number_of(words[1]));
-  until([&] { return frame_count(application_.session()) >= wanted; }, "frame " + words[1],
-        options_.timeout_s);
-}
-
-void Script::wait_value(const Words& words) {
-  const auto [key, sign, value] = comparison_of(words);
-  until([&, k = key, s = sign, v = value] { return holds(fact(application_.session(), k), s, v); },
-        key + " " + sign + " " + value, options_.timeout_s);
-}
-
-void Script::frames(const Words& words) {
-  draw(static_cast<int>(number_of(words[1])));
-}
-
-void Script::screenshot(const Words& words) {
-  const render::PixelSize before = surface_.target().size;
-  if (words.size() > 2) {
-    const render::PixelSize size = size_of(words[2]);
-    surface_.resize(size.width, size.height);
-  }
-  settle();
-  const fs::path path = fs::path(options_.out) / path_of(words[1]);
-  std::error_code failed;
-  fs::create_directories(path.parent_path(), failed);
-  render::write_png(path.string(), surface_.picture());
-  surface_.resize(before.width, before.height);
-}
-
-void Script::resize(const Words& words) {
-  surface_.resize(static_cast<int>(number_of(words[1])), static_cast<int>(number_of(words[2])));
-  draw(2);
-}
-
-void Script::log(const Words& words) {
-  std::string text;
-  for (size_t i = 1; i < words.size(); ++i) text += (i > 1 ? " " : "") + words[i];
-  understudy::log::info(text);
-}
-
-// Doing.
-
-void Script::send(std::vector<InputEvent> events) {
-  for (InputEvent& event : events) surface_.push(std::move(event));
-  draw();
-  while (application_.gui().pending() && !application_.session().quit) draw();
-  draw(2);
-}
-
-ImVec2 Script::place_of(const std::string& name) {
-  const size_t at = name.find('@');
-  const std::string mark = name.substr(0, at);
-  if (!application_.find(mark)) draw(3);  // windows appear after a frame
-  auto found = application_.find(mark);
-  US_CHECK(found, "nothing on the screen is called ", mark);
-  if (found->visible.empty()) {
-    application_.gui().ui().reveal(mark);
-    draw(4);
-    found = application_.find(mark);
-    US_CHECK(found && !found->visible.empty(), mark, " is not visible");
-  }
-  US_CHECK(found->enabled, mark, " is greyed out");
-  if (at == std::string::npos) return found->visible.at(0.5f, 0.5f);
-  const std::string shares = name.substr(at + 1);
-  const size_t comma = shares.find(',');
-  US_CHECK(comma != std::string::npos, name, ": wants two shares after the @");
-  return found->rect.at(number_of(shares.substr(0, comma)), number_of(shares.substr(comma + 1)));
-}
-
-/// `places`: how many numbers follow NAME; a place is X Y when its words are numbers.
-Script::Pointing Script::pointing(Words words, size_t places) const {
-  Pointing p;
-  p.modifiers = take_modifiers(words);
-  words.erase(words.begin());
-  const bool numbers = words.size() >= 2 && is_number(words[0]) && is_number(words[1]);
-  const size_t used = numbers ? 2 : 1;
-  US_CHECK(words.size() >= used, "no place is given");
-  p.at = numbers ? ImVec2(number_of(words[0]), number_of(words[1]))
-                 : const_cast<Script*>(this)->place_of(words[0]);
-  p.rest.assign(words.begin() + static_cast<std::ptrdiff_t>(used), words.end());
-  US_CHECK(p.rest.size() == places, "wants NAME or X Y", places ? ", and numbers" : "", "; there are ",
-           p.rest.size(), " words more, not ", places);
-  return p;
-}
-
-void Script::press(const Pointing& p, MouseButton button, int times) {
-  send({mouse_event(Kind::MouseMove, p.at)});
-  std::vector<InputEvent> events;
-  for (int i = 0; i < times; ++i) {
-    events.push_back(button_event(p.at, button, true, p.modifiers));
-    events.push_back(button_event(p.at, button, false, p.modifiers));
-  }
-  send(held(p.modifiers, std::move(events)));
-}
-
-void Script::click(const Words& words) {
-  press(pointing(words, 0), MouseButton::Left, 1);
-}
-void Script::double_click(const Words& words) {
-  press(pointing(words, 0), MouseButton::Left, 2);
-}
-void Script::right_click(const Words& words) {
-  press(pointing(words, 0), MouseButton::Right, 1);
-}
-
-void Script::hover(const Words& words) {
-  send({mouse_event(Kind::MouseMove, pointing(words, 0).at)});
-  draw(60);  // until its tooltip shows
-}
-
-void Script::drag_between(ImVec2 from, ImVec2 to, render::Modifiers modifiers) {
-  send({mouse_event(Kind::MouseMove, from)});
-  std::vector<InputEvent> events = {button_event(from, MouseButton::Left, true, modifiers)};
-  constexpr int kSteps = 6;
-  for (int i = 1; i <= kSteps; ++i) {
-    const float t = static_cast<float>(i) / kSteps;
-    events.push_back(mouse_event(Kind::MouseMove,
-                                 {from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)}, modifiers));
-  }
-  send(held(modifiers, {events.front()}));
-  for (size_t i = 1; i < events.size(); ++i) send({events[i]});
-  send({button_event(to, MouseButton::Left, false, modifiers)});
-}
-
-void Script::drag(const Words& words) {
-  const Pointing p = pointing(words, 2);
-  const ImVec2 by(number_of(p.rest[0]), number_of(p.rest[1]));
-  const bool from_place = is_number(words[1]) && is_number(words[2]);
-  drag_between(p.at, from_place ? by : ImVec2(p.at.x + by.x, p.at.y + by.y), p.modifiers);
-}
-
-void Script::drag_to(const Words& words) {
-  Words rest = words;
-  const render::Modifiers modifiers = take_modifiers(rest);
-  US_CHECK(rest.size() == 3, "drag_to wants two names");
-  const ImVec2 from = place_of(rest[1]), to = place_of(rest[2]);
-  drag_between(from, to, modifiers);
-}
-
-void Script::scroll(const Words& words) {
-  const Pointing p = pointing(words, 1);
-  InputEvent event = mouse_event(Kind::Scroll, p.at, p.modifiers);
-  event.dy = number_of(p.rest[0]);
-  send({mouse_event(Kind::MouseMove, p.at)});
-  send(held(p.modifiers, {event}));
-}
-
-void Script::type(const Words& words) {
-  std::vector<InputEvent> events;
-  for (const char32_t character : characters_of(words[1])) {
-    InputEvent event;
-    event.kind = Kind::Char;
-    event.codepoint = character;
-    events.push_back(event);
-  }
-  send(std::move(events));
-}
-
-void Script::key(const Words& words) {
-  const auto chord = ui::chord_of(words[1]);
-  US_CHECK(chord, words[1], " is not a key");
-  send(key_events(*chord));
-}
-
-void Script::drop(const Words& words) {
-  InputEvent event;
-  event.kind = Kind::Drop;
-  for (size_t i = 1; i < words.size(); ++i) event.paths.push_back(path_of(words[i]));
-  send({event});
-}
-
-void Script::close(const Words&) {
-  InputEvent event;
-  event.kind = Kind::Close;
-  send({event});
-}
-
-void Script::event(const Words& words) {
-  Words rest(words.begin() + 1, words.end());
-  if (rest[0] == "drop")
-    for (size_t i = 3; i < rest.size(); ++i) rest[i] = path_of(rest[i]);
-  surface_.push(event_of_words(rest));  // seen by the next frame that is drawn
-}
-
-// Looking.
-
-void Script::expect(const Words& words) {
-  if (!application_.find(words[1])) draw(3);
-  US_CHECK(application_.find(words[1]), "nothing on the screen is called ", words[1]);
-}
-
-void Script::expect_no(const Words& words) {
-  draw(2);
-  auto found = application_.find(words[1]);
-  US_CHECK(!found || found->visible.empty(), words[1], " is on the screen");
-}
-
-void Script::expect_text(const Words& words) {
-  const Session& session = application_.session();
-  std::string texts;
-  const auto add = [&texts](const std::string& text) { texts += text + "\n"; };
-  for (const Notice& notice : session.errors) add(notice.text);
-  for (const Notice& notice : session.notices) add(notice.text);
-  if (session.question) add(session.question->text);
-  for (const LogLine& line : session.log) add(line.text);
-  US_CHECK(texts.find(words[1]) != std::string::npos, "no dialog, notice or line of the log says \"",
-           words[1], "\"");
-}
-
-void Script::expect_value(const Words& words) {
-  const auto [key, sign, wanted] = comparison_of(words);
-  const std::string value = fact(application_.session(), key);
-  US_CHECK(holds(value, sign, wanted), key, " is \"", value, "\", not ", sign == "=" ? "" : sign + " ", "\"",
-           wanted, "\"");
-}
-
-void Script::expect_error(const Words& words) {
-  draw(2);
-  const Session& session = application_.session();
-  US_CHECK(!session.errors.empty(), "no error is shown, \"", words[1], "\" was expected");
-  US_CHECK(session.errors.front().text.find(words[1]) != std::string::npos, "the error is \"",
-           session.errors.front().text, "\", not \"", words[1], "\"");
-  application_.studio().run("error.dismiss");
-}
-
-std::string Script::path_of(const std::string& argument) const {
-  if (starts_with(argument, "samples/")) {
-    US_CHECK(!application_.studio().services().samples.empty(), "the bundled samples are missing");
-    return (fs::path(application_.studio().services().samples) / argument.substr(8)).string();
-  }
-  if (starts_with(argument, "out/")) {
-    const fs::path path = fs::absolute(fs::path(options_.out) / argument.substr(4));
-    std::error_code failed;
-    fs::create_directories(path.parent_path(), failed);
-    return path.string();
-  }
-  return argument;
+  const Session& session = player_->application.session();
+  US_CHECK(session.errors.empty(), player_->options.name,
+           ": ended with an error: ", session.errors.front().text);
 }
 
 }  // namespace understudy::app

@@ -1,9 +1,155 @@
 #include "app/studio/window_commands.hpp"
 
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
 #include "app/session/command_sets.hpp"
+#include "render/context/context.hpp"
+#include "render/image.hpp"
+#include "render/video_writer.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/editing/pose_edits.hpp"
+#include "ui/viewport/picture.hpp"
 
 namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLargestPicture = 16384;  // pixels a side
+constexpr int64_t kCacheMb = 128;       // of frames, for a job
+
+struct Saving {
+  std::string path;
+  ui::PictureOptions options;
+};
+
+/// Draws what a session shows apart from the window, on the thread of a job: with a context, a cache and a
+/// copy of the session of its own.
+class Stage {
+ public:
+  Stage(Session session, const Saving& saving)
+      : session_(std::move(session)),
+        options_(saving.options),
+        cache_(kCacheMb),
+        context_(render::make_offscreen_context()) {
+    SourceOptions source = session_.document.source;
+    source.quiet = true;
+    cache_.set_source(source, session_.document.scan_edits);
+    session_.playback.playing = session_.playback.live = false;
+  }
+  render::Image picture(int frame) {
+    session_.playback.frame = frame;
+    return maker_.picture(session_, cache_, options_);
+  }
+
+ private:
+  Session session_;
+  ui::PictureOptions options_;
+  FrameCache cache_;
+  std::unique_ptr<render::Context> context_;
+  ui::PictureMaker maker_;
+};
+
+std::optional<int> whole(const std::string& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// PATH [WIDTH HEIGHT] [transparent] [view|all].
+Saving saving_of(const Call& c) {
+  const Arguments& arguments = c.arguments;
+  US_CHECK(!c.word(0, "path").empty(), "a path is missing");
+  Saving saving;
+  saving.path = c.path(0);
+  for (size_t i = 1; i < arguments.size(); ++i) {
+    const auto width = whole(arguments[i]);
+    const auto height = i + 1 < arguments.size() ? whole(arguments[i + 1]) : std::nullopt;
+    if (width && height) {
+      saving.options.size = {*width, *height};
+      ++i;
+    } else if (arguments[i] == "transparent") {
+      saving.options.transparent = true;
+    } else {
+      US_CHECK(arguments[i] == "view" || arguments[i] == "all", arguments[i],
+               " is not understood: PATH [WIDTH HEIGHT] [transparent] [view|all]");
+      saving.options.pane = arguments[i] == "all" ? -1 : c.session.view.active_pane;
+    }
+  }
+  const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
+  US_CHECK(width >= 16 && height >= 16 && width <= kLargestPicture && height <= kLargestPicture,
+           "a picture of ", width, " x ", height, " pixels cannot be made: 16 to ", kLargestPicture,
+           " a side");
+  return saving;
+}
+
+std::string file_name(const std::string& path) {
+  return fs::path(path).filename().string();
+}
+
+/// What the job's thread may look at.
+std::shared_ptr<Session> copied(const Session& of) {
+  auto session = std::make_shared<Session>(of);
+  session->history.clear();
+  session->log.clear();
+  return session;
+}
+
+void save_picture(Call& c) {
+  const Saving saving = saving_of(c);
+  const int frame = shown_frame(c.session);
+  US_CHECK(frame >= 0, "there is nothing to show yet");
+  c.studio.jobs().start(
+      "Saving " + file_name(saving.path),
+      [saving, frame, session = copied(c.session)](JobControl&) {
+        Stage stage(std::move(*session), saving);
+        render::write_png(saving.path, stage.picture(frame));
+      },
+      [&studio = c.studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+}
+
+/// The frames that play, without those left out, in order.
+std::vector<int> frames_of(const Session& session) {
+  const FrameRange range = play_range(session.playback, frame_count(session));
+  PoseEdits edits;
+  if (!session.document.takes.empty()) edits = session.document.takes[session.selected_take].pose_edits;
+  std::vector<int> frames;
+  for (const int frame : kept_frames(edits, frame_count(session)))
+    if (frame >= range.first && frame <= range.last) frames.push_back(frame);
+  return frames;
+}
+
+void save_video(Call& c) {
+  const Saving saving = saving_of(c);
+  const std::vector<int> frames = frames_of(c.session);
+  US_CHECK(!frames.empty(), "there is nothing to show yet");
+  const std::string suffix = file_suffix(saving.path);
+  US_CHECK(suffix.empty() || suffix == ".mp4", suffix, " is not a video: .mp4, or a folder for pictures");
+  const double fps = c.session.source.fps;
+  c.studio.jobs().start(
+      "Saving " + file_name(saving.path),
+      [saving, frames, fps, session = copied(c.session)](JobControl& control) {
+        Stage stage(std::move(*session), saving);
+        const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
+        render::VideoWriter writer(saving.path, {width, height, fps});
+        for (size_t i = 0; i < frames.size(); ++i) {
+          control.check();
+          control.progress(static_cast<float>(i) / static_cast<float>(frames.size()));
+          writer.push(stage.picture(frames[i]));
+        }
+        control.check();
+        writer.finish();
+      },
+      [&studio = c.studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+}
+
+}  // namespace
 
 void add_window_commands(Commands& commands, ui::Workspace& workspace) {
   commands.add(
@@ -16,6 +162,9 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
       });
   commands.add({"help.keys", "All keys"},
                [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
+  commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]"},
+               save_picture);
+  commands.add({"video.save", "Save video", "PATH.mp4 or FOLDER [WIDTH HEIGHT] [view|all]"}, save_video);
 }
 
 }  // namespace understudy::app

@@ -1,4 +1,4 @@
-// The commands of the window alone: dialogs.
+// The commands of the window alone: dialogs, and the jobs that draw pictures and videos off screen.
 #pragma once
 
 #include "app/session/studio.hpp"
@@ -6,7 +6,7 @@
 
 namespace understudy::app {
 
-/// Adds help.keys and dialog.open. The workspace must outlive the commands.
+/// The workspace must outlive the commands.
 void add_window_commands(Commands& commands, ui::Workspace& workspace);
 
 }  // namespace understudy::app

@@ -14,7 +14,6 @@
 #include "app/run/case_folder.hpp"
 #include "app/session/commands.hpp"
 #include "app/session/document_file.hpp"
-#include "app/session/document_text.hpp"
 #include "app/session/settings.hpp"
 #include "app/studio/event_text.hpp"
 #include "retarget/base/error.hpp"

@@ -12,7 +12,6 @@
 #include <limits>
 #include <new>
 
-#include "app/session/document_text.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/rng.hpp"
 #include "tests/app/program.hpp"

@@ -24,14 +24,6 @@ std::optional<Key> key_of(const std::string& name) {
   return render::key_of_name(name);
 }
 
-bool set_modifier(render::Modifiers& modifiers, const std::string& name) {
-  if (name == "ctrl" || name == "control") return modifiers.control = true;
-  if (name == "shift") return modifiers.shift = true;
-  if (name == "alt") return modifiers.alt = true;
-  if (name == "super") return modifiers.super = true;
-  return false;
-}
-
 InputEvent key_event(Key key, bool pressed, render::Modifiers modifiers) {
   InputEvent event;
   event.kind = InputEvent::Kind::Key;
@@ -41,13 +33,20 @@ InputEvent key_event(Key key, bool pressed, render::Modifiers modifiers) {
 
 }  // namespace
 
+bool set_modifier(render::Modifiers& modifiers, const std::string& name) {
+  for (const Modifier& modifier : kModifiers)
+    if (name == modifier.name) return modifiers.*modifier.held = true;
+  return false;
+}
+
 std::optional<KeyChord> chord_of(const std::string& text) {
   KeyChord chord;
   size_t begin = 0;
   while (true) {
     const size_t plus = text.find('+', begin);
     if (plus == std::string::npos || plus + 1 >= text.size()) break;
-    if (!set_modifier(chord.modifiers, lower_case(text.substr(begin, plus - begin)))) return std::nullopt;
+    const std::string modifier = lower_case(text.substr(begin, plus - begin));
+    if (!set_modifier(chord.modifiers, modifier == "control" ? "ctrl" : modifier)) return std::nullopt;
     begin = plus + 1;
   }
   const std::string name = text.substr(begin);
@@ -65,16 +64,12 @@ std::optional<KeyChord> chord_of(const std::string& text) {
 
 std::vector<InputEvent> key_events(const KeyChord& chord) {
   std::vector<InputEvent> events;
-  const std::pair<bool, Key> held[] = {{chord.modifiers.control, Key::LeftControl},
-                                       {chord.modifiers.shift, Key::LeftShift},
-                                       {chord.modifiers.alt, Key::LeftAlt},
-                                       {chord.modifiers.super, Key::LeftSuper}};
-  for (const auto& [down, key] : held)
-    if (down) events.push_back(key_event(key, true, chord.modifiers));
+  for (const Modifier& modifier : kModifiers)
+    if (chord.modifiers.*modifier.held) events.push_back(key_event(modifier.key, true, chord.modifiers));
   events.push_back(key_event(chord.key, true, chord.modifiers));
   events.push_back(key_event(chord.key, false, chord.modifiers));
-  for (const auto& [down, key] : held)
-    if (down) events.push_back(key_event(key, false, {}));
+  for (const Modifier& modifier : kModifiers)
+    if (chord.modifiers.*modifier.held) events.push_back(key_event(modifier.key, false, {}));
   return events;
 }
 

@@ -17,6 +17,19 @@ struct KeyChord {
 /// "Ctrl+Shift+S", "F1", "Space", "Left", "[", "?"; none when it names no key.
 std::optional<KeyChord> chord_of(const std::string& text);
 
+/// The modifiers as scripts write them, and their keys.
+struct Modifier {
+  const char* name;
+  bool render::Modifiers::*held;
+  render::Key key;
+};
+constexpr Modifier kModifiers[] = {{"ctrl", &render::Modifiers::control, render::Key::LeftControl},
+                                   {"shift", &render::Modifiers::shift, render::Key::LeftShift},
+                                   {"alt", &render::Modifiers::alt, render::Key::LeftAlt},
+                                   {"super", &render::Modifiers::super, render::Key::LeftSuper}};
+/// False where it is the name of none.
+bool set_modifier(render::Modifiers& modifiers, const std::string& name);
+
 /// Presses and releases, modifier keys around them.
 std::vector<render::InputEvent> key_events(const KeyChord& chord);
 
