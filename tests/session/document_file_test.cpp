@@ -421,7 +421,7 @@ TEST(DocumentFile, ALargePaintedDocumentIsSmallAndCostsNoMoreAVertex) {
   };
   const uint64_t small = bytes_allocated(5000), large = bytes_allocated(50000);
   EXPECT_LT(large, 15 * small);
-  EXPECT_LT(large, uint64_t{50000} * 4096);
+  EXPECT_LT(large, uint64_t{50000} * 8192);
 }
 
 TEST(MissingFiles, AreNamedOnce) {
