@@ -1,16 +1,14 @@
 // Points sorted into cubic cells, to find those near a place.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "retarget/math/types.hpp"
 
 namespace understudy {
 
-/// Points by cell of a cubic grid, in a hash table. Points must be finite. Copies nothing but indices; keeps
-/// a reference to the points.
+/// Points by cell of a cubic grid. Points must be finite. Keeps a reference to them.
 class PointGrid {
  public:
   using Cell = Eigen::Vector3i;
@@ -19,13 +17,11 @@ class PointGrid {
   Cell cell_of(const Vec3& p) const {
     return (p * inverse_).array().floor().max(-1e6f).min(1e6f).cast<int>();
   }
-  /// Number of the cell among those with points, -1 where there are none.
-  int find(const Cell& cell) const;
-  int cells() const { return cell_.size(); }
-  const Cell& cell(int number) const { return cell_[number]; }
-  /// The points in a cell, ascending.
-  const int* begin(int number) const { return order_.data() + start_[number]; }
-  const int* end(int number) const { return order_.data() + start_[number + 1]; }
+  struct Hash {
+    size_t operator()(const Cell& cell) const;
+  };
+  /// The cells with points, and these, ascending.
+  const std::unordered_map<Cell, std::vector<int>, Hash>& cells() const { return cells_; }
 
   /// Index of the nearest point, of which there must be one; of equals the first. Quickest where it lies
   /// within `reach`.
@@ -36,27 +32,21 @@ class PointGrid {
     const Cell low = cell_of(centre - Vec3::Constant(radius)),
                high = cell_of(centre + Vec3::Constant(radius));
     // A ball of more cells than there are: all points, far quicker than a look into each.
-    if (((high - low).cast<double>().array() + 1).prod() > cells()) {
-      for (const int i : order_) visit(i);
+    if (((high - low).cast<double>().array() + 1).prod() > static_cast<double>(cells_.size())) {
+      for (int i = 0; i < points_.rows(); ++i) visit(i);
       return;
     }
     for (int x = low.x(); x <= high.x(); ++x)
       for (int y = low.y(); y <= high.y(); ++y)
-        for (int z = low.z(); z <= high.z(); ++z) {
-          const int number = find(Cell(x, y, z));
-          if (number < 0) continue;
-          for (const int* i = begin(number); i != end(number); ++i) visit(*i);
-        }
+        for (int z = low.z(); z <= high.z(); ++z)
+          if (const auto cell = cells_.find(Cell(x, y, z)); cell != cells_.end())
+            for (const int i : cell->second) visit(i);
   }
 
  private:
-  size_t slot(const Cell& cell) const;
-
   const Points& points_;
   float inverse_;
-  std::vector<int> table_;  // open addressing: number of a cell, -1 empty
-  std::vector<Cell> cell_;
-  std::vector<int> start_, order_;
+  std::unordered_map<Cell, std::vector<int>, Hash> cells_;
 };
 
 }  // namespace understudy

@@ -80,10 +80,10 @@ void cut_floor(const FloorCut& cut, const Points& all, Kept& kept) {
   }
 }
 
-bool within(const Points& points, const PointGrid& grid, int a, int b, float gap) {
-  for (const int* i = grid.begin(a); i != grid.end(a); ++i)
-    for (const int* k = grid.begin(b); k != grid.end(b); ++k)
-      if ((points.row(*i) - points.row(*k)).squaredNorm() <= gap * gap) return true;
+bool any_within(const Points& points, const std::vector<int>& a, const std::vector<int>& b, float gap) {
+  for (const int i : a)
+    for (const int k : b)
+      if ((points.row(i) - points.row(k)).squaredNorm() <= gap * gap) return true;
   return false;
 }
 
@@ -108,13 +108,13 @@ std::vector<PointGrid::Cell> near_offsets() {
 /// two cells are looked at point by point only until one pair is near enough.
 void join_near(const Points& points, float gap, UnionFind& sets) {
   const PointGrid grid(points, gap / std::sqrt(3.0f) * 0.9999f);
-  for (int c = 0; c < grid.cells(); ++c)
-    for (const int* i = grid.begin(c); i != grid.end(c); ++i) sets.join(*grid.begin(c), *i);
+  for (const auto& [cell, inside] : grid.cells())
+    for (const int i : inside) sets.join(inside[0], i);
   for (const auto& offset : near_offsets())
-    for (int c = 0; c < grid.cells(); ++c) {
-      const int other = grid.find(grid.cell(c) + offset);
-      if (other < 0 || sets.root(*grid.begin(c)) == sets.root(*grid.begin(other))) continue;
-      if (within(points, grid, c, other, gap)) sets.join(*grid.begin(c), *grid.begin(other));
+    for (const auto& [cell, inside] : grid.cells()) {
+      const auto other = grid.cells().find(cell + offset);
+      if (other == grid.cells().end() || sets.root(inside[0]) == sets.root(other->second[0])) continue;
+      if (any_within(points, inside, other->second, gap)) sets.join(inside[0], other->second[0]);
     }
 }
 
@@ -165,7 +165,7 @@ Points within(const Points& points, const FloorPlane& plane, float tolerance) {
 float covered_area(const Points& points, const FloorPlane& plane, float tolerance) {
   constexpr float kCell = 0.05f;
   const Points flat = FromAbove(plane.normal).flat(within(points, plane, tolerance));
-  return static_cast<float>(PointGrid(flat, kCell).cells()) * kCell * kCell;
+  return static_cast<float>(PointGrid(flat, kCell).cells().size()) * kCell * kCell;
 }
 
 /// Least squares plane through the points within `tolerance` of a plane; the normal keeps pointing up.

@@ -28,7 +28,11 @@ int only_child(int joint) {
   return child;
 }
 
+/// How much of an edit there is at a frame. Throws Error for one that cannot be.
 float weight(const DragEdit& edit, int frame) {
+  US_CHECK(edit.joint >= 0 && edit.joint < kJointCount, "a dragged joint has number ", edit.joint,
+           ", there are ", kJointCount);
+  US_CHECK(edit.offset.allFinite(), "a dragged joint has an offset that is not finite");
   return falloff_weight(frame, edit.frame, edit.falloff);
 }
 float weight(const SwapEdit& edit, int frame) {
@@ -74,13 +78,6 @@ void edit_frame(const SwapEdit& edit, float, Extraction& seen) {
   seen.global.reset();  // the trunk's frame was seen the wrong way round too
 }
 
-void check(const DragEdit& edit) {
-  US_CHECK(edit.joint >= 0 && edit.joint < kJointCount, "a dragged joint has number ", edit.joint,
-           ", there are ", kJointCount);
-  US_CHECK(edit.offset.allFinite(), "a dragged joint has an offset that is not finite");
-}
-void check(const SwapEdit&) {}
-
 }  // namespace
 
 float falloff_weight(int frame, int edited, int falloff) {
@@ -94,7 +91,6 @@ Extraction apply(const std::vector<SkeletonEdit>& edits, Extraction seen, int fr
   for (const SkeletonEdit& any : edits)
     std::visit(
         [&](const auto& edit) {
-          check(edit);
           const float amount = weight(edit, frame);
           if (amount > 0) edit_frame(edit, amount, seen);
         },
