@@ -4,8 +4,8 @@
 #include <new>
 
 #include "app/cli/commands.hpp"
-#include "retarget/character/assimp_import.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/character/read_character.hpp"
 
 namespace understudy::app {
 

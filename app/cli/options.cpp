@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "retarget/character/bone_choices.hpp"
+#include "retarget/character/bone_map.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {

@@ -7,7 +7,7 @@
 
 namespace understudy {
 
-/// 0 .. count - 1, each a set of its own at first. Joins and look-ups take nearly constant time.
+/// 0 .. count - 1, each a set of its own at first. Many joins and look-ups take O(log count) each on average.
 class UnionFind {
  public:
   explicit UnionFind(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }

@@ -1,5 +1,3 @@
-#include "retarget/character/assimp_import.hpp"
-
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -13,6 +11,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/character/picture.hpp"
+#include "retarget/character/read_character.hpp"
 #include "retarget/formats/bytes.hpp"
 
 namespace understudy {
@@ -159,13 +158,7 @@ std::string AssimpConverter::texture_bytes(const std::string& name) const {
 int AssimpConverter::add_texture(const std::string& name) {
   const auto [entry, is_new] = texture_by_name_.try_emplace(name, out_.textures.size());
   if (!is_new) return entry->second;
-  CharacterImage image;
-  image.name = std::filesystem::path(name).stem().string();
-  image.bytes = texture_bytes(name);
-  image.mime = picture_type(image.bytes);
-  if (image.mime.empty()) return texture_by_name_[name] = -1;
-  out_.images.push_back(std::move(image));
-  out_.textures.push_back(json({{"source", out_.images.size() - 1}}).dump());
+  if (!add_picture(name, texture_bytes(name), out_)) entry->second = -1;
   return entry->second;
 }
 
@@ -176,17 +169,13 @@ void AssimpConverter::add_material(const aiMaterial& material) {
   material.Get(AI_MATKEY_NAME, name);
   material.Get(AI_MATKEY_COLOR_DIFFUSE, color);
   material.Get(AI_MATKEY_OPACITY, alpha);
-  json pbr = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
-  const auto unit = [](float x) { return std::clamp(x, 0.0f, 1.0f); };
   int texture = -1;
   if (material.GetTexture(aiTextureType_DIFFUSE, 0, &picture) == AI_SUCCESS ||
       material.GetTexture(aiTextureType_BASE_COLOR, 0, &picture) == AI_SUCCESS)
     texture = add_texture(picture.C_Str());
-  if (texture >= 0)
-    pbr["baseColorTexture"] = {{"index", texture}};
-  else
-    pbr["baseColorFactor"] = {unit(color.r), unit(color.g), unit(color.b), unit(alpha)};
-  const json object = {{"name", name.C_Str()}, {"doubleSided", true}, {"pbrMetallicRoughness", pbr}};
+  const auto unit = [](float x) { return std::clamp(x, 0.0f, 1.0f); };
+  const Vec3 rgb(unit(color.r), unit(color.g), unit(color.b));
+  const json object = plain_material(name.C_Str(), rgb, unit(alpha), texture);
   out_.materials.push_back(object.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 

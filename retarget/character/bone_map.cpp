@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
-#include <set>
+#include <nlohmann/json.hpp>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
@@ -90,7 +89,6 @@ struct Rig {
     std::reverse(out.begin(), out.end());
     return out;
   }
-  int depth(int n) const { return n < 0 ? 0 : 1 + depth(parent(n)); }
 };
 
 Rig make_rig(const Character& character, const std::vector<Mat4>& bind) {
@@ -149,21 +147,17 @@ void map_limbs_by_name(const NamedBones& bones, BoneMap& map) {
   put(map, Neck, find(bones, 0, {"neck"}), 0.8f);
 }
 
-int node_of(const BoneMap& map, int joint) {
-  return map.node[joint];
-}
-
 /// Pelvis, spine and neck from where limbs and head hang, whatever they are called.
 void map_trunk(const Rig& rig, float confidence, BoneMap& map) {
-  put(map, Pelvis, rig.common(node_of(map, LeftHip), node_of(map, RightHip)), confidence);
+  put(map, Pelvis, rig.common(map.node[LeftHip], map.node[RightHip]), confidence);
   const auto arm_start = [&](int right) {
-    const int collar = node_of(map, LeftCollar + right);
-    return collar >= 0 ? collar : node_of(map, LeftShoulder + right);
+    const int collar = map.node[LeftCollar + right];
+    return collar >= 0 ? collar : map.node[LeftShoulder + right];
   };
-  const int pelvis = node_of(map, Pelvis), chest = rig.common(arm_start(0), arm_start(1));
+  const int pelvis = map.node[Pelvis], chest = rig.common(arm_start(0), arm_start(1));
   if (pelvis < 0 || chest < 0 || !rig.is_above(pelvis, chest)) return;
-  std::vector<int> spine = rig.path(pelvis, chest);      // the chest last
-  if (chest == node_of(map, Neck)) map.node[Neck] = -1;  // arms hang on it: it is a chest, whatever its name
+  std::vector<int> spine = rig.path(pelvis, chest);  // the chest last
+  if (chest == map.node[Neck]) map.node[Neck] = -1;  // arms hang on it: it is a chest, whatever its name
   if (!spine.empty()) {
     put(map, Spine3, spine.back(), confidence);
     spine.pop_back();
@@ -171,18 +165,18 @@ void map_trunk(const Rig& rig, float confidence, BoneMap& map) {
   if (!spine.empty()) put(map, Spine1, spine.front(), confidence);
   if (spine.size() > 1) put(map, Spine2, spine[spine.size() / 2], confidence);
   if (map.has(Head) && !map.has(Neck)) {
-    const auto neck = rig.path(chest, node_of(map, Head));
+    const auto neck = rig.path(chest, map.node[Head]);
     if (neck.size() > 1) put(map, Neck, neck.front(), confidence);
   }
   if (map.has(Head)) return;
   // Without a head by name: the end of the chain that goes up from the chest (Rigify's spine.006).
-  int top = map.has(Neck) ? node_of(map, Neck) : chest;
+  int top = map.has(Neck) ? map.node[Neck] : chest;
   for (int next = top; next >= 0;) {
     top = next;
     next = -1;
     for (const int child : rig.below[top]) {
       const bool is_arm =
-          rig.is_above(child, node_of(map, LeftShoulder)) || rig.is_above(child, node_of(map, RightShoulder));
+          rig.is_above(child, map.node[LeftShoulder]) || rig.is_above(child, map.node[RightShoulder]);
       if (rig.is_bone[child] && !is_arm && (next < 0 || rig.place[child].y() > rig.place[next].y()))
         next = child;
     }
@@ -199,7 +193,7 @@ void trust_hierarchy(const Rig& rig, BoneMap& map) {
   for (int j = 0; j < kJointCount; ++j) {
     int p = kParents[j];
     while (p >= 0 && !map.has(p)) p = kParents[p];
-    if (map.has(j) && (p < 0 || rig.is_above(node_of(map, p), node_of(map, j))))
+    if (map.has(j) && (p < 0 || rig.is_above(map.node[p], map.node[j])))
       map.confidence[j] = std::min(1.0f, map.confidence[j] * 1.25f);
   }
 }
@@ -330,10 +324,9 @@ int BoneMap::count() const {
 }
 
 bool BoneMap::usable() const {
-  for (const int j :
-       {Pelvis, LeftHip, RightHip, LeftKnee, RightKnee, LeftShoulder, RightShoulder, LeftElbow, RightElbow})
-    if (!has(j)) return false;
-  return true;
+  const auto needed = {Pelvis,       LeftHip,       RightHip,  LeftKnee,  RightKnee,
+                       LeftShoulder, RightShoulder, LeftElbow, RightElbow};
+  return std::all_of(needed.begin(), needed.end(), [&](int j) { return has(j); });
 }
 
 BoneName parse_bone_name(const std::string& name) {
@@ -369,8 +362,7 @@ BoneName parse_bone_name(const std::string& name) {
       continue;
     joined += word;
   }
-  const auto known = same_words().find(joined);
-  out.what = known == same_words().end() ? "" : known->second;
+  if (const auto known = same_words().find(joined); known != same_words().end()) out.what = known->second;
   return out;
 }
 
@@ -393,16 +385,29 @@ BoneMap map_bones(const Character& character, const std::vector<Mat4>& bind, con
   return map;
 }
 
+BoneChoices parse_bone_choices(std::string_view text, const std::string& path) {
+  const auto json = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+  US_CHECK(json.is_object(), path, R"(: is no map of bones; it looks like {"left_wrist": "Hand.L", ...})");
+  BoneChoices choices;
+  for (const auto& [joint, bone] : json.items()) {
+    US_CHECK(bone.is_string(), path, ": the bone of '", excerpt(joint), "' is no text");
+    choices[joint] = bone.get<std::string>();
+  }
+  return choices;
+}
+
+BoneChoices read_bone_choices(const std::string& path) {
+  return parse_bone_choices(read_file(path), path);
+}
+
 std::string to_table(const BoneMap& map, const Character& character) {
   std::string out = "joint            bone                             sure   (" + map.how + ")\n";
   for (size_t j = 0; j < kJointCount; ++j) {
     const int n = map.node[j];
     std::string name = n < 0 ? "-" : character.nodes[n].name;
     if (n >= 0 && name.empty()) name = "node " + std::to_string(n);
-    char line[160];
-    std::snprintf(line, sizeof line, "%-16s %-32.60s %3.0f %%\n", kJointNames[j], name.c_str(),
-                  100.0 * static_cast<double>(map.confidence[j]));
-    out += line;
+    out += printed("%-16s %-32.60s %3.0f %%\n", kJointNames[j], name.c_str(),
+                   100.0 * static_cast<double>(map.confidence[j]));
   }
   return out;
 }

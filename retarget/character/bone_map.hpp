@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "retarget/character/character.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -37,6 +38,9 @@ BoneName parse_bone_name(const std::string& name);
 /// Joints to bones as the user wants them: name of the joint ("left_wrist") to the node's; an empty name
 /// takes the joint away.
 using BoneChoices = std::map<std::string, std::string>;
+/// A file of them, a JSON object: {"left_wrist": "Hand.L"}. Throws Error naming `path`.
+BoneChoices parse_bone_choices(std::string_view text, const std::string& path);
+BoneChoices read_bone_choices(const std::string& path);
 
 /// Maps by names where they say enough, else by hierarchy and position. bind: the nodes' transforms in the
 /// bind pose, y up (any heading). The user's choices come last. Throws Error when a choice names a joint or a

@@ -8,6 +8,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/geometric_binding.hpp"
 #include "retarget/math/smooth_step.hpp"
 #include "retarget/skeleton/skinning.hpp"
@@ -60,17 +61,16 @@ std::string note_on(const Eigen::VectorXf& doubt, const RowMatrix& weights) {
   for (const Region& region : regions()) {
     Eigen::VectorXf share = Eigen::VectorXf::Zero(doubt.size());
     for (const int j : region.joints) share += weights.col(j);
-    if (share.sum() > 0 && share.dot(doubt) / share.sum() > 0.1f)
-      where += (where.empty() ? ": " : ", ") + std::string(region.name);
+    if (share.sum() > 0 && share.dot(doubt) / share.sum() > 0.1f) append_item(where, region.name);
   }
   return std::to_string(std::max(1l, std::lround(100 * whole))) +
-         " % of the surface is bound by its shape alone" + where;
+         " % of the surface is bound by its shape alone" + (where.empty() ? "" : ": " + where);
 }
 
 }  // namespace
 
 SafeBinding safe_binding(const Mesh& mesh, const Joints& joints, const RowMatrix& weights) {
-  const BoneDistances distances = bone_distances(mesh, joints);
+  const BoneDistances distances = bone_distances(VoxelBody(mesh), joints, mesh.vertices);
   const ShapeHints hints = shape_hints(mesh, joints);
   SafeBinding out;
   RowMatrix doubt = strayed_share(distances, weights);
@@ -89,16 +89,12 @@ SafeBinding safe_binding(const Mesh& mesh, const Joints& joints, const RowMatrix
   out.note = note_on(out.doubt, out.weights);
   out.hard = out.doubt;
   const std::vector<bool> rigid = keep_parts_rigid(mesh, distances.leg, out.weights);
-  const auto kept = std::count(rigid.begin(), rigid.end(), true);
+  const auto kept = static_cast<double>(std::count(rigid.begin(), rigid.end(), true));
   for (size_t v = 0; v < rigid.size(); ++v)
     if (rigid[v]) out.hard[v] = 1;
-  if (kept > 0)
-    out.note += (out.note.empty() ? "" : "; ") +
-                std::to_string(std::max(
-                    1l, std::lround(100.0 * static_cast<double>(kept) / static_cast<double>(rigid.size())))) +
-                " % of it are rigid parts";
-  if (hints.skirt)
-    out.note += (out.note.empty() ? "" : "; ") + std::string("its skirt follows pelvis and thighs");
+  const long percent = std::max(1l, std::lround(100.0 * kept / static_cast<double>(rigid.size())));
+  if (kept > 0) append_item(out.note, std::to_string(percent) + " % of it are rigid parts", "; ");
+  if (hints.skirt) append_item(out.note, "its skirt follows pelvis and thighs", "; ");
   return out;
 }
 

@@ -21,30 +21,23 @@ bool invertible(const Mat4& M) {
   return M.allFinite() && scale > 1e-12f && std::abs((linear / scale).determinant()) > 1e-6f;
 }
 
-float uniform_scale(const Mat4& M) {
-  const Mat3 linear = M.topLeftCorner<3, 3>();
-  return std::cbrt(std::abs(linear.determinant()));
-}
-
 // From the space the bones were bound in to the world. The file does not say it: the node of the mesh does
 // where its size agrees with the skeleton's, as exporters keep the mesh where it was bound; else the root
 // joint.
 Mat4 bind_to_world(const Mat4& root_world, const Mat4& inverse_bind, const Mat4* mesh_world) {
   const Mat4 posed = root_world * inverse_bind;
-  const float scale = uniform_scale(posed);
+  const Mat3 linear = posed.topLeftCorner<3, 3>();
+  const float scale = uniform_scale(linear);
   if (mesh_world != nullptr && invertible(*mesh_world)) {
-    const Mat3 a = mesh_world->topLeftCorner<3, 3>() / uniform_scale(*mesh_world);
-    const Mat3 b = posed.topLeftCorner<3, 3>() / scale;
-    if (std::abs(uniform_scale(*mesh_world) / scale - 1) < 0.02f && geodesic_angle(a, b) < 1.75f)
+    const Mat3 of_mesh = mesh_world->topLeftCorner<3, 3>();
+    const float mesh_scale = uniform_scale(of_mesh);
+    if (std::abs(mesh_scale / scale - 1) < 0.02f &&
+        geodesic_angle(of_mesh / mesh_scale, linear / scale) < 1.75f)
       return *mesh_world;
   }
-  const Mat3 upright = nearest_quarter_turn(posed.topLeftCorner<3, 3>() / scale) * scale;
+  const Mat3 upright = nearest_quarter_turn(linear / scale) * scale;
   const Vec3 joint = inverse_bind.inverse().topRightCorner<3, 1>();  // in the bind pose
-  const Vec3 there = root_world.topRightCorner<3, 1>();
-  Mat4 out = Mat4::Identity();
-  out.topLeftCorner<3, 3>() = upright;
-  out.topRightCorner<3, 1>() = there - upright * joint;
-  return out;
+  return affine(upright, root_world.topRightCorner<3, 1>() - upright * joint);
 }
 
 // Where the bones of one skin were bound; `placed` knows those of the skins before it.
@@ -115,12 +108,11 @@ Points part_in_world(const Character& character, const CharacterPart& part, cons
   if (shape_weights != nullptr)
     for (size_t s = 0; s < std::min(part.shapes.size(), shape_weights->size()); ++s)
       if ((*shape_weights)[s] != 0) rest += (*shape_weights)[s] * part.shapes[s];
-  Points out(rest.rows(), 3);
   if (part.skin < 0) {
     const Mat4& M = world[part.node];
-    out = (rest * M.topLeftCorner<3, 3>().transpose()).rowwise() + M.topRightCorner<3, 1>().transpose();
-    return out;
+    return (rest * M.topLeftCorner<3, 3>().transpose()).rowwise() + M.topRightCorner<3, 1>().transpose();
   }
+  Points out(rest.rows(), 3);
   const CharacterSkin& skin = character.skins[part.skin];
   std::vector<Mat4> bones;
   for (size_t j = 0; j < skin.joints.size(); ++j)
@@ -165,11 +157,19 @@ void check_part(const Character& character, const CharacterPart& part, const std
 
 }  // namespace
 
-Mat4 Transform::matrix() const {
+Mat4 affine(const Mat3& linear, const Vec3& translation) {
   Mat4 out = Mat4::Identity();
-  out.topLeftCorner<3, 3>() = rotation.toRotationMatrix() * scale.asDiagonal();
+  out.topLeftCorner<3, 3>() = linear;
   out.topRightCorner<3, 1>() = translation;
   return out;
+}
+
+float uniform_scale(const Mat3& linear) {
+  return std::cbrt(std::abs(linear.determinant()));
+}
+
+Mat4 Transform::matrix() const {
+  return affine(rotation.toRotationMatrix() * scale.asDiagonal(), translation);
 }
 
 Transform Transform::from(const Mat4& matrix) {
@@ -293,9 +293,7 @@ BindPose bind_pose(const Character& character) {
 Points MergedSurface::in_file_order(const Points& rows) const {
   US_CHECK(rows.rows() == mesh.vertices.rows(), "the surface has ", mesh.vertices.rows(), " vertices, not ",
            rows.rows());
-  Points out(in_file.size(), 3);
-  for (size_t i = 0; i < in_file.size(); ++i) out.row(i) = rows.row(in_file[i]);
-  return out;
+  return rows(in_file, Eigen::all);
 }
 
 Points MergedSurface::merged(const Points& of_parts) const {
@@ -342,8 +340,7 @@ MergedSurface merged_surface(const Character& character, const Points& positions
     out.in_file.assign(static_cast<size_t>(*std::max_element(numbers.begin(), numbers.end())) + 1, 0);
     for (size_t i = 0; i < numbers.size(); ++i) out.in_file[numbers[i]] = out.map[i];
   }
-  out.mesh.vertices.resize(first.size(), 3);
-  for (size_t i = 0; i < first.size(); ++i) out.mesh.vertices.row(i) = positions.row(first[i]);
+  out.mesh.vertices = positions(first, Eigen::all);
   out.mesh.faces = Eigen::Map<const Faces>(corners.data(), corners.size() / 3, 3);
   return out;
 }

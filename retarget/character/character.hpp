@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,11 @@
 namespace understudy {
 
 using Mat4 = Eigen::Matrix4f;
+
+/// x -> linear x + translation.
+Mat4 affine(const Mat3& linear, const Vec3& translation);
+/// The factor by which a matrix scales, of several the mean.
+float uniform_scale(const Mat3& linear);
 
 /// A picture's bytes as they are in the file.
 struct CharacterImage {
@@ -57,6 +63,8 @@ struct CharacterSkin {
 };
 
 enum class TrackPath { Translation, Rotation, Scale, Shapes };
+/// What glTF calls them.
+constexpr std::array<const char*, 4> kTrackPaths = {"translation", "rotation", "scale", "weights"};
 enum class TrackInterpolation { Linear, Step, Cubic };
 
 /// One value of one node over time.

@@ -5,31 +5,15 @@
 #include <numeric>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/part_file.hpp"
-#include "retarget/character/corrective_shapes.hpp"
 #include "retarget/character/gltf_character.hpp"
-#include "retarget/character/key_reduction.hpp"
-#include "retarget/character/painted_skin.hpp"
 
 namespace understudy {
 namespace {
 
 constexpr float kStill = 1e-5f;  // metres: a translation that moves less is none
 constexpr size_t kCompared = 60;
-
-Mat4 matrix_of(const Similarity& s) {
-  Mat4 M = Mat4::Identity();
-  M.topLeftCorner<3, 3>() = s.scale * s.R;
-  M.topRightCorner<3, 1>() = s.t;
-  return M;
-}
-
-Mat4 rigid(const Mat3& R, const Vec3& t) {
-  Mat4 M = Mat4::Identity();
-  M.topLeftCorner<3, 3>() = R;
-  M.topRightCorner<3, 1>() = t;
-  return M;
-}
 
 /// How a vertex of the surface is turned from the bind pose to the T-pose.
 Mat3 turned_to_t_pose(const PreparedCharacter& c, Eigen::Index vertex) {
@@ -68,18 +52,23 @@ std::string fresh_name(const std::string& name, const std::vector<CharacterAnima
   return out;
 }
 
-/// Frames of one clip as local transforms of nodes.
+/// A node that poses move.
+struct MovedNode {
+  int node;
+  float metres = 1;  // of a unit of its translation
+};
+
+/// Frames of one clip as local transforms of the nodes that move.
 struct Sampled {
-  std::vector<int> nodes;                     // that move
   std::vector<std::vector<Transform>> local;  // [frames][nodes]
-  std::vector<float> metres;                  // of a unit of each node's translation
   std::vector<std::vector<float>> shapes;     // [frames][shapes]
   std::vector<float> times;
 };
 
-CharacterTrack track_of(const Sampled& sampled, size_t at, TrackPath path) {
+/// Of the node that is number `at` of those that move.
+CharacterTrack track_of(const Sampled& sampled, size_t at, int node, TrackPath path) {
   CharacterTrack track;
-  track.node = sampled.nodes[at];
+  track.node = node;
   track.path = path;
   track.times = sampled.times;
   Eigen::Vector4f before = Eigen::Vector4f::Zero();
@@ -97,22 +86,18 @@ CharacterTrack track_of(const Sampled& sampled, size_t at, TrackPath path) {
   return track;
 }
 
-/// How far a translation moves from where the node stands, metres.
-float travel(const Sampled& sampled, size_t at, const Transform& still) {
-  float furthest = 0;
-  for (const auto& frame : sampled.local)
-    furthest = std::max(furthest, (frame[at].translation - still.translation).norm());
-  return furthest * sampled.metres[at];
-}
-
-CharacterAnimation animation_of(const std::string& name, const Sampled& sampled, const Character& out) {
+CharacterAnimation animation_of(const std::string& name, const Sampled& sampled,
+                                const std::vector<MovedNode>& moved, const Character& out) {
   CharacterAnimation animation;
   animation.name = name;
-  for (size_t at = 0; at < sampled.nodes.size(); ++at) {
-    const Transform& still = out.nodes[sampled.nodes[at]].local;
-    if (travel(sampled, at, still) > kStill)
-      animation.tracks.push_back(track_of(sampled, at, TrackPath::Translation));
-    animation.tracks.push_back(track_of(sampled, at, TrackPath::Rotation));
+  for (size_t at = 0; at < moved.size(); ++at) {
+    const auto& [node, metres] = moved[at];
+    float furthest = 0;  // from where the node is without animation, in its units
+    for (const auto& frame : sampled.local)
+      furthest = std::max(furthest, (frame[at].translation - out.nodes[node].local.translation).norm());
+    if (furthest * metres > kStill)
+      animation.tracks.push_back(track_of(sampled, at, node, TrackPath::Translation));
+    animation.tracks.push_back(track_of(sampled, at, node, TrackPath::Rotation));
   }
   if (sampled.shapes.empty() || sampled.shapes[0].empty()) return animation;
   for (size_t n = 0; n < out.nodes.size(); ++n) {
@@ -122,9 +107,9 @@ CharacterAnimation animation_of(const std::string& name, const Sampled& sampled,
     track.node = n;
     track.path = TrackPath::Shapes;
     track.times = sampled.times;
+    const auto still = out.nodes[n].shape_weights.begin();
     for (const auto& weights : sampled.shapes) {
-      track.values.insert(track.values.end(), out.nodes[n].shape_weights.begin(),
-                          out.nodes[n].shape_weights.end() - static_cast<long>(added));
+      track.values.insert(track.values.end(), still, still + static_cast<long>(own - added));
       track.values.insert(track.values.end(), weights.begin(), weights.end());
     }
     animation.tracks.push_back(std::move(track));
@@ -132,14 +117,17 @@ CharacterAnimation animation_of(const std::string& name, const Sampled& sampled,
   return animation;
 }
 
-/// What both skeletons have in common: the character without animation, then clip by clip.
+/// What both skeletons have in common: the character without animation, then pose by pose.
 class Animator {
  public:
   Animator(const PreparedCharacter& source, const Deformer& screen, const CharacterExportOptions& options)
-      : source_(source), screen_(screen), influences_(options.influences), moved_(options.joints) {}
+      : source_(source), screen_(screen), influences_(options.influences), joints_(options.joints) {}
   virtual ~Animator() = default;
+  /// Comes first.
   virtual Character still() = 0;
-  virtual Sampled sample(const CharacterClip& clip) const = 0;
+  /// Local transforms of the nodes that move.
+  virtual std::vector<Transform> frame(const Pose& pose) const = 0;
+  const std::vector<MovedNode>& moved() const { return moved_; }
   /// Offsets in T-pose axes and metres as morph deltas of one part.
   virtual Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const = 0;
 
@@ -147,14 +135,15 @@ class Animator {
   const PreparedCharacter& source_;
   const Deformer& screen_;
   int influences_;
-  std::optional<Joints> moved_;  // T-pose joints, where they are not the character's
+  std::optional<Joints> joints_;  // of the T-pose, where they are not the character's
+  std::vector<MovedNode> moved_;
 };
 
 class TheirRig final : public Animator {
  public:
   using Animator::Animator;
   Character still() override;
-  Sampled sample(const CharacterClip& clip) const override;
+  std::vector<Transform> frame(const Pose& pose) const override;
   Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const override {
     const std::vector<Mat3> maps = to_t_pose_maps(source_, part, first, source_.bind.nodes);
     Points out(part.vertices.rows(), 3);
@@ -208,7 +197,8 @@ Character TheirRig::still() {
   US_CHECK(source_.rigged, source_.character.called(), ": has no skeleton that could be driven");
   Character out = source_.character;
   apply_painted_weights(source_, screen_.weights(), influences_, out);
-  const Mat4 world = matrix_of(source_.to_world);
+  const Similarity& to_world = source_.to_world;
+  const Mat4 world = affine(to_world.scale * to_world.R, to_world.t);
   bind_.clear();
   for (const Mat4& node : source_.bind.nodes) bind_.push_back(world * node);
   driver_ = source_.driver;
@@ -220,7 +210,7 @@ Character TheirRig::still() {
     if (!local.isApprox(out.nodes[n].local.matrix(), 1e-6f)) out.nodes[n].local = Transform::from(local);
   }
   if (!world.isApprox(Mat4::Identity(), 1e-6f)) {
-    add_root(out, source_.to_world);
+    add_root(out, to_world);
     bind_.insert(bind_.begin(), world);
     driver_.insert(driver_.begin(), -1);
   } else {
@@ -231,39 +221,31 @@ Character TheirRig::still() {
   for (const auto& node : out.nodes) parent_.push_back(node.parent);
   // Later frames hang on what the file really says, not on matrices that it can only come near to.
   bind_ = out.world();
+  for (size_t n = 0; n < driver_.size(); ++n)
+    if (driver_[n] >= 0)
+      moved_.push_back(
+          {static_cast<int>(n), parent_[n] < 0 ? 1 : uniform_scale(bind_[parent_[n]].topLeftCorner<3, 3>())});
   return out;
 }
 
-Sampled TheirRig::sample(const CharacterClip& clip) const {
-  Sampled out;
-  const Joints rest = moved_.value_or(source_.pose.rest);
+std::vector<Transform> TheirRig::frame(const Pose& pose) const {
+  const Joints rest = joints_.value_or(source_.pose.rest);
   const Joints about = moved_bind_joints(source_.pose, rest);
-  for (size_t n = 0; n < driver_.size(); ++n) {
-    if (driver_[n] < 0) continue;
-    out.nodes.push_back(n);
-    const Mat3 above =
-        parent_[n] < 0 ? Mat3(Mat3::Identity()) : Mat3(bind_[parent_[n]].topLeftCorner<3, 3>());
-    out.metres.push_back(std::cbrt(std::abs(above.determinant())));
-  }
+  const PosedSkeleton posed = forward_kinematics(rest, pose);
   std::vector<Mat4> world(bind_.size());
-  for (size_t i = 0; i < clip.poses.size(); ++i) {
-    const PosedSkeleton posed = forward_kinematics(rest, clip.poses[i]);
-    std::vector<Transform> frame;
-    for (size_t n = 0; n < bind_.size(); ++n) {
-      const int p = parent_[n], j = driver_[n];
-      const Mat4 above = p < 0 ? Mat4(Mat4::Identity()) : world[p];
-      const Mat4 above_bind = p < 0 ? Mat4(Mat4::Identity()) : bind_[p];
-      if (j < 0) {
-        world[n] = above * above_bind.inverse() * bind_[n];
-        continue;
-      }
-      const Mat3 R = posed.global[j] * source_.pose.to_rest[j];
-      const Vec3 t = posed.joints.row(j).transpose() - R * about.row(j).transpose();
-      world[n] = rigid(R, t) * bind_[n];
-      frame.push_back(Transform::from(above.inverse() * world[n]));
+  std::vector<Transform> out;
+  for (size_t n = 0; n < bind_.size(); ++n) {
+    const int p = parent_[n], j = driver_[n];
+    const Mat4 above = p < 0 ? Mat4(Mat4::Identity()) : world[p];
+    const Mat4 above_bind = p < 0 ? Mat4(Mat4::Identity()) : bind_[p];
+    if (j < 0) {
+      world[n] = above * above_bind.inverse() * bind_[n];
+      continue;
     }
-    out.local.push_back(std::move(frame));
-    out.times.push_back(static_cast<float>(static_cast<double>(i) / clip.fps));
+    const Mat3 R = posed.global[j] * source_.pose.to_rest[j];
+    const Vec3 t = posed.joints.row(j).transpose() - R * about.row(j).transpose();
+    world[n] = affine(R, t) * bind_[n];
+    out.push_back(Transform::from(above.inverse() * world[n]));
   }
   return out;
 }
@@ -272,11 +254,9 @@ class OurRig final : public Animator {
  public:
   using Animator::Animator;
   Character still() override;
-  Sampled sample(const CharacterClip& clip) const override;
+  std::vector<Transform> frame(const Pose& pose) const override;
   Points shape_of_part(const Points& shape, const CharacterPart& part, Eigen::Index first) const override {
-    Points out(part.vertices.rows(), 3);
-    for (Eigen::Index v = 0; v < out.rows(); ++v) out.row(v) = shape.row(source_.surface.map[first + v]);
-    return out;
+    return shape(Eigen::VectorXi::Map(&source_.surface.map[first], part.vertices.rows()), Eigen::all);
   }
 
  private:
@@ -324,17 +304,14 @@ void OurRig::add_skin(CharacterPart& part, Eigen::Index first) const {
 
 Character OurRig::still() {
   const Character& from = source_.character;
-  Character out;
-  out.name = from.name;
-  out.images = from.images;
-  out.materials = from.materials;
-  out.textures = from.textures;
-  out.samplers = from.samplers;
-  out.extensions = from.extensions;
-  out.required = from.required;
+  Character out = from;
+  out.nodes.clear();
+  out.parts.clear();
+  out.animations.clear();
+  out.file_vertices.clear();
   CharacterSkin skin;
   skin.name = kOurSkin;
-  const Joints rest = moved_.value_or(source_.target.joints);
+  const Joints rest = joints_.value_or(source_.target.joints);
   const Pose back = source_.pose.back();
   for (int j = 0; j < kJointCount; ++j) {
     const int p = kParents[j];
@@ -346,7 +323,8 @@ Character OurRig::still() {
     node.local.rotation = Eigen::Quaternionf(back.local[j]).normalized();
     out.nodes.push_back(node);
     skin.joints.push_back(j);
-    skin.inverse_bind.push_back(rigid(Mat3::Identity(), -rest.row(j).transpose()));
+    moved_.push_back({j});
+    skin.inverse_bind.push_back(affine(Mat3::Identity(), -rest.row(j).transpose()));
   }
   out.skins = {skin};
   std::map<int, int> node_of;
@@ -368,21 +346,13 @@ Character OurRig::still() {
   return out;
 }
 
-Sampled OurRig::sample(const CharacterClip& clip) const {
-  Sampled out;
-  const Joints rest = moved_.value_or(source_.target.joints);
-  for (int j = 0; j < kJointCount; ++j) out.nodes.push_back(j);
-  out.metres.assign(kJointCount, 1.0f);
-  for (size_t i = 0; i < clip.poses.size(); ++i) {
-    std::vector<Transform> frame(kJointCount);
-    for (int j = 0; j < kJointCount; ++j) {
-      const int p = kParents[j];
-      Transform& local = frame[j];
-      local.translation = p < 0 ? clip.poses[i].root : Vec3((rest.row(j) - rest.row(p)).transpose());
-      local.rotation = Eigen::Quaternionf(clip.poses[i].local[j]).normalized();
-    }
-    out.local.push_back(std::move(frame));
-    out.times.push_back(static_cast<float>(static_cast<double>(i) / clip.fps));
+std::vector<Transform> OurRig::frame(const Pose& pose) const {
+  const Joints rest = joints_.value_or(source_.target.joints);
+  std::vector<Transform> out(kJointCount);
+  for (int j = 0; j < kJointCount; ++j) {
+    const int p = kParents[j];
+    out[j].translation = p < 0 ? pose.root : Vec3((rest.row(j) - rest.row(p)).transpose());
+    out[j].rotation = Eigen::Quaternionf(pose.local[j]).normalized();
   }
   return out;
 }
@@ -447,16 +417,12 @@ void add_shapes(const CorrectiveShapes& shapes, const Animator& animator, const 
 
 /// Weights of shapes that the file had, followed by those of the new ones: none of them.
 void leave_room(size_t added, CharacterTrack& track) {
-  if (track.path != TrackPath::Shapes || added == 0) return;
+  if (track.path != TrackPath::Shapes || track.times.empty()) return;
   const size_t chunks = track.times.size() * (track.interpolation == TrackInterpolation::Cubic ? 3 : 1);
-  const size_t width = chunks > 0 ? track.values.size() / chunks : 0;
-  std::vector<float> values;
-  for (size_t i = 0; i < chunks; ++i) {
-    const auto first = track.values.begin() + static_cast<long>(i * width);
-    values.insert(values.end(), first, first + static_cast<long>(width));
-    values.insert(values.end(), added, 0.0f);
-  }
-  track.values = std::move(values);
+  const size_t width = track.values.size() / chunks;
+  RowMatrix wider = RowMatrix::Zero(chunks, width + added);
+  wider.leftCols(width) = Eigen::Map<const RowMatrix>(track.values.data(), chunks, width);
+  track.values.assign(wider.data(), wider.data() + wider.size());
 }
 
 /// The longest way from a node to a vertex that it could move, metres: the height of the character at most.
@@ -479,8 +445,7 @@ void reduce_animation(const CharacterAnimation& full, float metres, float lever_
 /// Fewer keys until the vertices say stop: errors of the bones above add up, so the first guess is tried out.
 void reduce_keys(const PreparedCharacter& source, float limit_mm, Character& out) {
   std::vector<float> metres_of;
-  for (const Mat4& M : out.world())
-    metres_of.push_back(std::cbrt(std::abs(M.topLeftCorner<3, 3>().determinant())));
+  for (const Mat4& M : out.world()) metres_of.push_back(uniform_scale(M.topLeftCorner<3, 3>()));
   for (size_t n = out.nodes.size(); n-- > 0;)
     metres_of[n] = out.nodes[n].parent < 0 ? 1.0f : metres_of[out.nodes[n].parent];
   const Character full = out;
@@ -503,13 +468,6 @@ void reduce_keys(const PreparedCharacter& source, float limit_mm, Character& out
   out = full;
 }
 
-int64_t key_count(const Character& character) {
-  int64_t count = 0;
-  for (const auto& animation : character.animations)
-    for (const auto& track : animation.tracks) count += static_cast<int64_t>(track.times.size());
-  return count;
-}
-
 ExportCost measure(const Character& written, const PreparedCharacter& source, const Deformer& screen,
                    const std::vector<CharacterClip>& clips, const std::function<void(float)>& progress) {
   ExportCost cost;
@@ -523,7 +481,7 @@ ExportCost measure(const Character& written, const PreparedCharacter& source, co
         progress((static_cast<float>(a) + static_cast<float>(i) / static_cast<float>(poses.size())) /
                  static_cast<float>(clips.size()));
       const Points shown = screen.deform(poses[i]);
-      const Points seen = vertices_at(written, a, static_cast<float>(static_cast<double>(i) / clips[a].fps));
+      const Points seen = vertices_at(written, a, clips[a].seconds(i));
       for (Eigen::Index v = 0; v < seen.rows(); ++v) {
         const double mm =
             1000.0 * static_cast<double>((seen.row(v) - shown.row(source.surface.map[v])).norm());
@@ -534,7 +492,8 @@ ExportCost measure(const Character& written, const PreparedCharacter& source, co
     }
   }
   cost.mean_mm = sum / std::max(1.0, count);
-  cost.keys = key_count(written);
+  for (const auto& animation : written.animations)
+    for (const auto& track : animation.tracks) cost.keys += ssize(track.times);
   return cost;
 }
 
@@ -551,10 +510,14 @@ Character animated_character(const PreparedCharacter& character, const Deformer&
   if (!shapes.shapes.empty()) add_shapes(shapes, *animator, character, out);
   size_t at = 0;
   for (const auto& clip : clips) {
-    Sampled sampled = animator->sample(clip);
-    if (!shapes.shapes.empty())
-      for (size_t i = 0; i < clip.poses.size(); ++i) sampled.shapes.push_back(shapes.weights[at++]);
-    out.animations.push_back(animation_of(fresh_name(clip.name, out.animations), sampled, out));
+    Sampled sampled;
+    for (size_t i = 0; i < clip.poses.size(); ++i) {
+      sampled.local.push_back(animator->frame(clip.poses[i]));
+      sampled.times.push_back(clip.seconds(i));
+      if (!shapes.shapes.empty()) sampled.shapes.push_back(shapes.weights[at++]);
+    }
+    out.animations.push_back(
+        animation_of(fresh_name(clip.name, out.animations), sampled, animator->moved(), out));
   }
   if (options.reduce_mm > 0) reduce_keys(character, options.reduce_mm, out);
   if (options.keep_clips && options.their_rig)

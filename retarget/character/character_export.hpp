@@ -14,6 +14,8 @@ struct CharacterClip {
   std::string name = "motion";
   double fps = 30;
   std::vector<Pose> poses;
+  /// When pose `i` is.
+  float seconds(size_t i) const { return static_cast<float>(static_cast<double>(i) / fps); }
 };
 
 struct CharacterExportOptions {
@@ -26,7 +28,8 @@ struct CharacterExportOptions {
   bool keep_clips = false;   ///< the file's own animations stay, after ours
   /// T-pose joints that the screen was bound to, where they are others than the character's.
   std::optional<Joints> joints;
-  std::function<void(float)> progress;  ///< told 0..1; what it throws ends the export, nothing is written
+  std::function<void(float)>
+      progress;  ///< called with 0..1; what it throws ends the export, nothing is written
 };
 
 /// What the written file costs: its own evaluation against the vertices on screen, over frames of all clips.
@@ -35,6 +38,30 @@ struct ExportCost {
   double mean_mm = 0, largest_mm = 0;
   int64_t frames = 0, keys = 0, bytes = 0;
 };
+
+/// Leaves out keys of a linear track that its neighbours give back within the tolerance: radians for
+/// rotations, the track's own unit otherwise. First and last stay; a track that does not change keeps one
+/// key. Throws Error for tracks that are not linear.
+CharacterTrack reduced(const CharacterTrack& track, float tolerance);
+
+/// Pose-corrective offsets of a motion as a few shapes with weights over time.
+struct CorrectiveShapes {
+  std::vector<Points> shapes;               ///< [V, 3] each, metres, T-pose axes, small offsets cut to zero
+  std::vector<std::vector<float>> weights;  ///< [poses][shapes]
+};
+/// `count` shapes for the offsets in these poses: the first is there in all of them with weight 1, the others
+/// are the principal ways in which the poses differ, with weights in 0..1. No weights is no offset. Up to 120
+/// poses are looked at for the shapes. progress: called with 0..1, may throw.
+CorrectiveShapes corrective_shapes(const Deformer& deformer, const std::vector<Pose>& poses, int count,
+                                   const std::function<void(float)>& progress = {});
+
+/// Puts skin weights that a user painted for the 22 joints into a character's own skins: changes joints and
+/// weights of `out`, a copy of character.character, at the vertices whose row of `weights` [V, 22], those on
+/// screen, differs from the rig's own. A joint's weight is shared among its bones as they share the vertex now;
+/// where none of them pulls yet, the joint's own bone does. `most`: bones a vertex, unless the part has more.
+/// Parts that followed a node alone become skinned.
+void apply_painted_weights(const PreparedCharacter& character, const RowMatrix& weights, int most,
+                           Character& out);
 
 /// The animated character in memory. screen: bound to the character's target, as it deforms on screen.
 Character animated_character(const PreparedCharacter& character, const Deformer& screen,

@@ -1,4 +1,4 @@
-#include "retarget/character/corrective_shapes.hpp"
+#include "retarget/character/character_export.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

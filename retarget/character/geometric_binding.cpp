@@ -9,8 +9,10 @@
 #include <map>
 #include <numeric>
 #include <queue>
+#include <string_view>
 #include <unordered_map>
 
+#include "retarget/base/union_find.hpp"
 #include "retarget/character/rest_pose.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/segment.hpp"
@@ -118,21 +120,16 @@ std::vector<bool> cloth_of(const Mesh& mesh, const Legs& legs, const MiddleCut& 
     const float y = mesh.vertices(v, 1);
     return y > hem - 0.03f * legs.length && y < legs.top + 0.06f * legs.length;
   };
-  std::vector<int> joined(mesh.vertices.rows());  // a forest: neighbours in the band have one root
-  std::iota(joined.begin(), joined.end(), 0);
-  const auto root = [&](int v) {
-    while (joined[v] != v) v = joined[v] = joined[joined[v]];
-    return v;
-  };
+  UnionFind joined(mesh.vertices.rows());  // neighbours in the band
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
     for (int c = 0; c < 3; ++c) {
       const int a = mesh.faces(f, c), b = mesh.faces(f, (c + 1) % 3);
-      if (in_band(a) && in_band(b)) joined[root(a)] = root(b);
+      if (in_band(a) && in_band(b)) joined.join(a, b);
     }
-  std::vector<bool> holds_cut(joined.size()), cloth(joined.size());
+  std::vector<bool> holds_cut(mesh.vertices.rows()), cloth(mesh.vertices.rows());
   for (const Eigen::Index f : cut.faces)
-    for (int c = 0; c < 3; ++c) holds_cut[root(mesh.faces(f, c))] = true;
-  for (int v = 0; v < mesh.vertices.rows(); ++v) cloth[v] = in_band(v) && holds_cut[root(v)];
+    for (int c = 0; c < 3; ++c) holds_cut[joined.root(mesh.faces(f, c))] = true;
+  for (int v = 0; v < mesh.vertices.rows(); ++v) cloth[v] = in_band(v) && holds_cut[joined.root(v)];
   constexpr int kAngles = 24;
   std::array<std::array<float, kAngles>, kSlices + 8> outermost{};
   const auto bin = [&](int v, float& radius) -> float& {
@@ -279,9 +276,7 @@ void in_halves(Eigen::Index count, const Work& work) {
 using GridPlace = std::array<int64_t, 3>;
 struct GridPlaceHash {
   size_t operator()(const GridPlace& p) const {
-    uint64_t hash = 0;
-    for (const int64_t a : p) hash = (hash ^ static_cast<uint64_t>(a)) * 0x9E3779B97F4A7C15u;
-    return static_cast<size_t>(hash ^ hash >> 32);
+    return std::hash<std::string_view>()({reinterpret_cast<const char*>(p.data()), sizeof p});
   }
 };
 
@@ -316,16 +311,7 @@ Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody
   return out;
 }
 
-int root_of(std::vector<int>& parent, int v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
 }  // namespace
-
-BoneDistances bone_distances(const Mesh& mesh, const Joints& joints) {
-  return bone_distances(VoxelBody(mesh), joints, mesh.vertices);
-}
 
 BoneDistances bone_distances(const VoxelBody& body, const Joints& joints, const Points& at) {
   const Segments bones = bones_of(joints);
@@ -466,15 +452,20 @@ RowMatrix geometric_weights(const Mesh& mesh, const BoneDistances& distances, co
   return weights;
 }
 
-RowMatrix geometric_weights(const Mesh& mesh, const Joints& joints) {
-  return geometric_weights(mesh, bone_distances(mesh, joints), shape_hints(mesh, joints));
-}
+namespace {
+
+/// The connected parts of a surface; vertices in one place are one.
+struct SurfaceParts {
+  std::vector<int> of;      ///< [V]
+  std::vector<float> area;  ///< of each part, m^2
+  std::vector<float> size;  ///< of each part, the diagonal of its box, metres
+  bool torn = false;        ///< no parts that mean anything: loose triangles, or a cloud
+};
 
 SurfaceParts surface_parts(const Mesh& mesh) {
   SurfaceParts parts;
   const size_t count = mesh.vertices.rows();
-  std::vector<int> parent(count);
-  std::iota(parent.begin(), parent.end(), 0);
+  UnionFind joined(count);
   const float extent = (mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff()).maxCoeff();
   const float same = std::max(1e-9f, 2e-5f * extent);
   std::unordered_map<GridPlace, int, GridPlaceHash> places;
@@ -483,15 +474,14 @@ SurfaceParts surface_parts(const Mesh& mesh) {
     GridPlace key{};
     for (int a = 0; a < 3; ++a) key[a] = std::llround(mesh.vertices(v, a) / same);
     const auto [at, fresh] = places.try_emplace(key, v);
-    if (!fresh) parent[root_of(parent, v)] = root_of(parent, at->second);
+    if (!fresh) joined.join(v, at->second);
   }
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
-    for (int c = 0; c < 2; ++c)
-      parent[root_of(parent, mesh.faces(f, c))] = root_of(parent, mesh.faces(f, c + 1));
+    for (int c = 0; c < 2; ++c) joined.join(mesh.faces(f, c), mesh.faces(f, c + 1));
   std::map<int, int> number;
   std::vector<Vec3> low, high;
   for (size_t v = 0; v < count; ++v) {
-    const auto [at, fresh] = number.try_emplace(root_of(parent, v), number.size());
+    const auto [at, fresh] = number.try_emplace(joined.root(v), number.size());
     const Vec3 p = mesh.vertices.row(v).transpose();
     if (fresh) {
       low.push_back(p);
@@ -515,6 +505,8 @@ SurfaceParts surface_parts(const Mesh& mesh) {
                static_cast<double>(number.size()) > 0.05 * static_cast<double>(mesh.faces.rows()) + 30;
   return parts;
 }
+
+}  // namespace
 
 std::vector<bool> keep_parts_rigid(const Mesh& mesh, float leg, RowMatrix& weights) {
   const SurfaceParts parts = surface_parts(mesh);

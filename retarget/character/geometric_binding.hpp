@@ -11,13 +11,12 @@
 
 namespace understudy {
 
-/// How far each vertex is from each joint's bones.
+/// How far points of a body are from each joint's bones.
 struct BoneDistances {
-  RowMatrix metres;  ///< [V, 22]: straight, with detours through the solid added
+  RowMatrix metres;  ///< [K, 22]: straight, with detours through the solid added
   float leg = 1;     ///< of the body, metres
 };
-BoneDistances bone_distances(const Mesh& mesh, const Joints& joints);
-/// The same of any points of a body whose solid is known, [K, 22].
+/// at: [K, 3].
 BoneDistances bone_distances(const VoxelBody& body, const Joints& joints, const Points& at);
 
 /// Weights [K, 22] by the inverse of the distances alone, rows sum to 1.
@@ -48,22 +47,12 @@ struct ShapeHints {
 ShapeHints shape_hints(const Mesh& mesh, const Joints& joints);
 
 /// Skin weights [V, 22] of a body in any upright pose, rows sum to 1: by the inverse of the distances,
-/// smoothed along the surface; a skirt follows pelvis and thighs, a big head is rigid. Joints are those of
-/// that pose.
-RowMatrix geometric_weights(const Mesh& mesh, const Joints& joints);
+/// smoothed along the surface; a skirt follows pelvis and thighs, a big head is rigid. Distances and hints are
+/// those of that pose.
 RowMatrix geometric_weights(const Mesh& mesh, const BoneDistances& distances, const ShapeHints& hints);
 
 /// Spreads values [V, K] along edges as far as a few centimetres; vertices far apart hardly mix.
 void smooth_along(const Mesh& mesh, float radius, RowMatrix& values);
-
-/// The connected parts of a surface; vertices in one place are one.
-struct SurfaceParts {
-  std::vector<int> of;      ///< [V]
-  std::vector<float> area;  ///< of each part, m^2
-  std::vector<float> size;  ///< of each part, the diagonal of its box, metres
-  bool torn = false;        ///< no parts that mean anything: loose triangles, or a cloud
-};
-SurfaceParts surface_parts(const Mesh& mesh);
 
 /// Gives one transform to each part that is rigid: small ones (eyes, buttons, glasses), and all of a body
 /// that is made of separate pieces, a bone each. True for the vertices of such parts.

@@ -276,11 +276,9 @@ void CharacterReader::keep_texts(const char* name, std::vector<std::string>& out
 }
 
 TrackPath track_path(const std::string& name, const std::string& path) {
-  if (name == "translation") return TrackPath::Translation;
-  if (name == "rotation") return TrackPath::Rotation;
-  if (name == "scale") return TrackPath::Scale;
-  US_CHECK(name == "weights", path, ": an animation moves '", excerpt(name), "', which no node has");
-  return TrackPath::Shapes;
+  const auto known = std::find(kTrackPaths.begin(), kTrackPaths.end(), name);
+  US_CHECK(known != kTrackPaths.end(), path, ": an animation moves '", excerpt(name), "', which no node has");
+  return static_cast<TrackPath>(known - kTrackPaths.begin());
 }
 
 void CharacterReader::read_channel(const tinygltf::AnimationChannel& channel,

@@ -259,7 +259,6 @@ void add_images(const Character& character, ModelMaker& out) {
 }
 
 void add_animations(const Character& character, ModelMaker& out) {
-  static const std::array<const char*, 4> kPaths = {"translation", "rotation", "scale", "weights"};
   static const std::array<const char*, 3> kKinds = {"LINEAR", "STEP", "CUBICSPLINE"};
   for (const auto& from : character.animations) {
     if (from.tracks.empty()) continue;
@@ -279,7 +278,7 @@ void add_animations(const Character& character, ModelMaker& out) {
       tinygltf::AnimationChannel channel;
       channel.sampler = animation.samplers.size();
       channel.target_node = track.node;
-      channel.target_path = kPaths[static_cast<size_t>(track.path)];
+      channel.target_path = kTrackPaths[static_cast<size_t>(track.path)];
       tinygltf::AnimationSampler sampler;
       sampler.input = same->second;
       sampler.output = out.add(track.values, type, NoTarget);

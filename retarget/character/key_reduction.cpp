@@ -1,4 +1,4 @@
-#include "retarget/character/key_reduction.hpp"
+#include "retarget/character/character_export.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,3 @@
-#include "retarget/character/obj_character.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/picture.hpp"
+#include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/bytes.hpp"
 
@@ -24,12 +23,16 @@ using nlohmann::json;
 /// What a path in the file stands for; none outside of its folder. Backslashes are how some programs write
 /// it.
 std::optional<std::string> beside(const std::string& path, std::string name) {
-  for (char& c : name)
-    if (c == '\\') c = '/';
+  std::replace(name.begin(), name.end(), '\\', '/');
   const std::filesystem::path inside = std::filesystem::path(name).lexically_normal();
   if (!inside.is_relative() || inside.empty() || *inside.begin() == ".." || name.find('\0') != name.npos)
     return {};
   return (std::filesystem::path(path).parent_path() / inside).string();
+}
+
+/// A line from its second word on: names may hold blanks.
+std::string from_second(std::string_view line, const std::vector<std::string_view>& words) {
+  return std::string(trim_end(line.substr(words[1].data() - line.data())));
 }
 
 struct ObjMaterial {
@@ -117,10 +120,6 @@ void ObjReader::line(std::string_view text) {
   split_words(text.substr(0, hash), "", words_);
   if (words_.empty()) return;
   const std::string_view what = words_[0];
-  const auto rest = [&] {  // names may hold blanks
-    const std::string_view end = text.substr(words_[1].data() - text.data());
-    return std::string(trim_end(end));
-  };
   if (what == "v") {
     numbers(positions_, 3, 3);
     if (words_.size() >= 7) {
@@ -134,9 +133,9 @@ void ObjReader::line(std::string_view text) {
   } else if (what == "f") {
     face();
   } else if (what == "usemtl" && words_.size() > 1) {
-    current_ = &groups_[rest()];
+    current_ = &groups_[from_second(text, words_)];
   } else if (what == "mtllib" && words_.size() > 1) {
-    read_materials(rest());
+    read_materials(from_second(text, words_));
   }
 }
 
@@ -157,8 +156,7 @@ void ObjReader::read_materials(const std::string& name) {
     const std::string_view whole_line = text.line();
     split_words(whole_line, "", words);
     if (words.size() < 2) continue;
-    const std::string_view end = whole_line.substr(words[1].data() - whole_line.data());
-    const std::string rest(trim_end(end));
+    const std::string rest = from_second(whole_line, words);
     double value = 0;
     if (words[0] == "newmtl") current = &materials_[rest];
     if (current == nullptr) continue;
@@ -176,26 +174,18 @@ int ObjReader::texture(const std::string& name, Character& out) {
   US_CHECK(file, path_, ": a picture is outside of its folder (", excerpt(name), ")");
   const auto [entry, is_new] = textures_.try_emplace(*file, out.textures.size());
   if (!is_new) return entry->second;
-  CharacterImage image;
-  image.name = std::filesystem::path(*file).stem().string();
-  image.bytes = picture_or_white([&] { return read_file(*file); }, path_ + ": the picture " + excerpt(name));
-  image.mime = picture_type(image.bytes);
-  US_CHECK(!image.mime.empty(), *file, ": is no picture (PNG, JPEG, WebP or KTX2)");
-  out.images.push_back(std::move(image));
-  out.textures.push_back(json({{"source", out.images.size() - 1}}).dump());
+  const bool is_picture = add_picture(
+      *file, picture_or_white([&] { return read_file(*file); }, path_ + ": the picture " + excerpt(name)),
+      out);
+  US_CHECK(is_picture, *file, ": is no picture (PNG, JPEG, WebP or KTX2)");
   return entry->second;
 }
 
 int ObjReader::material(const std::string& name, Character& out) {
   const ObjMaterial& from = materials_[name];
-  json object = {{"name", name.empty() ? "default" : name}, {"doubleSided", true}};
-  json pbr = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
-  if (from.picture.empty())
-    pbr["baseColorFactor"] = {from.color.x(), from.color.y(), from.color.z(), from.alpha};
-  else
-    pbr["baseColorTexture"] = {{"index", texture(from.picture, out)}};
+  const int picture = from.picture.empty() ? -1 : texture(from.picture, out);
+  json object = plain_material(name.empty() ? "default" : name, from.color, from.alpha, picture);
   if (from.alpha < 1) object["alphaMode"] = "BLEND";
-  object["pbrMetallicRoughness"] = pbr;
   out.materials.push_back(object.dump(-1, ' ', false, json::error_handler_t::replace));
   return out.materials.size() - 1;
 }

@@ -1,4 +1,4 @@
-#include "retarget/character/painted_skin.hpp"
+#include "retarget/character/character_export.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,10 +6,9 @@
 #include <optional>
 
 #include "retarget/base/error.hpp"
-#include "retarget/character/body_heading.hpp"
 #include "retarget/character/careful_deformer.hpp"
 #include "retarget/character/geometric_binding.hpp"
-#include "retarget/character/plausible_person.hpp"
+#include "retarget/character/stance.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/pipeline/human_rest.hpp"
@@ -137,12 +136,15 @@ Joints rig_joints(const PreparedCharacter& c) {
   return joints;
 }
 
-/// Turns everything so far about y.
-void turn(PreparedCharacter& c, float yaw) {
-  const Mat3 R = rotation_about_y(yaw);
+/// Turns everything so far.
+void turn(PreparedCharacter& c, const Mat3& R) {
   c.to_world.R = R * c.to_world.R;
   c.to_world.t = R * c.to_world.t;
   c.surface.mesh.vertices = (c.surface.mesh.vertices * R.transpose()).eval();
+}
+
+void turn_about_y(PreparedCharacter& c, float yaw) {
+  turn(c, rotation_about_y(yaw));
   c.notes.push_back("turned by " + std::to_string(std::lround(yaw * 180 / kPi)) + " degrees to face forward");
 }
 
@@ -261,7 +263,7 @@ RestPose rest_pose_of_rig(const PreparedCharacter& c) {
 
 void turn_rig_forward(PreparedCharacter& c, const CharacterOptions& options) {
   const float yaw = options.yaw_deg ? -*options.yaw_deg * kPi / 180 : tidy(heading_of_joints(rig_joints(c)));
-  if (std::abs(std::remainder(yaw, 2 * kPi)) > 1e-3f) turn(c, -yaw);
+  if (std::abs(std::remainder(yaw, 2 * kPi)) > 1e-3f) turn_about_y(c, -yaw);
 }
 
 void find_in_rig(PreparedCharacter& c) {
@@ -329,11 +331,8 @@ Joints with_seen_neck(const Mesh& mesh, const Joints& joints) {
 
 /// Half a turn about z, onto the same floor.
 void turn_over(PreparedCharacter& c, const CharacterOptions& options) {
-  const Mat3 R = Eigen::AngleAxisf(kPi, Vec3::UnitZ()).toRotationMatrix();
-  c.to_world.R = R * c.to_world.R;
-  c.to_world.t = R * c.to_world.t;
+  turn(c, Eigen::AngleAxisf(kPi, Vec3::UnitZ()).toRotationMatrix());
   Points& vertices = c.surface.mesh.vertices;
-  vertices = (vertices * R.transpose()).eval();
   const float lift = options.floor ? -2 * *options.floor : -vertices.col(1).minCoeff();
   vertices.col(1).array() += lift;
   c.to_world.t.y() += lift;
@@ -351,7 +350,7 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
   }
   if (!options.yaw_deg) {
     const float yaw = tidy(body_heading(c.surface.mesh, seen));
-    if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn(c, -yaw);
+    if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn_about_y(c, -yaw);
   }
   Mesh mesh = c.surface.mesh;
   auto body = std::make_unique<VoxelBody>(mesh);
@@ -380,11 +379,10 @@ Joints moved_bind_joints(const RestPose& pose, const Joints& rest) {
 }
 
 std::vector<int> joints_of_nodes(const PreparedCharacter& c) {
-  std::vector<int> joint_of(c.character.nodes.size(), Pelvis);
-  for (size_t n = 0; n < joint_of.size(); ++n) {
-    const int p = c.character.nodes[n].parent;
-    joint_of[n] = c.driver[n] >= 0 ? c.driver[n] : p >= 0 ? joint_of[p] : static_cast<int>(Pelvis);
-  }
+  std::vector<int> joint_of = c.driver;
+  for (size_t n = 0; n < joint_of.size(); ++n)
+    if (const int p = c.character.nodes[n].parent; joint_of[n] < 0)
+      joint_of[n] = p >= 0 ? joint_of[p] : static_cast<int>(Pelvis);
   return joint_of;
 }
 
@@ -398,11 +396,9 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
   c.bind = bind_pose(c.character);
   US_CHECK(c.bind.vertices.allFinite(), c.character.called(),
            ": its bind pose has numbers that are not finite");
-  if (options.use_rig) {
-    c.map = map_bones(c.character, c.bind.nodes, options.choices);
-    c.rigged = c.map.usable();
-  }
-  if (options.use_rig && !c.rigged && !c.character.skins.empty())
+  c.map = map_bones(c.character, c.bind.nodes, options.choices);
+  c.rigged = c.map.usable();
+  if (!c.rigged && !c.character.skins.empty())
     c.notes.push_back("its bones could not be mapped (" + std::to_string(c.map.count()) +
                       " of 22): its own rig is not used");
   place_in_world(c, options);
@@ -414,7 +410,7 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
   if (c.rigged)
     turn_rig_forward(c, options);
   else if (options.yaw_deg && *options.yaw_deg != 0)
-    turn(c, *options.yaw_deg * kPi / 180);
+    turn_about_y(c, *options.yaw_deg * kPi / 180);
   return c;
 }
 

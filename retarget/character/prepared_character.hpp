@@ -23,7 +23,6 @@ struct CharacterOptions {
   bool turn_if_lying = true;     ///< who lies or is head down with y up is turned upright, with a note
   std::optional<float> floor;    ///< its height after scale and axes, metres; none: the lowest points
   std::optional<float> yaw_deg;  ///< turns it about y; none: so that it faces +z
-  bool use_rig = true;           ///< false: as if it had no bones
   bool own_joints = true;        ///< false: the T-pose joints are found by the network, not the bones
 };
 

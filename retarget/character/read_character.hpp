@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "retarget/character/character.hpp"
 
@@ -18,6 +19,19 @@ struct ReadCharacterOptions {
 /// glTF and GLB whole; OBJ with its materials; PLY, OFF, STL and clouds as one part; FBX and DAE by a process
 /// of its own, which may crash. Throws Error: one sentence that names the file.
 Character read_character(const std::string& path, const ReadCharacterOptions& options = {});
+
+/// Wavefront OBJ: groups by material, texture coordinates, normals, .mtl and its pictures; one part a
+/// material. Materials and pictures are looked for in the file's folder and under it; what is missing is
+/// warned of. Throws Error naming `path`.
+Character parse_obj_character(std::string_view bytes, const std::string& path);
+
+/// FBX and DAE: parts, materials, pictures, nodes, skins, shapes, and animations of nodes. Damaged files can
+/// crash it: call this in a process of its own only. Throws Error.
+Character import_by_assimp(const std::string& path);
+
+/// The last line of what such a process wrote, fit for a dialog box whatever it is: 200 printable characters
+/// at most. May be empty.
+std::string last_words(std::string_view written);
 
 /// A mesh without anything more as a character.
 Character character_of_mesh(const Mesh& mesh, const std::string& name);

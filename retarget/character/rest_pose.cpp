@@ -58,16 +58,13 @@ RestPose to_t_pose(const Joints& bind, float tolerance_deg) {
   const float tolerance = tolerance_deg * kPi / 180;
   for (const int right : {0, 1}) {
     const Vec3 sideways = right == 1 ? Vec3(-1, 0, 0) : Vec3(1, 0, 0);
-    const size_t shoulder = LeftShoulder + right, elbow = shoulder + 2, wrist = elbow + 2;
-    const size_t hip = LeftHip + right, knee = hip + 3;
-    Q[shoulder] =
-        brought(Mat3::Identity(), bone(bind, LeftShoulder + right, LeftElbow + right), sideways, tolerance);
-    Q[elbow] = brought(Q[shoulder], bone(bind, LeftElbow + right, LeftWrist + right), sideways, tolerance);
+    const int shoulder = LeftShoulder + right, elbow = shoulder + 2, wrist = elbow + 2;
+    const int hip = LeftHip + right, knee = hip + 3, ankle = knee + 3;
+    Q[shoulder] = brought(Mat3::Identity(), bone(bind, shoulder, elbow), sideways, tolerance);
+    Q[elbow] = brought(Q[shoulder], bone(bind, elbow, wrist), sideways, tolerance);
     Q[wrist] = Q[elbow];
-    Q[hip] = brought(Mat3::Identity(), bone(bind, LeftHip + right, LeftKnee + right),
-                     bone(human, LeftHip + right, LeftKnee + right), tolerance);
-    Q[knee] = brought(Q[hip], bone(bind, LeftKnee + right, LeftAnkle + right),
-                      bone(human, LeftKnee + right, LeftAnkle + right), tolerance);
+    Q[hip] = brought(Mat3::Identity(), bone(bind, hip, knee), bone(human, hip, knee), tolerance);
+    Q[knee] = brought(Q[hip], bone(bind, knee, ankle), bone(human, knee, ankle), tolerance);
   }
   place_rest(out);
   return out;

@@ -1,7 +1,6 @@
 #include "retarget/character/vertex_colors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -11,21 +10,12 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/character/pixels.hpp"
+#include "retarget/character/picture.hpp"
 
 namespace understudy {
 namespace {
 
 using nlohmann::json;
-
-const std::array<float, 256>& linear_of_byte() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> t{};
-    for (size_t i = 0; i < t.size(); ++i) t[i] = to_linear(static_cast<float>(i) / 255);
-    return t;
-  }();
-  return table;
-}
 
 int pixel(float t, int count, bool repeat) {
   if (!std::isfinite(t)) return 0;
@@ -37,7 +27,7 @@ int pixel(float t, int count, bool repeat) {
 Vec3 light_at(const Pixels& pixels, float u, float v, bool repeat_u, bool repeat_v) {
   const int x = pixel(u, pixels.width, repeat_u), y = pixel(v, pixels.height, repeat_v);
   const uint8_t* const p = pixels.rgb.get() + 3 * (static_cast<int64_t>(y) * pixels.width + x);
-  return {linear_of_byte()[p[0]], linear_of_byte()[p[1]], linear_of_byte()[p[2]]};
+  return (Vec3(p[0], p[1], p[2]) / 255).unaryExpr(&to_linear);
 }
 
 /// What is seen of a material.

@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 
 namespace understudy {
 namespace {
@@ -115,19 +116,16 @@ void VoxelBody::mark_surface(const Mesh& mesh, std::vector<char>& state) const {
 void VoxelBody::mark_reached(std::vector<char>& state) const {
   std::vector<int> open = {0};
   state[0] |= kReached;
-  const std::array<int, 3> stride = {1, dims_[0], dims_[0] * dims_[1]};
+  const int row = dims_[0], layer = dims_[0] * dims_[1];
   while (!open.empty()) {
     const int at = open.back();
     open.pop_back();
-    const std::array<int, 3> p = {at % dims_[0], at / dims_[0] % dims_[1], at / stride[2]};
-    for (size_t a = 0; a < 3; ++a)
-      for (const int d : {-1, 1}) {
-        if (p[a] + d < 0 || p[a] + d >= dims_[a]) continue;
-        const size_t next = at + d * stride[a];
-        if (state[next] != 0) continue;
-        state[next] = kReached;
-        open.push_back(next);
-      }
+    for (const int d : {-1, 1, -row, row, -layer, layer}) {
+      const int next = at + d;  // past an end of a row another row begins, in the empty border too
+      if (next < 0 || next >= ssize(state) || state[next] != 0) continue;
+      state[next] = kReached;
+      open.push_back(next);
+    }
   }
 }
 
@@ -164,10 +162,7 @@ void VoxelBody::number_cells(const std::vector<char>& state) {
 }
 
 Vec3 VoxelBody::centre(int cell) const {
-  const int at = cells_[cell];
-  const Vec3 p(static_cast<float>(at % dims_[0]), static_cast<float>(at / dims_[0] % dims_[1]),
-               static_cast<float>(at / (dims_[0] * dims_[1])));
-  return origin_ + size_ * (p.array() + 0.5f).matrix();
+  return origin_ + size_ * (grid_place(cells_[cell]).cast<float>().array() + 0.5f).matrix();
 }
 
 int VoxelBody::cell_at(const Vec3& point) const {
@@ -219,7 +214,7 @@ std::vector<int> VoxelBody::label_parts() const {
 void VoxelBody::join_parts() {
   const std::vector<int> part = label_parts();
   if (part.empty() || *std::max_element(part.begin(), part.end()) == 0) return;
-  std::vector<int> source(cell_of_.size(), -1), distance(cell_of_.size(), 0);
+  std::vector<int> source(cell_of_.size(), -1);
   std::queue<int> open;
   for (size_t c = 0; c < cells_.size(); ++c) {
     source[cells_[c]] = c;
@@ -229,18 +224,15 @@ void VoxelBody::join_parts() {
   while (!open.empty()) {
     const int at = open.front();
     open.pop();
-    const std::array<int, 3> p = {at % dims_[0], at / dims_[0] % dims_[1], at / (dims_[0] * dims_[1])};
     const int own = source[at];
     for (const Step& s : steps()) {
       if (std::abs(s.x) + std::abs(s.y) + std::abs(s.z) != 1) continue;
-      if (p[0] + s.x < 0 || p[0] + s.x >= dims_[0] || p[1] + s.y < 0 || p[1] + s.y >= dims_[1] ||
-          p[2] + s.z < 0 || p[2] + s.z >= dims_[2])
-        continue;
+      const Eigen::Array3i p = grid_place(at) + Eigen::Vector3i(s.x, s.y, s.z);
+      if ((p < 0).any() || (p >= Eigen::Map<const Eigen::Array3i>(dims_.data())).any()) continue;
       const size_t next = at + grid_index(s.x, s.y, s.z);
       const int other = source[next];
       if (other < 0) {
         source[next] = own;
-        distance[next] = distance[at] + 1;
         open.push(next);
       } else if (part[other] > part[own]) {
         meetings[{part[own], part[other]}].push_back({own, other, (centre(own) - centre(other)).norm()});

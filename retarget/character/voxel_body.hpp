@@ -36,6 +36,9 @@ class VoxelBody {
     float length;
   };
   int grid_index(int x, int y, int z) const { return (z * dims_[1] + y) * dims_[0] + x; }
+  Eigen::Vector3i grid_place(int index) const {
+    return {index % dims_[0], index / dims_[0] % dims_[1], index / (dims_[0] * dims_[1])};
+  }
   std::array<int, 3> place(const Vec3& point) const;
   void lay_grid(const Points& vertices, int resolution);
   void mark_surface(const Mesh& mesh, std::vector<char>& state) const;

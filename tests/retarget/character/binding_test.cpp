@@ -4,15 +4,16 @@
 #include <cmath>
 #include <memory>
 
-#include "retarget/character/body_heading.hpp"
 #include "retarget/character/careful_deformer.hpp"
 #include "retarget/character/geometric_binding.hpp"
 #include "retarget/character/rest_pose.hpp"
+#include "retarget/character/stance.hpp"
 #include "retarget/character/voxel_body.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/skeleton/skinning.hpp"
+#include "tests/retarget/character/characters.hpp"
 
 namespace understudy {
 namespace {
@@ -145,7 +146,7 @@ Mesh skirted(const Joints& j) {
   return mesh;
 }
 
-/// Says what it is told.
+/// Binds by the weights that it is given.
 class FixedDeformer final : public Deformer {
  public:
   explicit FixedDeformer(RowMatrix weights) : weights_(std::move(weights)) {}
@@ -208,7 +209,7 @@ TEST(VoxelBody, PartsThatDoNotTouchAreJoinedAtTheirNearest) {
 TEST(GeometricBinding, ARobotsPartsStayRigid) {
   const Joints joints = standing_joints();
   const Mesh mesh = robot(joints);
-  RowMatrix weights = geometric_weights(mesh, joints);
+  RowMatrix weights = tests::shape_weights(mesh, joints);
   ASSERT_TRUE(weights.rowwise().sum().isApproxToConstant(1, 1e-4f));
   EXPECT_GT(largest_stretch(mesh, posed_by(mesh, weights, joints, dancing())), 1.01f);
   const auto rigid = keep_parts_rigid(mesh, kLeg, weights);
@@ -231,7 +232,7 @@ TEST(GeometricBinding, ALimbThatSpansJointsIsNotRigidAButtonIs) {
   const auto before = static_cast<size_t>(mesh.vertices.rows());
   append(mesh, tube(
                    Vec3(0, 1.2f, 0.17f), Vec3(0, 1.2f, 0.18f), [](float) { return 0.01f; }, 2));
-  RowMatrix weights = geometric_weights(mesh, joints);
+  RowMatrix weights = tests::shape_weights(mesh, joints);
   const auto rigid = keep_parts_rigid(mesh, kLeg, weights);
   EXPECT_FALSE(rigid[0]);
   EXPECT_TRUE(rigid[before]);
@@ -285,7 +286,7 @@ TEST(GeometricBinding, APuffyCoatsArmsStayTheArmsAndDoNotTear) {
     }
   }
   const Mesh coat = puffy_coat(joints);
-  const RowMatrix weights = geometric_weights(coat, joints);
+  const RowMatrix weights = tests::shape_weights(coat, joints);
   ASSERT_TRUE(weights.rowwise().sum().isApproxToConstant(1, 1e-4f));
   for (Eigen::Index v = 30 * 12 + 2; v < coat.vertices.rows(); ++v) {
     const bool left = coat.vertices(v, 0) > 0;
@@ -307,7 +308,7 @@ TEST(GeometricBinding, ASkirtFollowsPelvisAndThighsWithoutTearing) {
   const auto skirt = find_skirt(mesh, joints);
   ASSERT_TRUE(skirt);
   EXPECT_NEAR(skirt->hem, joints(LeftKnee, 1), 0.06f);
-  const RowMatrix weights = geometric_weights(mesh, joints);
+  const RowMatrix weights = tests::shape_weights(mesh, joints);
   const Eigen::Index cloth = 24 * 12;
   for (Eigen::Index v = 0; v < cloth; ++v)
     EXPECT_LT(weights(v, LeftKnee) + weights(v, RightKnee) + weights(v, LeftAnkle), 0.02f) << v;
@@ -322,10 +323,45 @@ TEST(GeometricBinding, ASkirtFollowsPelvisAndThighsWithoutTearing) {
   EXPECT_FALSE(find_skirt(trousers, joints));
 }
 
+/// A skirt's tube, and a ribbon that hangs on it by one end and winds beside it, of `count` faces. They are
+/// listed from the far end on: what grows along the list grows by one face a round.
+Mesh skirt_with_ribbon(const Joints& j, int count) {
+  const Vec3 waist(0, j(Spine1, 1), 0), hem(0, j(LeftKnee, 1), 0);
+  Mesh mesh = tube(
+      waist, hem, [](float) { return 0.2f; }, 24, false);
+  const int steps = count / 2;
+  Mesh ribbon;
+  ribbon.vertices.resize(2 * steps + 2, 3);
+  ribbon.faces.resize(2 * steps, 3);
+  for (int i = 0; i <= steps; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(steps), angle = 600 * kPi * share;
+    const float y = waist.y() + (0.2f + 0.6f * share) * (hem.y() - waist.y());
+    for (const int side : {0, 1})
+      ribbon.vertices.row(2 * i + side) << 0.3f + 0.05f * std::cos(angle), y + 0.001f * side,
+          0.05f * std::sin(angle);
+  }
+  for (int i = 0; i < steps; ++i) {
+    ribbon.faces.row(2 * (steps - 1 - i)) << 2 * i, 2 * i + 1, 2 * i + 2;
+    ribbon.faces.row(2 * (steps - 1 - i) + 1) << 2 * i + 1, 2 * i + 3, 2 * i + 2;
+  }
+  append(mesh, ribbon);
+  mesh.faces(mesh.faces.rows() - 1, 2) = 8 * 12;  // of a ring below the hips
+  return mesh;
+}
+
+/// In time that grew with the square of the faces this would not end.
+TEST(GeometricBinding, ASkirtsClothIsFollowedAlongAMillionFaces) {
+  const Joints joints = standing_joints();
+  const Mesh mesh = skirt_with_ribbon(joints, 1000000);
+  const auto skirt = find_skirt(mesh, joints);
+  ASSERT_TRUE(skirt);
+  EXPECT_GT(skirt->share.tail(2).minCoeff(), 0.5f);
+}
+
 TEST(CarefulDeformer, GoodWeightsStayAndStrayOnesAreReplaced) {
   const Joints joints = standing_joints();
   const Mesh mesh = bust(joints, 0.11f);
-  const RowMatrix good = geometric_weights(mesh, joints);
+  const RowMatrix good = tests::shape_weights(mesh, joints);
   const SafeBinding kept = safe_binding(mesh, joints, good);
   EXPECT_EQ(kept.doubt.maxCoeff(), 0);
   EXPECT_TRUE(kept.weights == good);
@@ -344,7 +380,7 @@ TEST(CarefulDeformer, GoodWeightsStayAndStrayOnesAreReplaced) {
 TEST(CarefulDeformer, OffsetsDoNotBendHardParts) {
   const Joints joints = standing_joints();
   const Mesh mesh = robot(joints);
-  CarefulDeformer deformer(mesh.faces, std::make_shared<FixedDeformer>(geometric_weights(mesh, joints)));
+  CarefulDeformer deformer(mesh.faces, std::make_shared<FixedDeformer>(tests::shape_weights(mesh, joints)));
   deformer.bind(mesh.vertices, joints);
   EXPECT_EQ(deformer.offsets(dancing()).cwiseAbs().maxCoeff(), 0);
   EXPECT_LT(largest_stretch(mesh, deformer.deform(dancing())), 1.0005f);

@@ -7,7 +7,6 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
-#include "retarget/character/key_reduction.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/bytes.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"

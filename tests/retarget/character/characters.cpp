@@ -170,6 +170,11 @@ void nest_scales(Character& out) {
 
 }  // namespace
 
+RowMatrix shape_weights(const Mesh& mesh, const Joints& joints) {
+  return geometric_weights(mesh, bone_distances(VoxelBody(mesh), joints, mesh.vertices),
+                           shape_hints(mesh, joints));
+}
+
 std::string made_name(Naming naming, int joint) {
   using Names = std::array<const char*, kJointCount>;
   static const Names kMixamo = {"Hips",        "LeftUpLeg",    "RightUpLeg", "Spine",        "LeftLeg",
@@ -365,7 +370,7 @@ void BulgingDeformer::bind(const Points& rest, const Joints& rest_joints) {
   joints_ = rest_joints;
   Mesh mesh;
   mesh.vertices = rest;
-  weights_ = geometric_weights(mesh, rest_joints);
+  weights_ = shape_weights(mesh, rest_joints);
 }
 
 std::shared_ptr<Deformer> BulgingDeformer::with_weights(RowMatrix weights) const {

@@ -32,6 +32,9 @@ Joints made_joints(const MadeCharacter& options);
 /// What a bone is called.
 std::string made_name(Naming naming, int joint);
 
+/// Skin weights by the shape alone, [V, 22].
+RowMatrix shape_weights(const Mesh& mesh, const Joints& joints);
+
 /// Gives the joints it was made with, whatever it sees.
 class KnownExtractor final : public SkeletonExtractor {
  public:

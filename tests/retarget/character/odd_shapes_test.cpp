@@ -7,8 +7,8 @@
 
 #include "retarget/character/character_export.hpp"
 #include "retarget/character/gltf_character.hpp"
-#include "retarget/character/plausible_person.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/character/stance.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/retarget/character/characters.hpp"
 #include "tests/retarget/formats/support.hpp"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "retarget/character/character_export.hpp"
-#include "retarget/character/painted_skin.hpp"
 #include "retarget/character/read_character.hpp"
 #include "tests/retarget/character/characters.hpp"
 #include "tests/retarget/formats/support.hpp"

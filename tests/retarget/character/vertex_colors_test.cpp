@@ -6,7 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/character/pixels.hpp"
+#include "retarget/character/picture.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/bytes.hpp"
 

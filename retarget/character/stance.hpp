@@ -1,9 +1,10 @@
-// Whether a shape stands like a person: what lies down is turned, what is no person is refused.
+// How a body without bones stands: whether like a person, which way up, and where it faces.
 #pragma once
 
+#include <array>
 #include <string>
 
-#include "retarget/geometry/mesh.hpp"
+#include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy {
 
@@ -28,5 +29,19 @@ bool lies_down(const Stance& stance);
 std::string refusal(const Stance& stance);
 /// Why this may be no person; empty: no doubt.
 std::string doubt(const Stance& stance);
+
+/// What the extractor says of a body, y up, that is turned by a quarter more each time.
+using SideViews = std::array<Extraction, 4>;
+SideViews seen_from_sides(const Mesh& mesh, SkeletonExtractor& extractor);
+
+/// Radians about +y from +z towards +x: of the directions near what the views say, the one about which the
+/// body is its own mirror image.
+float body_heading(const Mesh& mesh, const SideViews& seen);
+
+/// Whether a body without bones is head down: the head is seen below the pelvis and the ankles above it.
+bool stands_on_head(const SideViews& seen);
+
+/// The heading near `guess` about which points are most symmetric; the guess where none stands out.
+float symmetric_heading(const Points& points, float guess);
 
 }  // namespace understudy
