@@ -10,7 +10,7 @@ namespace understudy {
 namespace {
 
 constexpr int kLookedAt = 120;
-constexpr float kSmallest = 5e-5f;  // metres: less is not worth its bytes
+constexpr float kSmallestOffset = 5e-5f;  // metres: less is not worth its bytes
 
 Eigen::Map<const Eigen::VectorXf> flat(const Points& points) {
   return {points.data(), points.size()};
@@ -54,7 +54,7 @@ void to_unit_range(CorrectiveShapes& shapes, Points& constant) {
 void cut_small(std::vector<Points>& shapes) {
   for (Points& shape : shapes)
     for (Eigen::Index v = 0; v < shape.rows(); ++v)
-      if (shape.row(v).norm() < kSmallest) shape.row(v).setZero();
+      if (shape.row(v).norm() < kSmallestOffset) shape.row(v).setZero();
 }
 
 }  // namespace
