@@ -114,16 +114,14 @@ TEST_F(Widgets, ProgressCanBeCancelled) {
 
 TEST_F(Widgets, SplitterMovesTheBorderWithinItsLimits) {
   float size = 200;
-  SplitterOptions options;
-  options.min = 100, options.max = 300;
   in_window([&](Ui& ui) {
-    ImGui::SetCursorPosX(size);
-    splitter(ui, "border", size, options);
+    ImGui::SetCursorPosX(400 - size);
+    splitter(ui, "border", size, 100, 300);
   });
   const ImVec2 at = mark("border").rect.at(0.5f, 0.5f);
-  drag(at, {at.x + 40, at.y});
+  drag(at, {at.x - 40, at.y});
   EXPECT_NEAR(size, 240, 1);
-  drag(mark("border").rect.at(0.5f, 0.5f), {at.x + 500, at.y});
+  drag(mark("border").rect.at(0.5f, 0.5f), {at.x - 190, at.y});
   EXPECT_FLOAT_EQ(size, 300);
 }
 

@@ -135,9 +135,7 @@ void Workspace::draw_side(const app::Session& session, PanelContext& context) {
 void Workspace::draw_side_edge(PanelContext& context) {
   if (places_.side_edge.empty()) return;
   const Frame frame(context.ui, "##edge", places_.side_edge, {0, 0}, context.ui.theme().panel);
-  SplitterOptions options;
-  options.reversed = true, options.min = 260, options.max = 640;
-  splitter(context.ui, "side.edge", parts_.side_width, options);
+  splitter(context.ui, "side.edge", parts_.side_width, 260, 640);
 }
 
 void Workspace::draw_bottom(const app::Session& session, PanelContext& context, float frame_rate) {

@@ -30,7 +30,7 @@ struct Overlay {
 /// Draws into the current window.
 void draw_overlay(Ui& ui, const Overlay& overlay);
 
-/// The labels of a pane's joints: all where the layer says so, hovered and selected ones always.
+/// The labels of a pane's joints: all where the layer shows them, hovered and selected ones always.
 std::vector<Overlay::Label> joint_labels(const PaneView& view, const Joints& joints, bool all, int hovered,
                                          int selected);
 

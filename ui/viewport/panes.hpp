@@ -23,7 +23,7 @@ struct PaneContent {
   }
 };
 
-/// Pane by pane, left to right, as the layout says. A wipe has two, drawn over each other: what is left of
+/// Pane by pane, left to right, as the layout has them. A wipe has two, drawn over each other: what is left of
 /// its line and what is right of it (source and take where there is only one take).
 std::vector<PaneContent> panes_of(const app::Session& session);
 /// One pane that shows the source or one take.

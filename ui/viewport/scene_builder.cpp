@@ -84,9 +84,9 @@ class Builder {
   void set_ground();
   /// The colour behind everything, for what is drawn faintly.
   Vec3 air() const { return (out_.scene.background.top + out_.scene.background.bottom) / 2; }
-  const ColourMemory::Made& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
-  const ColourMemory::Made& scan_colors();
-  void explain(const ColourMemory::Made& made, int take);
+  const SurfaceColours& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
+  const SurfaceColours& scan_colors();
+  void explain(const SurfaceColours& made, int take);
 
   const SceneInput& in_;
   const Session& session_;
@@ -134,7 +134,7 @@ void Builder::add_scan() {
   const app::Layers& layers = session_.view.source;
   if (layers.surface && in_.pictures.scan != nullptr) {
     const auto& scan = in_.pictures.scan;
-    const ColourMemory::Made& made = scan_colors();
+    const SurfaceColours& made = scan_colors();
     render::MeshView view;
     view.vertices = part_of(scan, scan->mesh.vertices), view.faces = part_of(scan, scan->mesh.faces);
     view.normals = part_of(scan, scan->normals);
@@ -174,7 +174,7 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
   view.normals = part_of(posed, posed->normals);
   view.color = take_color(k), view.opacity = opacity;
   if (coloured) {
-    const ColourMemory::Made& made = take_colors(k, posed);
+    const SurfaceColours& made = take_colors(k, posed);
     view.colors = made.colors;
     if (made.colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
       view.colors = part_of(target, mesh.colors);
@@ -278,16 +278,16 @@ void Builder::set_ground() {
   if (rest.rows() > 0) ground.height = rest.col(1).minCoeff();
 }
 
-void Builder::explain(const ColourMemory::Made& made, int take) {
+void Builder::explain(const SurfaceColours& made, int take) {
   if (made.values.legend.title.empty()) return;
   out_.legend = made.values.legend;
   out_.values = made.values.values;
   out_.values_take = take;
 }
 
-const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed) {
+const SurfaceColours& Builder::take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed) {
   const app::TakeState& take = session_.takes[k];
-  ColourMemory::Made now;
+  SurfaceColours now;
   const Colouring colouring = take_colouring(session_);
   now.settings = {static_cast<float>(colouring), session_.view.error_scale_mm,
                   static_cast<float>(weights_joint(session_))};
@@ -302,7 +302,7 @@ const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<cons
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, take.joints[f]);
   }
-  ColourMemory::Made& made = memory_.made[k];
+  SurfaceColours& made = memory_[k];
   if (made.kept == now.kept && made.settings == now.settings) return made;
   now.values = take_values(session_, k, in_.pictures, posed);
   const bool categories = colouring == Colouring::Weights && !now.values.legend.categories.empty();
@@ -310,8 +310,8 @@ const ColourMemory::Made& Builder::take_colors(int k, const std::shared_ptr<cons
   return made = std::move(now);
 }
 
-const ColourMemory::Made& Builder::scan_colors() {
-  ColourMemory::Made now;
+const SurfaceColours& Builder::scan_colors() {
+  SurfaceColours now;
   const int f = std::max(0, in_.pictures.frame);
   now.kept = {in_.pictures.scan};
   now.settings = {static_cast<float>(session_.view.source.colouring)};
@@ -319,7 +319,7 @@ const ColourMemory::Made& Builder::scan_colors() {
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, session_.source.frames[f].joints);
   }
-  ColourMemory::Made& made = memory_.made[-1];
+  SurfaceColours& made = memory_[-1];
   if (made.kept == now.kept && made.settings == now.settings) return made;
   now.values = scan_values(session_, in_.pictures);
   now.colors = scale_colors(now.values);

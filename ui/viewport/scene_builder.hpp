@@ -22,16 +22,15 @@ struct EditPreview {
   std::optional<render::GizmoView> gizmo;
 };
 
-/// Colours kept while their inputs stay the same; one for each pane.
-struct ColourMemory {
-  struct Made {
-    std::vector<float> settings;
-    std::vector<std::shared_ptr<const void>> kept;  ///< the inputs: one and the same has not changed
-    SurfaceValues values;
-    render::SharedPoints colors;
-  };
-  std::map<int, Made> made;  ///< by take, -1 the scan
+/// A surface's colours, kept while their inputs stay the same.
+struct SurfaceColours {
+  std::vector<float> settings;
+  std::vector<std::shared_ptr<const void>> kept;  ///< the inputs: one and the same has not changed
+  SurfaceValues values;
+  render::SharedPoints colors;
 };
+/// One for each pane, by take, -1 the scan.
+using ColourMemory = std::map<int, SurfaceColours>;
 
 struct SceneInput {
   const app::Session& session;

@@ -19,11 +19,6 @@ constexpr float kLeastSide = 24;  // pixels; a smaller pane is not drawn
 constexpr float kGap = 2;         // points between panes
 constexpr float kTurn = 0.0075f;  // radians a point of dragging
 
-Rect whole_pixels(const Rect& rect) {
-  const auto down = [](const ImVec2& p) { return ImVec2(std::floor(p.x), std::floor(p.y)); };
-  return {down(rect.min), down(rect.max)};
-}
-
 /// Cells of one size, in one row, in two where there are many.
 std::vector<Rect> cells(const Rect& area, int count, float gap) {
   const int columns = count <= 3 ? count : (count + 1) / 2, rows = (count + columns - 1) / columns;
@@ -78,7 +73,8 @@ void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQue
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
   if (ImGui::BeginChild("##views", {0, 0}, false, kFlags)) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
-    const Rect area = whole_pixels({at, {at.x + size.x, at.y + size.y}});
+    const Rect area{{std::floor(at.x), std::floor(at.y)},
+                    {std::floor(at.x + size.x), std::floor(at.y + size.y)}};
     const std::vector<PaneContent> contents = panes_of(f.session);
     prepare(f, contents.size());
     keep_view_when_following_changes(f);

@@ -53,7 +53,8 @@ class Views {
   void draw_brush(const Frame& f, const Pane& pane);
   void keep_view_when_following_changes(const Frame& f);
 
-  std::optional<render::Renderer> renderer_, sketcher_;  ///< as the settings say, and for while things move
+  std::optional<render::Renderer> renderer_,
+      sketcher_;  ///< of the settings' quality, and for while things move
   int samples_ = 0;
   std::vector<std::unique_ptr<Pane>> panes_;
   TargetLooks looks_;

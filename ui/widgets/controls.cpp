@@ -330,17 +330,14 @@ bool progress(Ui& ui, const std::string& name, const ProgressOptions& options) {
   return icon_button(ui, name + ".cancel", Icon::Close, {"Cancel", "", false, false, 24});
 }
 
-bool splitter(Ui& ui, const std::string& name, float& size, const SplitterOptions& options) {
+void splitter(Ui& ui, const std::string& name, float& size, float min, float max) {
   const Press p = press(ui, name, {std::round(ui.px(6)), ImGui::GetContentRegionAvail().y}, name);
   const bool lit = p.hovered || p.held;
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   const float middle = p.rect.at(0.5f, 0).x, half = ui.px(lit ? 1 : 0.5f);
   fill({{middle - half, p.rect.min.y}, {middle + half, p.rect.max.y}},
        lit ? ui.theme().accent_hover : ui.theme().line, 0);
-  if (!p.held) return false;
-  const float by = ImGui::GetIO().MouseDelta.x / ui.scale();
-  size = std::clamp(size + (options.reversed ? -by : by), options.min, std::max(options.min, options.max));
-  return by != 0;
+  if (p.held) size = std::clamp(size - ImGui::GetIO().MouseDelta.x / ui.scale(), min, max);
 }
 
 }  // namespace understudy::ui

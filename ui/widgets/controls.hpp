@@ -83,11 +83,8 @@ struct ProgressOptions {
 /// True when cancel was clicked (marked NAME.cancel).
 bool progress(Ui& ui, const std::string& name, const ProgressOptions& options);
 
-struct SplitterOptions {
-  bool reversed = false;  ///< `size` is of the right side: it grows to the left
-  float min = 80, max = 10000;
-};
-/// An upright line between two areas that changes the size (pixels at scale 1) of one. True while dragged.
-bool splitter(Ui& ui, const std::string& name, float& size, const SplitterOptions& options = {});
+/// An upright line that is dragged to change the size of the area on its right, within limits; pixels at
+/// scale 1.
+void splitter(Ui& ui, const std::string& name, float& size, float min, float max);
 
 }  // namespace understudy::ui

@@ -17,6 +17,15 @@ struct ListState {
   int cursor = 0;  ///< among the items that match
 };
 
+/// Whether every word of `search` occurs in the text, in any case.
+bool matches(const std::string& text, const std::string& search) {
+  const std::string all = lower_case(text);
+  std::istringstream words(lower_case(search));
+  for (std::string word; words >> word;)
+    if (all.find(word) == std::string::npos) return false;
+  return true;
+}
+
 std::vector<int> matching(const std::vector<ListItem>& items, const std::string& search) {
   std::vector<int> found;
   for (int i = 0; i < ssize(items); ++i)
@@ -44,14 +53,6 @@ bool draw_item(Ui& ui, const std::string& name, const ListItem& item, bool selec
 }
 
 }  // namespace
-
-bool matches(const std::string& text, const std::string& search) {
-  const std::string all = lower_case(text);
-  std::istringstream words(lower_case(search));
-  for (std::string word; words >> word;)
-    if (all.find(word) == std::string::npos) return false;
-  return true;
-}
 
 int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>& items, int selected,
                     float height) {

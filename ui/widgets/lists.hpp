@@ -16,8 +16,6 @@ struct ListItem {
 /// `height` pixels, 0: what is left. The line is marked NAME.search, item i NAME.i.
 int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>& items, int selected,
                     float height = 0);
-/// Whether every word of `search` occurs in the text, in any case.
-bool matches(const std::string& text, const std::string& search);
 
 struct Column {
   std::string title;
