@@ -22,12 +22,11 @@ Mesh low_poly(float cell) {
   std::vector<int> counts;
   for (Eigen::Index v = 0; v < body.vertices.rows(); ++v) {
     std::array<int, 3> key;
-    for (int k = 0; k < 3; ++k)
-      key[static_cast<size_t>(k)] = static_cast<int>(std::floor(body.vertices(v, k) / cell));
+    for (int k = 0; k < 3; ++k) key[k] = static_cast<int>(std::floor(body.vertices(v, k) / cell));
     const int n = at.try_emplace(key, static_cast<int>(sums.size())).first->second;
     if (n == static_cast<int>(sums.size())) sums.push_back(Vec3::Zero()), counts.push_back(0);
-    sums[static_cast<size_t>(n)] += body.vertices.row(v).transpose();
-    ++counts[static_cast<size_t>(n)];
+    sums[n] += body.vertices.row(v).transpose();
+    ++counts[n];
     of.push_back(n);
   }
   Mesh mesh;
@@ -36,8 +35,7 @@ Mesh low_poly(float cell) {
     mesh.vertices.row(static_cast<Eigen::Index>(n)) = (sums[n] / static_cast<float>(counts[n])).transpose();
   std::vector<std::array<int, 3>> faces;
   for (Eigen::Index f = 0; f < body.faces.rows(); ++f) {
-    const int a = of[static_cast<size_t>(body.faces(f, 0))], b = of[static_cast<size_t>(body.faces(f, 1))],
-              c = of[static_cast<size_t>(body.faces(f, 2))];
+    const int a = of[body.faces(f, 0)], b = of[body.faces(f, 1)], c = of[body.faces(f, 2)];
     if (a != b && b != c && a != c) faces.push_back({a, b, c});
   }
   mesh.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
@@ -67,7 +65,7 @@ std::vector<Pose> bends(const Joints& rest) {
     if (joint == LeftElbow || joint == RightElbow) turn = Vec3(0, 100 * side, 0);
     if (joint == LeftKnee || joint == RightKnee) turn = Vec3(100, 0, 0);
     if (joint == LeftShoulder || joint == RightShoulder) turn = Vec3(0, 0, 80 * side);  // arms down
-    poses[i].local[static_cast<size_t>(joint)] = rotation_from_axis_angle(turn * kPi / 180);
+    poses[i].local[joint] = rotation_from_axis_angle(turn * kPi / 180);
   }
   return poses;
 }
@@ -91,7 +89,7 @@ TEST_F(LowPoly, BendsWithoutTearingAndKeepsItsFlesh) {
   ASSERT_EQ(file.vertex_count(), mesh.vertices.rows());
   const auto nodes = file.world();
   Joints joints;
-  for (int j = 0; j < kJointCount; ++j) joints.row(j) = nodes[static_cast<size_t>(j)].topRightCorner<3, 1>();
+  for (int j = 0; j < kJointCount; ++j) joints.row(j) = nodes[j].topRightCorner<3, 1>();
   const Points still = vertices_at(file, 0, 0);
   const Faces& faces = file.parts.at(0).faces;
   const BentVolume volume(still, faces, joints);

@@ -65,7 +65,7 @@ TEST(Costume, CoatThickensTheTrunkAndLeavesTheRest) {
   wear_coat(dressed, person.truth, rng);
   const Eigen::VectorXf moved = (dressed.points - person.cloud.points).rowwise().norm();
   for (Eigen::Index i = 0; i < moved.size(); ++i) {
-    const int part = person.cloud.parts[static_cast<size_t>(i)];
+    const int part = person.cloud.parts[i];
     if (part == LeftKnee || part == Head || part == Pelvis) EXPECT_EQ(moved[i], 0);
     if (part == Spine2) EXPECT_GT(moved[i], 0.009f);
     EXPECT_LT(moved[i], 0.061f);
@@ -80,7 +80,7 @@ TEST(Costume, HairIsAboutTheHead) {
     wear_hair(dressed, person.truth, rng);
     ASSERT_NE(dressed.points.rows(), person.cloud.points.rows());
     for (Eigen::Index i = 0; i < dressed.points.rows(); ++i)
-      if (dressed.parts[static_cast<size_t>(i)] == Head)
+      if (dressed.parts[i] == Head)
         EXPECT_LT((dressed.points.row(i) - person.truth.joints.row(Head)).norm(), 0.4f);
   }
 }
@@ -93,7 +93,7 @@ TEST(Costume, ThingsAreHeldInAHandAndAreNotTheBody) {
     hold_thing(holding, person.truth, rng);
     float nearest = 10;
     for (Eigen::Index i = person.cloud.points.rows(); i < holding.points.rows(); ++i) {
-      EXPECT_EQ(holding.parts[static_cast<size_t>(i)], kNoBody);
+      EXPECT_EQ(holding.parts[i], kNoBody);
       for (const int wrist : {LeftWrist, RightWrist})
         nearest = std::min(nearest, (holding.points.row(i) - person.truth.joints.row(wrist)).norm());
     }
@@ -112,7 +112,7 @@ TEST(PartialView, OneSideIsWhatOneCameraSees) {
     // The trunk's front or back or side: what is left of it leans to one way.
     Vec3 mean = Vec3::Zero();
     for (Eigen::Index i = 0; i < seen.points.rows(); ++i)
-      if (seen.parts[static_cast<size_t>(i)] == Spine2) mean += seen.points.row(i);
+      if (seen.parts[i] == Spine2) mean += seen.points.row(i);
     mean /= static_cast<float>(count_of(seen, Spine2));
     EXPECT_GT(Vec3(mean.x(), 0, mean.z() - person.truth.joints(Spine2, 2)).norm(), 0.02f);
   }

@@ -14,8 +14,7 @@ using test::error_of;
 
 /// The joint whose bone make_character() put at each joint: bones come after the armature.
 void expect_true_map(const BoneMap& map) {
-  for (int j = 0; j < kJointCount; ++j)
-    EXPECT_EQ(map.node[static_cast<size_t>(j)], 1 + j) << kJointNames[static_cast<size_t>(j)];
+  for (int j = 0; j < kJointCount; ++j) EXPECT_EQ(map.node[j], 1 + j) << kJointNames[j];
 }
 
 class EveryNaming : public testing::TestWithParam<Naming> {};
@@ -61,8 +60,7 @@ TEST(BoneMap, FindsLimbsWithoutNames) {
     EXPECT_TRUE(map.usable()) << heading;
     for (const int j : {Pelvis, LeftHip, RightHip, LeftKnee, RightKnee, LeftAnkle, RightAnkle, LeftShoulder,
                         RightShoulder, LeftElbow, RightElbow, LeftWrist, RightWrist, Spine3, Head})
-      EXPECT_EQ(map.node[static_cast<size_t>(j)], 1 + j)
-          << kJointNames[static_cast<size_t>(j)] << " " << heading;
+      EXPECT_EQ(map.node[j], 1 + j) << kJointNames[j] << " " << heading;
     EXPECT_LT(map.confidence[LeftHip], 0.8f);
     EXPECT_TRUE(contains(map.how, "position"));
   }
