@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "render/colors.hpp"
 #include "render/context/context.hpp"
 #include "render/text.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::render {
 namespace {
@@ -159,8 +159,7 @@ void draw_caption(Image& sheet, const Font& font, const std::string& caption, co
 
 void draw_moment_header(Image& sheet, const Font& font, const SheetMoment& moment, const Eigen::Vector2f& at,
                         float scale) {
-  char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%.2f s", moment.seconds);
+  const std::string seconds = printed("%.2f s", moment.seconds);
   const std::string frame = "Frame " + std::to_string(moment.frame);
   font.draw(sheet, frame, at, 18 * scale, kInk);
   font.draw(sheet, seconds, {at.x() + font.width(frame, 18 * scale) + 10 * scale, at.y()}, 18 * scale,

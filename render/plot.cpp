@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "render/text.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::render {
 namespace {
@@ -37,9 +37,7 @@ struct Axis {
 };
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", std::abs(value) < 1e-12 ? 0 : value);
-  return text;
+  return printed("%.6g", std::abs(value) < 1e-12 ? 0 : value);
 }
 
 /// A line with round ends and soft edges.

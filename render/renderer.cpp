@@ -175,14 +175,9 @@ struct Renderer::Parts {
 
   void draw_still(const Scene& scene, const Camera& camera, PixelSize size);
   void show(const Scene& scene, const Camera& camera, const RenderTarget& target);
-  void draw_shadow(const Scene& scene);
   void draw_meshes(const Scene& scene, bool opaque);
   void draw_skeletons(const Scene& scene, bool x_ray);
-  void draw_occlusion(const Scene& scene);
-  void draw_points(const Scene& scene);
   void draw_lines(const Scene& scene, bool x_ray);
-  void draw_x_ray(const Scene& scene);
-  void draw_gizmos(const Scene& scene, const Camera& camera);
 
   using Pass = void (*)(Parts&, const Scene&, const Camera&);
   static const Pass kPasses[];
@@ -195,7 +190,6 @@ struct Renderer::Parts {
   BackgroundPass background;
   MeshPass meshes{arrays};
   PointsPass points{arrays};
-  SkeletonPass skeletons;
   OcclusionPass occlusion;
   GroundPass ground;
   LinesPass lines;
@@ -214,10 +208,6 @@ void Renderer::Parts::draw_still(const Scene& scene, const Camera& camera, Pixel
   canvas.copy_still();
 }
 
-void Renderer::Parts::draw_shadow(const Scene& scene) {
-  if (scene.ground.visible && scene.ground.shadow > 0) ground.draw_shadow(scene);
-}
-
 void Renderer::Parts::draw_meshes(const Scene& scene, bool opaque) {
   for (const auto& mesh : scene.meshes)
     if ((mesh.opacity >= 1) == opaque) meshes.draw(mesh, ambient_strength(scene));
@@ -225,17 +215,7 @@ void Renderer::Parts::draw_meshes(const Scene& scene, bool opaque) {
 
 void Renderer::Parts::draw_skeletons(const Scene& scene, bool x_ray) {
   for (const auto& skeleton : scene.skeletons)
-    if (skeleton.x_ray == x_ray) skeletons.draw(meshes, skeleton);
-}
-
-void Renderer::Parts::draw_occlusion(const Scene& scene) {
-  if (options.quality != Quality::Best || scene.occlusion <= 0 || scene.meshes.empty()) return;
-  canvas.resolve_depth();
-  occlusion.draw(canvas.depth_texture(), frame.size(), scene.occlusion);
-}
-
-void Renderer::Parts::draw_points(const Scene& scene) {
-  for (const auto& cloud : scene.clouds) points.draw(cloud, canvas.samples() > 1);
+    if (skeleton.x_ray == x_ray) meshes.draw(skeleton_solids(skeleton), 0);
 }
 
 void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
@@ -243,36 +223,39 @@ void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
     if (view.x_ray == x_ray) lines.draw(view);
 }
 
-void Renderer::Parts::draw_x_ray(const Scene& scene) {
-  const auto x_ray = [](const auto& view) { return view.x_ray; };
-  if (std::none_of(scene.skeletons.begin(), scene.skeletons.end(), x_ray) &&
-      std::none_of(scene.lines.begin(), scene.lines.end(), x_ray))
-    return;
-  gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-  draw_skeletons(scene, true);
-  draw_lines(scene, true);
-}
-
-void Renderer::Parts::draw_gizmos(const Scene& scene, const Camera& camera) {
-  if (!scene.gizmos.empty()) gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-  for (const auto& gizmo : scene.gizmos) meshes.draw(gizmo_solids(gizmo, camera), 0);
-}
-
 /// What is drawn over the still background, in this order. A new pass is a file of passes/ with its shader
 /// beside it, a row here and a golden picture.
 const Renderer::Parts::Pass Renderer::Parts::kPasses[] = {
-    [](Parts& p, const Scene& s, const Camera&) { p.draw_shadow(s); },
+    [](Parts& p, const Scene& s, const Camera&) {
+      if (s.ground.visible && s.ground.shadow > 0) p.ground.draw_shadow(s);
+    },
     // What is opaque; points are too rough for occlusion from depth.
     [](Parts& p, const Scene& s, const Camera&) { p.draw_meshes(s, true); },
     [](Parts& p, const Scene& s, const Camera&) { p.draw_skeletons(s, false); },
-    [](Parts& p, const Scene& s, const Camera&) { p.draw_occlusion(s); },
-    [](Parts& p, const Scene& s, const Camera&) { p.draw_points(s); },
+    [](Parts& p, const Scene& s, const Camera&) {
+      if (p.options.quality != Quality::Best || s.occlusion <= 0 || s.meshes.empty()) return;
+      p.canvas.resolve_depth();
+      p.occlusion.draw(p.canvas.depth_texture(), p.frame.size(), s.occlusion);
+    },
+    [](Parts& p, const Scene& s, const Camera&) {
+      for (const auto& cloud : s.clouds) p.points.draw(cloud, p.canvas.samples() > 1);
+    },
     // What lies over it.
     [](Parts& p, const Scene& s, const Camera&) { p.draw_lines(s, false); },
     [](Parts& p, const Scene& s, const Camera&) { p.draw_meshes(s, false); },
     // What shows through everything.
-    [](Parts& p, const Scene& s, const Camera&) { p.draw_x_ray(s); },
-    [](Parts& p, const Scene& s, const Camera& c) { p.draw_gizmos(s, c); },
+    [](Parts& p, const Scene& s, const Camera&) {
+      const auto x_ray = [](const auto& view) { return view.x_ray; };
+      if (std::any_of(s.skeletons.begin(), s.skeletons.end(), x_ray) ||
+          std::any_of(s.lines.begin(), s.lines.end(), x_ray))
+        gl::api().Clear(GL_DEPTH_BUFFER_BIT);
+      p.draw_skeletons(s, true);
+      p.draw_lines(s, true);
+    },
+    [](Parts& p, const Scene& s, const Camera& camera) {
+      if (!s.gizmos.empty()) gl::api().Clear(GL_DEPTH_BUFFER_BIT);
+      for (const auto& gizmo : s.gizmos) p.meshes.draw(gizmo_solids(gizmo, camera), 0);
+    },
 };
 
 /// Into the target: the samples' means, or one sample with its edges smoothed afterwards.

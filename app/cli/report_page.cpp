@@ -72,8 +72,7 @@ const std::vector<Table>& tables() {
       {"baselines", "Against baselines",
        "`copy` and `paper` are the program's engines. `fit`: a parametric body is fitted to each scan by "
        "optimisation from the scans alone, and its rotations are copied; where the people evaluated on are "
-       "of "
-       "that very body, as in suites made from one data folder, it knows them better than it would know "
+       "of that very body, as in suites made from one data folder, it knows them better than it would know "
        "strangers.",
        kPerformance},
       {"baselines", "Contacts, penetration, and what has no joints of its own",
@@ -88,8 +87,7 @@ const std::vector<Table>& tables() {
        kRotations},
       {"contexts", "Contexts",
        "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
-       "of "
-       "that length. Places start anew, so only figures after alignment are compared.",
+       "of that length. Places start anew, so only figures after alignment are compared.",
        kAligned},
       {"rotation", "What the network says of rotations, with and without a loss on them",
        "All trained with the same budget, shorter than that of the shipped weights.", kPerformance},

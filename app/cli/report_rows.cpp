@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
@@ -14,52 +15,46 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kTables[] = {"baselines", "seen", "contexts", "rotation", "extraction", "offsets"};
-constexpr const char* kKeys[] = {"table",
-                                 "name",
-                                 "suite",
-                                 "budget",
-                                 "engine",
-                                 "extractor",
-                                 "weights",
-                                 "engine_weights",
-                                 "extractor_weights",
-                                 "offsets",
-                                 "foot_lock",
-                                 "oracle",
-                                 "baseline",
-                                 "context",
-                                 "limit",
-                                 "breakdown",
-                                 "near"};
+/// Calls visit(key, member) for all that the file may have of a row.
+template <class Visit>
+void each_key(ReportRow& row, Visit visit) {
+  MethodOptions& how = row.eval.how;
+  visit("table", row.table);
+  visit("name", row.name);
+  visit("suite", row.suite);
+  visit("budget", row.budget);
+  visit("breakdown", row.breakdown);
+  visit("engine", how.method.engine);
+  visit("extractor", how.method.extractor);
+  visit("weights", how.weights);
+  visit("engine_weights", how.engine_file);
+  visit("extractor_weights", how.extractor_file);
+  visit("near", how.method.near);
+  visit("offsets", how.method.offsets);
+  visit("foot_lock", how.method.lock_feet);
+  visit("oracle", row.eval.oracle);
+  visit("baseline", row.eval.baseline);
+  visit("context", row.eval.restart_every);
+  visit("limit", row.eval.limit);
+}
 
 ReportRow row_from(const Json& json, const fs::path& folder) {
-  for (const auto& item : json.items())
-    US_CHECK(std::find(std::begin(kKeys), std::end(kKeys), item.key()) != std::end(kKeys), "a row has \"",
-             item.key(), "\", which is not known");
-  const auto file = [&](const char* key) {
-    const std::string path = json.value(key, "");
-    return path.empty() ? path : (folder / path).lexically_normal().string();
-  };
   ReportRow row;
-  row.table = json.at("table");
-  row.name = json.at("name");
-  row.suite = json.at("suite");
+  std::set<std::string> known;
+  each_key(row, [&](const char* key, const auto&) { known.insert(key); });
+  for (const auto& item : json.items())
+    US_CHECK(known.count(item.key()) > 0, "a row has \"", item.key(), "\", which is not known");
+  for (const char* key : {"table", "name", "suite"}) json.at(key);  // these must be there
+  each_key(row, [&](const char* key, auto& member) {
+    if (json.contains(key)) json.at(key).get_to(member);
+  });
   US_CHECK(std::find(std::begin(kTables), std::end(kTables), row.table) != std::end(kTables),
            "there is no table \"", row.table, "\"");
-  row.budget = json.value("budget", "");
-  row.breakdown = json.value("breakdown", false);
-  row.eval.how.method.engine = engine_named(json.value("engine", engines().front().name)).name;
-  row.eval.how.method.extractor = extractor_named(json.value("extractor", extractors().front().name)).name;
-  row.eval.how.weights = file("weights");
-  row.eval.how.engine_file = file("engine_weights");
-  row.eval.how.extractor_file = file("extractor_weights");
-  row.eval.how.method.near = json.value("near", true);
-  row.eval.how.method.offsets = json.value("offsets", true);
-  row.eval.how.method.lock_feet = json.value("foot_lock", true);
-  row.eval.oracle = json.value("oracle", "");
-  row.eval.baseline = json.value("baseline", "");
-  row.eval.restart_every = json.value("context", 0);
-  row.eval.limit = json.value("limit", 0);
+  MethodOptions& how = row.eval.how;
+  engine_named(how.method.engine);  // throw where there is none
+  extractor_named(how.method.extractor);
+  for (std::string* path : {&how.weights, &how.engine_file, &how.extractor_file})
+    if (!path->empty()) *path = (folder / *path).lexically_normal().string();
   return row;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "app/cli/evaluation.hpp"
@@ -49,9 +48,8 @@ render::Image picture_of(render::Renderer& renderer, const render::Font& font, c
     camera = render::fitted(camera, both, size.aspect(), 0.12f);
     render::paste(picture, renderer.render_image(scene, camera, size), side * kWidth, kCaption);
   }
-  char line[64];
-  std::snprintf(line, sizeof line, ", frame %lld: %.0f mm", static_cast<long long>(worst.frame),
-                1000 * worst.error_m);
+  const std::string line =
+      printed(", frame %lld: %.0f mm", static_cast<long long>(worst.frame), 1000 * worst.error_m);
   std::string failures;
   for (int f = 0; f < kFailureCount; ++f)
     if (worst.failures[f]) append_item(failures, kFailureNames[f]);
@@ -73,9 +71,7 @@ void write_worst_frames(const std::string& folder, const std::vector<WorstFrame>
   render::Image sheet(columns * 2 * kWidth, (count + columns - 1) / columns * (kHeight + kCaption));
   for (int i = 0; i < count; ++i) {
     const render::Image picture = picture_of(renderer, font, frames[i]);
-    char name[32];
-    std::snprintf(name, sizeof name, "/worst_%02d.png", i + 1);
-    render::write_png(folder + name, picture);
+    render::write_png(folder + printed("/worst_%02d.png", i + 1), picture);
     render::paste(sheet, picture, i % columns * picture.width, i / columns * picture.height);
   }
   render::write_png(folder + "/worst.png", sheet);

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/numpy_random.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/rng.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/body/costume.hpp"
@@ -113,9 +112,7 @@ std::vector<CasePlan> extraction_plans(const Workshop& shop) {
   const auto& [betas, motions] = std::tie(shop.split.betas, shop.split.motions);
   std::vector<CasePlan> plans;
   for (size_t i = 0; i < kExtractionCases; ++i) {
-    char name[8];
-    std::snprintf(name, sizeof name, "b%02zu", i);
-    plans.push_back({name, motions[i % motions.size()], {}, "", betas[i % betas.size()], ""});
+    plans.push_back({printed("b%02zu", i), motions[i % motions.size()], {}, "", betas[i % betas.size()], ""});
     if (shop.options.suite != "occluded") continue;
     plans.back().occlusion = i % kOcclusions.size();
     // Each occlusion meets other motions and people than the ones before.
@@ -250,26 +247,20 @@ Points64 occluded(const CasePlan& plan, const Points64& points, const Joints64& 
 }
 
 void write_points(const std::string& path, const Points& points) {
-  std::ofstream file(path, std::ios::binary);
-  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << points.rows()
-       << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  file.write(reinterpret_cast<const char*>(points.data()),
-             static_cast<std::streamsize>(points.size() * static_cast<int64_t>(sizeof(float))));
-  US_CHECK(file, path, ": cannot be written");
+  std::string bytes = printed(
+      "ply\nformat binary_little_endian 1.0\nelement vertex %lld\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n",
+      static_cast<long long>(points.rows()));
+  bytes.append(reinterpret_cast<const char*>(points.data()),
+               sizeof(float) * static_cast<size_t>(points.size()));
+  write_file(path, bytes, /*synced=*/false);
 }
 
 void write_target(const std::string& path, const ExactPerson& person) {
-  std::ofstream file(path);
-  char line[96];
-  for (Eigen::Index v = 0; v < person.vertices.rows(); ++v) {
-    std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", person.vertices(v, 0), person.vertices(v, 1),
-                  person.vertices(v, 2));
-    file << line;
-  }
-  for (Eigen::Index f = 0; f < person.faces.rows(); ++f)
-    file << "f " << person.faces(f, 0) + 1 << ' ' << person.faces(f, 1) + 1 << ' ' << person.faces(f, 2) + 1
-         << '\n';
-  US_CHECK(file, path, ": cannot be written");
+  std::string text;
+  for (const auto& v : person.vertices.rowwise()) text += printed("v %.6f %.6f %.6f\n", v[0], v[1], v[2]);
+  for (const auto& f : person.faces.rowwise()) text += printed("f %d %d %d\n", f[0] + 1, f[1] + 1, f[2] + 1);
+  write_file(path, text, /*synced=*/false);
 }
 
 template <class Frames>
@@ -388,9 +379,7 @@ void make_case(Workshop& shop, const CasePlan& plan) {
     const auto scan = shop.options.suite == "captured" ? captured : surface;
     Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
     if (shop.options.suite == "occluded") points = occluded(plan, points, shown.joints[t], motion.local[t]);
-    char name[32];
-    std::snprintf(name, sizeof name, "frame_%05zu.ply", t);
-    write_points((folder / "source" / name).string(),
+    write_points((folder / "source" / printed("frame_%05zu.ply", t)).string(),
                  rows_of(points, shop.random.permutation(points.rows())).cast<float>());
   }
   write_npz((folder / "truth.npz").string(), truth);

@@ -16,13 +16,13 @@ constexpr float kBent = kPi / 2;
 
 Evaluator::Evaluator(double fps, const Truth* truth, const Mesh* target, int slow_every)
     : fps_(fps), slow_every_(slow_every), truth_(truth) {
-  if (target && !target->is_cloud()) penetration_.emplace(target->vertices, target->faces);
-  if (target && !target->is_cloud() && truth && truth->target_joints && !truth->source_gaps.empty())
-    hands_.emplace(target->vertices, target->faces, *truth->target_joints);
-  if (target && !target->is_cloud() && truth && truth->target_joints && !truth->rotations.empty())
-    bends_.emplace(target->vertices, target->faces, *truth->target_joints);
-  if (target && !target->is_cloud() && truth && truth->target_joints)
+  const bool surface = target && !target->is_cloud();
+  if (surface) penetration_.emplace(target->vertices, target->faces);
+  if (surface && truth && truth->target_joints) {
     parts_.emplace(target->vertices, target->faces, *truth->target_joints);
+    if (!truth->source_gaps.empty()) hands_.emplace(target->vertices, target->faces, *truth->target_joints);
+    if (!truth->rotations.empty()) bends_.emplace(target->vertices, target->faces, *truth->target_joints);
+  }
   if (truth) true_ = {truth->joints, truth->rotations, truth->source_joints, {}, {}};
   means_["medl_mm"].per_unit = means_["floor_mm"].per_unit = 1000;
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -45,15 +46,11 @@ void Latency::add(const Latency& other) {
 
 std::string Latency::table() const {
   std::string text = "stage      p50 ms   p95 ms\n";
-  char line[80];
-  for (int i = 0; i < 5; ++i) {
-    std::snprintf(line, sizeof line, "%-9s %7.2f  %7.2f\n", kStages[i], quantile(i, 0.5), quantile(i, 0.95));
-    text += line;
-  }
+  for (int i = 0; i < 5; ++i)
+    text += printed("%-9s %7.2f  %7.2f\n", kStages[i], quantile(i, 0.5), quantile(i, 0.95));
   const double seconds = stages_[4].total_ms() / 1000;
-  std::snprintf(line, sizeof line, "%lld frames, %.1f frames/s\n", static_cast<long long>(frames()),
-                seconds > 0 ? static_cast<double>(frames()) / seconds : 0.0);
-  return text + line;
+  return text + printed("%lld frames, %.1f frames/s\n", static_cast<long long>(frames()),
+                        seconds > 0 ? static_cast<double>(frames()) / seconds : 0.0);
 }
 
 }  // namespace understudy::app

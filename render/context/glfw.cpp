@@ -50,63 +50,30 @@ GLFWwindow* opened(const WindowOptions& options) {
   return window;
 }
 
+/// Keys that follow one another here and in GLFW.
+struct KeyRange {
+  int first, last;  // GLFW's
+  Key key;          // of the first
+};
+constexpr KeyRange kKeyRanges[] = {{GLFW_KEY_A, GLFW_KEY_Z, Key::A},
+                                   {GLFW_KEY_0, GLFW_KEY_9, Key::Digit0},
+                                   {GLFW_KEY_F1, GLFW_KEY_F12, Key::F1},
+                                   {GLFW_KEY_KP_0, GLFW_KEY_KP_EQUAL, Key::Keypad0},
+                                   {GLFW_KEY_ESCAPE, GLFW_KEY_END, Key::Escape},
+                                   {GLFW_KEY_SPACE, GLFW_KEY_SPACE, Key::Space},
+                                   {GLFW_KEY_APOSTROPHE, GLFW_KEY_APOSTROPHE, Key::Apostrophe},
+                                   {GLFW_KEY_COMMA, GLFW_KEY_SLASH, Key::Comma},
+                                   {GLFW_KEY_SEMICOLON, GLFW_KEY_SEMICOLON, Key::Semicolon},
+                                   {GLFW_KEY_EQUAL, GLFW_KEY_EQUAL, Key::Equal},
+                                   {GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET, Key::LeftBracket},
+                                   {GLFW_KEY_GRAVE_ACCENT, GLFW_KEY_GRAVE_ACCENT, Key::Grave},
+                                   {GLFW_KEY_LEFT_SHIFT, GLFW_KEY_MENU, Key::LeftShift},
+                                   {GLFW_KEY_CAPS_LOCK, GLFW_KEY_PAUSE, Key::CapsLock}};
+
 Key key_from_glfw(int code) {
-  const auto from = [&](int first, Key key) {
-    return static_cast<Key>(static_cast<int>(key) + code - first);
-  };
-  if (code >= GLFW_KEY_A && code <= GLFW_KEY_Z) return from(GLFW_KEY_A, Key::A);
-  if (code >= GLFW_KEY_0 && code <= GLFW_KEY_9) return from(GLFW_KEY_0, Key::Digit0);
-  if (code >= GLFW_KEY_F1 && code <= GLFW_KEY_F12) return from(GLFW_KEY_F1, Key::F1);
-  if (code >= GLFW_KEY_KP_0 && code <= GLFW_KEY_KP_9) return from(GLFW_KEY_KP_0, Key::Keypad0);
-  static constexpr std::pair<int, Key> kOthers[] = {{GLFW_KEY_KP_DECIMAL, Key::KeypadDecimal},
-                                                    {GLFW_KEY_KP_DIVIDE, Key::KeypadDivide},
-                                                    {GLFW_KEY_KP_MULTIPLY, Key::KeypadMultiply},
-                                                    {GLFW_KEY_KP_SUBTRACT, Key::KeypadSubtract},
-                                                    {GLFW_KEY_KP_ADD, Key::KeypadAdd},
-                                                    {GLFW_KEY_KP_ENTER, Key::KeypadEnter},
-                                                    {GLFW_KEY_KP_EQUAL, Key::KeypadEqual},
-                                                    {GLFW_KEY_LEFT, Key::Left},
-                                                    {GLFW_KEY_RIGHT, Key::Right},
-                                                    {GLFW_KEY_UP, Key::Up},
-                                                    {GLFW_KEY_DOWN, Key::Down},
-                                                    {GLFW_KEY_HOME, Key::Home},
-                                                    {GLFW_KEY_END, Key::End},
-                                                    {GLFW_KEY_PAGE_UP, Key::PageUp},
-                                                    {GLFW_KEY_PAGE_DOWN, Key::PageDown},
-                                                    {GLFW_KEY_INSERT, Key::Insert},
-                                                    {GLFW_KEY_DELETE, Key::Delete},
-                                                    {GLFW_KEY_BACKSPACE, Key::Backspace},
-                                                    {GLFW_KEY_SPACE, Key::Space},
-                                                    {GLFW_KEY_ENTER, Key::Enter},
-                                                    {GLFW_KEY_TAB, Key::Tab},
-                                                    {GLFW_KEY_ESCAPE, Key::Escape},
-                                                    {GLFW_KEY_APOSTROPHE, Key::Apostrophe},
-                                                    {GLFW_KEY_COMMA, Key::Comma},
-                                                    {GLFW_KEY_MINUS, Key::Minus},
-                                                    {GLFW_KEY_PERIOD, Key::Period},
-                                                    {GLFW_KEY_SLASH, Key::Slash},
-                                                    {GLFW_KEY_SEMICOLON, Key::Semicolon},
-                                                    {GLFW_KEY_EQUAL, Key::Equal},
-                                                    {GLFW_KEY_LEFT_BRACKET, Key::LeftBracket},
-                                                    {GLFW_KEY_BACKSLASH, Key::Backslash},
-                                                    {GLFW_KEY_RIGHT_BRACKET, Key::RightBracket},
-                                                    {GLFW_KEY_GRAVE_ACCENT, Key::Grave},
-                                                    {GLFW_KEY_LEFT_SHIFT, Key::LeftShift},
-                                                    {GLFW_KEY_RIGHT_SHIFT, Key::RightShift},
-                                                    {GLFW_KEY_LEFT_CONTROL, Key::LeftControl},
-                                                    {GLFW_KEY_RIGHT_CONTROL, Key::RightControl},
-                                                    {GLFW_KEY_LEFT_ALT, Key::LeftAlt},
-                                                    {GLFW_KEY_RIGHT_ALT, Key::RightAlt},
-                                                    {GLFW_KEY_LEFT_SUPER, Key::LeftSuper},
-                                                    {GLFW_KEY_RIGHT_SUPER, Key::RightSuper},
-                                                    {GLFW_KEY_CAPS_LOCK, Key::CapsLock},
-                                                    {GLFW_KEY_SCROLL_LOCK, Key::ScrollLock},
-                                                    {GLFW_KEY_NUM_LOCK, Key::NumLock},
-                                                    {GLFW_KEY_PRINT_SCREEN, Key::PrintScreen},
-                                                    {GLFW_KEY_PAUSE, Key::Pause},
-                                                    {GLFW_KEY_MENU, Key::Menu}};
-  for (const auto& [glfw, key] : kOthers)
-    if (glfw == code) return key;
+  for (const KeyRange& range : kKeyRanges)
+    if (code >= range.first && code <= range.last)
+      return static_cast<Key>(static_cast<int>(range.key) + code - range.first);
   return Key::Unknown;
 }
 

@@ -8,7 +8,7 @@
 
 namespace understudy::render {
 
-/// Keys by their labels in the user's layout. Letters, digits and F-keys are consecutive.
+/// Keys by their labels in the user's layout, in GLFW's order where its numbers have no gaps.
 enum class Key : int {
   Unknown = 0,
   // clang-format off
@@ -17,11 +17,10 @@ enum class Key : int {
   F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12,
   Keypad0, Keypad1, Keypad2, Keypad3, Keypad4, Keypad5, Keypad6, Keypad7, Keypad8, Keypad9,
   KeypadDecimal, KeypadDivide, KeypadMultiply, KeypadSubtract, KeypadAdd, KeypadEnter, KeypadEqual,
-  Left, Right, Up, Down, Home, End, PageUp, PageDown, Insert, Delete, Backspace,
-  Space, Enter, Tab, Escape,
-  Apostrophe, Comma, Minus, Period, Slash, Semicolon, Equal, LeftBracket, Backslash, RightBracket, Grave,
-  LeftShift, RightShift, LeftControl, RightControl, LeftAlt, RightAlt, LeftSuper, RightSuper,
-  CapsLock, ScrollLock, NumLock, PrintScreen, Pause, Menu,
+  Escape, Enter, Tab, Backspace, Insert, Delete, Right, Left, Down, Up, PageUp, PageDown, Home, End,
+  Space, Apostrophe, Comma, Minus, Period, Slash, Semicolon, Equal, LeftBracket, Backslash, RightBracket, Grave,
+  LeftShift, LeftControl, LeftAlt, LeftSuper, RightShift, RightControl, RightAlt, RightSuper, Menu,
+  CapsLock, ScrollLock, NumLock, PrintScreen, Pause,
   // clang-format on
   Count
 };

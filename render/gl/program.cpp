@@ -49,31 +49,6 @@ int Program::location(const char* uniform) const {
   return location;
 }
 
-template <>
-void Uniform<float>::set(const float& value) const {
-  api().Uniform1f(location_, value);
-}
-template <>
-void Uniform<int>::set(const int& value) const {
-  api().Uniform1i(location_, value);
-}
-template <>
-void Uniform<Eigen::Vector2f>::set(const Eigen::Vector2f& value) const {
-  api().Uniform2f(location_, value.x(), value.y());
-}
-template <>
-void Uniform<Eigen::Vector3f>::set(const Eigen::Vector3f& value) const {
-  api().Uniform3f(location_, value.x(), value.y(), value.z());
-}
-template <>
-void Uniform<Eigen::Vector4f>::set(const Eigen::Vector4f& value) const {
-  api().Uniform4f(location_, value.x(), value.y(), value.z(), value.w());
-}
-template <>
-void Uniform<Eigen::Matrix4f>::set(const Eigen::Matrix4f& value) const {
-  api().UniformMatrix4fv(location_, 1, GL_FALSE, value.data());
-}
-
 void set_image(const Texture& texture, const TextureImage& image) {
   api().BindTexture(GL_TEXTURE_2D, texture.name());
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})

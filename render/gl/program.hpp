@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <type_traits>
 
 #include "render/gl/object.hpp"
 
@@ -30,7 +31,18 @@ template <class T>
 class Uniform {
  public:
   Uniform(const Program& program, const char* name) : location_(program.location(name)) {}
-  void set(const T& value) const;
+  void set(const T& value) const {
+    if constexpr (std::is_same_v<T, float>)
+      api().Uniform1f(location_, value);
+    else if constexpr (std::is_same_v<T, int>)
+      api().Uniform1i(location_, value);
+    else if constexpr (std::is_same_v<T, Eigen::Vector2f>)
+      api().Uniform2f(location_, value.x(), value.y());
+    else if constexpr (std::is_same_v<T, Eigen::Vector3f>)
+      api().Uniform3f(location_, value.x(), value.y(), value.z());
+    else
+      api().Uniform4f(location_, value.x(), value.y(), value.z(), value.w());
+  }
 
  private:
   int location_;
