@@ -8,14 +8,13 @@
 #include "render/gl/array_cache.hpp"
 #include "render/gl/debug.hpp"
 #include "render/gl/scopes.hpp"
-#include "render/passes/background_pass.hpp"
+#include "render/passes/cover_passes.hpp"
 #include "render/passes/ground_pass.hpp"
 #include "render/passes/lines_pass.hpp"
 #include "render/passes/mesh_pass.hpp"
 #include "render/passes/occlusion_pass.hpp"
 #include "render/passes/points_pass.hpp"
-#include "render/passes/skeleton_pass.hpp"
-#include "render/passes/smooth_pass.hpp"
+#include "render/solids.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::render {

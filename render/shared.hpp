@@ -8,8 +8,8 @@
 
 namespace understudy::render {
 
-/// An immutable array: copies share it and the renderer uploads it once:
-/// the same array (identity()) means the same contents. Cheap to copy, usable from any thread.
+/// An immutable array: copies share it and the renderer uploads it once: the same pointer() means the same
+/// contents. Cheap to copy, usable from any thread.
 template <class T>
 class Shared {
  public:
@@ -25,7 +25,6 @@ class Shared {
   operator const T&() const { return **this; }  // NOLINT: converts
   /// Null for the empty array.
   const std::shared_ptr<const T>& pointer() const { return value_; }
-  const void* identity() const { return value_.get(); }
   /// Whether both are one array; of small ones, which are often made anew, whether they hold the same.
   friend bool operator==(const Shared& a, const Shared& b) {
     return a.value_ == b.value_ || (a->rows() <= 64 && same(*a, *b));

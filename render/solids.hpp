@@ -1,4 +1,4 @@
-// Bones, balls, arrows and rings: solids of revolution as one coloured mesh.
+// Bones, balls, arrows and rings: solids of revolution as one coloured mesh, and skeletons made of them.
 #pragma once
 
 #include <vector>
@@ -34,5 +34,9 @@ class Solids {
   std::vector<Vec3> positions_, normals_, colors_;
   std::vector<Eigen::RowVector3i> faces_;
 };
+
+/// The solids of a skeleton as one coloured mesh with its own normals. Joints that are not finite, and bones
+/// to them, are left out. Throws Error when parents or sides do not fit the joints.
+MeshView skeleton_solids(const SkeletonView& view);
 
 }  // namespace understudy::render

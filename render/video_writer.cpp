@@ -203,12 +203,6 @@ VideoWriter::VideoWriter(const std::string& path, const VideoOptions& options)
   sink_ = sink_for(path, options);
 }
 VideoWriter::~VideoWriter() = default;
-VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
-VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
-
-int VideoWriter::frames() const {
-  return frames_;
-}
 
 void VideoWriter::push(const Image& image) {
   US_CHECK(sink_ != nullptr, path_, ": the film is finished");

@@ -23,15 +23,12 @@ class VideoWriter {
   VideoWriter(const std::string& path, const VideoOptions& options);
   /// Without finish() the half film is removed: an MP4 appears under its name only when it is whole.
   ~VideoWriter();
-  VideoWriter(VideoWriter&&) noexcept;
-  VideoWriter& operator=(VideoWriter&&) noexcept;
 
   /// The next picture; must be of the size given. Alpha is kept in PNGs; in MP4 it lies over white.
   void push(const Image& image);
   /// Writes what is still on its way and gives the film its name. No push after it. Throws Error when nothing
   /// was pushed.
   void finish();
-  int frames() const;
 
   class Sink;  ///< how the pictures are written
 

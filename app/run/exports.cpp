@@ -65,9 +65,9 @@ SurfaceTopology topology_of(const PreparedCharacter& c) {
 }
 
 /// Who performs what is written.
-class Performer {
+class ExportedBody {
  public:
-  explicit Performer(const ExportBody& body) : body_(body), rest_(joints_of(body)) {}
+  explicit ExportedBody(const ExportBody& body) : body_(body), rest_(joints_of(body)) {}
   /// The frame as the options want it.
   ExportFrame performed(const ExportFrame& frame, Pose& pose) const {
     pose = frame.pose;
@@ -91,13 +91,13 @@ class Performer {
 template <class Writer, bool kSurface>
 class FrameOutput final : public MotionOutput {
  public:
-  using Write = void (*)(Writer& writer, const Performer& performer, const ExportFrame& frame);
+  using Write = void (*)(Writer& writer, const ExportedBody& by, const ExportFrame& frame);
   template <class... Arguments>
   FrameOutput(const std::string& path, const ExportBody& body, Write write, Arguments&&... of_writer)
-      : path_(path), performer_(body), write_(write), writer_(path, std::forward<Arguments>(of_writer)...) {}
+      : path_(path), by_(body), write_(write), writer_(path, std::forward<Arguments>(of_writer)...) {}
   void push(const ExportFrame& frame) override {
     Pose pose;
-    write_(writer_, performer_, performer_.performed(frame, pose));
+    write_(writer_, by_, by_.performed(frame, pose));
     ++frames_;
   }
   ExportCost finish() override {
@@ -115,7 +115,7 @@ class FrameOutput final : public MotionOutput {
 
  private:
   std::string path_;
-  Performer performer_;
+  ExportedBody by_;
   Write write_;
   Writer writer_;
   int64_t frames_ = 0;
@@ -147,16 +147,16 @@ const std::vector<ExportFormat>& export_formats() {
   constexpr auto character = [](P path, B body, P name, double fps) -> Output {
     return std::make_unique<CharacterOutput>(path, body, name, fps);
   };
-  static constexpr auto pose = [](auto& to, const Performer&, const ExportFrame& frame) {
+  static constexpr auto pose = [](auto& to, const ExportedBody&, const ExportFrame& frame) {
     to.push(frame.pose);
   };
-  static constexpr auto joints = [](auto& to, const Performer& by, const ExportFrame& f) {
+  static constexpr auto joints = [](auto& to, const ExportedBody& by, const ExportFrame& f) {
     to.push(by.joints(f));
   };
-  static constexpr auto surface = [](auto& to, const Performer& by, const ExportFrame& f) {
+  static constexpr auto surface = [](auto& to, const ExportedBody& by, const ExportFrame& f) {
     to.push(by.surface(f));
   };
-  static constexpr auto all = [](auto& to, const Performer& by, const ExportFrame& frame) {
+  static constexpr auto all = [](auto& to, const ExportedBody& by, const ExportFrame& frame) {
     to.push(by.surface(frame), by.joints(frame), frame.pose.local, frame.source_joints);
   };
   static const std::vector<ExportFormat> formats = {

@@ -280,12 +280,6 @@ void Window::swap() {
   glfwSwapBuffers(parts_->window);
 }
 
-bool Window::should_close() const {
-  return glfwWindowShouldClose(parts_->window) == GLFW_TRUE;
-}
-void Window::set_should_close(bool close) {
-  glfwSetWindowShouldClose(parts_->window, close ? GLFW_TRUE : GLFW_FALSE);
-}
 void Window::set_title(const std::string& title) {
   glfwSetWindowTitle(parts_->window, title.c_str());
 }

@@ -54,9 +54,6 @@ class Window {
   /// Shows what was drawn into framebuffer 0.
   void swap();
 
-  bool should_close() const;
-  /// Takes back (false) or makes (true) a request to close.
-  void set_should_close(bool close);
   void set_title(const std::string& title);
   /// Size of the content in the desktop's units.
   void set_size(int width, int height);

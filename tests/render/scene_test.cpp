@@ -1,4 +1,5 @@
 #include "render/scene.hpp"
+#include "render/solids.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,6 @@
 
 #include "render/colors.hpp"
 #include "render/floor_shadow.hpp"
-#include "render/passes/skeleton_pass.hpp"
 #include "retarget/base/error.hpp"
 #include "tests/render/content.hpp"
 

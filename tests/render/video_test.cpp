@@ -93,7 +93,6 @@ Vec3 color_at(int frame) {
 void write_film(const std::string& path, const VideoOptions& options, int frames) {
   VideoWriter writer(path, options);
   for (int i = 0; i < frames; ++i) writer.push(Image(options.width, options.height, color_at(i)));
-  EXPECT_EQ(writer.frames(), frames);
   writer.finish();
 }
 

@@ -182,9 +182,6 @@ TEST(Window, KeepsTheClipboardAndTakesEveryCursor) {
   for (int shape = 0; shape < static_cast<int>(CursorShape::Count); ++shape)
     window.set_cursor(static_cast<CursorShape>(shape));
   window.set_title("Understudy test, renamed");
-  EXPECT_FALSE(window.should_close());
-  window.set_should_close(true);
-  EXPECT_TRUE(window.should_close());
 }
 
 TEST(Window, HandsOnWhatItsHandlerThrows) {

@@ -1,4 +1,4 @@
-#include "render/passes/smooth_pass.hpp"
+#include "render/passes/cover_passes.hpp"
 
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
@@ -6,9 +6,16 @@
 namespace understudy::render {
 namespace {
 
+constexpr const char* kGradient = R"(
+uniform vec3 u_top, u_bottom;
+in vec2 v_place;
+out vec4 o_color;
+void main() { o_color = vec4(mix(u_bottom, u_top, smoothstep(0.0, 1.0, v_place.y)), 1.0); }
+)";
+
 // Lottes, "FXAA", 2009, in its short form: mixes pixels along the direction in which brightness changes
 // least.
-const std::string kSmoothFragment = R"(
+const std::string kSoften = R"(
 uniform sampler2D u_source;
 in vec2 v_place;
 out vec4 o_color;
@@ -34,7 +41,22 @@ void main() {
 
 }  // namespace
 
-SmoothPass::SmoothPass() : program_("smoothing", kCoverGlsl, kSmoothFragment) {}
+BackgroundPass::BackgroundPass() : program_("background", kCoverGlsl, kGradient) {}
+
+void BackgroundPass::draw(const BackgroundView& view) {
+  if (view.transparent) {
+    gl::api().ClearColor(0, 0, 0, 0);
+    return gl::api().Clear(GL_COLOR_BUFFER_BIT);
+  }
+  const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
+  const gl::ProgramScope program(program_.id());
+  const gl::VertexArrayScope array(none_.name());
+  top_.set(view.top);
+  bottom_.set(view.bottom);
+  gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+SmoothPass::SmoothPass() : program_("smoothing", kCoverGlsl, kSoften) {}
 
 void SmoothPass::draw(unsigned texture) {
   const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
