@@ -79,35 +79,13 @@ class PlanPlayer {
     const float up = smoother_step(s, -0.08f, 0.24f) - smoother_step(0, -0.08f, 0.24f);
     state.ball.y() += std::max(step.lift * unit_, 0.085f) * std::min(1.0f, 1.15f * up) *
                       (1 - smoother_step(s, 0.80f, 1.02f)) * (1 - 0.25f * smoother_step(s, 0.3f, 0.7f));
-    if (!step.via.empty()) state.ball = through(step, from.ball, to, s);
     state.yaw_deg = from.yaw_deg + along * (step.yaw_deg - from.yaw_deg);
     const float leaving = (0.7f + 0.5f * smoother_step(s, 0, 0.3f)) * (1 - smoother_step(s, 0.25f, 0.65f));
     state.heel_deg =
         step.heel_deg * leaving - 8 * smoother_step(s, 0.4f, 0.62f) * (1 - smoother_step(s, 0.62f, 0.86f));
     state.toes_flat = 1 - 0.6f * smoother_step(s, 0.06f, 0.35f);
-    state.follows_shin = (step.via.empty() ? 0.25f : 0.9f) * smoother_step(s, 0.08f, 0.25f) *
-                         (1 - smoother_step(s, 0.72f, 0.92f));
+    state.follows_shin = 0.25f * smoother_step(s, 0.08f, 0.25f) * (1 - smoother_step(s, 0.72f, 0.92f));
     return state;
-  }
-
-  Vec3 through(const Step& step, const Vec3& from, const Vec3& to, float s) const {
-    std::vector<Vec3> points = {from, from + Vec3(0, .10f * unit_, 0)};
-    for (const Vec3& v : step.via) points.push_back(v * unit_ + Vec3(0, gap_, 0));
-    points.push_back(to + Vec3(0, .10f * unit_, 0));
-    points.push_back(to);
-    const int last = points.size() - 1;
-    const float x = std::clamp(s, 0.0f, 1.0f) * static_cast<float>(last);
-    const int i = std::min(static_cast<int>(x), last - 1);
-    const float f = x - static_cast<float>(i);
-    const auto slope = [&](int k) -> Vec3 {
-      // Straight up from the floor and straight down to it.
-      if (k <= 0 || k >= last) return Vec3(0, k <= 0 ? .15f * unit_ : -.15f * unit_, 0);
-      if (k == 1 || k == last - 1) return Vec3(0, 0.5f * (points[k + 1] - points[k - 1]).y(), 0);
-      return 0.5f * (points[k + 1] - points[k - 1]);
-    };
-    const float f2 = f * f, f3 = f2 * f;
-    return (2 * f3 - 3 * f2 + 1) * points[i] + (f3 - 2 * f2 + f) * slope(i) +
-           (3 * f2 - 2 * f3) * points[i + 1] + (f3 - f2) * slope(i + 1);
   }
 
   Mat3 pelvis_rotation(const TrunkPlan& p) const { return turn(p.yaw, p.pitch, p.roll); }

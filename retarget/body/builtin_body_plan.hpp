@@ -30,12 +30,11 @@ struct TrunkPlan {
 
 /// A foot goes to a new place; between steps it is planted. Lengths in leg lengths / 0.8.
 struct Step {
-  int side;                    ///< 0 left, 1 right
-  float start, end;            ///< seconds
-  float x, z, yaw_deg;         ///< where the ball of the foot lands
-  float lift = 0.11f;          ///< how high on the way
-  float heel_deg = 40;         ///< heel up when it leaves
-  std::vector<Vec3> via = {};  ///< places of the ball in the air instead of the straight way
+  int side;             ///< 0 left, 1 right
+  float start, end;     ///< seconds
+  float x, z, yaw_deg;  ///< where the ball of the foot lands
+  float lift;           ///< how high on the way
+  float heel_deg;       ///< heel up when it leaves
 };
 
 struct MotionPlan {

@@ -100,10 +100,6 @@ RowMatrix skin_weights(const PersonShape& shape, const Points& vertices, const F
   return weights;
 }
 
-float scale_to_stature(const PersonShape& shape) {
-  return shape.who().stature / (shape.crown() - shape.sole());
-}
-
 }  // namespace
 
 ShapedBody builtin_person(const PersonOptions& options) {
@@ -111,16 +107,15 @@ ShapedBody builtin_person(const PersonOptions& options) {
   Mesh mesh = polygonise(shape.solid());
   ShapedBody body;
   body.weights = skin_weights(shape, mesh.vertices, mesh.faces);
-  const float scale = scale_to_stature(shape);
-  body.vertices = mesh.vertices * scale;
+  body.vertices = mesh.vertices * shape.scale();
   body.faces = std::move(mesh.faces);
-  body.joints = shape.joints() * scale;
+  body.joints = shape.joints() * shape.scale();
   return body;
 }
 
 Joints builtin_joints(const PersonOptions& options) {
   const PersonShape shape(options);
-  return shape.joints() * scale_to_stature(shape);
+  return shape.joints() * shape.scale();
 }
 
 }  // namespace understudy

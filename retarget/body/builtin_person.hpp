@@ -11,10 +11,6 @@ struct PersonOptions {
   float girth = 1.0f;     ///< waist against the average, 0.75 (thin) .. 1.8 (very heavy)
   float sex = 0.0f;       ///< 0 male .. 1 female
   float age = 30.0f;      ///< years, 2 .. 100
-  float legs = 1.0f;      ///< length against the average of that age, 0.7 .. 1.4
-  float arms = 1.0f;      ///< the same of the arms
-  float torso = 1.0f;     ///< the same of the trunk
-  float head = 1.0f;      ///< size of the head against the average of that age, 0.7 .. 1.5
 };
 
 /// The person in T-pose, pelvis joint at the origin, facing +z: one closed surface of 8 to 15 thousand

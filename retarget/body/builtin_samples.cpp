@@ -1,13 +1,12 @@
 #include "retarget/body/builtin_samples.hpp"
 
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <vector>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/body/capture.hpp"
@@ -21,7 +20,6 @@ namespace fs = std::filesystem;
 struct Written {
   fs::path folder;
   std::vector<std::pair<std::string, uint64_t>> files;
-  uint64_t bytes = 0;
 };
 
 constexpr uint64_t kFnvStart = 0xcbf29ce484222325ull;
@@ -43,9 +41,10 @@ void append(std::string& bytes, const T* values, size_t count) {
 }
 
 std::string ply_bytes(const Points& points) {
-  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                      std::to_string(points.rows()) +
-                      "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  std::string bytes = printed(
+      "ply\nformat binary_little_endian 1.0\nelement vertex %td\n"
+      "property float x\nproperty float y\nproperty float z\nend_header\n",
+      points.rows());
   append(bytes, points.data(), points.size());
   return bytes;
 }
@@ -53,34 +52,29 @@ std::string ply_bytes(const Points& points) {
 /// A mesh as binary glTF 2.0: positions and indices, nothing else.
 std::string glb_bytes(const Points& vertices, const Faces& faces, const std::string& name) {
   const auto numbers = [](const Eigen::RowVector3f& v) {
-    char text[96];
-    std::snprintf(text, sizeof text, "[%.9g,%.9g,%.9g]", v.x(), v.y(), v.z());
-    return std::string(text);
+    return printed("[%.9g,%.9g,%.9g]", v.x(), v.y(), v.z());
   };
   const size_t position_bytes = static_cast<size_t>(vertices.size()) * 4,
                index_bytes = static_cast<size_t>(faces.size()) * 4;
-  std::string json =
-      R"({"asset":{"version":"2.0","generator":"Understudy"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":")" +
-      name +
-      R"("}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"buffers":[{"byteLength":)" +
-      std::to_string(position_bytes + index_bytes) + R"(}],"bufferViews":[{"buffer":0,"byteLength":)" +
-      std::to_string(position_bytes) + R"(,"target":34962},{"buffer":0,"byteOffset":)" +
-      std::to_string(position_bytes) + R"(,"byteLength":)" + std::to_string(index_bytes) +
-      R"(,"target":34963}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" +
-      std::to_string(vertices.rows()) + R"(,"min":)" + numbers(vertices.colwise().minCoeff()) + R"(,"max":)" +
-      numbers(vertices.colwise().maxCoeff()) +
-      R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" + std::to_string(faces.size()) +
-      "}]}";
+  std::string json = printed(
+      R"({"asset":{"version":"2.0","generator":"Understudy"},"scene":0,"scenes":[{"nodes":[0]}],)"
+      R"("nodes":[{"mesh":0,"name":"%s"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+      R"("buffers":[{"byteLength":%zu}],"bufferViews":[{"buffer":0,"byteLength":%zu,"target":34962},)"
+      R"({"buffer":0,"byteOffset":%zu,"byteLength":%zu,"target":34963}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":%td,"min":%s,"max":%s},)"
+      R"({"bufferView":1,"componentType":5125,"type":"SCALAR","count":%td}]})",
+      name.c_str(), position_bytes + index_bytes, position_bytes, position_bytes, index_bytes,
+      vertices.rows(), numbers(vertices.colwise().minCoeff()).c_str(),
+      numbers(vertices.colwise().maxCoeff()).c_str(), faces.size());
   json.resize((json.size() + 3) / 4 * 4, ' ');
-  const auto word = [](std::string& out, size_t value) {
-    const uint32_t v = static_cast<uint32_t>(value);
-    append(out, &v, 1);
-  };
   std::string bytes = "glTF";
-  word(bytes, 2), word(bytes, 12 + 8 + json.size() + 8 + position_bytes + index_bytes);
-  word(bytes, json.size());
+  const auto word = [&bytes](size_t value) {
+    const auto v = static_cast<uint32_t>(value);
+    append(bytes, &v, 1);
+  };
+  word(2), word(12 + 8 + json.size() + 8 + position_bytes + index_bytes), word(json.size());
   bytes += "JSON" + json;
-  word(bytes, position_bytes + index_bytes);
+  word(position_bytes + index_bytes);
   bytes += std::string("BIN\0", 4);
   append(bytes, vertices.data(), vertices.size());
   append(bytes, faces.data(), faces.size());
@@ -108,15 +102,11 @@ void write_scan(const ScanSample& sample, Written& written) {
     const Pose& pose = motion.poses.at(first + i);
     const Points vertices = linear_blend_skinning(body.vertices, body.weights, body.joints,
                                                   forward_kinematics(body.joints, pose));
-    char name[32];
-    std::snprintf(name, sizeof name, "frame_%05d.ply", i);
     const std::string bytes = ply_bytes(simulated_capture(vertices, body.faces, i, capture).vertices);
-    write_file(written.folder / sample.name / name, bytes);
+    write_file(written.folder / sample.name / printed("frame_%05d.ply", i), bytes);
     hash = fnv1a(bytes, hash);
-    written.bytes += bytes.size();
   }
-  written.files.emplace_back(std::string(sample.name) + "/ (" + std::to_string(count) + " frames in order)",
-                             hash);
+  written.files.emplace_back(printed("%s/ (%d frames in order)", sample.name, count), hash);
 }
 
 void write_target(const std::string& name, const PersonOptions& person, Written& written) {
@@ -126,13 +116,6 @@ void write_target(const std::string& name, const PersonOptions& person, Written&
   const std::string bytes = glb_bytes(standing, body.faces, name);
   write_file(written.folder / (name + ".glb"), bytes);
   written.files.emplace_back(name + ".glb", fnv1a(bytes));
-  written.bytes += bytes.size();
-}
-
-PersonOptions person(float stature, float girth, float sex, float age) {
-  PersonOptions p;
-  p.stature = stature, p.girth = girth, p.sex = sex, p.age = age;
-  return p;
 }
 
 std::string readme(const Written& written) {
@@ -147,12 +130,8 @@ std::string readme(const Written& written) {
       "- `target_adult.glb`: a broad heavy man, 1.76 m, in T-pose. `target_child.glb`: a girl of six, 1.15 "
       "m.\n\n"
       "| file | FNV-1a, 64 bit |\n|---|---|\n";
-  for (const auto& [name, hash] : written.files) {
-    char line[160];
-    std::snprintf(line, sizeof line, "| %s | %016llx |\n", name.c_str(),
-                  static_cast<unsigned long long>(hash));
-    text += line;
-  }
+  for (const auto& [name, hash] : written.files)
+    text += printed("| %s | %016llx |\n", name.c_str(), static_cast<unsigned long long>(hash));
   return text;
 }
 
@@ -161,10 +140,10 @@ std::string readme(const Written& written) {
 void write_samples(const std::string& folder) {
   Written written{folder, {}};
   make_folder(written.folder);
-  write_scan({"scan", "dance", person(1.68f, 1.0f, 1, 28), 1.2f, 2.9f, 4800}, written);
-  write_scan({"walk", "walk", person(1.80f, .95f, 0, 35), 1.0f, 1.5f, 4500}, written);
-  write_target("target_adult", person(1.76f, 1.40f, 0, 45), written);
-  write_target("target_child", person(1.15f, 1.0f, 1, 6), written);
+  write_scan({"scan", "dance", PersonOptions{1.68f, 1.0f, 1, 28}, 1.2f, 2.9f, 4800}, written);
+  write_scan({"walk", "walk", PersonOptions{1.80f, .95f, 0, 35}, 1.0f, 1.5f, 4500}, written);
+  write_target("target_adult", PersonOptions{1.76f, 1.40f, 0, 45}, written);
+  write_target("target_child", PersonOptions{1.15f, 1.0f, 1, 6}, written);
   write_file(written.folder / "README.md", readme(written));
 }
 

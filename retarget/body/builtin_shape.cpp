@@ -13,28 +13,34 @@
 namespace understudy {
 namespace {
 
-constexpr float kTemplateJoints[kJointCount][3] = {{0, 0, 0},
-                                                   {.101f, -.015f, -.006f},
-                                                   {-.101f, -.015f, -.006f},
-                                                   {0, .071f, -.036f},
-                                                   {.136f, -.405f, .002f},
-                                                   {-.136f, -.405f, .002f},
-                                                   {0, .137f, -.023f},
-                                                   {.150f, -.810f, -.015f},
-                                                   {-.150f, -.810f, -.015f},
-                                                   {0, .213f, -.023f},
-                                                   {.170f, -.866f, .099f},
-                                                   {-.170f, -.866f, .099f},
-                                                   {0, .523f, -.003f},
-                                                   {.022f, .454f, .014f},
-                                                   {-.022f, .454f, .014f},
-                                                   {0, .620f, .031f},
-                                                   {.167f, .462f, .008f},
-                                                   {-.167f, .462f, .008f},
-                                                   {.407f, .462f, .008f},
-                                                   {-.407f, .462f, .008f},
-                                                   {.640f, .462f, .008f},
-                                                   {-.640f, .462f, .008f}};
+struct TemplateJoint {
+  Region region;
+  float x, y, z;
+};
+constexpr std::array<TemplateJoint, kJointCount> kTemplateJoints = {{
+    {Region::Trunk, 0, 0, 0},               // Pelvis
+    {Region::Leg, .101f, -.015f, -.006f},   // LeftHip
+    {Region::Leg, -.101f, -.015f, -.006f},  // RightHip
+    {Region::Trunk, 0, .071f, -.036f},      // Spine1
+    {Region::Leg, .136f, -.405f, .002f},    // LeftKnee
+    {Region::Leg, -.136f, -.405f, .002f},   // RightKnee
+    {Region::Trunk, 0, .137f, -.023f},      // Spine2
+    {Region::Leg, .150f, -.810f, -.015f},   // LeftAnkle
+    {Region::Leg, -.150f, -.810f, -.015f},  // RightAnkle
+    {Region::Trunk, 0, .213f, -.023f},      // Spine3
+    {Region::Foot, .170f, -.866f, .099f},   // LeftFoot
+    {Region::Foot, -.170f, -.866f, .099f},  // RightFoot
+    {Region::Trunk, 0, .523f, -.003f},      // Neck
+    {Region::Trunk, .022f, .454f, .014f},   // LeftCollar
+    {Region::Trunk, -.022f, .454f, .014f},  // RightCollar
+    {Region::Head, 0, .620f, .031f},        // Head
+    {Region::Arm, .167f, .462f, .008f},     // LeftShoulder
+    {Region::Arm, -.167f, .462f, .008f},    // RightShoulder
+    {Region::Arm, .407f, .462f, .008f},     // LeftElbow
+    {Region::Arm, -.407f, .462f, .008f},    // RightElbow
+    {Region::Arm, .640f, .462f, .008f},     // LeftWrist
+    {Region::Arm, -.640f, .462f, .008f},    // RightWrist
+}};
 constexpr float kTemplateSole = -.879f, kTemplateCrown = .768f;
 
 float mix(float a, float b, float t) {
@@ -61,8 +67,13 @@ float cone_distance(const Vec3& p, const Primitive& c) {
   return (p - c.a - s * (c.b - c.a)).norm() - mix(c.ra, c.rb, s);
 }
 
-Vec3 vec(const float (&v)[3]) {
-  return Vec3(v[0], v[1], v[2]);
+Vec3 template_joint(int j) {
+  return {kTemplateJoints[j].x, kTemplateJoints[j].y, kTemplateJoints[j].z};
+}
+
+Part part_of(Region region) {
+  constexpr Part kParts[] = {Part::Trunk, Part::Leg, Part::Leg, Part::Arm, Part::Arm, Part::Head};
+  return kParts[static_cast<int>(region)];
 }
 
 float box_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
@@ -72,7 +83,6 @@ float box_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
 }  // namespace
 
 // ---- proportions
-// ---------------------------------------------------------------------------------------------------
 
 Proportions proportions(const PersonOptions& o) {
   const auto in = [](float v, float low, float high, const char* name) {
@@ -82,10 +92,6 @@ Proportions proportions(const PersonOptions& o) {
   in(o.girth, 0.75f, 1.8f, "girth");
   in(o.sex, 0, 1, "sex");
   in(o.age, 2, 100, "age");
-  in(o.legs, 0.7f, 1.4f, "leg length");
-  in(o.arms, 0.7f, 1.4f, "arm length");
-  in(o.torso, 0.7f, 1.4f, "trunk length");
-  in(o.head, 0.7f, 1.5f, "head size");
 
   Proportions p;
   p.child = ramp(o.age, 18, 2);
@@ -93,10 +99,10 @@ Proportions proportions(const PersonOptions& o) {
   p.female = o.sex * smooth_step(7, 15, o.age);
   p.fat = o.girth - 1;
   const float c = p.child;
-  p.head = o.head * (1 + 0.45f * std::pow(c, 1.4f));
-  p.leg = o.legs * (1 - 0.22f * c) * mix(1, 1.02f, p.female);
-  p.arm = o.arms * (1 - 0.13f * c) * mix(1.01f, 0.96f, p.female);
-  p.trunk = o.torso * (1 - 0.05f * p.old);
+  p.head = 1 + 0.45f * std::pow(c, 1.4f);
+  p.leg = (1 - 0.22f * c) * mix(1, 1.02f, p.female);
+  p.arm = (1 - 0.13f * c) * mix(1.01f, 0.96f, p.female);
+  p.trunk = 1 - 0.05f * p.old;
   p.shoulders = (1 - 0.10f * c) * mix(1.04f, 0.93f, p.female);
   p.hips = (1 - 0.12f * c) * mix(0.98f, 1.04f, p.female);
   p.foot = (1 - 0.08f * c) * mix(1.02f, 0.93f, p.female);
@@ -107,7 +113,7 @@ Proportions proportions(const PersonOptions& o) {
 
 Vec3 BodyMap::operator()(Region region, const Vec3& q) const {
   const auto around = [&](Joint joint, Region frame, float scale) {
-    const Vec3 centre = vec(kTemplateJoints[joint]);
+    const Vec3 centre = template_joint(joint);
     return Vec3((*this)(frame, centre) + scale * (q - centre));
   };
   switch (region) {
@@ -148,44 +154,18 @@ float BodyMap::thickness(Region region) const {
 
 Joints mapped_joints(const Proportions& p) {
   const BodyMap map(p);
-  const auto region = [](int j) {
-    switch (j) {
-      case LeftHip:
-      case RightHip:
-      case LeftKnee:
-      case RightKnee:
-      case LeftAnkle:
-      case RightAnkle:
-        return Region::Leg;
-      case LeftFoot:
-      case RightFoot:
-        return Region::Foot;
-      case Head:
-        return Region::Head;
-      case LeftShoulder:
-      case RightShoulder:
-      case LeftElbow:
-      case RightElbow:
-      case LeftWrist:
-      case RightWrist:
-        return Region::Arm;
-      default:
-        return Region::Trunk;
-    }
-  };
   Joints joints;
   for (int j = 0; j < kJointCount; ++j) {
-    Vec3 q = vec(kTemplateJoints[j]);
+    Vec3 q = template_joint(j);
     const float side = q.x() < 0 ? -1.0f : 1.0f;
     q.x() = std::abs(q.x());
-    const Vec3 mapped = map(region(j), q);
+    const Vec3 mapped = map(kTemplateJoints[j].region, q);
     joints.row(j) << side * mapped.x(), mapped.y(), mapped.z();
   }
   return joints;
 }
 
 // ---- lofts
-// ---------------------------------------------------------------------------------------------------------
 
 Loft::Loft(int axis, std::vector<Section> s, float cap_low, float cap_high, float exponent)
     : axis_(axis), low_(s.front().t), high_(s.back().t), exponent_(exponent) {
@@ -248,7 +228,6 @@ float Loft::value(const Vec3& p) const {
 }
 
 // ---- the person
-// ----------------------------------------------------------------------------------------------------
 
 PersonShape::PersonShape(const PersonOptions& options)
     : who_(proportions(options)), map_(who_), joints_(mapped_joints(who_)) {
@@ -264,7 +243,7 @@ PersonShape::PersonShape(const PersonOptions& options)
   add_face();
 }
 
-void PersonShape::loft(Part part, Region region, int axis, const std::vector<Loft::Section>& sections,
+void PersonShape::loft(Region region, int axis, const std::vector<Loft::Section>& sections,
                        const Eigen::Array4f& caps_exponent_blend) {
   constexpr int kAxes[3][2] = {{2, 1}, {0, 2}, {0, 1}};
   const float thick = map_.thickness(region);
@@ -289,10 +268,10 @@ void PersonShape::loft(Part part, Region region, int axis, const std::vector<Lof
   primitive.loft = lofts_.size();
   lofts_.emplace_back(axis, std::move(mapped), caps_exponent_blend[0] * thick, caps_exponent_blend[1] * thick,
                       caps_exponent_blend[2]);
-  add(part, primitive);
+  add(region, primitive);
 }
 
-void PersonShape::ellipsoid(Part part, Region region, const Vec3& centre, const Vec3& radii, float blend,
+void PersonShape::ellipsoid(Region region, const Vec3& centre, const Vec3& radii, float blend,
                             const Vec3& turn_deg, Primitive::Join join) {
   const float thick = map_.thickness(region);
   Primitive primitive{Primitive::Kind::Ellipsoid, join, blend * thick};
@@ -301,11 +280,10 @@ void PersonShape::ellipsoid(Part part, Region region, const Vec3& centre, const 
   primitive.to_local = rotation_from_axis_angle(turn_deg * (kPi / 180)).transpose();
   const Vec3 reach = Vec3::Constant(primitive.b.maxCoeff());
   primitive.low = primitive.a - reach, primitive.high = primitive.a + reach;
-  add(part, primitive);
+  add(region, primitive);
 }
 
-void PersonShape::cone(Part part, Region region, const Vec3& a, const Vec3& b,
-                       const Eigen::Array3f& radii_blend) {
+void PersonShape::cone(Region region, const Vec3& a, const Vec3& b, const Eigen::Array3f& radii_blend) {
   const float thick = map_.thickness(region);
   Primitive primitive{Primitive::Kind::Cone};
   primitive.blend = radii_blend[2] * thick;
@@ -314,7 +292,7 @@ void PersonShape::cone(Part part, Region region, const Vec3& a, const Vec3& b,
   const Vec3 reach = Vec3::Constant(std::max(primitive.ra, primitive.rb));
   primitive.low = primitive.a.cwiseMin(primitive.b) - reach;
   primitive.high = primitive.a.cwiseMax(primitive.b) + reach;
-  add(part, primitive);
+  add(region, primitive);
 }
 
 void PersonShape::add_trunk() {
@@ -348,31 +326,31 @@ void PersonShape::add_trunk() {
     const float back = mix(r.m_back, r.f_back, f) * (1 + r.fat_back * fat) * (1 - .06f * who_.child);
     sections.push_back({r.y, 0, .020f, side, front, back});
   }
-  loft(Part::Trunk, Region::Trunk, 1, sections, {.03f, .02f, 2.35f, .01f});
+  loft(Region::Trunk, 1, sections, {.03f, .02f, 2.35f, .01f});
   // The slope from neck to shoulder, and the collar bones.
   const float m = 1 - f, child = who_.child;
-  cone(Part::Trunk, Region::Trunk, {.018f, .535f, -.014f}, {.140f, .482f, -.010f},
+  cone(Region::Trunk, {.018f, .535f, -.014f}, {.140f, .482f, -.010f},
        {.036f + .006f * m - .010f * child + .02f * fat, .026f + .004f * m + .012f * fat, .035f});
-  cone(Part::Trunk, Region::Trunk, {.026f, .470f, .056f}, {.135f, .491f, .024f}, {.012f, .012f, .025f});
+  cone(Region::Trunk, {.026f, .470f, .056f}, {.135f, .491f, .024f}, {.012f, .012f, .025f});
 }
 
 void PersonShape::add_breasts_and_seat() {
   const float f = who_.female, fat = who_.fat, m = (1 - f) * (1 - who_.child);
   const float breast = f * (1 + .6f * fat), sag = .018f * who_.old + .012f * std::max(fat, 0.0f);
   if (breast > .05f)
-    ellipsoid(Part::Trunk, Region::Trunk, {.070f, .338f - sag, .082f + .05f * fat},
+    ellipsoid(Region::Trunk, {.070f, .338f - sag, .082f + .05f * fat},
               Vec3(.052f, .050f, .054f) * (.55f + .45f * breast), .03f);
   if (m > .05f)  // chest muscle, flat
-    ellipsoid(Part::Trunk, Region::Trunk, {.066f, .366f, .082f + .03f * fat},
-              Vec3(.060f, .040f, .032f) * (.6f + .4f * m), .035f, {0, 20, 0});
+    ellipsoid(Region::Trunk, {.066f, .366f, .082f + .03f * fat}, Vec3(.060f, .040f, .032f) * (.6f + .4f * m),
+              .035f, {0, 20, 0});
   const float seat = 1 + .5f * fat - .18f * who_.child - .10f * who_.old;
-  ellipsoid(Part::Trunk, Region::Trunk, {.062f, -.030f, -.042f - .02f * fat},
+  ellipsoid(Region::Trunk, {.062f, -.030f, -.042f - .02f * fat},
             Vec3(.066f + .006f * f, .068f, .054f + .006f * f) * seat, .025f);
   if (fat > 0)  // the belly hangs forward
-    ellipsoid(Part::Trunk, Region::Trunk, {0, .100f, .050f + .10f * fat},
-              Vec3(.110f, .095f, .080f) * (.75f + .6f * fat), .06f);
-  ellipsoid(Part::Trunk, Region::Trunk, {0, .118f, .137f + .134f * fat}, {.010f, .013f, .014f}, .014f,
-            Vec3::Zero(), Primitive::Join::Cut);
+    ellipsoid(Region::Trunk, {0, .100f, .050f + .10f * fat}, Vec3(.110f, .095f, .080f) * (.75f + .6f * fat),
+              .06f);
+  ellipsoid(Region::Trunk, {0, .118f, .137f + .134f * fat}, {.010f, .013f, .014f}, .014f, Vec3::Zero(),
+            Primitive::Join::Cut);
 }
 
 void PersonShape::add_leg() {
@@ -403,12 +381,12 @@ void PersonShape::add_leg() {
   const float below = who_.foot / who_.leg;
   for (Loft::Section& s : sections)
     if (s.t < -.81f) s.t = -.81f + (s.t + .81f) * below;
-  loft(Part::Leg, Region::Leg, 1, sections, {.02f, .07f, 2.1f, .02f});
-  ellipsoid(Part::Leg, Region::Leg, {.137f, -.402f, .036f}, {.026f, .034f, .020f}, .02f);  // knee cap
-  ellipsoid(Part::Leg, Region::Leg, {.128f, -.515f, -.050f}, Vec3(.030f, .075f, .030f) * (1 + .2f * who_.fat),
-            .03f);  // calf, inner head
-  ellipsoid(Part::Leg, Region::Foot, {.119f, -.800f, -.014f}, {.009f, .014f, .013f}, .015f);  // ankle bones
-  ellipsoid(Part::Leg, Region::Foot, {.181f, -.812f, -.020f}, {.009f, .014f, .013f}, .015f);
+  loft(Region::Leg, 1, sections, {.02f, .07f, 2.1f, .02f});
+  ellipsoid(Region::Leg, {.137f, -.402f, .036f}, {.026f, .034f, .020f}, .02f);  // knee cap
+  ellipsoid(Region::Leg, {.128f, -.515f, -.050f}, Vec3(.030f, .075f, .030f) * (1 + .2f * who_.fat),
+            .03f);                                                                 // calf, inner head
+  ellipsoid(Region::Foot, {.119f, -.800f, -.014f}, {.009f, .014f, .013f}, .015f);  // ankle bones
+  ellipsoid(Region::Foot, {.181f, -.812f, -.020f}, {.009f, .014f, .013f}, .015f);
 }
 
 void PersonShape::add_foot() {
@@ -419,7 +397,7 @@ void PersonShape::add_foot() {
       {.040f, .158f, -.856f, .037f, .046f, .021f},  {.070f, .163f, -.860f, .043f, .034f, .019f},
       {.100f, .168f, -.863f, .046f, .024f, .016f},  {.125f, .171f, -.866f, .044f, .017f, .013f},
       {.145f, .172f, -.868f, .034f, .012f, .010f}};
-  loft(Part::Leg, Region::Foot, 2, sections, {.022f, .02f, 2.4f, .02f});
+  loft(Region::Foot, 2, sections, {.022f, .02f, 2.4f, .02f});
   struct Toe {
     float x, z, tip_x, tip_z, r;
   };
@@ -429,7 +407,7 @@ void PersonShape::add_foot() {
                            {.191f, .116f, .195f, .143f, .0080f},
                            {.204f, .106f, .208f, .130f, .0080f}};
   for (const Toe& t : kToes)
-    cone(Part::Leg, Region::Foot, {t.x, -.866f, t.z}, {t.tip_x, -.879f + t.r, t.tip_z}, {t.r, t.r, .005f});
+    cone(Region::Foot, {t.x, -.866f, t.z}, {t.tip_x, -.879f + t.r, t.tip_z}, {t.r, t.r, .005f});
 }
 
 void PersonShape::add_arm() {
@@ -451,15 +429,15 @@ void PersonShape::add_arm() {
     const float k = mix(build, 1, smooth_step(.45f, .64f, r.x)) * hand * (1 + r.fat * who_.fat);
     sections.push_back({r.x, r.z, r.y, r.wide * k, r.up * k, r.down * k});
   }
-  loft(Part::Arm, Region::Arm, 0, sections, {.03f, .015f, 2.0f, .02f});
+  loft(Region::Arm, 0, sections, {.03f, .015f, 2.0f, .02f});
   const float muscle = (1 - .5f * who_.female) * (1 - who_.child) * (1 - .5f * who_.old);
-  ellipsoid(Part::Arm, Region::Arm, {.190f, .468f, .006f},
+  ellipsoid(Region::Arm, {.190f, .468f, .006f},
             Vec3(.046f, .044f, .050f) * (.92f + .12f * muscle + .3f * who_.fat), .03f);
-  ellipsoid(Part::Arm, Region::Arm, {.295f, .478f, .014f}, Vec3(.058f, .026f, .028f) * (.9f + .15f * muscle),
+  ellipsoid(Region::Arm, {.295f, .478f, .014f}, Vec3(.058f, .026f, .028f) * (.9f + .15f * muscle),
             .025f);  // biceps
-  ellipsoid(Part::Arm, Region::Arm, {.290f, .448f, -.006f}, Vec3(.065f, .028f, .030f) * (.9f + .12f * muscle),
-            .025f);                                                                        // triceps
-  ellipsoid(Part::Arm, Region::Arm, {.412f, .447f, -.016f}, {.016f, .014f, .014f}, .02f);  // elbow
+  ellipsoid(Region::Arm, {.290f, .448f, -.006f}, Vec3(.065f, .028f, .030f) * (.9f + .12f * muscle),
+            .025f);                                                             // triceps
+  ellipsoid(Region::Arm, {.412f, .447f, -.016f}, {.016f, .014f, .014f}, .02f);  // elbow
 }
 
 void PersonShape::add_hand() {
@@ -467,8 +445,8 @@ void PersonShape::add_hand() {
       {.640f, .008f, .459f, .026f, .017f, .017f}, {.665f, .009f, .457f, .030f, .016f, .018f},
       {.690f, .009f, .454f, .036f, .014f, .017f}, {.715f, .008f, .452f, .039f, .013f, .015f},
       {.735f, .006f, .450f, .039f, .012f, .012f}, {.748f, .005f, .449f, .034f, .009f, .009f}};
-  loft(Part::Arm, Region::Hand, 0, palm, {.01f, .012f, 2.5f, .01f});
-  ellipsoid(Part::Arm, Region::Hand, {.677f, .449f, .032f}, {.026f, .015f, .015f}, .012f,
+  loft(Region::Hand, 0, palm, {.01f, .012f, 2.5f, .01f});
+  ellipsoid(Region::Hand, {.677f, .449f, .032f}, {.026f, .015f, .015f}, .012f,
             {0, -25, 0});  // ball of the thumb
   struct Finger {
     float z, base_x, length, fan_deg, r;
@@ -482,12 +460,11 @@ void PersonShape::add_hand() {
     const auto at = [&](float d) {
       return Vec3(f.base_x + d * c, .450f - .10f * d - 1.6f * d * d, f.z + d * s);
     };
-    cone(Part::Arm, Region::Hand, at(0), at(.5f * f.length), {f.r, .94f * f.r, .005f});
-    cone(Part::Arm, Region::Hand, at(.5f * f.length), at(f.length - .8f * f.r),
-         {.94f * f.r, .80f * f.r, .003f});
+    cone(Region::Hand, at(0), at(.5f * f.length), {f.r, .94f * f.r, .005f});
+    cone(Region::Hand, at(.5f * f.length), at(f.length - .8f * f.r), {.94f * f.r, .80f * f.r, .003f});
   }
-  cone(Part::Arm, Region::Hand, {.668f, .450f, .030f}, {.703f, .444f, .058f}, {.0125f, .0108f, .010f});
-  cone(Part::Arm, Region::Hand, {.703f, .444f, .058f}, {.734f, .440f, .070f}, {.0108f, .0084f, .004f});
+  cone(Region::Hand, {.668f, .450f, .030f}, {.703f, .444f, .058f}, {.0125f, .0108f, .010f});
+  cone(Region::Hand, {.703f, .444f, .058f}, {.734f, .440f, .070f}, {.0108f, .0084f, .004f});
 }
 
 void PersonShape::add_head() {
@@ -500,7 +477,7 @@ void PersonShape::add_head() {
       {.530f, 0, .006f, neck, neck * .92f, neck},
       {.570f, 0, .012f, neck * .97f, neck * .95f, neck},
       {.610f, 0, .018f, neck, neck * .90f, neck}};
-  loft(Part::Head, Region::Head, 1, neck_sections, {.02f, .02f, 2.0f, .02f});
+  loft(Region::Head, 1, neck_sections, {.02f, .02f, 2.0f, .02f});
 
   const float jaw = .94f + .09f * m * (1 - child) + .22f * fat + .05f * child;
   const float skull = 1 + .03f * child;
@@ -511,20 +488,17 @@ void PersonShape::add_head() {
       {.625f, 0, .028f, .066f, .086f, .086f},         {.650f, 0, .026f, .070f * skull, .087f, .093f},
       {.680f, 0, .026f, .073f * skull, .090f, .096f}, {.705f, 0, .026f, .073f * skull, .089f, .095f},
       {.735f, 0, .026f, .073f * skull, .086f, .093f}, {.768f, 0, .026f, .072f * skull, .083f, .090f}};
-  loft(Part::Head, Region::Head, 1, sections, {.012f, .078f, 2.2f, .012f});
-  ellipsoid(Part::Head, Region::Head, {0, .556f, .094f}, Vec3(.021f + .003f * m, .014f, .015f),
+  loft(Region::Head, 1, sections, {.012f, .078f, 2.2f, .012f});
+  ellipsoid(Region::Head, {0, .556f, .094f}, Vec3(.021f + .003f * m, .014f, .015f),
             .014f);  // chin
-  if (fat > 0)
-    ellipsoid(Part::Head, Region::Head, {0, .548f, .062f}, Vec3(.040f, .018f, .034f) * (.8f + fat), .02f);
+  if (fat > 0) ellipsoid(Region::Head, {0, .548f, .062f}, Vec3(.040f, .018f, .034f) * (.8f + fat), .02f);
 }
 
 void PersonShape::add_face() {
   using Join = Primitive::Join;
   const float m = (1 - who_.female) * (1 - who_.child), child = who_.child;
   const auto blob = [this](const Vec3& c, const Vec3& r, float blend, const Vec3& turn = Vec3::Zero(),
-                           Join join = Join::Add) {
-    ellipsoid(Part::Head, Region::Head, c, r, blend, turn, join);
-  };
+                           Join join = Join::Add) { ellipsoid(Region::Head, c, r, blend, turn, join); };
   blob({.028f, .6695f, .1045f}, Vec3(.025f, .008f, .008f + .004f * m), .012f, {0, 22, 0});  // brow
   blob({.041f, .627f, .079f}, {.020f, .017f, .018f}, .020f);                                // cheek bone
   blob({.0315f, .6495f, .1245f}, {.0180f, .0105f, .0135f}, .010f, {0, 20, 0}, Join::Cut);   // eye socket
@@ -532,8 +506,7 @@ void PersonShape::add_face() {
   blob({.031f, .6570f, .1040f}, {.0145f, .0036f, .0095f}, .004f, {0, 15, 0});               // upper lid
 
   const float nose = 1 + .10f * m - .15f * child + .05f * who_.old;
-  cone(Part::Head, Region::Head, {0, .658f, .104f}, {0, .617f, .104f + .018f * nose},
-       {.0085f, .0105f * nose, .012f});
+  cone(Region::Head, {0, .658f, .104f}, {0, .617f, .104f + .018f * nose}, {.0085f, .0105f * nose, .012f});
   blob({0, .6125f, .108f + .017f * nose}, Vec3(.0105f, .0100f, .0110f) * nose, .008f);  // tip
   blob({.0115f, .6100f, .115f}, Vec3(.0080f, .0080f, .0110f) * nose, .007f);            // wing
   blob({0, .5955f, .111f}, {.016f, .009f, .010f}, .010f);                               // upper lip's bed
@@ -546,7 +519,6 @@ void PersonShape::add_face() {
 }
 
 // ---- evaluation
-// ----------------------------------------------------------------------------------------------------
 
 float PersonShape::primitive_value(const Primitive& primitive, const Vec3& p) const {
   switch (primitive.kind) {
@@ -574,8 +546,8 @@ float PersonShape::part_value(Part part, const Vec3& p) const {
   return value;
 }
 
-void PersonShape::add(Part part, const Primitive& primitive) {
-  PartShape& shape = parts_[static_cast<int>(part)];
+void PersonShape::add(Region region, const Primitive& primitive) {
+  PartShape& shape = parts_[static_cast<int>(part_of(region))];
   shape.primitives.push_back(primitive);
   shape.low = shape.low.cwiseMin(primitive.low);
   shape.high = shape.high.cwiseMax(primitive.high);

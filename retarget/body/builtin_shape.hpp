@@ -81,9 +81,8 @@ class PersonShape {
   Vec3 warp(const Vec3& grid) const;
   ImplicitSolid solid() const;                      ///< refers to this object
   const Joints& joints() const { return joints_; }  ///< before `scale`
-  const Proportions& who() const { return who_; }
-  float sole() const { return sole_; }
-  float crown() const { return crown_; }
+  /// To the person's stature.
+  float scale() const { return who_.stature / (crown_ - sole_); }
 
  private:
   void add_trunk();
@@ -95,11 +94,11 @@ class PersonShape {
   void add_head();
   void add_face();
 
-  void loft(Part part, Region region, int axis, const std::vector<Loft::Section>& sections,
+  void loft(Region region, int axis, const std::vector<Loft::Section>& sections,
             const Eigen::Array4f& caps_exponent_blend);
-  void ellipsoid(Part part, Region region, const Vec3& centre, const Vec3& radii, float blend,
+  void ellipsoid(Region region, const Vec3& centre, const Vec3& radii, float blend,
                  const Vec3& turn_deg = Vec3::Zero(), Primitive::Join join = Primitive::Join::Add);
-  void cone(Part part, Region region, const Vec3& a, const Vec3& b, const Eigen::Array3f& radii_blend);
+  void cone(Region region, const Vec3& a, const Vec3& b, const Eigen::Array3f& radii_blend);
   float primitive_value(const Primitive& primitive, const Vec3& p) const;
 
   Proportions who_;
@@ -112,7 +111,7 @@ class PersonShape {
     Vec3 low = Vec3::Constant(1e9f), high = Vec3::Constant(-1e9f);  ///< box that holds it
   };
   std::array<PartShape, kPartCount> parts_;
-  void add(Part part, const Primitive& primitive);
+  void add(Region region, const Primitive& primitive);
   float part_bound(Part part, const Vec3& p) const;
 };
 

@@ -38,7 +38,6 @@ Vec3 projected(const ImplicitSolid& solid, const Vec3& p, float limit) {
 }
 
 // ---- marching tetrahedra
-// ------------------------------------------------------------------------------------------
 
 /// Samples of the solid on the grid, only near its surface.
 class Grid {
@@ -216,7 +215,6 @@ class MarchingTetrahedra {
 };
 
 // ---- remeshing (after Botsch and Kobbelt, SGP 2004)
-// ---------------------------------------------------------------
 
 class Remesher {
  public:

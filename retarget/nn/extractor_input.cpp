@@ -15,13 +15,13 @@ void copy_to(const Points& points, torch::Tensor tensor) {
 
 void copy_recent(const RecentJoints& recent, const ScanPatches& patches, torch::Tensor joints,
                  torch::Tensor known) {
-  if (!recent.last()) return;
+  if (!recent.last) return;
   RecentRows rows = RecentRows::Zero();
-  rows.leftCols(3) = (recent.last()->rowwise() - patches.centre.transpose()) / patches.scale;
-  if (recent.before_last()) rows.rightCols(3) = (*recent.last() - *recent.before_last()) / patches.scale;
+  rows.leftCols(3) = (recent.last->rowwise() - patches.centre.transpose()) / patches.scale;
+  if (recent.before_last) rows.rightCols(3) = (*recent.last - *recent.before_last) / patches.scale;
   std::memcpy(joints.data_ptr<float>(), rows.data(), sizeof(float) * rows.size());
   known.data_ptr<float>()[0] = 1;
-  known.data_ptr<float>()[1] = recent.before_last() ? 1 : 0;
+  known.data_ptr<float>()[1] = recent.before_last ? 1 : 0;
 }
 
 }  // namespace

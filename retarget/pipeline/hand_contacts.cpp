@@ -18,6 +18,13 @@ constexpr int kInfluences = 4;
 constexpr float kMeanFrames = 90;  // frames that the mean bone lengths remember
 constexpr float kReach = 0.15f;    // metres around a hand in which surfaces count
 constexpr float kBlur = 0.02f;     // metres over which neighbouring samples are blended
+// A gap, metres, up to which a hand is held where it is on the source, and from which it is let go.
+constexpr float kNear = 0.02f, kFar = 0.06f;
+constexpr float kSnap = 0.5f;       // how much of the gap of a hand that is held is closed
+constexpr float kPlace = 0.3f;      // 0 the same gap only .. 1 at the same place, too
+constexpr float kForearms = 0.3f;   // how far forearms are pushed out of the body, 0..1
+constexpr float kSettle_s = 0.08f;  // time constant in which a correction comes and goes
+constexpr float kMost_m = 0.20f;    // a hand is moved no further (leg 0.8 m)
 
 /// The vertices, or an even share of them where they are very many.
 std::vector<int> thinned(const std::vector<int>& vertices) {
@@ -265,14 +272,14 @@ Vec3 HandContacts::pull(const Scene& scene, const std::vector<int>& hand, const 
   held = 0;
   for (const int i : hand) {
     const Touch source = touch(scene.a.col(i), near, {scene.a, scene.moved, scene.normals, body_->follows});
-    const float w = 1 - smooth_step(options_.near_m, options_.far_m, source.gap);
+    const float w = 1 - smooth_step(kNear, kFar, source.gap);
     if (w <= 0) continue;
     // Nearer than seen: what touches is seen now above the skin, now below. Hands may hold each other.
-    const float gap = std::max(source.gap * (1 - options_.snap * w), -0.005f - 0.03f * source.moves);
+    const float gap = std::max(source.gap * (1 - kSnap * w), -0.005f - 0.03f * source.moves);
     const Vec3 way = source.on_other + gap * source.normal - scene.moved.col(i);
     const float along = way.dot(source.normal);
     const float needed = along > 0 ? std::max(0.0f, along - std::max(0.0f, gap - kClear)) : along;
-    const Vec3 part = needed * source.normal + options_.place * (way - along * source.normal);
+    const Vec3 part = needed * source.normal + kPlace * (way - along * source.normal);
     held = std::max(held, w);
     sum += w;
     pull += w * (1 - 0.5f * source.moves) * part;  // two hands: each half
@@ -319,7 +326,7 @@ std::array<Vec3, 2> HandContacts::wanted(Scene& scene) const {
       if (pass < 2) {
         step[s] = pull(scene, body_->hands[s], near_hand[s], held[s]);
       } else {  // a hand that is held stays, whatever its forearm does
-        const float free = options_.forearms * (1 - held[s]);
+        const float free = kForearms * (1 - held[s]);
         step[s] = push_out(scene, body_->hands[s], near_hand[s]);
         if (free > 0) step[s] += free * push_out(scene, body_->forearms[s], near_forearm[s]);
       }
@@ -356,8 +363,8 @@ Pose HandContacts::push(const Pose& pose, const Joints& source, const std::optio
   }
   const std::array<Vec3, 2> goal = wanted(scene);
   const Mat3& chest = posed.global[Spine3];
-  const float follow = frames_ > 1 ? 1 - std::exp(-dt / std::max(options_.settle_s, 1e-3f)) : 1.0f;
-  const float limit = options_.most_m * leg_length(body.rest) / 0.8f;
+  const float follow = frames_ > 1 ? 1 - std::exp(-dt / kSettle_s) : 1.0f;
+  const float limit = kMost_m * leg_length(body.rest) / 0.8f;
   Pose result = pose;
   for (int side = 0; side < 2; ++side) {
     Vec3& offset = offset_[side];

@@ -12,16 +12,6 @@
 
 namespace understudy {
 
-struct HandContactOptions {
-  float near_m = 0.02f;    ///< a gap up to which a hand is held where it is on the source
-  float far_m = 0.06f;     ///< and from which it is let go; eased between
-  float snap = 0.5f;       ///< how much of the gap of a hand that is held is closed, 0..1
-  float place = 0.3f;      ///< 0 the same gap only .. 1 at the same place, too
-  float forearms = 0.3f;   ///< how far forearms are pushed out of the body, 0..1
-  float settle_s = 0.08f;  ///< time constant in which a correction comes and goes
-  float most_m = 0.20f;    ///< a hand is moved no further (leg 0.8 m)
-};
-
 /// Holds hands that are near the source's body at the same place of the target's, with the same gap, and
 /// pushes hands and forearms out of it: by inverse kinematics of the arm, the hand keeps its world rotation.
 ///
@@ -30,7 +20,6 @@ struct HandContactOptions {
 /// the other. Looks only back, memory is constant; no hand near, no change.
 class HandContacts {
  public:
-  explicit HandContacts(const HandContactOptions& options = {}) : options_(options) {}
   /// weights [V, 22] of the target's T-pose vertices.
   void bind(const Mesh& target, const Joints& rest, const RowMatrix& weights);
   /// The source starts anew.
@@ -52,7 +41,6 @@ class HandContacts {
   Vec3 push_out(const Scene& scene, const std::vector<int>& actors, const std::vector<int>& near) const;
   std::array<Vec3, 2> wanted(Scene& scene) const;
 
-  HandContactOptions options_;
   std::shared_ptr<const Body> body_;
   RunningGirth girth_;
   Eigen::Array<float, kJointCount, 1> lengths_ = Eigen::Array<float, kJointCount, 1>::Zero();

@@ -25,18 +25,14 @@ struct Extraction {
 };
 
 /// The joints seen in the last two frames of a stream, world, metres. Those that are not finite are left out.
-class RecentJoints {
- public:
+struct RecentJoints {
+  std::optional<Joints> last, before_last;
+
   void push(const Joints& joints) {
     if (!joints.allFinite()) return;
-    before_last_ = last_;
-    last_ = joints;
+    before_last = last;
+    last = joints;
   }
-  const std::optional<Joints>& last() const { return last_; }
-  const std::optional<Joints>& before_last() const { return before_last_; }
-
- private:
-  std::optional<Joints> last_, before_last_;
 };
 
 /// Joints from a scan of any number of points, any order, any heading (paper 1, section 3.1). One thread at a

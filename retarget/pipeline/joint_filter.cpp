@@ -63,15 +63,15 @@ void JointFilter::repair_swaps(Extraction& frame) {
 }
 
 /// Covariance of a constant velocity disturbed by a random acceleration held over dt.
-void JointFilter::Spread::predict(float dt, float acceleration) {
+void JointFilter::Covariance::predict(float dt, float acceleration) {
   const float q = acceleration * acceleration;
   pp += 2 * dt * pv + dt * dt * vv + 0.25f * dt * dt * dt * dt * q;
   pv += dt * vv + 0.5f * dt * dt * dt * q;
   vv += dt * dt * q;
 }
 
-std::array<float, 2> JointFilter::Spread::correct(float innovation, float noise) {
-  // A innovation beyond four deviations is a real jump that the model does not know: follow it, do not lag.
+std::array<float, 2> JointFilter::Covariance::correct(float innovation, float noise) {
+  // An innovation beyond four deviations is a real jump that the model does not know: follow it, do not lag.
   const float expected = 3 * (pp + noise * noise);
   const float excess = innovation / (16 * expected);
   if (excess > 1) {
@@ -104,9 +104,9 @@ void JointFilter::smooth(Extraction& frame, float dt) {
   for (int j = kJointCount - 1; j >= 0; --j) {  // the pelvis last: the others are measured from it
     Track& t = tracks_[j];
     t.position += dt * t.velocity;
-    t.spread.predict(dt, j == Pelvis ? options_.root_acceleration : options_.acceleration);
+    t.covariance.predict(dt, j == Pelvis ? options_.root_acceleration : options_.acceleration);
     const Vec3 innovation = measured(j) - t.position;
-    const auto [kp, kv] = t.spread.correct(
+    const auto [kp, kv] = t.covariance.correct(
         innovation.squaredNorm(), noise(frame.confidence[j], options_.noise_m, options_.weak_noise_m));
     t.position += kp * innovation;
     t.velocity += kv * innovation;
@@ -131,10 +131,10 @@ void JointFilter::smooth_turns(Extraction& frame, float dt) {
       continue;
     }
     const Mat3 expected = rotation_from_axis_angle(dt * t.velocity) * t.rotation;
-    t.spread.predict(dt, options_.turn_acceleration);
+    t.covariance.predict(dt, options_.turn_acceleration);
     const Vec3 innovation = rotation_to_axis_angle(seen * expected.transpose());
     const float deviation = noise(frame.confidence[j], options_.turn_noise, options_.weak_turn_noise);
-    const auto [kp, kv] = t.spread.correct(innovation.squaredNorm(), deviation);
+    const auto [kp, kv] = t.covariance.correct(innovation.squaredNorm(), deviation);
     // Products of rotations drift from being one.
     t.rotation = Eigen::Quaternionf(Mat3(rotation_from_axis_angle(kp * innovation) * expected))
                      .normalized()

@@ -41,20 +41,20 @@ class JointFilter {
 
  private:
   /// The covariance of a value and its speed, the same for x, y and z.
-  struct Spread {
+  struct Covariance {
     float pp = 0, pv = 0, vv = 0;
     void predict(float dt, float acceleration);
-    /// What share of a innovation (its squared length) goes into the value, and into its speed.
+    /// What share of an innovation (its squared length) goes into the value, and into its speed.
     std::array<float, 2> correct(float innovation, float noise);
   };
   struct Track {
     Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-    Spread spread;
+    Covariance covariance;
   };
   struct Turn {
     Mat3 rotation = Mat3::Identity();
     Vec3 velocity = Vec3::Zero();  // radians/s, world axes
-    Spread spread;
+    Covariance covariance;
   };
   float noise(float confidence, float sure, float weak) const;
   void repair_swaps(Extraction& frame);

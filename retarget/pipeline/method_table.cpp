@@ -3,14 +3,13 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
-#include "retarget/pipeline/positions_transfer.hpp"
 
 namespace understudy {
 namespace {
 
-template <class Engine>
+template <bool sees_rotations>
 std::unique_ptr<MotionTransfer> made() {
-  return std::make_unique<Engine>();
+  return std::make_unique<CopyTransfer>(sees_rotations);
 }
 
 const MethodChoice& named(const MethodChoices& choices, const std::string& name, const char* what) {
@@ -23,11 +22,10 @@ const MethodChoice& named(const MethodChoices& choices, const std::string& name,
 
 const MethodChoices& engines() {
   static const MethodChoices all = {
-      {"copy", "Copy", "copied rotations", "rotations are seen and solved, then copied", nullptr,
-       made<CopyTransfer>},
+      {"copy", "Copy", "copied rotations", "rotations are seen and solved, then copied", nullptr, made<true>},
       {"paper", "Paper", "paper's network", "paper 1's network says them", "motion.weights"},
       {"positions", "Joints", "rotations from positions", "rotations are solved from joint positions alone",
-       nullptr, made<PositionsTransfer>}};
+       nullptr, made<false>}};
   return all;
 }
 

@@ -8,19 +8,13 @@
 
 namespace understudy {
 
-// The way of a frame. Without a target the first two are all.
-const std::vector<Performer::Stage> Performer::kStages = {
-    &Performer::style, &Performer::filter, &Performer::transfer, &Performer::root,
-    &Performer::feet,  &Performer::hands,  &Performer::deform};
-
 Performer::Performer(const RetargetOptions& options)
-    : options_(options),
-      now_{JointFilter(options.filter),
-           RootPath(options.root),
-           FootLock(options.feet),
-           HandContacts(options.hands),
-           {},
-           {}} {}
+    : options_(options), now_{JointFilter(options.filter),
+                              RootPath(options.root),
+                              FootLock(options.feet),
+                              HandContacts(),
+                              {},
+                              {}} {}
 
 Performer::Performer(Target target, std::shared_ptr<MotionTransfer> transfer,
                      std::shared_ptr<Deformer> deformer, const RetargetOptions& options)
@@ -72,10 +66,25 @@ PerformedFrame Performer::perform(const Observation& seen, float dt) {
   return frame;
 }
 
+/// The way of a frame. Without a target styles and filter are all.
 void Performer::run(PerformedFrame& frame) {
   const auto began = std::chrono::steady_clock::now();
-  const size_t stages = transfer_ ? kStages.size() : 2;
-  for (size_t s = 0; s < stages; ++s) (this->*kStages[s])(frame);
+  for (const auto& style : styles_) frame.source = style->push(std::move(frame.source), waited_);
+  static_cast<Extraction&>(frame.source) = now_.filter.push(frame.source, waited_);
+  if (transfer_) {
+    const Observation& source = frame.source;
+    Pose& pose = frame.pose;
+    pose.local = transfer_->push(source, waited_);
+    pose.root = now_.root.push(source, pose.local, waited_);
+    if (options_.lock_feet) pose = now_.root.plant(pose, waited_);
+    if (options_.lock_feet && options_.root.mode == RootMode::Scaled)
+      pose = now_.feet.push(pose, target_.joints, waited_, source.joints);
+    if (options_.keep_contacts) pose = now_.hands.push(pose, source.joints, source.girth, waited_);
+    US_CHECK(finite(pose.local) && pose.root.allFinite(),
+             "the motion transfer gave numbers that are not finite");
+    finish(frame);
+    US_CHECK(frame.vertices.allFinite(), "the deformation gave numbers that are not finite");
+  }
   frame.transfer_ms = ms_since(began) - frame.deform_ms;
 }
 
@@ -91,40 +100,6 @@ void Performer::put_back(Memory memory) {
   for (size_t s = 0; s < styles_.size(); ++s) styles_[s]->restore(memory.styles[s]);
   memory.styles.clear();
   now_ = std::move(memory);
-}
-
-void Performer::style(PerformedFrame& frame) {
-  for (const auto& style : styles_) frame.source = style->push(std::move(frame.source), waited_);
-}
-
-void Performer::filter(PerformedFrame& frame) {
-  static_cast<Extraction&>(frame.source) = now_.filter.push(frame.source, waited_);
-}
-
-void Performer::transfer(PerformedFrame& frame) {
-  frame.pose.local = transfer_->push(frame.source, waited_);
-}
-
-void Performer::root(PerformedFrame& frame) {
-  frame.pose.root = now_.root.push(frame.source, frame.pose.local, waited_);
-  if (options_.lock_feet) frame.pose = now_.root.plant(frame.pose, waited_);
-}
-
-void Performer::feet(PerformedFrame& frame) {
-  if (options_.lock_feet && options_.root.mode == RootMode::Scaled)
-    frame.pose = now_.feet.push(frame.pose, target_.joints, waited_, frame.source.joints);
-}
-
-void Performer::hands(PerformedFrame& frame) {
-  if (options_.keep_contacts)
-    frame.pose = now_.hands.push(frame.pose, frame.source.joints, frame.source.girth, waited_);
-}
-
-void Performer::deform(PerformedFrame& frame) {
-  US_CHECK(finite(frame.pose.local) && frame.pose.root.allFinite(),
-           "the motion transfer gave numbers that are not finite");
-  finish(frame);
-  US_CHECK(frame.vertices.allFinite(), "the deformation gave numbers that are not finite");
 }
 
 PerformedFrame Performer::repeat(PerformedFrame frame, std::string reason) {

@@ -9,7 +9,7 @@
 #include "retarget/pipeline/foot_lock.hpp"
 #include "retarget/pipeline/hand_contacts.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
-#include "retarget/pipeline/motion_style.hpp"
+#include "retarget/pipeline/observation.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/pipeline/target.hpp"
 
@@ -21,8 +21,7 @@ struct RetargetOptions {
   bool lock_feet = true;  ///< feet that stand do not slide
   FootLockOptions feet;
   bool keep_contacts = true;  ///< hands that touch the body or each other do so on the target, too
-  HandContactOptions hands;
-  bool vertices = true;  ///< false: poses only, no deformation
+  bool vertices = true;       ///< false: poses only, no deformation
 };
 
 /// The target in one frame.
@@ -79,22 +78,12 @@ class Performer {
     std::any transfer;             // copies: the engine and
     std::vector<std::any> styles;  // the styles keep their own
   };
-  using Stage = void (Performer::*)(PerformedFrame& frame);
-  static const std::vector<Stage> kStages;
 
   Memory remembered() const;
   void put_back(Memory memory);
   void run(PerformedFrame& frame);
   PerformedFrame repeat(PerformedFrame frame, std::string reason);
   void finish(PerformedFrame& frame) const;
-
-  void style(PerformedFrame& frame);
-  void filter(PerformedFrame& frame);
-  void transfer(PerformedFrame& frame);
-  void root(PerformedFrame& frame);
-  void feet(PerformedFrame& frame);
-  void hands(PerformedFrame& frame);
-  void deform(PerformedFrame& frame);
 
   RetargetOptions options_;
   Target target_;

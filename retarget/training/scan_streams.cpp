@@ -29,13 +29,13 @@ RecentJoints ScanStreams::wrong(const RecentJoints& recent) {
   const Eigen::RowVector3f away = 0.2f * rng_.normal() * random_direction(rng_).transpose();
   const auto made = [&](const Joints& own) -> Joints {
     if (how == 0) return exchanged(own);
-    if (how == 1 && other.last())
-      return (other.last()->rowwise() - other.last()->row(Pelvis)).rowwise() + own.row(Pelvis);
+    if (how == 1 && other.last)
+      return (other.last->rowwise() - other.last->row(Pelvis)).rowwise() + own.row(Pelvis);
     return own.rowwise() + away;
   };
   RecentJoints result;
-  if (recent.before_last()) result.push(made(*recent.before_last()));
-  if (recent.last()) result.push(made(*recent.last()));
+  if (recent.before_last) result.push(made(*recent.before_last));
+  if (recent.last) result.push(made(*recent.last));
   return result;
 }
 

@@ -119,11 +119,9 @@ StudioServices StudioTest::services() {
   StudioServices services;
   services.networks = [count = extractions_](const Method& method, const NetworkParts& parts) {
     Networks networks;
-    CopyOptions options;
-    if (method.engine == "paper") options.seen.setZero();
     if (parts.extractor) networks.extractor = std::make_shared<CountingExtractor>(count);
     if (parts.rest_extractor) networks.rest_extractor = std::make_shared<RestExtractor>();
-    if (parts.transfer) networks.transfer = std::make_shared<CopyTransfer>(options);
+    if (parts.transfer) networks.transfer = std::make_shared<CopyTransfer>(method.engine != "paper");
     if (parts.deformer) networks.deformer = std::make_shared<NearestDeformer>();
     return networks;
   };

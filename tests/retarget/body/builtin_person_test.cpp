@@ -209,20 +209,6 @@ TEST(BuiltinPerson, GirthAndSexShowWhereTheyShould) {
             woman.joints(LeftShoulder, 0) / woman.joints(LeftHip, 0));
 }
 
-TEST(BuiltinPerson, LengthOptionsMoveOnlyTheirOwnBones) {
-  PersonOptions o;
-  const Joints plain = builtin_joints(o);
-  o.arms = 1.2f;
-  const Joints long_arms = builtin_joints(o);
-  EXPECT_NEAR(
-      (long_arms(LeftWrist, 0) - long_arms(LeftShoulder, 0)) / (plain(LeftWrist, 0) - plain(LeftShoulder, 0)),
-      1.2f, 1e-3f);
-  EXPECT_NEAR(leg_length(long_arms), leg_length(plain), 1e-5f);
-  o.arms = 1, o.legs = 1.2f;  // the stature stays, so all else shrinks
-  EXPECT_GT(leg_length(builtin_joints(o)) / builtin_joints(o)(Neck, 1),
-            1.15f * leg_length(plain) / plain(Neck, 1));
-}
-
 TEST(BuiltinPerson, FaceAndFeetPointForward) {
   const ShapedBody& man = people().at("man");
   Eigen::Index tip = 0;

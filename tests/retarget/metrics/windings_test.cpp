@@ -36,7 +36,7 @@ TEST(Windings, SayWhatEachFaceDoesInAnyPose) {
   const ShapedBody person = builtin_person();
   const Windings windings(person.vertices, person.faces);
   expect_agreement(windings, person.vertices, person.faces);
-  const Motion dance = builtin_motion("dance");
+  const Motion dance = builtin_motion("dance", builtin_joints());
   expect_agreement(windings,
                    linear_blend_skinning(person.vertices, person.weights, person.joints,
                                          forward_kinematics(person.joints, dance.poses[40])),

@@ -82,11 +82,11 @@ class LargeBinding : public ::testing::Test {
     deformer->bind(mesh_.vertices, joints_);
     return deformer;
   }
-  /// Some moments of a dance and of a kick.
+  /// Some moments of a dance and of a walk.
   static std::vector<Pose> poses() {
     std::vector<Pose> out;
-    for (const char* name : {"dance", "kick"}) {
-      const Motion motion = builtin_motion(name);
+    for (const char* name : {"dance", "walk"}) {
+      const Motion motion = builtin_motion(name, joints_);
       for (size_t t = 5; t < motion.poses.size(); t += 40) out.push_back(motion.poses[t]);
     }
     return out;

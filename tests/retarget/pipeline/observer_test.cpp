@@ -41,13 +41,13 @@ TEST(Observer, TellsTheExtractorWhatItSawJustBefore) {
   for (int i = 0; i < 3; ++i) seen.push_back(watch.see(i).joints);
   const auto& told = watch.extractor->told;
   ASSERT_EQ(told.size(), 3u);
-  EXPECT_FALSE(told[0].last());
-  EXPECT_FALSE(told[1].before_last());
-  EXPECT_EQ(*told[2].last(), seen[1]);
-  EXPECT_EQ(*told[2].before_last(), seen[0]);
+  EXPECT_FALSE(told[0].last);
+  EXPECT_FALSE(told[1].before_last);
+  EXPECT_EQ(*told[2].last, seen[1]);
+  EXPECT_EQ(*told[2].before_last, seen[0]);
   watch.observer.restart();
   watch.see(3);
-  EXPECT_FALSE(told[3].last());
+  EXPECT_FALSE(told[3].last);
 }
 
 TEST(Observer, TellsNothingOfAFrameThatIsNotBelieved) {
@@ -55,7 +55,7 @@ TEST(Observer, TellsNothingOfAFrameThatIsNotBelieved) {
   const Joints good = watch.see(0).joints;
   EXPECT_NE(refusal(watch.see(1, 0.02f)), "");
   watch.see(2);
-  EXPECT_EQ(*watch.extractor->told[2].last(), good);
+  EXPECT_EQ(*watch.extractor->told[2].last, good);
 }
 
 TEST(Observer, ForgetsThePastOverAPause) {
@@ -63,14 +63,14 @@ TEST(Observer, ForgetsThePastOverAPause) {
   for (int i = 0; i < 2; ++i) watch.see(i);
   for (int i = 0; i < 3; ++i) watch.observer.skip("nothing there", kInterval);
   watch.see(5);
-  EXPECT_TRUE(watch.extractor->told[2].last());  // a short one
+  EXPECT_TRUE(watch.extractor->told[2].last);  // a short one
   for (int i = 0; i < 10; ++i) watch.see(6 + i, 0.02f);
   watch.see(16);
-  EXPECT_FALSE(watch.extractor->told.back().last());
+  EXPECT_FALSE(watch.extractor->told.back().last);
   watch.see(17);
-  EXPECT_TRUE(watch.extractor->told.back().last());
+  EXPECT_TRUE(watch.extractor->told.back().last);
   watch.observer.observe(watch.scan(18), /*dt=*/2);  // a gap in the source's own time
-  EXPECT_FALSE(watch.extractor->told.back().last());
+  EXPECT_FALSE(watch.extractor->told.back().last);
 }
 
 TEST(Observer, SaysWhyThereIsNoSkeletonAndHasNoConfidenceThen) {

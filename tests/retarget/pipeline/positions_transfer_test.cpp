@@ -1,4 +1,4 @@
-#include "retarget/pipeline/positions_transfer.hpp"
+#include "retarget/pipeline/copy_transfer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Extraction told(float t) {
 }
 
 TEST(PositionsTransfer, SaysWhatCopySaysWhereNoRotationIsSeen) {
-  PositionsTransfer positions;
+  CopyTransfer positions(/*sees_rotations=*/false);
   CopyTransfer copy;
   positions.reset(other_body());
   copy.reset(other_body());
@@ -41,7 +41,7 @@ TEST(PositionsTransfer, CannotTellHowTheHeadIsTurned) {
 }
 
 TEST(PositionsTransfer, AlsoOfASkeletonsOwnRotations) {
-  PositionsTransfer positions;
+  CopyTransfer positions(/*sees_rotations=*/false);
   positions.reset(human_rest());
   Extraction source = told(1);
   source.exact = true;

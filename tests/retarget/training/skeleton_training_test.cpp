@@ -159,7 +159,7 @@ TEST_F(SkeletonTraining, APastIsWhatWasSeenButForAFewThatAreWrong) {
     const FollowedScans batch = streams.next(4);
     std::vector<Joints> seen;
     for (size_t k = 0; k < batch.scans.size(); ++k) {
-      const auto& last = batch.recent[k].last();
+      const auto& last = batch.recent[k].last;
       known += last.has_value();
       right += last && farthest(*last, batch.scans[k].truth.joints) < 0.5f;
       seen.push_back(batch.scans[k].truth.joints);
