@@ -1,27 +1,25 @@
 #include "retarget/nn/extractor_input.hpp"
 
-#include <cstring>
-
 #include "retarget/base/error.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 
 namespace understudy::nn {
 namespace {
 
-using RecentRows = Eigen::Matrix<float, kJointCount, 6, Eigen::RowMajor>;
-
-void copy_to(const Points& points, torch::Tensor tensor) {
-  std::memcpy(tensor.data_ptr<float>(), points.data(), sizeof(float) * points.size());
+/// One member of all scans, [B, rows, 3].
+torch::Tensor stacked(const std::vector<ScanPatches>& patches, Points ScanPatches::*member) {
+  std::vector<torch::Tensor> all;
+  for (const ScanPatches& one : patches) all.push_back(tensor_of(one.*member));
+  return torch::stack(all);
 }
 
-void copy_recent(const RecentJoints& recent, const ScanPatches& patches, torch::Tensor joints,
-                 torch::Tensor known) {
-  if (!recent.last) return;
-  RecentRows rows = RecentRows::Zero();
-  rows.leftCols(3) = (recent.last->rowwise() - patches.centre.transpose()) / patches.scale;
+/// [22, 6]; zero where nothing is known.
+torch::Tensor recent_of(const RecentJoints& recent, const ScanPatches& patches) {
+  Eigen::Matrix<float, kJointCount, 6, Eigen::RowMajor> rows;
+  rows.setZero();
+  if (recent.last) rows.leftCols(3) = (recent.last->rowwise() - patches.centre.transpose()) / patches.scale;
   if (recent.before_last) rows.rightCols(3) = (*recent.last - *recent.before_last) / patches.scale;
-  std::memcpy(joints.data_ptr<float>(), rows.data(), sizeof(float) * rows.size());
-  known.data_ptr<float>()[0] = 1;
-  known.data_ptr<float>()[1] = recent.before_last ? 1 : 0;
+  return tensor_of(rows);
 }
 
 }  // namespace
@@ -30,22 +28,16 @@ ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,
                                const std::vector<RecentJoints>& recent) {
   US_CHECK(recent.empty() || recent.size() == patches.size(), patches.size(), " scans with the past of ",
            recent.size());
-  const auto B = static_cast<int64_t>(patches.size());
   ExtractorInput input;
-  input.points = torch::empty({B, kScanPoints, 3});
-  input.centres = torch::empty({B, kPatches, 3});
-  input.offsets = torch::empty({B, kPatches, kPatchPoints, 3});
-  if (!recent.empty()) {
-    input.recent = torch::zeros({B, kJointCount, 6});
-    input.recent_known = torch::zeros({B, 2});
+  input.points = stacked(patches, &ScanPatches::points);
+  input.centres = stacked(patches, &ScanPatches::centres);
+  input.offsets = stacked(patches, &ScanPatches::offsets).view({-1, kPatches, kPatchPoints, 3});
+  std::vector<torch::Tensor> joints, known;
+  for (size_t b = 0; b < recent.size(); ++b) {
+    joints.push_back(recent_of(recent[b], patches[b]));
+    known.push_back(torch::tensor({recent[b].last ? 1.0f : 0.0f, recent[b].before_last ? 1.0f : 0.0f}));
   }
-  for (int64_t b = 0; b < B; ++b) {
-    const ScanPatches& of = patches[b];
-    copy_to(of.points, input.points[b]);
-    copy_to(of.centres, input.centres[b]);
-    copy_to(of.offsets, input.offsets[b]);
-    if (!recent.empty()) copy_recent(recent[b], of, input.recent[b], input.recent_known[b]);
-  }
+  if (!recent.empty()) input.recent = torch::stack(joints), input.recent_known = torch::stack(known);
   return input;
 }
 

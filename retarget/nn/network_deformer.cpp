@@ -1,4 +1,4 @@
-#include "retarget/nn/network_deformer.hpp"
+#include "retarget/nn/load.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -358,8 +358,8 @@ Points spread_points(const Points& points, int count) {
     return std::array<float, 3>{-points(i, 1), points(i, 0), points(i, 2)};
   };
   std::sort(order.begin(), order.end(), [&key](int a, int b) { return key(a) < key(b); });
-  Points sorted(points.rows(), 3);  // from the top down, so that the choice does not know the file's order
-  for (size_t i = 0; i < order.size(); ++i) sorted.row(i) = points.row(order[i]);
+  // from the top down, so that the choice does not know the file's order
+  const Points sorted = points(order, Eigen::all);
   Points context(count, 3);
   const int distinct = static_cast<int>(std::min<Eigen::Index>(count, points.rows()));
   const std::vector<int> chosen = farthest_points(sorted, distinct);

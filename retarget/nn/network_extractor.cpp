@@ -1,4 +1,4 @@
-#include "retarget/nn/network_extractor.hpp"
+#include "retarget/nn/load.hpp"
 
 #include <torch/torch.h>
 

@@ -1,4 +1,4 @@
-#include "retarget/nn/paper_transfer.hpp"
+#include "retarget/nn/load.hpp"
 
 #include <torch/torch.h>
 

@@ -1,4 +1,4 @@
-#include "retarget/nn/part_refiner.hpp"
+#include "retarget/nn/load.hpp"
 
 #include <algorithm>
 #include <cmath>

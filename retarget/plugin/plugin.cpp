@@ -8,12 +8,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/networks/plugin_api.hpp"
-#include "retarget/nn/network_deformer.hpp"
-#include "retarget/nn/network_extractor.hpp"
-#include "retarget/nn/paper_transfer.hpp"
-#include "retarget/nn/part_refiner.hpp"
+#include "retarget/nn/load.hpp"
 #include "retarget/pipeline/method_table.hpp"
-#include "retarget/training/trainers.hpp"
+#include "retarget/training/training_run.hpp"
 
 namespace understudy::nn {
 namespace {

@@ -52,19 +52,6 @@ DeformationSampler::DeformationSampler(const TrainingData& data, const Deformati
 
 namespace {
 
-Points reflected(const Points& points) {
-  Points out = points;
-  out.col(0) *= -1;
-  return out;
-}
-
-Joints reflected_joints(const Joints& joints) {
-  Joints out;
-  for (int j = 0; j < kJointCount; ++j)
-    out.row(j) << -joints(kMirror[j], 0), joints(kMirror[j], 1), joints(kMirror[j], 2);
-  return out;
-}
-
 /// Somebody between two people, half the time a little unlike anybody.
 Eigen::VectorXf draw_shape(const TrainingData& data, Rng& rng) {
   Eigen::VectorXf shape = random_shape(data, rng);
@@ -98,8 +85,9 @@ DeformationSampler::Person DeformationSampler::draw_person() {
   }
   person.mirror = rng_.chance(0.5f);
   if (person.mirror) {
-    person.vertices = reflected(person.vertices);
-    person.joints = reflected_joints(person.joints);
+    person.vertices.col(0) *= -1;
+    person.joints = Joints(person.joints(kMirror, Eigen::all));
+    person.joints.col(0) *= -1;
   }
   person.seen = person.joints;
   if (rng_.chance(options_.noisy_share)) {
@@ -200,7 +188,7 @@ void DeformationSampler::place(const Person& person, int row, DeformationBatch& 
   const auto side = [&](const torch::Tensor& x, auto mirrored) { return person.mirror ? mirrored(x) : x; };
   batch.weights[row].copy_(side(tensor_of(weights), nn::mirror_weights));
   batch.basis[row].copy_(side(tensor_of(basis), nn::mirror_basis));
-  if (person.mirror) canonical = reflected(canonical);
+  if (person.mirror) canonical.col(0) *= -1;
   batch.canonical[row].copy_(tensor_of(canonical));
   batch.has_canonical[row] = s.canonical.rows() > 0 ? 1.f : 0.f;
 }

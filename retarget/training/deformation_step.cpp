@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/nn/load.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
-#include "retarget/nn/network_deformer.hpp"
 #include "retarget/skeleton/skinning.hpp"
 #include "retarget/training/losses/deformation_losses.hpp"
 
@@ -86,8 +86,7 @@ void DeformationEvaluator::add(const TrainingData& data, const ShapedBody& body,
   }
   // Neighbours in the T-pose stand for those of every frame, from every fourth vertex: quick, and nearly the
   // same figure.
-  Points queries((body.vertices.rows() + 3) / 4, 3);
-  for (Eigen::Index i = 0; i < queries.rows(); ++i) queries.row(i) = body.vertices.row(4 * i);
+  const Points queries = body.vertices(Eigen::seq(0, Eigen::last, 4), Eigen::all);
   const auto near = nearest_neighbours(body.vertices, queries, kEdges + 1);
   std::vector<int64_t> from, to;
   for (Eigen::Index i = 0; i < queries.rows(); ++i)

@@ -1,6 +1,4 @@
-#include "retarget/training/checkpoint_archive.hpp"
 #include "retarget/training/deformation_step.hpp"
-#include "retarget/training/trainers.hpp"
 #include "retarget/training/training_run.hpp"
 
 namespace understudy::training {

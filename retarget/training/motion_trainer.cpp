@@ -1,10 +1,8 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/training/checkpoint_archive.hpp"
 #include "retarget/training/losses/motion_losses.hpp"
 #include "retarget/training/motion_evaluator.hpp"
 #include "retarget/training/motion_step.hpp"
-#include "retarget/training/trainers.hpp"
 #include "retarget/training/training_run.hpp"
 
 namespace understudy::training {

@@ -1,10 +1,9 @@
 #include <future>
 
 #include "retarget/nn/modules/part_refiner.hpp"
-#include "retarget/training/losses/part_losses.hpp"
+#include "retarget/training/losses/skeleton_losses.hpp"
 #include "retarget/training/part_data.hpp"
 #include "retarget/training/rotation_error.hpp"
-#include "retarget/training/trainers.hpp"
 #include "retarget/training/training_run.hpp"
 
 namespace understudy::training {

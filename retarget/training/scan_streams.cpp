@@ -10,13 +10,6 @@ namespace {
 
 constexpr float kWrong = 0.06f;  // share of scans with a past that is not theirs
 
-/// Sides exchanged.
-Joints exchanged(const Joints& joints) {
-  Joints result;
-  for (int j = 0; j < kJointCount; ++j) result.row(j) = joints.row(kMirror[j]);
-  return result;
-}
-
 }  // namespace
 
 ScanStreams::ScanStreams(const TrainingData& data, const ScanMakerOptions& options, uint64_t seed, int people)
@@ -28,7 +21,7 @@ RecentJoints ScanStreams::wrong(const RecentJoints& recent) {
   const int how = rng_.below(3);
   const Eigen::RowVector3f away = 0.2f * rng_.normal() * random_direction(rng_).transpose();
   const auto made = [&](const Joints& own) -> Joints {
-    if (how == 0) return exchanged(own);
+    if (how == 0) return own(kMirror, Eigen::all);  // sides exchanged
     if (how == 1 && other.last)
       return (other.last->rowwise() - other.last->row(Pelvis)).rowwise() + own.row(Pelvis);
     return own.rowwise() + away;

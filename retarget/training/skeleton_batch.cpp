@@ -1,45 +1,33 @@
 #include "retarget/training/skeleton_batch.hpp"
 
-#include <cstring>
-
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/extractor_input.hpp"
-#include "retarget/training/losses/length_loss.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/training/losses/skeleton_losses.hpp"
 
 namespace understudy::training {
-namespace {
-
-constexpr int64_t M = nn::kPatches, J = kJointCount;
-
-}  // namespace
 
 SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<RecentJoints>& recent) {
-  const auto B = static_cast<int64_t>(scans.size());
   std::vector<nn::ScanPatches> all;
-  for (const MadeScan& scan : scans) all.push_back(nn::cut_patches(scan.points));
-  SkeletonBatch batch;
-  batch.input = nn::extractor_input(all, recent);
-  batch.scale = torch::empty({B});
-  batch.centre = torch::empty({B, 3});
-  batch.truth.joints = torch::empty({B, J, 3});
-  batch.truth.rotations = torch::empty({B, J, 6});
-  batch.truth.parts = torch::empty({B, M}, torch::kInt64);
-  for (int64_t b = 0; b < B; ++b) {
-    const MadeScan& scan = scans[b];
-    const nn::ScanPatches& patches = all[b];
-    batch.scale.data_ptr<float>()[b] = patches.scale;
-    std::memcpy(batch.centre[b].data_ptr<float>(), patches.centre.data(), sizeof(float) * 3);
-    const Joints joints = (scan.truth.joints.rowwise() - patches.centre.transpose()) / patches.scale;
-    std::memcpy(batch.truth.joints[b].data_ptr<float>(), joints.data(), sizeof(float) * joints.size());
-    for (int64_t j = 0; j < J; ++j) {
-      const Vec6 r = rotation_to_6d(scan.truth.global[j]);
-      std::memcpy(batch.truth.rotations[b][j].data_ptr<float>(), r.data(), sizeof(float) * 6);
-    }
-    for (int64_t m = 0; m < M; ++m)
-      batch.truth.parts.data_ptr<int64_t>()[b * M + m] = scan.parts[patches.centre_index[m]];
+  std::vector<float> scales;
+  std::vector<torch::Tensor> centres, joints, rotations, parts;
+  for (const MadeScan& scan : scans) {
+    const nn::ScanPatches& patches = all.emplace_back(nn::cut_patches(scan.points));
+    scales.push_back(patches.scale);
+    centres.push_back(nn::tensor_of(patches.centre).flatten());
+    joints.push_back(
+        nn::tensor_of(Joints((scan.truth.joints.rowwise() - patches.centre.transpose()) / patches.scale)));
+    Eigen::Matrix<float, kJointCount, 6, Eigen::RowMajor> r6;
+    for (int j = 0; j < kJointCount; ++j) r6.row(j) = rotation_to_6d(scan.truth.global[j]).transpose();
+    rotations.push_back(nn::tensor_of(r6));
+    std::vector<int64_t> own;
+    for (const int centre : patches.centre_index) own.push_back(scan.parts[centre]);
+    parts.push_back(torch::tensor(own));
   }
-  return batch;
+  return {nn::extractor_input(all, recent),
+          torch::tensor(scales),
+          torch::stack(centres),
+          {torch::stack(joints), torch::stack(rotations), torch::stack(parts)}};
 }
 
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device) {

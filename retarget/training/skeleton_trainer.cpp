@@ -7,7 +7,6 @@
 #include "retarget/training/rotation_error.hpp"
 #include "retarget/training/scan_streams.hpp"
 #include "retarget/training/skeleton_batch.hpp"
-#include "retarget/training/trainers.hpp"
 #include "retarget/training/training_run.hpp"
 
 namespace understudy::training {

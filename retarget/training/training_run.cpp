@@ -12,7 +12,6 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/math/types.hpp"
-#include "retarget/training/checkpoint_archive.hpp"
 
 namespace understudy::training {
 namespace {

@@ -23,6 +23,34 @@ struct Schedule {
   double row_seconds = 120;  ///< between rows; with each, weights and checkpoint are written
 };
 
+// Parts of a checkpoint in LibTorch's archives.
+
+/// A module or an optimizer under a name.
+template <class Part>
+void put(torch::serialize::OutputArchive& archive, const char* key, const Part& part) {
+  torch::serialize::OutputArchive inner;
+  part.save(inner);
+  archive.write(key, inner);
+}
+
+template <class Part>
+void take(torch::serialize::InputArchive& archive, const char* key, Part& part) {
+  torch::serialize::InputArchive inner;
+  archive.read(key, inner);
+  part.load(inner);
+}
+
+/// The state of a random number generator, by whose number the next batch is made.
+inline void put_random(torch::serialize::OutputArchive& archive, uint64_t state) {
+  archive.write("random", torch::tensor(static_cast<int64_t>(state), torch::kLong));
+}
+
+inline uint64_t take_random(torch::serialize::InputArchive& archive) {
+  torch::Tensor state;
+  archive.read("random", state);
+  return static_cast<uint64_t>(state.item<int64_t>());
+}
+
 /// How far a training has come.
 struct TrainingProgress {
   int64_t step = 0, samples = 0;
@@ -97,5 +125,12 @@ class TrainingRun {
   int skipped_in_a_row_ = 0;
   bool curve_begun_ = false;
 };
+
+/// See nn::train; each in the file of its trainer. Samples are scans, for motion sequences, for deformation
+/// points.
+int train(const nn::SkeletonTrainOptions& options);
+int train(const nn::PartTrainOptions& options);
+int train(const nn::MotionTrainOptions& options);
+int train(const nn::DeformationTrainOptions& options);
 
 }  // namespace understudy::training

@@ -1,7 +1,9 @@
-// The losses of skeleton extraction.
+// The losses of skeleton extraction, and of parts seen from near: arms, legs, hands, head and feet.
 #pragma once
 
 #include <torch/torch.h>
+
+#include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::training {
 
@@ -24,6 +26,32 @@ inline torch::Tensor vote_loss(const torch::Tensor& votes, const torch::Tensor& 
 /// itself gets no gradient, so that confidence never trades against precision.
 inline torch::Tensor spread_loss(const torch::Tensor& error, const torch::Tensor& log_spread) {
   return (error.detach() * torch::exp(-log_spread) + log_spread).mean();
+}
+
+/// Lengths of the bones from the joints' parents, [..., 21]. joints [..., 22, 3]. Smooth at zero.
+inline torch::Tensor bone_lengths(const torch::Tensor& joints) {
+  const std::vector<int64_t> parents(kParents.begin() + 1, kParents.end());
+  const auto bones = joints.narrow(-2, 1, kJointCount - 1) -
+                     joints.index_select(-2, torch::tensor(parents, torch::device(joints.device())));
+  return (bones.square().sum(-1) + 1e-6).sqrt();
+}
+
+/// Mean difference of bone lengths, in the joints' unit: joints that are each a little off may leave a thigh too
+/// long, and the path with it. joints, truth [..., 22, 3].
+inline torch::Tensor length_loss(const torch::Tensor& joints, const torch::Tensor& truth) {
+  return (bone_lengths(joints) - bone_lengths(truth)).abs().mean();
+}
+
+/// How far joints are off, [B, K], in leg lengths. Rows of `output` and `truth` as PartNet gives them.
+inline torch::Tensor place_error(const torch::Tensor& output, const torch::Tensor& truth) {
+  return (output.narrow(2, 6, 3) - truth.narrow(2, 6, 3)).square().sum(2).add(1e-8).sqrt();
+}
+
+/// output [B, K, 10], truth [B, K, 9].
+inline torch::Tensor part_loss(const torch::Tensor& output, const torch::Tensor& truth) {
+  const auto turn = (output.narrow(2, 0, 6) - truth.narrow(2, 0, 6)).abs().mean();
+  const auto away = place_error(output, truth);
+  return turn + 5 * away.mean() + 0.01 * spread_loss(away, output.select(2, 9));
 }
 
 }  // namespace understudy::training

@@ -1,5 +1,5 @@
 // The facade: what bind() and deform() promise.
-#include "retarget/nn/network_deformer.hpp"
+#include "retarget/nn/load.hpp"
 
 #include <gtest/gtest.h>
 

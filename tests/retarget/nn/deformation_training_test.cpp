@@ -9,7 +9,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/training/deformation_step.hpp"
-#include "retarget/training/trainers.hpp"
+#include "retarget/training/training_run.hpp"
 #include "tests/retarget/nn/deformation_support.hpp"
 
 namespace understudy::training {

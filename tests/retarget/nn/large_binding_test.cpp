@@ -10,7 +10,7 @@
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/character/careful_deformer.hpp"
-#include "retarget/nn/network_deformer.hpp"
+#include "retarget/nn/load.hpp"
 
 namespace understudy {
 namespace {

@@ -6,12 +6,12 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/nn/load.hpp"
 #include "retarget/nn/modules/forward_kinematics.hpp"
-#include "retarget/nn/paper_transfer.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/motion_evaluator.hpp"
 #include "retarget/training/motion_step.hpp"
-#include "retarget/training/trainers.hpp"
+#include "retarget/training/training_run.hpp"
 #include "tests/retarget/nn/motion_support.hpp"
 
 namespace understudy {

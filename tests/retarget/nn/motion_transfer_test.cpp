@@ -8,7 +8,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/nn/paper_transfer.hpp"
+#include "retarget/nn/load.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "tests/retarget/nn/motion_support.hpp"
 

@@ -1,5 +1,5 @@
 // The loss of bone lengths: its value by hand, what it does not see, and its gradient.
-#include "retarget/training/losses/length_loss.hpp"
+#include "retarget/training/losses/skeleton_losses.hpp"
 
 #include <gtest/gtest.h>
 

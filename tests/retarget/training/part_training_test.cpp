@@ -6,7 +6,7 @@
 #include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/part_data.hpp"
-#include "retarget/training/trainers.hpp"
+#include "retarget/training/training_run.hpp"
 #include "tests/support/training_folder.hpp"
 
 namespace understudy::training {

@@ -6,10 +6,10 @@
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/skeleton_form.hpp"
-#include "retarget/training/losses/part_losses.hpp"
+#include "retarget/training/losses/skeleton_losses.hpp"
 #include "retarget/training/scan_streams.hpp"
 #include "retarget/training/skeleton_batch.hpp"
-#include "retarget/training/trainers.hpp"
+#include "retarget/training/training_run.hpp"
 #include "tests/support/training_folder.hpp"
 
 namespace understudy::training {
