@@ -18,7 +18,6 @@
 #include "retarget/body/costume.hpp"
 #include "retarget/body/data_folder.hpp"
 #include "retarget/body/exact_body.hpp"
-#include "retarget/body/partial_view.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/joint_metrics.hpp"

@@ -18,14 +18,12 @@ constexpr float kFar = 0.30f, kNear = 0.05f;  // metres: reach of the robust wei
 constexpr float kToLast = 0.008f, kToRest = 0.003f, kToMeanShape = 0.0025f;  // weights of the priors
 
 /// Every so many-th of the finite points.
-Points thinned(const Points& scan, int count) {
-  std::vector<Eigen::Index> good;
-  for (Eigen::Index i = 0; i < scan.rows(); ++i)
-    if (scan.row(i).allFinite()) good.push_back(i);
-  US_CHECK(good.size() >= 32, "the scan has ", good.size(), " usable points");
-  const size_t kept = std::min<size_t>(good.size(), count);
+Points thinned_points(const Points& scan, int count) {
+  const Points good = finite_points(scan);
+  US_CHECK(good.rows() >= 32, "the scan has ", good.rows(), " usable points");
+  const Eigen::Index kept = std::min<Eigen::Index>(good.rows(), count);
   Points points(kept, 3);
-  for (size_t i = 0; i < kept; ++i) points.row(i) = scan.row(good[i * good.size() / kept]);
+  for (Eigen::Index i = 0; i < kept; ++i) points.row(i) = good.row(i * good.rows() / kept);
   return points;
 }
 
@@ -41,21 +39,13 @@ Rotations arms(float down) {
 FitBody::FitBody(const Body& body, int count) {
   const Points& all = body.template_vertices;
   const auto kept = farthest_points(all, std::min<int>(count, all.rows()));
-  const Eigen::Index n = kept.size();
-  const Points all_normals = vertex_normals(all, body.faces);
-  vertices.resize(n, 3);
-  normals.resize(n, 3);
-  weights.resize(n, kJointCount);
-  shape_dirs.resize(3 * n, body.shape_dirs.cols());
-  if (body.pose_dirs) pose_dirs.resize(3 * n, body.pose_dirs->cols());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Index v = kept[i];
-    vertices.row(i) = all.row(v);
-    normals.row(i) = all_normals.row(v);
-    weights.row(i) = body.weights.row(v);
-    shape_dirs.middleRows(3 * i, 3) = body.shape_dirs.middleRows(3 * v, 3);
-    if (body.pose_dirs) pose_dirs.middleRows(3 * i, 3) = body.pose_dirs->middleRows(3 * v, 3);
-  }
+  std::vector<int> coordinates;  // rows of shape_dirs and pose_dirs
+  for (const int v : kept) coordinates.insert(coordinates.end(), {3 * v, 3 * v + 1, 3 * v + 2});
+  vertices = all(kept, Eigen::all);
+  normals = vertex_normals(all, body.faces)(kept, Eigen::all);
+  weights = body.weights(kept, Eigen::all);
+  shape_dirs = body.shape_dirs(coordinates, Eigen::all);
+  if (body.pose_dirs) pose_dirs = (*body.pose_dirs)(coordinates, Eigen::all);
   joints = body.joint_regressor * all;
   for (Eigen::Index b = 0; b < body.shape_dirs.cols(); ++b) {
     const Eigen::VectorXf dir = body.shape_dirs.col(b);
@@ -255,7 +245,7 @@ BodyFit::State BodyFit::start(const Points& scan) const {
 }
 
 Extraction BodyFit::extract(const Mesh& scan) {
-  const Points points = thinned(scan.vertices, options_.scan_points);
+  const Points points = thinned_points(scan.vertices, options_.scan_points);
   if (frames_ == 0) {
     last_ = start(points);
   } else {

@@ -110,29 +110,32 @@ Body read_smpl_body(const std::string& path) {
   return body;
 }
 
-Motion read_amass_motion(const std::string& path) {
+AmassArrays read_amass_arrays(const std::string& path) {
   const Npz npz = read_npz(path);
   const NpyArray& poses = require(npz, "poses", path);
   US_CHECK(poses.shape.size() == 2 && poses.shape[1] >= 3 * kJointCount, path,
            ": poses must be frames x at least ", 3 * kJointCount);
-  const int64_t frames = poses.shape[0];
-  const RowMatrix angles = poses.matrix(poses.shape[1], path);
-  const RowMatrix trans = require(npz, "trans", path).matrix(3, path + ": trans");
-  US_CHECK(frames > 0 && trans.rows() == frames, path, ": ", frames, " poses but ", trans.rows(),
-           " root positions");
-
-  Motion motion;
+  AmassArrays arrays{poses.matrix(poses.shape[1], path),
+                     require(npz, "trans", path).matrix(3, path + ": trans")};
+  const Eigen::Index frames = arrays.angles.rows();
+  US_CHECK(frames > 0 && arrays.trans.rows() == frames, path, ": ", frames, " poses but ",
+           arrays.trans.rows(), " root positions");
   for (const char* key : {"mocap_framerate", "mocap_frame_rate"})
-    if (npz.count(key) && npz.at(key).size() == 1) motion.fps = npz.at(key).values[0];
-  US_CHECK(motion.fps > 0 && motion.fps < 10000, path, ": the frame rate ", motion.fps, " cannot be");
-  motion.poses.resize(frames);
-  for (int64_t t = 0; t < frames; ++t) {
-    motion.poses[t].root = trans.row(t).transpose();
-    for (int j = 0; j < kJointCount; ++j)
-      motion.poses[t].local[j] = rotation_from_axis_angle(angles.block<1, 3>(t, 3 * j).transpose());
-  }
+    if (npz.count(key) && npz.at(key).size() == 1) arrays.fps = npz.at(key).values[0];
+  US_CHECK(arrays.fps > 0 && arrays.fps < 10000, path, ": the frame rate ", arrays.fps, " cannot be");
   if (const auto it = npz.find("frame_flags"); it != npz.end() && it->second.size() == frames)
-    motion.flags.assign(it->second.values.begin(), it->second.values.end());
+    arrays.flags.assign(it->second.values.begin(), it->second.values.end());
+  return arrays;
+}
+
+Motion read_amass_motion(const std::string& path) {
+  const AmassArrays arrays = read_amass_arrays(path);
+  Motion motion{arrays.fps, std::vector<Pose>(arrays.angles.rows()), arrays.flags};
+  for (Eigen::Index t = 0; t < arrays.angles.rows(); ++t) {
+    motion.poses[t].root = arrays.trans.row(t).transpose();
+    for (int j = 0; j < kJointCount; ++j)
+      motion.poses[t].local[j] = rotation_from_axis_angle(arrays.angles.block<1, 3>(t, 3 * j).transpose());
+  }
   return motion;
 }
 

@@ -41,6 +41,16 @@ Points posed_vertices(const ShapedBody& body, const Pose& pose);
 /// ancestors. Throws Error naming the file and what is wrong.
 Body read_smpl_body(const std::string& path);
 
+/// What an AMASS-format file holds.
+struct AmassArrays {
+  RowMatrix angles;  ///< [T, >= 66] axis-angle
+  RowMatrix trans;   ///< [T, 3] metres
+  float fps = 30;
+  std::vector<uint8_t> flags = {};  ///< [T]; empty: none
+};
+/// Throws Error naming the file and what is wrong.
+AmassArrays read_amass_arrays(const std::string& path);
+
 /// Reads an AMASS-format .npz (`poses` [T, >= 66] axis-angle, `trans` [T, 3], `mocap_framerate` or
 /// `mocap_frame_rate`). z-up files (AMASS's own) are the caller's to turn. Throws Error naming the file.
 Motion read_amass_motion(const std::string& path);

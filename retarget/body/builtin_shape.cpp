@@ -613,8 +613,6 @@ ImplicitSolid PersonShape::solid() const {
   solid.low = Vec3(0, joints_(LeftAnkle, 1) - .16f, -.30f - .1f * std::max(who_.fat, 0.0f));
   solid.high =
       Vec3(reach, joints_(Neck, 1) + .30f * who_.head / .60f, .34f + .25f * std::max(who_.fat, 0.0f));
-  solid.cell = .0105f;
-  solid.edge_length = .0162f;
   return solid;
 }
 

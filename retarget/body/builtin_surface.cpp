@@ -485,9 +485,6 @@ Mesh with_mirror_image(const TriangleSoup& half) {
 }  // namespace
 
 Mesh polygonise(const ImplicitSolid& solid) {
-  US_CHECK(solid.value && solid.warp && solid.detail && solid.cell > 0,
-           "the solid to polygonise is not complete");
-  US_CHECK(solid.low.x() == 0, "the solid's box starts at x = ", solid.low.x(), ", not at the mirror plane");
   MarchingTetrahedra marching(solid);
   US_CHECK(!marching.soup.faces.empty(), "the solid has no surface inside its box");
   return with_mirror_image(Remesher(std::move(marching.soup), solid).run());

@@ -14,8 +14,8 @@ struct ImplicitSolid {
   std::function<Vec3(const Vec3&)> warp;     ///< grid space -> space; finer where it contracts; keeps x = 0
   std::function<float(const Vec3&)> detail;  ///< factor on the edge length at a point, 1 = the coarsest
   Vec3 low, high;                            ///< box in grid space; low.x() = 0
-  float cell = 0.01f;                        ///< of the grid, metres in grid space
-  float edge_length = 0.0165f;               ///< wanted where detail is 1
+  float cell = 0.0105f;                      ///< of the grid, metres in grid space
+  float edge_length = 0.0162f;               ///< wanted where detail is 1
 };
 
 /// The solid's surface: closed, 2-manifold, outward, exactly mirrored in x = 0. The vertices of the left half

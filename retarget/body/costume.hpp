@@ -1,5 +1,5 @@
-// What people wear and hold that hides their shape, put on a posed person's points: wide skirts, thick
-// coats, hair, things in a hand. Truths stay as they are.
+// What makes a posed person's points hard to read: wide skirts, thick coats, hair, things in a hand, sides that
+// no camera saw, limbs that are cut off. Truths stay as they are.
 #pragma once
 
 #include "retarget/base/rng.hpp"
@@ -20,5 +20,11 @@ void wear_hair(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng);
 
 /// A stick or a ball in one hand.
 void hold_thing(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng);
+
+/// Keeps what one depth camera sees, from any side, a little from above or below.
+void see_from_one_side(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng);
+
+/// Takes away a hand, a forearm, a foot or a shin with all that follows.
+void lose_limb(LabelledPoints& cloud, Rng& rng);
 
 }  // namespace understudy

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/formats/npz.hpp"
 
 namespace understudy {
 namespace {
@@ -58,14 +57,6 @@ double percentile(std::vector<double> values, double percent) {
   return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-double frame_rate(const Npz& npz, const std::string& path) {
-  double fps = 30;
-  for (const char* key : {"mocap_framerate", "mocap_frame_rate"})
-    if (npz.count(key) && npz.at(key).size() == 1) fps = npz.at(key).values[0];
-  US_CHECK(fps > 0 && fps < 10000, path, ": the frame rate ", fps, " cannot be");
-  return fps;
-}
-
 void turn_y_up(ExactMotion& motion) {
   const Vector3d up = motion.local[0][Pelvis].col(1);
   if (std::abs(up.z()) <= std::abs(up.y())) return;
@@ -116,24 +107,17 @@ Matrix3d exact_rotation(const Vector3d& axis_angle) {
 }
 
 ExactMotion read_exact_motion(const std::string& path, int start, int frames) {
-  const Npz npz = read_npz(path);
-  const NpyArray& poses = require(npz, "poses", path);
-  US_CHECK(poses.shape.size() == 2 && poses.shape[1] >= 3 * kJointCount, path,
-           ": poses must be frames x at least ", 3 * kJointCount);
-  const RowMatrix angles = poses.matrix(poses.shape[1], path);
-  const RowMatrix trans = require(npz, "trans", path).matrix(3, path + ": trans");
-  US_CHECK(trans.rows() == angles.rows(), path, ": ", angles.rows(), " poses but ", trans.rows(),
-           " root positions");
-  const double step = std::max(1.0, frame_rate(npz, path) / 30);
+  const AmassArrays arrays = read_amass_arrays(path);
+  const double step = std::max(1.0, static_cast<double>(arrays.fps) / 30);
   ExactMotion motion;
   for (int i = 0; i < frames; ++i) {
     const Eigen::Index t = std::lround((start + i) * step);
-    if (t >= angles.rows()) break;
+    if (t >= arrays.angles.rows()) break;
     Rotations64 local;
     for (int j = 0; j < kJointCount; ++j)
-      local[j] = exact_rotation(angles.block<1, 3>(t, 3 * j).transpose().cast<double>());
+      local[j] = exact_rotation(arrays.angles.block<1, 3>(t, 3 * j).transpose().cast<double>());
     motion.local.push_back(local);
-    motion.root.push_back(trans.row(t).transpose().cast<double>());
+    motion.root.push_back(arrays.trans.row(t).transpose().cast<double>());
   }
   US_CHECK(!motion.local.empty(), path, ": is over before frame ", start);
   turn_y_up(motion);

@@ -7,13 +7,9 @@
 namespace understudy {
 
 void keep_rows(LabelledPoints& cloud, const std::vector<int>& kept) {
-  Points points(kept.size(), 3);
-  std::vector<int> parts(kept.size());
-  for (size_t i = 0; i < kept.size(); ++i) {
-    points.row(i) = cloud.points.row(kept[i]);
-    parts[i] = cloud.parts[kept[i]];
-  }
-  cloud.points = std::move(points);
+  std::vector<int> parts;
+  for (const int row : kept) parts.push_back(cloud.parts[row]);
+  cloud.points = Points(cloud.points(kept, Eigen::all));
   cloud.parts = std::move(parts);
 }
 

@@ -21,10 +21,6 @@ Vec3 over_floor(const Vec3& v) {
 
 }  // namespace
 
-void FootLock::reset() {
-  started_ = false;
-}
-
 void FootLock::start(const Joints& source) {
   const float leg_m = leg_length(source);
   for (size_t k = 0; k < kFootPoints.size(); ++k) {

@@ -19,7 +19,7 @@ struct FootLockOptions {
 class FootLock {
  public:
   explicit FootLock(const FootLockOptions& options = {}) : options_(options) {}
-  void reset();
+  void reset() { started_ = false; }
   /// The pose with its standing feet held. rest: the target's T-pose joints; source: the source's joints in
   /// this frame, world, which decide what stands; dt seconds since the frame before.
   Pose push(const Pose& pose, const Joints& rest, float dt, const Joints& source);

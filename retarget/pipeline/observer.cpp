@@ -1,16 +1,22 @@
 #include "retarget/pipeline/observer.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/pipeline/human_rest.hpp"
 #include "retarget/pipeline/root_path.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kFewestPoints = 32;  // finite ones below which a scan is not looked at
-constexpr float kPast_s = 0.25f;   // how long joints are told on: some frames at any usual rate
+constexpr float kImplausible = 0.25f,
+                kOdd = 0.17f;            // bones that are no person's, and that are unsure to be one's
+constexpr float kUnsure = 0.6f;          // confidence
+constexpr int kFewest = 3, kFirst = 60;  // frames that are looked at
+constexpr int kFewestPoints = 32;        // finite ones below which a scan is not looked at
+constexpr float kPast_s = 0.25f;         // how long joints are told on: some frames at any usual rate
 
 /// What the scan shows around a skeleton.
 void look_around(Observation& seen, const Mesh& scan) {
@@ -20,6 +26,25 @@ void look_around(Observation& seen, const Mesh& scan) {
 }
 
 }  // namespace
+
+float bone_implausibility(const Joints& joints) {
+  using Lengths = Eigen::Array<float, kJointCount - 1, 1>;
+  const Lengths lengths = bone_lengths(joints).tail<kJointCount - 1>();
+  const Lengths human = bone_lengths(human_rest()).tail<kJointCount - 1>();
+  const Lengths ratio = (lengths.max(1e-6f) / human).log();
+  return std::sqrt((ratio - ratio.mean()).square().mean());
+}
+
+std::string PersonCheck::push(const Extraction& seen) {
+  if (seen.exact || told_ || frames_ >= kFirst || !seen.joints.allFinite()) return {};
+  const float strange = bone_implausibility(seen.joints);
+  ++frames_;
+  if (strange > kImplausible || (strange > kOdd && seen.confidence.mean() < kUnsure)) ++implausible_;
+  told_ = frames_ >= kFewest && implausible_ * 5 >= frames_ * 4;
+  if (!told_) return {};
+  return "may be no person, or one whose poses are not recognised: the bones found in " +
+         std::to_string(implausible_) + " of its first " + std::to_string(frames_) + " frames are nobody's";
+}
 
 Observer::Observer(std::shared_ptr<SkeletonExtractor> extractor) : extractor_(std::move(extractor)) {}
 

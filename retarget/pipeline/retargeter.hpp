@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
+#include "retarget/base/error.hpp"
 #include "retarget/pipeline/observer.hpp"
 #include "retarget/pipeline/performer.hpp"
 
@@ -12,13 +14,26 @@ namespace understudy {
 class Retargeter {
  public:
   /// With a transfer and a deformer it wants a target; without, it repairs and smooths the source alone.
-  explicit Retargeter(Networks networks, const RetargetOptions& options = {});
+  explicit Retargeter(Networks networks, const RetargetOptions& options = {})
+      : networks_(std::move(networks)), options_(options), observer_(networks_.extractor) {
+    if (!networks_.transfer && !networks_.deformer) performer_.emplace(options);
+  }
   /// Starts anew with a target. Throws Error when it cannot be bound, or has to be looked at and there is no
   /// extractor.
-  void set_target(const Mesh& mesh);
-  void set_target(Target target);
+  void set_target(const Mesh& mesh) {
+    US_CHECK(networks_.extractor, "the pipeline has no skeleton extractor");
+    const auto& extractor = networks_.rest_extractor ? networks_.rest_extractor : networks_.extractor;
+    set_target(prepare_target(mesh, *extractor));
+  }
+  void set_target(Target target) {
+    performer_.emplace(std::move(target), networks_.transfer, networks_.deformer, options_);
+    observer_.restart();
+  }
   /// Starts the source anew, same target.
-  void restart();
+  void restart() {
+    performer().restart();
+    observer_.restart();
+  }
 
   /// The target's frame for the source's scan, dt seconds after the one before; see Performer::perform.
   /// Throws Error without a target.
@@ -28,7 +43,10 @@ class Retargeter {
 
   Observer& observer() { return observer_; }
   /// Throws Error without a target.
-  Performer& performer();
+  Performer& performer() {
+    US_CHECK(performer_, "there is no target yet");
+    return *performer_;
+  }
 
  private:
   Networks networks_;

@@ -73,9 +73,9 @@ SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints)
     support.joint.push_back(moved_with);
     offsets.push_back(point - rest_joints.row(moved_with).transpose());
   };
-  for (const int j : {Pelvis, Head, LeftKnee, RightKnee, LeftWrist, RightWrist})
+  for (const int j :
+       {Pelvis, Head, LeftKnee, RightKnee, LeftWrist, RightWrist, LeftAnkle, RightAnkle, LeftFoot, RightFoot})
     add(j, rest_joints.row(j).transpose());
-  for (const int j : kFeet) add(j, rest_joints.row(j).transpose());
   for (const int side : {0, 1}) {
     const int ankle = side == 0 ? LeftAnkle : RightAnkle, toe = side == 0 ? LeftFoot : RightFoot;
     const float mid = 0.5f * (rest_joints(LeftAnkle, 0) + rest_joints(RightAnkle, 0));
@@ -95,8 +95,7 @@ SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints)
     for (const int v : lowest)
       if (v >= 0) add(rest(v, 2) > rest_joints(toe, 2) ? toe : ankle, rest.row(v).transpose());
   }
-  support.offset.resize(offsets.size(), 3);
-  for (size_t i = 0; i < offsets.size(); ++i) support.offset.row(i) = offsets[i].transpose();
+  support.offset = Eigen::Map<const Points>(offsets[0].data(), offsets.size(), 3);
   return support;
 }
 
@@ -130,10 +129,6 @@ void RootPath::reset(const Points& rest_b, const Joints& joints_b) {
   started_ = false;
   offset_ = correction_ = pelvis_error_ = sole_ = touching_ = left_over_ = lowered_ = 0;
   scale_ = 1;
-}
-
-float RootPath::scale() const {
-  return scale_;
 }
 
 float RootPath::clearance(const Extraction& source) const {

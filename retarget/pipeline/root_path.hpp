@@ -54,7 +54,7 @@ class RootPath {
   /// source's: what the pelvis' height could not make good without shaking the body. Where a leg is too short
   /// the body comes down.
   Pose plant(const Pose& pose, float dt);
-  float scale() const;
+  float scale() const { return scale_; }
 
  private:
   float clearance(const Extraction& source) const;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "retarget/body/costume.hpp"
-#include "retarget/body/partial_view.hpp"
 #include "retarget/math/directions.hpp"
 #include "retarget/math/rotation.hpp"
 

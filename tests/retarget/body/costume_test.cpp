@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "retarget/body/builtin_person.hpp"
-#include "retarget/body/partial_view.hpp"
 
 namespace understudy {
 namespace {

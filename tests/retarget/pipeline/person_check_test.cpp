@@ -1,4 +1,4 @@
-#include "retarget/pipeline/person_check.hpp"
+#include "retarget/pipeline/observer.hpp"
 
 #include <gtest/gtest.h>
 
