@@ -7,7 +7,7 @@
 #include "retarget/base/text.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/metrics/confidence.hpp"
-#include "retarget/pipeline/confidence.hpp"
+#include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy::app {
 namespace {

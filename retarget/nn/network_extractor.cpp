@@ -6,9 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/nn/extractor_input.hpp"
 #include "retarget/nn/skeleton_form.hpp"
-#include "retarget/pipeline/confidence.hpp"
 
 namespace understudy::nn {
 namespace {

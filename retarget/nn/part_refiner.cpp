@@ -9,7 +9,6 @@
 #include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
-#include "retarget/pipeline/confidence.hpp"
 
 namespace understudy::nn {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/nn/modules/point_transformer.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -29,6 +30,22 @@ class PaperForm : public SkeletonForm {
   PointTransformer net_{nullptr};
 };
 
+/// One member of all scans, [B, rows, 3].
+torch::Tensor stacked(const std::vector<ScanPatches>& patches, Points ScanPatches::*member) {
+  std::vector<torch::Tensor> all;
+  for (const ScanPatches& one : patches) all.push_back(tensor_of(one.*member));
+  return torch::stack(all);
+}
+
+/// [22, 6]; zero where nothing is known.
+torch::Tensor recent_of(const RecentJoints& recent, const ScanPatches& patches) {
+  Eigen::Matrix<float, kJointCount, 6, Eigen::RowMajor> rows;
+  rows.setZero();
+  if (recent.last) rows.leftCols(3) = (recent.last->rowwise() - patches.centre.transpose()) / patches.scale;
+  if (recent.before_last) rows.rightCols(3) = (*recent.last - *recent.before_last) / patches.scale;
+  return tensor_of(rows);
+}
+
 }  // namespace
 
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name) {
@@ -43,6 +60,23 @@ WeightsHeader skeleton_header(const std::string& name) {
 
 void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form) {
   load_weights(path, "skeleton-" + name, kSkeletonVersion, form);
+}
+
+ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,
+                               const std::vector<RecentJoints>& recent) {
+  US_CHECK(recent.empty() || recent.size() == patches.size(), patches.size(), " scans with the past of ",
+           recent.size());
+  ExtractorInput input;
+  input.points = stacked(patches, &ScanPatches::points);
+  input.centres = stacked(patches, &ScanPatches::centres);
+  input.offsets = stacked(patches, &ScanPatches::offsets).view({-1, kPatches, kPatchPoints, 3});
+  std::vector<torch::Tensor> joints, known;
+  for (size_t b = 0; b < recent.size(); ++b) {
+    joints.push_back(recent_of(recent[b], patches[b]));
+    known.push_back(torch::tensor({recent[b].last ? 1.0f : 0.0f, recent[b].before_last ? 1.0f : 0.0f}));
+  }
+  if (!recent.empty()) input.recent = torch::stack(joints), input.recent_known = torch::stack(known);
+  return input;
 }
 
 }  // namespace understudy::nn

@@ -1,11 +1,14 @@
-// The forms of the extraction network behind one interface: "dense", and paper 1's, "paper".
+// The forms of the extraction network behind one interface, "dense" and paper 1's, "paper"; and their input.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "retarget/networks/scan_patches.hpp"
 #include "retarget/nn/modules/skeleton_extractor.hpp"
 #include "retarget/nn/weights_file.hpp"
+#include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy::nn {
 
@@ -21,5 +24,10 @@ std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name);
 /// Header for the weights of a form; the trainer adds the numbers.
 WeightsHeader skeleton_header(const std::string& name);
 void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form);
+
+/// A batch of B scans, on the CPU. `recent`: the extracted joints of the frames before each scan; empty for
+/// scans of no stream.
+ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,
+                               const std::vector<RecentJoints>& recent = {});
 
 }  // namespace understudy::nn

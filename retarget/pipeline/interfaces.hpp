@@ -2,7 +2,9 @@
 // needs LibTorch.
 #pragma once
 
+#include <algorithm>
 #include <any>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,8 +14,20 @@
 
 namespace understudy {
 
-/// Of each joint, 0..1; see confidence.hpp.
+/// Of each joint, 0..1.
 using Confidence = Eigen::Array<float, kJointCount, 1>;
+
+constexpr float kHalfConfidence = 0.06f;  ///< metres
+
+/// Confidence, 0..1, of a joint that is expected to be off by so many metres: one half at kHalfConfidence.
+inline float confidence_for(float expected_error_m) {
+  const float expected = expected_error_m / kHalfConfidence;
+  return 1 / (1 + expected * expected);
+}
+/// The error that a confidence stands for, metres.
+inline float expected_error_for(float confidence) {
+  return kHalfConfidence * std::sqrt(1 / std::clamp(confidence, 1e-6f, 1.0f) - 1);
+}
 
 /// The skeleton in one frame.
 struct Extraction {

@@ -3,7 +3,6 @@
 #include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/training/losses/skeleton_losses.hpp"
 #include "retarget/training/part_data.hpp"
-#include "retarget/training/rotation_error.hpp"
 #include "retarget/training/training_run.hpp"
 
 namespace understudy::training {

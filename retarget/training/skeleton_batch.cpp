@@ -1,8 +1,8 @@
 #include "retarget/training/skeleton_batch.hpp"
 
 #include "retarget/math/rotation.hpp"
-#include "retarget/nn/extractor_input.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
+#include "retarget/nn/skeleton_form.hpp"
 #include "retarget/training/losses/skeleton_losses.hpp"
 
 namespace understudy::training {

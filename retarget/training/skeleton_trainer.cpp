@@ -4,7 +4,6 @@
 #include "retarget/base/error.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/nn/skeleton_form.hpp"
-#include "retarget/training/rotation_error.hpp"
 #include "retarget/training/scan_streams.hpp"
 #include "retarget/training/skeleton_batch.hpp"
 #include "retarget/training/training_run.hpp"

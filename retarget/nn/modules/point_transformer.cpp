@@ -1,6 +1,7 @@
 #include "retarget/nn/modules/point_transformer.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -8,7 +9,10 @@
 namespace understudy::nn {
 namespace {
 
-constexpr int64_t kEmbedding = 32;
+constexpr int64_t kEmbedding = 32, kMlpWidth = 256;
+constexpr std::array<int64_t, 3> kStages = {64, 128,
+                                            256};  // their widths; each keeps a quarter of the points
+constexpr int64_t kAttended = 16;                  // neighbours
 
 using torch::nn::Linear, torch::nn::ReLU, torch::nn::Sequential;
 
@@ -67,8 +71,8 @@ torch::Tensor VectorAttentionImpl::forward(const torch::Tensor& x, const torch::
   return x + out((torch::softmax(weight, 2) * value).sum(2));    // [B, N, C]
 }
 
-PointTransformerImpl::PointTransformerImpl(const PointTransformerShape& shape) : shape_(shape) {
-  const auto& w = shape.widths;
+PointTransformerImpl::PointTransformerImpl() {
+  const auto& w = kStages;
   embed = register_module("embed", Sequential(Linear(3, kEmbedding), ReLU()));
   attention = register_module("attention", torch::nn::ModuleList());
   widen = register_module("widen", torch::nn::ModuleList());
@@ -77,24 +81,24 @@ PointTransformerImpl::PointTransformerImpl(const PointTransformerShape& shape) :
     attention->push_back(VectorAttention(w[i]));
   }
   head = register_module(
-      "head", Sequential(Linear(2 * w.back(), shape.hidden), ReLU(), Linear(shape.hidden, shape.hidden),
-                         ReLU(), Linear(shape.hidden, 3 * kJointCount)));
+      "head", Sequential(Linear(2 * w.back(), kMlpWidth), ReLU(), Linear(kMlpWidth, kMlpWidth), ReLU(),
+                         Linear(kMlpWidth, 3 * kJointCount)));
 }
 
 torch::Tensor PointTransformerImpl::forward(const torch::Tensor& points) {
   auto positions = points;
   auto x = embed->forward(points);  // [B, N, C]
-  for (size_t i = 0; i < shape_.widths.size(); ++i) {
+  for (size_t i = 0; i < kStages.size(); ++i) {
     // Transition down: a quarter of the points, each the maximum over its neighbourhood.
     const auto kept = far_apart(positions, positions.size(1) / 4);              // [B, N/4]
     const auto centres = gather_rows(positions, kept);                          // [B, N/4, 3]
-    const auto around = nearest(positions, centres, shape_.neighbours);         // [B, N/4, k]
+    const auto around = nearest(positions, centres, kAttended);                 // [B, N/4, k]
     const auto offset = gather_rows(positions, around) - centres.unsqueeze(2);  // [B, N/4, k, 3]
     const auto wide =
         torch::relu(widen[i]->as<Linear>()->forward(torch::cat({gather_rows(x, around), offset}, -1)));
     x = std::get<0>(wide.max(2));
     positions = centres;
-    const auto neighbours = nearest(positions, positions, std::min(shape_.neighbours, positions.size(1)));
+    const auto neighbours = nearest(positions, positions, std::min(kAttended, positions.size(1)));
     x = attention[i]->as<VectorAttention>()->forward(x, positions, neighbours);
   }
   const auto pooled = torch::cat({x.mean(1), std::get<0>(x.max(1))}, -1);  // [B, 2C]

@@ -6,12 +6,6 @@
 
 namespace understudy::nn {
 
-struct PointTransformerShape {
-  std::vector<int64_t> widths = {64, 128, 256};  ///< of the stages; each keeps a quarter of the points
-  int64_t neighbours = 16;
-  int64_t hidden = 256;  ///< of the joint MLP
-};
-
 /// Vector self-attention among the k nearest points (Zhao et al., eq. 3):
 /// y_i = sum_k softmax(gamma(phi(x_i) - psi(x_k) + delta)) * (alpha(x_k) + delta), delta = theta(p_i - p_k).
 class VectorAttentionImpl : public torch::nn::Module {
@@ -30,12 +24,11 @@ TORCH_MODULE(VectorAttention);
 
 class PointTransformerImpl : public torch::nn::Module {
  public:
-  explicit PointTransformerImpl(const PointTransformerShape& shape = {});
+  PointTransformerImpl();
   /// points [B, N, 3], normalised -> joints [B, 22, 3]. Order-free.
   torch::Tensor forward(const torch::Tensor& points);
 
  private:
-  PointTransformerShape shape_;
   torch::nn::Sequential embed{nullptr}, head{nullptr};
   torch::nn::ModuleList attention{nullptr}, widen{nullptr};
 };

@@ -9,10 +9,12 @@ namespace {
 
 constexpr int64_t J = kJointCount;
 constexpr int64_t kParts = J + 1;
+constexpr int64_t C = 192, kAttentionHeads = 6;  // C: width of every token
+constexpr int64_t kEncoderLayers = 4, kDecoderLayers = 2, kFeedForward = 384;
 constexpr double kFarthest = 1.5;  // beyond that the frame before is of somebody else
 
-torch::nn::LayerNorm layer_norm(int64_t width) {
-  return torch::nn::LayerNorm(torch::nn::LayerNormOptions({width}));
+torch::nn::LayerNorm layer_norm() {
+  return torch::nn::LayerNorm(torch::nn::LayerNormOptions({C}));
 }
 
 torch::Tensor squared_distance(const torch::Tensor& a,
@@ -22,18 +24,19 @@ torch::Tensor squared_distance(const torch::Tensor& a,
 
 }  // namespace
 
-DistanceAttentionImpl::DistanceAttentionImpl(int64_t width, int64_t heads) : heads_(heads) {
-  to_q = register_module("to_q", torch::nn::Linear(width, width));
-  to_k = register_module("to_k", torch::nn::Linear(width, width));
-  to_v = register_module("to_v", torch::nn::Linear(width, width));
-  to_out = register_module("to_out", torch::nn::Linear(width, width));
-  nearness = register_parameter("nearness", torch::linspace(-3.0, 2.0, heads).view({1, heads, 1, 1}));
+DistanceAttentionImpl::DistanceAttentionImpl() {
+  to_q = register_module("to_q", torch::nn::Linear(C, C));
+  to_k = register_module("to_k", torch::nn::Linear(C, C));
+  to_v = register_module("to_v", torch::nn::Linear(C, C));
+  to_out = register_module("to_out", torch::nn::Linear(C, C));
+  nearness = register_parameter("nearness",
+                                torch::linspace(-3.0, 2.0, kAttentionHeads).view({1, kAttentionHeads, 1, 1}));
 }
 
 torch::Tensor DistanceAttentionImpl::forward(const torch::Tensor& q, const torch::Tensor& k,
                                              const torch::Tensor& v, const torch::Tensor& squared) {
-  const auto split = [this](const torch::Tensor& x) {  // [B, N, C] -> [B, H, N, C/H]
-    return x.view({x.size(0), x.size(1), heads_, -1}).transpose(1, 2);
+  const auto split = [](const torch::Tensor& x) {  // [B, N, C] -> [B, H, N, C/H]
+    return x.view({x.size(0), x.size(1), kAttentionHeads, -1}).transpose(1, 2);
   };
   const auto Q = split(to_q(q)), K = split(to_k(k)), V = split(to_v(v));
   const double scale = 1.0 / std::sqrt(static_cast<double>(Q.size(3)));
@@ -43,20 +46,20 @@ torch::Tensor DistanceAttentionImpl::forward(const torch::Tensor& q, const torch
   return to_out(mixed.transpose(1, 2).reshape({q.size(0), q.size(1), -1}));
 }
 
-FeedForwardImpl::FeedForwardImpl(int64_t width, int64_t hidden) {
-  up = register_module("up", torch::nn::Linear(width, hidden));
-  down = register_module("down", torch::nn::Linear(hidden, width));
+FeedForwardImpl::FeedForwardImpl() {
+  up = register_module("up", torch::nn::Linear(C, kFeedForward));
+  down = register_module("down", torch::nn::Linear(kFeedForward, C));
 }
 
 torch::Tensor FeedForwardImpl::forward(const torch::Tensor& x) {
   return down(torch::relu(up(x)));
 }
 
-EncoderLayerImpl::EncoderLayerImpl(const ExtractorShape& shape) {
-  norm1 = register_module("norm1", layer_norm(shape.width));
-  norm2 = register_module("norm2", layer_norm(shape.width));
-  attention = register_module("attention", DistanceAttention(shape.width, shape.heads));
-  feed = register_module("feed", FeedForward(shape.width, shape.hidden));
+EncoderLayerImpl::EncoderLayerImpl() {
+  norm1 = register_module("norm1", layer_norm());
+  norm2 = register_module("norm2", layer_norm());
+  attention = register_module("attention", DistanceAttention());
+  feed = register_module("feed", FeedForward());
 }
 
 torch::Tensor EncoderLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& position,
@@ -66,13 +69,13 @@ torch::Tensor EncoderLayerImpl::forward(const torch::Tensor& x, const torch::Ten
   return y + feed(norm2(y));
 }
 
-JointDecoderLayerImpl::JointDecoderLayerImpl(const ExtractorShape& shape) {
-  norm1 = register_module("norm1", layer_norm(shape.width));
-  norm2 = register_module("norm2", layer_norm(shape.width));
-  norm3 = register_module("norm3", layer_norm(shape.width));
-  self_attention = register_module("self_attention", DistanceAttention(shape.width, shape.heads));
-  cross_attention = register_module("cross_attention", DistanceAttention(shape.width, shape.heads));
-  feed = register_module("feed", FeedForward(shape.width, shape.hidden));
+JointDecoderLayerImpl::JointDecoderLayerImpl() {
+  norm1 = register_module("norm1", layer_norm());
+  norm2 = register_module("norm2", layer_norm());
+  norm3 = register_module("norm3", layer_norm());
+  self_attention = register_module("self_attention", DistanceAttention());
+  cross_attention = register_module("cross_attention", DistanceAttention());
+  feed = register_module("feed", FeedForward());
 }
 
 torch::Tensor JointDecoderLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& x_position,
@@ -84,9 +87,8 @@ torch::Tensor JointDecoderLayerImpl::forward(const torch::Tensor& x, const torch
   return y + feed(norm3(y));
 }
 
-SkeletonExtractorNetImpl::SkeletonExtractorNetImpl(const ExtractorShape& shape) : shape_(shape) {
+SkeletonExtractorNetImpl::SkeletonExtractorNetImpl() {
   using torch::nn::Linear, torch::nn::ReLU, torch::nn::Sequential;
-  const int64_t C = shape.width;
   patch_mlp = register_module("patch_mlp", Sequential(Linear(3, 64), ReLU(), Linear(64, 96), ReLU()));
   patch_out = register_module("patch_out", Linear(96, C));
   position_mlp = register_module("position_mlp", Sequential(Linear(3, C), ReLU(), Linear(C, C)));
@@ -95,13 +97,13 @@ SkeletonExtractorNetImpl::SkeletonExtractorNetImpl(const ExtractorShape& shape) 
   torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->weight);
   torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->bias);
   encoder = register_module("encoder", torch::nn::ModuleList());
-  for (int64_t i = 0; i < shape.layers; ++i) encoder->push_back(EncoderLayer(shape));
-  token_norm = register_module("token_norm", layer_norm(C));
+  for (int64_t i = 0; i < kEncoderLayers; ++i) encoder->push_back(EncoderLayer());
+  token_norm = register_module("token_norm", layer_norm());
   vote_head =
       register_module("vote_head", Sequential(Linear(C, 256), ReLU(), Linear(256, kParts + J + 3 * J)));
   decoder = register_module("decoder", torch::nn::ModuleList());
-  for (int64_t i = 0; i < shape.decoder_layers; ++i) decoder->push_back(JointDecoderLayer(shape));
-  joint_norm = register_module("joint_norm", layer_norm(C));
+  for (int64_t i = 0; i < kDecoderLayers; ++i) decoder->push_back(JointDecoderLayer());
+  joint_norm = register_module("joint_norm", layer_norm());
   joint_head = register_module("joint_head", Sequential(Linear(C, 128), ReLU(), Linear(128, 3 + 6 + 1)));
   joint_embedding = register_parameter("joint_embedding", 0.5 * torch::randn({1, J, C}));
 }

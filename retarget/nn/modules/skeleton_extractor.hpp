@@ -7,14 +7,6 @@
 
 namespace understudy::nn {
 
-struct ExtractorShape {
-  int64_t width = 192;
-  int64_t heads = 6;
-  int64_t layers = 4;
-  int64_t hidden = 384;  ///< of the feed-forward parts
-  int64_t decoder_layers = 2;
-};
-
 /// B scans as the network sees them, normalised (ScanPatches): all points [B, N, 3], patch centres [B, M, 3],
 /// and the points of each patch minus its centre [B, M, K, 3]. For streams also the frame before, in the
 /// same frame of reference: joints and their displacement since the one before that [B, 22, 6], and whether
@@ -37,13 +29,12 @@ struct ExtractorOutput {
 /// Multi-head attention with a learned preference for near tokens: score -= softplus(a_head) * distance^2.
 class DistanceAttentionImpl : public torch::nn::Module {
  public:
-  DistanceAttentionImpl(int64_t width, int64_t heads);
+  DistanceAttentionImpl();
   /// q, k, v [B, Q or K, width]; squared_distance [B, Q, K] -> [B, Q, width]
   torch::Tensor forward(const torch::Tensor& q, const torch::Tensor& k, const torch::Tensor& v,
                         const torch::Tensor& squared_distance);
 
  private:
-  int64_t heads_;
   torch::nn::Linear to_q{nullptr}, to_k{nullptr}, to_v{nullptr}, to_out{nullptr};
   torch::Tensor nearness;
 };
@@ -51,7 +42,7 @@ TORCH_MODULE(DistanceAttention);
 
 class FeedForwardImpl : public torch::nn::Module {
  public:
-  FeedForwardImpl(int64_t width, int64_t hidden);
+  FeedForwardImpl();
   torch::Tensor forward(const torch::Tensor& x);
 
  private:
@@ -61,7 +52,7 @@ TORCH_MODULE(FeedForward);
 
 class EncoderLayerImpl : public torch::nn::Module {
  public:
-  explicit EncoderLayerImpl(const ExtractorShape& shape);
+  EncoderLayerImpl();
   torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& position,
                         const torch::Tensor& squared_distance);
 
@@ -74,7 +65,7 @@ TORCH_MODULE(EncoderLayer);
 
 class JointDecoderLayerImpl : public torch::nn::Module {
  public:
-  explicit JointDecoderLayerImpl(const ExtractorShape& shape);
+  JointDecoderLayerImpl();
   /// x, x_position [B, 22, width]; tokens with their position added [B, M, width]
   torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& x_position, const torch::Tensor& tokens,
                         const torch::Tensor& among, const torch::Tensor& across);
@@ -88,7 +79,7 @@ TORCH_MODULE(JointDecoderLayer);
 
 class SkeletonExtractorNetImpl : public torch::nn::Module {
  public:
-  explicit SkeletonExtractorNetImpl(const ExtractorShape& shape = {});
+  SkeletonExtractorNetImpl();
   /// Order-free in M and K; uses centres and offsets.
   ExtractorOutput forward(const ExtractorInput& input);
 
@@ -98,7 +89,6 @@ class SkeletonExtractorNetImpl : public torch::nn::Module {
               ExtractorOutput& out);
   torch::Tensor embed_recent(const ExtractorInput& input, const torch::Tensor& voted);
 
-  ExtractorShape shape_;
   torch::nn::Sequential patch_mlp{nullptr}, position_mlp{nullptr}, recent_mlp{nullptr}, vote_head{nullptr},
       joint_head{nullptr};
   torch::nn::Linear patch_out{nullptr};

@@ -3,7 +3,7 @@
 
 #include "retarget/nn/modules/forward_kinematics.hpp"
 #include "retarget/training/losses/motion_losses.hpp"
-#include "retarget/training/motion_discriminator.hpp"
+#include "retarget/training/motion_step.hpp"
 #include "tests/retarget/nn/motion_support.hpp"
 
 namespace understudy {

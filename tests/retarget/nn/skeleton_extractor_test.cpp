@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "retarget/base/rng.hpp"
-#include "retarget/nn/extractor_input.hpp"
 #include "retarget/nn/skeleton_form.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
