@@ -30,7 +30,8 @@ std::vector<int> kept_vertices(const ScanEdits& edits, Mesh cloud) {
   cloud.colors = Points::Zero(cloud.vertices.rows(), 3);  // they go with their vertices
   for (Eigen::Index i = 0; i < cloud.colors.rows(); ++i) cloud.colors(i, 0) = static_cast<float>(i);
   std::vector<int> kept;
-  for (const float number : apply(edits, cloud).colors.col(0)) kept.push_back(static_cast<int>(number));
+  const Mesh left = apply(edits, cloud);
+  for (const float number : left.colors.col(0)) kept.push_back(static_cast<int>(number));
   return kept;
 }
 
