@@ -94,11 +94,6 @@ void add_settings(Commands& commands) {
           [](Call& c, Settings& s) { s.mouse_sensitivity = c.clamped(0, "factor", 0.2f, 4.f); });
   setting({"settings.undo_depth", "Undo steps", "STEPS: 10 to 1000; takes effect at the next start"},
           [](Call& c, Settings& s) { s.undo_depth = c.clamped(0, "number", 10, 1000); });
-  commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [](Call& c) {
-    auto& panels = c.session.settings.panels;
-    const auto found = panels.find(c.word(0, "panel"));
-    panels[c.arguments[0]] = c.switched(1, found == panels.end() || found->second);
-  });
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct Settings {
   int undo_depth = 200;             ///< 10 .. 1000
   std::vector<std::string> recent;  ///< documents, the newest first, 12 at most
   std::vector<std::string> recent_sources, recent_targets;
-  std::map<std::string, bool> panels;  ///< shown or not, by name; missing: shown
+  std::map<std::string, bool> panels;  ///< shown or not, by name; missing: as the window has it
   std::string last_folder;             ///< of the file browser
   int window_width = 1280, window_height = 800;
 };

@@ -13,6 +13,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/editing/pose_edits.hpp"
+#include "ui/panels/panel.hpp"
 #include "ui/viewport/picture.hpp"
 
 namespace understudy::app {
@@ -160,6 +161,10 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
         US_CHECK(c.arguments.size() == 1, "dialog.open wants the name of a dialog");
         workspace.open_dialog(c.session, c.arguments[0]);
       });
+  commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [](Call& c) {
+    const bool shown = ui::panel_shown(c.session, c.word(0, "panel"));
+    c.session.settings.panels[c.arguments[0]] = c.switched(1, shown);
+  });
   commands.add({"help.keys", "All keys"},
                [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
   commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]"},

@@ -1,4 +1,4 @@
-// The commands of the window alone: dialogs, and the jobs that draw pictures and videos off screen.
+// The commands of the window alone: dialogs, panels, and the jobs that draw pictures and videos off screen.
 #pragma once
 
 #include "app/session/studio.hpp"

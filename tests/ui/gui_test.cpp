@@ -209,10 +209,9 @@ TEST_F(UiTest, DrawsOnTheNullContextAndLeavesNoNames) {
   {
     DrawPass pass;
     const ImDrawData& data = frame(3);
-    pass.draw(data, gui.atlas(), {0, input.size});
+    pass.present(data, gui.atlas(), {0, input.size}, {0, 0, 0, 1});
     EXPECT_GE(render::null_counts().draws, data.CmdListsCount - 1);
     EXPECT_GT(render::null_counts().draws, 2);
-    pass.present(data, gui.atlas(), {0, input.size}, {0, 0, 0, 1});
     const int draws = render::null_counts().draws;
     pass.present(data, gui.atlas(), {0, input.size}, {0, 0, 0, 1});
     EXPECT_EQ(render::null_counts().draws, draws);  // nothing has changed

@@ -1,9 +1,9 @@
 // Timeline, log, start screen and status line.
 #include "retarget/base/text.hpp"
 #include "tests/ui/support/panels_test.hpp"
+#include "ui/panels/bars.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/rows.hpp"
-#include "ui/panels/status.hpp"
 #include "ui/panels/timeline.hpp"
 
 namespace understudy::ui {

@@ -79,14 +79,17 @@ TEST_F(Widgets, DropdownOffersItsChoices) {
   EXPECT_FALSE(shown("method.2"));
 }
 
-TEST_F(Widgets, NumberIsDraggedAndClamped) {
+TEST_F(Widgets, NumberIsDraggedClampedAndReset) {
   float value = 0.5f;
   NumberOptions options;
-  options.min = 0, options.max = 1;
+  options.min = 0, options.max = 1, options.initial = 0.5f, options.resettable = true;
   in_window([&](Ui& ui) { number(ui, "strength", value, options); });
   frame(2);
+  EXPECT_FALSE(shown("strength.reset"));
   drag("strength", 0.1f, 0.9f);
   EXPECT_FLOAT_EQ(value, 1);
+  click("strength.reset");
+  EXPECT_FLOAT_EQ(value, 0.5f);
 }
 
 TEST_F(Widgets, SectionOpensAndCloses) {

@@ -61,14 +61,6 @@ DrawPass::DrawPass() : program_("interface", kVertex, kFragment), to_clip_(progr
   describe_vertices();
 }
 
-void DrawPass::draw(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target) {
-  if (data.TotalIdxCount == 0 || target.size.width <= 0 || target.size.height <= 0) return;
-  upload_atlas(atlas);
-  const render::gl::TargetScope canvas(target.framebuffer, target.size.width, target.size.height);
-  draw_rects(data, {{{0, 0}, data.DisplaySize}}, target.size, nullptr);
-  render::gl::check_debug();
-}
-
 void DrawPass::present(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target,
                        const ImVec4& backdrop) {
   if (target.size.width <= 0 || target.size.height <= 0) return;
@@ -78,20 +70,18 @@ void DrawPass::present(const ImDrawData& data, const ImFontAtlas& atlas, const r
   if (new_letters || new_backdrop || new_size) damage_.forget();
   backdrop_ = backdrop;
   upload_atlas(atlas);
-  if (new_size) resize_canvas(target.size);
+  canvas_size_ = target.size;
+  if (new_size)
+    render::gl::attach(
+        framebuffer_, canvas_,
+        {target.size.width, target.size.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST});
   const std::vector<Rect> rects = damage_.update(data);
   const int width = target.size.width, height = target.size.height;
   const render::gl::TargetScope canvas(framebuffer_.name(), width, height);
-  if (!rects.empty()) draw_rects(data, rects, target.size, &backdrop);
+  if (!rects.empty()) draw_rects(data, rects);
   api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
   api().BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   render::gl::check_debug();
-}
-
-void DrawPass::resize_canvas(render::PixelSize size) {
-  canvas_size_ = size;
-  render::gl::attach(framebuffer_, canvas_,
-                     {size.width, size.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST});
 }
 
 void DrawPass::upload_atlas(const ImFontAtlas& atlas) {
@@ -115,16 +105,15 @@ void DrawPass::upload_vertices(const ImDrawData& data) {
   }
 }
 
-/// Draws everything inside each rectangle, over `backdrop` when there is one.
-void DrawPass::draw_rects(const ImDrawData& data, const std::vector<Rect>& rects, render::PixelSize size,
-                          const ImVec4* backdrop) {
+/// Draws everything inside each rectangle, over the backdrop.
+void DrawPass::draw_rects(const ImDrawData& data, const std::vector<Rect>& rects) {
   const render::gl::ProgramScope program(program_.id());
   const render::gl::VertexArrayScope array(vertex_array_.name());
   const render::gl::BlendScope blend(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   const render::gl::CapabilityScope depth(GL_DEPTH_TEST, false), faces(GL_CULL_FACE, false),
       scissor(GL_SCISSOR_TEST, true), samples(GL_MULTISAMPLE, false);
   api().BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  to_clip_.set({2 / static_cast<float>(size.width), 2 / static_cast<float>(size.height)});
+  to_clip_.set({2 / static_cast<float>(canvas_size_.width), 2 / static_cast<float>(canvas_size_.height)});
   calls_.clear(), all_indices_.clear();
   std::vector<size_t> ends;  // where each rectangle's calls end
   for (const Rect& rect : rects) collect(data, rect), ends.push_back(calls_.size());
@@ -132,14 +121,12 @@ void DrawPass::draw_rects(const ImDrawData& data, const std::vector<Rect>& rects
   render::gl::upload(indices_, GL_ELEMENT_ARRAY_BUFFER, all_indices_.data(),
                      all_indices_.size() * sizeof(ImDrawIdx));
   for (size_t i = 0; i < rects.size(); ++i) {
-    if (backdrop != nullptr) {
-      const Rect& r = rects[i];
-      api().Scissor(static_cast<int>(r.min.x), size.height - static_cast<int>(r.max.y),
-                    static_cast<int>(r.width()), static_cast<int>(r.height()));
-      api().ClearColor(backdrop->x, backdrop->y, backdrop->z, backdrop->w);
-      api().Clear(GL_COLOR_BUFFER_BIT);
-    }
-    issue(i == 0 ? 0 : ends[i - 1], ends[i], size);
+    const Rect& r = rects[i];
+    api().Scissor(static_cast<int>(r.min.x), canvas_size_.height - static_cast<int>(r.max.y),
+                  static_cast<int>(r.width()), static_cast<int>(r.height()));
+    api().ClearColor(backdrop_.x, backdrop_.y, backdrop_.z, backdrop_.w);
+    api().Clear(GL_COLOR_BUFFER_BIT);
+    issue(i == 0 ? 0 : ends[i - 1], ends[i]);
   }
 }
 
@@ -175,7 +162,7 @@ void DrawPass::collect(const ImDrawList& list, const ImDrawCmd& command, const R
   if (call.count > 0) calls_.push_back(call);
 }
 
-void DrawPass::issue(size_t from, size_t to, render::PixelSize size) {
+void DrawPass::issue(size_t from, size_t to) {
   unsigned bound = 0;
   bool blending = true;
   for (size_t i = from; i < to; ++i) {
@@ -184,10 +171,10 @@ void DrawPass::issue(size_t from, size_t to, render::PixelSize size) {
     if (call.blend != blending) (blending = call.blend) ? api().Enable(GL_BLEND) : api().Disable(GL_BLEND);
     const int left = std::max(0, static_cast<int>(call.clip.min.x)),
               top = std::max(0, static_cast<int>(call.clip.min.y)),
-              right = std::min(size.width, static_cast<int>(call.clip.max.x)),
-              bottom = std::min(size.height, static_cast<int>(call.clip.max.y));
+              right = std::min(canvas_size_.width, static_cast<int>(call.clip.max.x)),
+              bottom = std::min(canvas_size_.height, static_cast<int>(call.clip.max.y));
     if (right <= left || bottom <= top) continue;
-    api().Scissor(left, size.height - bottom, right - left, bottom - top);
+    api().Scissor(left, canvas_size_.height - bottom, right - left, bottom - top);
     api().DrawElementsBaseVertex(GL_TRIANGLES, call.count, GL_UNSIGNED_SHORT,
                                  offset(call.first_index * sizeof(ImDrawIdx)), call.first_vertex);
   }

@@ -18,15 +18,13 @@ inline ImTextureID texture_id(unsigned gl_name) {
   return reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(gl_name));
 }
 
-/// Draws finished frames. Make, use and destroy it with one context current. Both draw functions upload the
-/// atlas when its pixels are new, and throw Error where the context's messages are fatal.
+/// Draws finished frames. Make, use and destroy it with one context current.
 class DrawPass {
  public:
   DrawPass();
-  /// Draws over what is in the target, colours as they are (sRGB).
-  void draw(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target);
-  /// Makes the target show the frame over `backdrop`, by drawing only what differs from the frame presented
-  /// before. Pictures other than the atlas count as different each time.
+  /// Makes the target show the frame over `backdrop`, colours as they are (sRGB), by drawing only what differs
+  /// from the frame presented before. Pictures other than the atlas count as different each time. Uploads the
+  /// atlas when its pixels are new. Throws Error where the context's messages are fatal.
   void present(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target,
                const ImVec4& backdrop);
 
@@ -42,10 +40,8 @@ class DrawPass {
   void upload_vertices(const ImDrawData& data);
   void collect(const ImDrawData& data, const Rect& rect);
   void collect(const ImDrawList& list, const ImDrawCmd& command, const Rect& clip, int first_vertex);
-  void draw_rects(const ImDrawData& data, const std::vector<Rect>& rects, render::PixelSize size,
-                  const ImVec4* backdrop);
-  void issue(size_t from, size_t to, render::PixelSize size);
-  void resize_canvas(render::PixelSize size);
+  void draw_rects(const ImDrawData& data, const std::vector<Rect>& rects);
+  void issue(size_t from, size_t to);
 
   render::gl::Program program_;
   render::gl::Uniform<Eigen::Vector2f> to_clip_;

@@ -3,6 +3,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cmath>
 #include <utility>
@@ -109,7 +110,11 @@ void Gui::begin_frame(const FrameInput& input, const std::vector<InputEvent>& ev
   set_look(input);
   queue_.insert(queue_.end(), events.begin(), events.end());
   io().DeltaTime = std::max(input.dt, 1e-6f);
-  feed();
+  Changes changes;
+  while (!queue_.empty() && fits(queue_.front(), changes)) {
+    apply(queue_.front(), changes);
+    queue_.pop_front();
+  }
   ImGui::NewFrame();
 }
 
@@ -144,14 +149,6 @@ void Gui::set_look(const FrameInput& input) {
   if (first || scale != ui_.scale_ || &wanted != ui_.theme_) ui::apply(wanted, scale, ImGui::GetStyle());
   ui_.scale_ = scale;
   ui_.theme_ = &wanted;
-}
-
-void Gui::feed() {
-  Changes changes;
-  while (!queue_.empty() && fits(queue_.front(), changes)) {
-    apply(queue_.front(), changes);
-    queue_.pop_front();
-  }
 }
 
 /// Whether a frame that has seen `changes` would still notice the event in its right place.
@@ -228,24 +225,13 @@ void Gui::release_all() {
 
 render::CursorShape Gui::cursor() const {
   ImGui::SetCurrentContext(context_);
-  switch (ImGui::GetMouseCursor()) {
-    case ImGuiMouseCursor_TextInput:
-      return render::CursorShape::Text;
-    case ImGuiMouseCursor_Hand:
-      return render::CursorShape::Hand;
-    case ImGuiMouseCursor_ResizeEW:
-      return render::CursorShape::ResizeHorizontal;
-    case ImGuiMouseCursor_ResizeNS:
-      return render::CursorShape::ResizeVertical;
-    case ImGuiMouseCursor_ResizeAll:
-    case ImGuiMouseCursor_ResizeNESW:
-    case ImGuiMouseCursor_ResizeNWSE:
-      return render::CursorShape::ResizeAll;
-    case ImGuiMouseCursor_None:
-      return render::CursorShape::Hidden;
-    default:
-      return render::CursorShape::Arrow;
-  }
+  using Shape = render::CursorShape;
+  // In the order of ImGuiMouseCursor_: Arrow, TextInput, ResizeAll, NS, EW, NESW, NWSE, Hand, NotAllowed.
+  constexpr std::array<Shape, ImGuiMouseCursor_COUNT> kShapes = {
+      Shape::Arrow,     Shape::Text,      Shape::ResizeAll, Shape::ResizeVertical, Shape::ResizeHorizontal,
+      Shape::ResizeAll, Shape::ResizeAll, Shape::Hand,      Shape::Arrow};
+  const int wanted = ImGui::GetMouseCursor();
+  return wanted == ImGuiMouseCursor_None ? Shape::Hidden : kShapes[wanted];
 }
 
 bool key_pressed(Key key, bool repeat) {

@@ -65,7 +65,6 @@ class Gui {
   ImGuiIO& io();
   void set_up_keys();
   void set_look(const FrameInput& input);
-  void feed();
   bool fits(const render::InputEvent& event, const Changes& changes) const;
   void apply(const render::InputEvent& event, Changes& changes);
   void release_all();

@@ -15,25 +15,12 @@ Rect intersection(const Rect& a, const Rect& b) {
 void Ui::mark(const std::string& name) {
   const ImGuiContext& context = *ImGui::GetCurrentContext();
   const ImGuiLastItemData& item = context.LastItemData;
-  const ImRect& clip = context.CurrentWindow->ClipRect;
-  const Rect rect{item.Rect.Min, item.Rect.Max};
-  add({name, rect, intersection(rect, {clip.Min, clip.Max}),
-       (item.InFlags & ImGuiItemFlags_Disabled) == 0 && !context.CurrentWindow->Hidden});
-  if (name == reveal_) {
-    reveal_.clear();
-    ImGui::ScrollToItem();
-  }
+  add(name, {item.Rect.Min, item.Rect.Max},
+      (item.InFlags & ImGuiItemFlags_Disabled) == 0 && !context.CurrentWindow->Hidden);
 }
 
 void Ui::mark(const std::string& name, const Rect& rect) {
-  const ImGuiContext& context = *ImGui::GetCurrentContext();
-  const ImRect& clip = context.CurrentWindow->ClipRect;
-  add({name, rect, intersection(rect, {clip.Min, clip.Max}),
-       (context.CurrentItemFlags & ImGuiItemFlags_Disabled) == 0});
-  if (name == reveal_) {
-    reveal_.clear();
-    ImGui::ScrollToRect(context.CurrentWindow, ImRect(rect.min, rect.max));
-  }
+  add(name, rect, (ImGui::GetCurrentContext()->CurrentItemFlags & ImGuiItemFlags_Disabled) == 0);
 }
 
 const Mark* Ui::find(const std::string& name) const {
@@ -48,12 +35,15 @@ bool Ui::claim_dialog(const std::string& name) {
   return true;
 }
 
-void Ui::add(Mark mark) {
-  const auto [at, is_new] = drawing_at_.try_emplace(mark.name, drawing_.size());
-  if (is_new)
-    drawing_.push_back(std::move(mark));
-  else
-    drawing_[at->second] = std::move(mark);
+void Ui::add(const std::string& name, const Rect& rect, bool enabled) {
+  ImGuiWindow& window = *ImGui::GetCurrentContext()->CurrentWindow;
+  const auto [at, is_new] = drawing_at_.try_emplace(name, drawing_.size());
+  if (is_new) drawing_.emplace_back();
+  drawing_[at->second] = {name, rect, intersection(rect, {window.ClipRect.Min, window.ClipRect.Max}),
+                          enabled};
+  if (name != reveal_) return;
+  reveal_.clear();
+  ImGui::ScrollToRect(&window, ImRect(rect.min, rect.max));
 }
 
 void Ui::finish_frame() {

@@ -76,7 +76,7 @@ class Ui {
 
  private:
   friend class Gui;
-  void add(Mark mark);
+  void add(const std::string& name, const Rect& rect, bool enabled);
   void finish_frame();
 
   const Theme* theme_ = &ui::theme(ThemeKind::Dark);

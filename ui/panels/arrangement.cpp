@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/panels/status.hpp"
+#include "ui/panels/bars.hpp"
 #include "ui/panels/timeline.hpp"
-#include "ui/panels/top_bar.hpp"
 
 namespace understudy::ui {
 namespace {

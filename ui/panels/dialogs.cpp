@@ -1,6 +1,7 @@
 #include "ui/panels/dialogs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ui/gui/gui.hpp"
 #include "ui/panels/rows.hpp"
@@ -14,41 +15,22 @@ void sentence(const std::string& words) {
   ImGui::PopTextWrapPos();
 }
 
-/// Ends a dialog of one's own; `stays` is what it returns.
-bool finish(bool stays) {
-  const bool escape =
-      !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
-  if (escape) stays = false;
-  if (!stays) ImGui::CloseCurrentPopup();
-  end_dialog();
-  return stays;
-}
-
-QuestionAnswer draw_unsaved(const app::Session& session, PanelContext& context) {
+void draw_unsaved(const app::Session& session, PanelContext& context, FilesState& files) {
   QuestionWords question;
   question.title = "Unsaved changes";
   question.sentence = session.question->text.empty() ? "Save the changes first?" : session.question->text;
   question.yes = session.path.empty() ? "Save\u2026" : "Save", question.no = "Don't save";
-  switch (ask(context.ui, "unsaved", question)) {
-    case Answer::Yes:
-      if (session.path.empty()) return {true, ""};
-      context.ask("question.answer", {"save"});
-      break;
-    case Answer::No:
-      context.ask("question.answer", {"discard"});
-      break;
-    case Answer::Cancel:
-      context.ask("question.answer", {"cancel"});
-      break;
-    default:
-      break;
-  }
-  return {};
+  const Answer answer = ask(context.ui, "unsaved", question);
+  if (answer == Answer::None) return;
+  if (answer == Answer::Yes && session.path.empty())
+    return choose_file(session, files, FilePurpose::SaveDocument);
+  const char* const word = answer == Answer::Yes ? "save" : answer == Answer::No ? "discard" : "cancel";
+  context.ask("question.answer", {word});
 }
 
-QuestionAnswer draw_recover(const app::Session& session, PanelContext& context) {
+void draw_recover(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
-  if (!begin_dialog(ui, "recover", "Unsaved work", 480)) return {};
+  if (!begin_dialog(ui, "recover", "Unsaved work", 480)) return;
   sentence(session.question->text);
   for (size_t i = 0; i < session.question->autosaves.size(); ++i) {
     const app::Autosave& copy = session.question->autosaves[i];
@@ -67,16 +49,14 @@ QuestionAnswer draw_recover(const app::Session& session, PanelContext& context) 
   ButtonOptions later;
   later.look = ButtonLook::Quiet, later.width = -1,
   later.tooltip = "Keeps it and asks again at the next start";
-  if (!finish(!button(ui, "recover.later", "Decide later", later)))
+  if (!finish_dialog(!button(ui, "recover.later", "Decide later", later)))
     context.ask("question.answer", {"cancel"});
-  return {};
 }
 
-QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) {
+void draw_missing(const app::Session& session, PanelContext& context, FilesState& files) {
   Ui& ui = context.ui;
-  if (!begin_dialog(ui, "missing", "Files are missing", 520)) return {};
+  if (!begin_dialog(ui, "missing", "Files are missing", 520)) return;
   sentence(session.question->text);
-  QuestionAnswer answer;
   for (size_t i = 0; i < session.question->missing.size(); ++i) {
     const std::string& path = session.question->missing[i];
     const IdScope id(i);
@@ -86,14 +66,32 @@ QuestionAnswer draw_missing(const app::Session& session, PanelContext& context) 
     ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - width);
     ButtonOptions find;
     find.width = width;
-    if (button(ui, "missing." + std::to_string(i), "Find\u2026", find)) answer.look_for = path;
+    if (button(ui, "missing." + std::to_string(i), "Find\u2026", find))
+      choose_file(session, files, FilePurpose::Relocate, path);
   }
   ButtonOptions leave;
   leave.look = ButtonLook::Quiet, leave.width = -1,
   leave.tooltip = "Opens the document with the files that are there";
-  const bool stays = finish(!button(ui, "missing.leave", "Continue without them", leave));
+  const bool stays = finish_dialog(!button(ui, "missing.leave", "Continue without them", leave));
   if (!stays) context.ask("question.answer", {"cancel"});
-  return answer;
+}
+
+void draw_paint(const app::Session& session, PanelContext& context) {
+  const size_t k = static_cast<size_t>(session.question->take);
+  const auto& takes = session.document.takes;
+  const bool known =
+      k < takes.size() && takes[k].target_edits.weights && takes[k].target_edits.weights->places.rows() > 0;
+  QuestionWords question;
+  question.title = "Painted weights do not fit";
+  question.sentence = session.question->text;
+  question.yes = known ? "Bring them over" : "Drop them", question.no = known ? "Drop them" : "";
+  question.cancel = "Decide later", question.dangerous = !known;
+  const Answer answer = ask(context.ui, "paint", question);
+  if (answer == Answer::None) return;
+  context.ask("question.answer", {"cancel"});
+  if (answer == Answer::Cancel) return;
+  const bool project = known && answer == Answer::Yes;
+  context.ask(project ? "edit.weights_reproject" : "edit.weights_clear", {std::to_string(k)});
 }
 
 void draw_method_rows(app::Method& method, Ui& ui) {
@@ -116,7 +114,55 @@ app::Arguments differences(const app::Method& base, const app::Method& other) {
   return settings;
 }
 
+void draw_scale(const app::Settings& settings, PanelContext& context) {
+  constexpr float kScales[] = {0, 0.75f, 1, 1.25f, 1.5f, 2, 2.5f, 3};
+  std::vector<std::string> labels;
+  int chosen = -1;
+  for (const float scale : kScales) {
+    if (scale == settings.scale) chosen = labels.size();
+    labels.push_back(scale == 0 ? "Automatic" : std::to_string(std::lround(100 * scale)) + " %");
+  }
+  row(context.ui, "Scale", "Size of text and controls");
+  if (dropdown(context.ui, "settings.scale", labels, chosen))
+    context.ask("settings.scale", {chosen == 0 ? "auto" : argument(kScales[chosen])});
+}
+
+void draw_settings_rows(const app::Settings& settings, PanelContext& context) {
+  Ui& ui = context.ui;
+  ask_choice(context, {"settings.theme", "Theme"}, {"Dark", "Light"}, {"dark", "light"},
+             settings.dark ? "dark" : "light");
+  draw_scale(settings, context);
+  ask_choice(context, {"settings.samples", "Antialiasing", "Samples per pixel; fewer are faster"},
+             {"Off", "2", "4"}, {"1", "2", "4"},
+             settings.samples >= 4   ? "4"
+             : settings.samples >= 2 ? "2"
+                                     : "1");
+  ask_number(context, {"settings.mouse", "Mouse", "How fast the views turn when you drag"},
+             settings.mouse_sensitivity, {0.2f, 4, 0.01f, "%.2f \u00d7", 1, true});
+  if (const auto mb = typed_number_row(
+          ui, {"settings.cache", "Frames kept, MB", "Memory for frames already shown"}, settings.cache_mb, 0))
+    context.ask("settings.cache_mb", {argument(std::round(*mb))});
+  if (const auto s = typed_number_row(
+          ui, {"settings.autosave", "Autosave, s", "How often unsaved work is saved for recovery"},
+          settings.autosave_s, 0))
+    context.ask("settings.autosave_s", {argument(*s)});
+  if (const auto n = typed_number_row(ui,
+                                      {"settings.undo_depth", "Undo steps",
+                                       "How many steps can be undone; takes effect at the next start"},
+                                      settings.undo_depth, 0))
+    context.ask("settings.undo_depth", {argument(std::round(*n))});
+}
+
 }  // namespace
+
+bool finish_dialog(bool stays) {
+  const bool escape =
+      !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
+  if (escape) stays = false;
+  if (!stays) ImGui::CloseCurrentPopup();
+  end_dialog();
+  return stays;
+}
 
 bool draw_error(const app::Session& session, PanelContext& context) {
   if (session.errors.empty()) return false;
@@ -125,36 +171,17 @@ bool draw_error(const app::Session& session, PanelContext& context) {
   return true;
 }
 
-QuestionAnswer draw_paint(const app::Session& session, PanelContext& context) {
-  const size_t k = static_cast<size_t>(session.question->take);
-  const auto& takes = session.document.takes;
-  const bool known =
-      k < takes.size() && takes[k].target_edits.weights && takes[k].target_edits.weights->places.rows() > 0;
-  QuestionWords question;
-  question.title = "Painted weights do not fit";
-  question.sentence = session.question->text;
-  question.yes = known ? "Bring them over" : "Drop them", question.no = known ? "Drop them" : "";
-  question.cancel = "Decide later", question.dangerous = !known;
-  const Answer answer = ask(context.ui, "paint", question);
-  if (answer == Answer::None) return {};
-  context.ask("question.answer", {"cancel"});
-  if (answer == Answer::Cancel) return {};
-  const bool project = known && answer == Answer::Yes;
-  context.ask(project ? "edit.weights_reproject" : "edit.weights_clear", {std::to_string(k)});
-  return {};
-}
-
-QuestionAnswer draw_question(const app::Session& session, PanelContext& context) {
+void draw_question(const app::Session& session, PanelContext& context, FilesState& files) {
   using Kind = app::Question::Kind;
   switch (session.question->kind) {
     case Kind::Recover:
       return draw_recover(session, context);
     case Kind::MissingFiles:
-      return draw_missing(session, context);
+      return draw_missing(session, context, files);
     case Kind::PaintMisfit:
       return draw_paint(session, context);
     default:
-      return draw_unsaved(session, context);
+      return draw_unsaved(session, context, files);
   }
 }
 
@@ -181,7 +208,7 @@ bool draw_about(PanelContext& context, const std::string& about) {
   ButtonOptions close;
   close.look = ButtonLook::Main;
   if (buttons.add(ui, "about.copy", "Copy", {})) ImGui::SetClipboardText(about.c_str());
-  return finish(!buttons.add(ui, "about.close", "Close", close));
+  return finish_dialog(!buttons.add(ui, "about.close", "Close", close));
 }
 
 bool draw_compare(const app::Session& session, PanelContext& context, CompareState& state) {
@@ -203,11 +230,19 @@ bool draw_compare(const app::Session& session, PanelContext& context, CompareSta
     context.ask("compare.add", arguments);
     stays = false;
   }
-  if (!finish(stays)) {
-    state.method.reset();
-    return false;
-  }
-  return true;
+  stays = finish_dialog(stays);
+  if (!stays) state.method.reset();
+  return stays;
+}
+
+bool draw_settings(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!begin_dialog(ui, "settings", "Settings", 440)) return true;
+  draw_settings_rows(session.settings, context);
+  ImGui::Dummy({0, ui.px(4)});
+  ButtonOptions close;
+  close.look = ButtonLook::Main, close.width = -1;
+  return finish_dialog(!button(ui, "settings.close", "Close", close));
 }
 
 }  // namespace understudy::ui

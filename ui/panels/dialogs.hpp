@@ -1,5 +1,6 @@
-// Dialogs and notices: errors, questions, about the program, another method to compare.
-// Marks: error.copy, error.close; unsaved.yes, .no, .cancel; recover.K, discard.K, recover.later; missing.K,
+// Dialogs and notices: errors, questions, about the program, settings, another method to compare.
+// Marks: settings.theme(.0, .1), settings.scale, settings.samples, settings.cache, settings.autosave,
+// settings.undo_depth, settings.mouse, settings.close; error.copy, error.close; unsaved.yes, .no, .cancel; recover.K, discard.K, recover.later; missing.K,
 // missing.leave; about.copy, about.close; compare.engine, compare.extractor, compare.offsets, compare.root,
 // compare.apply, compare.cancel; notice.0 the newest notice.
 #pragma once
@@ -7,21 +8,19 @@
 #include <optional>
 #include <string>
 
-#include "ui/panels/panel.hpp"
+#include "ui/panels/files.hpp"
 #include "ui/widgets/dialogs.hpp"
 
 namespace understudy::ui {
 
+/// Ends a dialog of one's own, closed where it does not stay or Escape is pressed. Whether it stays.
+bool finish_dialog(bool stays);
+
 /// Draws the first error; false when there is none.
 bool draw_error(const app::Session& session, PanelContext& context);
 
-/// The part of an answer that only the window can carry out.
-struct QuestionAnswer {
-  bool save_as = false;  ///< the document has no file yet: ask for one, then save
-  std::string look_for;  ///< MissingFiles: ask for the new place of this path
-};
-/// Draws the session's question, which must be there.
-QuestionAnswer draw_question(const app::Session& session, PanelContext& context);
+/// Draws the session's question, which must be there. Where the answer needs a path it opens the browser.
+void draw_question(const app::Session& session, PanelContext& context, FilesState& files);
 
 struct NoticesState {
   Notices shown;
@@ -30,7 +29,10 @@ struct NoticesState {
 /// Call outside any window, last.
 void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state, const Rect& over);
 
-/// Program, versions, machine. False once closed.
+// Dialogs to be drawn every frame while they are open. False once closed.
+
+bool draw_settings(const app::Session& session, PanelContext& context);
+/// Program, versions, machine.
 bool draw_about(PanelContext& context, const std::string& about);
 
 /// The method of the second take; empty at first: like the selected one.

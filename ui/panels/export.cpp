@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
-#include "ui/gui/gui.hpp"
+#include "ui/panels/dialogs.hpp"
 #include "ui/panels/rows.hpp"
-#include "ui/widgets/dialogs.hpp"
 
 namespace understudy::ui {
 namespace fs = std::filesystem;
@@ -39,6 +39,27 @@ std::string safe_name(std::string name) {
     if (static_cast<unsigned char>(c) < 32 || std::string("/\\:*?\"<>|").find(c) != std::string::npos)
       c = '_';
   return name.empty() ? "take" : name;
+}
+
+/// Of the file; "" for a folder.
+std::string suffix_of(const ExportState& state) {
+  if (state.kind == ExportKind::Animation) {
+    const app::ExportFormat* const format = format_of(state);
+    return format != nullptr ? format->suffix : ".csv";
+  }
+  return state.kind == ExportKind::Picture ? ".png" : ".mp4";
+}
+
+/// "dance.glb" beside the document, or in the folder used last.
+std::string proposed_path(const app::Session& session, const ExportState& state) {
+  const fs::path folder =
+      session.path.empty() ? fs::path(session.settings.last_folder) : fs::path(session.path).parent_path();
+  const app::Take* take = selected_take(session);
+  std::string name = take != nullptr ? take->name : session.source.name;
+  if (state.kind != ExportKind::Animation && !session.path.empty())
+    name = fs::path(session.path).stem().string();
+  const fs::path file = safe_name(name) + suffix_of(state);
+  return (folder.empty() ? fs::absolute(file) : folder / file).string();
 }
 
 void draw_format(Ui& ui, ExportState& state) {
@@ -168,6 +189,25 @@ app::Arguments export_words(const app::ExportFormat& format, const app::ExportCh
   return words;
 }
 
+/// Pushes the command that writes it.
+void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state) {
+  if (state.kind == ExportKind::Animation) {
+    const std::vector<size_t> takes = clips_of(session, state);
+    if (takes.empty()) return;
+    app::Arguments asked = {std::to_string(takes[0]), state.path};
+    const app::ExportFormat* const format = format_of(state);
+    if (format == nullptr) return context.ask("export.csv", asked);
+    for (std::string& word : export_words(*format, state.choice)) asked.push_back(std::move(word));
+    for (size_t i = 1; i < takes.size(); ++i)
+      asked.push_back("take=" + word_for_take(session.document, takes[i]));
+    return context.ask("export.run", asked);
+  }
+  app::Arguments arguments = {state.path, std::to_string(state.width), std::to_string(state.height)};
+  if (state.kind == ExportKind::Picture && state.transparent) arguments.push_back("transparent");
+  arguments.push_back(state.all ? "all" : "view");
+  context.ask(state.kind == ExportKind::Picture ? "picture.save" : "video.save", arguments);
+}
+
 void draw_size_rows(Ui& ui, ExportState& state) {
   std::vector<std::string> labels;
   int chosen = -1;
@@ -209,17 +249,17 @@ bool draw_path(const app::Session& session, Ui& ui, ExportState& state) {
                      {"Choose the folder and the name", "", false, false, side / ui.scale()});
 }
 
-ExportAnswer draw_overwrite(const app::Session& session, PanelContext& context, ExportState& state) {
+/// Whether the dialog stays.
+bool draw_overwrite(const app::Session& session, PanelContext& context, ExportState& state) {
   QuestionWords question;
   question.title = "Replace the file?";
   question.sentence = file_name(state.path) + " is already there.";
   question.yes = "Replace", question.dangerous = true;
   const Answer answer = ask(context.ui, "export.overwrite", question);
-  if (answer == Answer::None) return {};
+  if (answer == Answer::None) return true;
   state.asking = false;
-  if (answer != Answer::Yes) return {};
-  ask_for_export(session, context, state);
-  return {false, false};
+  if (answer == Answer::Yes) ask_for_export(session, context, state);
+  return answer != Answer::Yes;
 }
 
 const char* title_of(ExportKind kind) {
@@ -235,78 +275,40 @@ bool file_is_there(const std::string& path) {
 
 }  // namespace
 
-int figures_format() {
-  return app::export_formats().size();
-}
-
-void begin_export(ExportState& state, ExportKind kind, int format) {
-  state.kind = kind, state.format = format;
+bool begin_export(ExportState& state, const std::string& dialog) {
+  constexpr std::pair<const char*, ExportKind> kKinds[] = {{"export", ExportKind::Animation},
+                                                           {"csv", ExportKind::Animation},
+                                                           {"picture", ExportKind::Picture},
+                                                           {"video", ExportKind::Video}};
+  const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                 [&](const auto& one) { return dialog == one.first; });
+  if (kind == std::end(kKinds)) return false;
+  state.kind = kind->second, state.format = dialog == "csv" ? app::export_formats().size() : 0;
   state.path.clear(), state.agreed.clear(), state.left_out.clear();
   state.asking = false;
+  return true;
 }
 
-std::string suffix_of(const ExportState& state) {
-  if (state.kind == ExportKind::Animation) {
-    const app::ExportFormat* const format = format_of(state);
-    return format != nullptr ? format->suffix : ".csv";
-  }
-  return state.kind == ExportKind::Picture ? ".png" : ".mp4";
-}
-
-std::string proposed_path(const app::Session& session, const ExportState& state) {
-  const fs::path folder =
-      session.path.empty() ? fs::path(session.settings.last_folder) : fs::path(session.path).parent_path();
-  const app::Take* take = selected_take(session);
-  std::string name = take != nullptr ? take->name : session.source.name;
-  if (state.kind != ExportKind::Animation && !session.path.empty())
-    name = fs::path(session.path).stem().string();
-  const fs::path file = safe_name(name) + suffix_of(state);
-  return (folder.empty() ? fs::absolute(file) : folder / file).string();
-}
-
-void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state) {
-  if (state.kind == ExportKind::Animation) {
-    const std::vector<size_t> takes = clips_of(session, state);
-    if (takes.empty()) return;
-    app::Arguments asked = {std::to_string(takes[0]), state.path};
-    const app::ExportFormat* const format = format_of(state);
-    if (format == nullptr) return context.ask("export.csv", asked);
-    for (std::string& word : export_words(*format, state.choice)) asked.push_back(std::move(word));
-    for (size_t i = 1; i < takes.size(); ++i)
-      asked.push_back("take=" + word_for_take(session.document, takes[i]));
-    return context.ask("export.run", asked);
-  }
-  app::Arguments arguments = {state.path, std::to_string(state.width), std::to_string(state.height)};
-  if (state.kind == ExportKind::Picture && state.transparent) arguments.push_back("transparent");
-  arguments.push_back(state.all ? "all" : "view");
-  context.ask(state.kind == ExportKind::Picture ? "picture.save" : "video.save", arguments);
-}
-
-ExportAnswer draw_export(const app::Session& session, PanelContext& context, ExportState& state) {
+bool draw_export(const app::Session& session, PanelContext& context, ExportState& state, FilesState& files) {
   Ui& ui = context.ui;
   if (state.asking) return draw_overwrite(session, context, state);
-  if (!begin_dialog(ui, "export", title_of(state.kind), 460)) return {};
-  ExportAnswer answer;
+  if (!begin_dialog(ui, "export", title_of(state.kind), 460)) return true;
   if (state.kind == ExportKind::Animation)
     draw_animation_rows(session, context, state);
   else
     draw_picture_rows(ui, state);
-  answer.browse = draw_path(session, ui, state);
+  if (draw_path(session, ui, state)) choose_file(session, files, FilePurpose::Export, state.path);
   ImGui::Dummy({0, ui.px(4)});
   ButtonRow buttons(2);
   ButtonOptions save;
   save.look = ButtonLook::Main, save.disabled = state.path.empty() || (state.kind == ExportKind::Animation &&
                                                                        clips_of(session, state).empty());
-  const bool escape =
-      !ImGui::IsWindowAppearing() && !ImGui::GetIO().WantTextInput && key_pressed(render::Key::Escape, false);
-  if (buttons.add(ui, "export.cancel", "Cancel", {}) || escape) answer.stays = false;
+  bool stays = !buttons.add(ui, "export.cancel", "Cancel", {});
   if (buttons.add(ui, "export.save", "Save", save)) {
     state.asking = state.path != state.agreed && file_is_there(state.path);
-    if (!state.asking) ask_for_export(session, context, state), answer.stays = false;
+    if (!state.asking) ask_for_export(session, context, state), stays = false;
   }
-  if (!answer.stays) ImGui::CloseCurrentPopup();
-  end_dialog();
-  return answer;
+  return finish_dialog(stays);
 }
 
 }  // namespace understudy::ui

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "app/session/take_export.hpp"
-#include "ui/panels/panel.hpp"
+#include "ui/panels/files.hpp"
 
 namespace understudy::ui {
 
@@ -29,23 +29,12 @@ struct ExportState {
   std::string agreed;        ///< the path that may be written over, as the browser has asked
 };
 
-/// The format behind all of app::export_formats(): every figure of every frame as a table.
-int figures_format();
+/// Opens the dialog of that name, with a new path to propose: export, csv, picture or video. False, and nothing
+/// changed, for another name.
+bool begin_export(ExportState& state, const std::string& dialog);
 
-/// Switches to another kind and proposes a new path.
-void begin_export(ExportState& state, ExportKind kind, int format = 0);
-/// "dance.glb" beside the document, or in the folder used last.
-std::string proposed_path(const app::Session& session, const ExportState& state);
-/// The suffix of the file; "" for a folder.
-std::string suffix_of(const ExportState& state);
-/// Pushes the command that writes it.
-void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state);
-
-struct ExportAnswer {
-  bool stays = true;    ///< false: done or cancelled
-  bool browse = false;  ///< the user wants to choose the path
-};
-/// A dialog; call every frame while it is open.
-ExportAnswer draw_export(const app::Session& session, PanelContext& context, ExportState& state);
+/// A dialog; call every frame while it is open. False once done or cancelled. Opens the browser where the user
+/// wants to choose the path.
+bool draw_export(const app::Session& session, PanelContext& context, ExportState& state, FilesState& files);
 
 }  // namespace understudy::ui

@@ -9,11 +9,11 @@
 namespace understudy::ui {
 
 struct MenuItem {
-  std::string label;    ///< empty: a line between groups
-  std::string command;  ///< one that wants a path and has none opens the dialog that asks for it
-  app::Arguments arguments;
-  bool checked = false;          ///< on, or chosen
-  std::vector<MenuItem> inside;  ///< a menu of its own
+  std::string label = {};    ///< empty: a line between groups
+  std::string command = {};  ///< one that wants a path and has none opens the dialog that asks for it
+  app::Arguments arguments = {};
+  bool checked = false;               ///< on, or chosen
+  std::vector<MenuItem> inside = {};  ///< a menu of its own
 };
 
 struct Menu {
@@ -21,6 +21,8 @@ struct Menu {
   std::string label;
   std::vector<MenuItem> items;
 };
+
+extern const std::vector<std::string> kLayoutLabels;  ///< in the order of app::Layout
 
 /// File, Edit, View, Target, Tools, Window, Help.
 std::vector<Menu> menus(const app::Session& session);

@@ -1,4 +1,4 @@
-#include "ui/panels/status.hpp"
+#include "ui/panels/bars.hpp"
 
 #include <algorithm>
 #include <cmath>

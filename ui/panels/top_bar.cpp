@@ -1,4 +1,4 @@
-#include "ui/panels/top_bar.hpp"
+#include "ui/panels/bars.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@
 
 namespace understudy::ui {
 namespace {
-
-const std::vector<std::string> kLayouts = {"Side by side", "Single", "Overlay", "Wipe"};
 
 void draw_items(const app::Session& session, PanelContext& context, const std::vector<MenuItem>& items) {
   for (const MenuItem& item : items) {
@@ -58,36 +56,28 @@ void draw_one_menu(const app::Session& session, PanelContext& context, float hei
   ImGui::EndPopup();
 }
 
-/// Icons beside each other, in the middle of the bar's height, from `x` on.
-class IconStrip {
- public:
-  IconStrip(Ui& ui, const Rect& bar, float x) : ui_(ui), bar_(bar), x_(x) {}
-  bool add(const std::string& name, Icon icon, const IconButtonOptions& options) {
-    ImGui::SetCursorScreenPos({std::round(x_), std::round(bar_.at(0, 0.5f).y - ui_.px(14))});
-    x_ += ui_.px(31);
-    return icon_button(ui_, name, icon, options);
-  }
-  void gap() { x_ += ui_.px(10); }
+/// Whether the icon was clicked; in the middle of the bar's height.
+bool icon_at(Ui& ui, const ImVec2& left, const std::string& name, Icon icon, IconButtonOptions options) {
+  ImGui::SetCursorScreenPos({std::round(left.x), std::round(left.y - ui.px(14))});
+  options.size = 28;
+  return icon_button(ui, name, icon, options);
+}
 
- private:
-  Ui& ui_;
-  Rect bar_;
-  float x_;
-};
-
-void draw_tools(const app::Session& session, PanelContext& context, const Rect& bar, float x) {
-  IconStrip strip(context.ui, bar, x);
+void draw_tools(const app::Session& session, PanelContext& context, ImVec2 at) {
+  Ui& ui = context.ui;
   for (const ToolChoice& tool : kTools) {
-    IconButtonOptions options{tool.label, keys_of(context.commands, "tool", {tool.argument}),
-                              session.tool == tool.tool, !possible(session, "tool"), 28};
-    if (strip.add(std::string("tools.") + tool.argument, tool.icon, options))
+    const IconButtonOptions options{tool.label, keys_of(context.commands, "tool", {tool.argument}),
+                                    session.tool == tool.tool, !possible(session, "tool")};
+    if (icon_at(ui, at, std::string("tools.") + tool.argument, tool.icon, options))
       context.ask("tool", {tool.argument});
+    at.x += ui.px(31);
   }
-  strip.gap();
+  at.x += ui.px(10);
   const auto history = [&](const char* name, const char* command, Icon icon, const std::string& what) {
-    if (strip.add(name, icon,
-                  {what, keys_of(context.commands, command), false, !possible(session, command), 28}))
-      context.ask(command);
+    const IconButtonOptions options{what, keys_of(context.commands, command), false,
+                                    !possible(session, command)};
+    if (icon_at(ui, at, name, icon, options)) context.ask(command);
+    at.x += ui.px(31);
   };
   const std::string undo = session.history.undo_label(), redo = session.history.redo_label();
   history("top.undo", "edit.undo", Icon::Undo, undo.empty() ? "Nothing to undo" : "Undo " + undo);
@@ -97,9 +87,9 @@ void draw_tools(const app::Session& session, PanelContext& context, const Rect& 
 void draw_side_switch(const app::Session& session, PanelContext& context, const Rect& bar) {
   const char* side = is_narrow(bar.width(), context.ui.scale()) ? "side_over" : "side";
   const bool shown = panel_shown(session, side);
-  IconStrip strip(context.ui, bar, bar.max.x - context.ui.px(36));
-  if (strip.add("top.side", Icon::Layers,
-                {shown ? "Hide the side panel" : "Show the side panel", "", false, false, 28}))
+  const ImVec2 at(bar.max.x - context.ui.px(36), bar.at(0, 0.5f).y);
+  if (icon_at(context.ui, at, "top.side", Icon::Layers,
+              {shown ? "Hide the side panel" : "Show the side panel", ""}))
     context.ask("panel.show", {side, on_off(!shown)});
 }
 
@@ -109,8 +99,8 @@ void draw_layouts(const app::Session& session, PanelContext& context, const Rect
   int chosen = static_cast<int>(session.view.layout);
   ImGui::BeginChild("##layouts", {place.width(), ImGui::GetFrameHeight()});
   const bool changed = place.width() > context.ui.px(250)
-                           ? segmented(context.ui, "top.layout", kLayouts, chosen)
-                           : dropdown(context.ui, "top.layout", kLayouts, chosen);
+                           ? segmented(context.ui, "top.layout", kLayoutLabels, chosen)
+                           : dropdown(context.ui, "top.layout", kLayoutLabels, chosen);
   ImGui::EndChild();
   if (changed) context.ask("view.layout", {app::kLayoutNames[chosen]});
 }
@@ -154,7 +144,7 @@ void draw_top_bar(const app::Session& session, PanelContext& context, const Rect
   const float tools = ui.px(8 * 31 + 10), layouts = ui.px(wide >= 740 ? 392 : 130);
   const float right = area.max.x - ui.px(44);
   const float left = as_one ? area.min.x + ui.px(42) : std::round(area.at(0.5f, 0).x - tools / 2);
-  if (wide >= 345) draw_tools(session, context, area, left);
+  if (wide >= 345) draw_tools(session, context, {left, area.at(0, 0.5f).y});
   if (wide >= 500) draw_layouts(session, context, {{right - layouts, area.min.y}, {right, area.max.y}});
   if (wide >= 90) draw_side_switch(session, context, area);
   ImGui::PopClipRect();

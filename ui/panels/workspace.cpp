@@ -8,12 +8,9 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "ui/gui/gui.hpp"
+#include "ui/panels/bars.hpp"
 #include "ui/panels/bindings.hpp"
-#include "ui/panels/keys.hpp"
 #include "ui/panels/panels.hpp"
-#include "ui/panels/settings.hpp"
-#include "ui/panels/status.hpp"
-#include "ui/panels/top_bar.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
@@ -89,18 +86,17 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
 
 /// The views, or the start screen.
 void Workspace::draw_centre(const app::Session& session, PanelContext& context) {
+  if (places_.views.empty()) return;
   Ui& ui = context.ui;
-  if (!places_.views.empty()) {
-    const bool open = has_document(session);
-    const Frame frame(ui, "##views", places_.views, open ? ImVec2(0, 0) : ImVec2(16, 8), ui.theme().backdrop,
-                      !open);
-    ImGui::BringWindowToDisplayBack(ImGui::GetCurrentWindow());  // the side panel may lie over it
-    ui.mark("views", places_.views);
-    if (!open)
-      draw_start(session, context, services_.samples);
-    else if (services_.draw_views)
-      services_.draw_views(places_.views.min, {places_.views.width(), places_.views.height()});
-  }
+  const bool open = has_document(session);
+  const Frame frame(ui, "##views", places_.views, open ? ImVec2(0, 0) : ImVec2(16, 8), ui.theme().backdrop,
+                    !open);
+  ImGui::BringWindowToDisplayBack(ImGui::GetCurrentWindow());  // the side panel may lie over it
+  ui.mark("views", places_.views);
+  if (!open)
+    draw_start(session, context, services_.samples);
+  else if (services_.draw_views)
+    services_.draw_views();
 }
 
 /// The panels of the strip below the views, side by side.
@@ -120,7 +116,10 @@ void Workspace::draw_below(const app::Session& session, PanelContext& context) {
 void Workspace::draw_side(const app::Session& session, PanelContext& context) {
   if (places_.side.empty()) return;
   Ui& ui = context.ui;
-  draw_side_edge(context);
+  if (!places_.side_edge.empty()) {
+    const Frame edge(ui, "##edge", places_.side_edge, {0, 0}, ui.theme().panel);
+    splitter(ui, "side.edge", parts_.side_width, 260, 640);
+  }
   const Frame frame(ui, "##side", places_.side, {12, 8}, ui.theme().panel);
   const auto tabs = panels_in(Panel::Dock::Side, session);
   std::vector<std::string> titles;
@@ -130,12 +129,6 @@ void Workspace::draw_side(const app::Session& session, PanelContext& context) {
   if (ImGui::BeginChild(tabs[tab_]->name, {0, 0}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar))
     tabs[tab_]->draw(session, context);
   ImGui::EndChild();
-}
-
-void Workspace::draw_side_edge(PanelContext& context) {
-  if (places_.side_edge.empty()) return;
-  const Frame frame(context.ui, "##edge", places_.side_edge, {0, 0}, context.ui.theme().panel);
-  splitter(context.ui, "side.edge", parts_.side_width, 260, 640);
 }
 
 void Workspace::draw_bottom(const app::Session& session, PanelContext& context, float frame_rate) {
@@ -168,13 +161,7 @@ std::string Workspace::dialog() const {
 
 void Workspace::open_dialog(const app::Session& session, const std::string& name) {
   if (const auto purpose = purpose_of(name)) return choose_file(session, files_, *purpose);
-  const bool exports = name == "export" || name == "csv" || name == "picture" || name == "video";
-  if (exports)
-    begin_export(export_,
-                 name == "picture" ? ExportKind::Picture
-                 : name == "video" ? ExportKind::Video
-                                   : ExportKind::Animation,
-                 name == "csv" ? figures_format() : 0);
+  const bool exports = begin_export(export_, name);
   if (name == "about" && services_.about) about_ = services_.about();
   const auto known = {"compare", "settings", "about", "keys", "none"};
   US_CHECK(exports || std::find(known.begin(), known.end(), name) != known.end(), "there is no dialog ",
@@ -186,12 +173,14 @@ void Workspace::draw_dialog(const app::Session& session, PanelContext& context) 
   const bool any = !session.errors.empty() || session.question || !dialog().empty();
   if (draw_error(session, context)) {
     // One after the other: what else is open comes back when the error was read.
-  } else if (files_.browser.is_open() || session.question) {
-    draw_question_or_browse(session, context);
-  } else if (dialog_ == "export") {
-    draw_export_dialog(session, context);
+  } else if (files_.browser.is_open()) {
+    const auto path = draw_files(session, context, files_);
+    if (path) export_.path = *path, export_.agreed = *path;
+  } else if (session.question) {
+    draw_question(session, context, files_);
   } else {
     bool stays = true;
+    if (dialog_ == "export") stays = draw_export(session, context, export_, files_);
     if (dialog_ == "settings") stays = draw_settings(session, context);
     if (dialog_ == "about") stays = draw_about(context, about_);
     if (dialog_ == "keys") stays = draw_keys(session, context);
@@ -199,23 +188,6 @@ void Workspace::draw_dialog(const app::Session& session, PanelContext& context) 
     if (!stays) dialog_.clear();
   }
   close_forgotten_dialog(any);
-}
-
-void Workspace::draw_question_or_browse(const app::Session& session, PanelContext& context) {
-  if (files_.browser.is_open()) {
-    const auto path = draw_files(session, context, files_);
-    if (path) export_.path = *path, export_.agreed = *path;
-    return;
-  }
-  const QuestionAnswer answer = draw_question(session, context);
-  if (answer.save_as) choose_file(session, files_, FilePurpose::SaveDocument);
-  if (!answer.look_for.empty()) choose_file(session, files_, FilePurpose::Relocate, answer.look_for);
-}
-
-void Workspace::draw_export_dialog(const app::Session& session, PanelContext& context) {
-  const ExportAnswer answer = draw_export(session, context, export_);
-  if (answer.browse) choose_file(session, files_, FilePurpose::Export, export_.path);
-  if (!answer.stays) dialog_.clear();
 }
 
 }  // namespace understudy::ui

@@ -16,8 +16,7 @@ namespace understudy::ui {
 
 /// Services from outside the window.
 struct WorkspaceServices {
-  /// Draws the views inside the current window, which covers this place.
-  std::function<void(ImVec2 at, ImVec2 size)> draw_views;
+  std::function<void()> draw_views;  ///< inside the current window
   std::vector<SampleCard> samples;
   std::function<std::string()> about;  ///< versions and machine, called when first shown
 };
@@ -44,12 +43,9 @@ class Workspace {
  private:
   void draw_centre(const app::Session& session, PanelContext& context);
   void draw_side(const app::Session& session, PanelContext& context);
-  void draw_side_edge(PanelContext& context);
   void draw_below(const app::Session& session, PanelContext& context);
   void draw_bottom(const app::Session& session, PanelContext& context, float frame_rate);
   void draw_dialog(const app::Session& session, PanelContext& context);
-  void draw_question_or_browse(const app::Session& session, PanelContext& context);
-  void draw_export_dialog(const app::Session& session, PanelContext& context);
   void follow_tabs(const app::Session& session, PanelContext& context);
 
   WorkspaceServices services_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "retarget/base/index.hpp"
 
@@ -242,10 +243,19 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
 
 bool number(Ui& ui, const std::string& name, float& value, const NumberOptions& options) {
   const IdScope id(name);
-  ImGui::SetNextItemWidth(-FLT_MIN);
-  const bool changed = ImGui::DragFloat("##value", &value, options.speed, options.min, options.max,
-                                        options.format, ImGuiSliderFlags_AlwaysClamp);
+  const bool reset = options.resettable && value != options.initial;
+  const float size = ImGui::GetFrameHeight(), gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  ImGui::SetNextItemWidth(reset ? -(size + gap) : -FLT_MIN);
+  bool changed = ImGui::DragFloat("##value", &value, options.speed, options.min, options.max, options.format,
+                                  ImGuiSliderFlags_AlwaysClamp);
   ui.mark(name);
+  if (!reset) return changed;
+  ImGui::SameLine(0, gap);
+  char words[64];
+  std::snprintf(words, sizeof words, options.format, options.initial);
+  if (icon_button(ui, name + ".reset", Icon::Reset,
+                  {std::string("Back to ") + words, "", false, false, size / ui.scale()}))
+    value = options.initial, changed = true;
   return changed;
 }
 

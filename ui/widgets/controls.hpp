@@ -52,8 +52,11 @@ struct NumberOptions {
   float min = -FLT_MAX, max = FLT_MAX;
   float speed = 0.01f;  ///< a pixel of dragging
   const char* format = "%.2f";
+  float initial = 0;        ///< what its reset button, shown while the value differs, goes back to
+  bool resettable = false;  ///< whether there is that button
 };
-/// A number to drag, or to type after a double click; over the width that is left. True while it changes.
+/// A number to drag, or to type after a double click; over the width that is left. True while it changes;
+/// the reset is marked NAME.reset.
 bool number(Ui& ui, const std::string& name, float& value, const NumberOptions& options = {});
 
 /// A text field, with a grey hint while it is empty. True when it changed.

@@ -86,6 +86,7 @@ constexpr std::array<Entry, static_cast<size_t>(Icon::Count)> kIcons = {{
                         p.line({{13.8f, 8}, {13.8f, 10}, {12.8f, 11.6f}, {3, 11.6f}}), p.line({{5.2f, 9.2f}, {2.8f, 11.6f}, {5.2f, 14}}); }},
   {"undo", [](Pen& p) { turned_arrow(p, true); }},
   {"redo", [](Pen& p) { turned_arrow(p, false); }},
+  {"reset", [](Pen& p) { p.arc({8, 8.4f}, 5.2f, -1.5f, 1.9f), p.line({{4.1f, 1.7f}, {4.1f, 5}, {7.4f, 5}}); }},
   {"folder", [](Pen& p) { p.line({{1.8f, 13}, {1.8f, 3.2f}, {6, 3.2f}, {7.6f, 5.2f}, {14.2f, 5.2f}, {14.2f, 13}}, true); }},
   {"file", page},
   {"image", [](Pen& p) { p.box({1.8f, 2.8f}, {14.2f, 13.2f}), p.disc({5.4f, 6.2f}, 1.2f), p.line({{2.5f, 12}, {6.2f, 9}, {8.2f, 10.6f}, {11, 7.4f}, {13.8f, 10.4f}}); }},

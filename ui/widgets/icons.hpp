@@ -11,7 +11,7 @@ namespace understudy::ui {
 
 enum class Icon : int {
   // clang-format off
-  Play, Pause, StepBack, StepForward, ToStart, ToEnd, Loop, Undo, Redo,
+  Play, Pause, StepBack, StepForward, ToStart, ToEnd, Loop, Undo, Redo, Reset,
   Folder, File, Image, Video, Home, Clock, Copy, Trash,
   Warning, Check, Close, ChevronRight, ChevronDown, ChevronUp,
   Person, Skeleton, Mesh, Points, Brush, Camera, Chart, Select, Move, Layers, Menu,

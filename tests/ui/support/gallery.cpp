@@ -48,7 +48,7 @@ void draw_controls(Ui& ui, GalleryState& state) {
     dropdown(ui, "gallery.method", {"Full method", "Without offsets", "Skeleton only"}, state.method);
     row(ui, "Smoothing");
     NumberOptions smoothing;
-    smoothing.min = 0, smoothing.max = 1;
+    smoothing.min = 0, smoothing.max = 1, smoothing.resettable = true, smoothing.initial = 0.2f;
     number(ui, "gallery.smoothing", state.smoothing, smoothing);
     row(ui, "Brush radius");
     NumberOptions radius;

@@ -114,7 +114,7 @@ void PanelsTest::panel(const std::string& name) {
 }
 
 void PanelsTest::expect_known(const std::string& command) const {
-  static const std::set<std::string> kOfTheWindow = {"dialog.open", "help.keys", "picture.save",
+  static const std::set<std::string> kOfTheWindow = {"dialog.open", "panel.show", "help.keys", "picture.save",
                                                      "video.save"};
   EXPECT_TRUE(kOfTheWindow.count(command) > 0 || studio.commands().find(command) != nullptr)
       << "there is no command " << command;
@@ -167,7 +167,7 @@ void PanelsTest::expect_drag(const std::string& mark, const std::string& beginni
 
 WorkspaceTest::WorkspaceTest()
     : workspace(
-          {[this](ImVec2, ImVec2) { ++views_drawn; },
+          {[this] { ++views_drawn; },
            {{"A walk", "3D scans of a person", {"/samples/scan", "/samples/adult.glb"}, nullptr},
             {"A child walks", "A motion and a child", {"/samples/walk", "/samples/child.glb"}, nullptr}},
            [] { return std::string("understudy 0.1.0\nEGL, llvmpipe"); }}) {

@@ -73,7 +73,9 @@ render::Image picture(render::PixelSize size, const std::function<void(const ren
 
 render::Image picture(DrawPass& pass, const ImDrawData& data, const ImFontAtlas& atlas,
                       render::PixelSize size) {
-  return picture(size, [&](const render::RenderTarget& target) { pass.draw(data, atlas, target); });
+  return picture(size, [&](const render::RenderTarget& target) {
+    pass.present(data, atlas, target, {0, 0, 0, 1});
+  });
 }
 
 }  // namespace understudy::ui

@@ -1,0 +1,21 @@
+// The bars at the top (menus, tools, layout) and at the bottom (jobs and their progress, the last message, frames
+// per second).
+// Marks: menu.NAME (file, edit, view, target, tools, window, help; "menu" where they are one), entries as
+// mark_of(MenuItem); tools.look ... tools.crop; top.undo, top.redo, top.layout(.0 to .3), top.side;
+// status.job (with status.job.cancel), status.more_jobs, status.message (opens the log), status.document,
+// status.rate.
+#pragma once
+
+#include "ui/panels/panel.hpp"
+
+namespace understudy::ui {
+
+constexpr float kTopBarHeight = 42, kStatusHeight = 36;  ///< at scale 1
+
+/// In the area given, as one window.
+void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area);
+
+/// Fills the current window. `frame_rate`: of the window, frames per second; 0: not known.
+void draw_status(const app::Session& session, PanelContext& context, float frame_rate);
+
+}  // namespace understudy::ui
