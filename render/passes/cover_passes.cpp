@@ -1,7 +1,6 @@
-#include "render/passes/cover_passes.hpp"
-
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
+#include "render/passes/passes.hpp"
 
 namespace understudy::render {
 namespace {

@@ -1,8 +1,7 @@
-#include "render/passes/ground_pass.hpp"
-
 #include "render/floor_shadow.hpp"
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
+#include "render/passes/passes.hpp"
 
 namespace understudy::render {
 namespace {

@@ -1,10 +1,8 @@
-#include "render/passes/lines_pass.hpp"
-
 #include <vector>
 
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
-#include "render/passes/mesh_pass.hpp"
+#include "render/passes/passes.hpp"
 
 namespace understudy::render {
 namespace {

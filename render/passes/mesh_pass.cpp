@@ -1,7 +1,6 @@
-#include "render/passes/mesh_pass.hpp"
-
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
+#include "render/passes/passes.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::render {

@@ -1,6 +1,6 @@
-#include "render/passes/occlusion_pass.hpp"
-
 #include "render/gl/scopes.hpp"
+#include "render/passes/frame.hpp"
+#include "render/passes/passes.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::render {

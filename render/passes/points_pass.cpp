@@ -1,8 +1,6 @@
-#include "render/passes/points_pass.hpp"
-
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
-#include "render/passes/mesh_pass.hpp"
+#include "render/passes/passes.hpp"
 
 namespace understudy::render {
 namespace {
