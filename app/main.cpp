@@ -9,14 +9,38 @@
 #include "app/run/interrupt.hpp"
 #include "retarget/networks/networks.hpp"
 
+namespace understudy::app {
 namespace {
 
+struct Subcommand {
+  const char* name;
+  const char* help;
+  Action (*declare)(CLI::App& command);
+};
+
+constexpr Subcommand kSubcommands[] = {
+    {"studio", "opens the window", declare_studio},
+    {"play", "plays a script of the studio without a window", declare_play},
+    {"retarget", "lets a target perform what a source does", declare_retarget},
+    {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
+    {"cases", "makes suites of test cases from people and motions", declare_cases},
+    {"eval", "evaluates the method on a folder of cases", declare_eval},
+    {"measure", "tells what can be told of a source without knowing the truth", declare_measure},
+    {"report", "compares ways to do the job: a page of tables and plots", declare_report},
+    {"train", "trains a network", declare_train},
+    {"sample", "writes the bundled samples as files", declare_sample},
+    {"doctor", "tells what this machine has: BLAS, threads, OpenGL, weights", declare_doctor},
+    {"bench", "measures time, memory and work of a frame", declare_bench},
+    {"demo", "the bundled scan onto the bundled targets", declare_demo},
+    {"import-worker", "reads a file in a process of its own", declare_import_worker},
+};
+
 int run(int argc, char** argv) {
-  understudy::app::catch_interrupts();
+  catch_interrupts();
   CLI::App app("Understudy lets any body perform any captured motion.", "understudy");
   app.require_subcommand(1);
-  std::vector<std::pair<CLI::App*, understudy::app::Action>> actions;
-  for (const auto& command : understudy::app::subcommands()) {
+  std::vector<std::pair<CLI::App*, Action>> actions;
+  for (const Subcommand& command : kSubcommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     actions.emplace_back(sub, command.declare(*sub));
   }
@@ -31,11 +55,12 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace understudy::app
 
 int main(int argc, char** argv) {
   try {
     understudy::nn::prepare_environment(/*trains=*/argc > 1 && std::string(argv[1]) == "train");
-    return run(argc, argv);
+    return understudy::app::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "understudy: %s\n", error.what());
     return 1;

@@ -8,7 +8,6 @@
 #include "app/cli/options.hpp"
 #include "app/cli/progress.hpp"
 #include "app/run/interrupt.hpp"
-#include "app/run/samples.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 

@@ -1,8 +1,7 @@
-// The subcommands: one file and one row of the table each.
+// The subcommands: one file each, and one row of the table in app/main.cpp.
 #pragma once
 
 #include <functional>
-#include <vector>
 
 namespace CLI {
 class App;
@@ -13,12 +12,20 @@ namespace understudy::app {
 /// Does the work after the command line is parsed; gives the exit code, throws Error.
 using Action = std::function<int()>;
 
-struct Subcommand {
-  const char* name;
-  const char* help;
-  Action (*declare)(CLI::App& command);  ///< adds its options and gives the action that reads them
-};
-
-const std::vector<Subcommand>& subcommands();
+/// Each adds its options to the command and gives the action that reads them.
+Action declare_retarget(CLI::App& command);
+Action declare_export(CLI::App& command);
+Action declare_import_worker(CLI::App& command);
+Action declare_cases(CLI::App& command);
+Action declare_eval(CLI::App& command);
+Action declare_measure(CLI::App& command);
+Action declare_report(CLI::App& command);
+Action declare_train(CLI::App& command);
+Action declare_sample(CLI::App& command);
+Action declare_doctor(CLI::App& command);
+Action declare_bench(CLI::App& command);
+Action declare_demo(CLI::App& command);
+Action declare_studio(CLI::App& command);
+Action declare_play(CLI::App& command);
 
 }  // namespace understudy::app

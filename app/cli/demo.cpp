@@ -6,7 +6,6 @@
 
 #include "app/cli/commands.hpp"
 #include "app/cli/job.hpp"
-#include "app/run/samples.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::app {

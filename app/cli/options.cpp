@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "retarget/base/error.hpp"
+#include "retarget/base/program_files.hpp"
 #include "retarget/character/bone_map.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
@@ -88,6 +90,14 @@ nn::NetworkOptions network_options(const MethodOptions& how) {
   options.engine_file = how.engine_file;
   options.extractor_file = how.extractor_file;
   return options;
+}
+
+std::string samples_folder() {
+  const std::string folder = program_files("samples").string();
+  US_CHECK(!folder.empty(),
+           "the bundled samples are missing: no folder assets/samples beside the program or above it, "
+           "nor ../share/understudy/samples");
+  return folder;
 }
 
 }  // namespace understudy::app

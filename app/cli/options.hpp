@@ -1,4 +1,4 @@
-// Options that several subcommands take.
+// Options that several subcommands take, and the samples that they take where none are given.
 #pragma once
 
 #include "app/run/method.hpp"
@@ -26,5 +26,8 @@ struct MethodOptions {
 };
 void add_method_options(CLI::App& command, MethodOptions& how);
 nn::NetworkOptions network_options(const MethodOptions& how);
+
+/// The folder of the bundled samples (see program_files). Throws Error when there is none.
+std::string samples_folder();
 
 }  // namespace understudy::app

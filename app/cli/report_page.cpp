@@ -1,10 +1,9 @@
-#include "app/cli/report_page.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
 
+#include "app/cli/report.hpp"
 #include "app/run/breakdown.hpp"
 #include "render/plot.hpp"
 #include "retarget/base/error.hpp"

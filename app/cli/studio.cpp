@@ -7,7 +7,6 @@
 #include "app/cli/options.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
-#include "app/run/samples.hpp"
 #include "app/studio/application.hpp"
 #include "app/studio/recorder.hpp"
 #include "retarget/base/error.hpp"

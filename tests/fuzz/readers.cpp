@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/cli/report_rows.hpp"
+#include "app/cli/report.hpp"
 #include "app/run/case_folder.hpp"
 #include "app/session/commands.hpp"
 #include "app/session/document_file.hpp"

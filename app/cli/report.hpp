@@ -1,4 +1,4 @@
-// The rows of the report: which ways of doing the job are compared, on which suites.
+// A comparison of ways to do the job: its rows, and the page of tables in Markdown and plots.
 #pragma once
 
 #include <string>
@@ -27,5 +27,16 @@ struct ReportPlan {
 /// "near"}]}; all but a row's first three may be missing. "context": frames after which the past is
 /// forgotten. Paths are from the file's folder. Throws Error naming the file and what it does not know.
 ReportPlan read_report_plan(const std::string& path);
+
+/// A row with its figures, or why there are none.
+struct ReportResult {
+  ReportRow row;
+  Json report;       ///< as eval writes it
+  std::string lost;  ///< why the row is left out; empty: it is not
+};
+
+/// Writes FOLDER/report.md and its plots. `command`: how the page was made; `note`: what else its head says.
+void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
+                       const std::string& command, const std::string& note);
 
 }  // namespace understudy::app
