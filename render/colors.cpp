@@ -63,23 +63,11 @@ Vec3 diverging_color(float t) {
   return stops[k] + (at - static_cast<float>(k)) * (stops[k + 1] - stops[k]);
 }
 
-namespace {
-Points colors_of(const Eigen::VectorXf& values, float low, float high, Vec3 (*scale)(float)) {
+Points colors_along(Vec3 (*scale)(float), const Eigen::VectorXf& values, float low, float high) {
   Points colors(values.size(), 3);
   const float range = high > low ? high - low : 1.f;
   for (Eigen::Index i = 0; i < values.size(); ++i) colors.row(i) = scale((values[i] - low) / range);
   return colors;
-}
-}  // namespace
-
-Points viridis_colors(const Eigen::VectorXf& values, float low, float high) {
-  return colors_of(values, low, high, viridis);
-}
-Points error_colors(const Eigen::VectorXf& values, float high) {
-  return colors_of(values, 0, high, error_color);
-}
-Points diverging_colors(const Eigen::VectorXf& values, float most) {
-  return colors_of(values, -most, most, diverging_color);
 }
 
 Points weight_colors(const RowMatrix& weights) {

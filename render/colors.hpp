@@ -21,12 +21,8 @@ Vec3 error_color(float t);
 /// For signed values: blue, near white in the middle, orange brown.
 Vec3 diverging_color(float t);
 
-/// A colour for each value, `low` to `high` along viridis, [N, 3].
-Points viridis_colors(const Eigen::VectorXf& values, float low, float high);
-/// 0 to `high` along error_color().
-Points error_colors(const Eigen::VectorXf& values, float high);
-/// -`most` to `most` along diverging_color().
-Points diverging_colors(const Eigen::VectorXf& values, float most);
+/// A colour for each value, `low` to `high` along one of the scales above, [N, 3].
+Points colors_along(Vec3 (*scale)(float), const Eigen::VectorXf& values, float low, float high);
 
 /// Skin weights as colours: each vertex the mix of its joints' category colours. weights [V, J] -> [V, 3].
 Points weight_colors(const RowMatrix& weights);

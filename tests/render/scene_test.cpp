@@ -67,7 +67,7 @@ double brightness(const Vec3& color) {
 }
 
 TEST(ErrorColors, DarkenWithTheErrorSoThatAnyEyeCanOrderThem) {
-  Points colors = error_colors(Eigen::VectorXf::LinSpaced(11, 0, 0.05f), 0.05f);
+  Points colors = colors_along(error_color, Eigen::VectorXf::LinSpaced(11, 0, 0.05f), 0, 0.05f);
   for (Eigen::Index i = 1; i < colors.rows(); ++i)
     EXPECT_LT(brightness(colors.row(i)), brightness(colors.row(i - 1)) - 0.02) << i;
   EXPECT_GT(brightness(colors.row(0)), 0.9);
@@ -75,7 +75,7 @@ TEST(ErrorColors, DarkenWithTheErrorSoThatAnyEyeCanOrderThem) {
 }
 
 TEST(DivergingColors, AreBlueBelowBrightInTheMiddleAndOrangeAbove) {
-  const Points colors = diverging_colors(Eigen::Vector3f(-1, 0, 1), 1);
+  const Points colors = colors_along(diverging_color, Eigen::Vector3f(-1, 0, 1), -1, 1);
   EXPECT_GT(colors(0, 2), colors(0, 0) + 0.3f);
   EXPECT_GT(brightness(colors.row(1)), 0.9);
   EXPECT_GT(colors(2, 0), colors(2, 2) + 0.3f);

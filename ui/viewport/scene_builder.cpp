@@ -36,11 +36,12 @@ void append(std::vector<float>& values, const Array& array) {
 /// Colours of the values along the legend's scale; none where there is no scale.
 SharedPoints scale_colors(const SurfaceValues& surface) {
   if (surface.values == nullptr) return {};
+  const float high = surface.legend.high;
   if (surface.legend.scale == Legend::Scale::Error)
-    return render::error_colors(*surface.values, surface.legend.high);
+    return render::colors_along(render::error_color, *surface.values, 0, high);
   if (surface.legend.scale == Legend::Scale::Doubt)
-    return render::diverging_colors(*surface.values, surface.legend.high);
-  return render::viridis_colors(*surface.values, 0, surface.legend.high);
+    return render::colors_along(render::diverging_color, *surface.values, -high, high);
+  return render::colors_along(render::viridis, *surface.values, 0, high);
 }
 
 Vec3 trail_color(int joint, ThemeKind theme) {

@@ -118,7 +118,7 @@ Scene viridis_cloud() {
   Mesh cloud;
   Rng rng(2);
   cloud.vertices = sample_points(make_pear(), 2500, rng);
-  cloud.colors = viridis_colors(cloud.vertices.col(1), 0, 1.2f);
+  cloud.colors = colors_along(viridis, cloud.vertices.col(1), 0, 1.2f);
   add(scene, cloud);
   return scene;
 }
@@ -278,7 +278,7 @@ TEST(GoldenAmbient, NoticesInvertedNormals) {
 Scene errors() {
   Scene scene = pear();
   MeshView& mesh = scene.meshes[0];
-  mesh.colors = error_colors(mesh.vertices->col(1) * 0.05f, 0.05f);
+  mesh.colors = colors_along(error_color, mesh.vertices->col(1) * 0.05f, 0, 0.05f);
   return scene;
 }
 
@@ -288,7 +288,7 @@ TEST(GoldenErrors, AreAsTheyWere) {
 
 TEST(GoldenErrors, NoticeAnotherScale) {
   Scene broken = errors();
-  broken.meshes[0].colors = viridis_colors(broken.meshes[0].vertices->col(1), 0, 1);
+  broken.meshes[0].colors = colors_along(viridis, broken.meshes[0].vertices->col(1), 0, 1);
   expect_noticed("errors", errors(), broken);
 }
 
