@@ -38,6 +38,12 @@ struct WorkFolder {
   std::string path;
 };
 
+#ifndef __has_feature  // clang's
+#define __has_feature(name) 0
+#endif
+/// A sanitizer's shadow memory alone takes terabytes of address space.
+constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+
 void limit(int resource, rlim_t most) {
   const struct rlimit value = {most, most};
   ::setrlimit(static_cast<__rlimit_resource_t>(resource), &value);
@@ -48,7 +54,7 @@ void limit(int resource, rlim_t most) {
   ::dup2(errors, 2);
   ::close_range(3, ~0u, 0);  // windows, sockets and files of the program are none of a broken file's business
   limit(RLIMIT_CPU, seconds);
-  limit(RLIMIT_AS, bytes);
+  if (!kSanitized) limit(RLIMIT_AS, bytes);
   limit(RLIMIT_FSIZE, bytes);
   limit(RLIMIT_CORE, 0);
   ::execv(arguments[0], const_cast<char* const*>(arguments));
