@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <limits>
 
 #include "render/gizmo.hpp"
@@ -12,14 +11,6 @@ namespace understudy::render {
 namespace {
 
 constexpr PixelSize kSize{400, 300};
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr double kPatience = 10;
-#elif defined(__has_feature)
-constexpr double kPatience = __has_feature(address_sanitizer) ? 10 : 1;
-#else
-constexpr double kPatience = 1;
-#endif
 
 Camera some_camera(bool orthographic = false) {
   Camera camera;
@@ -102,19 +93,6 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Picking, testing::Bool(),
 TEST(PickingRay, MissesWhatItPasses) {
   const Mesh pear = make_pear();
   EXPECT_FALSE(surface_under({Vec3(5, 5, 5), Vec3::UnitX()}, pear.vertices, pear.faces));
-}
-
-TEST(PickingRay, TakesUnderFiveMillisecondsForAPerson) {
-  const Mesh person = make_person(13000);
-  const Ray ray = ray_through(some_camera(), kSize, Eigen::Vector2f(200, 150));
-  double best = 1e9;  // the quickest of some: another program may be busy
-  for (int i = 0; i < 10; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    surface_under(ray, person.vertices, person.faces);
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-    best = std::min(best, took.count());
-  }
-  EXPECT_LT(best, kPatience * 5);
 }
 
 TEST(PickingRay, FindsTheNearestPointBeforeIt) {

@@ -284,8 +284,8 @@ TEST(FrameCacheScans, AnotherSourceForgetsTheOld) {
   probe.set_open(true);
   cache.wait();
   EXPECT_NE(cache.scan(2), nullptr);
-  EXPECT_EQ(cache.scan(3), nullptr);
   EXPECT_EQ(other.made, std::vector<int>{2});
+  EXPECT_EQ(cache.scan(3), nullptr);
 }
 
 TEST(FrameCacheScans, AreEdited) {

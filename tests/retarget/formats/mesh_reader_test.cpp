@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -192,23 +191,6 @@ TEST(Ply, RefusesFacesThatNameNoVertex) {
             "a.ply: a face names vertex 9, the file has 4 vertices");
   ply.replace(ply.find("3 0 9 1"), 7, "3 0 -1 1");
   EXPECT_NE(error_of([&] { parse_mesh(ply, "a.ply"); }), "");
-}
-
-TEST(Ply, ReadsEightThousandPointsInUnderAMillisecond) {
-  std::string ply =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 8000\nproperty float x\nproperty float "
-      "y\nproperty float "
-      "z\nend_header\n";
-  for (int i = 0; i < 24000; ++i) ply += bytes_of(static_cast<float>(i));
-  double best = 1;
-  for (int i = 0; i < 20; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    ASSERT_EQ(parse_mesh(ply, "a.ply").vertices.rows(), 8000);
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  RecordProperty("microseconds", static_cast<int>(1e6 * best));
-  std::printf("8000 points: %.0f us\n", 1e6 * best);
-  EXPECT_LT(best, 1e-3);
 }
 
 TEST(Obj, ReadsColoursPolygonsAndContinuedLines) {
