@@ -19,6 +19,7 @@
 #include "retarget/body/data_folder.hpp"
 #include "retarget/body/exact_body.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/formats/surface_writer.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 
@@ -245,16 +246,6 @@ Points64 occluded(const CasePlan& plan, const Points64& points, const Joints64& 
   return cloud.points.cast<double>();
 }
 
-void write_points(const std::string& path, const Points& points) {
-  std::string bytes = printed(
-      "ply\nformat binary_little_endian 1.0\nelement vertex %lld\nproperty float x\nproperty float y\n"
-      "property float z\nend_header\n",
-      static_cast<long long>(points.rows()));
-  bytes.append(reinterpret_cast<const char*>(points.data()),
-               sizeof(float) * static_cast<size_t>(points.size()));
-  write_file(path, bytes, /*synced=*/false);
-}
-
 void write_target(const std::string& path, const ExactPerson& person) {
   std::string text;
   for (const auto& v : person.vertices.rowwise()) text += printed("v %.6f %.6f %.6f\n", v[0], v[1], v[2]);
@@ -378,8 +369,9 @@ void make_case(Workshop& shop, const CasePlan& plan) {
     const auto scan = shop.options.suite == "captured" ? captured : surface;
     Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
     if (shop.options.suite == "occluded") points = occluded(plan, points, shown.joints[t], motion.local[t]);
-    write_points((folder / "source" / printed("frame_%05zu.ply", t)).string(),
-                 rows_of(points, shop.random.permutation(points.rows())).cast<float>());
+    const Points64 shuffled = rows_of(points, shop.random.permutation(points.rows()));
+    write_file((folder / "source" / printed("frame_%05zu.ply", t)).string(),
+               ply_bytes({}, shuffled.cast<float>(), ""), /*synced=*/false);
   }
   write_npz((folder / "truth.npz").string(), truth);
   Json json = {{"fps", 30}, {"source", "source"}};

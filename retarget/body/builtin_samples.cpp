@@ -10,6 +10,7 @@
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/body/capture.hpp"
+#include "retarget/formats/surface_writer.hpp"
 
 namespace understudy {
 namespace {
@@ -38,15 +39,6 @@ void make_folder(const fs::path& folder) {
 template <class T>
 void append(std::string& bytes, const T* values, size_t count) {
   bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
-}
-
-std::string ply_bytes(const Points& points) {
-  std::string bytes = printed(
-      "ply\nformat binary_little_endian 1.0\nelement vertex %td\n"
-      "property float x\nproperty float y\nproperty float z\nend_header\n",
-      points.rows());
-  append(bytes, points.data(), points.size());
-  return bytes;
 }
 
 /// A mesh as binary glTF 2.0: positions and indices, nothing else.
@@ -102,7 +94,7 @@ void write_scan(const ScanSample& sample, Written& written) {
     const Pose& pose = motion.poses.at(first + i);
     const Points vertices = linear_blend_skinning(body.vertices, body.weights, body.joints,
                                                   forward_kinematics(body.joints, pose));
-    const std::string bytes = ply_bytes(simulated_capture(vertices, body.faces, i, capture).vertices);
+    const std::string bytes = ply_bytes({}, simulated_capture(vertices, body.faces, i, capture).vertices, "");
     write_file(written.folder / sample.name / printed("frame_%05d.ply", i), bytes);
     hash = fnv1a(bytes, hash);
   }

@@ -16,7 +16,8 @@ void append_raw(std::string& out, const T* values, size_t count) {
 }
 
 bool one_uv_a_vertex(const SurfaceTopology& t) {
-  return t.uvs.rows() == t.vertex_count && t.uv_faces.rows() == t.faces.rows() && t.uv_faces == t.faces;
+  return t.uvs.rows() > 0 && t.uvs.rows() == t.vertex_count && t.uv_faces.rows() == t.faces.rows() &&
+         t.uv_faces == t.faces;
 }
 
 void check(const SurfaceTopology& t, const std::string& path) {
@@ -68,7 +69,8 @@ std::string obj_text(const SurfaceTopology& t, const Points& vertices, const std
 
 std::string ply_bytes(const SurfaceTopology& t, const Points& vertices, const std::string& comment) {
   const bool colored = t.colors.rows() > 0, textured = one_uv_a_vertex(t);
-  std::string out = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " +
+  std::string out = "ply\nformat binary_little_endian 1.0\n" +
+                    (comment.empty() ? "" : "comment " + comment + "\n") + "element vertex " +
                     std::to_string(vertices.rows()) +
                     "\nproperty float x\nproperty float y\nproperty float z\n";
   if (textured) out += "property float s\nproperty float t\n";

@@ -19,7 +19,7 @@ struct SurfaceTopology {
 
 /// The mesh as the text of an OBJ file, colours behind the positions.
 std::string obj_text(const SurfaceTopology& topology, const Points& vertices, const std::string& comment);
-/// As a binary PLY; texture coordinates where each vertex has one.
+/// As a binary PLY; texture coordinates where each vertex has one, no comment where it is empty.
 std::string ply_bytes(const SurfaceTopology& topology, const Points& vertices, const std::string& comment);
 
 enum class SequenceFormat { Ply, Obj };

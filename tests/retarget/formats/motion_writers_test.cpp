@@ -225,6 +225,14 @@ TEST(SequenceWriter, APlyHasTextureCoordinatesWhereEachVertexHasOne) {
   EXPECT_EQ(read_mesh(folder.write("a.ply", ply_bytes(t, vertices, "x"))).vertices, vertices);
 }
 
+TEST(SequenceWriter, APlyOfPointsAloneHoldsNothingElse) {
+  const Points points = Points::Random(5, 3);
+  const std::string bytes = ply_bytes({}, points, "");
+  EXPECT_FALSE(contains(bytes, "comment") || contains(bytes, "property float s"));
+  const TempFolder folder;
+  EXPECT_EQ(read_mesh(folder.write("a.ply", bytes)).vertices, points);
+}
+
 TEST(SequenceWriter, ReplacesOnlyWhatItWrote) {
   const TempFolder folder;
   Points vertices;
