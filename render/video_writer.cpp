@@ -21,7 +21,7 @@ class VideoWriter::Sink {
  public:
   virtual ~Sink() = default;
   virtual void push(const Image& image, int frame) = 0;
-  virtual void finish() = 0;
+  virtual void finish() {}
 };
 
 namespace {
@@ -181,16 +181,10 @@ class PngFolder final : public VideoWriter::Sink {
   void push(const Image& image, int frame) override {
     write_png((fs::path(path_) / printed("frame_%05d.png", frame)).string(), image);
   }
-  void finish() override {}
 
  private:
   std::string path_;
 };
-
-std::unique_ptr<VideoWriter::Sink> sink_for(const std::string& path, const VideoOptions& options) {
-  if (file_suffix(path) == ".mp4") return std::make_unique<Mp4>(path, options);
-  return std::make_unique<PngFolder>(path);
-}
 
 }  // namespace
 
@@ -200,7 +194,10 @@ VideoWriter::VideoWriter(const std::string& path, const VideoOptions& options)
            ": a film cannot be ", options.width, " x ", options.height, " pixels");
   US_CHECK(std::isfinite(options.fps) && options.fps >= 1 && options.fps <= 1000, path,
            ": a film cannot have ", options.fps, " frames/s");
-  sink_ = sink_for(path, options);
+  if (file_suffix(path) == ".mp4")
+    sink_ = std::make_unique<Mp4>(path, options);
+  else
+    sink_ = std::make_unique<PngFolder>(path);
 }
 VideoWriter::~VideoWriter() = default;
 
