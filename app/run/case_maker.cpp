@@ -279,7 +279,7 @@ ExactMotion bending_motion() {
   constexpr int kMoves = 5;
   const double far = 2 * M_PI / 3, hang = 7 * M_PI / 18;
   ExactMotion motion;
-  motion.root.assign(kMoves * kBendFrames, Vector3d::Zero());
+  motion.root.assign(size_t{kMoves} * kBendFrames, Vector3d::Zero());
   Rotations64 standing;
   standing.fill(Matrix3d::Identity());
   standing[LeftShoulder] = exact_rotation({0, 0, -hang});

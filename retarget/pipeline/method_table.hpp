@@ -23,7 +23,7 @@ using MethodChoices = std::vector<MethodChoice>;
 const MethodChoices& engines();
 const MethodChoices& extractors();
 
-/// Throws Error with the names that there are: "there is no engine 'x': copy, paper".
+/// Throws Error with the names that there are: "there is no engine 'x': " and the names.
 const MethodChoice& engine_named(const std::string& name);
 const MethodChoice& extractor_named(const std::string& name);
 
