@@ -162,7 +162,7 @@ class Hand {
 };
 
 /// Counts the input that a frame has taken.
-struct InputCounter final : Observer {
+struct InputCounter final : InputListener {
   size_t events = 0;
   void input(double, const std::vector<render::InputEvent>& input, const Session&) override {
     for (const render::InputEvent& event : input) events += event.kind == render::InputEvent::Kind::MouseMove;

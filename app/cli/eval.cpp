@@ -6,6 +6,7 @@
 #include "app/cli/options.hpp"
 #include "app/cli/worst_frames.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -17,11 +18,8 @@ std::string one_line(const CaseResult& result) {
   for (const char* key :
        {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "file_medl_mm", "extraction_mpjpe_mm",
         "extraction_swap_rate", "hand_contact_kept", "arm_buried_added"})
-    for (const auto& [name, value] : result.metrics) {
-      char text[64];
-      std::snprintf(text, sizeof text, ", %s %.4g", key, value);
-      if (name == key) line += text;
-    }
+    for (const auto& [name, value] : result.metrics)
+      if (name == key) line += printed(", %s %.4g", key, value);
   return line;
 }
 

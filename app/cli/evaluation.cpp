@@ -232,8 +232,16 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   report["engine"] = options.how.method.engine;
   if (!options.oracle.empty()) report["oracle"] = options.oracle;
   if (!options.baseline.empty()) report["baseline"] = options.baseline;
-  if (!options.how.method.offsets) report["offsets"] = false;
-  if (!options.how.method.near) report["near"] = false;
+  const Method& method = options.how.method;
+  const std::pair<const char*, bool> switches[] = {
+      {"offsets", method.offsets},          {"near", method.near},
+      {"foot_lock", method.lock_feet},      {"hand_contacts", method.keep_contacts},
+      {"swap_repair", method.repair_swaps}, {"smoothing", method.smooth_joints},
+      {"length_repair", method.fix_lengths}};
+  for (const auto& [name, on] : switches)
+    if (!on) report[name] = false;
+  if (method.extractor != Method().extractor) report["extractor"] = method.extractor;
+  if (method.root != Method().root) report["root"] = kRootNames[static_cast<size_t>(method.root)];
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
   for (const CaseResult& result : evaluation.results) report["cases"].push_back(case_json(result));

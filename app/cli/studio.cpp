@@ -8,6 +8,7 @@
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
 #include "app/studio/application.hpp"
+#include "app/studio/event_text.hpp"
 #include "app/studio/recorder.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
@@ -27,12 +28,6 @@ StudioServices studio_services(const std::string& weights) {
   const std::string missing = failure_of([&] { services.samples = samples_folder(); });
   if (!missing.empty()) log::warn(missing);
   return services;
-}
-
-std::pair<int, int> window_size(const std::string& text) {
-  const size_t x = text.find('x');
-  US_CHECK(x != std::string::npos, "--size wants WIDTHxHEIGHT, not ", text);
-  return {std::atoi(text.c_str()), std::atoi(text.c_str() + x + 1)};
 }
 
 render::ContextKind context_kind(const std::string& name) {
@@ -70,7 +65,8 @@ render::WindowOptions window_options(const StudioOptions& options, const StudioS
   window.software = options.software;
   if (options.gl_debug) window.debug = render::gl::DebugMode::Log;
   if (options.size.empty()) return window;
-  std::tie(window.width, window.height) = window_size(options.size);
+  const render::PixelSize size = size_of(options.size);
+  window.width = size.width, window.height = size.height;
   US_CHECK(window.width >= 1 && window.height >= 1, "--size wants WIDTHxHEIGHT, not ", options.size);
   return window;
 }

@@ -18,10 +18,8 @@ const std::string& ArgumentReader::word(size_t i, const char* what) const {
 
 double ArgumentReader::real_number(size_t i, const char* what) const {
   const std::string& text = word(i, what);
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  US_CHECK(end != text.c_str() && *end == '\0' && std::abs(value) < 1e12, what, " is a number, not '", text,
-           "'");
+  double value = 0;
+  US_CHECK(parse_number(text, value) && std::abs(value) < 1e12, what, " is a number, not '", text, "'");
   return value;
 }
 

@@ -22,7 +22,7 @@ MetricSequence seen_in(const FigureInput& input, size_t count) {
   for (size_t t = 0; t < count; ++t) seen.rotations.push_back(input.shown.poses[t].local);
   for (size_t t = 0; t < count && input.source.size() >= count; ++t) {
     seen.source_joints.push_back(input.performed[t].source);
-    seen.confidence.push_back(input.source[t].confidence);
+    seen.confidence.push_back(input.performed[t].flagged ? 0 : input.source[t].confidence);
   }
   return seen;
 }

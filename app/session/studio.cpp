@@ -203,18 +203,18 @@ void Studio::follow_source(bool other_path) {
     if (document.source.path.empty()) session_.source = SourceState{};
   }
   if (document.truth == b.truth_path) return;
-  b.truth_path = document.truth;
-  session_.truth.reset();
-  if (document.truth.empty()) return;
   auto truth = std::make_shared<Truth>();
   const std::string path = document.truth;
-  jobs_.start(
-      "Reading the truth", [truth, path](JobControl&) { *truth = read_truth(path); },
-      [this, truth, path] {
-        if (path != background_->truth_path) return;
-        session_.truth = truth;
-        for (int64_t id : background_->take_ids) background_->dirty.insert(id);
-      });
+  if (!path.empty())
+    jobs_.start(
+        "Reading the truth", [truth, path](JobControl&) { *truth = read_truth(path); },
+        [this, truth, path] {
+          if (path != background_->truth_path) return;
+          session_.truth = truth;
+          for (int64_t id : background_->take_ids) background_->dirty.insert(id);
+        });
+  b.truth_path = path;  // only now: starting may fail
+  session_.truth.reset();
 }
 
 /// Edits that need no new frames: painted weights at once, edits of the result in the background.

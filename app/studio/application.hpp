@@ -28,8 +28,8 @@ struct ApplicationOptions {
 };
 
 /// The events that a recording gets.
-struct Observer {
-  virtual ~Observer() = default;
+struct InputListener {
+  virtual ~InputListener() = default;
   /// Before each frame: the input since the last one. Also called without events.
   virtual void input(double dt, const std::vector<render::InputEvent>& events, const Session& session) = 0;
   /// A command that the interface pushed.
@@ -54,7 +54,7 @@ class Application {
   std::optional<ui::Mark> find(const std::string& name) const;
   /// Whether something on the screen is still being made.
   bool waiting() const;
-  void observe(Observer* observer) { observer_ = observer; }
+  void observe(InputListener* observer) { observer_ = observer; }
 
   /// Takes input, runs the commands it leads to and draws, `dt` seconds after the last step.
   void frame(double dt);
@@ -97,7 +97,7 @@ class Application {
   std::unique_ptr<Previews> previews_;
   std::unique_ptr<ui::Workspace> workspace_;
   CommandQueue queue_;
-  Observer* observer_ = nullptr;
+  InputListener* observer_ = nullptr;
   Clock::time_point ticked_at_, drawn_at_, input_at_;
   double drawing_took_s_ = 0;  // the last frame
   size_t samples_ = 0;         ///< cards on the start screen

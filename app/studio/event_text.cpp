@@ -2,21 +2,25 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "ui/gui/key_chord.hpp"
 
 namespace understudy::app {
 float number_of(const std::string& text) {
-  float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  US_CHECK(error == std::errc() && end == text.data() + text.size() && std::isfinite(value), text,
-           " is not a number");
-  return value;
+  double value = 0;
+  US_CHECK(parse_number(text, value) && std::isfinite(value), text, " is not a number");
+  return static_cast<float>(value);
+}
+
+render::PixelSize size_of(const std::string& text) {
+  const size_t x = text.find('x');
+  US_CHECK(x != std::string::npos, text, " is not a size: WIDTHxHEIGHT");
+  return {static_cast<int>(number_of(text.substr(0, x))), static_cast<int>(number_of(text.substr(x + 1)))};
 }
 
 namespace {
@@ -27,9 +31,7 @@ using Kind = InputEvent::Kind;
 constexpr std::array<const char*, 5> kButtons = {"left", "right", "middle", "back", "forward"};
 
 std::string text_of(float value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", static_cast<double>(value));
-  return text;
+  return printed("%.6g", static_cast<double>(value));
 }
 
 void add_modifiers(Arguments& words, const render::Modifiers& modifiers) {

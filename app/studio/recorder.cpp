@@ -5,12 +5,15 @@
 
 #include "app/studio/event_text.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 
 namespace understudy::app {
 
 using EventKind = render::InputEvent::Kind;
 
-Recorder::Recorder(const std::string& path, Application& application) : path_(path), file_(path) {
+Recorder::Recorder(const std::string& path, Application& application) : path_(path) {
+  check_writable(path);
+  file_.open(path);
   US_CHECK(file_, path, ": the recording cannot be written");
   const render::PixelSize size = application.surface().target().size;
   const Settings& settings = application.session().settings;

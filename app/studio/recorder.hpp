@@ -10,7 +10,7 @@ namespace understudy::app {
 
 /// Writes input as `event` lines, the time between as `frames`, and `wait_frames` so that a slower machine
 /// makes as many frames before the input comes. Writes the resulting commands as comments.
-class Recorder final : public Observer {
+class Recorder final : public InputListener {
  public:
   /// Writes the window's size and theme first. Throws Error when the file cannot be written.
   Recorder(const std::string& path, Application& application);

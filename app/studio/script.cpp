@@ -1,6 +1,5 @@
 #include "app/studio/script.hpp"
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -28,16 +27,8 @@ using Kind = InputEvent::Kind;
 constexpr double kFrame = 1.0 / 60;
 
 bool is_number(const std::string& text) {
-  float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
-/// "1920x1080".
-render::PixelSize size_of(const std::string& text) {
-  const size_t x = text.find('x');
-  US_CHECK(x != std::string::npos, text, " is not a size: WIDTHxHEIGHT");
-  return {static_cast<int>(number_of(text.substr(0, x))), static_cast<int>(number_of(text.substr(x + 1)))};
+  double value = 0;
+  return parse_number(text, value);
 }
 
 InputEvent mouse_event(Kind kind, ImVec2 at, render::Modifiers modifiers = {}) {

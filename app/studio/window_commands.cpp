@@ -1,6 +1,6 @@
 #include "app/studio/window_commands.hpp"
 
-#include <charconv>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -57,10 +57,9 @@ class Stage {
 };
 
 std::optional<int> whole(const std::string& text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  int64_t value = 0;
+  if (!parse_integer(text, value)) return std::nullopt;
+  return static_cast<int>(std::clamp<int64_t>(value, -1, 1 << 20));
 }
 
 /// PATH [WIDTH HEIGHT] [transparent] [view|all].

@@ -66,25 +66,40 @@ PerformedFrame Performer::perform(const Observation& seen, float dt) {
   return frame;
 }
 
-/// The way of a frame. Without a target styles and filter are all.
+/// The way of a frame: the source's stages, then the target's, where there is one.
 void Performer::run(PerformedFrame& frame) {
-  const auto began = std::chrono::steady_clock::now();
-  for (const auto& style : styles_) frame.source = style->push(std::move(frame.source), waited_);
-  static_cast<Extraction&>(frame.source) = now_.filter.push(frame.source, waited_);
-  if (transfer_) {
-    const Observation& source = frame.source;
-    Pose& pose = frame.pose;
-    pose.local = transfer_->push(source, waited_);
-    pose.root = now_.root.push(source, pose.local, waited_);
-    if (options_.lock_feet) pose = now_.root.plant(pose, waited_);
-    if (options_.lock_feet && options_.root.mode == RootMode::Scaled)
-      pose = now_.feet.push(pose, target_.joints, waited_, source.joints);
-    if (options_.keep_contacts) pose = now_.hands.push(pose, source.joints, source.girth, waited_);
-    US_CHECK(finite(pose.local) && pose.root.allFinite(),
+  using Stage = void (*)(Performer&, PerformedFrame&);
+  static constexpr Stage kStyle = [](Performer& p, PerformedFrame& f) {
+    for (const auto& style : p.styles_) f.source = style->push(std::move(f.source), p.waited_);
+  };
+  static constexpr Stage kFilter = [](Performer& p, PerformedFrame& f) {
+    static_cast<Extraction&>(f.source) = p.now_.filter.push(f.source, p.waited_);
+  };
+  static constexpr Stage kTransfer = [](Performer& p, PerformedFrame& f) {
+    f.pose.local = p.transfer_->push(f.source, p.waited_);
+  };
+  static constexpr Stage kRoot = [](Performer& p, PerformedFrame& f) {
+    f.pose.root = p.now_.root.push(f.source, f.pose.local, p.waited_);
+  };
+  static constexpr Stage kFeet = [](Performer& p, PerformedFrame& f) {
+    if (p.options_.lock_feet) f.pose = p.now_.root.plant(f.pose, p.waited_);
+    if (p.options_.lock_feet && p.options_.root.mode == RootMode::Scaled)
+      f.pose = p.now_.feet.push(f.pose, p.target_.joints, p.waited_, f.source.joints);
+  };
+  static constexpr Stage kHands = [](Performer& p, PerformedFrame& f) {
+    if (p.options_.keep_contacts)
+      f.pose = p.now_.hands.push(f.pose, f.source.joints, f.source.girth, p.waited_);
+  };
+  static constexpr Stage kSkin = [](Performer& p, PerformedFrame& f) {
+    US_CHECK(finite(f.pose.local) && f.pose.root.allFinite(),
              "the motion transfer gave numbers that are not finite");
-    finish(frame);
-    US_CHECK(frame.vertices.allFinite(), "the deformation gave numbers that are not finite");
-  }
+    p.finish(f);
+    US_CHECK(f.vertices.allFinite(), "the deformation gave numbers that are not finite");
+  };
+  const auto began = std::chrono::steady_clock::now();
+  for (const Stage stage : {kStyle, kFilter}) stage(*this, frame);
+  if (transfer_)
+    for (const Stage stage : {kTransfer, kRoot, kFeet, kHands, kSkin}) stage(*this, frame);
   frame.transfer_ms = ms_since(began) - frame.deform_ms;
 }
 

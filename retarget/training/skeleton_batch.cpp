@@ -44,15 +44,14 @@ LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch
   const SkeletonTruth& truth = batch.truth;
   LossSum loss;
   if (!out.votes.defined()) {
-    loss.add("joint_loss", (out.joints - truth.joints).square().mean());
+    loss.add("joint_loss", square_loss(out.joints, truth.joints));
     return loss;
   }
   const auto error = (out.joints - truth.joints).square().sum(-1).sqrt();  // [B, 22]
   loss.add("joint_loss", mean_distance(out.joints, truth.joints) + mean_distance(out.voted, truth.joints));
   loss.add("vote_loss", vote_loss(out.votes, batch.input.centres, truth.joints, /*reach=*/0.8));
-  loss.add("part_loss", torch::nn::functional::cross_entropy(out.parts.flatten(0, 1), truth.parts.flatten()),
-           0.05);
-  loss.add("rotation_loss", (out.rotations - truth.rotations).abs().mean(), 0.3);
+  loss.add("part_loss", label_loss(out.parts, truth.parts), 0.05);
+  loss.add("rotation_loss", rotation_loss(out.rotations, truth.rotations), 0.3);
   loss.add("length_loss", length_loss(out.joints, truth.joints), 0.3);
   loss.add("spread_loss", spread_loss(error, out.log_spread), 0.01);
   return loss;

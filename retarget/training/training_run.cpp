@@ -11,6 +11,7 @@
 #include "retarget/base/file.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/math/types.hpp"
 
 namespace understudy::training {
@@ -24,10 +25,8 @@ constexpr int kMostSkipped = 20;  // steps in a row
 
 /// Whole numbers in full, others with six digits.
 std::string number_text(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, value == std::floor(value) && std::abs(value) < 1e15 ? "%.0f" : "%.6g",
-                value);
-  return text;
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
+  return printed(whole ? "%.0f" : "%.6g", value);
 }
 
 std::vector<torch::Tensor> copies_of(const std::vector<torch::Tensor>& tensors) {
@@ -161,7 +160,7 @@ void TrainingRun::append_row(const Figures& row) {
     columns += (columns.empty() ? "" : ",") + figure.name;
     numbers += (numbers.empty() ? "" : ",") + number_text(figure.value);
   }
-  if (!curve_begun_) std::getline(std::ifstream(path), present);
+  if (!curve_begun_) check_writable(path), std::getline(std::ifstream(path), present);
   std::ofstream out(path, std::ios::app);
   if (!curve_begun_ && present != columns) out << columns << "\n";
   out << numbers << "\n";

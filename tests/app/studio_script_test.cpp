@@ -14,7 +14,7 @@ namespace understudy::app {
 namespace {
 
 /// Throws in the frames that it is told to.
-struct Thrower final : Observer {
+struct Thrower final : InputListener {
   int left = 0;
   void input(double, const std::vector<render::InputEvent>&, const Session&) override {
     if (left-- > 0) throw Error("this frame went wrong");

@@ -69,7 +69,7 @@ TEST_F(StudioProgram, ABadLineEndsItWithOneSentence) {
   expect_sentence(play("frames 2\nview.layout sideways\n", {"--context", "null"}), "test.us:2: ");
   expect_sentence(play("click nowhere\n", {"--context", "null"}), "test.us:1: nothing on the screen");
   expect_sentence(run_program({"play", scratch.path("none.us")}), "none.us: there is no such file");
-  expect_sentence(play("frames 1", {"--size", "big"}), "--size wants WIDTHxHEIGHT");
+  expect_sentence(play("frames 1", {"--size", "big"}), "big is not a size: WIDTHxHEIGHT");
   expect_sentence(play("open samples/nothing\n", {"--context", "null"}), "nothing");
 }
 

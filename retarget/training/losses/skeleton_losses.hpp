@@ -12,6 +12,21 @@ inline torch::Tensor mean_distance(const torch::Tensor& a, const torch::Tensor& 
   return ((a - b).square().sum(-1) + 1e-6).sqrt().mean();
 }
 
+/// Mean squared difference of coordinates [..., 3].
+inline torch::Tensor square_loss(const torch::Tensor& joints, const torch::Tensor& truth) {
+  return (joints - truth).square().mean();
+}
+
+/// Cross entropy of logits [B, M, P] against labels [B, M]: which part each patch belongs to.
+inline torch::Tensor label_loss(const torch::Tensor& logits, const torch::Tensor& labels) {
+  return torch::nn::functional::cross_entropy(logits.flatten(0, 1), labels.flatten());
+}
+
+/// Mean difference of rotations' 6D entries.
+inline torch::Tensor rotation_loss(const torch::Tensor& rotations, const torch::Tensor& truth) {
+  return (rotations - truth).abs().mean();
+}
+
 /// Votes [B, M, 22, 3] count near their joint only: mean distance over patches within `reach` of it. Patch
 /// centres [B, M, 3], joints [B, 22, 3].
 inline torch::Tensor vote_loss(const torch::Tensor& votes, const torch::Tensor& centres,
