@@ -67,7 +67,7 @@ Action declare_eval(CLI::App& command) {
           "evaluate the GLB that would be exported, too, with so many morph targets: file_medl_mm, ...")
       ->check(CLI::Range(0, 64));
   command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");
-  command.add_option("--worst", options->worst, "how many of the worst frames are told (default: 20)")
+  command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
       ->check(CLI::Range(0, 10000));
   command.add_option("--pictures", files->pictures, "folder for pictures of the worst frames");
   add_method_options(command, options->how);

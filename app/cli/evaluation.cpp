@@ -126,10 +126,10 @@ struct Bench {
 void check_options(const EvalOptions& options, const Case& c) {
   const bool performed = !c.target.empty();
   US_CHECK(performed || (options.oracle.empty() && !options.file_shapes && options.restart_every == 0),
-           c.name, ": it has no target: --oracle, --file and --restart-every say nothing of it");
+           c.name, ": it has no target: --oracle, --file and --restart-every do not apply");
   US_CHECK(options.oracle != "pose" ||
                (options.baseline.empty() && !options.file_shapes && options.restart_every == 0),
-           "--oracle pose knows every pose: --baseline, --file and --restart-every say nothing of it");
+           "--oracle pose uses the true poses: --baseline, --file and --restart-every do not apply");
 }
 
 void evaluate_case(const Bench& bench, const std::string& folder, const Case& c, CaseResult& result,

@@ -15,9 +15,8 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
   command.add_option("--source-betas", source.betas, "shape parameters of the source body")->delimiter(',');
   command.add_option("--clip", source.clip,
                      "which animation of a skeletal source: its name or number (default: the longest)");
-  CLI::Option* const as_scan =
-      command.add_flag("--as-scan", source.as_scan,
-                       "the surface of an animated source is looked at as a scan, not its skeleton");
+  CLI::Option* const as_scan = command.add_flag(
+      "--as-scan", source.as_scan, "treats an animated source's surface as a scan and ignores its skeleton");
   CLI::Option* const map = command.add_option_function<std::string>(
       "--source-map", [&source](const std::string& path) { source.bones = read_bone_choices(path); },
       R"(JSON that names bones of a skeletal source: {"left_wrist": "Hand.L"})");
@@ -64,10 +63,9 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
                                                                           {"original", RootMode::Original},
                                                                           {"in-place", RootMode::InPlace}},
                                           CLI::ignore_case));
-  command.add_flag("!--no-near", method.near, "limbs and head are not looked at again from near");
-  command.add_flag("!--no-swap-repair", method.repair_swaps,
-                   "left and right that were taken for each other stay so");
-  command.add_flag("!--no-smoothing", method.smooth_joints, "joints stay as noisy as they are extracted");
+  command.add_flag("!--no-near", method.near, "skips the part refiner for limbs and head");
+  command.add_flag("!--no-swap-repair", method.repair_swaps, "does not repair left-right swaps");
+  command.add_flag("!--no-smoothing", method.smooth_joints, "does not smooth extracted joints");
   command.add_flag("!--no-fixed-lengths", method.fix_lengths, "bones may change their length");
   command.add_flag("!--no-foot-lock", method.lock_feet, "standing feet may slide");
   command.add_flag("!--no-hand-contacts", method.keep_contacts,

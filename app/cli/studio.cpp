@@ -107,7 +107,7 @@ Action declare_studio(CLI::App& command) {
   command.add_option("--size", options->size, "of the window, WIDTHxHEIGHT (default: as it was left)");
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
   command.add_option("--marks", options->marks, "keeps the places of all widgets in this file");
-  command.add_flag("--gl-debug", options->gl_debug, "tells what the graphics driver complains about");
+  command.add_flag("--gl-debug", options->gl_debug, "logs the graphics driver's debug messages");
   return [options] { return studio(*options); };
 }
 

@@ -70,7 +70,7 @@ Action declare_train(CLI::App& command) {
   const auto chosen = std::make_shared<Action>();
   command.require_subcommand(1);
   add_network<nn::SkeletonTrainOptions>(command, "the skeleton in a scan", chosen);
-  add_network<nn::PartTrainOptions>(command, "arms, hands, head and feet seen from near", chosen);
+  add_network<nn::PartTrainOptions>(command, "the part refiner: arms, hands, legs, feet, head", chosen);
   add_network<nn::MotionTrainOptions>(command, "motion transfer of paper 1", chosen);
   add_network<nn::DeformationTrainOptions>(command, "skin weights and pose-corrective offsets", chosen);
   return [chosen] { return (*chosen)(); };

@@ -51,7 +51,7 @@ LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch
   loss.add("joint_loss", mean_distance(out.joints, truth.joints) + mean_distance(out.voted, truth.joints));
   loss.add("vote_loss", vote_loss(out.votes, batch.input.centres, truth.joints, /*reach=*/0.8));
   loss.add("part_loss", label_loss(out.parts, truth.parts), 0.05);
-  loss.add("rotation_loss", rotation_loss(out.rotations, truth.rotations), 0.3);
+  loss.add("rotation_loss", columns_loss(out.rotations, truth.rotations), 0.3);
   loss.add("length_loss", length_loss(out.joints, truth.joints), 0.3);
   loss.add("spread_loss", spread_loss(error, out.log_spread), 0.01);
   return loss;

@@ -8,7 +8,6 @@
 #include <bitset>
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 #include <utility>
 

@@ -23,7 +23,7 @@ inline torch::Tensor label_loss(const torch::Tensor& logits, const torch::Tensor
 }
 
 /// Mean difference of rotations' 6D entries.
-inline torch::Tensor rotation_loss(const torch::Tensor& rotations, const torch::Tensor& truth) {
+inline torch::Tensor columns_loss(const torch::Tensor& rotations, const torch::Tensor& truth) {
   return (rotations - truth).abs().mean();
 }
 
