@@ -1,7 +1,6 @@
 #include "render/renderer.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 
 #include "render/gizmo.hpp"

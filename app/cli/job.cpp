@@ -1,6 +1,5 @@
 #include "app/cli/job.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 

@@ -6,6 +6,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/studio.hpp"
 #include "app/studio/application.hpp"
+#include "app/studio/event_text.hpp"
 #include "app/studio/script.hpp"
 #include "retarget/base/file.hpp"
 
@@ -22,7 +23,8 @@ struct PlayOptions {
 
 OffscreenSurface::Options surface_options(const PlayOptions& options) {
   OffscreenSurface::Options surface;
-  std::tie(surface.width, surface.height) = window_size(options.size);
+  const render::PixelSize size = size_of(options.size);
+  surface.width = size.width, surface.height = size.height;
   surface.content_scale = options.scale;
   surface.context = {context_kind(options.context), render::gl::DebugMode::Fatal};
   return surface;

@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/job.hpp"

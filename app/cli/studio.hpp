@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 
 #include "app/session/studio.hpp"
 #include "render/context/context.hpp"
@@ -12,8 +11,6 @@ namespace understudy::app {
 /// The trained networks, loaded when a frame is first made, and the bundled samples. weights: their folder;
 /// empty: beside the program.
 StudioServices studio_services(const std::string& weights);
-/// Width and height in "1280x800", of the option --size. Throws Error.
-std::pair<int, int> window_size(const std::string& text);
 /// By its name on the command line: any, egl, osmesa, null.
 render::ContextKind context_kind(const std::string& name);
 

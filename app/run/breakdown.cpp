@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "retarget/base/text.hpp"
 #include "retarget/math/rotation.hpp"

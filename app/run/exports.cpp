@@ -1,7 +1,6 @@
 #include "app/run/exports.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <type_traits>
 

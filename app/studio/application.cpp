@@ -1,7 +1,6 @@
 #include "app/studio/application.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <mutex>
 #include <sstream>

@@ -1,7 +1,6 @@
 #include "app/studio/script.hpp"
 
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <thread>

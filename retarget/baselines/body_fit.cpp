@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"

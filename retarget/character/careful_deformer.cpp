@@ -1,7 +1,6 @@
 #include "retarget/character/careful_deformer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <string_view>
 #include <unordered_map>
 
 #include "retarget/base/error.hpp"

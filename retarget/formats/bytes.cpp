@@ -1,7 +1,6 @@
 #include "retarget/formats/bytes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 

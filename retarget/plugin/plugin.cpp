@@ -2,7 +2,6 @@
 #include <dlfcn.h>
 #include <torch/torch.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "retarget/base/error.hpp"

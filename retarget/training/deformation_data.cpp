@@ -1,7 +1,6 @@
 #include "retarget/training/deformation_data.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"

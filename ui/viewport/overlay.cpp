@@ -1,7 +1,6 @@
 #include "ui/viewport/overlay.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ui/panels/panel.hpp"
 #include "ui/widgets/controls.hpp"

@@ -1,6 +1,5 @@
 #include "retarget/nn/modules/deformation.hpp"
 
-#include <array>
 #include <cmath>
 #include <future>
 #include <thread>
