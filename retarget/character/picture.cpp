@@ -1,6 +1,7 @@
 #include "retarget/character/picture.hpp"
 
 #include <webp/decode.h>
+#include <algorithm>
 
 #include <cstdlib>
 #include <filesystem>
@@ -124,10 +125,10 @@ int64_t decoded_size(std::string_view bytes) {
 
 /// stb_image takes Huffman tables of more than 256 codes and writes behind them. Looks wherever one may be.
 bool has_large_table(std::string_view jpeg) {
-  const auto byte = [&](size_t i) { return static_cast<size_t>(static_cast<uint8_t>(jpeg[i])); };
+  const auto byte = [&](size_t i) { return i < jpeg.size() ? size_t{static_cast<uint8_t>(jpeg[i])} : 0; };
   for (size_t at = jpeg.find("\xFF\xC4"); at != jpeg.npos; at = jpeg.find("\xFF\xC4", at + 1)) {
-    const size_t end = at + 4 < jpeg.size() ? at + 2 + 256 * byte(at + 2) + byte(at + 3) : 0;
-    for (size_t table = at + 4, codes = 0; table < end && table + 17 <= jpeg.size(); table += 17 + codes) {
+    const size_t end = at + 2 + 256 * byte(at + 2) + byte(at + 3);  // past the file stb_image reads zeros
+    for (size_t table = at + 4, codes = 0; table < std::min(end, jpeg.size()); table += 17 + codes) {
       codes = 0;
       for (size_t length = 1; length <= 16; ++length) codes += byte(table + length);
       if (codes > 256 && byte(table) >> 4 < 2 && byte(table) % 16 < 4) return true;
