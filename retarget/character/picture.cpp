@@ -61,8 +61,23 @@ const uint8_t* data(std::string_view bytes) {
   return reinterpret_cast<const uint8_t*>(bytes.data());
 }
 
+/// stb_image takes Huffman tables of more than 256 codes and writes behind them. Looks wherever one may be.
+bool has_large_table(std::string_view jpeg) {
+  const auto byte = [&](size_t i) { return i < jpeg.size() ? size_t{static_cast<uint8_t>(jpeg[i])} : 0; };
+  for (size_t at = jpeg.find("\xFF\xC4"); at != jpeg.npos; at = jpeg.find("\xFF\xC4", at + 1)) {
+    const size_t end = at + 2 + 256 * byte(at + 2) + byte(at + 3);  // past the file stb_image reads zeros
+    for (size_t table = at + 4, codes = 0; table < std::min(end, jpeg.size()); table += 17 + codes) {
+      codes = 0;
+      for (size_t length = 1; length <= 16; ++length) codes += byte(table + length);
+      if (codes > 256 && byte(table) >> 4 < 2 && byte(table) % 16 < 4) return true;
+    }
+  }
+  return false;
+}
+
 /// Width and height from the header alone; 0 where it is none that is decoded here.
 Pixels size_in_header(std::string_view bytes) {
+  if (picture_type(bytes) == "image/jpeg" && has_large_table(bytes)) return {};
   Pixels out;
   if (!is_decoded(bytes) || bytes.size() >= (1ull << 31)) return out;
   int channels = 0;
@@ -123,25 +138,10 @@ int64_t decoded_size(std::string_view bytes) {
   return int64_t{3} * size.width * size.height;
 }
 
-/// stb_image takes Huffman tables of more than 256 codes and writes behind them. Looks wherever one may be.
-bool has_large_table(std::string_view jpeg) {
-  const auto byte = [&](size_t i) { return i < jpeg.size() ? size_t{static_cast<uint8_t>(jpeg[i])} : 0; };
-  for (size_t at = jpeg.find("\xFF\xC4"); at != jpeg.npos; at = jpeg.find("\xFF\xC4", at + 1)) {
-    const size_t end = at + 2 + 256 * byte(at + 2) + byte(at + 3);  // past the file stb_image reads zeros
-    for (size_t table = at + 4, codes = 0; table < std::min(end, jpeg.size()); table += 17 + codes) {
-      codes = 0;
-      for (size_t length = 1; length <= 16; ++length) codes += byte(table + length);
-      if (codes > 256 && byte(table) >> 4 < 2 && byte(table) % 16 < 4) return true;
-    }
-  }
-  return false;
-}
-
 Pixels decode_picture(std::string_view bytes) {
   US_CHECK(is_decoded(bytes), "it is neither PNG, JPEG nor WebP");
   Pixels out = size_in_header(bytes);
-  US_CHECK(out.width > 0 && (picture_type(bytes) != "image/jpeg" || !has_large_table(bytes)),
-           "it cannot be decoded");
+  US_CHECK(out.width > 0, "it cannot be decoded");
   const int64_t pixels = static_cast<int64_t>(out.width) * out.height;
   US_CHECK(pixels <= kMostPixels, "it has ", out.width, " x ", out.height, " pixels, over 64 megapixels");
   // Sixteen bits in four channels and their rows' filters, and the packed data, which are put together.
