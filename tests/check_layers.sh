@@ -17,16 +17,21 @@ grep -rnE --include='*.hpp' --include='*.cpp' '^ *#include *[<"]' "${folders[@]}
     if (path ~ /^(GL|EGL|GLES[0-9]*|GLFW)\//) return "gl"
     return ""
   }
-  function refused(from, path,    to, i) {  # why a file of folder from may not include the path, "" when it may
-    for (i = 1; i <= count[from]; ++i) if (index(path, except[from, i]) == 1) return "may not include " except[from, i]
-    if (library(path) != "" && !((from, library(path)) in may)) return "may not include " library(path)
-    if (path !~ /^(retarget|render|ui|app)\//) return ""
+  function refused(from, path,    to, ours, tree) {  # why a file of folder from may not include the path, "" when it may
+    if (library(path) != "" && !((from, library(path)) in also)) return "may not include " library(path)
     to = row(path)
-    if (to == "") return "includes a folder without a row in the table"
+    ours = path ~ /^(retarget|render|ui|app)\//
+    if (to == "") return ours ? "includes a folder without a row in the table" : ""
     if (to == from) return ""
     if (floor[to] >= floor[from]) return "is on floor " floor[from] ", " to " on floor " floor[to]
-    if (reach[from] != "-" && to ~ /^retarget/ && floor[to] > reach[from]) return "reaches no higher than floor " reach[from]
-    if ((to, "torch") in may && !((from, "torch") in may)) return "is free of LibTorch, " to " is not"
+    tree = to
+    sub("/.*", "", tree)
+    if (ours && index(from "/", tree "/") != 1) {
+      if (!((from, tree) in also)) return "may not include " tree
+      if (also[from, tree] != "" && floor[to] > also[from, tree])
+        return "reaches no higher than floor " also[from, tree] " of " tree
+    }
+    if ((to, "torch") in also && !((from, "torch") in also)) return "is free of LibTorch, " to " is not"
     return ""
   }
   BEGIN {
@@ -34,10 +39,9 @@ grep -rnE --include='*.hpp' --include='*.cpp' '^ *#include *[<"]' "${folders[@]}
       if (line ~ /^#/ || line ~ /^ *$/) continue
       n = split(line, word, " ")
       floor[word[1]] = word[2] + 0
-      reach[word[1]] = word[3]
-      for (i = 4; i <= n; ++i) {
-        if (word[i] ~ /^\+/) may[word[1], substr(word[i], 2)]
-        else except[word[1], ++count[word[1]]] = substr(word[i], 2)
+      for (i = 3; i <= n; ++i) {
+        split(word[i], part, ":")
+        also[word[1], part[1]] = part[2]
       }
     }
   }
