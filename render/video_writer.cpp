@@ -176,7 +176,7 @@ class PngFolder final : public VideoWriter::Sink {
   explicit PngFolder(std::string path) : path_(std::move(path)) {
     std::error_code why;
     fs::create_directories(path_, why);
-    US_CHECK(!why && fs::is_directory(path_), path_, ": is no folder and cannot be made one");
+    US_CHECK(!why && fs::is_directory(path_), path_, ": is not a folder and cannot be made one");
   }
   void push(const Image& image, int frame) override {
     write_png((fs::path(path_) / printed("frame_%05d.png", frame)).string(), image);

@@ -125,9 +125,9 @@ Action declare_bench(CLI::App& command) {
   add_method_options(command, options->how);
   const auto ui_options = std::make_shared<UiBenchOptions>();
   CLI::App* ui = command.add_subcommand("ui", "the studio: frames a second, delays, start-up, memory");
-  ui->add_option("--context", ui_options->context, "how to draw: any, egl, osmesa")
+  ui->add_option("--context", ui_options->context, "OpenGL context: any, egl, osmesa")
       ->check(CLI::IsMember({"any", "egl", "osmesa"}));
-  ui->add_option("--seconds", ui_options->seconds, "of each measurement")->check(CLI::Range(0.5, 600.0));
+  ui->add_option("--seconds", ui_options->seconds, "time per measurement")->check(CLI::Range(0.5, 600.0));
   ui->add_option("--weights", ui_options->weights, "folder of the weights (default: beside the program)");
   return [options, ui_options, ui] { return ui->parsed() ? bench_ui(*ui_options) : bench(*options); };
 }

@@ -50,21 +50,20 @@ Action declare_eval(CLI::App& command) {
       .add_option("--oracle", options->oracle,
                   "skeleton: true source joints; pose: true rotations, root, target joints")
       ->check(CLI::IsMember({"skeleton", "pose"}));
-  command.add_option("--filter", options->filter, "only cases whose name holds this");
-  command.add_option("--limit", options->limit, "at most so many cases, evenly spread")
+  command.add_option("--filter", options->filter, "only cases whose name contains this");
+  command.add_option("--limit", options->limit, "at most this many cases, evenly spread")
       ->check(CLI::NonNegativeNumber);
   command
       .add_option("--restart-every", options->restart_every,
-                  "forget the past after so many frames: contexts of this length")
+                  "resets the method every so many frames: contexts of this length")
       ->check(CLI::NonNegativeNumber);
   command
       .add_option("--baseline", options->baseline,
                   "fit: fit a body to each scan instead of extracting a skeleton")
       ->check(CLI::IsMember({"fit"}));
   command
-      .add_option(
-          "--file", options->file_shapes,
-          "evaluate the GLB that would be exported, too, with so many morph targets: file_medl_mm, ...")
+      .add_option("--file", options->file_shapes,
+                  "evaluates the exported GLB, too, with this many morph targets: file_medl_mm, ...")
       ->check(CLI::Range(0, 64));
   command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")

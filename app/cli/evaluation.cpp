@@ -73,7 +73,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
   const std::vector<Joints>* const oracle =
       options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
   US_CHECK(options.oracle.empty() || (oracle && !oracle->empty()), c.truth,
-           ": --oracle skeleton wants source_joints");
+           ": --oracle skeleton needs source_joints");
   Retargeter retargeter(std::move(networks), retarget_options(options.how.method));
   if (character) retargeter.set_target(character->target);
   RetargetedSource retargeted(*source, retargeter, c.source);
@@ -101,7 +101,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
 /// True rotations, root and joints of the target: only weights and offsets are the method's.
 void evaluate_deformation(const Truth& truth, const Mesh& target, Deformer& deformer, CaseFigures& to) {
   US_CHECK(truth.target_joints && !truth.joints.empty() && !truth.rotations.empty(),
-           "--oracle pose wants target_joints, joints and rotations in the truth");
+           "--oracle pose needs target_joints, joints and rotations in the truth");
   deformer.bind(target.vertices, *truth.target_joints);
   for (int64_t t = 0; t < truth.frames; ++t) {
     const size_t i = t;
@@ -138,7 +138,7 @@ void evaluate_case(const Bench& bench, const std::string& folder, const Case& c,
   check_options(options, c);
   std::optional<Truth> truth;
   if (!c.truth.empty()) truth = read_truth(c.truth);
-  US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle wants a truth");
+  US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle needs a ground truth");
   std::optional<Mesh> mesh;  // with the file's own vertices
   std::shared_ptr<const PreparedCharacter> target;
   const bool knows_poses = options.oracle == "pose", performed = !c.target.empty();
@@ -185,7 +185,7 @@ std::vector<std::string> chosen_cases(const EvalOptions& options) {
   for (const std::string& folder : case_folders(options.cases))
     if (folder.find(options.filter, folder.find_last_of('/') + 1) != std::string::npos)
       fitting.push_back(folder);
-  US_CHECK(!fitting.empty(), options.cases, ": no case's name holds ", options.filter);
+  US_CHECK(!fitting.empty(), options.cases, ": no case's name contains ", options.filter);
   const size_t limit = options.limit;
   if (limit == 0 || limit >= fitting.size()) return fitting;
   std::vector<std::string> chosen;
@@ -199,7 +199,7 @@ std::vector<std::string> chosen_cases(const EvalOptions& options) {
 Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& told) {
   Bench bench{options, nullptr};
   if (options.baseline == "fit") {
-    US_CHECK(!options.body.empty(), "the baseline \"fit\" wants --body, an SMPL-format body");
+    US_CHECK(!options.body.empty(), "the baseline \"fit\" needs --body, an SMPL-format body");
     bench.fit = std::make_shared<const FitBody>(read_smpl_body(options.body));
   }
   Evaluation evaluation;

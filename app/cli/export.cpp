@@ -83,10 +83,10 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
 }
 
 Performance perform_sources(const ExportOptions& options, const ExportFormat& format) {
-  US_CHECK(!options.sources.empty(), "--source: a motion to perform is wanted");
-  US_CHECK(!options.target.path.empty(), "--target: a character that performs it is wanted");
+  US_CHECK(!options.sources.empty(), "--source is missing: the motion to perform");
+  US_CHECK(!options.target.path.empty(), "--target is missing: the character that performs it");
   US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
-           " holds one motion, these are ", options.sources.size());
+           " holds one motion, not ", options.sources.size());
   Networks networks = nn::load_networks(network_options(options.how));
   const auto character = open_target(options.target, networks);
   const bool theirs = on_their_rig(options.target, *character);
@@ -94,7 +94,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   file.their_rig = theirs;
   check_export_options(options.out, format, file);
   US_CHECK(!theirs || file.influences == 4, options.target.path,
-           ": its own skin stays as it is, --influences is for ours (--rig ours)");
+           ": keeps its own skin weights; --influences needs --rig ours");
   RetargetOptions quick = retarget_options(options.how.method);
   quick.vertices = false;
   Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
@@ -107,7 +107,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
 /// What goes wrong in a studio that nobody looks at.
 void check_session(const Session& session) {
   US_CHECK(!session.question || session.question->kind != Question::Kind::MissingFiles,
-           session.question->missing[0], ": is a file of the document and not there");
+           session.question->missing[0], ": is a file of the document, but does not exist");
   US_CHECK(!session.question || session.question->kind != Question::Kind::PaintMisfit,
            session.question->text);
   US_CHECK(session.errors.empty(), session.errors.front().text);
@@ -123,14 +123,14 @@ std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& d
   }
   if (takes.empty()) takes.push_back(0);
   US_CHECK(takes.size() == 1 || format.is_character, options.out, ": ", format.label,
-           " holds one motion, these are ", takes.size());
+           " holds one motion, not ", takes.size());
   return takes;
 }
 
 /// The document's takes as the studio shows them: its edits, its corrections of joints and weights.
 Performance perform_document(const ExportOptions& options, const ExportFormat& format) {
   US_CHECK(options.not_of_documents.empty(), options.document, ": a document has its own source and target, ",
-           options.not_of_documents, " is for others");
+           options.not_of_documents, " cannot be combined with it");
   StudioServices services;
   services.networks = studio_services(options.how.weights).networks;
   Studio studio(std::move(services));
@@ -220,16 +220,16 @@ int print_map(const ExportOptions& options) {
   const Character character = read_character(options.target.path);
   const BoneMap map = map_bones(character, bind_pose(character).nodes, options.target.bones);
   std::printf("%s", to_table(map, character).c_str());
-  US_CHECK(map.usable(), options.target.path, ": too few of its bones are known to drive it");
+  US_CHECK(map.usable(), options.target.path, ": too few of its bones were recognised to drive it");
   return 0;
 }
 
 int run_export(const ExportOptions& options) {
   if (options.print_map) return print_map(options);
-  US_CHECK(!options.out.empty(), "--out: a file to write is wanted");
+  US_CHECK(!options.out.empty(), "--out is missing: the file to write");
   const ExportFormat& format = export_format(options.format, options.out);
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
-           ": only of a GLB or glTF file a picture can be made");
+           ": --preview needs a GLB or glTF file");
   check_export(options.out, format);
   CharacterExportOptions on_any_rig = options.file;
   on_any_rig.their_rig = options.target.rig != "ours";
@@ -238,7 +238,7 @@ int run_export(const ExportOptions& options) {
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
   Performance done =
       options.document.empty() ? perform_sources(options, format) : perform_document(options, format);
-  done.input.body.file.progress = [](float) { check_interrupt("while it was written"); };
+  done.input.body.file.progress = [](float) { check_interrupt("during the export"); };
   const auto began = std::chrono::steady_clock::now();
   const ExportCost cost = export_motion(options.out, format, done.input);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -253,16 +253,16 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
   for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
   command.add_option("--format", options.format,
                      formats + " (default: by the suffix; ply and obj are folders)");
-  command.add_option("--influences", options.file.influences, "bones a vertex on our rig: 4 or 8")
+  command.add_option("--influences", options.file.influences, "bones per vertex on our rig: 4 or 8")
       ->check(CLI::IsMember({4, 8}));
   command.add_option("--morphs", options.file.shapes, "morph targets for the pose-corrective offsets")
       ->check(CLI::Range(0, 64));
-  command.add_option("--reduce", options.file.reduce_mm, "leave out keys, at most this far off, mm")
+  command.add_option("--reduce", options.file.reduce_mm, "removes keys up to this error, mm")
       ->check(CLI::Range(0.0, 1000.0));
-  command.add_flag("--in-place", options.file.in_place, "without the path over the floor");
+  command.add_flag("--in-place", options.file.in_place, "leaves out the path over the floor");
   command.add_flag("--t-pose-clip", options.file.t_pose_clip, "the first clip is the T-pose");
-  command.add_flag("--keep-clips", options.file.keep_clips, "keep the file's own animations");
-  command.add_option("--frames", options.frames, "only so many frames of each source")
+  command.add_flag("--keep-clips", options.file.keep_clips, "keeps the file's own animations");
+  command.add_option("--frames", options.frames, "at most this many frames of each source")
       ->check(CLI::Range(1, 100000000));
 }
 
@@ -284,16 +284,16 @@ std::string first_not_of_documents(const CLI::App& command) {
 Action declare_export(CLI::App& command) {
   const auto options = std::make_shared<ExportOptions>();
   command.add_option("DOCUMENT", options->document,
-                     "a document of the studio: its take as it is shown there");
+                     "a document of the studio: exports its take as the studio shows it");
   command.add_option("--take", options->takes,
-                     "which of the document's, by name or number from 1; several become several clips");
-  command.add_option("--source", options->sources, "motions to perform; several become several clips");
+                     "takes of the document, by name or number from 1; each becomes a clip");
+  command.add_option("--source", options->sources, "motions to perform; each becomes a clip");
   command.add_option("--target", options->target.path,
                      "a character or an SMPL-format body: " + format_names(kTarget));
   command.add_option("--out", options->out, "the file, or the folder of a sequence");
-  command.add_flag("--print-map", options->print_map, "show which bone is which joint, and stop");
+  command.add_flag("--print-map", options->print_map, "prints which bone is which joint, and stops");
   command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");
-  command.add_option("--report", options->report, "what it costs, as JSON");
+  command.add_option("--report", options->report, "file size and differences from the screen, as JSON");
   add_source_options(command, options->source);
   add_target_options(command, options->target);
   add_file_options(command, *options);

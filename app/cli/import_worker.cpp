@@ -20,7 +20,7 @@ Action declare_import_worker(CLI::App& command) {
       write_gltf_character(*out, import_by_assimp(*in));
       return 0;
     } catch (const std::bad_alloc&) {
-      std::fprintf(stderr, "it wants more memory than its reader may take\n");
+      std::fprintf(stderr, "it needs more memory than its reader may use\n");
       return 1;
     } catch (const std::exception& error) {  // assimp's own too
       std::fprintf(stderr, "%s\n", error.what());

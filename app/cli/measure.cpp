@@ -83,7 +83,7 @@ Action declare_measure(CLI::App& command) {
   const auto options = std::make_shared<MeasureOptions>();
   command.add_option("source", options->source.path, "scans, or anything else that has motion")->required();
   command.add_option("--out", options->out, "report as JSON");
-  command.add_option("--every", options->every, "look at what is inside only every so many frames")
+  command.add_option("--every", options->every, "checks what is inside every so many frames only")
       ->check(CLI::Range(1, 1000000));
   add_source_options(command, options->source);
   add_method_options(command, options->how);

@@ -65,16 +65,16 @@ Action declare_play(CLI::App& command) {
   const auto options = std::make_shared<PlayOptions>();
   command.add_option("SCRIPT", options->script, "commands and input, a line each; - reads them from stdin")
       ->required();
-  command.add_option("--out", options->out, "folder for pictures and whatever a script calls out/...");
-  command.add_option("--size", options->size, "of the window that would be, WIDTHxHEIGHT");
-  command.add_option("--scale", options->scale, "of its text and controls")->check(CLI::Range(0.5, 4.0));
-  command.add_option("--context", options->context, "how to draw: any, egl, osmesa, null (not at all)")
+  command.add_option("--out", options->out, "folder for pictures and paths that begin with out/");
+  command.add_option("--size", options->size, "window size, WIDTHxHEIGHT");
+  command.add_option("--scale", options->scale, "scale of text and controls")->check(CLI::Range(0.5, 4.0));
+  command.add_option("--context", options->context, "OpenGL context: any, egl, osmesa, null (draws nothing)")
       ->check(CLI::IsMember({"any", "egl", "osmesa", "null"}));
   command.add_option("--state", options->state, "folder for settings and autosaves (default: none are kept)");
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
-  command.add_option("--timeout", options->timeout_s, "seconds that each wait may take")
+  command.add_option("--timeout", options->timeout_s, "time limit of each wait, seconds")
       ->check(CLI::Range(1.0, 86400.0));
-  command.add_option("--marks", options->marks, "keeps the places of all widgets in this file");
+  command.add_option("--marks", options->marks, "writes the positions of all widgets to this file");
   return [options] { return play(*options); };
 }
 

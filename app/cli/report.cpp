@@ -49,7 +49,7 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
   std::set<std::string> known;
   each_key(row, [&](const char* key, const auto&) { known.insert(key); });
   for (const auto& item : json.items())
-    US_CHECK(known.count(item.key()) > 0, "a row has \"", item.key(), "\", which is not known");
+    US_CHECK(known.count(item.key()) > 0, "a row has \"", item.key(), "\", which is unknown");
   for (const char* key : {"table", "name", "suite"}) json.at(key);  // these must be there
   each_key(row, [&](const char* key, auto& member) {
     if (json.contains(key)) json.at(key).get_to(member);
@@ -77,7 +77,7 @@ ReportPlan read_report_plan(const std::string& path) {
   } catch (const std::exception& wrong) {
     throw Error(path + ": " + wrong.what());
   }
-  US_CHECK(!plan.rows.empty(), path, ": holds no row");
+  US_CHECK(!plan.rows.empty(), path, ": has no rows");
   return plan;
 }
 
@@ -183,7 +183,7 @@ ReportPlan chosen_rows(const ReportOptions& options) {
       row.eval.limit = row.eval.limit > 0 ? std::min(row.eval.limit, options.limit) : options.limit;
     chosen.push_back(std::move(row));
   }
-  US_CHECK(!chosen.empty(), "no row is of the tables wanted");
+  US_CHECK(!chosen.empty(), "none of the rows belongs to these tables");
   return {std::move(plan.note), std::move(chosen)};
 }
 
@@ -230,12 +230,12 @@ Action declare_report(CLI::App& command) {
                      "JSON that lists the rows (default: comparison.json beside the weights)");
   command
       .add_option("--tables", options->tables,
-                  "only these: baselines, seen, contexts, rotation, extraction, offsets")
+                  "only these tables: baselines, seen, contexts, rotation, extraction, offsets")
       ->delimiter(',');
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
   command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");
-  command.add_option("--limit", options->limit, "at most so many cases a row")->check(CLI::NonNegativeNumber);
-  command.add_flag("--again", options->again, "evaluate also the rows whose figures are there");
+  command.add_option("--limit", options->limit, "limit of cases per row")->check(CLI::NonNegativeNumber);
+  command.add_flag("--again", options->again, "evaluates rows again that already have figures");
   return [options] { return report(*options); };
 }
 

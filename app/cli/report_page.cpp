@@ -88,7 +88,7 @@ const std::vector<Table>& tables() {
        "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
        "of that length. Places start anew, so only figures after alignment are compared.",
        kAligned},
-      {"rotation", "What the network says of rotations, with and without a loss on them",
+      {"rotation", "Rotation forms of the network, with and without a rotation loss",
        "All trained with the same budget, shorter than that of the shipped weights.", kPerformance},
       {"extraction", "Skeleton extraction",
        "Of the source's 22 joints, repaired and smoothed; raw: as extracted.", kExtraction},
@@ -197,10 +197,10 @@ void write_confidence(std::ostream& page, const std::string& folder, const std::
                     bin["p90_mm"].get<double>(), bin["count"].get<long long>());
   }
   const std::string file = "confidence_" + suite + ".png";
-  render::write_png(folder + "/" + file,
-                    render::plot({expected, mean, p90},
-                                 {"What the confidence says of the error: " + suite, "confidence", "mm"}));
-  page << "\n![What the confidence says of the error](" << file << ")\n";
+  render::write_png(
+      folder + "/" + file,
+      render::plot({expected, mean, p90}, {"Confidence and error: " + suite, "confidence", "mm"}));
+  page << "\n![Confidence and error](" << file << ")\n";
 }
 
 /// Figures by name: joints, motions, bodies.

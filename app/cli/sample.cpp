@@ -8,7 +8,7 @@ namespace understudy::app {
 
 Action declare_sample(CLI::App& command) {
   const auto folder = std::make_shared<std::string>();
-  command.add_option("folder", *folder, "where the samples go; it is made")->required();
+  command.add_option("folder", *folder, "where the samples go; created if missing")->required();
   return [folder] {
     write_samples(*folder);
     log::info("wrote the samples to " + *folder);

@@ -52,7 +52,7 @@ void add_memory(StudioServices& services) {
     fs::create_directories(config_folder());
     fs::create_directories(state_folder());
   });
-  if (!problem.empty()) return log::warn("settings are not remembered: " + problem);
+  if (!problem.empty()) return log::warn("settings cannot be saved: " + problem);
   services.settings_file = config_folder() + "/settings.json";
   services.autosave_folder = state_folder();
 }
@@ -67,7 +67,7 @@ render::WindowOptions window_options(const StudioOptions& options, const StudioS
   if (options.size.empty()) return window;
   const render::PixelSize size = size_of(options.size);
   window.width = size.width, window.height = size.height;
-  US_CHECK(window.width >= 1 && window.height >= 1, "--size wants WIDTHxHEIGHT, not ", options.size);
+  US_CHECK(window.width >= 1 && window.height >= 1, "--size must be WIDTHxHEIGHT, not ", options.size);
   return window;
 }
 
@@ -102,11 +102,11 @@ int studio(const StudioOptions& options) {
 Action declare_studio(CLI::App& command) {
   const auto options = std::make_shared<StudioOptions>();
   command.add_option("PATHS", options->paths, "what to open: scans, a target, a document, a case folder");
-  command.add_option("--record", options->record, "writes what is done as a script for `understudy play`");
+  command.add_option("--record", options->record, "records your actions as a script for `understudy play`");
   command.add_flag("--software", options->software, "draws without the graphics driver");
-  command.add_option("--size", options->size, "of the window, WIDTHxHEIGHT (default: as it was left)");
+  command.add_option("--size", options->size, "window size, WIDTHxHEIGHT (default: as last time)");
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
-  command.add_option("--marks", options->marks, "keeps the places of all widgets in this file");
+  command.add_option("--marks", options->marks, "writes the positions of all widgets to this file");
   command.add_flag("--gl-debug", options->gl_debug, "logs the graphics driver's debug messages");
   return [options] { return studio(*options); };
 }

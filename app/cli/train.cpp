@@ -10,23 +10,21 @@ namespace {
 
 void add_common(CLI::App& command, nn::TrainOptions& options) {
   command.add_option("--data", options.data, "folder with body/, motion/ and splits.json")->required();
-  command.add_option("--out", options.out, "the weights file; its checkpoint lies beside it and is resumed")
-      ->required();
+  command.add_option("--out", options.out, "the weights file; a checkpoint beside it is resumed")->required();
   command.add_option("--curve", options.curve, "learning curve as CSV (default: OUT.csv)");
   command.add_option("--minutes", options.minutes, "stop after this long")->check(CLI::NonNegativeNumber);
   command.add_option("--samples", options.samples, "stop after this many samples in all")
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--threads", options.threads, "0: the network's own: one a core for skeleton, else one")
+  command.add_option("--threads", options.threads, "0: one per core for skeleton, otherwise one")
       ->check(CLI::Range(0, 1024));
-  command.add_option("--batch", options.batch, "samples a step; 0: the network's own")
+  command.add_option("--batch", options.batch, "samples per step; 0: the network's default")
       ->check(CLI::Range(0, 65536));
-  command.add_option("--seed", options.seed, "of the data and the first weights");
-  command.add_option("--device", options.device, "cpu, or cuda where LibTorch has it")
+  command.add_option("--seed", options.seed, "seed of the data and the initial weights");
+  command.add_option("--device", options.device, "cpu, or cuda if LibTorch supports it")
       ->check(CLI::IsMember({"cpu", "cuda"}));
   const auto init = command.add_option("--init", options.init, "weights to start from");
   command
-      .add_option("--keep", options.keep,
-                  "share of the weights to start from that is mixed into those written")
+      .add_option("--keep", options.keep, "share of the initial weights that is mixed into the written ones")
       ->needs(init)
       ->check(CLI::Range(0.0, 0.95));
 }
@@ -39,9 +37,9 @@ void add_own(CLI::App& command, nn::SkeletonTrainOptions& options) {
 }
 
 void add_own(CLI::App& command, nn::MotionTrainOptions& options) {
-  command.add_option("--rotation", options.rotation, "how the network puts rotations: 6d or quaternion")
+  command.add_option("--rotation", options.rotation, "how rotations are represented: 6d or quaternion")
       ->check(CLI::IsMember({"6d", "quaternion"}));
-  command.add_flag("!--no-rotation-loss", options.rotation_loss, "without its L_rot");
+  command.add_flag("!--no-rotation-loss", options.rotation_loss, "trains without L_rot");
   command
       .add_option("--context", options.context,
                   "frames of a sequence (default: 30; at most 60, as clips are cut)")

@@ -71,7 +71,7 @@ Case read_case(const std::string& folder) {
   US_CHECK(json.is_object(), path, ": not a JSON object");
   const auto text = [&](const char* key) -> std::string {
     if (!json.contains(key)) return {};
-    US_CHECK(json[key].is_string(), path, ": \"", key, "\" is not a text");
+    US_CHECK(json[key].is_string(), path, ": \"", key, "\" is not a string");
     return (root / json[key].get<std::string>()).string();
   };
   Case result;
@@ -79,7 +79,7 @@ Case read_case(const std::string& folder) {
   if (result.name.empty())
     result.name = fs::absolute(root).lexically_normal().parent_path().filename().string();
   result.source = text("source");
-  US_CHECK(!result.source.empty(), path, ": says no \"source\"");
+  US_CHECK(!result.source.empty(), path, ": has no \"source\"");
   result.target = text("target");
   result.truth = text("truth");
   if (json.contains("fps")) {
@@ -120,7 +120,7 @@ Truth read_truth(const std::string& path) {
              ": target_joints has the wrong shape");
     truth.target_joints = joints_at(rest->second.values.data());
   }
-  US_CHECK(truth.frames > 0, path, ": holds no truth that is known here");
+  US_CHECK(truth.frames > 0, path, ": has none of the known ground-truth arrays");
   return truth;
 }
 

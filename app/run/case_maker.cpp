@@ -402,7 +402,7 @@ int make_suite(const SuiteOptions& options, const std::function<void(const std::
   US_CHECK(!split.motions.empty(), options.data, ": the split \"", options.split, "\" names no motion");
   const bool dressed = options.suite == "clothed" || options.suite == "captured";
   US_CHECK(!dressed || !split.clothed.empty(), options.data, ": the split \"", options.split,
-           "\" has nobody dressed, whom the suite ", options.suite, " wants");
+           "\" has no clothed people, but the suite ", options.suite, " needs them");
   Workshop shop(options, std::move(split));
   std::vector<CasePlan> plans = has_joints_only(options.suite) ? extraction_plans(shop)
                                 : options.suite == "bends"     ? bend_plans(shop)

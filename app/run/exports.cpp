@@ -165,7 +165,7 @@ const std::vector<ExportFormat>& export_formats() {
        [](P path, B body, P, double fps) -> Output {
          return std::make_unique<FrameOutput<BvhWriter, false>>(path, body, pose, joints_of(body), fps);
        }},
-      {"amass", ".npz", "AMASS", "The motion as SMPL's joints turn, z up.", false, false,
+      {"amass", ".npz", "AMASS", "The rotations of SMPL's joints, z up.", false, false,
        [](P path, B body, P, double fps) -> Output {
          return std::make_unique<FrameOutput<AmassWriter, false>>(path, body, pose, fps);
        }},
@@ -190,7 +190,7 @@ const std::vector<ExportFormat>& export_formats() {
          return std::make_unique<FrameOutput<PointCacheWriter, true>>(
              path, body, surface, topology_of(of), of.surface.in_file_order(of.target.mesh.vertices));
        }},
-      {"joints", ".csv", "CSV", "Where the 22 joints are, as a table.", true, false,
+      {"joints", ".csv", "CSV", "The positions of the 22 joints, as a table.", true, false,
        [](P path, B body, P, double fps) -> Output {
          return std::make_unique<FrameOutput<JointTable, false>>(path, body, joints, fps);
        }}};
@@ -212,13 +212,13 @@ const ExportFormat& export_format(const std::string& name, const std::string& pa
     append_item(names, format.name);
   }
   US_CHECK(name.empty(), path, ": there is no format '", name, "', use one of ", names);
-  throw Error(path + ": this output format is not known by its name, use " + export_suffixes() +
+  throw Error(path + ": its suffix is not a known output format; use " + export_suffixes() +
               "; or name a format: " + names);
 }
 
 void check_export(const std::string& path, const ExportFormat& format) {
   US_CHECK(!format.is_character || file_suffix(path) == format.suffix, path, ": a ", format.label,
-           " file is called something", format.suffix);
+           " file must end in ", format.suffix);
   if (*format.suffix) return check_writable(path);
   const PartFolder made_and_removed(path);
 }
@@ -226,15 +226,15 @@ void check_export(const std::string& path, const ExportFormat& format) {
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file) {
   US_CHECK(!format.is_character || file.their_rig || !file.keep_clips, path,
-           ": the file's own clips move its own rig, on our 22 joints they cannot be kept");
+           ": the file's own clips need its own rig; they cannot be kept on our 22 joints");
   if (format.is_character) return;
-  US_CHECK(!file.t_pose_clip, path, ": ", format.label, " holds one motion, the T-pose cannot be another");
+  US_CHECK(!file.t_pose_clip, path, ": ", format.label, " holds one motion, no T-pose besides");
   US_CHECK(!file.keep_clips, path, ": ", format.label,
-           " holds one motion, the file's own clips cannot be kept");
+           " holds one motion, so the file's own clips cannot be kept");
   US_CHECK(file.shapes == 0, path, ": ", format.label, " holds no morph targets");
   US_CHECK(file.influences == 4, path, ": ", format.label, " holds no skin weights, so no ", file.influences,
-           " bones a vertex");
-  US_CHECK(!(file.reduce_mm > 0), path, ": ", format.label, " holds every frame, keys cannot be left out");
+           " bones per vertex");
+  US_CHECK(!(file.reduce_mm > 0), path, ": ", format.label, " holds every frame, so keys cannot be left out");
 }
 
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
@@ -250,8 +250,7 @@ ExportCost export_motion(const std::string& path, const ExportFormat& format, co
     check_export_options(path, format, input.body.file);
     return export_character(path, *input.body.character, *input.body.screen, input.clips, input.body.file);
   }
-  US_CHECK(input.clips.size() == 1, path, ": ", format.label, " holds one motion, these are ",
-           input.clips.size());
+  US_CHECK(input.clips.size() == 1, path, ": ", format.label, " holds one motion, not ", input.clips.size());
   const CharacterClip& clip = input.clips[0];
   const auto output = open_export(path, format, input.body, clip.name, clip.fps);
   for (size_t t = 0; t < clip.poses.size(); ++t) {
@@ -269,8 +268,8 @@ ExportCost export_motion(const std::string& path, const ExportFormat& format, co
 std::string sentence(const ExportCost& cost) {
   const double megabytes = static_cast<double>(cost.bytes) / 1e6;
   if (!cost.measured) return printed("%s frames, %.1f MB", grouped(cost.frames).c_str(), megabytes);
-  return printed("mean %.2f mm, largest %.2f mm off the screen, %.1f MB", cost.mean_mm, cost.largest_mm,
-                 megabytes);
+  return printed("difference from the screen: mean %.2f mm, largest %.2f mm, %.1f MB", cost.mean_mm,
+                 cost.largest_mm, megabytes);
 }
 
 }  // namespace understudy::app

@@ -84,7 +84,7 @@ struct ExportInput {
 /// All of it. body.file.progress is told 0..1; what it throws ends the export, and what was there stays.
 ExportCost export_motion(const std::string& path, const ExportFormat& format, const ExportInput& input);
 
-/// "mean 0.41 mm, largest 2.13 mm off the screen, 1.2 MB", for people.
+/// "difference from the screen: mean 0.41 mm, largest 2.13 mm, 1.2 MB", for people.
 std::string sentence(const ExportCost& cost);
 
 }  // namespace understudy::app

@@ -11,7 +11,7 @@ namespace understudy::app {
 
 Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Truth& truth) {
   US_CHECK(!truth.vertices.empty() && truth.frames == static_cast<int64_t>(clip.poses.size()),
-           "the truth has other frames than the file that is to be evaluated, or no vertices");
+           "the ground truth has another number of frames than the file, or no vertices");
   const auto began = std::chrono::steady_clock::now();
   const std::string bytes =
       gltf_bytes(animated_character(*body.character, *body.screen, {clip}, body.file), "evaluated.glb");

@@ -48,7 +48,7 @@ class ScanFiles final : public Source {
     const Eigen::Index points = finite_count(frame->mesh.vertices);
     if (!decision_ && points < kFewestPoints) {
       frame->usable = false;
-      frame->problem = frame->path + ": " + std::to_string(points) + " points do not show a body";
+      frame->problem = frame->path + ": " + std::to_string(points) + " points are too few for a body";
       return frame;
     }
     if (!decision_) {
@@ -211,7 +211,7 @@ class ScannedCharacter final : public AnimatedSource {
     set_clips(character_, clip_);
     set_decision(decision_.sentence, decision_.to_file());
     if (!options.quiet)
-      log::info(options.path + ": its surface is looked at as a scan, " + in_words(fps()) + ", " +
+      log::info(options.path + ": its surface is sampled as a scan, " + in_words(fps()) + ", " +
                 decision_.sentence);
   }
 
@@ -267,8 +267,7 @@ void check_skeletal_options(const SourceOptions& options) {
 }
 
 std::unique_ptr<Source> as_scan(Character character, const SourceOptions& options) {
-  US_CHECK(character.vertex_count() > 0, options.path,
-           ": holds no surface that could be looked at as a scan");
+  US_CHECK(character.vertex_count() > 0, options.path, ": has no surface to sample as a scan");
   const int clip = chosen_clip(character, options.clip);
   const ClipTimes times = clip_times(character, clip, options.fps);
   return std::make_unique<ScannedCharacter>(std::move(character), clip, times, options);

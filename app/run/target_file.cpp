@@ -59,7 +59,7 @@ std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options) {
   auto standing = std::make_shared<PreparedCharacter>(said_of(
       options.path, [&] { return load_character(std::move(character), character_options(options)); }));
   US_CHECK(options.rig != "theirs" || standing->rigged, options.path,
-           ": has no skeleton of its own that can be driven, ", standing->map.count(),
+           ": has no skeleton of its own that can be driven: ", standing->map.count(),
            " of 22 joints have a bone");
   return standing;
 }

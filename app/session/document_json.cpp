@@ -55,7 +55,7 @@ void check_rows(const WeightRows& edit, const std::string& where) {
            kJointCount, " joints");
   const bool ascend =
       std::adjacent_find(vertex.begin(), vertex.end(), std::greater_equal<>()) == vertex.end();
-  US_CHECK(ascend && (vertex.empty() || vertex[0] >= 0), where, ".vertices must ascend from 0 on");
+  US_CHECK(ascend && (vertex.empty() || vertex[0] >= 0), where, ".vertices must ascend from 0");
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const auto row = rows.row(i);  // comparisons that are false for NaN, too
     US_CHECK(row.minCoeff() >= 0 && std::abs(row.sum() - 1) < 1e-3f, where, ".rows[", i,

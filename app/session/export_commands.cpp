@@ -17,8 +17,8 @@ void run_export(Call& c) {
   const ExportChoice choice = export_choice(path, {c.arguments.begin() + 2, c.arguments.end()});
   for (const std::string& name : choice.takes) takes.push_back(take_called(c.document, name));
   const ExportFormat& format = *choice.format;
-  US_CHECK(takes.size() == 1 || format.is_character, path, ": ", format.label,
-           " holds one motion, these are ", takes.size());
+  US_CHECK(takes.size() == 1 || format.is_character, path, ": ", format.label, " holds one motion, not ",
+           takes.size());
   const auto input = std::make_shared<ExportInput>(export_input(c.session, takes, choice));
   check_export(path, format);
   const auto cost = std::make_shared<ExportCost>();

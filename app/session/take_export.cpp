@@ -33,7 +33,7 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
   else if (key == "take")
     out.takes.push_back(value);
   else
-    throw Error("an export knows no option '" + key + "'");
+    throw Error("there is no export option '" + key + "'");
 }
 
 /// Of the clip: what the source is called.
@@ -81,7 +81,7 @@ size_t take_called(const Document& document, const std::string& name, int first)
     if (takes[k].name == name) named.push_back(k);
     all += (k > 0 ? ", " : "") + std::to_string(static_cast<int>(k) + first) + " " + takes[k].name;
   }
-  US_CHECK(named.size() <= 1, "several takes are called '", name, "': say its number, of ", all);
+  US_CHECK(named.size() <= 1, "several takes are called '", name, "': give its number, of ", all);
   if (!named.empty()) return named[0];
   for (size_t k = 0; k < takes.size(); ++k)
     if (std::to_string(static_cast<int>(k) + first) == name) return k;
@@ -102,7 +102,7 @@ std::vector<size_t> takes_of_one_body(const Document& document, size_t take) {
 
 ExportInput export_input(const Session& session, const std::vector<size_t>& takes,
                          const ExportChoice& choice) {
-  US_CHECK(!takes.empty(), "no take is to be exported");
+  US_CHECK(!takes.empty(), "no take was chosen for export");
   const Take& take = session.document.takes.at(takes[0]);
   const TakeState& state = session.takes[takes[0]];
   const std::vector<size_t> one_body = takes_of_one_body(session.document, takes[0]);

@@ -115,7 +115,7 @@ InputEvent event_of_words(const Arguments& words) {
   const std::string kind = words.empty() ? "" : words[0];
   const auto least = kLeast.find(kind);
   US_CHECK(least != kLeast.end(), "there is no event ", kind);
-  US_CHECK(words.size() >= least->second, "event ", kind, " wants ", least->second - 1, " words or more");
+  US_CHECK(words.size() >= least->second, "event ", kind, " needs ", least->second - 1, " words or more");
   InputEvent event;
   if (kind == "button") return button_of(words);
   if (kind == "key") return key_of(words);

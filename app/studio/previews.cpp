@@ -63,7 +63,7 @@ Mesh without_outliers(Mesh mesh) {
 Mesh normalized(Mesh mesh) {
   if (mesh.is_cloud()) mesh.vertices = finite_points(mesh.vertices);
   if (mesh.vertices.rows() == 0) return mesh;
-  US_CHECK(mesh.vertices.allFinite(), "has vertices that are no numbers");
+  US_CHECK(mesh.vertices.allFinite(), "has vertices that are not finite");
   mesh = without_outliers(std::move(mesh));
   const Eigen::RowVector3f low = mesh.vertices.colwise().minCoeff(),
                            high = mesh.vertices.colwise().maxCoeff();

@@ -144,7 +144,7 @@ struct Script::Player {
     if (words.empty()) return;
     for (const Row& row : rows())
       if (words[0] == row.name) {
-        US_CHECK(words.size() > row.least && words.size() <= row.most + 1, row.name, " wants ", row.least,
+        US_CHECK(words.size() > row.least && words.size() <= row.most + 1, row.name, " needs ", row.least,
                  row.least == row.most ? "" : " to " + std::to_string(row.most), " words, not ",
                  words.size() - 1);
         (this->*row.play)(words);
@@ -257,7 +257,7 @@ struct Script::Player {
     if (at == std::string::npos) return found->visible.at(0.5f, 0.5f);
     const std::string shares = name.substr(at + 1);
     const size_t comma = shares.find(',');
-    US_CHECK(comma != std::string::npos, name, ": wants two shares after the @");
+    US_CHECK(comma != std::string::npos, name, ": needs two shares after the @");
     return found->rect.at(number_of(shares.substr(0, comma)), number_of(shares.substr(comma + 1)));
   }
 
@@ -271,7 +271,7 @@ struct Script::Player {
     US_CHECK(words.size() >= used, "no place is given");
     p.at = numbers ? ImVec2(number_of(words[0]), number_of(words[1])) : place_of(words[0]);
     p.rest.assign(words.begin() + static_cast<std::ptrdiff_t>(used), words.end());
-    US_CHECK(p.rest.size() == places, "wants NAME or X Y", places ? ", and numbers" : "", "; there are ",
+    US_CHECK(p.rest.size() == places, "needs NAME or X Y", places ? ", and numbers" : "", "; there are ",
              p.rest.size(), " words more, not ", places);
     return p;
   }
@@ -319,7 +319,7 @@ struct Script::Player {
   void drag_to(const Words& words) {
     Words rest = words;
     const render::Modifiers modifiers = take_modifiers(rest);
-    US_CHECK(rest.size() == 3, "drag_to wants two names");
+    US_CHECK(rest.size() == 3, "drag_to needs two names");
     const ImVec2 from = place_of(rest[1]), to = place_of(rest[2]);
     drag_between(from, to, modifiers);
   }

@@ -157,7 +157,7 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
        "open|open_scan|open_motion|open_target|replace_target|open_document|save_as|export|csv|picture|"
        "video|compare|settings|about|keys|none"},
       [&workspace](Call& c) {
-        US_CHECK(c.arguments.size() == 1, "dialog.open wants the name of a dialog");
+        US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
         workspace.open_dialog(c.session, c.arguments[0]);
       });
   commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [](Call& c) {

@@ -46,7 +46,7 @@ std::string read_file(const std::string& path, uint64_t most) {
   struct stat about {};
   US_CHECK(::fstat(file.fd, &about) == 0, path, ": cannot be read (", std::strerror(errno), ")");
   const uint64_t size = regular_size(about, path);
-  US_CHECK(size <= most, path, ": has ", size, " bytes, at most ", most, " are expected");
+  US_CHECK(size <= most, path, ": has ", size, " bytes, more than the expected ", most);
 
   std::string bytes(size, '\0');
   size_t have = 0;

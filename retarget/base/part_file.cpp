@@ -43,9 +43,8 @@ bool replaceable(const fs::path& folder) {
 }
 
 void check_replaceable(const std::string& path, const std::string& part) {
-  US_CHECK(replaceable(path), path,
-           ": is there and holds other things than exported frames; name another folder");
-  US_CHECK(replaceable(part), part, ": is there and is no leftover of an export; it is in the way");
+  US_CHECK(replaceable(path), path, ": exists and holds more than exported frames; choose another folder");
+  US_CHECK(replaceable(part), part, ": exists but was not left by an export; remove it first");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ T parsed(std::string_view word, bool (*parse)(std::string_view, T&), const std::
          const char* what) {
   T value = 0;
   US_CHECK(!word.empty(), source, ": ends before ", what);
-  US_CHECK(parse(word, value), source, ": '", excerpt(word), "' stands where ", what, " should be");
+  US_CHECK(parse(word, value), source, ": '", excerpt(word), "' in place of ", what);
   return value;
 }
 

@@ -22,8 +22,8 @@ std::vector<int> folded_joints(const NpyArray& tree, const std::string& path) {
     const int64_t parent = parents(0, j);
     if (j < kJointCount) {
       owner[j] = j;
-      US_CHECK(j == 0 || parent == kParents[j], path, ": joint ", j, " hangs on joint ", parent,
-               ", in SMPL's order it hangs on ", kParents[j]);
+      US_CHECK(j == 0 || parent == kParents[j], path, ": joint ", j, " has the parent ", parent,
+               ", in SMPL's order it is ", kParents[j]);
       continue;
     }
     US_CHECK(parent >= 0 && parent < j, path, ": joint ", j, " comes before its parent");
@@ -45,7 +45,7 @@ RowMatrix folded_weights(const NpyArray& array, const std::vector<int>& owner, i
 Faces faces_from(const NpyArray& array, int64_t vertices, const std::string& path) {
   const IntegerMatrix numbers = array.integers(3, path + ": f");
   US_CHECK((numbers.array() >= 0 && numbers.array() < vertices).all(), path,
-           ": a face names a vertex that is not there");
+           ": a face names a vertex that does not exist");
   return numbers.cast<int>();
 }
 
@@ -122,7 +122,7 @@ AmassArrays read_amass_arrays(const std::string& path) {
            arrays.trans.rows(), " root positions");
   for (const char* key : {"mocap_framerate", "mocap_frame_rate"})
     if (npz.count(key) && npz.at(key).size() == 1) arrays.fps = npz.at(key).values[0];
-  US_CHECK(arrays.fps > 0 && arrays.fps < 10000, path, ": the frame rate ", arrays.fps, " cannot be");
+  US_CHECK(arrays.fps > 0 && arrays.fps < 10000, path, ": the frame rate ", arrays.fps, " is not possible");
   if (const auto it = npz.find("frame_flags"); it != npz.end() && it->second.size() == frames)
     arrays.flags.assign(it->second.values.begin(), it->second.values.end());
   return arrays;

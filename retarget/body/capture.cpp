@@ -155,7 +155,7 @@ Mesh simulated_capture(const Points& vertices, const Faces& faces, int frame, co
   US_CHECK(faces.rows() > 0 && vertices.rows() > 0, "a mesh without faces cannot be captured");
   US_CHECK(options.views >= 1 && options.points >= 1 && options.noise >= 0 && options.outliers >= 0 &&
                options.floor >= 0,
-           "the capture's options make no sense");
+           "the capture's options are out of range");
   US_CHECK(vertices.allFinite(), "the body to capture has numbers that are not finite");
   Rng rng(options.seed * 1000003u + static_cast<uint64_t>(frame) * 7919u + 5);
   const Vec3 low = vertices.colwise().minCoeff(), high = vertices.colwise().maxCoeff(),

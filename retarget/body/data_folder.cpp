@@ -54,7 +54,7 @@ DataSplit read_split(const std::string& folder, const std::string& name) {
   try {
     return split_of(folder, all, name);
   } catch (const json::exception& wrong) {
-    throw Error(path.string() + ": the split \"" + name + "\" is not as it should be: " + wrong.what());
+    throw Error(path.string() + ": the split \"" + name + "\" cannot be read: " + wrong.what());
   }
 }
 
@@ -71,9 +71,9 @@ ShapedBody read_dressed_body(const std::string& path) {
   US_CHECK(owner.rows() == count && weight.rows() == count, path, ": weights do not fit ", count,
            " vertices");
   const IntegerMatrix corners = require(npz, "faces", path).integers(3, path);
-  US_CHECK(all_below(corners, count), path, ": a face names a vertex that is not there");
+  US_CHECK(all_below(corners, count), path, ": a face names a vertex that does not exist");
   body.faces = corners.cast<int>();
-  US_CHECK(all_below(owner, kJointCount), path, ": a weight names a joint that is not there");
+  US_CHECK(all_below(owner, kJointCount), path, ": a weight names a joint that does not exist");
   body.weights = RowMatrix::Zero(count, kJointCount);
   for (Eigen::Index v = 0; v < count; ++v)
     for (int k = 0; k < 4; ++k) body.weights(v, owner(v, k)) += weight(v, k);

@@ -119,7 +119,7 @@ ExactMotion read_exact_motion(const std::string& path, int start, int frames) {
     motion.local.push_back(local);
     motion.root.push_back(arrays.trans.row(t).transpose().cast<double>());
   }
-  US_CHECK(!motion.local.empty(), path, ": is over before frame ", start);
+  US_CHECK(!motion.local.empty(), path, ": ends before frame ", start);
   turn_y_up(motion);
   return motion;
 }

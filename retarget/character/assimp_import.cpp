@@ -76,7 +76,7 @@ void AssimpConverter::add_skin(const aiMesh& mesh, CharacterPart& part) {
     const aiBone& bone = *mesh.mBones[b];
     const auto node = node_by_name_.find(bone.mName.C_Str());
     US_CHECK(node != node_by_name_.end(), path_, ": a skin names the bone '", excerpt(bone.mName.C_Str()),
-             "', which is not there");
+             "', which does not exist");
     auto joint = std::find(skin.joints.begin(), skin.joints.end(), node->second);
     if (joint == skin.joints.end()) {
       joint = skin.joints.insert(skin.joints.end(), node->second);
@@ -84,7 +84,7 @@ void AssimpConverter::add_skin(const aiMesh& mesh, CharacterPart& part) {
     }
     for (unsigned w = 0; w < bone.mNumWeights; ++w) {
       const aiVertexWeight& weight = bone.mWeights[w];
-      US_CHECK(weight.mVertexId < mesh.mNumVertices, path_, ": a skin names a vertex that is not there");
+      US_CHECK(weight.mVertexId < mesh.mNumVertices, path_, ": a skin names a vertex that does not exist");
       if (weight.mWeight > 0)
         influences[weight.mVertexId].emplace_back(weight.mWeight,
                                                   static_cast<int>(joint - skin.joints.begin()));

@@ -390,7 +390,7 @@ BoneChoices parse_bone_choices(std::string_view text, const std::string& path) {
   US_CHECK(json.is_object(), path, R"(: is no map of bones; it looks like {"left_wrist": "Hand.L", ...})");
   BoneChoices choices;
   for (const auto& [joint, bone] : json.items()) {
-    US_CHECK(bone.is_string(), path, ": the bone of '", excerpt(joint), "' is no text");
+    US_CHECK(bone.is_string(), path, ": the bone of '", excerpt(joint), "' is not a string");
     choices[joint] = bone.get<std::string>();
   }
   return choices;

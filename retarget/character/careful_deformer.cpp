@@ -99,7 +99,7 @@ SafeBinding safe_binding(const Mesh& mesh, const Joints& joints, const RowMatrix
 
 CarefulDeformer::CarefulDeformer(Faces faces, std::shared_ptr<Deformer> inner)
     : faces_(std::move(faces)), inner_(std::move(inner)) {
-  US_CHECK(inner_, "a careful deformer wants another one");
+  US_CHECK(inner_, "a careful deformer needs an inner one");
 }
 
 void CarefulDeformer::bind(const Points& rest, const Joints& rest_joints) {

@@ -130,7 +130,7 @@ void check_part(const Character& character, const CharacterPart& part, const std
   US_CHECK(part.node >= 0 && part.node < ssize(character.nodes), path, ": the part '", part.name,
            "' is on no node");
   US_CHECK(part.skin < ssize(character.skins) && part.material < ssize(character.materials), path,
-           ": the part '", part.name, "' names a skin or material that is not there");
+           ": the part '", part.name, "' names a skin or material that does not exist");
   US_CHECK(part.vertices.allFinite(), path, ": a vertex of the part '", part.name, "' is not finite");
   US_CHECK(fits(part.normals.rows()) && fits(part.tangents.rows()) && fits(part.colors.rows()), path,
            ": the part '", part.name, "' has more or fewer normals, tangents or colours than vertices");
@@ -141,7 +141,7 @@ void check_part(const Character& character, const CharacterPart& part, const std
     US_CHECK(shape.rows() == count && shape.allFinite(), path, ": a morph target of the part '", part.name,
              "' does not fit its vertices");
   US_CHECK(part.faces.rows() == 0 || (part.faces.minCoeff() >= 0 && part.faces.maxCoeff() < count), path,
-           ": a face of the part '", part.name, "' names a vertex that is not there");
+           ": a face of the part '", part.name, "' names a vertex that does not exist");
   if (part.skin < 0) return;
   const int bones = character.skins[part.skin].joints.size();
   US_CHECK(part.joints.rows() == count && part.weights.rows() == count &&
@@ -221,7 +221,7 @@ void check_character(const Character& character, const std::string& path) {
              skin.name, "' has no joints, or another number of bind matrices");
     for (const int joint : skin.joints)
       US_CHECK(joint >= 0 && joint < ssize(character.nodes), path, ": the skin '", skin.name,
-               "' names a node that is not there");
+               "' names a node that does not exist");
     for (const Mat4& matrix : skin.inverse_bind)
       US_CHECK(matrix.allFinite(), path, ": a bind matrix of the skin '", skin.name, "' is not finite");
   }

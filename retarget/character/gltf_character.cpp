@@ -61,7 +61,7 @@ void CharacterReader::read_nodes() {
   std::vector<int> parents(count, -1);
   for (size_t n = 0; n < count; ++n)
     for (const int c : model_.nodes[n].children) {
-      US_CHECK(static_cast<size_t>(c) < count, path_, ": node ", n, " has a child that is not there");
+      US_CHECK(static_cast<size_t>(c) < count, path_, ": node ", n, " has a child that does not exist");
       US_CHECK(parents[c] < 0, path_, ": node ", c, " is a child of two nodes");
       parents[c] = static_cast<int>(n);
     }
@@ -226,7 +226,7 @@ void CharacterReader::read_images() {
     }
     image.mime = picture_type(image.bytes);
     US_CHECK(!image.mime.empty(), path_, ": ", what, image.name.empty() ? "" : " '" + image.name + "'",
-             " is no picture (PNG, JPEG, WebP or KTX2)");
+             " is not a picture (PNG, JPEG, WebP or KTX2)");
     out_.images.push_back(std::move(image));
   }
 }
@@ -256,7 +256,7 @@ void CharacterReader::keep_extensions(const Json& value, std::set<std::string>& 
 void CharacterReader::keep_texts(const char* name, std::vector<std::string>& out) {
   std::set<std::string> extensions(out_.extensions.begin(), out_.extensions.end());
   for (const Json& object : file_.kept(name)) {
-    US_CHECK(object.is_object(), path_, ": number ", out.size(), " of its ", name, " is no object");
+    US_CHECK(object.is_object(), path_, ": number ", out.size(), " of its ", name, " is not an object");
     if (std::string_view(name) == "textures") {
       check_index(object, "source", out_.images.size(), path_);
       check_index(object, "sampler", file_.kept("samplers").size(), path_);

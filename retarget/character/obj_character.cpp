@@ -79,7 +79,7 @@ void ObjReader::numbers(std::vector<float>& to, size_t least, size_t keep) {
   for (size_t i = 1; i <= keep; ++i) {
     double value = 0;
     US_CHECK(i >= words_.size() || parse_number(words_[i], value), path_, ": line ", number_, ": '",
-             excerpt(words_[i]), "' is no number");
+             excerpt(words_[i]), "' is not a number");
     to.push_back(narrow(value));
   }
 }
@@ -88,7 +88,7 @@ int64_t ObjReader::index(std::string_view text, size_t count) const {
   if (text.empty()) return -1;
   int64_t value = 0;
   US_CHECK(parse_integer(text, value), path_, ": line ", number_, ": '", excerpt(text),
-           "' is no corner of a face");
+           "' is not a corner of a face");
   const auto have = static_cast<int64_t>(count);
   const int64_t at = value > 0 ? value - 1 : have + value;
   US_CHECK(value != 0 && at >= 0 && at < have, path_, ": line ", number_, ": a face names number ", value,
@@ -176,7 +176,7 @@ int ObjReader::texture(const std::string& name, Character& out) {
   const bool is_picture = add_picture(
       *file, picture_or_white([&] { return read_file(*file); }, path_ + ": the picture " + excerpt(name)),
       out);
-  US_CHECK(is_picture, *file, ": is no picture (PNG, JPEG, WebP or KTX2)");
+  US_CHECK(is_picture, *file, ": is not a picture (PNG, JPEG, WebP or KTX2)");
   return entry->second;
 }
 

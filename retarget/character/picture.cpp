@@ -106,7 +106,7 @@ std::string picture_or_white(const std::function<std::string()>& read, const std
     return read();
   } catch (const Error& error) {
     if (std::string(error.what()).find("there is no such file") == std::string::npos) throw;
-    log::warn(what + " is missing; a white one stands in for it");
+    log::warn(what + " is missing and replaced by a white one");
     return {reinterpret_cast<const char*>(kWhite), sizeof kWhite};
   }
 }

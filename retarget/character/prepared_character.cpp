@@ -188,9 +188,9 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   c.surface = merged_surface(c.character, file);
   const std::string seen = c.rigged ? up_of_rig(c.map, c.bind) : "";
   if (seen == (import.up[0] == '-' ? import.up.substr(1) : "-" + import.up)) {
-    US_CHECK(options.turn_if_lying, c.character.called(), ": is head down with ", import.up, " up, ", seen,
+    US_CHECK(options.turn_if_lying, c.character.called(), ": is upside down with ", import.up, " up, ", seen,
              " up (--target-up) turns it over");
-    c.notes.push_back("it is head down with " + import.up + " up, so " + seen + " is taken as up");
+    c.notes.push_back("it is upside down with " + import.up + " up, so " + seen + " is taken as up");
     import.up = seen;
   } else if (import.up == "y" && lies_down(stance_of(c.surface.mesh))) {
     if (options.turn_if_lying) import.up = up_of_lying(c, import);
@@ -336,14 +336,14 @@ void turn_over(PreparedCharacter& c, const CharacterOptions& options) {
   const float lift = options.floor ? -2 * *options.floor : -vertices.col(1).minCoeff();
   vertices.col(1).array() += lift;
   c.to_world.t.y() += lift;
-  c.notes.push_back("it is head down, so it is turned over");
+  c.notes.push_back("it is upside down, so it is turned over");
 }
 
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
   SideViews seen = seen_from_sides(c.surface.mesh, any_pose);
   if (stands_on_head(seen)) {
-    US_CHECK(options.turn_if_lying || options.up == "auto", c.character.called(), ": is head down with ",
+    US_CHECK(options.turn_if_lying || options.up == "auto", c.character.called(), ": is upside down with ",
              options.up, " up, another up axis (--target-up) turns it over");
     turn_over(c, options);
     seen = seen_from_sides(c.surface.mesh, any_pose);
@@ -406,7 +406,7 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
   const std::string why_not = refusal(stance), why_implausible = doubt(stance);
   US_CHECK(why_not.empty() || c.rigged, c.character.called(), ": does not look like a person: ", why_not);
   if (!(c.rigged ? why_not : why_implausible).empty())
-    c.target.warnings.push_back("the target may be no person: " + why_implausible);
+    c.target.warnings.push_back("the target may not be a person: " + why_implausible);
   if (c.rigged)
     turn_rig_forward(c, options);
   else if (options.yaw_deg && *options.yaw_deg != 0)
@@ -422,8 +422,7 @@ void find_t_pose(PreparedCharacter& c, SkeletonExtractor* any_pose, SkeletonExtr
     SkeletonExtractor* const network = t_pose != nullptr ? t_pose : any_pose;
     if (!options.own_joints && network != nullptr) c.target = prepare_target(c.target.mesh, *network);
   } else {
-    US_CHECK(any_pose != nullptr, c.character.name,
-             ": has no rig that is known, and no network may look at it");
+    US_CHECK(any_pose != nullptr, c.character.name, ": has no known rig, and the networks may not be used");
     find_in_shape(c, *any_pose, t_pose, options);
   }
   c.target.warnings.insert(c.target.warnings.end(), doubts.begin(), doubts.end());
@@ -498,7 +497,7 @@ void RigDeformer::bind(const Points& rest, const Joints& rest_joints) {
 std::shared_ptr<Deformer> RigDeformer::with_weights(RowMatrix weights) const {
   US_CHECK(weights.rows() == weights_.rows() && weights.cols() == kJointCount && weights.allFinite() &&
                weights.minCoeff() >= 0 && weights.rowwise().sum().minCoeff() > 1e-6f,
-           "skin weights must fit the target and not be negative, and every vertex wants some");
+           "skin weights must fit the target and not be negative, and every vertex needs some");
   auto other = std::make_shared<RigDeformer>(*this);
   other->weights_ = weights.array().colwise() / weights.rowwise().sum().array();
   if (inner_) other->inner_ = inner_->with_weights(other->weights_);

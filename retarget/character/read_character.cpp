@@ -82,7 +82,7 @@ Character answer(const std::string& made, const std::string& path) {
   try {
     return parse_gltf_character(read_file(made), made);
   } catch (const Error&) {
-    throw Error(path + ": the reader of this format made nothing of it that can be used");
+    throw Error(path + ": the reader of this format found nothing usable in it");
   }
 }
 

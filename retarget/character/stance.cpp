@@ -98,7 +98,7 @@ std::string refusal(const Stance& s) {
   if (lies_down(s)) return "it lies down: " + tall + centimetres(s.length, s.height) + " long";
   if (s.feet > 0.8f && s.length > 1.1f)
     return tall + "its feet are " + centimetres(s.feet, s.height) +
-           " apart, as those of an animal or a table";
+           " apart, like those of an animal or a table";
   return s.length > 1.8f ? tall + centimetres(s.length, s.height) + " long" : "";
 }
 

@@ -38,7 +38,7 @@ SideViews seen_from_sides(const Mesh& mesh, SkeletonExtractor& extractor);
 /// body is its own mirror image.
 float body_heading(const Mesh& mesh, const SideViews& seen);
 
-/// Whether a body without bones is head down: the head is seen below the pelvis and the ankles above it.
+/// Whether a body without bones is upside down: the head is seen below the pelvis and the ankles above it.
 bool stands_on_head(const SideViews& seen);
 
 /// The heading near `guess` about which points are most symmetric; the guess where none stands out.

@@ -64,7 +64,7 @@ void check_version(const Json& asset, const std::string& path) {
 
 // An index or a size as tinygltf takes it, which casts what it reads to int.
 void bound_number(Json& value, const std::string& key, const std::string& path) {
-  US_CHECK(value.is_number(), path, ": '", key, "' is no list of numbers");
+  US_CHECK(value.is_number(), path, ": '", key, "' is not a list of numbers");
   const int64_t number = value.is_number_float() ? whole(value.get<double>()) : value.get<int64_t>();
   const bool is_size = key == "byteOffset" || key == "byteLength" || key == "count";
   US_CHECK(number >= 0 && (is_size || number <= INT_MAX), path, ": '", key, "' is negative or too large");
@@ -79,7 +79,7 @@ bool keep_picture(tinygltf::Image* image, int, std::string*, std::string*, int, 
 
 std::vector<float> floats(const std::vector<double>& values, size_t count, const char* name,
                           const std::string& path) {
-  US_CHECK(values.empty() || values.size() == count, path, ": '", name, "' is no list of ", count,
+  US_CHECK(values.empty() || values.size() == count, path, ": '", name, "' is not a list of ", count,
            " numbers");
   std::vector<float> out;
   for (const double value : values) out.push_back(narrow(value));
@@ -108,7 +108,7 @@ GltfFile::GltfFile(std::string_view bytes, const std::string& path, Use use)
     root = lean = nullptr;
     fill_model(text);
   } catch (const Json::exception&) {
-    throw Error(path_ + ": something in its JSON is of another type than glTF wants");
+    throw Error(path_ + ": something in its JSON is of another type than glTF requires");
   }
 }
 
@@ -165,7 +165,7 @@ void GltfFile::bound_buffers(Json& root) {
   for (auto& buffer : root["buffers"]) {
     const std::string number = std::to_string(buffer_uris_.size());
     US_CHECK(!buffer.contains("uri") || buffer["uri"].is_string(), path_, ": the uri of buffer ", number,
-             " is no text");
+             " is not a string");
     buffer_uris_.push_back(buffer.value("uri", ""));
     buffer_sizes_.push_back(buffer.value("byteLength", uint64_t{0}));
     buffer["uri"] = kBuffer + number;
@@ -177,7 +177,7 @@ void GltfFile::bound_buffers(Json& root) {
     US_CHECK(buffer < buffer_sizes_.size(), path_, ": names number ", buffer, " of its ",
              buffer_sizes_.size(), " buffers");
     US_CHECK(offset <= buffer_sizes_[buffer] && length <= buffer_sizes_[buffer] - offset, path_,
-             ": buffer view ", index, " reaches behind its buffer");
+             ": buffer view ", index, " reaches beyond its buffer");
     if (length == 0) view["byteOffset"] = uint64_t{0};  // tinygltf takes the address of the first byte
     ++index;
   }
@@ -199,7 +199,7 @@ void GltfFile::fill_model(const std::string& text) {
                                  static_cast<unsigned int>(text.size()), ""))
     return;
   US_CHECK(!has_draco_, path_, ": is compressed with Draco, which is not read; export it without");
-  throw Error(path_ + ": something that glTF wants is missing or of another type: " +
+  throw Error(path_ + ": something that glTF requires is missing or of another type: " +
               excerpt(problem.substr(0, problem.find('\n'))));
 }
 
@@ -260,7 +260,7 @@ std::string GltfFile::uri_bytes(const std::string& uri, const std::string& what)
     return {bytes.begin(), bytes.end()};
   }
   const std::string name = decode_percent(uri);
-  US_CHECK(name.find("://") == name.npos, path_, ": ", what, " is on the net (", excerpt(name),
+  US_CHECK(name.find("://") == name.npos, path_, ": ", what, " is on the network (", excerpt(name),
            "), only files beside it are read");
   // A file that somebody sent must not be able to show other files of this machine.
   const std::filesystem::path inside = std::filesystem::path(name).lexically_normal();
@@ -292,7 +292,7 @@ void GltfFile::read(int view, uint64_t offset, NumberType type, bool normalized,
   const uint64_t stride = apart == 0 ? width : apart, count = static_cast<uint64_t>(out.count);
   US_CHECK(count == 0 ||
                (offset <= size && width <= size - offset && (count - 1) <= (size - offset - width) / stride),
-           path_, ": an accessor of ", count, " elements reaches behind its buffer view");
+           path_, ": an accessor of ", count, " elements reaches beyond its buffer view");
   spend(count * static_cast<uint64_t>(out.parts) * sizeof(float));
   out.values.resize(count * static_cast<uint64_t>(out.parts));
   const float scale = normalized ? normalizer(type) : 1.0f;
@@ -365,7 +365,7 @@ Faces GltfFile::faces(const tinygltf::Primitive& primitive, int64_t count) {
   if (primitive.mode == TINYGLTF_MODE_POINTS) return Faces(0, 3);
   if (primitive.indices >= 0) {
     const GltfAccessor indices = accessor(primitive.indices);
-    US_CHECK(indices.parts == 1, path_, ": the indices of a primitive are no single numbers");
+    US_CHECK(indices.parts == 1, path_, ": the indices of a primitive are not single numbers");
     for (const float index : indices.values) {
       US_CHECK(index >= 0 && index < static_cast<float>(count), path_, ": a face names vertex ", index,
                " of a primitive of ", count);

@@ -164,7 +164,7 @@ std::string short_number(float value) {
 std::string decide_odd_size(float height, float extent, ImportDecision& decision) {
   const bool has_size = height > 1e-20f && height < 1e30f;
   const bool metric = !has_size || (extent >= 0.5f && extent < 5.0f);
-  const std::string what = "a height of " + short_number(height) + " is no person's in any unit";
+  const std::string what = "a height of " + short_number(height) + " fits no person in any unit";
   decision.units = metric ? "m" : "fit";
   decision.scale = metric ? 1.0f : kUsualHeight / height;
   log::warn(what + (metric ? ", it is taken as metres" : ", it is made 1.7 m"));
@@ -183,7 +183,7 @@ std::string decide_units(float height, float extent, const std::string& forced, 
   decision.units = unit->name;
   decision.scale = unit->metres;
   return std::string("units: ") + unit->plural +
-         (guess ? " (from the height " + short_number(height) + ")" : ", as told");
+         (guess ? " (from the height " + short_number(height) + ")" : " (given)");
 }
 
 }  // namespace
@@ -230,7 +230,7 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   const float measured = low * decision.scale;
   // Within 2 cm the file's own zero is the better floor: the lowest points are a noisy measure of it.
   decision.floor = forced.floor ? *forced.floor : std::abs(measured) <= 0.02f ? 0.0f : measured;
-  decision.sentence += ", up: " + decision.up + (guess ? "" : ", as told") +
+  decision.sentence += ", up: " + decision.up + (guess ? "" : " (given)") +
                        (up.floor.seen ? " (from the floor)" : "") + ", floor at " +
                        printed("%.2f", static_cast<double>(decision.floor)) + " m";
   if (forced.yaw_deg != 0) decision.sentence += ", turned by " + short_number(forced.yaw_deg) + " degrees";

@@ -12,16 +12,13 @@ Mesh parse_mesh(std::string_view bytes, const std::string& path) {
   US_CHECK(!bytes.empty(), path, ": is empty");
   const FileFormat* const content = format_of_content(bytes, kScanFrame);
   const FileFormat* const suffix = format_of_suffix(path, kScanFrame);
-  US_CHECK(content || suffix, path, ": is no mesh or point cloud that is known (", format_names(kScanFrame),
-           ")");
+  US_CHECK(content || suffix, path, ": is not a known mesh or point cloud (", format_names(kScanFrame), ")");
   if (content && suffix && content != suffix)
-    log::warn(path + ": is " + content->name + " in spite of its suffix, and is read as that");
-  US_CHECK(content || !suffix->always_recognised, path, ": is not the ", suffix->name,
-           " file that its suffix says");
+    log::warn(path + ": is " + content->name + " despite its suffix, and is read as such");
+  US_CHECK(content || !suffix->always_recognised, path, ": is not ", suffix->name, " despite its suffix");
   const FileFormat& format = content ? *content : *suffix;
   Mesh mesh = format.parse(bytes, path);
-  US_CHECK(content || mesh.vertices.rows() > 0, path, ": is not the ", format.name,
-           " file that its suffix says");
+  US_CHECK(content || mesh.vertices.rows() > 0, path, ": is not ", format.name, " despite its suffix");
   return mesh;
 }
 

@@ -11,7 +11,7 @@ namespace understudy {
 namespace {
 
 void check_rate(double fps, const std::string& path) {
-  US_CHECK(fps > 0 && std::isfinite(fps), path, ": ", fps, " frames a second cannot be");
+  US_CHECK(fps > 0 && std::isfinite(fps), path, ": ", fps, " frames a second are not possible");
 }
 
 void check_pose(const Pose& pose, int64_t frame, const std::string& path) {

@@ -25,7 +25,7 @@ class ObjParser {
   float value(size_t word) const {
     double value = 0;
     US_CHECK(parse_number(words_[word], value), source_, ": line ", number_, ": '", excerpt(words_[word]),
-             "' is no number");
+             "' is not a number");
     return narrow(value);
   }
 
@@ -45,9 +45,9 @@ class ObjParser {
     for (size_t i = 1; i < words_.size(); ++i) {
       int64_t index = 0;
       US_CHECK(parse_integer(words_[i].substr(0, words_[i].find('/')), index), source_, ": line ", number_,
-               ": '", excerpt(words_[i]), "' is no corner of a face");
+               ": '", excerpt(words_[i]), "' is not a corner of a face");
       US_CHECK(index != 0 && index >= -vertices, source_, ": line ", number_, ": a face names vertex ", index,
-               ", which is not there");
+               ", which does not exist");
       corners_.push_back(index > 0 ? index - 1 : vertices + index);
     }
     faces_.add(corners_.data(), corners_.size());

@@ -75,7 +75,7 @@ PlyHeader read_ply_header(std::string_view bytes, const std::string& source) {
                ": an element line of the header has no count");
       header.elements.push_back({lower_case(words[1]), rows, {}});
     } else if (words[0] == "property") {
-      US_CHECK(!header.elements.empty(), source, ": a property stands before the first element");
+      US_CHECK(!header.elements.empty(), source, ": a property comes before the first element");
       header.elements.back().properties.push_back(read_property(words, source));
     }
   }

@@ -38,9 +38,9 @@ class PtsParser {
     const std::string_view line = text_.line();
     split_words(line, "", words_);
     US_CHECK(words_.size() == 1 && parse_integer(words_[0], count) && count >= 0, source_, ": '",
-             excerpt(line), "' is no count of points");
+             excerpt(line), "' is not a count of points");
     US_CHECK(count <= static_cast<int64_t>(text_.left()) / kShortestPoint + 1, source_, ": announces ", count,
-             " points, which it is too short for");
+             " points, but is too short for them");
     for (int64_t i = 0; i < count; ++i) {
       US_CHECK(!text_.at_end(), source_, ": ends before point ", i + 1, " of ", count);
       point(text_.line());
@@ -51,10 +51,10 @@ class PtsParser {
   void point(std::string_view line) {
     split_words(line, "", words_);
     US_CHECK(words_.size() >= 3 && words_.size() <= 7 && words_.size() != 5, source_, ": '", excerpt(line),
-             "' is no point");
+             "' is not a point");
     std::array<double, 7> values{};
     for (size_t i = 0; i < words_.size(); ++i)
-      US_CHECK(parse_number(words_[i], values[i]), source_, ": '", excerpt(words_[i]), "' is no number");
+      US_CHECK(parse_number(words_[i], values[i]), source_, ": '", excerpt(words_[i]), "' is not a number");
     for (size_t i = 0; i < 3; ++i) points_.push_back(narrow(values[i]));
     if (words_.size() < 6) return;
     for (size_t i = words_.size() - 3; i < words_.size(); ++i) colours_.push_back(narrow(values[i]));

@@ -113,7 +113,7 @@ std::string_view dictionary_value(std::string_view text, std::string_view key, c
 NpyHeader read_npy_header(ByteStream& stream, const std::string& source) {
   std::string start(10, '\0');
   US_CHECK(stream.read(start.data(), 10) == 10 && starts_with(start, "\x93NUMPY"), source,
-           ": is not the NumPy array that it should be");
+           ": is not a NumPy array");
   uint64_t length = load<uint16_t>(start.data() + 8, false);
   if (start[6] > 1) {  // version 2: four bytes
     char more[2];

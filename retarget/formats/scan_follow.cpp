@@ -42,7 +42,7 @@ class FollowedFolder : public ScanSource::Frames {
     return {};
   }
   std::optional<int64_t> count() const override { return {}; }
-  void seek(int64_t) override { throw Error("frames that are still being written cannot be gone back to"); }
+  void seek(int64_t) override { throw Error("frames that are still being written cannot be read again"); }
 
  private:
   // One look at the folder: a frame that is complete, or none yet, or the end.

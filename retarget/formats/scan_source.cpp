@@ -220,9 +220,9 @@ std::vector<std::string> frame_files(const std::string& folder, const std::vecto
   for (const auto& [format, files] : kinds) {
     if (format == best->first) continue;
     US_CHECK(files.size() < best->second.size(), folder, ": holds ", files.size(), " frames each of ",
-             best->first->name, " and ", format->name, ", so which to take must be said by a list");
+             best->first->name, " and ", format->name, "; choose between them with a list of files");
     log::warn_once(folder + ": " + std::to_string(files.size()) + " " + format->name +
-                   " files are left out, most frames are " + best->first->name);
+                   " files are left out, because most frames are " + best->first->name);
   }
   std::sort(best->second.begin(), best->second.end(), natural_less);
   return best->second;

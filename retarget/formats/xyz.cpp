@@ -45,7 +45,8 @@ class XyzParser {
     if (words_.empty()) return;
     const bool comment = words_[0][0] == '#' || words_[0].substr(0, 2) == "//";
     if (points_.empty() && (comment || !leading_numbers())) {
-      US_CHECK(comment || headings_++ < 2, source_, ": line ", number, ": '", excerpt(text), "' is no point");
+      US_CHECK(comment || headings_++ < 2, source_, ": line ", number, ": '", excerpt(text),
+               "' is not a point");
       if (const auto columns = named_columns(words_)) columns_ = *columns;
       return;
     }
@@ -79,7 +80,7 @@ class XyzParser {
     US_CHECK(static_cast<size_t>(column) < words_.size(), source_, ": line ", number, ": fewer than ",
              column + 1, " numbers");
     US_CHECK(parse_number(words_[column], value), source_, ": line ", number, ": '", excerpt(words_[column]),
-             "' is no number");
+             "' is not a number");
     return narrow(value);
   }
 

@@ -80,7 +80,7 @@ Points sample_points(const Mesh& mesh, int count, Rng& rng) {
 }
 
 std::vector<int> farthest_points(const Points& points, int count, int first) {
-  US_CHECK(count <= points.rows(), "farthest point sampling wants ", count, " of ", points.rows(), " points");
+  US_CHECK(count <= points.rows(), "farthest point sampling needs ", count, " of ", points.rows(), " points");
   // Coordinates apart: the compiler then turns the inner loop into vector instructions.
   const Eigen::ArrayXf x = points.col(0), y = points.col(1), z = points.col(2);
   Eigen::ArrayXf distance = Eigen::ArrayXf::Constant(points.rows(), std::numeric_limits<float>::max());

@@ -87,7 +87,7 @@ double BentVolume::volume(const Piece& piece, const Points& vertices) {
 }
 
 BentVolume::BentVolume(const Points& rest, const Faces& faces, const Joints& joints) {
-  US_CHECK(faces.rows() > 0, "volume wants a surface, not a cloud of points");
+  US_CHECK(faces.rows() > 0, "volume needs a surface, not a point cloud");
   for (size_t b = 0; b < kBends.size(); ++b) {
     pieces_[b].faces = faces_about(rest, faces, joints, kBends[b]);
     pieces_[b].cuts = cuts_of(pieces_[b].faces);

@@ -76,7 +76,7 @@ float squared_to_box(const Vec3& p, const Eigen::AlignedBox3f& box) {
 }  // namespace
 
 HandContact::HandContact(const Points& rest, const Faces& faces, const Joints& rest_joints) {
-  US_CHECK(faces.rows() > 0, "what hands touch wants a surface, not a point cloud");
+  US_CHECK(faces.rows() > 0, "hand contacts need a surface, not a point cloud");
   const std::vector<Piece> pieces = pieces_of(rest_joints);
   const size_t count = rest.rows();
   std::vector<Label> labels(count);

@@ -28,7 +28,7 @@ double mean_vertex_error(const Points& p, const Points& q) {
 
 double aligned_vertex_error(const Points& p, const Points& q) {
   check_same_size(p, q);
-  US_CHECK(q.rows() >= 3, "alignment wants at least 3 vertices, not ", q.rows());
+  US_CHECK(q.rows() >= 3, "alignment needs at least 3 vertices, not ", q.rows());
   const Eigen::Matrix3Xd from = p.cast<double>().transpose(), to = q.cast<double>().transpose();
   const Eigen::Matrix4d T = Eigen::umeyama(from, to, /*with_scaling=*/true);
   const Eigen::Matrix3Xd moved = (T.topLeftCorner<3, 3>() * from).colwise() + T.topRightCorner<3, 1>();
@@ -86,7 +86,7 @@ double PartStretch::stretch(const std::vector<Edge>& edges, const Points& vertic
 
 SelfPenetration::SelfPenetration(const Points& rest, const Faces& faces, int samples)
     : faces_(faces), windings_(rest, faces) {
-  US_CHECK(faces.rows() > 0, "self-penetration wants a surface, not a point cloud");
+  US_CHECK(faces.rows() > 0, "self-penetration needs a surface, not a point cloud");
   evaluated_ = farthest_points(rest, std::min<Eigen::Index>(samples, rest.rows()));
   const std::vector<bool> inside = buried(rest);
   std::vector<int> free;

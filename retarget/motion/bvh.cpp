@@ -55,7 +55,7 @@ class Words {
   void expect(std::string_view wanted) {
     const std::string_view found = peek();
     US_CHECK(take(wanted), where(), found.empty() ? "it ends" : "there is '" + excerpt(found) + "'",
-             " where '", wanted, "' is wanted");
+             " where '", wanted, "' is expected");
   }
   double number(const char* what) {
     std::string_view word = next();
@@ -64,7 +64,7 @@ class Words {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     US_CHECK(!word.empty(), where(), "it ends before ", what);
     US_CHECK(error == std::errc() && end == word.data() + word.size() && std::isfinite(value), where(), "'",
-             excerpt(word), "' is no number for ", what);
+             excerpt(word), "' is not a number for ", what);
     return value;
   }
   std::string where() const { return path_ + ": line " + std::to_string(line_) + ": "; }
@@ -127,7 +127,7 @@ class BvhReader {
     for (int i = 0; i < static_cast<int>(count); ++i) {
       const std::string word(words_.next());
       const auto found = std::find(names.begin(), names.end(), lower_case(word));
-      US_CHECK(found != names.end(), words_.where(), "'", excerpt(word), "' is no channel");
+      US_CHECK(found != names.end(), words_.where(), "'", excerpt(word), "' is not a channel");
       channels_.push_back({static_cast<size_t>(node), static_cast<int>(found - names.begin())});
     }
   }
@@ -169,12 +169,12 @@ class BvhReader {
     words_.expect("frames");
     const double frames = words_.number("the number of frames");
     US_CHECK(frames >= 1 && frames <= 1e9 && frames == std::trunc(frames), words_.where(), "a motion of ",
-             frames, " frames cannot be");
+             frames, " frames is not possible");
     words_.expect("frame");
     words_.expect("time");
     const double seconds = words_.number("the frame time");
     US_CHECK(seconds >= 1e-5 && seconds <= kLongestFrame, words_.where(), "a frame time of ", seconds,
-             " s cannot be");
+             " s is not possible");
     read_frames(static_cast<int64_t>(frames), seconds);
   }
 

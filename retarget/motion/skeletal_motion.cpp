@@ -42,8 +42,8 @@ void add_octahedron(Shapes& shapes, int node, const Vec3& from, const Vec3& to) 
 
 void check_bones(const BoneMap& map, const std::string& name) {
   US_CHECK(map.usable(), name, ": only ", map.count(),
-           " of the 22 joints were found among its bones, too few to perform; a map can name them, or its "
-           "surface be looked at as a scan");
+           " of the 22 joints were found among its bones, too few to retarget; use a map, or its "
+           "surface as a scan");
 }
 
 /// Something to look at where a file holds bones alone: an octahedron from each bone under the pelvis to each of its
@@ -118,7 +118,7 @@ PreparedCharacter in_bind_pose(const Character& character, int clip, const ClipT
   if (is_first) better.notes.push_back("its first frame is taken for the T-pose");
   if (better.pose.largest_deg > kDoubtfulDeg)
     better.notes.push_back(
-        "neither its bones nor its first frame stand in a T- or A-pose: limbs may be turned");
+        "neither its bones nor its first frame are in a T- or A-pose: limbs may be twisted");
   return std::move(better);
 }
 

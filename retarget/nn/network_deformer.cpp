@@ -183,7 +183,7 @@ class NetworkDeformer : public Deformer {
 
 void NetworkDeformer::bind(const Points& rest, const Joints& rest_joints) {
   US_CHECK(rest.rows() > 0, "the target has no points");
-  US_CHECK(rest.allFinite() && rest_joints.allFinite(), "the target has a coordinate that is no number");
+  US_CHECK(rest.allFinite() && rest_joints.allFinite(), "the target has a coordinate that is not finite");
   const Points context = spread_points(rest, static_cast<int>(net_->options.context_points));
   joints_ = rest_joints;
   Samples samples;
@@ -224,7 +224,7 @@ void NetworkDeformer::evaluate_slice(Eigen::Index first, Eigen::Index count, con
   const Eigen::Map<const RowMatrix> W(weights.data_ptr<float>(), count, kJointCount),
       B(basis.data_ptr<float>(), 3 * count, kPoseFeatureCount);
   US_CHECK(W.allFinite() && B.allFinite(), path_,
-           ": the deformation networks give no numbers for this target");
+           ": the deformation networks give values that are not finite for this target");
   samples.known.middleRows(first, count).leftCols<kJointCount>() = W;
   static const Eigen::Matrix<float, kPoseFeatureCount, 3> bends = probing_bends();
   const RowMatrix probed = offsets_ ? RowMatrix(B * bends) : RowMatrix(RowMatrix::Zero(3 * count, 3));
@@ -303,11 +303,11 @@ void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
 }
 
 std::shared_ptr<Deformer> NetworkDeformer::with_weights(RowMatrix weights) const {
-  US_CHECK(rest_.rows() > 0, "with_weights() wants bind() first");
+  US_CHECK(rest_.rows() > 0, "with_weights() needs bind() first");
   US_CHECK(weights.rows() == rest_.rows() && weights.cols() == kJointCount, "skin weights are ",
            weights.rows(), " x ", weights.cols(), ", the target has ", rest_.rows(), " vertices");
   US_CHECK(weights.allFinite() && weights.minCoeff() >= 0 && weights.rowwise().sum().minCoeff() > 1e-6f,
-           "skin weights must not be negative, and every vertex wants some");
+           "skin weights must not be negative, and every vertex needs some");
   auto other = std::make_shared<NetworkDeformer>(*this);
   other->weights_ = weights.array().colwise() / weights.rowwise().sum().array();
   other->keep_weights();
@@ -321,7 +321,7 @@ Points NetworkDeformer::offsets(const Pose& pose) const {
 }
 
 Points NetworkDeformer::deform(const Pose& pose) const {
-  US_CHECK(rest_.rows() > 0, "deform() wants bind() first");
+  US_CHECK(rest_.rows() > 0, "deform() needs bind() first");
   Points rest = rest_;
   add_offsets(pose, rest);
   const PosedSkeleton posed = forward_kinematics(joints_, pose);

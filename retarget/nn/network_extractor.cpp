@@ -44,7 +44,7 @@ Extraction NetworkExtractor::to_world(const ExtractorOutput& out, const ScanPatc
   const auto joints = out.joints.contiguous();
   const Joints normalised = Eigen::Map<const Joints>(joints.data_ptr<float>());
   extraction.joints = (normalised * patches.scale).rowwise() + patches.centre.transpose();
-  US_CHECK(extraction.joints.allFinite(), "the extraction network gave joints that are not numbers");
+  US_CHECK(extraction.joints.allFinite(), "the extraction network gave joints that are not finite");
   if (!out.rotations.defined()) return extraction;
   const auto spread = torch::exp(out.log_spread).contiguous();
   for (int j = 0; j < kJointCount; ++j) {

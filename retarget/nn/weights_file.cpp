@@ -77,7 +77,7 @@ WeightsHeader load_weights(const std::string& path, const std::string& kind, int
   const StoredWeights stored = parse_weights(bytes, path);
   US_CHECK(stored.kind == kind, path, ": holds weights for '", stored.kind, "', not for '", kind, "'");
   US_CHECK(stored.version == version, path, ": weights of version ", stored.version,
-           ", this program wants version ", version);
+           ", this program needs version ", version);
   const torch::NoGradGuard no_grad;
   each_tensor(module, [&](const std::string& name, torch::Tensor tensor) {
     const auto found = stored.tensors.find(name);

@@ -338,7 +338,7 @@ std::array<Vec3, 2> HandContacts::wanted(Scene& scene) const {
 
 Pose HandContacts::push(const Pose& pose, const Joints& source, const std::optional<BodyGirth>& girth,
                         float dt) {
-  US_CHECK(body_, "hands want a target first");
+  US_CHECK(body_, "hand contacts need a target first");
   US_CHECK(source.allFinite(), "the source's joints are not finite");
   learn(source, girth);
   const Body& body = *body_;

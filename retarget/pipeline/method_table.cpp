@@ -22,16 +22,16 @@ const MethodChoice& named(const MethodChoices& choices, const std::string& name,
 
 const MethodChoices& engines() {
   static const MethodChoices all = {
-      {"copy", "Copy", "copied rotations", "rotations are seen and solved, then copied", nullptr, made<true>},
-      {"paper", "Paper", "paper's network", "paper 1's network says them", "motion.weights"},
-      {"positions", "Joints", "rotations from positions", "rotations are solved from joint positions alone",
+      {"copy", "Copy", "copied rotations", "copies rotations seen in scans or solved", nullptr, made<true>},
+      {"paper", "Paper", "paper's network", "predicts rotations with paper 1's network", "motion.weights"},
+      {"positions", "Joints", "rotations from positions", "copies rotations solved from positions alone",
        nullptr, made<false>}};
   return all;
 }
 
 const MethodChoices& extractors() {
   static const MethodChoices all = {
-      {"dense", "Dense", "dense extractor", "every point says where the joints are", "skeleton.weights"},
+      {"dense", "Dense", "dense extractor", "every point votes for the joints", "skeleton.weights"},
       {"paper", "Paper", "paper's extractor", "paper 1's network", "skeleton_paper.weights"}};
   return all;
 }

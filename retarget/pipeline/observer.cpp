@@ -42,8 +42,8 @@ std::string PersonCheck::push(const Extraction& seen) {
   if (strange > kImplausible || (strange > kOdd && seen.confidence.mean() < kUnsure)) ++implausible_;
   told_ = frames_ >= kFewest && implausible_ * 5 >= frames_ * 4;
   if (!told_) return {};
-  return "may be no person, or one whose poses are not recognised: the bones found in " +
-         std::to_string(implausible_) + " of its first " + std::to_string(frames_) + " frames are nobody's";
+  return "may not be a person, or its poses are not recognised: its bones are unlike a human's in " +
+         std::to_string(implausible_) + " of its first " + std::to_string(frames_) + " frames";
 }
 
 Observer::Observer(std::shared_ptr<SkeletonExtractor> extractor) : extractor_(std::move(extractor)) {}

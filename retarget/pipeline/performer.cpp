@@ -19,7 +19,7 @@ Performer::Performer(const RetargetOptions& options)
 Performer::Performer(Target target, std::shared_ptr<MotionTransfer> transfer,
                      std::shared_ptr<Deformer> deformer, const RetargetOptions& options)
     : Performer(options) {
-  US_CHECK(transfer && deformer, "the pipeline wants a motion transfer and a deformer");
+  US_CHECK(transfer && deformer, "the pipeline needs a motion transfer and a deformer");
   target_ = std::move(target);
   transfer_ = std::move(transfer);
   deformer_ = std::move(deformer);

@@ -48,7 +48,7 @@ std::vector<std::string> complaints(const Mesh& mesh, const Joints& joints) {
   if (size.y() < 0.5f || size.y() > 3.0f)
     result.push_back(detail::join("the target is ", size.y(), " m tall, which no person is"));
   if (std::max(off_deg(LeftShoulder, LeftElbow), off_deg(RightShoulder, RightElbow)) > 35)
-    result.push_back("the target's arms are not stretched out sideways: it does not stand in T-pose");
+    result.push_back("the target's arms are not stretched out sideways: it is not in T-pose");
   if (std::max(off_deg(LeftHip, LeftKnee), off_deg(RightHip, RightKnee)) > 35 || off_deg(Spine3, Neck) > 35)
     result.push_back("the target does not stand upright: it may not be a person in T-pose");
   if (joints(LeftHip, 0) < joints(RightHip, 0) || off_deg(LeftAnkle, LeftFoot) > 75)

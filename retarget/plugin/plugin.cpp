@@ -26,7 +26,7 @@ std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, con
 std::unique_ptr<PartRefiner> load_parts(const std::string& folder) {
   const std::string path = folder + "/part.weights";
   if (!std::filesystem::exists(path)) {
-    log::warn_once(path + ": is not there; limbs and head are seen from afar only");
+    log::warn_once(path + ": is missing; limbs and head are not refined");
     return nullptr;
   }
   return load_part_refiner(path);

@@ -44,8 +44,8 @@ void copy_into(const std::vector<torch::Tensor>& from, const std::vector<torch::
 
 TrainingRun::TrainingRun(const nn::TrainOptions& options, std::string network, const Schedule& schedule)
     : options_(options), network_(std::move(network)), schedule_(schedule), device_(options.device) {
-  US_CHECK(options.minutes > 0 || options.samples > 0, "training wants an end: --minutes or --samples");
-  US_CHECK(options.keep == 0 || !options.init.empty(), "--keep wants --init");
+  US_CHECK(options.minutes > 0 || options.samples > 0, "training needs an end: --minutes or --samples");
+  US_CHECK(options.keep == 0 || !options.init.empty(), "--keep needs --init");
   US_CHECK(device_.is_cpu() || torch::cuda::is_available(), "this LibTorch finds no ", options.device,
            " device");
   at::set_num_threads(std::max(1, options.threads));  // the matrices are small: one thread unless told

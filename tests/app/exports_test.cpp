@@ -80,7 +80,8 @@ TEST(FileFigures, AreThoseOfTheWrittenSurface) {
   EXPECT_GT(figure(larger, "file_medl_mm"), 1);
   EXPECT_GT(figure(larger, "file_mpvd_m"), 0.02);
   truth.frames = kFrames - 1;
-  EXPECT_TRUE(contains(error_of([&] { file_figures(input.body, input.clips[0], truth); }), "other frames"));
+  EXPECT_TRUE(
+      contains(error_of([&] { file_figures(input.body, input.clips[0], truth); }), "number of frames"));
 }
 
 TEST(CheckExportOptions, WhatAFileCannotHoldIsRefusedAndNotLeftOut) {
@@ -254,7 +255,7 @@ TEST(Exports, SayWhatTheyCost) {
   cost.measured = true;
   cost.mean_mm = 0.412;
   cost.largest_mm = 2.1;
-  EXPECT_EQ(sentence(cost), "mean 0.41 mm, largest 2.10 mm off the screen, 1.2 MB");
+  EXPECT_EQ(sentence(cost), "difference from the screen: mean 0.41 mm, largest 2.10 mm, 1.2 MB");
 }
 
 }  // namespace

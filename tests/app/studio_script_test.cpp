@@ -138,7 +138,7 @@ TEST_F(ApplicationTest, ComplaintsNameScriptLineAndProblem) {
   EXPECT_EQ(complaint("frames 1\nno.such.command\n"), "test.us:2: there is no command no.such.command");
   EXPECT_NE(complaint("click no.widget").find("test.us:1: nothing on the screen is called no.widget"),
             std::string::npos);
-  EXPECT_NE(complaint("# all right\n\nclick").find("test.us:3: click wants"), std::string::npos);
+  EXPECT_NE(complaint("# all right\n\nclick").find("test.us:3: click needs"), std::string::npos);
   EXPECT_NE(complaint("frames many").find("many is not a number"), std::string::npos);
   EXPECT_NE(complaint("key Hyper+X").find("is not a key"), std::string::npos);
   EXPECT_NE(complaint("type \"not closed").find("a quote is not closed"), std::string::npos);

@@ -48,7 +48,7 @@ TEST(PluginLog, ComesToTheProgramsSink) {
   options.weights = scratch.path("");
   nn::load_networks(options);
   log::set_sink(before);
-  EXPECT_NE(told.find("part.weights: is not there"), std::string::npos) << told;
+  EXPECT_NE(told.find("part.weights: is missing"), std::string::npos) << told;
 }
 
 }  // namespace

@@ -113,13 +113,14 @@ TEST_F(ExportCommand, ADocumentThatCannotBeExportedIsASentence) {
        {std::vector<std::string>{"--target", target()}, {"--root", "original"}, {"--no-foot-lock"}}) {
     std::vector<std::string> arguments = {"export", document, "--out", out("a.glb")};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    expect_clean_failure(run_program(arguments), "its own source and target, " + more[0] + " is for others");
+    expect_clean_failure(run_program(arguments),
+                         "its own source and target, " + more[0] + " cannot be combined with it");
   }
   std::string text = read_bytes(document);
   text.replace(text.find("scans"), 5, "gone!");
   write_text(scratch.path("moved.understudy"), text);
   expect_clean_failure(run_program({"export", scratch.path("moved.understudy"), "--out", out("a.glb")}),
-                       "not there");
+                       "does not exist");
 }
 
 TEST_F(ExportCommand, CtrlCAndAFullDiskLeaveTheOldFile) {

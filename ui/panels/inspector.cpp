@@ -117,7 +117,7 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::SourceOptions& source = session.document.source;
   const std::string fps = source.fps > 0 ? argument(source.fps) : "auto";
-  if (const auto text = text_row(ui, {"source.fps", "Frames/s", "auto: as the file says, or 30"}, fps))
+  if (const auto text = text_row(ui, {"source.fps", "Frames/s", "auto: the file's own, or 30"}, fps))
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
   if (may_move(source)) draw_animation_fields(session.source, source, context);
   draw_import(context, "source", source.import);
@@ -245,7 +245,7 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
       {"feet", "Lock feet", "Keeps standing feet from sliding", method.lock_feet},
       {"contacts", "Hand contacts", "Hands that touch the body do so on the target, too",
        method.keep_contacts},
-      {"near", "Second look", "Limbs and head are looked at again from near", method.near}};
+      {"near", "Part refiner", "Refines limbs and head from close crops of the scan", method.near}};
   for (const Switch& s : switches)
     ask_toggle(context, {"method." + s.name, s.label, s.explanation, "method.filter " + k + " " + s.name},
                s.on);

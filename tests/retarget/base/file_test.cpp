@@ -70,7 +70,7 @@ TEST_F(ReadFile, SaysWhatIsWrong) {
   EXPECT_EQ(complaint_of([&] { check_file(path("")); }), path("") + ": is a folder, not a file");
   write_file(path("a"), "four");
   EXPECT_EQ(complaint_of([&] { read_file(path("a"), 3); }),
-            path("a") + ": has 4 bytes, at most 3 are expected");
+            path("a") + ": has 4 bytes, more than the expected 3");
 }
 
 TEST_F(WholeFile, LeavesNothingBesideIt) {

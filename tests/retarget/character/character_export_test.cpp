@@ -121,7 +121,7 @@ TEST(PreparedCharacter, ABareMeshIsLookedAtByTheNetwork) {
   made.rigged = false;
   made.arms_down_deg = 45;
   KnownExtractor before(made_joints(made)), after(made_joints({}));
-  EXPECT_TRUE(contains(error_of([&] { prepared(made); }), "no network"));
+  EXPECT_TRUE(contains(error_of([&] { prepared(made); }), "the networks may not be used"));
   const PreparedCharacter character = prepare_character(make_character(made), &before, &after);
   EXPECT_FALSE(character.rigged);
   const Points& v = character.target.mesh.vertices;

@@ -130,7 +130,7 @@ TEST(CharacterFile, DamagedBytesNeverCrash) {
 TEST(CharacterFile, AccessorPastItsBufferIsRefused) {
   json gltf = broken_base();
   gltf["accessors"][0]["count"] = 4000000000ull;
-  EXPECT_TRUE(contains(complaint_about(gltf), "reaches behind"));
+  EXPECT_TRUE(contains(complaint_about(gltf), "reaches beyond"));
 }
 
 TEST(CharacterFile, NegativeStrideIsRefused) {
@@ -293,7 +293,7 @@ TEST(CharacterFile, UrisOutsideOfTheFolderAreRefused) {
   }
   json gltf = broken_base();
   gltf["buffers"][0]["uri"] = "https://example.org/b.bin";
-  EXPECT_TRUE(contains(complaint_about(gltf), "on the net"));
+  EXPECT_TRUE(contains(complaint_about(gltf), "on the network"));
 }
 
 TEST(CharacterFile, DataThatAreNoBase64AreRefused) {
@@ -305,7 +305,7 @@ TEST(CharacterFile, DataThatAreNoBase64AreRefused) {
 TEST(CharacterFile, PicturesThatAreNoneAreRefused) {
   json gltf = broken_base();
   gltf["images"][0] = {{"uri", "data:image/png;base64,SGVsbG8="}, {"name", "face"}};
-  EXPECT_TRUE(contains(complaint_about(gltf), "'face' is no picture"));
+  EXPECT_TRUE(contains(complaint_about(gltf), "'face' is not a picture"));
 }
 
 TEST(CharacterFile, AMissingPictureBecomesWhiteWithAWarning) {
@@ -415,8 +415,9 @@ TEST(ImportProcess, CrashesHangsAndMissingProgramsAreOneSentence) {
   ::close(77);
   EXPECT_TRUE(contains(worker("echo it is no FBX >&2; exit 1\n"), "a.fbx: it is no FBX"));
   EXPECT_TRUE(contains(worker("printf 'it is\\033[31m\\001bad' >&2; exit 1\n"), "a.fbx: it is?[31m?bad"));
-  EXPECT_TRUE(contains(worker("echo nonsense >$3\n"), "a.fbx: the reader of this format made nothing of it"));
-  EXPECT_TRUE(contains(worker("mkfifo $3\n"), "a.fbx: the reader of this format made nothing of it"));
+  EXPECT_TRUE(
+      contains(worker("echo nonsense >$3\n"), "a.fbx: the reader of this format found nothing usable in it"));
+  EXPECT_TRUE(contains(worker("mkfifo $3\n"), "a.fbx: the reader of this format found nothing usable in it"));
   ReadCharacterOptions missing;
   missing.worker = folder.path("nobody");
   EXPECT_TRUE(contains(error_of([&] { read_character(file, missing); }), "cannot be started"));

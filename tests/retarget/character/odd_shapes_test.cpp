@@ -146,26 +146,26 @@ TEST(OddShapes, WhoIsHeadDownIsTurnedOverWithANote) {
   CharacterOptions options;
   options.yaw_deg = 0;
   const PreparedCharacter c = prepare_character(turned(bare(), over), &honest, nullptr, options);
-  EXPECT_TRUE(noted(c, "is head down"));
+  EXPECT_TRUE(noted(c, "is upside down"));
   EXPECT_NEAR(c.surface.mesh.vertices.col(1).minCoeff(), 0, 0.03f);
   const PreparedCharacter upright = prepare_character(bare(), &honest, nullptr, options);
-  EXPECT_FALSE(noted(upright, "head down"));
+  EXPECT_FALSE(noted(upright, "upside down"));
   EXPECT_LT((c.target.mesh.vertices - upright.target.mesh.vertices).rowwise().norm().maxCoeff(), 0.02f);
   options.turn_if_lying = false;  // told to stand so
   EXPECT_TRUE(contains(error_of([&] { prepare_character(turned(bare(), over), &honest, nullptr, options); }),
-                       "is head down with y up"));
+                       "is upside down with y up"));
 }
 
 TEST(OddShapes, ARigThatIsHeadDownIsTurnedByItsSpine) {
   Character down = make_character();
   down.nodes[0].local.rotation = Eigen::Quaternionf(about_x(180)) * down.nodes[0].local.rotation;
   const PreparedCharacter c = prepare_character(down, nullptr, nullptr);
-  EXPECT_TRUE(noted(c, "it is head down with y up, so -y is taken as up"));
+  EXPECT_TRUE(noted(c, "it is upside down with y up, so -y is taken as up"));
   EXPECT_GT(c.target.joints(Head, 1), c.target.joints(Pelvis, 1));
   CharacterOptions options;
   options.turn_if_lying = false;
   EXPECT_TRUE(contains(error_of([&] { prepare_character(down, nullptr, nullptr, options); }),
-                       "is head down with y up, -y up (--target-up) turns it over"));
+                       "is upside down with y up, -y up (--target-up) turns it over"));
 }
 
 TEST(OddShapes, ACatIsRefusedInASentence) {
@@ -243,7 +243,7 @@ TEST(OddShapes, ACatOnARigIsRefusedAndWarnedOfWhereItsBonesAreNamedAsAPersons) {
   const PreparedCharacter c = prepare_character(rigged_cat(true), nullptr, nullptr);
   ASSERT_TRUE(c.rigged);
   ASSERT_FALSE(c.target.warnings.empty());
-  EXPECT_TRUE(contains(c.target.warnings.back(), "may be no person: it is ")) << c.target.warnings.back();
+  EXPECT_TRUE(contains(c.target.warnings.back(), "may not be a person: it is ")) << c.target.warnings.back();
 }
 
 TEST(OddShapes, WhatMayBeNoPersonIsWarnedOf) {
@@ -252,7 +252,7 @@ TEST(OddShapes, WhatMayBeNoPersonIsWarnedOf) {
   KnownExtractor known(made_joints({}));
   const PreparedCharacter c = prepare_character(character_of_mesh(ball(), "ball"), &known, nullptr);
   bool told = false;
-  for (const auto& warning : c.target.warnings) told = told || contains(warning, "may be no person");
+  for (const auto& warning : c.target.warnings) told = told || contains(warning, "may not be a person");
   EXPECT_TRUE(told);
 }
 

@@ -48,10 +48,10 @@ TEST(GltfMesh, RefusesWhatReachesBehindItsBuffer) {
   std::string json = gltf_text();
   json.replace(json.find("\"byteOffset\":48"), 15, "\"byteOffset\":60");
   EXPECT_TRUE(contains(error_of([&] { parse_mesh(json, "a.gltf"); }),
-                       "a.gltf: buffer view 1 reaches behind its buffer"));
+                       "a.gltf: buffer view 1 reaches beyond its buffer"));
   json = gltf_text();
   json.replace(json.find("\"byteLength\":24"), 15, "\"byteLength\":20");
-  EXPECT_TRUE(contains(error_of([&] { parse_mesh(json, "a.gltf"); }), "reaches behind its buffer view"));
+  EXPECT_TRUE(contains(error_of([&] { parse_mesh(json, "a.gltf"); }), "reaches beyond its buffer view"));
   EXPECT_TRUE(contains(error_of([&] {
                          parse_mesh(gltf_json("", R"(,"uri":"data:;base64,AA==")",
                                               R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"),

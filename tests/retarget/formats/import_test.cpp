@@ -161,7 +161,7 @@ TEST(Import, SurvivesNanPointsAndTinyScans) {
   Mesh one;
   one.vertices = Points::Zero(1, 3);
   EXPECT_EQ(decide_import(one, {}).scale, 1);
-  EXPECT_TRUE(warnings.contain("no person's"));
+  EXPECT_TRUE(warnings.contain("fits no person"));
 }
 
 TEST(Import, MakesACharacterOfArbitrarySizeAsTallAsPeopleAre) {
@@ -173,7 +173,7 @@ TEST(Import, MakesACharacterOfArbitrarySizeAsTallAsPeopleAre) {
     EXPECT_NEAR(decision.apply(file.vertices).col(1).maxCoeff(), 1.7f, 0.05f);
   }
   EXPECT_EQ(decide_import(as_file(person(true), "y", 2), {}).units, "m");
-  EXPECT_TRUE(warnings.contain("is no person's in any unit"));
+  EXPECT_TRUE(warnings.contain("fits no person in any unit"));
 }
 
 TEST(Import, TakesSomebodyWhoLiesAsMetresWhateverTheHeight) {

@@ -116,18 +116,18 @@ TEST(MeshReader, KeepsNanAndInfinityAndFinitePointsDropsThem) {
 TEST(MeshReader, BelievesTheContentAgainstTheSuffix) {
   Warnings warnings;
   EXPECT_EQ(parse_mesh(binary_ply(true), "a.obj").faces.rows(), 4);
-  EXPECT_TRUE(warnings.contain("a.obj: is PLY in spite of its suffix"));
+  EXPECT_TRUE(warnings.contain("a.obj: is PLY despite its suffix"));
   EXPECT_EQ(parse_mesh(off_text(), "a").faces.rows(), 4);
   EXPECT_EQ(parse_mesh(glb_bytes(), "a.ply").faces.rows(), 4);
 }
 
 TEST(MeshReader, SaysInOneSentenceThatAFileIsSomethingElse) {
   const std::string png = "\x89PNG\r\n\x1a\n" + std::string(200, '\5');
-  EXPECT_EQ(error_of([&] { parse_mesh(png, "a.ply"); }), "a.ply: is not the PLY file that its suffix says");
+  EXPECT_EQ(error_of([&] { parse_mesh(png, "a.ply"); }), "a.ply: is not PLY despite its suffix");
   EXPECT_TRUE(contains(error_of([&] { parse_mesh(png, "a.xyz"); }), "a.xyz: "));
-  EXPECT_EQ(error_of([&] { parse_mesh(png, "a.obj"); }), "a.obj: is not the OBJ file that its suffix says");
+  EXPECT_EQ(error_of([&] { parse_mesh(png, "a.obj"); }), "a.obj: is not OBJ despite its suffix");
   EXPECT_NE(error_of([&] { parse_mesh(png, "a.stl"); }), "");
-  EXPECT_TRUE(contains(error_of([&] { parse_mesh(png, "a.png"); }), "no mesh or point cloud that is known"));
+  EXPECT_TRUE(contains(error_of([&] { parse_mesh(png, "a.png"); }), "not a known mesh or point cloud"));
   EXPECT_EQ(error_of([&] { parse_mesh("", "a.ply"); }), "a.ply: is empty");
 }
 
@@ -202,9 +202,10 @@ TEST(Obj, ReadsColoursPolygonsAndContinuedLines) {
 }
 
 TEST(Obj, NamesTheLineThatIsWrong) {
-  EXPECT_EQ(error_of([] { parse_mesh("v 0 0 0\nv 1 0 x\n", "a.obj"); }), "a.obj: line 2: 'x' is no number");
+  EXPECT_EQ(error_of([] { parse_mesh("v 0 0 0\nv 1 0 x\n", "a.obj"); }),
+            "a.obj: line 2: 'x' is not a number");
   EXPECT_EQ(error_of([] { parse_mesh("v 0 0 0\nf 1 -2 1\n", "a.obj"); }),
-            "a.obj: line 2: a face names vertex -2, which is not there");
+            "a.obj: line 2: a face names vertex -2, which does not exist");
   EXPECT_NE(error_of([] { parse_mesh("v 0 0 0\nf 1 2 3\n", "a.obj"); }), "");
 }
 

@@ -247,11 +247,11 @@ TEST(SequenceWriter, ReplacesOnlyWhatItWrote) {
   write(1);
   EXPECT_FALSE(fs::exists(folder.path("out/frame_00002.ply")));
   folder.write("out/mine.txt", "hours of work");
-  EXPECT_TRUE(contains(error_of([&] { write(1); }), "other things"));
+  EXPECT_TRUE(contains(error_of([&] { write(1); }), "more than exported frames"));
   EXPECT_EQ(read_file(folder.path("out/mine.txt")), "hours of work");
   fs::remove(folder.path("out/mine.txt"));
   folder.write("out/frame_00002.ply", "ply\nformat ascii 1.0\ncomment a scan of mine\n");
-  EXPECT_TRUE(contains(error_of([&] { write(1); }), "other things"));
+  EXPECT_TRUE(contains(error_of([&] { write(1); }), "more than exported frames"));
   EXPECT_EQ(files_in(folder), 1);
 }
 

@@ -28,11 +28,11 @@ TEST(Pts, RefusesWhatIsCutOffOrAnnouncesMoreThanItHolds) {
   const std::string whole = "3\n0 0 1\n1 0 0\n0 1 0\n";
   EXPECT_EQ(error_of([&] { parse_mesh(whole.substr(0, 14), "a.pts"); }), "a.pts: ends before point 3 of 3");
   EXPECT_EQ(error_of([] { parse_mesh("9000000000000000000\n1 2 3\n", "a.pts"); }),
-            "a.pts: announces 9000000000000000000 points, which it is too short for");
-  EXPECT_EQ(error_of([] { parse_mesh("1\n1 2\n", "a.pts"); }), "a.pts: '1 2' is no point");
-  EXPECT_EQ(error_of([] { parse_mesh("1\n1 2 x\n", "a.pts"); }), "a.pts: 'x' is no number");
+            "a.pts: announces 9000000000000000000 points, but is too short for them");
+  EXPECT_EQ(error_of([] { parse_mesh("1\n1 2\n", "a.pts"); }), "a.pts: '1 2' is not a point");
+  EXPECT_EQ(error_of([] { parse_mesh("1\n1 2 x\n", "a.pts"); }), "a.pts: 'x' is not a number");
   EXPECT_EQ(error_of([] { parse_mesh("1\n1 2 3\n4 5 6\n", "a.pts"); }),
-            "a.pts: '4 5 6' is no count of points");
+            "a.pts: '4 5 6' is not a count of points");
   EXPECT_EQ(error_of([] { parse_mesh("0\n", "a.pts"); }), "a.pts: has no points in it");
 }
 

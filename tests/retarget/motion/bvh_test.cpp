@@ -84,18 +84,18 @@ TEST(Bvh, TakesOtherWaysToWriteIt) {
 
 TEST(Bvh, SaysWhatIsWrongAndWhere) {
   const auto said = [](const std::string& text) { return error_of([&] { parse_bvh(text, "arm.bvh"); }); };
-  EXPECT_TRUE(contains(said(""), "arm.bvh: line 1: it ends where 'hierarchy' is wanted"));
+  EXPECT_TRUE(contains(said(""), "arm.bvh: line 1: it ends where 'hierarchy' is expected"));
   EXPECT_TRUE(contains(said("PNG"), "there is 'PNG'"));
   EXPECT_TRUE(
-      contains(said(replaced("Frames: 2", "Frames: -2")), "line 17: a motion of -2 frames cannot be"));
+      contains(said(replaced("Frames: 2", "Frames: -2")), "line 17: a motion of -2 frames is not possible"));
   EXPECT_TRUE(
       contains(said(replaced("Frames: 2", "Frames: 999999999")), "frames of 9 numbers are announced"));
-  EXPECT_TRUE(contains(said(replaced("0.04", "0")), "line 18: a frame time of 0 s cannot be"));
-  EXPECT_TRUE(contains(said(replaced("0.04", "nan")), "'nan' is no number for the frame time"));
+  EXPECT_TRUE(contains(said(replaced("0.04", "0")), "line 18: a frame time of 0 s is not possible"));
+  EXPECT_TRUE(contains(said(replaced("0.04", "nan")), "'nan' is not a number for the frame time"));
   EXPECT_TRUE(contains(said(replaced("5 91 2 90 0 0 0 0 90\n", "5 91 2 90 0 0 0\n")),
                        "it ends before all its frames"));
-  EXPECT_TRUE(contains(said(replaced("5 91", "5 x")), "line 20: 'x' is no number"));
-  EXPECT_TRUE(contains(said(replaced("Xrotation", "Wrotation")), "'Wrotation' is no channel"));
+  EXPECT_TRUE(contains(said(replaced("5 91", "5 x")), "line 20: 'x' is not a number"));
+  EXPECT_TRUE(contains(said(replaced("Xrotation", "Wrotation")), "'Wrotation' is not a channel"));
   EXPECT_TRUE(contains(said(replaced("CHANNELS 3", "CHANNELS 300")), "0 to 6 channels, not 300"));
   EXPECT_TRUE(contains(said(replaced("JOINT", "JOIN")), "'join' is not expected"));
   EXPECT_TRUE(contains(said(std::string(kArm).substr(0, 150)), "arm.bvh: line"));

@@ -42,7 +42,7 @@ TEST(PersonCheck, BonesThatAreNobodysAreToldOnce) {
   for (int t = 0; t < 10; ++t) {
     const std::string sentence = person.push(seen(four_legged()));
     told += sentence.empty() ? 0 : 1;
-    if (!sentence.empty()) EXPECT_EQ(sentence.rfind("may be no person", 0), 0u) << sentence;
+    if (!sentence.empty()) EXPECT_EQ(sentence.rfind("may not be a person", 0), 0u) << sentence;
   }
   EXPECT_EQ(told, 1);
 }
