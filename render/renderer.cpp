@@ -4,10 +4,14 @@
 #include <string>
 
 #include "render/gizmo.hpp"
-#include "render/gl/array_cache.hpp"
 #include "render/gl/debug.hpp"
 #include "render/gl/scopes.hpp"
-#include "render/passes/passes.hpp"
+#include "render/passes/cover_passes.hpp"
+#include "render/passes/ground_pass.hpp"
+#include "render/passes/lines_pass.hpp"
+#include "render/passes/mesh_pass.hpp"
+#include "render/passes/occlusion_pass.hpp"
+#include "render/passes/points_pass.hpp"
 #include "render/solids.hpp"
 #include "retarget/base/error.hpp"
 
@@ -216,8 +220,8 @@ void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
     if (view.x_ray == x_ray) lines.draw(view);
 }
 
-/// What is drawn over the still background, in this order. A new pass is a file of passes/ with its shader, its
-/// class in passes.hpp, a row here and a golden picture.
+/// What is drawn over the still background, in this order. A new pass is a file of passes/ with its shaders and
+/// its class, which nothing but this file includes; a member of Parts and a row here; and a golden picture.
 const Renderer::Parts::Pass Renderer::Parts::kPasses[] = {
     [](Parts& p, const Scene& s, const Camera&) {
       if (s.ground.visible && s.ground.shadow > 0) p.ground.draw_shadow(s);
@@ -272,7 +276,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::draw(const Scene& scene, const Camera& camera, const RenderTarget& target) {
   Parts& p = *parts_;
-  for (const auto& mesh : scene.meshes) check(mesh);
+  for (const auto& mesh : scene.meshes) MeshPass::check(mesh);
   if (p.canvas.resize(target.size)) p.still.clear();
   {
     const gl::TargetScope canvas(p.canvas.work(), target.size.width, target.size.height);

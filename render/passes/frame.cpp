@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "render/gl/program.hpp"
+#include "retarget/base/error.hpp"
 
 namespace understudy::render {
 namespace {
@@ -66,6 +67,10 @@ void main() {
   gl_Position = vec4(2.0 * v_place - 1.0, 1.0, 1.0);
 }
 )";
+
+void check_rows(const char* what, Eigen::Index rows, Eigen::Index points) {
+  US_CHECK(rows == 0 || rows == points, rows, " ", what, " for ", points, " points to draw");
+}
 
 void FrameBlock::set(const Camera& camera, const LightView& light, PixelSize size) {
   // Lights turn with the camera about the vertical, so that the shown side is lit from every side alike; they

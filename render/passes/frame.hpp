@@ -17,6 +17,9 @@ extern const char* const kShadeGlsl;
 /// Vertex stage of a triangle that covers the picture; gives vec2 v_place, 0..1 with y up.
 extern const char* const kCoverGlsl;
 
+/// Throws Error unless an optional array, `what`, is empty or has one row for each point.
+void check_rows(const char* what, Eigen::Index rows, Eigen::Index points);
+
 /// The block's buffer.
 class FrameBlock {
  public:

@@ -1,9 +1,11 @@
+// What covers the whole picture: the background, and smoothing afterwards.
+#pragma once
+
+#include "render/gl/program.hpp"
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
-#include "render/passes/passes.hpp"
 
 namespace understudy::render {
-namespace {
 
 constexpr const char* kGradient = R"(
 uniform vec3 u_top, u_bottom;
@@ -38,33 +40,47 @@ void main() {
 }
 )";
 
-}  // namespace
-
-BackgroundPass::BackgroundPass() : program_("background", kCoverGlsl, kGradient) {}
-
-void BackgroundPass::draw(const BackgroundView& view) {
-  if (view.transparent) {
-    gl::api().ClearColor(0, 0, 0, 0);
-    return gl::api().Clear(GL_COLOR_BUFFER_BIT);
+/// A soft vertical gradient behind everything.
+class BackgroundPass {
+ public:
+  void draw(const BackgroundView& view) {
+    if (view.transparent) {
+      gl::api().ClearColor(0, 0, 0, 0);
+      return gl::api().Clear(GL_COLOR_BUFFER_BIT);
+    }
+    const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
+    const gl::ProgramScope program(program_.id());
+    const gl::VertexArrayScope array(none_.name());
+    top_.set(view.top);
+    bottom_.set(view.bottom);
+    gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
   }
-  const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
-  const gl::ProgramScope program(program_.id());
-  const gl::VertexArrayScope array(none_.name());
-  top_.set(view.top);
-  bottom_.set(view.bottom);
-  gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
-}
 
-SmoothPass::SmoothPass() : program_("smoothing", kCoverGlsl, kSoften) {}
+ private:
+  gl::Program program_{"background", kCoverGlsl, kGradient};
+  gl::Uniform<Vec3> top_{program_, "u_top"}, bottom_{program_, "u_bottom"};
+  gl::VertexArray none_;  // core profiles draw nothing without one
+};
 
-void SmoothPass::draw(unsigned texture) {
-  const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
-  const gl::ProgramScope program(program_.id());
-  const gl::VertexArrayScope array(none_.name());
-  gl::api().ActiveTexture(GL_TEXTURE0);
-  gl::api().BindTexture(GL_TEXTURE_2D, texture);
-  source_.set(0);
-  gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
-}
+/// Softens jagged edges of a picture with one sample a pixel.
+class SmoothPass {
+ public:
+  /// Draws `texture` (filtered linearly), its edges smoothed, over the bound target, which is not the
+  /// texture.
+  void draw(unsigned texture) {
+    const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
+    const gl::ProgramScope program(program_.id());
+    const gl::VertexArrayScope array(none_.name());
+    gl::api().ActiveTexture(GL_TEXTURE0);
+    gl::api().BindTexture(GL_TEXTURE_2D, texture);
+    source_.set(0);
+    gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+ private:
+  gl::Program program_{"smoothing", kCoverGlsl, kSoften};
+  gl::Uniform<int> source_{program_, "u_source"};
+  gl::VertexArray none_;
+};
 
 }  // namespace understudy::render

@@ -1,10 +1,12 @@
+// Ambient occlusion from depth alone: creases and contacts lose light.
+#pragma once
+
+#include "render/gl/program.hpp"
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
-#include "render/passes/passes.hpp"
 #include "retarget/base/error.hpp"
 
 namespace understudy::render {
-namespace {
 
 // McGuire et al., "Scalable Ambient Obscurance", 2012, eq. 1, on normals from the depths around each pixel.
 // Gives the light that is left, and the distance from the eye for the blur (0: background).
@@ -77,57 +79,67 @@ void main() {
 
 constexpr int kSharpPixels = 300000;  // larger pictures are estimated at half their size
 
-}  // namespace
-
-OcclusionPass::OcclusionPass()
-    : estimate_("occlusion", kCoverGlsl, kEstimate),
-      blur_("occlusion blur", kCoverGlsl, kBlur),
-      apply_("occlusion applying", kCoverGlsl, kApply) {}
-
-void OcclusionPass::resize(PixelSize size) {
-  const int divisor = size.width * size.height > kSharpPixels ? 2 : 1;
-  const PixelSize small{(size.width + divisor - 1) / divisor, (size.height + divisor - 1) / divisor};
-  if (small.width == small_.width && small.height == small_.height) return;
-  small_ = small;
-  for (int i = 0; i < 2; ++i) {
-    gl::attach(framebuffers_[i], textures_[i], {small.width, small.height, GL_RG8, GL_RG});
-    const gl::TargetScope target(framebuffers_[i].name(), small.width, small.height);
-    US_CHECK(gl::api().CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
-             "OpenGL makes no framebuffer for occlusion");
+class OcclusionPass {
+ public:
+  /// Darkens the bound target, `size` pixels, by what `depth_texture` (single-sampled, of the same size)
+  /// shows. strength 0..1. Uses the FrameBlock that is bound.
+  void draw(unsigned depth_texture, PixelSize size, float strength) {
+    const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
+    const gl::VertexArrayScope array(none_.name());
+    gl::api().ActiveTexture(GL_TEXTURE0);
+    resize(size);
+    estimate(depth_texture);
+    blur(0, 1, {1.f / static_cast<float>(small_.width), 0});
+    blur(1, 0, {0, 1.f / static_cast<float>(small_.height)});
+    const gl::ProgramScope program(apply_.id());
+    const gl::BlendScope multiply(GL_DST_COLOR, GL_ZERO);
+    gl::api().BindTexture(GL_TEXTURE_2D, textures_[0].name());
+    apply_source_.set(0);
+    apply_strength_.set(strength);
+    gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
   }
-}
 
-void OcclusionPass::estimate(unsigned depth_texture) {
-  const gl::TargetScope target(framebuffers_[0].name(), small_.width, small_.height);
-  const gl::ProgramScope program(estimate_.id());
-  gl::api().BindTexture(GL_TEXTURE_2D, depth_texture);
-  estimate_depth_.set(0);
-  gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
-}
+ private:
+  void resize(PixelSize size) {
+    const int divisor = size.width * size.height > kSharpPixels ? 2 : 1;
+    const PixelSize small{(size.width + divisor - 1) / divisor, (size.height + divisor - 1) / divisor};
+    if (small.width == small_.width && small.height == small_.height) return;
+    small_ = small;
+    for (int i = 0; i < 2; ++i) {
+      gl::attach(framebuffers_[i], textures_[i], {small.width, small.height, GL_RG8, GL_RG});
+      const gl::TargetScope target(framebuffers_[i].name(), small.width, small.height);
+      US_CHECK(gl::api().CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
+               "OpenGL makes no framebuffer for occlusion");
+    }
+  }
 
-void OcclusionPass::blur(int from, int to, const Eigen::Vector2f& step) {
-  const gl::TargetScope target(framebuffers_[to].name(), small_.width, small_.height);
-  const gl::ProgramScope program(blur_.id());
-  gl::api().BindTexture(GL_TEXTURE_2D, textures_[from].name());
-  blur_source_.set(0);
-  blur_step_.set(step);
-  gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
-}
+  void estimate(unsigned depth_texture) {
+    const gl::TargetScope target(framebuffers_[0].name(), small_.width, small_.height);
+    const gl::ProgramScope program(estimate_.id());
+    gl::api().BindTexture(GL_TEXTURE_2D, depth_texture);
+    estimate_depth_.set(0);
+    gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
+  }
 
-void OcclusionPass::draw(unsigned depth_texture, PixelSize size, float strength) {
-  const gl::CapabilityScope depth(GL_DEPTH_TEST, false);
-  const gl::VertexArrayScope array(none_.name());
-  gl::api().ActiveTexture(GL_TEXTURE0);
-  resize(size);
-  estimate(depth_texture);
-  blur(0, 1, {1.f / static_cast<float>(small_.width), 0});
-  blur(1, 0, {0, 1.f / static_cast<float>(small_.height)});
-  const gl::ProgramScope program(apply_.id());
-  const gl::BlendScope multiply(GL_DST_COLOR, GL_ZERO);
-  gl::api().BindTexture(GL_TEXTURE_2D, textures_[0].name());
-  apply_source_.set(0);
-  apply_strength_.set(strength);
-  gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
-}
+  void blur(int from, int to, const Eigen::Vector2f& step) {
+    const gl::TargetScope target(framebuffers_[to].name(), small_.width, small_.height);
+    const gl::ProgramScope program(blur_.id());
+    gl::api().BindTexture(GL_TEXTURE_2D, textures_[from].name());
+    blur_source_.set(0);
+    blur_step_.set(step);
+    gl::api().DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+  gl::Program estimate_{"occlusion", kCoverGlsl, kEstimate}, blur_{"occlusion blur", kCoverGlsl, kBlur},
+      apply_{"occlusion applying", kCoverGlsl, kApply};
+  gl::Uniform<int> estimate_depth_{estimate_, "u_depth"}, blur_source_{blur_, "u_source"};
+  gl::Uniform<Eigen::Vector2f> blur_step_{blur_, "u_step"};
+  gl::Uniform<int> apply_source_{apply_, "u_source"};
+  gl::Uniform<float> apply_strength_{apply_, "u_strength"};
+  gl::VertexArray none_;
+  PixelSize small_;
+  gl::Texture textures_[2];
+  gl::Framebuffer framebuffers_[2];
+};
 
 }  // namespace understudy::render

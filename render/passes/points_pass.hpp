@@ -1,9 +1,11 @@
+// Points as lit round discs, tilted along their normals, or small balls where there are none.
+#pragma once
+
+#include "render/gl/array_cache.hpp"
 #include "render/gl/scopes.hpp"
 #include "render/passes/frame.hpp"
-#include "render/passes/passes.hpp"
 
 namespace understudy::render {
-namespace {
 
 // A disc is lit once, as a whole; its tilt makes it an ellipse on the screen. All of it has its centre's
 // depth: writing a depth of its own would cost twice as much as all the rest.
@@ -69,36 +71,44 @@ void main() {
 }
 )";
 
-}  // namespace
+class PointsPass {
+ public:
+  /// `arrays` outlives the pass.
+  explicit PointsPass(gl::ArrayCache& arrays) : arrays_(arrays) {}
 
-PointsPass::Kind::Kind(const char* name, const std::string& vertex, const std::string& fragment)
-    : program(name, vertex, fragment) {}
+  /// Throws Error when normals or colours are of another number than the points. multisampled: of the target
+  /// that is bound.
+  void draw(const PointsView& view, bool multisampled) {
+    const Eigen::Index count = view.positions->rows();
+    check_rows("normals", view.normals->rows(), count);
+    check_rows("colours", view.colors->rows(), count);
+    if (count == 0) return;
+    const bool flat = view.normals->rows() > 0;
+    const Kind& kind = flat ? discs_ : balls_;
+    const gl::ProgramScope program(kind.program.id());
+    const gl::VertexArrayScope array(kind.array.name());
+    const gl::CapabilityScope size(GL_PROGRAM_POINT_SIZE, true),
+        coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, multisampled), whole(GL_SAMPLE_ALPHA_TO_ONE, multisampled);
+    gl::use_attribute(0, arrays_.of(view.positions), 3);
+    if (flat) gl::use_attribute(1, arrays_.of(view.normals), 3);
+    if (view.colors->rows() > 0)
+      gl::use_attribute(2, arrays_.of(view.colors), 3);
+    else
+      gl::use_constant_attribute(2, view.color);
+    kind.radius.set(view.radius);
+    kind.smooth.set(multisampled ? 1.f : 0.f);
+    gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
+  }
 
-PointsPass::PointsPass(gl::ArrayCache& arrays)
-    : arrays_(arrays),
-      discs_("discs", kDiscVertex, kDiscFragment),
-      balls_("balls", kBallVertex, kBallFragment) {}
+ private:
+  struct Kind {
+    gl::Program program;
+    gl::Uniform<float> radius{program, "u_radius"}, smooth{program, "u_smooth"};
+    gl::VertexArray array{};
+  };
 
-void PointsPass::draw(const PointsView& view, bool multisampled) {
-  const Eigen::Index count = view.positions->rows();
-  check_rows("normals", view.normals->rows(), count);
-  check_rows("colours", view.colors->rows(), count);
-  if (count == 0) return;
-  const bool flat = view.normals->rows() > 0;
-  const Kind& kind = flat ? discs_ : balls_;
-  const gl::ProgramScope program(kind.program.id());
-  const gl::VertexArrayScope array((flat ? disc_array_ : ball_array_).name());
-  const gl::CapabilityScope size(GL_PROGRAM_POINT_SIZE, true),
-      coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, multisampled), whole(GL_SAMPLE_ALPHA_TO_ONE, multisampled);
-  gl::use_attribute(0, arrays_.of(view.positions), 3);
-  if (flat) gl::use_attribute(1, arrays_.of(view.normals), 3);
-  if (view.colors->rows() > 0)
-    gl::use_attribute(2, arrays_.of(view.colors), 3);
-  else
-    gl::use_constant_attribute(2, view.color);
-  kind.radius.set(view.radius);
-  kind.smooth.set(multisampled ? 1.f : 0.f);
-  gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
-}
+  gl::ArrayCache& arrays_;
+  Kind discs_{{"discs", kDiscVertex, kDiscFragment}}, balls_{{"balls", kBallVertex, kBallFragment}};
+};
 
 }  // namespace understudy::render
