@@ -58,11 +58,10 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
       ->check(CLI::IsMember(names_of(engines())));
   command.add_option("--extractor", method.extractor, "skeleton extraction; " + help_of(extractors()))
       ->check(CLI::IsMember(names_of(extractors())));
+  std::map<std::string, RootMode> roots;
+  for (const char* name : kRootNames) roots.emplace(name, static_cast<RootMode>(roots.size()));
   command.add_option("--root", method.root, "path: scaled by leg length, original, in-place")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, RootMode>{{"scaled", RootMode::Scaled},
-                                                                          {"original", RootMode::Original},
-                                                                          {"in-place", RootMode::InPlace}},
-                                          CLI::ignore_case));
+      ->transform(CLI::CheckedTransformer(roots, CLI::ignore_case));
   command.add_flag("!--no-near", method.near, "skips the part refiner for limbs and head");
   command.add_flag("!--no-swap-repair", method.repair_swaps, "does not repair left-right swaps");
   command.add_flag("!--no-smoothing", method.smooth_joints, "does not smooth extracted joints");

@@ -32,6 +32,21 @@ FieldsOf<S, Method> fields(V& visit, S& method) {
   visit("root", method.root, kRootNames);
 }
 
+/// What follows the extractor and can be switched off.
+struct FilterSwitch {
+  const char* name;  ///< in commands
+  bool Method::*on;
+  const char *label, *explanation;  ///< on the screen
+};
+constexpr FilterSwitch kFilterSwitches[] = {
+    {"swaps", &Method::repair_swaps, "Repair swaps", "Corrects limbs whose left and right were swapped"},
+    {"smooth", &Method::smooth_joints, "Smooth joints", "Smooths noise in the extracted joints"},
+    {"lengths", &Method::fix_lengths, "Fix lengths", "Keeps bones at one length"},
+    {"feet", &Method::lock_feet, "Lock feet", "Keeps standing feet from sliding"},
+    {"contacts", &Method::keep_contacts, "Hand contacts",
+     "Hands that touch the body do so on the target, too"},
+    {"near", &Method::near, "Part refiner", "Refines limbs and head from close crops of the scan"}};
+
 /// What of it the pipeline does, networks apart.
 RetargetOptions retarget_options(const Method& method);
 

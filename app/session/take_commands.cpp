@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <map>
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
@@ -99,18 +98,17 @@ void add_rig(Commands& commands) {
                     [](Call& c) { c.take().target.bones.clear(); });
 }
 
+std::vector<std::string> filter_names() {
+  std::vector<std::string> names;
+  for (const FilterSwitch& filter : kFilterSwitches) names.push_back(filter.name);
+  return names;
+}
+
 /// One setting of a method, "engine=paper".
 void set_method(Method& method, const std::string& key, const std::string& value) {
-  static const std::map<std::string, bool Method::*> kSwitches = {{"offsets", &Method::offsets},
-                                                                  {"swaps", &Method::repair_swaps},
-                                                                  {"smooth", &Method::smooth_joints},
-                                                                  {"lengths", &Method::fix_lengths},
-                                                                  {"feet", &Method::lock_feet},
-                                                                  {"contacts", &Method::keep_contacts},
-                                                                  {"near", &Method::near}};
-  ArgumentReader({key}).one_of(
-      0, "setting",
-      {"engine", "extractor", "offsets", "root", "swaps", "smooth", "lengths", "feet", "contacts", "near"});
+  std::vector<std::string> settings = filter_names();
+  settings.insert(settings.begin(), {"engine", "extractor", "offsets", "root"});
+  ArgumentReader({key}).one_of(0, "setting", settings);
   const ArgumentReader words({value});
   if (key == "engine")
     method.engine = words.one_of(0, "engine", names_of(engines()));
@@ -118,8 +116,10 @@ void set_method(Method& method, const std::string& key, const std::string& value
     method.extractor = words.one_of(0, "extractor", names_of(extractors()));
   else if (key == "root")
     method.root = words.choice<RootMode>(0, "path", kRootNames);
-  else
-    method.*kSwitches.at(key) = words.on(0);
+  else if (key == "offsets")
+    method.offsets = words.on(0);
+  for (const FilterSwitch& filter : kFilterSwitches)
+    if (key == filter.name) method.*filter.on = words.on(0);
 }
 
 void compare(Call& c) {
@@ -146,12 +146,11 @@ void add_methods(Commands& commands) {
   setting("extractor", "Skeleton extraction", "TAKE " + names_of(extractors(), "|"));
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
   setting("root", "Path", "TAKE scaled|original|in-place");
-  commands.add_edit({"method.filter", "Filter", "TAKE swaps|smooth|lengths|feet|contacts|near on|off"},
-                    [](Call& c) {
-                      const std::string& filter =
-                          c.one_of(1, "filter", {"swaps", "smooth", "lengths", "feet", "contacts", "near"});
-                      set_method(c.take().method, filter, c.word(2, "switch"));
-                    });
+  std::string filters;
+  for (const std::string& name : filter_names()) append_item(filters, name, "|");
+  commands.add_edit({"method.filter", "Filter", "TAKE " + filters + " on|off"}, [](Call& c) {
+    set_method(c.take().method, c.one_of(1, "filter", filter_names()), c.word(2, "switch"));
+  });
   commands.add_edit({"compare.add", "Compare with another method", "TAKE [SETTING=VALUE ...]"}, compare);
 }
 

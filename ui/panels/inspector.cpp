@@ -234,21 +234,11 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
 }
 
 void draw_filter(const app::Method& method, PanelContext& context, const std::string& k) {
-  struct Switch {
-    std::string name, label, explanation;
-    bool on;
-  };
-  const Switch switches[] = {
-      {"swaps", "Repair swaps", "Corrects limbs whose left and right were swapped", method.repair_swaps},
-      {"smooth", "Smooth joints", "Smooths noise in the extracted joints", method.smooth_joints},
-      {"lengths", "Fix lengths", "Keeps bones at one length", method.fix_lengths},
-      {"feet", "Lock feet", "Keeps standing feet from sliding", method.lock_feet},
-      {"contacts", "Hand contacts", "Hands that touch the body do so on the target, too",
-       method.keep_contacts},
-      {"near", "Part refiner", "Refines limbs and head from close crops of the scan", method.near}};
-  for (const Switch& s : switches)
-    ask_toggle(context, {"method." + s.name, s.label, s.explanation, "method.filter " + k + " " + s.name},
-               s.on);
+  for (const app::FilterSwitch& s : app::kFilterSwitches) {
+    const std::string name = s.name;
+    ask_toggle(context, {"method." + name, s.label, s.explanation, "method.filter " + k + " " + name},
+               method.*s.on);
+  }
 }
 
 void draw_work(const app::Session& session, PanelContext& context) {
