@@ -21,27 +21,33 @@ namespace fs = std::filesystem;
 
 constexpr const char* kTables[] = {"baselines", "seen", "contexts", "rotation", "extraction", "offsets"};
 
-/// Calls visit(key, member) for all that the file may have of a row.
-template <class Visit>
-void each_key(ReportRow& row, Visit visit) {
-  MethodOptions& how = row.eval.how;
+/// Calls visit(key, member) for all that the file may have of a row and that its results follow from as it is.
+template <class Row, class Visit>
+void each_result_key(Row& row, Visit visit) {
+  auto& method = row.eval.how.method;
   visit("table", row.table);
   visit("name", row.name);
-  visit("suite", row.suite);
-  visit("budget", row.budget);
   visit("breakdown", row.breakdown);
-  visit("engine", how.method.engine);
-  visit("extractor", how.method.extractor);
-  visit("weights", how.weights);
-  visit("engine_weights", how.engine_file);
-  visit("extractor_weights", how.extractor_file);
-  visit("near", how.method.near);
-  visit("offsets", how.method.offsets);
-  visit("foot_lock", how.method.lock_feet);
+  visit("engine", method.engine);
+  visit("extractor", method.extractor);
+  visit("near", method.near);
+  visit("offsets", method.offsets);
+  visit("foot_lock", method.lock_feet);
   visit("oracle", row.eval.oracle);
   visit("baseline", row.eval.baseline);
   visit("context", row.eval.restart_every);
   visit("limit", row.eval.limit);
+}
+
+/// The same for all that the file may have of a row.
+template <class Visit>
+void each_key(ReportRow& row, Visit visit) {
+  each_result_key(row, visit);
+  visit("suite", row.suite);
+  visit("budget", row.budget);
+  visit("weights", row.eval.how.weights);
+  visit("engine_weights", row.eval.how.engine_file);
+  visit("extractor_weights", row.eval.how.extractor_file);
 }
 
 ReportRow row_from(const Json& json, const fs::path& folder) {
@@ -106,26 +112,16 @@ int64_t made(const std::string& cases) {
   return newest;
 }
 
-/// What a row is, for recognising its results of an earlier run.
-Json identity(const ReportRow& row) {
+/// What a row is, for recognising its results of an earlier run. Sorted: its keys compare in any order.
+nlohmann::json identity(const ReportRow& row) {
   const EvalOptions& e = row.eval;
-  return {{"table", row.table},
-          {"name", row.name},
-          {"cases", e.cases},
-          {"made", made(e.cases)},
-          {"engine", e.how.method.engine},
-          {"extractor", e.how.method.extractor},
-          {"weights", report_header(nn::weights_folder(network_options(e.how)))["weights"]},
-          {"files", {marked(e.how.engine_file), marked(e.how.extractor_file)}},
-          {"near", e.how.method.near},
-          {"offsets", e.how.method.offsets},
-          {"foot_lock", e.how.method.lock_feet},
-          {"oracle", e.oracle},
-          {"baseline", e.baseline},
-          {"body", e.baseline == "fit" ? marked(e.body) : ""},
-          {"breakdown", row.breakdown},
-          {"context", e.restart_every},
-          {"limit", e.limit}};
+  nlohmann::json known = {{"cases", e.cases},
+                          {"made", made(e.cases)},
+                          {"weights", report_header(nn::weights_folder(network_options(e.how)))["weights"]},
+                          {"files", {marked(e.how.engine_file), marked(e.how.extractor_file)}},
+                          {"body", e.baseline == "fit" ? marked(e.body) : ""}};
+  each_result_key(row, [&](const char* key, const auto& member) { known[key] = member; });
+  return known;
 }
 
 std::string file_of(const ReportOptions& options, const ReportRow& row) {
@@ -143,8 +139,9 @@ Json read_json(const std::string& path) {
 ReportResult result_of(const ReportOptions& options, ReportRow row) {
   ReportResult result{std::move(row), {}, ""};
   const std::string file = file_of(options, result.row);
-  const Json known = identity(result.row), before = read_json(file);
-  if (!options.again && before.is_object() && before.value("row", Json()) == known) {
+  const Json before = read_json(file);
+  const nlohmann::json known = identity(result.row);
+  if (!options.again && before.is_object() && nlohmann::json(before.value("row", Json())) == known) {
     result.report = before;
     return result;
   }
