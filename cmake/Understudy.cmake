@@ -54,9 +54,8 @@ endfunction()
 function(us_test_settings target)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target} PRIVATE warnings)
-  target_compile_definitions(${target} PRIVATE US_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data"
-    US_SOURCE_DIR="${PROJECT_SOURCE_DIR}" US_PROGRAM="$<TARGET_FILE_DIR:understudy>/understudy"
-    US_INTEROP_PACKAGES="${PROJECT_BINARY_DIR}/interop")
+  target_compile_definitions(${target} PRIVATE US_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    US_PROGRAM="$<TARGET_FILE_DIR:understudy>/understudy" US_INTEROP_PACKAGES="${PROJECT_BINARY_DIR}/interop")
 endfunction()
 
 # us_tests(NAME FOLDER [EACH] [TORCH] [TIMEOUT SECONDS] LABELS ... LIBS ...): the *_test.cpp of a folder as one program,

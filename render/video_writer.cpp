@@ -52,7 +52,7 @@ class Mp4 final : public VideoWriter::Sink {
  public:
   Mp4(std::string path, const VideoOptions& options)
       : path_(std::move(path)), file_(path_), width_(options.width), height_(options.height) {
-    av_log_set_level(AV_LOG_FATAL);  // what goes wrong is told by our own sentences
+    av_log_set_level(AV_LOG_FATAL);  // errors have our own sentences
     open_encoder(options);
     open_file();
     open_picture();

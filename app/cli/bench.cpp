@@ -32,7 +32,7 @@ class Repeated final : public Source {
     if (left_-- <= 0) return std::nullopt;
     auto frame = inner_->next();
     if (frame) return frame;
-    const auto sink = log::set_sink([](log::Level, const std::string&) {});  // it has all been told once
+    const auto sink = log::set_sink([](log::Level, const std::string&) {});  // all of it was logged once
     inner_ = open_source(options_);
     frame = inner_->next();
     log::set_sink(sink);

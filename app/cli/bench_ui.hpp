@@ -1,4 +1,4 @@
-// What the studio costs: frames a second, delays, memory, start-up, measured without a window.
+// Measures the studio: frames a second, delays, memory, start-up, measured without a window.
 #pragma once
 
 #include <string>

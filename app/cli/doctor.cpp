@@ -18,7 +18,7 @@ void line(const char* what, const std::string& found) {
   std::printf("%-10s %s\n", what, found.c_str());
 }
 
-/// What `find` says, or why it could not.
+/// What `find` returns, or why it failed.
 template <class Find>
 std::string found_or_why(Find find, bool& healthy) {
   std::string found;

@@ -196,7 +196,7 @@ std::vector<std::string> chosen_cases(const EvalOptions& options) {
 
 }  // namespace
 
-Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& told) {
+Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& on_result) {
   Bench bench{options, nullptr};
   if (options.baseline == "fit") {
     US_CHECK(!options.body.empty(), "the baseline \"fit\" needs --body, an SMPL-format body");
@@ -215,7 +215,7 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
       evaluate_case(bench, folder, c, result, evaluation.breakdown);
     });
     check_interrupt("in case " + result.name);
-    told(result);
+    on_result(result);
     if (result.error.empty()) {
       metrics.push_back(result.metrics);
       evaluation.latency.add(result.latency);

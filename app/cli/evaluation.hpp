@@ -20,7 +20,7 @@ struct EvalOptions {
   std::string baseline;   ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
   std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
   std::string body;                ///< SMPL-format, of the baseline "fit"
-  int worst = 20;                  ///< frames told as the worst
+  int worst = 20;                  ///< frames listed as the worst
   MethodOptions how;
 };
 
@@ -44,9 +44,9 @@ struct Evaluation {
 /// floor at 0.
 SourceOptions case_source(const Case& c);
 
-/// Evaluates every chosen case; `told` hears of each when it is done. A case that fails has its error told
+/// Evaluates every chosen case; `on_result` gets each when it is done. A case that fails has an error,
 /// and the others go on. Throws Error when there is no case.
-Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& told);
+Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& on_result);
 
 /// report.json: see Breakdown::json for "breakdown".
 Json report_of(const EvalOptions& options, const Evaluation& evaluation);

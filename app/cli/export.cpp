@@ -44,7 +44,7 @@ struct ExportOptions {
   int64_t frames = 0;
 };
 
-/// What is written, and who is told to have done it.
+/// What is written, and its performer.
 struct Performance {
   ExportInput input;
   std::string target;  // for people

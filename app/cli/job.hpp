@@ -21,7 +21,7 @@ struct JobOptions {
   bool progress_lines = false;  ///< new lines of progress even on a terminal: another job writes there too
 };
 
-/// Does the job and tells how it goes. Files appear whole at the end, or not at all. Throws Error.
+/// Does the job and reports progress. Files appear whole at the end, or not at all. Throws Error.
 void run_job(const JobOptions& options);
 
 }  // namespace understudy::app

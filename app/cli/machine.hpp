@@ -5,7 +5,7 @@
 
 namespace understudy::app {
 
-/// Memory of this process now and at its highest, MB (10^6 bytes). 0 where the system does not say.
+/// Memory of this process now and at its highest, MB (10^6 bytes). 0 where the system does not report it.
 double resident_mb();
 double peak_resident_mb();
 

@@ -20,7 +20,7 @@ struct MeasureOptions {
   int every = 1;  ///< frames between looks at what is inside
 };
 
-/// What can be said of the skeletons seen in scans without knowing the right ones: as extracted, and repaired
+/// What can be measured of the skeletons seen in scans without ground truth: as extracted, and repaired
 /// and smoothed.
 struct Measured {
   explicit Measured(double fps, int every)

@@ -12,10 +12,10 @@ class App;
 
 namespace understudy::app {
 
-/// All that may be said of a source but --source itself.
+/// All options of a source but --source itself.
 void add_source_options(CLI::App& command, SourceOptions& source);
 
-/// All that may be said of a target but --target itself.
+/// All options of a target but --target itself.
 void add_target_options(CLI::App& command, TargetOptions& target);
 
 /// A method, and where its weights are.

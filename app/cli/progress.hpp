@@ -1,4 +1,4 @@
-// Tells how far a job is: one line that is written over on a terminal, a line every few seconds elsewhere.
+// Prints the progress of a job: one line that is overwritten on a terminal, else a line now and then.
 #pragma once
 
 #include <chrono>

@@ -92,7 +92,7 @@ namespace {
 struct ReportOptions {
   std::string cases, out, rows, weights, body;
   std::vector<std::string> tables;
-  int limit = 0;       ///< cases a row; 0: as the rows say
+  int limit = 0;       ///< cases a row; 0: as in the rows
   bool again = false;  ///< evaluate also what was evaluated before
 };
 

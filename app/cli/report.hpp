@@ -13,7 +13,7 @@ struct ReportRow {
   std::string name;        ///< of the row
   std::string suite;       ///< folder of cases
   std::string budget;      ///< what its networks were trained with, in words
-  bool breakdown = false;  ///< the page also tells where its error lies and shows its worst frames
+  bool breakdown = false;  ///< the page also breaks down its error and shows its worst frames
   EvalOptions eval;        ///< its cases are not named yet
 };
 
@@ -35,7 +35,7 @@ struct ReportResult {
   std::string lost;  ///< why the row is left out; empty: it is not
 };
 
-/// Writes FOLDER/report.md and its plots. `command`: how the page was made; `note`: what else its head says.
+/// Writes FOLDER/report.md and its plots. `command`: how the page was made; `note`: more text for its head.
 void write_report_page(const std::string& folder, const std::vector<ReportResult>& results,
                        const std::string& command, const std::string& note);
 

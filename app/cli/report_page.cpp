@@ -14,7 +14,7 @@
 namespace understudy::app {
 namespace {
 
-/// A figure of a table: where it lies in a report, and how it is told there.
+/// A figure of a table: where it is in a report, and how it is printed.
 struct Column {
   const char *group, *key;
   const char* title = nullptr;  ///< null: the key
@@ -23,7 +23,7 @@ struct Column {
 };
 
 struct Table {
-  const char *id, *title, *says;
+  const char *id, *title, *text;
   std::vector<Column> columns;
 };
 
@@ -82,7 +82,7 @@ const std::vector<Table>& tables() {
        "truth's.",
        kContacts},
       {"seen", "Rotations seen on the surface",
-       "Positions alone do not say how a bone is turned about itself, nor how head, hands and feet are.",
+       "Positions alone do not determine how a bone is twisted, nor how head, hands and feet are turned.",
        kRotations},
       {"contexts", "Contexts",
        "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
@@ -136,7 +136,7 @@ void write_table(std::ostream& page, const Table& table, const std::vector<Repor
       continue;
     }
     if (!begun) {
-      page << "\n## " << table.title << "\n\n" << table.says << "\n\n";
+      page << "\n## " << table.title << "\n\n" << table.text << "\n\n";
       std::vector<std::string> head = {"suite", "row"};
       for (const Column& column : table.columns) head.push_back(column.title ? column.title : column.key);
       head.insert(head.end(), {"cases", "trained with"});

@@ -68,13 +68,13 @@ void Breakdown::add_worst(const std::string& folder, const Case& c, const Evalua
                       failures[t]});
   }
   std::stable_sort(frames.begin(), frames.end(), worse);
-  std::vector<WorstFrame> told;  // of this case, far enough apart
+  std::vector<WorstFrame> chosen;  // of this case, far enough apart
   for (const WorstFrame& frame : frames) {
-    if (told.size() >= keep_) break;
+    if (chosen.size() >= keep_) break;
     const auto near = [&](const WorstFrame& other) { return std::abs(other.frame - frame.frame) < kApart; };
-    if (std::none_of(told.begin(), told.end(), near)) told.push_back(frame);
+    if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(frame);
   }
-  worst_.insert(worst_.end(), told.begin(), told.end());
+  worst_.insert(worst_.end(), chosen.begin(), chosen.end());
   std::stable_sort(worst_.begin(), worst_.end(), worse);
   if (worst_.size() > keep_) worst_.resize(keep_);
 }

@@ -1,5 +1,5 @@
 // Where the error of an evaluation lies: by joint, motion and body, by kind of failure, by frame; and whether
-// the extractor's confidence says so.
+// the extractor's confidence shows it.
 #pragma once
 
 #include <map>
@@ -21,8 +21,7 @@ struct WorstFrame {
   FrameFailures failures{};
 };
 
-/// What an extractor was confident of, and how far off it was: of joints, and of frames (the means of their
-/// joints). Metres.
+/// Confidence and error of an extractor: of joints, and of frames (the means of their joints). Metres.
 struct ConfidenceRecord {
   std::vector<double> confidence, error, frame_confidence, frame_error;
   void append(const ConfidenceRecord& other);
@@ -43,7 +42,7 @@ class Breakdown {
   void add(const std::string& folder, const Case& c, const Evaluator& evaluator, const Truth& truth);
   /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures": {"jolt":
   /// {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...]}; without
-  /// what nothing is known of.
+  /// what is unknown.
   Json json() const;
   const ConfidenceRecord& confidence() const { return confidence_; }
   /// The worst first; those of one case are at least ten frames apart.

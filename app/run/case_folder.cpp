@@ -43,7 +43,7 @@ std::vector<Rotations> rotation_frames(const std::vector<float>* values) {
   std::vector<Rotations> result(values ? values->size() / (kJointCount * 9) : 0);
   for (size_t t = 0; t < result.size(); ++t)
     for (int j = 0; j < kJointCount; ++j)
-      result[t][j] = Eigen::Map<const Row>(&(*values)[(t * kJointCount + static_cast<size_t>(j)) * 9]);
+      result[t][j] = Eigen::Map<const Row>(&(*values)[(t * kJointCount + j) * 9]);
   return result;
 }
 

@@ -20,7 +20,7 @@ struct Case {
   std::vector<std::string> tags;
 };
 
-/// What a case knows about the right answer; parts may be missing (empty).
+/// The ground truth of a case; parts may be missing (empty).
 struct Truth {
   int64_t frames = 0;
   int64_t vertex_count = 0;

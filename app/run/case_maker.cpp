@@ -33,7 +33,7 @@ using Eigen::Vector3d;
 constexpr int kExtractionCases = 40, kExtractionFrames = 12, kTargets = 4, kMotions = 4;
 constexpr int kBendFrames = 24;  // from straight to bent and back
 
-/// Who shows what to whom.
+/// Which person performs which motion for which target.
 struct CasePlan {
   std::string name;
   EvaluatedMotion motion;

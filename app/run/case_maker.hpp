@@ -14,12 +14,12 @@ struct SuiteOptions {
   std::string split = "dev";
   std::string body;   ///< SMPL-format; empty: the data folder's own
   int frames = 90;    ///< of a case; those of joints alone have 12
-  int points = 8000;  ///< about how many a scan has
-  int cases = 0;      ///< only the first so many; 0: all
+  int points = 8000;  ///< of a scan, roughly
+  int cases = 0;      ///< at most this many; 0: all
   uint32_t seed = 0;  ///< the same options give the same files
 };
 
-/// Writes the cases of a suite; tells the name of each as it is done. Returns their number. Truth is the same
+/// Writes the cases of a suite; reports each name as it is done. Returns their number. Truth is the same
 /// local rotations on the target, its path the source's from where it starts, scaled by leg length and put on
 /// the floor; every case is turned to a random heading. Throws Error naming what is missing. The suites:
 ///   naked: 4 targets (the tallest, shortest, heaviest, slimmest of the split) x 4 motions, sources undressed,
@@ -30,7 +30,7 @@ struct SuiteOptions {
 ///   bends: the naked suite's targets and four more; elbows, shoulders, knees and hips bent by 120 degrees
 ///   extraction: 40 people and short clips, joints of the source only
 ///   occluded: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
-///     without a limb (a tag tells which)
+///     without a limb (named by a tag)
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 
 }  // namespace understudy::app

@@ -17,7 +17,7 @@
 
 namespace understudy::app {
 
-/// Key and value, in the order of the report. Figures that cannot be told for a sequence are left out.
+/// Key and value, in the order of the report. Figures that cannot be measured for a sequence are left out.
 using Metrics = std::vector<std::pair<std::string, double>>;
 
 /// One finished frame, as the evaluator sees it. What is not there is null.
@@ -26,15 +26,15 @@ struct EvaluatedFrame {
   const Joints* joints = nullptr;         ///< of the target
   const Rotations* rotations = nullptr;   ///< local
   const Joints* source_joints = nullptr;  ///< extracted, repaired and smoothed
-  const Joints* raw_joints = nullptr;     ///< extracted, as the network says
+  const Joints* raw_joints = nullptr;     ///< extracted, as predicted by the network
   const Mesh* scan = nullptr;
   const Confidence* confidence = nullptr;  ///< of the raw joints
 };
 
 /// Collects a sequence. Surface figures are summed as the frames come; the slow ones (self_penetration,
-/// inside) look at every tenth frame, unless told otherwise.
+/// inside) look at every tenth frame by default.
 ///
-/// Where the truth knows what the source's own surface does, too: hand_contact_kept, the share of the
+/// Where the truth has the source's own surface, too: hand_contact_kept, the share of the
 /// source's contacts (a hand within 2 cm of torso, head, thighs, other arm or other hand; each frame, hand
 /// and part is one) in which the target's same hand is within 2 cm of the same part; hand_contact_gap_mm, the
 /// mean gap of the target in them; arm_buried, the share of hands and forearms inside the rest of the
@@ -51,7 +51,7 @@ class Evaluator {
   void push(const EvaluatedFrame& frame);
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
-  /// What the surface of the frame pushed last says, by the metric's key; without what is not told.
+  /// Figures of the last frame's surface, by the metric's key; those not measured are left out.
   const std::map<std::string, double>& last() const { return last_; }
 
   // What was pushed, in order; empty where it was null.
@@ -65,7 +65,7 @@ class Evaluator {
   struct Mean {
     double sum = 0;
     int count = 0;
-    double per_unit = 1;  // from metres, where the figure is told in another unit
+    double per_unit = 1;  // from metres, where the figure has another unit
     double value() const { return per_unit * sum / count; }
   };
   void note(const char* key, double value);
@@ -86,7 +86,7 @@ class Evaluator {
   MetricSequence seen_, true_;
   std::vector<Confidence> confidence_;
   std::map<std::string, double> last_;
-  std::map<std::string, Mean> means_;  // of what surfaces say, by the metric's key
+  std::map<std::string, Mean> means_;  // of surface figures, by the metric's key
   double floor_worst_ = 0;
 };
 

@@ -41,9 +41,7 @@ SurfaceTopology topology_of(const PreparedCharacter& c) {
     textured = textured && !part.uvs.empty();
   }
   const auto& numbers = c.character.file_vertices;
-  const auto number = [&](Eigen::Index v) {
-    return numbers.empty() ? static_cast<int>(v) : numbers[static_cast<size_t>(v)];
-  };
+  const auto number = [&](Eigen::Index v) { return numbers.empty() ? static_cast<int>(v) : numbers[v]; };
   out.faces.resize(faces, 3);
   if (textured) out.uv_faces.resize(faces, 3), out.uvs.resize(vertices, 2);
   if (colored) out.colors = Points::Zero(out.vertex_count, 3);

@@ -14,7 +14,7 @@ class MotionOutput;
 
 /// One row of the table of formats that a performed motion can be written in.
 struct ExportFormat {
-  const char* name;    ///< "bvh", as --format and commands say it
+  const char* name;    ///< "bvh", as in --format and commands
   const char* suffix;  ///< ".bvh"; empty: a folder
   const char* label;   ///< for menus
   const char* words;   ///< what it is good for, one sentence
@@ -35,11 +35,11 @@ std::string export_suffixes();
 /// Throws Error at once when nothing could be written there, before hours of work are done for it.
 void check_export(const std::string& path, const ExportFormat& format);
 
-/// Throws Error where an option says something that such a file cannot hold.
+/// Throws Error where an option asks for something that such a file cannot hold.
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file);
 
-/// Who performs, as on screen.
+/// The character that performs, as on screen.
 struct ExportBody {
   std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Deformer> screen;  ///< bound to the target, with painted weights
@@ -62,15 +62,15 @@ class MotionOutput {
   /// From the frames' source_joints to the coordinates of the source's file, for formats that hold them; known
   /// after the first frame.
   void set_source_to_scan(const Eigen::Matrix4d& matrix) { source_to_scan_ = matrix; }
-  /// What the written file costs. Throws Error, also where there was no frame.
+  /// Size and error of the written file. Throws Error, also where there was no frame.
   virtual ExportCost finish() = 0;
 
  protected:
   Eigen::Matrix4d source_to_scan_ = Eigen::Matrix4d::Identity();
 };
 
-/// name: of the motion. Throws Error naming the path: it cannot be written, or the format cannot do what the
-/// options want.
+/// name: of the motion. Throws Error naming the path: it cannot be written, or the format does not
+/// support the options.
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps);
 
@@ -81,7 +81,7 @@ struct ExportInput {
   Eigen::Matrix4d source_to_scan = Eigen::Matrix4d::Identity();  ///< from them to the source's file
 };
 
-/// All of it. body.file.progress is told 0..1; what it throws ends the export, and what was there stays.
+/// All of it. body.file.progress gets 0..1; what it throws ends the export, and what was there stays.
 ExportCost export_motion(const std::string& path, const ExportFormat& format, const ExportInput& input);
 
 /// "difference from the screen: mean 0.41 mm, largest 2.13 mm, 1.2 MB", for people.

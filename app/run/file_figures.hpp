@@ -1,4 +1,4 @@
-// What a performance looks like once it is in a file for engines, against the truth.
+// Figures of a performance as an exported file holds it, against the truth.
 #pragma once
 
 #include "app/run/case_folder.hpp"
@@ -7,9 +7,9 @@
 
 namespace understudy::app {
 
-/// Makes the GLB of a clip in memory, reads it back and evaluates the surface that it says for each frame as
+/// Makes the GLB of a clip in memory, reads it back and evaluates its surface in each frame as
 /// Evaluator does the screen's: file_medl_mm, file_mpvd_m; file_screen_mm is its distance to the screen's
-/// surface, file_mb what it weighs, file_s how long making it took. Throws Error when the truth has no
+/// surface, file_mb its size, file_s the time to make it. Throws Error when the truth has no
 /// vertices, or other frames.
 Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Truth& truth);
 

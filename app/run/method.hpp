@@ -11,11 +11,11 @@ namespace understudy::app {
 struct Method {
   std::string engine = "copy";      ///< motion transfer, see engines()
   std::string extractor = "dense";  ///< skeleton extraction, see extractors()
-  bool near = true;                 ///< of "dense": limbs and head are looked at again from near
+  bool near = true;                 ///< with "dense": limbs and head are refined on part crops
   bool offsets = true;              ///< pose-corrective offsets
   bool repair_swaps = true, smooth_joints = true, fix_lengths = true;  ///< of JointFilterOptions
-  bool lock_feet = true;                                               ///< feet that stand do not slide
-  bool keep_contacts = true;                                           ///< hands touch what they touched
+  bool lock_feet = true;                                               ///< standing feet do not slide
+  bool keep_contacts = true;                                           ///< hand contacts are kept
   RootMode root = RootMode::Scaled;
 };
 template <class V, class S>
@@ -47,10 +47,10 @@ constexpr FilterSwitch kFilterSwitches[] = {
      "Hands that touch the body do so on the target, too"},
     {"near", &Method::near, "Part refiner", "Refines limbs and head from close crops of the scan"}};
 
-/// What of it the pipeline does, networks apart.
+/// The options of the pipeline, networks apart.
 RetargetOptions retarget_options(const Method& method);
 
-/// Equal texts: methods that see the same skeletons in a scan.
+/// The same text for methods that extract the same skeletons from a scan.
 std::string extraction_key(const Method& method);
 
 }  // namespace understudy::app

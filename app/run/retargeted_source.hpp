@@ -21,8 +21,8 @@ struct RetargetedFrame {
   FrameTimes times;
 };
 
-/// Goes through a source once, counts its frames and takes their times. Tells the log where the source may be
-/// no person.
+/// Goes through a source once, counts its frames and takes their times. Logs a warning where the source may
+/// not be a person.
 class RetargetedSource {
  public:
   /// `retargeter` starts anew. Both must outlive this. name: for people.

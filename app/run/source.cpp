@@ -27,7 +27,7 @@ std::string in_words(double fps) {
   return printed("%g frames/s", fps);
 }
 
-/// Scans on disk, brought into the program's units and axes as the first usable frame says.
+/// Scans on disk, brought into the program's units and axes as decided from the first usable frame.
 class ScanFiles final : public Source {
  public:
   explicit ScanFiles(const SourceOptions& options)

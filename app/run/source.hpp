@@ -24,12 +24,12 @@ struct SourceOptions {
   double fps = 0;            ///< 0: the motion's own, or 30
   ImportOptions import;
   bool follow = false;   ///< the folder is still being written
-  bool as_scan = false;  ///< a skeletal motion's surface is sampled and looked at as a scan
+  bool as_scan = false;  ///< a skeletal motion's surface is sampled as a scan
   std::string clip;      ///< of a skeletal motion's animations, by name or number from 1; empty: the longest
   BoneChoices bones;     ///< of a skeletal motion, as the user wants them
-  bool quiet = false;    ///< tell nothing: another source has told it all
+  bool quiet = false;    ///< log nothing: another source has logged it all
 };
-/// What documents hold of it: `follow` and `quiet` belong to one run.
+/// What documents keep of it: `follow` and `quiet` belong to one run.
 template <class V, class S>
 FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("path", source.path, FilePath{});
@@ -57,7 +57,7 @@ struct SourceClip {
 class Source {
  public:
   virtual ~Source() = default;
-  /// None at the end. usable = false: the frame is there but says nothing.
+  /// None at the end. usable = false: the frame exists but cannot be used.
   virtual std::optional<SourceFrame> next() = 0;
   /// next() goes on with this frame, 0 the first; units, axes and floor stay those of the first usable frame.
   /// Throws Error when there is no such frame.
@@ -88,11 +88,11 @@ class Source {
   int clip_ = -1;
 };
 
-/// Says through the log what it decided about units, axes and rate. Throws Error naming the path, also where
-/// an option says something of such a source that it does not have, as bones of a scan.
+/// Logs what it decided about units, axes and rate. Throws Error naming the path, also where
+/// an option is about something that such a source does not have, as bones of a scan.
 std::unique_ptr<Source> open_source(const SourceOptions& options);
 
-/// The same of the options, as far as the path alone tells what the source is.
+/// The same of the options, as far as the path alone shows what the source is.
 void check_source_options(const SourceOptions& options);
 
 /// Turns a motion whose up is z (AMASS's own) to y up; decided from where the body's up points in the first

@@ -25,9 +25,9 @@ CharacterOptions character_options(const TargetOptions& options) {
   return result;
 }
 
-/// What cannot be done with a character is said of its file.
+/// The work's result; an error of it begins with the file's name.
 template <class Work>
-auto said_of(const std::string& path, Work work) {
+auto naming(const std::string& path, Work work) {
   try {
     return work();
   } catch (const Error& error) {
@@ -56,21 +56,21 @@ std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options) {
            "a rig is auto, theirs or ours, not '", options.rig, "'");
   Character character = read_target(options.path, options.betas);
   US_CHECK(character.vertex_count() > 0, options.path, ": holds no mesh");
-  auto standing = std::make_shared<PreparedCharacter>(said_of(
-      options.path, [&] { return load_character(std::move(character), character_options(options)); }));
-  US_CHECK(options.rig != "theirs" || standing->rigged, options.path,
-           ": has no skeleton of its own that can be driven: ", standing->map.count(),
+  auto prepared = std::make_shared<PreparedCharacter>(
+      naming(options.path, [&] { return load_character(std::move(character), character_options(options)); }));
+  US_CHECK(options.rig != "theirs" || prepared->rigged, options.path,
+           ": has no skeleton of its own that can be driven: ", prepared->map.count(),
            " of 22 joints have a bone");
-  return standing;
+  return prepared;
 }
 
-bool wants_extractor(const TargetOptions& options, const PreparedCharacter& standing) {
-  return !on_their_rig(options, standing);
+bool needs_extractor(const TargetOptions& options, const PreparedCharacter& character) {
+  return !on_their_rig(options, character);
 }
 
 std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> character,
                                                      const TargetOptions& options, const Networks& networks) {
-  said_of(options.path, [&] {
+  naming(options.path, [&] {
     find_t_pose(*character, networks.extractor.get(), networks.rest_extractor.get(),
                 character_options(options));
   });

@@ -14,7 +14,7 @@ namespace understudy::app {
 struct TargetOptions {
   std::string path;
   std::vector<float> betas;  ///< of an SMPL-format body
-  ImportOptions import;      ///< up is y unless told otherwise
+  ImportOptions import;      ///< up is y by default
   bool forward = true;       ///< without a yaw it is turned so that it faces +z; false: it stays as it is
   std::string rig = "auto";  ///< theirs: its own bones and skin; ours: the 22 joints; auto: its own, if any
   BoneChoices bones;         ///< the user's corrections of which bone is which joint
@@ -29,18 +29,18 @@ FieldsOf<S, TargetOptions> fields(V& visit, S& target) {
   visit("bones", target.bones);
 }
 
-/// The target as the retargeter wants it. The networks' extractors look at what has no rig; they are only
-/// used during the call. Says what it decided through the log. Throws Error naming the file: it cannot be
+/// The target as the retargeter needs it. The networks' extractors find the joints of what has no rig; they
+/// are only used during the call. Logs what it decided. Throws Error naming the file: it cannot be
 /// read, no body is found in it, its own rig is wanted and its bones are not known.
 std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks);
 
-/// The first half of it, which asks no network: as the file has it, upright and at its size, to be looked at.
+/// The first half of it, which uses no network: as the file has it, upright and at its size, to be shown.
 /// Throws Error naming the file.
 std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options);
-/// Whether the second half asks the networks' extractors: a mesh without a rig that it performs on.
-bool wants_extractor(const TargetOptions& options, const PreparedCharacter& standing);
+/// Whether the second half uses the networks' extractors: a mesh without a rig that it performs on.
+bool needs_extractor(const TargetOptions& options, const PreparedCharacter& character);
 /// The second half, with the same options.
-std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> standing,
+std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCharacter> character,
                                                      const TargetOptions& options, const Networks& networks);
 
 /// Whether the target performs on its own bones and skin.

@@ -144,7 +144,7 @@ void add_recovery(Commands& commands) {
 
 constexpr uint64_t kGlance = 1 << 20;  // bytes of a glTF that may be read before the UI thread draws on
 
-/// Gltf: a motion or a mesh; which of them, only more than a glance tells.
+/// Gltf: a motion or a mesh; which of them, only more than a glance shows.
 enum class Kind { Document, Case, Scans, Body, Motion, Mesh, Gltf };
 
 Kind kind_of_npz(const std::string& path) {

@@ -47,12 +47,12 @@ struct Stream {
 struct TakeWork {
   Plan::TakePlan plan;
   std::string target_is, method_is, joints_are;
-  std::shared_ptr<PreparedCharacter> standing;  // until it is the character
+  std::shared_ptr<PreparedCharacter> loaded;  // until it is the character
   std::shared_ptr<const PreparedCharacter> character;
   std::optional<Performer> performer;
   bool failed = false;
-  size_t done = 0;      // frames performed with the present settings
-  size_t told_new = 0;  // frames whose times have been told
+  size_t done = 0;        // frames performed with the present settings
+  size_t sent_times = 0;  // frames whose times have been sent
 };
 
 }  // namespace
@@ -89,7 +89,7 @@ struct Engine::Impl {
   std::unique_ptr<Source> source;
   std::map<std::string, Stream> streams;
   bool opened = false, ended = false;
-  size_t told = 0;                 // frames of the shown stream that have been told
+  size_t sent = 0;                 // frames of the shown stream that have been sent
   std::optional<Performer> alone;  // repairs and smooths what is shown where no take does
   bool has_faces = false;
   std::vector<TakeWork> takes;
@@ -99,7 +99,7 @@ struct Engine::Impl {
   bool advance(std::optional<Plan> wanted, bool afresh);
   void forget_all();
   void give_up(const std::string& problem);
-  void tell(EngineEvent event);
+  void emit(EngineEvent event);
   void change_source(const std::string& key, bool afresh);
   bool step();
   void adopt(Plan wanted);
@@ -117,7 +117,7 @@ struct Engine::Impl {
   void observe(const SourceFrame& frame, const Method& method, double read_ms);
   float interval() const;
   Observation edited(const Seen& seen, size_t frame) const;
-  bool tell_source();
+  bool send_source();
   void perform(TakeWork& take);
 };
 
@@ -127,7 +127,7 @@ bool of_frames(const EngineEvent& event) {
          !std::holds_alternative<TakeFailed>(event);
 }
 
-void Engine::Impl::tell(EngineEvent event) {
+void Engine::Impl::emit(EngineEvent event) {
   const auto held = worker.lock();
   if (own_epoch == epoch || !of_frames(event)) events.push_back(std::move(event));
 }
@@ -177,7 +177,7 @@ void Engine::Impl::forget_all() {
 void Engine::Impl::give_up(const std::string& problem) {
   forget_all();
   opened = ended = true;
-  tell(SourceFailed{problem});
+  emit(SourceFailed{problem});
 }
 
 /// Brings the thread's state in line with what is wanted; what still fits stays.
@@ -192,7 +192,7 @@ void Engine::Impl::adopt(Plan wanted) {
   const bool another_take = first(plan) != 0 && first(plan) != first(wanted);
   if (skeleton_wanted != skeleton_is || extraction_key(wanted.shown) != extraction_key(plan.shown) ||
       another_take)
-    told = 0;
+    sent = 0;
   std::vector<TakeWork> kept;
   for (const Plan::TakePlan& want : wanted.takes) {
     TakeWork take;
@@ -213,8 +213,8 @@ void Engine::Impl::adopt(Plan wanted) {
 void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   const std::string target_wanted = key_of(wanted.target), method_wanted = key_of(wanted.method),
                     joints_wanted = key_of(wanted.joints);
-  if (target_wanted != take.target_is) take.character.reset(), take.standing.reset();
-  if (target_wanted != take.target_is || method_wanted != take.method_is) take.told_new = 0;
+  if (target_wanted != take.target_is) take.character.reset(), take.loaded.reset();
+  if (target_wanted != take.target_is || method_wanted != take.method_is) take.sent_times = 0;
   if (target_wanted != take.target_is || method_wanted != take.method_is ||
       joints_wanted != take.joints_are) {
     take.performer.reset();
@@ -231,24 +231,24 @@ void Engine::Impl::close_source() {
   source.reset();
   for (auto& [name, stream] : streams) stream.frames.clear(), stream.observer.reset();
   opened = ended = has_faces = false;
-  told = 0;
+  sent = 0;
   for (TakeWork& take : takes) {
     if (take.performer) take.performer->restart();
-    take.done = take.told_new = 0;
+    take.done = take.sent_times = 0;
   }
 }
 
 /// Does a little of what is left, the most urgent first. False: nothing is left.
 bool Engine::Impl::step() {
   for (TakeWork& take : takes)
-    if (!take.character && !take.standing && !take.failed) return of_take(take, [&] { load(take); });
+    if (!take.character && !take.loaded && !take.failed) return of_take(take, [&] { load(take); });
   if (!opened && !plan.source.path.empty()) {
     open();
     return true;
   }
   for (TakeWork& take : takes)
     if (!take.performer && !take.failed) return of_take(take, [&] { prepare(take); });
-  if (tell_source()) return true;
+  if (send_source()) return true;
   for (TakeWork& take : takes)
     if (take.performer && take.done < stream_of(take.plan.method).frames.size())
       return of_take(take, [&] { perform(take); });
@@ -262,7 +262,7 @@ bool Engine::Impl::of_take(TakeWork& take, Work work) {
   if (problem.empty()) return true;
   take.failed = true;
   take.performer.reset();
-  tell(TakeFailed{take.plan.id, problem});
+  emit(TakeFailed{take.plan.id, problem});
   return true;
 }
 
@@ -279,38 +279,38 @@ void Engine::Impl::open() {
     event.fps = source->fps();
     event.clips = source->clips();
     event.clip = source->clip();
-    tell(event);
+    emit(event);
   } catch (const std::exception& error) {
     source.reset();
     ended = true;
-    tell(SourceFailed{error.what()});
+    emit(SourceFailed{error.what()});
   }
 }
 
 /// Reads a target's file and shows how it came: binding it takes longer.
 void Engine::Impl::load(TakeWork& take) {
-  take.standing = load_target(take.plan.target);
+  take.loaded = load_target(take.plan.target);
   auto shown = std::make_shared<Target>();
-  shown->mesh = take.standing->surface.mesh;
-  tell(TakeLoaded{take.plan.id, std::move(shown)});
+  shown->mesh = take.loaded->surface.mesh;
+  emit(TakeLoaded{take.plan.id, std::move(shown)});
 }
 
 void Engine::Impl::prepare(TakeWork& take) {
   const Method& method = take.plan.method;
   NetworkParts parts = NetworkParts::performers();
-  const bool looked_at = !take.character && wants_extractor(take.plan.target, *take.standing);
+  const bool looked_at = !take.character && needs_extractor(take.plan.target, *take.loaded);
   parts.rest_extractor = looked_at;
   Networks networks = networks_of(method, parts);
   if (looked_at) networks.extractor = extractor_of(method);
   if (!take.character)
-    take.character = bind_target(std::exchange(take.standing, nullptr), take.plan.target, networks);
+    take.character = bind_target(std::exchange(take.loaded, nullptr), take.plan.target, networks);
   networks =
       networks_for(std::move(networks), *take.character, on_their_rig(take.plan.target, *take.character));
   Target target = take.character->target;
   target.joints = understudy::apply(take.plan.joints, target.joints);
   take.performer.emplace(target, networks.transfer, networks.deformer, poses_only(method));
   take.done = 0;
-  tell(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)),
+  emit(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)),
                  networks.deformer, binding_of(networks.deformer)});
 }
 
@@ -363,7 +363,7 @@ bool Engine::Impl::read_frame() {
     return true;
   } catch (const std::exception& error) {
     source.reset();
-    tell(SourceFailed{error.what()});
+    emit(SourceFailed{error.what()});
     return true;
   }
 }
@@ -400,25 +400,25 @@ Observation Engine::Impl::edited(const Seen& seen, size_t frame) const {
 
 /// Reports the frames seen since the last call. The first take repairs and smooths them and reports the result;
 /// without a take this does.
-bool Engine::Impl::tell_source() {
+bool Engine::Impl::send_source() {
   const std::vector<Seen>& frames = stream_of(plan.shown).frames;
   const bool no_take = takes.empty() || takes[0].failed;
   if (no_take && !alone) {
     alone.emplace(poses_only(takes.empty() ? Method{} : takes[0].plan.method));
-    told = 0;
+    sent = 0;
   }
   if (!no_take) alone.reset();
-  if (told >= frames.size()) return false;
-  if (told == 0 && alone) alone->restart();
+  if (sent >= frames.size()) return false;
+  if (sent == 0 && alone) alone->restart();
   SourceFrames event;
-  event.first = told;
+  event.first = sent;
   event.decision = source ? source->decision() : "";
   if (source) event.to_file = source->to_file();
   event.has_faces = has_faces;
-  for (int n = 0; n < kReplayChunk && told < frames.size(); ++n, ++told) {
-    const Observation seen = edited(frames[told], told);
+  for (int n = 0; n < kReplayChunk && sent < frames.size(); ++n, ++sent) {
+    const Observation seen = edited(frames[sent], sent);
     KeptSource kept;
-    kept.raw = frames[told].observation.joints;
+    kept.raw = frames[sent].observation.joints;
     kept.points = static_cast<int>(seen.points);
     kept.reason = refusal(seen);
     kept.flagged = !kept.reason.empty();
@@ -427,7 +427,7 @@ bool Engine::Impl::tell_source() {
     kept.joints = alone ? alone->perform(seen, interval()).source.joints : seen.joints;
     event.frames.push_back(std::move(kept));
   }
-  tell(std::move(event));
+  emit(std::move(event));
   return true;
 }
 
@@ -440,13 +440,13 @@ void Engine::Impl::perform(TakeWork& take) {
     const Seen& seen = frames[take.done];
     const PerformedFrame result = take.performer->perform(edited(seen, take.done), interval());
     event.frames.push_back(kept(result));
-    if (take.done < take.told_new) continue;
-    take.told_new = take.done + 1;
+    if (take.done < take.sent_times) continue;
+    take.sent_times = take.done + 1;
     const double extract_ms = seen.observation.extract_ms;
     event.times.push_back({seen.read_ms, extract_ms, result.transfer_ms, result.deform_ms,
                            seen.read_ms + extract_ms + result.transfer_ms + result.deform_ms});
   }
-  tell(std::move(event));
+  emit(std::move(event));
 }
 
 Engine::Engine(NetworksOf networks) : impl_(std::make_unique<Impl>(std::move(networks))) {}

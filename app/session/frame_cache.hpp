@@ -45,7 +45,7 @@ class FrameCache {
 
   /// The scan of a frame; null while it is being made.
   std::shared_ptr<const ScanPicture> scan(int frame);
-  /// A take in a frame; null while it is being made. The take's generation tells whether a frame is still
+  /// A take in a frame; null while it is being made. The take's generation shows whether a frame is still
   /// valid.
   struct Wanted {
     int take = 0, frame = 0;

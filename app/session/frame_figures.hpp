@@ -17,7 +17,7 @@ struct FigureInput {
   const Truth* truth = nullptr;              ///< may be null
 };
 
-/// Every metric of the table that frames have and joints and poses tell, as far as what it needs is known. As
+/// Every metric of the table of single frames that joints and poses give, as far as its input is known. As
 /// many values as frames shown.
 std::vector<Series> joint_figures(const FigureInput& input);
 

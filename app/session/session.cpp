@@ -16,11 +16,11 @@ std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCou
   if (frame.flagged) return frame.reason;
   if (frame.confidence < kLowConfidence) return "low confidence";
   for (int j = 1; j < kJointCount; ++j)
-    if (frame.confidence_of[j] < kWeakLimb) return std::string(kJointNames[j]) + " is lost";
+    if (frame.confidence_of[j] < kWeakLimb) return std::string("low confidence in ") + kJointNames[j];
   for (int j = 1; j < kJointCount; ++j) {
     const float length = (frame.raw.row(j) - frame.raw.row(kParents[j])).norm();
     if (usual[j] > 0.05f && std::abs(length - usual[j]) > std::max(kLengthOff * usual[j], kLengthOffM))
-      return std::string("the bone to ") + kJointNames[j] + " has another length";
+      return std::string("the bone to ") + kJointNames[j] + " changed its length";
   }
   return "";
 }

@@ -60,7 +60,7 @@ struct TakeState {
   /// The mesh as loaded, upright and at its size; shown until `target` is there, then null.
   std::shared_ptr<const Target> as_loaded;
   std::shared_ptr<const Target> target;  ///< T-pose mesh and joints (edited)
-  /// where the networks' weights are doubted; null: nowhere asked
+  /// where the networks' weights are uncertain; null: not checked
   std::shared_ptr<const SafeBinding> binding;
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights

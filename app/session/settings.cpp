@@ -111,7 +111,7 @@ void write_settings(const std::string& path, const Settings& settings) {
     json[name] = value;
   };
   fields(write_member, std::as_const(kept));
-  std::error_code ignored;  // what is wrong with the folder, the writing says
+  std::error_code ignored;  // writing reports what is wrong with the folder
   fs::create_directories(fs::path(path).parent_path(), ignored);
   write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }

@@ -11,11 +11,11 @@ namespace understudy::app {
 
 struct Settings {
   bool dark = true;
-  float scale = 0;                  ///< of the interface; 0: as the screen says; 0.75 .. 3
+  float scale = 0;                  ///< of the interface; 0: the screen's own; 0.75 .. 3
   int samples = 4;                  ///< of antialiasing a pixel: 1, 2, 4
   float mouse_sensitivity = 1;      ///< 0.2 .. 4
   double autosave_s = 20;           ///< 5 .. 600
-  int cache_mb = 512;               ///< memory for frames looked at, 64 .. 8192
+  int cache_mb = 512;               ///< memory for frames shown, 64 .. 8192
   int undo_depth = 200;             ///< 10 .. 1000
   std::vector<std::string> recent;  ///< documents, the newest first, 12 at most
   std::vector<std::string> recent_sources, recent_targets;

@@ -263,8 +263,8 @@ void evaluate_all(Measuring& m, JobControl& control) {
     evaluator.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.raw_joints[t],
                     scan && scan->usable ? &scan->mesh : nullptr});
     for (Series& series : m.series)
-      if (const auto told = evaluator.last().find(series.key); told != evaluator.last().end())
-        series.values[t] = static_cast<float>(told->second);
+      if (const auto found = evaluator.last().find(series.key); found != evaluator.last().end())
+        series.values[t] = static_cast<float>(found->second);
   }
   m.metrics = evaluator.metrics();
 }

@@ -25,7 +25,7 @@ enum class Colouring {
   Error,       ///< distance to the truth, mm
   Difference,  ///< distance to the same vertex of the first take, mm
   Confidence,  ///< extraction confidence of the nearest joint (the source's scan)
-  Doubt        ///< how far a vertex is bound by the shape alone, %
+  Uncertainty  ///< how far a vertex is bound by the shape alone, %; "doubt" in files and commands
 };
 constexpr Names<7> kColouringNames{"plain",      "weights",    "offsets", "error",
                                    "difference", "confidence", "doubt"};

@@ -70,7 +70,7 @@ class Application {
  private:
   using Clock = std::chrono::steady_clock;
   struct LogBox;
-  /// Does a part of a frame. What goes wrong is told in a dialog and the studio goes on; false then.
+  /// Does a part of a frame. What goes wrong is shown in a dialog and the studio goes on; false then.
   bool attempt(const std::function<void()>& part);
   void tick_and_draw(double tick_dt, const std::function<void()>& drawing);
   void take_log();

@@ -21,9 +21,10 @@ const char* question_name(const Session& session) {
 /// Per cent of the selected take's surface; "none" before it is bound and where it uses its own skin weights.
 std::string bound_by_shape(const Session& session) {
   const size_t k = session.selected_take;
-  if (k >= session.takes.size() || !session.takes[k].binding || session.takes[k].binding->doubt.size() == 0)
+  if (k >= session.takes.size() || !session.takes[k].binding ||
+      session.takes[k].binding->uncertainty.size() == 0)
     return "none";
-  return std::to_string(100 * session.takes[k].binding->doubt.mean());
+  return std::to_string(100 * session.takes[k].binding->uncertainty.mean());
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ struct Window::Parts {
 
   void listen();
   void listen_to_keys();
-  void tell(InputEvent event) noexcept;
+  void deliver(InputEvent event) noexcept;
   InputEvent at_pointer(InputEvent::Kind kind) const;
   void tell_size();
   void deliver() {
@@ -162,7 +162,7 @@ struct Window::Parts {
   std::array<GLFWcursor*, static_cast<size_t>(CursorShape::Count)> cursors{};
 };
 
-void Window::Parts::tell(InputEvent event) noexcept {
+void Window::Parts::deliver(InputEvent event) noexcept {
   if (!handler || failure) return;
   try {
     handler(std::move(event));
@@ -189,43 +189,43 @@ void Window::Parts::tell_size() {
   event.kind = InputEvent::Kind::Resize;
   glfwGetFramebufferSize(window, &event.width, &event.height);
   glfwGetWindowContentScale(window, &event.scale, nullptr);
-  tell(std::move(event));
+  deliver(std::move(event));
 }
 
 void Window::Parts::listen() {
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) {
-    of(w).tell(of(w).at_pointer(InputEvent::Kind::MouseMove));
+    of(w).deliver(of(w).at_pointer(InputEvent::Kind::MouseMove));
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int bits) {
     InputEvent event = of(w).at_pointer(InputEvent::Kind::MouseButton);
     event.button = button_of(button);
     event.pressed = action == GLFW_PRESS;
     event.modifiers = modifiers_of(bits);
-    if (event.button != MouseButton::Count) of(w).tell(std::move(event));
+    if (event.button != MouseButton::Count) of(w).deliver(std::move(event));
   });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double dx, double dy) {
     InputEvent event = of(w).at_pointer(InputEvent::Kind::Scroll);
     event.dx = static_cast<float>(dx);
     event.dy = static_cast<float>(dy);
-    of(w).tell(std::move(event));
+    of(w).deliver(std::move(event));
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
     InputEvent event = of(w).at_pointer(InputEvent::Kind::Drop);
     event.paths.assign(paths, paths + count);
-    of(w).tell(std::move(event));
+    of(w).deliver(std::move(event));
   });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
     InputEvent event;
     event.kind = InputEvent::Kind::Focus;
     event.pressed = focused == GLFW_TRUE;
-    of(w).tell(std::move(event));
+    of(w).deliver(std::move(event));
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).tell_size(); });
   glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { of(w).tell_size(); });
   glfwSetWindowCloseCallback(window, [](GLFWwindow* w) {
     InputEvent event;
     event.kind = InputEvent::Kind::Close;
-    of(w).tell(std::move(event));
+    of(w).deliver(std::move(event));
   });
   listen_to_keys();
 }
@@ -244,13 +244,13 @@ void Window::Parts::listen_to_keys() {
       event.modifiers.control = event.pressed;
     if (event.key == Key::LeftAlt || event.key == Key::RightAlt) event.modifiers.alt = event.pressed;
     if (event.key == Key::LeftSuper || event.key == Key::RightSuper) event.modifiers.super = event.pressed;
-    if (event.key != Key::Unknown) of(w).tell(std::move(event));
+    if (event.key != Key::Unknown) of(w).deliver(std::move(event));
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned codepoint) {
     InputEvent event;
     event.kind = InputEvent::Kind::Char;
     event.codepoint = codepoint;
-    of(w).tell(std::move(event));
+    of(w).deliver(std::move(event));
   });
 }
 

@@ -61,7 +61,7 @@ class Window {
   std::string clipboard() const;  ///< empty when it holds no text
   void set_clipboard(const std::string& text);
 
-  /// Who is told what happens, from poll() and wait() on this thread. Exceptions thrown by it come out of
+  /// Gets the events, from poll() and wait() on this thread. Exceptions thrown by it come out of
   /// those two.
   void set_handler(Handler handler);
   /// Delivers what has happened since.

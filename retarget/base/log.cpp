@@ -9,7 +9,7 @@
 namespace understudy::log {
 namespace {
 
-constexpr int64_t kToldOfAKind = 10;
+constexpr int64_t kMostOfAKind = 10;
 
 void to_stderr(Level level, const std::string& message) {
   std::fprintf(stderr, "%s%s\n", level == Level::Warning ? "warning: " : "", message.c_str());
@@ -18,7 +18,7 @@ void to_stderr(Level level, const std::string& message) {
 struct State {
   std::mutex mutex;
   Sink sink = to_stderr;
-  std::set<std::string> told;
+  std::set<std::string> logged;
 };
 
 State& state() {
@@ -50,17 +50,17 @@ void warn(const std::string& message) {
 void warn_once(const std::string& message) {
   {
     std::lock_guard lock(state().mutex);
-    if (!state().told.insert(message).second) return;
+    if (!state().logged.insert(message).second) return;
   }
   warn(message);
 }
 
 void Tally::warn(const std::string& message) {
-  if (++count_ <= kToldOfAKind) log::warn(message);
+  if (++count_ <= kMostOfAKind) log::warn(message);
 }
 
 void Tally::finish() {
-  if (count_ > kToldOfAKind) log::warn("and " + grouped(count_ - kToldOfAKind) + " more of these");
+  if (count_ > kMostOfAKind) log::warn("and " + grouped(count_ - kMostOfAKind) + " more of these");
   count_ = 0;
 }
 

@@ -14,14 +14,14 @@ using Sink = std::function<void(Level, const std::string&)>;
 Sink set_sink(Sink sink);
 void info(const std::string& message);
 void warn(const std::string& message);
-/// The same message is told once per process only.
+/// Logs a message once per process only.
 void warn_once(const std::string& message);
 
-/// Warnings of one kind, of which there may be one a frame: ten are told, the others are summed up.
+/// Warnings of one kind, of which there may be one a frame: ten are logged, the others are counted.
 class Tally {
  public:
   void warn(const std::string& message);
-  /// "and 99,990 more of these"; nothing where all were told.
+  /// "and 99,990 more of these"; nothing where all were logged.
   void finish();
 
  private:

@@ -23,7 +23,7 @@ class PartFile {
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Over what was written at this place.
   void rewrite(size_t at, std::string_view text);
-  /// Synced, so that a power cut leaves the old file or the new one, where nobody says that speed counts
+  /// Synced, so that a power cut leaves the old file or the new one, unless speed is asked for
   /// more. Throws Error; then the file that was there is as it was.
   void finish(bool synced = true);
   const std::string& path() const { return path_; }

@@ -5,7 +5,7 @@
 
 namespace understudy {
 
-/// The folder of the running program, links followed; the working folder where the system does not tell.
+/// The folder of the running program, links followed; the working folder where the system does not report it.
 std::filesystem::path program_folder();
 
 /// The program's folder `name` ("weights", "samples"): assets/NAME beside the program or above it (a build tree), else

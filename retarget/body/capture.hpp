@@ -19,7 +19,7 @@ struct CaptureOptions {
 
 /// The cloud of one frame: only surface that some camera sees, dense where cameras look straight at it, with
 /// noise, holes, outliers and some floor (y = 0), in no order. The same options, mesh and frame number give
-/// the same bytes. Throws Error when the mesh has no faces or the options make no sense.
+/// the same bytes. Throws Error when the mesh has no faces or an option is out of range.
 Mesh simulated_capture(const Points& vertices, const Faces& faces, int frame,
                        const CaptureOptions& options = {});
 

@@ -101,10 +101,10 @@ Skirt::Skirt(const LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) 
 }
 
 float Skirt::radius(float down, float turn) const {
-  const float way = (turn < 0 ? turn + kTurn : turn) / kTurn * kWays;
+  const float direction = (turn < 0 ? turn + kTurn : turn) / kTurn * kWays;
   const float height = std::clamp(down * kRings - 0.5f, 0.0f, kRings - 1.001f);
-  const auto k = static_cast<size_t>(way) % kWays, r = static_cast<size_t>(height);
-  const float share = way - std::floor(way), lower = height - std::floor(height);
+  const auto k = static_cast<size_t>(direction) % kWays, r = static_cast<size_t>(height);
+  const float share = direction - std::floor(direction), lower = height - std::floor(height);
   const auto of_ring = [&](const auto& ring) {
     return (1 - share) * ring[k] + share * ring[(k + 1) % kWays];
   };
@@ -115,8 +115,8 @@ float Skirt::radius(float down, float turn) const {
 bool Skirt::hides(const Vec3& x) const {
   const float d = down(x);
   if (d < 0 || d > 1) return false;
-  const Vec3 way = x - top_;
-  return (way - way.dot(axis_) * axis_).norm() < radius(d, turn_of(x)) + kUnder;
+  const Vec3 direction = x - top_;
+  return (direction - direction.dot(axis_) * axis_).norm() < radius(d, turn_of(x)) + kUnder;
 }
 
 void Skirt::sample(LabelledPoints& cloud, const PosedSkeleton& truth, float per_square_metre,
@@ -149,15 +149,15 @@ void add_ball(std::vector<Vec3>& points, const Vec3& centre, const Mat3& axes, f
   for (int i = 0; i < count; ++i) points.push_back(centre + axes * random_direction(rng));
 }
 
-void add_stick(std::vector<Vec3>& points, const Vec3& through, const Vec3& way, float per_square_metre,
+void add_stick(std::vector<Vec3>& points, const Vec3& through, const Vec3& direction, float per_square_metre,
                Rng& rng) {
   const float length = rng.uniform(0.15f, 1.4f), thickness = rng.uniform(0.008f, 0.04f);
-  const Vec3 across = way.unitOrthogonal(), other = way.cross(across);
-  const Vec3 from = through - rng.uniform(0.1f, 0.9f) * length * way;
+  const Vec3 across = direction.unitOrthogonal(), other = direction.cross(across);
+  const Vec3 from = through - rng.uniform(0.1f, 0.9f) * length * direction;
   const int count = static_cast<int>(per_square_metre * kTurn * thickness * length);
   for (int i = 0; i < count; ++i) {
     const float turn = rng.uniform(0, kTurn);
-    points.push_back(from + rng.uniform() * length * way +
+    points.push_back(from + rng.uniform() * length * direction +
                      thickness * (std::cos(turn) * across + std::sin(turn) * other));
   }
 }
@@ -187,8 +187,8 @@ void wear_coat(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) {
     // Away from the bone, which leads along the T-pose's x in arms and y in the trunk.
     const bool is_arm = part >= LeftCollar;
     const Vec3 bone = truth.global[part].col(is_arm ? 0 : 1);
-    const Vec3 way = (x - from) - (x - from).dot(bone) * bone;
-    if (way.norm() > 1e-4f) cloud.points.row(i) += (thick * way.normalized()).transpose();
+    const Vec3 direction = (x - from) - (x - from).dot(bone) * bone;
+    if (direction.norm() > 1e-4f) cloud.points.row(i) += (thick * direction.normalized()).transpose();
   }
 }
 
@@ -227,8 +227,8 @@ void hold_thing(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& rng) {
   const Vec3 palm = at(truth, wrist) + size * hand * Vec3(left ? 0.08f : -0.08f, -0.02f, 0);
   std::vector<Vec3> points;
   if (rng.chance(0.65f)) {
-    const Vec3 way = (hand * Vec3(0.6f * rng.normal(), 0.6f * rng.normal(), 1)).normalized();
-    add_stick(points, palm, way, density(cloud, truth), rng);
+    const Vec3 direction = (hand * Vec3(0.6f * rng.normal(), 0.6f * rng.normal(), 1)).normalized();
+    add_stick(points, palm, direction, density(cloud, truth), rng);
   } else {
     const float radius = rng.uniform(0.04f, 0.16f);
     add_ball(points, palm - radius * hand.col(1), radius * Mat3::Identity(), density(cloud, truth), rng);

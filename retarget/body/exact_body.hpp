@@ -1,4 +1,4 @@
-// People posed in double precision: for truths, whose random scans must not hang on the last digit of a
+// People posed in double precision: for truths, whose random scans must not depend on the last digit of a
 // float.
 #pragma once
 
@@ -47,7 +47,7 @@ struct ExactMotion {
 /// Rodrigues' formula; the length is the angle.
 Eigen::Matrix3d exact_rotation(const Eigen::Vector3d& axis_angle);
 /// Frames `start` to `start + frames` (fewer where the clip ends) of an AMASS-format clip at 30 frames a
-/// second, y up: faster clips are thinned, z-up ones turned. Throws Error naming the file when it is over
+/// second, y up: faster clips are thinned, z-up ones turned. Throws Error naming the file when it ends
 /// before `start`.
 ExactMotion read_exact_motion(const std::string& path, int start, int frames);
 

@@ -223,13 +223,13 @@ void map_leg(const Rig& rig, int pelvis, int end, int right, BoneMap& map) {
 Vec3 across(const Rig& rig, const std::vector<int>& bones) {
   Vec3 mean = Vec3::Zero();
   for (const int n : bones) mean += rig.place[n] / static_cast<float>(bones.size());
-  Eigen::Matrix2f spread = Eigen::Matrix2f::Zero();
+  Eigen::Matrix2f covariance = Eigen::Matrix2f::Zero();
   for (const int n : bones) {
     const Vec3 d = rig.place[n] - mean;
     const Eigen::Vector2f flat(d.x(), d.z());
-    spread += flat * flat.transpose();
+    covariance += flat * flat.transpose();
   }
-  const float angle = 0.5f * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
+  const float angle = 0.5f * std::atan2(2 * covariance(0, 1), covariance(0, 0) - covariance(1, 1));
   return {std::cos(angle), 0, std::sin(angle)};
 }
 
@@ -311,7 +311,7 @@ void apply_choices(const Rig& rig, const BoneChoices& choices, BoneMap& map) {
       const bool both = choices.count(kJointNames[a]) > 0 && choices.count(kJointNames[b]) > 0;
       US_CHECK(!both, rig.character.called(), ": the map gives the bone '",
                rig.character.nodes[map.node[a]].name, "' to both ", kJointNames[a], " and ", kJointNames[b]);
-      const size_t loser = choices.count(kJointNames[a]) > 0 ? b : a;  // what the user chose stands
+      const size_t loser = choices.count(kJointNames[a]) > 0 ? b : a;  // the user's choice wins
       map.node[loser] = -1;
       map.confidence[loser] = 0;
     }

@@ -42,7 +42,7 @@ using BoneChoices = std::map<std::string, std::string>;
 BoneChoices parse_bone_choices(std::string_view text, const std::string& path);
 BoneChoices read_bone_choices(const std::string& path);
 
-/// Maps by names where they say enough, else by hierarchy and position. bind: the nodes' transforms in the
+/// Maps by names where they are clear, else by hierarchy and position. bind: the nodes' transforms in the
 /// bind pose, y up (any heading). The user's choices come last. Throws Error when a choice names a joint or a
 /// bone that is not there, or one bone twice.
 BoneMap map_bones(const Character& character, const std::vector<Mat4>& bind, const BoneChoices& choices = {});

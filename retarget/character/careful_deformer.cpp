@@ -53,14 +53,14 @@ const std::vector<Region>& regions() {
 }
 
 /// "12 % of the surface is bound by its shape alone: head, left hand".
-std::string note_on(const Eigen::VectorXf& doubt, const RowMatrix& weights) {
-  const float whole = doubt.mean();
+std::string note_on(const Eigen::VectorXf& uncertainty, const RowMatrix& weights) {
+  const float whole = uncertainty.mean();
   if (whole < 0.002f) return "";
   std::string where;
   for (const Region& region : regions()) {
-    Eigen::VectorXf share = Eigen::VectorXf::Zero(doubt.size());
+    Eigen::VectorXf share = Eigen::VectorXf::Zero(uncertainty.size());
     for (const int j : region.joints) share += weights.col(j);
-    if (share.sum() > 0 && share.dot(doubt) / share.sum() > 0.1f) append_item(where, region.name);
+    if (share.sum() > 0 && share.dot(uncertainty) / share.sum() > 0.1f) append_item(where, region.name);
   }
   return std::to_string(std::max(1l, std::lround(100 * whole))) +
          " % of the surface is bound by its shape alone" + (where.empty() ? "" : ": " + where);
@@ -72,21 +72,22 @@ SafeBinding safe_binding(const Mesh& mesh, const Joints& joints, const RowMatrix
   const BoneDistances distances = bone_distances(VoxelBody(mesh), joints, mesh.vertices);
   const ShapeHints hints = shape_hints(mesh, joints);
   SafeBinding out;
-  RowMatrix doubt = strayed_share(distances, weights);
-  for (Eigen::Index v = 0; v < doubt.rows(); ++v) doubt(v, 0) = smooth_step(0.08f, 0.35f, doubt(v, 0));
-  if (doubt.maxCoeff() > 0) smooth_along(mesh, 0.05f * distances.leg, doubt);
-  doubt = (doubt.array() < 0.01f).select(0.0f, doubt);
-  out.doubt = doubt.col(0);
-  if (hints.skirt) out.doubt = out.doubt.cwiseMax(hints.skirt->share);
-  out.doubt = out.doubt.cwiseMax(hints.head);
+  RowMatrix uncertainty = strayed_share(distances, weights);
+  for (Eigen::Index v = 0; v < uncertainty.rows(); ++v)
+    uncertainty(v, 0) = smooth_step(0.08f, 0.35f, uncertainty(v, 0));
+  if (uncertainty.maxCoeff() > 0) smooth_along(mesh, 0.05f * distances.leg, uncertainty);
+  uncertainty = (uncertainty.array() < 0.01f).select(0.0f, uncertainty);
+  out.uncertainty = uncertainty.col(0);
+  if (hints.skirt) out.uncertainty = out.uncertainty.cwiseMax(hints.skirt->share);
+  out.uncertainty = out.uncertainty.cwiseMax(hints.head);
   out.weights = weights;
-  if (out.doubt.maxCoeff() > 0) {
+  if (out.uncertainty.maxCoeff() > 0) {
     const RowMatrix own = geometric_weights(mesh, distances, hints);
     for (Eigen::Index v = 0; v < weights.rows(); ++v)
-      out.weights.row(v) += out.doubt[v] * (own.row(v) - out.weights.row(v));
+      out.weights.row(v) += out.uncertainty[v] * (own.row(v) - out.weights.row(v));
   }
-  out.note = note_on(out.doubt, out.weights);
-  out.hard = out.doubt;
+  out.note = note_on(out.uncertainty, out.weights);
+  out.hard = out.uncertainty;
   const std::vector<bool> rigid = keep_parts_rigid(mesh, distances.leg, out.weights);
   const auto kept = static_cast<double>(std::count(rigid.begin(), rigid.end(), true));
   for (size_t v = 0; v < rigid.size(); ++v)

@@ -1,4 +1,4 @@
-// A deformer that checks what the networks say of a body unlike those they know, and binds by shape where
+// A deformer that checks the prediction for a body unlike those the networks know, and binds by shape where
 // they are unsure.
 #pragma once
 
@@ -12,9 +12,9 @@ namespace understudy {
 
 /// Skin weights made safe for any proportions.
 struct SafeBinding {
-  RowMatrix weights;      ///< [V, 22], rows sum to 1
-  Eigen::VectorXf doubt;  ///< [V] 0..1: how far a vertex is bound by the shape alone
-  /// [V] 0..1: 1 where pose-corrective offsets must not act (rigid parts, cloth, doubt)
+  RowMatrix weights;            ///< [V, 22], rows sum to 1
+  Eigen::VectorXf uncertainty;  ///< [V] 0..1: how far a vertex is bound by the shape alone
+  /// [V] 0..1: 1 where pose-corrective offsets must not act (rigid parts, cloth, uncertainty)
   Eigen::VectorXf hard;
   std::string note;  ///< where, one sentence; empty where the weights stay as they were
 };

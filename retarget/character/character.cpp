@@ -19,7 +19,7 @@ bool invertible(const Mat4& M) {
   return M.allFinite() && scale > 1e-12f && std::abs((linear / scale).determinant()) > 1e-6f;
 }
 
-// From the space the bones were bound in to the world. The file does not say it: the node of the mesh does
+// From the space the bones were bound in to the world. The file does not have it: the node of the mesh does
 // where its size agrees with the skeleton's, as exporters keep the mesh where it was bound; else the root
 // joint.
 Mat4 bind_to_world(const Mat4& root_world, const Mat4& inverse_bind, const Mat4* mesh_world) {

@@ -99,7 +99,7 @@ struct Character {
   std::vector<int> file_vertices;
   std::string file;  ///< where it came from; may be empty
 
-  /// By which complaints call it.
+  /// Its name in error messages.
   const std::string& called() const { return file.empty() ? name : file; }
   Eigen::Index vertex_count() const;
   /// Transforms of the nodes to the world, from their own to the parents'.

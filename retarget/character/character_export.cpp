@@ -178,7 +178,7 @@ void add_root(Character& character, const Similarity& to_world) {
     for (auto& track : animation.tracks) ++track.node;
 }
 
-/// A skinned mesh goes where its bones are, whatever its node says: at the top, plain, no program is misled.
+/// A skinned mesh goes where its bones are, whatever its node has: at the top, plain, no program is misled.
 void lift_skinned_nodes(Character& character) {
   std::vector<bool> is_needed(character.nodes.size(), false);
   for (const auto& node : character.nodes)
@@ -219,7 +219,7 @@ Character TheirRig::still() {
   lift_skinned_nodes(out);
   parent_.clear();
   for (const auto& node : out.nodes) parent_.push_back(node.parent);
-  // Later frames hang on what the file really says, not on matrices that it can only come near to.
+  // Later frames depend on what the file really holds, not on matrices that it can only come near to.
   bind_ = out.world();
   for (size_t n = 0; n < driver_.size(); ++n)
     if (driver_[n] >= 0)
@@ -442,7 +442,7 @@ void reduce_animation(const CharacterAnimation& full, float metres, float lever_
   }
 }
 
-/// Fewer keys until the vertices say stop: errors of the bones above add up, so the first guess is tried out.
+/// Fewer keys until vertices move too far: errors of the bones above add up, so the first guess is tried out.
 void reduce_keys(const PreparedCharacter& source, float limit_mm, Character& out) {
   std::vector<float> metres_of;
   for (const Mat4& M : out.world()) metres_of.push_back(uniform_scale(M.topLeftCorner<3, 3>()));

@@ -22,7 +22,7 @@ struct CharacterExportOptions {
   bool their_rig = true;     ///< drive the character's own bones; needs a rigged character
   int influences = 4;        ///< 4 or 8 bones a vertex; their own skin stays as it is where nobody painted it
   int shapes = 0;            ///< morph targets for the pose-corrective offsets, 0: none
-  float reduce_mm = 0;       ///< keys may go while no vertex moves further than this; 0: all keys stay
+  float reduce_mm = 0;       ///< removes keys while no vertex moves further than this; 0: all keys stay
   bool in_place = false;     ///< the path over the floor is taken out
   bool t_pose_clip = false;  ///< the first clip is the T-pose
   bool keep_clips = false;   ///< the file's own animations stay, after ours
@@ -32,7 +32,7 @@ struct CharacterExportOptions {
       progress;  ///< called with 0..1; what it throws ends the export, nothing is written
 };
 
-/// What the written file costs: its own evaluation against the vertices on screen, over frames of all clips.
+/// Size of the written file, and its difference from the vertices on screen over frames of all clips.
 struct ExportCost {
   bool measured = false;  ///< false: the format holds no surface that could be compared
   double mean_mm = 0, largest_mm = 0;

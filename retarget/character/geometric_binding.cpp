@@ -22,7 +22,7 @@ namespace understudy {
 namespace {
 
 constexpr float kBehind = 2.5f;     // how much further a bone is behind its first end
-constexpr float kDetour = 2.0f;     // what a way around costs, over the straight one
+constexpr float kDetour = 2.0f;     // what a detour costs, over the straight path
 constexpr float kSharpness = 5.0f;  // of the fall of weights with distance
 constexpr float kBigHead = 0.36f;   // of the leg: width and height of a head that no human has
 constexpr float kFar = std::numeric_limits<float>::max();
@@ -157,31 +157,31 @@ bool lies_along_one_bone(const Eigen::Ref<const Eigen::RowVectorXf>& weights) {
   return weights.maxCoeff() > 0.55f || trunk > 0.75f;
 }
 
-/// Ways along the edges from one vertex, [V]; what is not joined with it is out of reach.
-std::vector<float> surface_ways(const Mesh& mesh, int from) {
+/// Geodesic distances along the edges from one vertex, [V]; what is not joined with it is out of reach.
+std::vector<float> surface_distances(const Mesh& mesh, int from) {
   std::vector<std::vector<int>> next(mesh.vertices.rows());
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
     for (int c = 0; c < 3; ++c) {
       next[mesh.faces(f, c)].push_back(mesh.faces(f, (c + 1) % 3));
       next[mesh.faces(f, (c + 1) % 3)].push_back(mesh.faces(f, c));
     }
-  std::vector<float> way(next.size(), kFar);
+  std::vector<float> distance(next.size(), kFar);
   using Entry = std::pair<float, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  way[from] = 0;
+  distance[from] = 0;
   open.push({0.0f, from});
   while (!open.empty()) {
     const auto [here, v] = open.top();
     open.pop();
-    if (here > way[v]) continue;
+    if (here > distance[v]) continue;
     for (const int n : next[v]) {
       const float there = here + (mesh.vertices.row(n) - mesh.vertices.row(v)).norm();
-      if (there >= way[n]) continue;
-      way[n] = there;
+      if (there >= distance[n]) continue;
+      distance[n] = there;
       open.push({there, n});
     }
   }
-  return way;
+  return distance;
 }
 
 /// What a level cuts out of the middle of a body: of nothing, low is over high.
@@ -280,11 +280,11 @@ struct GridPlaceHash {
   }
 };
 
-using Ways = std::array<std::vector<float>, kJointCount>;
+using BoneFields = std::array<std::vector<float>, kJointCount>;
 
 /// How far a point is from each joint's bones: straight, with detours through the solid added.
 Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody& body, const Segments& bones,
-                                                  const Ways& ways, float leg) {
+                                                  const BoneFields& distances, float leg) {
   constexpr float kBeyond = 4;  // times as far as the nearest bone no detour matters any more
   std::array<float, kJointCount> straight, plain;
   std::array<int, kJointCount> order;
@@ -302,9 +302,9 @@ Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody
   for (const int joint : order) {
     const size_t j = joint;
     float detour = 0;
-    // Ways along a grid are longer than straight ones by a tenth at most.
+    // Paths along a grid are longer than straight ones by a tenth at most.
     if (nearest == kFar || straight[j] < kBeyond * (nearest + 0.06f * leg))
-      detour = std::max(0.0f, body.at(ways[j], p) - 1.1f * plain[j] - 1.5f * body.size());
+      detour = std::max(0.0f, body.at(distances[j], p) - 1.1f * plain[j] - 1.5f * body.size());
     out[joint] = straight[j] + kDetour * detour;
     nearest = std::min(nearest, out[joint]);
   }
@@ -315,16 +315,16 @@ Eigen::Matrix<float, 1, kJointCount> distances_at(const Vec3& p, const VoxelBody
 
 BoneDistances bone_distances(const VoxelBody& body, const Joints& joints, const Points& at) {
   const Segments bones = bones_of(joints);
-  Ways ways;
+  BoneFields distances;
   in_halves(kJointCount, [&](Eigen::Index first, Eigen::Index last) {
-    for (size_t j = first; j < static_cast<size_t>(last); ++j) ways[j] = body.ways_from(bones[j]);
+    for (size_t j = first; j < static_cast<size_t>(last); ++j) distances[j] = body.distances_from(bones[j]);
   });
   BoneDistances out;
   out.leg = leg_length(joints);
   out.metres.resize(at.rows(), kJointCount);
   in_halves(at.rows(), [&](Eigen::Index first, Eigen::Index last) {
     for (Eigen::Index v = first; v < last; ++v)
-      out.metres.row(v) = distances_at(at.row(v).transpose(), body, bones, ways, out.leg);
+      out.metres.row(v) = distances_at(at.row(v).transpose(), body, bones, distances, out.leg);
   });
   return out;
 }
@@ -372,14 +372,14 @@ Eigen::VectorXf big_head(const Mesh& mesh, const Joints& joints) {
   if (!head) return share;
   const float step = 0.02f * leg_length(joints);
   // Hair and chins that hang below the neck are nearer to the crown than the neck is.
-  const std::vector<float> way = surface_ways(mesh, head->crown);
+  const std::vector<float> distance = surface_distances(mesh, head->crown);
   float at_neck = kFar;
   for (Eigen::Index v = 0; v < share.size(); ++v)
     if ((mesh.vertices.row(v) - head->neck.transpose()).norm() < 6 * step &&
         std::abs(mesh.vertices(v, 1) - head->neck.y()) < step)
-      at_neck = std::min(at_neck, way[v]);
+      at_neck = std::min(at_neck, distance[v]);
   for (Eigen::Index v = 0; v < share.size(); ++v) {
-    if (at_neck < kFar) share[v] = 1 - smooth_step(at_neck - 1.5f * step, at_neck, way[v]);
+    if (at_neck < kFar) share[v] = 1 - smooth_step(at_neck - 1.5f * step, at_neck, distance[v]);
     if (mesh.vertices(v, 0) > head->low_x && mesh.vertices(v, 0) < head->high_x)
       share[v] =
           std::max(share[v], smooth_step(head->neck.y(), head->neck.y() + 1.5f * step, mesh.vertices(v, 1)));

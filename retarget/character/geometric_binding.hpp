@@ -1,5 +1,5 @@
-// Skin weights from the shape alone: ways through the solid from the bones (geodesic voxel binding, Dionne
-// and de Lasa 2013), with skirts seen and parts of their own kept rigid.
+// Skin weights from the shape alone: distances through the solid from the bones (geodesic voxel binding,
+// Dionne and de Lasa 2013), with skirts seen and parts of their own kept rigid.
 #pragma once
 
 #include <optional>

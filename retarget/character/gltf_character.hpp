@@ -11,7 +11,7 @@ namespace understudy {
 /// Everything of the default scene that Character holds. Pictures and buffers outside must lie in the file's
 /// folder. A picture that is missing becomes a white one, with a warning. Throws Error naming `path`: cut
 /// off, accessors past their buffers, nodes in a circle or more than 1000 deep, data that are not base64,
-/// pictures that are none, ...
+/// pictures of no known format, ...
 Character parse_gltf_character(std::string_view bytes, const std::string& path);
 
 /// Skin weights, [V, K]: a bone that is named twice for one vertex has both of them in the first place.

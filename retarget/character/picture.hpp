@@ -20,7 +20,7 @@ std::string picture_type(std::string_view bytes);
 std::string picture_or_white(const std::function<std::string()>& read, const std::string& what);
 
 /// Adds a picture, named after its file, as an image and a texture of its own; false, and nothing is added,
-/// where the bytes are none.
+/// where the bytes are no picture.
 bool add_picture(const std::string& file, std::string bytes, Character& out);
 /// A rough material of glTF that is seen from both sides, of this texture or, with -1, this colour, 0..1.
 nlohmann::json plain_material(const std::string& name, const Vec3& color, float alpha, int texture);
@@ -34,7 +34,7 @@ struct Pixels {
 /// PNG, JPEG and WebP are; KTX2 is not.
 bool is_decoded(std::string_view bytes);
 
-/// Bytes that the decoded picture takes, as its header says; 0 where there is no such header.
+/// Bytes that the decoded picture takes, as in its header; 0 where there is no such header.
 int64_t decoded_size(std::string_view bytes);
 
 /// Throws Error, a sentence about "it": a picture of another kind, damaged, or of more than 64 megapixels,

@@ -18,10 +18,10 @@ namespace understudy {
 namespace {
 
 constexpr float kSmallestTurn = 8 * kPi / 180;
-constexpr float kBallHeight = 0.25f;     // of the ankle's over the floor
-constexpr float kPelvisSlack = 0.03f;    // of the leg
-constexpr float kRoughDeg = 4;           // joints that were seen, not given, are not better
-constexpr float kRoughSpreadDeg = 1.5f;  // the same of what both legs say together
+constexpr float kBallHeight = 0.25f;   // of the ankle's over the floor
+constexpr float kPelvisSlack = 0.03f;  // of the leg
+constexpr float kRoughDeg = 4;         // joints that were seen, not given, are not better
+constexpr float kRoughLegsDeg = 1.5f;  // the same of both legs together
 
 /// The axis that a rig's spine points along, where that is not y.
 std::string up_of_rig(const BoneMap& map, const BindPose& bind) {
@@ -231,13 +231,13 @@ std::optional<Line> long_axis(const Points& points, const Eigen::VectorXf& weigh
     }
   if (count < 10) return std::nullopt;
   mean /= count;
-  Mat3 spread = Mat3::Zero();
+  Mat3 covariance = Mat3::Zero();
   for (Eigen::Index v = 0; v < points.rows(); ++v)
     if (weights[v] > 0.8f) {
       const Vec3 d = points.row(v).transpose() - mean;
-      spread += d * d.transpose();
+      covariance += d * d.transpose();
     }
-  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(2);
+  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors().col(2);
   return Line{mean, axis.dot(like) < 0 ? Vec3(-axis) : axis};
 }
 
@@ -357,7 +357,7 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
   const Joints found =
       with_straight_arms(*body, mesh.vertices, with_seen_neck(mesh, prepare_target(mesh, any_pose).joints));
   c.pose = to_t_pose(found, kRoughDeg);
-  spread_legs(c.pose, kRoughSpreadDeg);
+  spread_legs(c.pose, kRoughLegsDeg);
   if (c.pose.largest_deg > 0) {
     c.pose_weights =
         geometric_weights(mesh, bone_distances(*body, found, mesh.vertices), shape_hints(mesh, found));
@@ -403,7 +403,7 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
                       " of 22): its own rig is not used");
   place_in_world(c, options);
   const Stance stance = stance_of(c.surface.mesh);
-  const std::string why_not = refusal(stance), why_implausible = doubt(stance);
+  const std::string why_not = refusal(stance), why_implausible = implausibility(stance);
   US_CHECK(why_not.empty() || c.rigged, c.character.called(), ": does not look like a person: ", why_not);
   if (!(c.rigged ? why_not : why_implausible).empty())
     c.target.warnings.push_back("the target may not be a person: " + why_implausible);
@@ -416,7 +416,7 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
 
 void find_t_pose(PreparedCharacter& c, SkeletonExtractor* any_pose, SkeletonExtractor* t_pose,
                  const CharacterOptions& options) {
-  const std::vector<std::string> doubts = std::move(c.target.warnings);
+  const std::vector<std::string> warnings = std::move(c.target.warnings);
   if (c.rigged) {
     find_in_rig(c);
     SkeletonExtractor* const network = t_pose != nullptr ? t_pose : any_pose;
@@ -425,7 +425,7 @@ void find_t_pose(PreparedCharacter& c, SkeletonExtractor* any_pose, SkeletonExtr
     US_CHECK(any_pose != nullptr, c.character.name, ": has no known rig, and the networks may not be used");
     find_in_shape(c, *any_pose, t_pose, options);
   }
-  c.target.warnings.insert(c.target.warnings.end(), doubts.begin(), doubts.end());
+  c.target.warnings.insert(c.target.warnings.end(), warnings.begin(), warnings.end());
 }
 
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,

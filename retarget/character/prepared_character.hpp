@@ -46,8 +46,8 @@ struct PreparedCharacter {
   Mesh target_in_file_order() const;
 };
 
-/// any_pose finds joints of bodies that are in no T-pose and look anywhere; in_t_pose, where given, those of
-/// the T-pose. Neither is asked for a rig that is mapped. Throws Error where no body can be found.
+/// any_pose finds the joints of bodies in any pose and heading; in_t_pose, where given, those of
+/// the T-pose. Neither is used for a rig that is mapped. Throws Error where no body can be found.
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
                                     SkeletonExtractor* in_t_pose, const CharacterOptions& options = {});
 
@@ -55,7 +55,7 @@ PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_
 /// the character came, with its colours; a rig faces forward. Throws Error for what is clearly no person.
 PreparedCharacter load_character(Character character, const CharacterOptions& options = {});
 /// The second half: its T-pose and joints, with the same options.
-void find_t_pose(PreparedCharacter& standing, SkeletonExtractor* any_pose, SkeletonExtractor* in_t_pose,
+void find_t_pose(PreparedCharacter& character, SkeletonExtractor* any_pose, SkeletonExtractor* in_t_pose,
                  const CharacterOptions& options = {});
 
 /// Of each node of a rigged character the joint that it moves with.

@@ -90,13 +90,13 @@ Character answer(const std::string& made, const std::string& path) {
 /// that it crashed, or that it took too long or too much memory.
 Character read_in_process(const std::string& path, const ReadCharacterOptions& options) {
   const WorkFolder folder;
-  const std::string out = folder.path + "/character.glb", said = folder.path + "/said.txt";
+  const std::string out = folder.path + "/character.glb", messages = folder.path + "/said.txt";
   const std::string worker =
       options.worker.empty() ? std::filesystem::read_symlink("/proc/self/exe").string() : options.worker;
   const std::string input = std::filesystem::absolute(path).string();
   const char* const arguments[] = {worker.c_str(), "import-worker", input.c_str(), out.c_str(), nullptr};
-  const int errors = ::open(said.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
-  US_CHECK(errors >= 0, said, ": cannot be written (", std::strerror(errno), ")");
+  const int errors = ::open(messages.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
+  US_CHECK(errors >= 0, messages, ": cannot be written (", std::strerror(errno), ")");
   const auto seconds = static_cast<rlim_t>(options.patience_s + 1);
   const auto bytes = static_cast<rlim_t>(options.memory_bytes);  // of memory, and of what it writes
   const pid_t pid = ::fork();
@@ -109,7 +109,7 @@ Character read_in_process(const std::string& path, const ReadCharacterOptions& o
   US_CHECK(WIFEXITED(status), path, ": the reader of this format crashed on it; the file may be damaged");
   US_CHECK(WEXITSTATUS(status) != 127, worker, ": cannot be started to read ", path);
   if (WEXITSTATUS(status) != 0) {
-    const std::string why = last_words(read_file(said));
+    const std::string why = last_words(read_file(messages));
     throw Error(path + ": " + (why.empty() ? "could not be read" : why));
   }
   Character character = answer(out, path);
@@ -147,14 +147,14 @@ Character read_any(const std::string& path, const ReadCharacterOptions& options)
 
 }  // namespace
 
-std::string last_words(std::string_view said) {
+std::string last_words(std::string_view messages) {
   constexpr size_t kMost = 200;
-  const size_t end = said.find_last_not_of("\n\r ");
-  if (end == said.npos) return {};
-  said = said.substr(0, end + 1);
-  const size_t begin = said.find_last_of('\n');
-  if (begin != said.npos) said.remove_prefix(begin + 1);
-  std::string out(said.substr(0, kMost));
+  const size_t end = messages.find_last_not_of("\n\r ");
+  if (end == messages.npos) return {};
+  messages = messages.substr(0, end + 1);
+  const size_t begin = messages.find_last_of('\n');
+  if (begin != messages.npos) messages.remove_prefix(begin + 1);
+  std::string out(messages.substr(0, kMost));
   for (char& c : out)
     if (c < ' ' || c > '~') c = '?';
   return out;

@@ -7,7 +7,7 @@
 
 namespace understudy {
 
-/// The way from one joint to another, metres.
+/// The vector from one joint to another, metres.
 Vec3 bone(const Joints& joints, int from, int to);
 
 /// How the joints of a bind pose turn to the T-pose.
@@ -26,7 +26,7 @@ struct RestPose {
 RestPose to_t_pose(const Joints& bind, float tolerance_deg = 1);
 
 /// Turns both legs about the hips, alike, until they stand apart as a mean human's. For joints that were
-/// seen, not given: single bones are rough, what both legs say together is not.
+/// seen, not given: single bones are rough, both legs together are not.
 void spread_legs(RestPose& pose, float tolerance_deg);
 
 /// The same turns for joints that lie elsewhere.

@@ -76,8 +76,8 @@ Stance stance_of(const Mesh& mesh) {
   floor << points.col(0), points.col(2);
   const Eigen::RowVector2f mean = floor.colwise().mean();
   floor.rowwise() -= mean;
-  const Eigen::Matrix2f spread = floor.transpose() * floor;
-  const Eigen::Matrix2f axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2f>(spread).eigenvectors();
+  const Eigen::Matrix2f covariance = floor.transpose() * floor;
+  const Eigen::Matrix2f axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2f>(covariance).eigenvectors();
   const Eigen::VectorXf across = floor * axes.col(0), along = floor * axes.col(1);
   out.length = ends_of(along).size() / out.height;
   out.width = ends_of(across).size() / out.height;
@@ -102,7 +102,7 @@ std::string refusal(const Stance& s) {
   return s.length > 1.8f ? tall + centimetres(s.length, s.height) + " long" : "";
 }
 
-std::string doubt(const Stance& s) {
+std::string implausibility(const Stance& s) {
   if (!refusal(s).empty()) return refusal(s);
   if (s.feet > 0.75f) return "its feet are " + centimetres(s.feet, s.height) + " apart";
   if (s.length > 1.35f || s.width > 0.7f)

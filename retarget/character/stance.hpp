@@ -27,14 +27,14 @@ bool lies_down(const Stance& stance);
 /// person, child, puppet or robot with two legs can be: T-poses have length 0.7 to 1.1, width 0.15 to 0.25
 /// and feet 0.15 to 0.3.
 std::string refusal(const Stance& stance);
-/// Why this may be no person; empty: no doubt.
-std::string doubt(const Stance& stance);
+/// Why this may not be a person; empty: nothing speaks against it.
+std::string implausibility(const Stance& stance);
 
-/// What the extractor says of a body, y up, that is turned by a quarter more each time.
+/// What the extractor predicts for a body, y up, that is turned by a quarter more each time.
 using SideViews = std::array<Extraction, 4>;
 SideViews seen_from_sides(const Mesh& mesh, SkeletonExtractor& extractor);
 
-/// Radians about +y from +z towards +x: of the directions near what the views say, the one about which the
+/// Radians about +y from +z towards +x: of the directions near the views' headings, the one about which the
 /// body is its own mirror image.
 float body_heading(const Mesh& mesh, const SideViews& seen);
 

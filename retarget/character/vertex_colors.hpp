@@ -11,7 +11,7 @@ float to_shown(float linear);
 
 /// Colours of the vertices of all parts, one part after the other, [V, 3] in 0..1 as screens show them: the
 /// material's base colour times its texture, looked up at the vertex, times the vertex colour. Empty where
-/// nothing tells one vertex from another. A picture that cannot be decoded, or has more than 64 megapixels,
+/// no vertex differs from another. A picture that cannot be decoded, or has more than 64 megapixels,
 /// is left out with a warning.
 Points vertex_colors(const Character& character);
 

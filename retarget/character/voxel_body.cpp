@@ -251,12 +251,12 @@ void VoxelBody::join_parts() {
   }
 }
 
-std::vector<float> VoxelBody::ways_from(const std::vector<std::pair<Vec3, Vec3>>& segments) const {
-  std::vector<float> way(cells_.size(), kUnreached);
-  std::vector<std::vector<int>> buckets(1);  // a cube wide each: no way within one is shorter than a step
+std::vector<float> VoxelBody::distances_from(const std::vector<std::pair<Vec3, Vec3>>& segments) const {
+  std::vector<float> distance(cells_.size(), kUnreached);
+  std::vector<std::vector<int>> buckets(1);  // a cube wide each: no path within one is shorter than a step
   const auto reach = [&](int cell, float length) {
-    if (length >= way[cell]) return;
-    way[cell] = length;
+    if (length >= distance[cell]) return;
+    distance[cell] = length;
     const size_t bucket = length / size_;
     if (bucket >= buckets.size()) buckets.resize(bucket + 1);
     buckets[bucket].push_back(cell);
@@ -276,8 +276,8 @@ std::vector<float> VoxelBody::ways_from(const std::vector<std::pair<Vec3, Vec3>>
   for (size_t b = 0; b < buckets.size(); ++b)
     for (size_t i = 0; i < buckets[b].size(); ++i) {
       const int cell = buckets[b][i];
-      const float here = way[cell];
-      if (static_cast<size_t>(here / size_) != b) continue;  // a shorter way was found since
+      const float here = distance[cell];
+      if (static_cast<size_t>(here / size_) != b) continue;  // a shorter path was found since
       const int at = cells_[cell];
       for (const Step& s : steps()) {
         const int next = cell_of_[at + grid_index(s.x, s.y, s.z)];
@@ -286,10 +286,10 @@ std::vector<float> VoxelBody::ways_from(const std::vector<std::pair<Vec3, Vec3>>
       if (!bridges_.empty())
         for (const Bridge& bridge : bridges_[cell]) reach(bridge.b, here + std::max(bridge.length, size_));
     }
-  return way;
+  return distance;
 }
 
-float VoxelBody::at(const std::vector<float>& ways, const Vec3& point) const {
+float VoxelBody::at(const std::vector<float>& distances, const Vec3& point) const {
   const auto low = place(point - Vec3::Constant(0.5f * size_));
   float sum = 0, total = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -297,13 +297,13 @@ float VoxelBody::at(const std::vector<float>& ways, const Vec3& point) const {
               y = std::min(dims_[1] - 1, low[1] + (corner >> 1 & 1)),
               z = std::min(dims_[2] - 1, low[2] + (corner >> 2));
     const int cell = cell_of_[grid_index(x, y, z)];
-    if (cell < 0 || ways[cell] == kUnreached) continue;
+    if (cell < 0 || distances[cell] == kUnreached) continue;
     const Vec3 off = (centre(cell) - point).cwiseAbs() / size_;
     const float weight = std::max(1e-4f, (1 - off.x()) * (1 - off.y()) * (1 - off.z()));
-    sum += weight * ways[cell];
+    sum += weight * distances[cell];
     total += weight;
   }
-  return total > 0 ? sum / total : ways[nearest_cell(point)];
+  return total > 0 ? sum / total : distances[nearest_cell(point)];
 }
 
 }  // namespace understudy

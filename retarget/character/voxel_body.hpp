@@ -1,4 +1,4 @@
-// The solid under a surface as a grid of small cubes, and the ways through it.
+// The solid under a surface as a grid of small cubes, and the paths through it.
 #pragma once
 
 #include <array>
@@ -24,11 +24,11 @@ class VoxelBody {
   int cell_at(const Vec3& point) const;
   /// The cube of the solid nearest to a point.
   int nearest_cell(const Vec3& point) const;
-  /// Length of the shortest way through the solid from any of these segments, [count()] metres; a segment
+  /// Length of the shortest path through the solid from any of these segments, [count()] metres; a segment
   /// that lies outside starts at the cubes nearest to it.
-  std::vector<float> ways_from(const std::vector<std::pair<Vec3, Vec3>>& segments) const;
+  std::vector<float> distances_from(const std::vector<std::pair<Vec3, Vec3>>& segments) const;
   /// Such lengths at any point: of the cubes about it.
-  float at(const std::vector<float>& ways, const Vec3& point) const;
+  float at(const std::vector<float>& distances, const Vec3& point) const;
 
  private:
   struct Bridge {

@@ -1,5 +1,7 @@
 #include "retarget/formats/mesh_reader.hpp"
 
+#include <filesystem>
+
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
@@ -14,7 +16,8 @@ Mesh parse_mesh(std::string_view bytes, const std::string& path) {
   const FileFormat* const suffix = format_of_suffix(path, kScanFrame);
   US_CHECK(content || suffix, path, ": is not a known mesh or point cloud (", format_names(kScanFrame), ")");
   if (content && suffix && content != suffix)
-    log::warn(path + ": is " + content->name + " despite its suffix, and is read as such");
+    log::warn_once((std::filesystem::path(path).parent_path() / ("*" + file_suffix(path))).string() +
+                   ": these files are " + content->name + " despite their suffix, and are read as such");
   US_CHECK(content || !suffix->always_recognised, path, ": is not ", suffix->name, " despite its suffix");
   const FileFormat& format = content ? *content : *suffix;
   Mesh mesh = format.parse(bytes, path);

@@ -9,7 +9,7 @@
 namespace understudy {
 
 /// A mesh or point cloud in the file's own units and axes. What the bytes are decides, the suffix helps where
-/// they do not tell; where the two disagree, the bytes are believed and a warning is given. NaN and infinite
+/// they do not show it; where the two disagree, the bytes count and a warning is given. NaN and infinite
 /// coordinates are kept. Throws Error: one sentence that names the file.
 Mesh read_mesh(const std::string& path);
 /// The same from bytes in memory; `path` gives the suffix and names the file in complaints.

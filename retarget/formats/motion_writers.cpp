@@ -191,7 +191,7 @@ void ResultWriter::push(const Points& vertices, const Joints& joints, const Rota
            " vertices, the first had ", vertex_count_);
   std::array<float, kJointCount * 9> rotations;
   for (size_t j = 0; j < kJointCount; ++j)
-    for (int i = 0; i < 9; ++i) rotations[9 * j + static_cast<size_t>(i)] = local[j](i / 3, i % 3);
+    for (int i = 0; i < 9; ++i) rotations[9 * j + i] = local[j](i / 3, i % 3);
   npz_.push(Vertices, vertices.data());
   npz_.push(JointsArray, joints.data());
   npz_.push(RotationsArray, rotations.data());

@@ -20,7 +20,7 @@ class ByteStream {
   virtual size_t read(char* to, size_t size) = 0;
   // Goes on from the byte `offset` of the whole.
   virtual void seek(uint64_t offset) = 0;
-  uint64_t size = 0;  // of all, as the file says
+  uint64_t size = 0;  // of all, from the file
 };
 
 class FileStream : public ByteStream {
@@ -49,7 +49,7 @@ struct CloseZip {
 
 struct Archive {
   std::shared_ptr<zip_t> zip;
-  uint64_t size = 0;  // of the file: what its directory says of packed sizes may be a lie
+  uint64_t size = 0;  // of the file: packed sizes in its directory may be false
 };
 
 class ZipStream : public ByteStream {
@@ -262,7 +262,7 @@ std::unique_ptr<ScanSource::Frames> npy_frames(const std::string& path) {
 }
 
 std::unique_ptr<ScanSource::Frames> npz_frames(const std::string& path) {
-  const FileStream readable(path);  // says why, when it cannot be read
+  const FileStream readable(path);  // throws when it cannot be read
   int code = 0;
   const std::shared_ptr<zip_t> zip(zip_open(path.c_str(), ZIP_RDONLY, &code), [](zip_t* z) {
     if (z) zip_discard(z);

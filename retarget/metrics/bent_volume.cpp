@@ -21,7 +21,7 @@ float reach_of(const Joints& joints, int joint) {
   return 0.5f * shortest;
 }
 
-/// The bones between pelvis and hip, or chest and shoulder, say nothing of how thick it is there.
+/// The bones between pelvis and hip, or chest and shoulder, do not show how thick it is there.
 float reach_about(const Joints& joints, int joint) {
   const bool at_trunk =
       joint == LeftHip || joint == RightHip || joint == LeftShoulder || joint == RightShoulder;

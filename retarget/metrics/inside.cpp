@@ -82,8 +82,8 @@ double winding_number(const Points& vertices, const Eigen::Ref<const Faces>& fac
     const Vec3 c = vertices.row(faces(f, 2)).transpose() - point;
     const float la = a.norm(), lb = b.norm(), lc = c.norm();
     const float volume = a.dot(b.cross(c));
-    const float spread = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    if (volume != 0 || spread != 0) solid_angle += 2.0 * std::atan2(volume, spread);
+    const float denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    if (volume != 0 || denominator != 0) solid_angle += 2.0 * std::atan2(volume, denominator);
   }
   return solid_angle / (4 * M_PI);
 }
@@ -144,10 +144,10 @@ std::vector<Windings::Group> Windings::groups_of(const Points& vertices) const {
 double Windings::at(const Points& vertices, const std::vector<Group>& groups, const Vec3& point) const {
   double winding = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
-    const Vec3 way = groups[g].middle - point;
-    const float far2 = way.squaredNorm(), near = kAfar * groups[g].radius;
+    const Vec3 offset = groups[g].middle - point;
+    const float far2 = offset.squaredNorm(), near = kAfar * groups[g].radius;
     if (far2 > near * near)
-      winding += static_cast<double>(groups[g].normal.dot(way) / (far2 * std::sqrt(far2))) / (4 * M_PI);
+      winding += static_cast<double>(groups[g].normal.dot(offset) / (far2 * std::sqrt(far2))) / (4 * M_PI);
     else
       winding += winding_number(vertices, faces_.middleRows(first_[g], first_[g + 1] - first_[g]), point);
   }

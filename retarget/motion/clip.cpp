@@ -77,7 +77,7 @@ int chosen_clip(const Character& character, const std::string& clip) {
 }
 
 ClipTimes clip_times(const Character& character, int clip, double fps) {
-  const CharacterAnimation& animation = character.animations.at(static_cast<size_t>(clip));
+  const CharacterAnimation& animation = character.animations.at(clip);
   ClipTimes out;
   double first = -1, last = 0;
   for (const auto& track : animation.tracks) {

@@ -75,7 +75,7 @@ struct Reader {
 };
 constexpr Reader kReaders[] = {{"BVH", read_bvh}, {"NPZ", read_amass_character}};
 
-/// Whether a glTF's JSON has an animation with channels, told at the first one. None where the text ends before that
+/// Whether a glTF's JSON has an animation with channels. None where the text ends before the first
 /// and is not `whole`.
 std::optional<bool> has_animation(const std::string& text, bool whole) {
   using Json = nlohmann::json;

@@ -28,7 +28,7 @@ int inference_threads() {
   return std::clamp(cores / 2, 1, 4);
 }
 
-void tell(log::Level level, const std::string& message) {
+void sink(log::Level level, const std::string& message) {
   level == log::Level::Warning ? log::warn(message) : log::info(message);
 }
 
@@ -62,7 +62,7 @@ const PluginApi& plugin() {
     US_CHECK(entry, path, ": not a networks plug-in");
     US_CHECK(entry()->version == kPluginVersion, path, ": a networks plug-in of version ", entry()->version,
              ", not ", kPluginVersion);
-    entry()->tell_log_to(tell);
+    entry()->send_log_to(sink);
     return *entry();
   }();
   return api;

@@ -11,8 +11,8 @@ constexpr int kPluginVersion = 7;
 
 struct PluginApi {
   int version;
-  /// What the plug-in's own copy of the log says goes to this function of the program from now on.
-  void (*tell_log_to)(void (*tell)(log::Level, const std::string&));
+  /// Messages of the plug-in's own copy of the log go to this function of the program from now on.
+  void (*send_log_to)(void (*sink)(log::Level, const std::string&));
   Networks (*load)(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);

@@ -8,7 +8,7 @@
 
 namespace understudy::nn {
 
-/// What every training is told.
+/// Options of every training.
 struct TrainOptions {
   std::string data, out;  ///< the data folder; the weights file, its checkpoint (OUT.checkpoint) beside it
   std::string curve;      ///< learning curve CSV; empty: out + ".csv"

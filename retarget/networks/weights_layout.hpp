@@ -15,7 +15,7 @@ inline constexpr char kWeightsMagic[] = "USWEIGHT";
 struct StoredTensor {
   std::vector<int64_t> shape;
   bool half = false;       ///< two bytes a number, else four
-  std::string_view bytes;  ///< exactly as many as the shape says
+  std::string_view bytes;  ///< exactly as many as the shape needs
 };
 
 /// "USWEIGHT", uint32 length of the JSON, the JSON (kind, version, numbers, tensors: name, shape, half,

@@ -91,7 +91,7 @@ Eigen::RowVectorXf shares_of(const Eigen::Matrix<float, kBetween, 3>& offsets) {
   Eigen::Matrix<float, kBetween, 4> terms;
   terms << Eigen::Matrix<float, kBetween, 1>::Ones(), offsets / std::sqrt(reach2);
   Eigen::Matrix4f A = terms.transpose() * w.matrix().asDiagonal() * terms;
-  A.diagonal().tail<3>().array() += 1e-3f * w.sum();  // points in one plane say nothing across it
+  A.diagonal().tail<3>().array() += 1e-3f * w.sum();  // points in one plane determine nothing across it
   const Eigen::Vector4f solved = A.ldlt().solve(Eigen::Vector4f::UnitX());
   return ((terms * solved).array() * w).matrix().transpose();
 }

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kRounds = 2;  // the second crop lies better than the first
 
-// A crop tells more of a joint's error than the whole body does, the two together still more.
+// A crop shows more of a joint's error than the whole body does, the two together still more.
 constexpr float kShareOfCrop = 0.7f;
 // A joint that may be farther off than so is perhaps looked for in the wrong place, at the other leg say,
-// where the crop tells nothing of it. Metres: from where that begins to where the crop is not believed at
+// where the crop does not show it. Metres: from where that begins to where the crop is not believed at
 // all.
 constexpr float kNear = 0.05f, kAstray = 0.12f;
 constexpr int kSurfacePoints = 8192;

@@ -35,7 +35,7 @@ BodyGirth measure_girth(const Extraction& source, const Points& scan);
 /// A mean adult's (of the built-in people), with legs one metre long.
 const BodyGirth& human_girth();
 
-/// What frames so far say of one body's girth, in bounded memory.
+/// One body's girth from the frames so far, in bounded memory.
 class RunningGirth {
  public:
   void clear() { *this = RunningGirth(); }

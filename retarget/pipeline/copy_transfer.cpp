@@ -20,7 +20,7 @@ constexpr float kBendLow_deg = 10;  // below this bend the last hinge axis is ke
 constexpr float kBendHigh_deg = 35;  // above this bend the hinge axis is believed at once
 constexpr float kRelax_s = 2;        // time in which a kept hinge axis falls back to the T-pose's
 
-/// How a joint's rotation is found. Measured with the trained extractor: limbs lie where their joints say, and
+/// How a joint's rotation is found. Measured with the trained extractor: limbs lie between their joints, and
 /// how they are turned about themselves is better seen on the legs than solved, less so on the arms; of leaves
 /// positions say nothing. The short bones of trunk and feet are pointed badly by joints a centimetre off.
 struct JointRule {
@@ -92,7 +92,7 @@ void CopyTransfer::point_bone(Frame& frame, int j, float amount) const {
   const int end = kRules[j].end;
   if (end < 0 || amount <= 0) return;
   const Vec3 seen = frame.bone(j, end);
-  if (seen.norm() < 1e-6f) return;  // two joints in one place say nothing
+  if (seen.norm() < 1e-6f) return;  // two joints in one place have no direction
   const Vec3 now = frame.global[j] * (human_rest().row(end) - human_rest().row(j)).transpose();
   frame.global[j] = blend(Mat3::Identity(), rotation_between(now, seen), amount) * frame.global[j];
 }

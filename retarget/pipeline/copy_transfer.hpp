@@ -29,7 +29,7 @@ class CopyTransfer final : public MotionTransfer {
   struct Frame;
   void solve_trunk(Frame& frame) const;
   void solve_limb(Frame& frame, const Limb& limb);
-  /// The rotation of joint j from what positions say (`solved`), what was seen and where its bone points.
+  /// The rotation of joint j from positions (`solved`), what was seen and where its bone points.
   void settle(Frame& frame, int j, const Mat3& solved) const;
   void point_bone(Frame& frame, int j, float amount) const;
   Mat3 hinge_rotation(const Frame& frame, const Limb& limb) const;

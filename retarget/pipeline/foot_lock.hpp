@@ -1,4 +1,4 @@
-// Feet that stand do not slide, online.
+// Standing feet do not slide, online.
 #pragma once
 
 #include "retarget/pipeline/root_path.hpp"

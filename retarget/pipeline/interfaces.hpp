@@ -1,4 +1,4 @@
-// The stages of the way of a frame, as the pipeline sees them: abstract, so that no user of the pipeline
+// The stages of a frame, as the pipeline sees them: abstract, so that no user of the pipeline
 // needs LibTorch.
 #pragma once
 

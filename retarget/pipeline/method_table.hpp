@@ -9,7 +9,7 @@
 
 namespace understudy {
 
-/// One row. The first of a list is what is chosen where nothing is said.
+/// One row. The first of a list is the default.
 struct MethodChoice {
   const char *name, *label;  ///< "copy" in documents and commands, "Copy" on buttons
   const char* caption;       ///< over a picture that it made: "copied rotations"

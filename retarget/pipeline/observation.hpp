@@ -13,7 +13,7 @@ namespace understudy {
 struct Observation : Extraction {
   std::optional<BodyGirth> girth;  ///< of the scan; none where there is none
   std::string problem;             ///< why there is no skeleton, one sentence; empty: there is one
-  /// where the skeletons so far may be no person's; told once in a source's first frames
+  /// where the skeletons so far may not be a person's; set once in a source's first frames
   std::string warning;
   int64_t points = 0;  ///< in the scan
   double extract_ms = 0;

@@ -16,7 +16,7 @@ constexpr float kImplausible = 0.25f,
 constexpr float kUnsure = 0.6f;          // confidence
 constexpr int kFewest = 3, kFirst = 60;  // frames that are looked at
 constexpr int kFewestPoints = 32;        // finite ones below which a scan is not looked at
-constexpr float kPast_s = 0.25f;         // how long joints are told on: some frames at any usual rate
+constexpr float kPast_s = 0.25f;         // how long joints are passed on: some frames at any usual rate
 
 /// What the scan shows around a skeleton.
 void look_around(Observation& seen, const Mesh& scan) {
@@ -36,12 +36,13 @@ float bone_implausibility(const Joints& joints) {
 }
 
 std::string PersonCheck::push(const Extraction& seen) {
-  if (seen.exact || told_ || frames_ >= kFirst || !seen.joints.allFinite()) return {};
-  const float strange = bone_implausibility(seen.joints);
+  if (seen.exact || warned_ || frames_ >= kFirst || !seen.joints.allFinite()) return {};
+  const float implausibility = bone_implausibility(seen.joints);
   ++frames_;
-  if (strange > kImplausible || (strange > kOdd && seen.confidence.mean() < kUnsure)) ++implausible_;
-  told_ = frames_ >= kFewest && implausible_ * 5 >= frames_ * 4;
-  if (!told_) return {};
+  if (implausibility > kImplausible || (implausibility > kOdd && seen.confidence.mean() < kUnsure))
+    ++implausible_;
+  warned_ = frames_ >= kFewest && implausible_ * 5 >= frames_ * 4;
+  if (!warned_) return {};
   return "may not be a person, or its poses are not recognised: its bones are unlike a human's in " +
          std::to_string(implausible_) + " of its first " + std::to_string(frames_) + " frames";
 }

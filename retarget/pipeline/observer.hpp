@@ -1,4 +1,4 @@
-// The first half of the way of a frame: what is seen of one person in a stream, frame after frame.
+// The first stages of a frame: what is seen of one person in a stream, frame after frame.
 #pragma once
 
 #include <memory>
@@ -16,16 +16,16 @@ float bone_implausibility(const Joints& joints);
 /// Looks at what is extracted from a source, frame after frame.
 class PersonCheck {
  public:
-  /// A sentence, once, when the first frames have bones that are no person's: an animal, or a person whom the
+  /// A sentence, once, when the first frames have bones unlike a human's: an animal, or a person whom the
   /// extraction does not see, as some who crawl. Else empty. Skeletons that are given are not doubted.
   std::string push(const Extraction& seen);
 
  private:
   int frames_ = 0, implausible_ = 0;
-  bool told_ = false;
+  bool warned_ = false;
 };
 
-/// Tells its extractor what was seen just before: the joints of the last two frames that are believed
+/// Gives its extractor what was seen just before: the joints of the last two frames that are believed
 /// (refusal()), unless more than a quarter of a second has passed since. The network learned from frames one
 /// thirtieth of a second apart, and wrong pasts only as the exception.
 ///

@@ -66,7 +66,7 @@ PerformedFrame Performer::perform(const Observation& seen, float dt) {
   return frame;
 }
 
-/// The way of a frame: the source's stages, then the target's, where there is one.
+/// All stages of a frame: the source's, then the target's, where there is one.
 void Performer::run(PerformedFrame& frame) {
   using Stage = void (*)(Performer&, PerformedFrame&);
   static constexpr Stage kStyle = [](Performer& p, PerformedFrame& f) {

@@ -1,4 +1,4 @@
-// The second half of the way of a frame: observations of one person in, the target's performance out.
+// The later stages of a frame: observations of one person in, the target's performance out.
 #pragma once
 
 #include <any>
@@ -18,7 +18,7 @@ namespace understudy {
 struct RetargetOptions {
   JointFilterOptions filter;
   RootPathOptions root;
-  bool lock_feet = true;  ///< feet that stand do not slide
+  bool lock_feet = true;  ///< standing feet do not slide
   FootLockOptions feet;
   bool keep_contacts = true;  ///< hands that touch the body or each other do so on the target, too
   bool vertices = true;       ///< false: poses only, no deformation

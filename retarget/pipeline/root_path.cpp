@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<int, 4> kFeet = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
 constexpr float kContactEase = 0.1f;  // seconds in which a contact takes hold
 constexpr float kPlantEase = 0.15f;   // the same of a leg that reaches for the floor
-constexpr float kPelvisEase = 0.2f;   // the same of a pelvis that was seen far from where the feet say
+constexpr float kPelvisEase = 0.2f;   // the same of a pelvis that was seen far from where the feet put it
 constexpr float kUsual = 0.035f;      // of the leg: what errors of the feet alone amount to
 constexpr float kSlack = 0.01f;       // of the leg: soles this near are left alone
 

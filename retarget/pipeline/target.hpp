@@ -15,7 +15,7 @@ struct Target {
 };
 
 /// Finds the T-pose joints of a target: the mean over random samples, small turns and mirror images; made
-/// symmetric when the target is. Never refuses: what does not look like a person in T-pose is told in
+/// symmetric when the target is. Never refuses: what does not look like a person in T-pose is listed in
 /// `warnings`. Throws Error when the mesh has fewer than 32 finite points.
 Target prepare_target(const Mesh& mesh, SkeletonExtractor& extractor);
 /// A target whose T-pose joints are known.

@@ -55,8 +55,8 @@ RuntimeReport report() {
   return found;
 }
 
-void tell_log_to(void (*tell)(log::Level, const std::string&)) {
-  log::set_sink(tell);
+void send_log_to(void (*sink)(log::Level, const std::string&)) {
+  log::set_sink(sink);
 }
 
 std::unique_ptr<SkeletonExtractor> load_extractor(const NetworkOptions& options, const std::string& folder) {
@@ -88,6 +88,6 @@ int train_network(const AnyTrainOptions& any) {
 
 const understudy::nn::PluginApi* understudy_networks_plugin() {
   using namespace understudy::nn;
-  static const PluginApi api{kPluginVersion, tell_log_to, load, report, train_network};
+  static const PluginApi api{kPluginVersion, send_log_to, load, report, train_network};
   return &api;
 }

@@ -36,7 +36,7 @@ struct ScanMakerOptions {
   static ScanMakerOptions rest();
 };
 
-/// A scan of kScanPoints points, or as many as the options say, and its labels, world metres.
+/// A scan of kScanPoints points, or as many as in the options, and its labels, world metres.
 struct MadeScan : LabelledPoints {
   PosedSkeleton truth;
 };

@@ -48,7 +48,7 @@ TrainingRun::TrainingRun(const nn::TrainOptions& options, std::string network, c
   US_CHECK(options.keep == 0 || !options.init.empty(), "--keep needs --init");
   US_CHECK(device_.is_cpu() || torch::cuda::is_available(), "this LibTorch finds no ", options.device,
            " device");
-  at::set_num_threads(std::max(1, options.threads));  // the matrices are small: one thread unless told
+  at::set_num_threads(std::max(1, options.threads));  // the matrices are small: one thread by default
   torch::manual_seed(options.seed);
 }
 

@@ -98,9 +98,9 @@ TEST_F(StudioCharacter, OnlyWeightsOfNetworksAreDoubted) {
   studio.run("target.rig", {"0", "ours"});
   studio.wait_idle(60);
   ASSERT_NE(take(studio).binding, nullptr);
-  EXPECT_EQ(take(studio).binding->doubt.size(), take(studio).target->mesh.vertices.rows());
+  EXPECT_EQ(take(studio).binding->uncertainty.size(), take(studio).target->mesh.vertices.rows());
   studio.run("view.colour", {"take", "doubt"});
-  EXPECT_EQ(studio.session().view.take.colouring, Colouring::Doubt);
+  EXPECT_EQ(studio.session().view.take.colouring, Colouring::Uncertainty);
 }
 
 TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {

@@ -121,11 +121,11 @@ TEST_F(SceneTest, OneJointsWeightsAreOnAScaleAllJointsAreCategories) {
 }
 
 TEST_F(SceneTest, DoubtOfTheBindingIsNeutralToWarm) {
-  session.view.take.colouring = app::Colouring::Doubt;
+  session.view.take.colouring = app::Colouring::Uncertainty;
   EXPECT_FALSE(scene(1).legend.missing.empty());  // a skin of its own is not doubted
   auto binding = std::make_shared<SafeBinding>();
-  binding->doubt = Eigen::VectorXf::Zero(stage.mesh.vertices.rows());
-  binding->doubt[3] = 1, binding->doubt[4] = 0.25f;
+  binding->uncertainty = Eigen::VectorXf::Zero(stage.mesh.vertices.rows());
+  binding->uncertainty[3] = 1, binding->uncertainty[4] = 0.25f;
   session.takes[0].binding = binding;
   const PaneScene made = scene(1);
   ASSERT_NE(made.values, nullptr);

@@ -76,7 +76,7 @@ class Gui {
   Ui ui_;
 };
 
-/// Whether a key went down in this frame (or repeats, held). Does not tell which widget it is for.
+/// Whether a key went down in this frame (or repeats, held). Whichever widget it is for.
 bool key_pressed(render::Key key, bool repeat = true);
 
 }  // namespace understudy::ui

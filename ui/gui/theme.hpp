@@ -21,7 +21,7 @@ struct Theme {
   ImVec4 on_accent;                            ///< words and icons upon the accent
   ImVec4 good, warning, danger;
   ImVec4 shade;                  ///< over everything behind a dialog
-  std::array<ImVec4, 8> series;  ///< curves, in order; told apart with any colour vision
+  std::array<ImVec4, 8> series;  ///< curves, in order; distinct for any colour vision
 };
 
 const Theme& theme(ThemeKind kind);

@@ -37,7 +37,7 @@ const std::vector<Colour> kSourceColours = {{Colouring::Plain, "Plain"},
                                             {Colouring::Confidence, "Confidence"}};
 const std::vector<Colour> kTakeColours = {{Colouring::Plain, "Plain"},
                                           {Colouring::Weights, "Skin weights"},
-                                          {Colouring::Doubt, "Binding uncertainty, %"},
+                                          {Colouring::Uncertainty, "Binding uncertainty, %"},
                                           {Colouring::Offsets, "Corrective offsets, mm"},
                                           {Colouring::Error, "Error to the truth, mm"},
                                           {Colouring::Difference, "Difference to take 1, mm"}};

@@ -11,7 +11,7 @@ namespace understudy::ui {
 
 struct MetricsState {
   int stage = 4;  ///< of the histogram: Latency::kStages
-  // The durations of that stage, as many as tell their distribution; made again when there are more frames.
+  // The durations of that stage, as many as show their distribution; made again when there are more frames.
   int64_t frames = -1;
   int of_stage = -1, of_take = -1;
   std::vector<float> durations;

@@ -78,8 +78,8 @@ bool has_document(const app::Session& session) {
 
 int known_frames(const app::Session& session) {
   const int made = std::max<int>(app::frame_count(session), session.source.frames.size());
-  const int64_t told = session.source.count.value_or(0);
-  return std::max(made, static_cast<int>(std::min<int64_t>(told, 100'000'000)));
+  const int64_t announced = session.source.count.value_or(0);
+  return std::max(made, static_cast<int>(std::min<int64_t>(announced, 100'000'000)));
 }
 
 double frames_per_second(const app::Session& session) {

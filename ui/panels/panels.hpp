@@ -19,7 +19,7 @@ struct Panel {
   const char* title;
   const char* keys;  ///< that show or hide it
   Dock dock;
-  bool shown;  ///< where the settings say nothing
+  bool shown;  ///< by default
   /// Fills the current window. Reads the session and asks for commands.
   void (*draw)(const app::Session&, PanelContext&);
 };

@@ -41,7 +41,7 @@ void draw_more_jobs(const app::Session& session, PanelContext& context) {
   ImGui::EndPopup();
 }
 
-/// What there is to say without a job: the newest warning or line of the log.
+/// What is shown without a job: the newest warning or line of the log.
 void draw_message(const app::Session& session, PanelContext& context, float width) {
   Ui& ui = context.ui;
   if (session.log.empty() || width < ui.px(40)) return;

@@ -29,8 +29,8 @@ PaneContent overlay(const Session& session) {
 
 std::string method_words(const app::Method& method) {
   const int engine = index_of(engines(), method.engine), extractor = index_of(extractors(), method.extractor);
-  std::string words = engine < 0 ? method.engine : engines()[static_cast<size_t>(engine)].caption;
-  if (extractor > 0) words += std::string(", ") + extractors()[static_cast<size_t>(extractor)].caption;
+  std::string words = engine < 0 ? method.engine : engines()[engine].caption;
+  if (extractor > 0) words += std::string(", ") + extractors()[extractor].caption;
   if (!method.offsets) words += ", no offsets";
   return words;
 }

@@ -39,7 +39,7 @@ SharedPoints scale_colors(const SurfaceValues& surface) {
   const float high = surface.legend.high;
   if (surface.legend.scale == Legend::Scale::Error)
     return render::colors_along(render::error_color, *surface.values, 0, high);
-  if (surface.legend.scale == Legend::Scale::Doubt)
+  if (surface.legend.scale == Legend::Scale::Uncertainty)
     return render::colors_along(render::diverging_color, *surface.values, -high, high);
   return render::colors_along(render::viridis, *surface.values, 0, high);
 }
@@ -292,7 +292,7 @@ const SurfaceColours& Builder::take_colors(int k, const std::shared_ptr<const ap
   const Colouring colouring = take_colouring(session_);
   now.settings = {static_cast<float>(colouring), session_.view.error_scale_mm,
                   static_cast<float>(weights_joint(session_))};
-  if (colouring == Colouring::Weights || colouring == Colouring::Doubt) {  // the same in every frame
+  if (colouring == Colouring::Weights || colouring == Colouring::Uncertainty) {  // the same in every frame
     now.kept = {take.weights, take.binding};
   } else if (colouring != Colouring::Plain) {
     now.kept = {posed, in_.pictures.reference, session_.truth};

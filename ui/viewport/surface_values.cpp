@@ -45,11 +45,11 @@ SurfaceValues weights(const Session& session, const app::TakeState& take) {
   return out;
 }
 
-SurfaceValues doubt(const app::TakeState& take, Eigen::Index vertices) {
+SurfaceValues binding_uncertainty(const app::TakeState& take, Eigen::Index vertices) {
   const char* const title = "Binding uncertainty";
-  if (take.binding == nullptr || take.binding->doubt.size() != vertices)
+  if (take.binding == nullptr || take.binding->uncertainty.size() != vertices)
     return missing(title, "it uses its own skin weights");
-  return scaled(title, "%", 100, Scale::Doubt, 100 * take.binding->doubt);
+  return scaled(title, "%", 100, Scale::Uncertainty, 100 * take.binding->uncertainty);
 }
 
 SurfaceValues error(const Session& session, const Points& vertices, int frame) {
@@ -78,7 +78,7 @@ SurfaceValues confidence(const Session& session, const Points& points, const Joi
 }  // namespace
 
 Vec3 scale_color(Legend::Scale scale, float share) {
-  if (scale == Legend::Scale::Doubt)
+  if (scale == Legend::Scale::Uncertainty)
     return render::diverging_color(0.5f + 0.5f * share);  // from neutral to warm
   return scale == Legend::Scale::Error ? render::error_color(share) : render::viridis(share);
 }
@@ -107,8 +107,8 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
       if (posed->offsets.rows() != posed->vertices.rows()) return missing("Offsets", "not ready yet");
       return scaled("Offsets", "mm", session.view.error_scale_mm, Scale::Viridis,
                     1000 * posed->offsets.rowwise().norm());
-    case Colouring::Doubt:
-      return doubt(take, posed->vertices.rows());
+    case Colouring::Uncertainty:
+      return binding_uncertainty(take, posed->vertices.rows());
     case Colouring::Error:
       return error(session, posed->vertices, pictures.frame);
     case Colouring::Difference:

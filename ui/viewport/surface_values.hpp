@@ -25,7 +25,7 @@ struct PanePictures {
 
 /// A scale, or categories, or nothing (plain).
 struct Legend {
-  enum class Scale { Viridis, Error, Doubt };
+  enum class Scale { Viridis, Error, Uncertainty };
   std::string title;  ///< "Offsets"; empty: no legend
   std::string unit;   ///< "mm"
   float high = 1;     ///< the scale begins at 0

@@ -17,7 +17,7 @@ void tooltip(Ui& ui, const std::string& text, const std::string& shortcut = {});
 struct IconButtonOptions {
   std::string tooltip, shortcut;
   bool active = false;    ///< on, chosen
-  bool disabled = false;  ///< the tooltip should then say why
+  bool disabled = false;  ///< the tooltip should then explain why
   float size = 28;        ///< its side at scale 1
 };
 /// True when clicked.

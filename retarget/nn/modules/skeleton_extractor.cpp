@@ -93,7 +93,7 @@ SkeletonExtractorNetImpl::SkeletonExtractorNetImpl() {
   patch_out = register_module("patch_out", Linear(96, C));
   position_mlp = register_module("position_mlp", Sequential(Linear(3, C), ReLU(), Linear(C, C)));
   recent_mlp = register_module("recent_mlp", Sequential(Linear(8, C), ReLU(), Linear(C, C)));
-  // At first the past says nothing: a network of single scans is trained on from where it is.
+  // At first the past has no effect: a network of single scans is trained on from where it is.
   torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->weight);
   torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->bias);
   encoder = register_module("encoder", torch::nn::ModuleList());

@@ -188,10 +188,10 @@ TEST(VoxelBody, WaysGoThroughTheSolidNotThroughTheAir) {
     }
     const VoxelBody body(mesh, 64);
     const Vec3 left(-0.3f, 0.95f, 0), right(0.3f, 0.95f, 0);
-    const auto ways = body.ways_from({{left, left}});
-    EXPECT_GT(body.at(ways, right), 1.8f) << "cloud " << cloud;
-    EXPECT_LT(body.at(ways, right), 3.0f) << "cloud " << cloud;
-    EXPECT_LT(body.at(ways, Vec3(-0.3f, 0.5f, 0)), 0.6f);
+    const auto distances = body.distances_from({{left, left}});
+    EXPECT_GT(body.at(distances, right), 1.8f) << "cloud " << cloud;
+    EXPECT_LT(body.at(distances, right), 3.0f) << "cloud " << cloud;
+    EXPECT_LT(body.at(distances, Vec3(-0.3f, 0.5f, 0)), 0.6f);
   }
 }
 
@@ -202,8 +202,8 @@ TEST(VoxelBody, PartsThatDoNotTouchAreJoinedAtTheirNearest) {
   append(two, tube(
                   Vec3(0, 0.5f, 0), Vec3(0, 1, 0), [](float) { return 0.1f; }, 3));
   const VoxelBody body(two, 64);
-  const auto ways = body.ways_from({{Vec3(0, 0.1f, 0), Vec3(0, 0.1f, 0)}});
-  EXPECT_NEAR(body.at(ways, Vec3(0, 0.9f, 0)), 0.8f, 0.12f);
+  const auto distances = body.distances_from({{Vec3(0, 0.1f, 0), Vec3(0, 0.1f, 0)}});
+  EXPECT_NEAR(body.at(distances, Vec3(0, 0.9f, 0)), 0.8f, 0.12f);
 }
 
 TEST(GeometricBinding, ARobotsPartsStayRigid) {
@@ -363,14 +363,14 @@ TEST(CarefulDeformer, GoodWeightsStayAndStrayOnesAreReplaced) {
   const Mesh mesh = bust(joints, 0.11f);
   const RowMatrix good = tests::shape_weights(mesh, joints);
   const SafeBinding kept = safe_binding(mesh, joints, good);
-  EXPECT_EQ(kept.doubt.maxCoeff(), 0);
+  EXPECT_EQ(kept.uncertainty.maxCoeff(), 0);
   EXPECT_TRUE(kept.weights == good);
   EXPECT_EQ(kept.note, "");
   RowMatrix stray = good;
   for (Eigen::Index v = 0; v < 120; ++v) stray.row(v) = Eigen::RowVectorXf::Unit(kJointCount, RightWrist);
   const SafeBinding mended = safe_binding(mesh, joints, stray);
   for (Eigen::Index v = 0; v < 84; ++v) {
-    EXPECT_GT(mended.doubt[v], 0.95f) << v;
+    EXPECT_GT(mended.uncertainty[v], 0.95f) << v;
     EXPECT_LT(mended.weights(v, RightWrist), 0.05f) << v;
   }
   EXPECT_TRUE(mended.weights.bottomRows(200) == good.bottomRows(200));

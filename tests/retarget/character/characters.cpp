@@ -14,6 +14,63 @@ namespace {
 
 constexpr int kSides = 8, kRings = 5;
 
+// Names of the 22 joints' bones, as programs and collections give them.
+using Names = std::array<const char*, kJointCount>;
+constexpr Names kMixamo = {"Hips",        "LeftUpLeg",    "RightUpLeg", "Spine",        "LeftLeg",
+                           "RightLeg",    "Spine1",       "LeftFoot",   "RightFoot",    "Spine2",
+                           "LeftToeBase", "RightToeBase", "Neck",       "LeftShoulder", "RightShoulder",
+                           "Head",        "LeftArm",      "RightArm",   "LeftForeArm",  "RightForeArm",
+                           "LeftHand",    "RightHand"};
+constexpr Names kRigify = {"DEF-spine",       "DEF-thigh.L",     "DEF-thigh.R",    "DEF-spine.001",
+                           "DEF-shin.L",      "DEF-shin.R",      "DEF-spine.002",  "DEF-foot.L",
+                           "DEF-foot.R",      "DEF-spine.003",   "DEF-toe.L",      "DEF-toe.R",
+                           "DEF-spine.004",   "DEF-shoulder.L",  "DEF-shoulder.R", "DEF-spine.006",
+                           "DEF-upper_arm.L", "DEF-upper_arm.R", "DEF-forearm.L",  "DEF-forearm.R",
+                           "DEF-hand.L",      "DEF-hand.R"};
+constexpr Names kVrm = {"J_Bip_C_Hips",     "J_Bip_L_UpperLeg",   "J_Bip_R_UpperLeg", "J_Bip_C_Spine",
+                        "J_Bip_L_LowerLeg", "J_Bip_R_LowerLeg",   "J_Bip_C_Chest",    "J_Bip_L_Foot",
+                        "J_Bip_R_Foot",     "J_Bip_C_UpperChest", "J_Bip_L_ToeBase",  "J_Bip_R_ToeBase",
+                        "J_Bip_C_Neck",     "J_Bip_L_Shoulder",   "J_Bip_R_Shoulder", "J_Bip_C_Head",
+                        "J_Bip_L_UpperArm", "J_Bip_R_UpperArm",   "J_Bip_L_LowerArm", "J_Bip_R_LowerArm",
+                        "J_Bip_L_Hand",     "J_Bip_R_Hand"};
+constexpr Names kUnreal = {"pelvis",     "thigh_l",    "thigh_r",    "spine_01", "calf_l",     "calf_r",
+                           "spine_02",   "foot_l",     "foot_r",     "spine_03", "ball_l",     "ball_r",
+                           "neck_01",    "clavicle_l", "clavicle_r", "head",     "upperarm_l", "upperarm_r",
+                           "lowerarm_l", "lowerarm_r", "hand_l",     "hand_r"};
+constexpr Names kBiped = {"Bip01 Pelvis",     "Bip01 L Thigh",    "Bip01 R Thigh",    "Bip01 Spine",
+                          "Bip01 L Calf",     "Bip01 R Calf",     "Bip01 Spine1",     "Bip01 L Foot",
+                          "Bip01 R Foot",     "Bip01 Spine2",     "Bip01 L Toe0",     "Bip01 R Toe0",
+                          "Bip01 Neck",       "Bip01 L Clavicle", "Bip01 R Clavicle", "Bip01 Head",
+                          "Bip01 L UpperArm", "Bip01 R UpperArm", "Bip01 L Forearm",  "Bip01 R Forearm",
+                          "Bip01 L Hand",     "Bip01 R Hand"};
+constexpr Names kWords = {"Hip",
+                          "Left Thigh",
+                          "Right Thigh",
+                          "Abdomen",
+                          "Left Shin",
+                          "Right Shin",
+                          "Waist",
+                          "Left Foot",
+                          "Right Foot",
+                          "Chest",
+                          "Left Toes",
+                          "Right Toes",
+                          "Neck",
+                          "Left Clavicle",
+                          "Right Clavicle",
+                          "Head",
+                          "Left Upper Arm",
+                          "Right Upper Arm",
+                          "Left Lower Arm",
+                          "Right Lower Arm",
+                          "Left Wrist",
+                          "Right Wrist"};
+constexpr Names kCmu = {"Hips",        "LeftUpLeg",    "RightUpLeg", "LowerBack",    "LeftLeg",
+                        "RightLeg",    "Spine",        "LeftFoot",   "RightFoot",    "Spine1",
+                        "LeftToeBase", "RightToeBase", "Neck",       "LeftShoulder", "RightShoulder",
+                        "Head",        "LeftArm",      "RightArm",   "LeftForeArm",  "RightForeArm",
+                        "LeftHand",    "RightHand"};
+
 /// The end of each joint's tube: the next joint, or a step beyond.
 Vec3 end_of(const Joints& joints, int j) {
   const auto at = [&](int k) -> Vec3 { return joints.row(k).transpose(); };
@@ -108,8 +165,8 @@ Mat4 rigid(const Mat3& R, const Vec3& t) {
 std::vector<Mat4> bone_worlds(const Joints& joints) {
   std::vector<Mat4> out;
   for (int j = 0; j < kJointCount; ++j) {
-    const Vec3 from = joints.row(j).transpose(), way = end_of(joints, j) - from;
-    out.push_back(rigid(rotation_between(Vec3::UnitY(), way.norm() > 1e-4f ? way : Vec3(0, 1, 0)), from));
+    const Vec3 from = joints.row(j).transpose(), along = end_of(joints, j) - from;
+    out.push_back(rigid(rotation_between(Vec3::UnitY(), along.norm() > 1e-4f ? along : Vec3(0, 1, 0)), from));
   }
   return out;
 }
@@ -176,61 +233,6 @@ RowMatrix shape_weights(const Mesh& mesh, const Joints& joints) {
 }
 
 std::string made_name(Naming naming, int joint) {
-  using Names = std::array<const char*, kJointCount>;
-  static const Names kMixamo = {"Hips",        "LeftUpLeg",    "RightUpLeg", "Spine",        "LeftLeg",
-                                "RightLeg",    "Spine1",       "LeftFoot",   "RightFoot",    "Spine2",
-                                "LeftToeBase", "RightToeBase", "Neck",       "LeftShoulder", "RightShoulder",
-                                "Head",        "LeftArm",      "RightArm",   "LeftForeArm",  "RightForeArm",
-                                "LeftHand",    "RightHand"};
-  static const Names kRigify = {"DEF-spine",       "DEF-thigh.L",     "DEF-thigh.R",    "DEF-spine.001",
-                                "DEF-shin.L",      "DEF-shin.R",      "DEF-spine.002",  "DEF-foot.L",
-                                "DEF-foot.R",      "DEF-spine.003",   "DEF-toe.L",      "DEF-toe.R",
-                                "DEF-spine.004",   "DEF-shoulder.L",  "DEF-shoulder.R", "DEF-spine.006",
-                                "DEF-upper_arm.L", "DEF-upper_arm.R", "DEF-forearm.L",  "DEF-forearm.R",
-                                "DEF-hand.L",      "DEF-hand.R"};
-  static const Names kVrm = {"J_Bip_C_Hips",     "J_Bip_L_UpperLeg",   "J_Bip_R_UpperLeg", "J_Bip_C_Spine",
-                             "J_Bip_L_LowerLeg", "J_Bip_R_LowerLeg",   "J_Bip_C_Chest",    "J_Bip_L_Foot",
-                             "J_Bip_R_Foot",     "J_Bip_C_UpperChest", "J_Bip_L_ToeBase",  "J_Bip_R_ToeBase",
-                             "J_Bip_C_Neck",     "J_Bip_L_Shoulder",   "J_Bip_R_Shoulder", "J_Bip_C_Head",
-                             "J_Bip_L_UpperArm", "J_Bip_R_UpperArm",   "J_Bip_L_LowerArm", "J_Bip_R_LowerArm",
-                             "J_Bip_L_Hand",     "J_Bip_R_Hand"};
-  static const Names kUnreal = {
-      "pelvis",     "thigh_l",    "thigh_r",    "spine_01",   "calf_l",  "calf_r",     "spine_02",   "foot_l",
-      "foot_r",     "spine_03",   "ball_l",     "ball_r",     "neck_01", "clavicle_l", "clavicle_r", "head",
-      "upperarm_l", "upperarm_r", "lowerarm_l", "lowerarm_r", "hand_l",  "hand_r"};
-  static const Names kBiped = {"Bip01 Pelvis",     "Bip01 L Thigh",    "Bip01 R Thigh",    "Bip01 Spine",
-                               "Bip01 L Calf",     "Bip01 R Calf",     "Bip01 Spine1",     "Bip01 L Foot",
-                               "Bip01 R Foot",     "Bip01 Spine2",     "Bip01 L Toe0",     "Bip01 R Toe0",
-                               "Bip01 Neck",       "Bip01 L Clavicle", "Bip01 R Clavicle", "Bip01 Head",
-                               "Bip01 L UpperArm", "Bip01 R UpperArm", "Bip01 L Forearm",  "Bip01 R Forearm",
-                               "Bip01 L Hand",     "Bip01 R Hand"};
-  static const Names kWords = {"Hip",
-                               "Left Thigh",
-                               "Right Thigh",
-                               "Abdomen",
-                               "Left Shin",
-                               "Right Shin",
-                               "Waist",
-                               "Left Foot",
-                               "Right Foot",
-                               "Chest",
-                               "Left Toes",
-                               "Right Toes",
-                               "Neck",
-                               "Left Clavicle",
-                               "Right Clavicle",
-                               "Head",
-                               "Left Upper Arm",
-                               "Right Upper Arm",
-                               "Left Lower Arm",
-                               "Right Lower Arm",
-                               "Left Wrist",
-                               "Right Wrist"};
-  static const Names kCmu = {"Hips",        "LeftUpLeg",    "RightUpLeg", "LowerBack",    "LeftLeg",
-                             "RightLeg",    "Spine",        "LeftFoot",   "RightFoot",    "Spine1",
-                             "LeftToeBase", "RightToeBase", "Neck",       "LeftShoulder", "RightShoulder",
-                             "Head",        "LeftArm",      "RightArm",   "LeftForeArm",  "RightForeArm",
-                             "LeftHand",    "RightHand"};
   const auto j = static_cast<size_t>(joint);
   switch (naming) {
     case Naming::Mixamo:

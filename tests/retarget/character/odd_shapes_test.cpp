@@ -248,7 +248,7 @@ TEST(OddShapes, ACatOnARigIsRefusedAndWarnedOfWhereItsBonesAreNamedAsAPersons) {
 
 TEST(OddShapes, WhatMayBeNoPersonIsWarnedOf) {
   EXPECT_TRUE(refusal(stance_of(ball())).empty());
-  EXPECT_FALSE(doubt(stance_of(ball())).empty());
+  EXPECT_FALSE(implausibility(stance_of(ball())).empty());
   KnownExtractor known(made_joints({}));
   const PreparedCharacter c = prepare_character(character_of_mesh(ball(), "ball"), &known, nullptr);
   bool told = false;
@@ -266,11 +266,11 @@ TEST(OddShapes, PersonsAreNeitherRefusedNorDoubted) {
         options.heading_deg = heading;
         const Character person = bare(options);
         const Stance stance = stance_of({posed_vertices(person, person.world()), {}, {}});
-        EXPECT_EQ(doubt(stance), "") << arms << ' ' << legs << ' ' << heading;
+        EXPECT_EQ(implausibility(stance), "") << arms << ' ' << legs << ' ' << heading;
         EXPECT_FALSE(lies_down(stance));
       }
   const Character robot = make_robot();
-  EXPECT_EQ(doubt(stance_of({posed_vertices(robot, robot.world()), {}, {}})), "");
+  EXPECT_EQ(implausibility(stance_of({posed_vertices(robot, robot.world()), {}, {}})), "");
 }
 
 /// From a bare shape to a written file that can be read, by way of T-pose and geometric weights.

@@ -114,11 +114,22 @@ TEST(MeshReader, KeepsNanAndInfinityAndFinitePointsDropsThem) {
 }
 
 TEST(MeshReader, BelievesTheContentAgainstTheSuffix) {
-  Warnings warnings;
+  const Warnings warnings;
   EXPECT_EQ(parse_mesh(binary_ply(true), "a.obj").faces.rows(), 4);
-  EXPECT_TRUE(warnings.contain("a.obj: is PLY despite its suffix"));
   EXPECT_EQ(parse_mesh(off_text(), "a").faces.rows(), 4);
   EXPECT_EQ(parse_mesh(glb_bytes(), "a.ply").faces.rows(), 4);
+}
+
+TEST(MeshReader, WarnsOfWrongSuffixesOnceAFolder) {
+  const auto warns = [](const std::string& path) {
+    Warnings warnings;
+    parse_mesh(binary_ply(true), path);
+    return warnings.contain("these files are PLY despite their suffix");
+  };
+  EXPECT_TRUE(warns("scans/1.obj"));
+  EXPECT_FALSE(warns("scans/2.obj"));
+  EXPECT_TRUE(warns("scans/2.off"));
+  EXPECT_TRUE(warns("others/1.obj"));
 }
 
 TEST(MeshReader, SaysInOneSentenceThatAFileIsSomethingElse) {

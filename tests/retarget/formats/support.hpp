@@ -257,13 +257,21 @@ struct Sample {
 };
 // The tetrahedron in every format and variant.
 inline std::vector<Sample> all_samples() {
-  return {{".ply", ascii_ply(), true},      {".ply", binary_ply(false), true},
-          {".ply", binary_ply(true), true}, {".obj", obj_text(), true},
-          {".off", off_text(), true},       {".off", binary_off(), true},
-          {".stl", ascii_stl(), true},      {".stl", binary_stl(), true},
-          {".xyz", point_lines(), false},   {".pcd", pcd_header("ascii") + point_lines(), false},
-          {".pcd", binary_pcd(), false},    {".pcd", compressed_pcd(), false},
-          {".gltf", gltf_text(), true},     {".glb", glb_bytes(), true}};
+  return {{".ply", ascii_ply(), true},
+          {".ply", binary_ply(false), true},
+          {".ply", binary_ply(true), true},
+          {".obj", obj_text(), true},
+          {".off", off_text(), true},
+          {".off", binary_off(), true},
+          {".stl", ascii_stl(), true},
+          {".stl", binary_stl(), true},
+          {".xyz", point_lines(), false},
+          {".pcd", pcd_header("ascii") + point_lines(), false},
+          {".pcd", binary_pcd(), false},
+          {".pcd", compressed_pcd(), false},
+          {".gltf", gltf_text(), true},
+          {".glb", glb_bytes(), true},
+          {".pts", "4\n" + point_lines(), false}};
 }
 
 }  // namespace understudy::test
