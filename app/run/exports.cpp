@@ -65,7 +65,7 @@ SurfaceTopology topology_of(const PreparedCharacter& c) {
 class ExportedBody {
  public:
   explicit ExportedBody(const ExportBody& body) : body_(body), rest_(joints_of(body)) {}
-  /// The frame as the options want it.
+  /// The frame as the options ask for it.
   ExportFrame performed(const ExportFrame& frame, Pose& pose) const {
     pose = frame.pose;
     if (!body_.file.in_place) return {pose, frame.source_joints, frame.vertices};

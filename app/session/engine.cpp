@@ -325,7 +325,7 @@ const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const Metho
   return extractor;
 }
 
-/// Methods with all the extractors that the view or a take wants.
+/// Methods with all the extractors that the view or a take needs.
 std::vector<Method> Engine::Impl::wanted_extractions() const {
   std::map<std::string, Method> wanted{{extraction_key(plan.shown), plan.shown}};
   for (const TakeWork& take : takes)

@@ -126,7 +126,7 @@ void Studio::notify(const std::string& sentence, bool warning) {
   session_.notices.push_back({kind, sentence, "", session_.time + kNoticeSeconds});
 }
 
-/// Tells the background what is wanted now, and drops what no longer belongs to anything. Where it throws nothing has
+/// Gives the background the plan, and drops what no longer belongs to anything. Where it throws nothing has
 /// changed.
 void Studio::follow_document() {
   Background& b = *background_;

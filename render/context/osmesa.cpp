@@ -7,7 +7,7 @@
 namespace understudy::render {
 namespace {
 
-// The few declarations of GL/osmesa.h that are needed; that header wants GL/gl.h, which clashes with the core
+// The few declarations of GL/osmesa.h that are needed; that header needs GL/gl.h, which clashes with the core
 // one.
 using OsContext = void*;
 constexpr int kFormat = 0x22, kDepthBits = 0x30, kProfile = 0x33, kCoreProfile = 0x34, kMajor = 0x36,

@@ -10,7 +10,7 @@ namespace understudy::render::gl {
 namespace {
 
 thread_local DebugMode current_mode = DebugMode::Off;
-thread_local std::string first_complaint;
+thread_local std::string first_message;
 
 void APIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length, const GLchar* text,
                          const void*) {
@@ -18,14 +18,14 @@ void APIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length, co
   const std::string words(text,
                           length < 0 ? std::char_traits<char>::length(text) : static_cast<size_t>(length));
   if (current_mode == DebugMode::Log) log::warn_once("OpenGL: " + words);
-  if (first_complaint.empty()) first_complaint = words;
+  if (first_message.empty()) first_message = words;
 }
 
 }  // namespace
 
 void install_debug(DebugMode mode) {
   current_mode = mode;
-  first_complaint.clear();
+  first_message.clear();
   if (mode == DebugMode::Off || api().DebugMessageCallback == nullptr) return;
   api().Enable(GL_DEBUG_OUTPUT);
   api().Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -34,9 +34,9 @@ void install_debug(DebugMode mode) {
 
 void check_debug() {
   if (current_mode != DebugMode::Fatal) return;
-  if (const GLenum code = api().GetError(); code != GL_NO_ERROR && first_complaint.empty())
-    first_complaint = detail::join("error 0x", std::hex, code);
-  if (!first_complaint.empty()) throw Error("OpenGL: " + std::exchange(first_complaint, {}));
+  if (const GLenum code = api().GetError(); code != GL_NO_ERROR && first_message.empty())
+    first_message = detail::join("error 0x", std::hex, code);
+  if (!first_message.empty()) throw Error("OpenGL: " + std::exchange(first_message, {}));
 }
 
 }  // namespace understudy::render::gl

@@ -15,7 +15,7 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
 }
 
-/// The word as a number; `what` names it in complaints.
+/// The word as a number; `what` names it in errors.
 template <class T>
 T parsed(std::string_view word, bool (*parse)(std::string_view, T&), const std::string& source,
          const char* what) {

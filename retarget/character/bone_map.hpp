@@ -44,7 +44,7 @@ BoneChoices read_bone_choices(const std::string& path);
 
 /// Maps by names where they are clear, else by hierarchy and position. bind: the nodes' transforms in the
 /// bind pose, y up (any heading). The user's choices come last. Throws Error when a choice names a joint or a
-/// bone that is not there, or one bone twice.
+/// bone that does not exist, or one bone twice.
 BoneMap map_bones(const Character& character, const std::vector<Mat4>& bind, const BoneChoices& choices = {});
 
 /// A line a joint: its name, the bone, how sure.

@@ -110,7 +110,7 @@ std::string text_of(const std::string& name) {
   return json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
-/// Unit rows, as the format wants them; a row without a direction becomes `otherwise`.
+/// Unit rows, as the format needs them; a row without a direction becomes `otherwise`.
 RowMatrix unit_rows(const Points& directions, const Vec3& otherwise) {
   RowMatrix out = directions;
   for (Eigen::Index v = 0; v < out.rows(); ++v) {
@@ -135,7 +135,7 @@ int add_joints(const CharacterPart& part, const RowMatrix& weights, Eigen::Index
 
 void add_skin_attributes(const Character& character, const CharacterPart& part, ModelMaker& out,
                          std::map<std::string, int>& attributes) {
-  // The sums are one to the last bit, which validators want: the largest weight takes the rounding.
+  // The sums are one to the last bit, which validators require: the largest weight takes the rounding.
   RowMatrix exact = weights_of_bones(part);
   for (Eigen::Index v = 0; v < exact.rows(); ++v) {
     auto row = exact.row(v);

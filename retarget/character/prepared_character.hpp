@@ -51,7 +51,7 @@ struct PreparedCharacter {
 PreparedCharacter prepare_character(Character character, SkeletonExtractor* any_pose,
                                     SkeletonExtractor* in_t_pose, const CharacterOptions& options = {});
 
-/// The first half of it, which asks no network: size, axes, floor and bones are known, `surface` stands as
+/// The first half of it, which uses no network: size, axes, floor and bones are known, `surface` is as
 /// the character came, with its colours; a rig faces forward. Throws Error for what is clearly no person.
 PreparedCharacter load_character(Character character, const CharacterOptions& options = {});
 /// The second half: its T-pose and joints, with the same options.
@@ -80,7 +80,7 @@ class FoldingTransfer final : public MotionTransfer {
   std::array<bool, kJointCount> mapped_;
 };
 
-/// Deforms as the character's own skin does: from its bind pose at once, not by way of the T-pose. `inner`,
+/// Deforms as the character's own skin does: from its bind pose at once, not via the T-pose. `inner`,
 /// which may be null, gives the pose-corrective offsets, where its own weights are like the rig's. Joints
 /// that are bound elsewhere than the rig has them move the points that its bones turn about.
 class RigDeformer final : public Deformer {
@@ -102,7 +102,7 @@ class RigDeformer final : public Deformer {
   Eigen::VectorXf trust_;  // [V] 0..1: the share of the offsets that is taken
 };
 
-/// The networks as a character wants them that performs on its own rig: folding, and its own skin.
+/// The networks for a character that performs on its own rig: folding, and its own skin.
 Networks networks_for(Networks networks, const PreparedCharacter& character, bool their_rig);
 
 }  // namespace understudy

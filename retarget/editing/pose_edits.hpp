@@ -118,7 +118,7 @@ struct EditedBody {
 /// All edits in this order, whatever order they were made in: rotate (as listed), smooth, floor, pin, heading.
 /// So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are always the
 /// original ones: frames that trim and skip leave out stay, for a timeline that still shows them. Deterministic.
-/// Without soles pinned feet keep their heights. Throws Error for joints that are none or a strength outside
+/// Without soles pinned feet keep their heights. Throws Error for unknown joints or a strength outside
 /// 0..1.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
 /// Original numbers of the frames that trim and skip leave of `count`. Throws Error for a trim that leaves none.

@@ -1,4 +1,4 @@
-// Reading bytes and text that nobody vouches for: files, numbers of any type and byte order, faces.
+// Reading untrusted bytes and text: files, numbers of any type and byte order, faces.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ class FaceList {
   void add(const int64_t* corners, size_t count);
   void add(int64_t a, int64_t b, int64_t c);
   void reserve(size_t triangles) { corners_.reserve(3 * triangles); }
-  /// [F, 3]. Throws Error naming `source` when a face names a vertex that is not there.
+  /// [F, 3]. Throws Error naming `source` when a face names a vertex that does not exist.
   Faces finish(int64_t vertex_count, const std::string& source) const;
 
  private:

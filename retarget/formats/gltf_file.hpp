@@ -36,7 +36,7 @@ class GltfFile {
   const tinygltf::Model& model() const { return model_; }
   /// Materials, textures, samplers and extensionsRequired, which tinygltf would not keep as they are.
   const nlohmann::json& kept(const char* name) const { return kept_.at(name); }
-  /// Number `index` of a list of the model; `name` is what complaints call the list.
+  /// Number `index` of a list of the model; `name` is the list's name in errors.
   template <class T>
   const T& item(const std::vector<T>& list, int index, const char* name) const {
     US_CHECK(index >= 0 && static_cast<size_t>(index) < list.size(), path_, ": names number ", index,
@@ -52,7 +52,7 @@ class GltfFile {
   Faces faces(const tinygltf::Primitive& primitive, int64_t count);
   /// The bytes of a buffer view; they live as long as this.
   std::string_view view_bytes(int index) const;
-  /// What a uri stands for: data in it, or a file in the folder. `what` names it in complaints.
+  /// What a uri stands for: data in it, or a file in the folder. `what` names it in errors.
   std::string uri_bytes(const std::string& uri, const std::string& what);
   /// Counts what is made of the file, which may name its bytes again and again. Throws Error when all
   /// together passes 2 GiB, or 256 MiB and 64 times the file's size.

@@ -95,7 +95,7 @@ class MeshCollector {
 /// All triangles and points of the default scene in one mesh, with the transforms of their nodes; skinned
 /// meshes in their bind pose, placed by the root of their skeleton. Metres and y up are the format's own;
 /// colours from COLOR_0 when every primitive has them. Every accessor is checked against its buffer before it
-/// is read. `path` is where outside buffers are looked for, and names the file in complaints. Throws Error,
+/// is read. `path` is where outside buffers are looked for, and names the file in errors. Throws Error,
 /// also for Draco and meshopt compression.
 Mesh parse_gltf(std::string_view bytes, const std::string& path) {
   GltfFile file(bytes, path, GltfFile::Use::Surface);

@@ -36,7 +36,7 @@ struct ImportDecision {
   /// A frame in metres, y up, floor at 0.
   void apply(Mesh& mesh) const;
   Points apply(const Points& points) const;
-  /// The way back, from the program's world to the file's coordinates.
+  /// The inverse, from the program's world to the file's coordinates.
   Eigen::Matrix4d to_file() const;
 };
 

@@ -12,7 +12,7 @@ namespace understudy {
 /// they do not show it; where the two disagree, the bytes count and a warning is given. NaN and infinite
 /// coordinates are kept. Throws Error: one sentence that names the file.
 Mesh read_mesh(const std::string& path);
-/// The same from bytes in memory; `path` gives the suffix and names the file in complaints.
+/// The same from bytes in memory; `path` gives the suffix and names the file in errors.
 Mesh parse_mesh(std::string_view bytes, const std::string& path);
 
 }  // namespace understudy

@@ -27,7 +27,7 @@ struct NpyArray {
 
 using Npz = std::map<std::string, NpyArray>;
 
-/// Reads one .npy from bytes in memory; `source` names it in complaints. Sizes are checked before anything is
+/// Reads one .npy from bytes in memory; `source` names it in errors. Sizes are checked before anything is
 /// allocated.
 NpyArray parse_npy(const std::string& bytes, const std::string& source);
 /// Reads every array of a .npz (zip, stored or deflated). Arrays of other kinds (objects) are left out.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPluginFile = "libunderstudy_networks.so";
 
-/// One core is left to whoever else wants it (a window drawn in software): measured, two inference threads
+/// One core is left to whatever else needs it (a window drawn in software): measured, two inference threads
 /// gain little on an idle machine and lose much on a busy one.
 int inference_threads() {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -32,7 +32,7 @@ void sink(log::Level level, const std::string& message) {
   level == log::Level::Warning ? log::warn(message) : log::info(message);
 }
 
-/// The plug-in wants addresses for LibTorch, OpenBLAS's buffers and stacks of threads; with too few it asks for them
+/// The plug-in needs addresses for LibTorch, OpenBLAS's buffers and stacks of threads; with too few it asks for them
 /// for ever and nothing fails. Tried with `understudy retarget` on the samples under ulimit -v: one thread works in
 /// 1.3 GB, not in 1.0; two threads never end in 1.3; four reserve 1.7 while loading. The rest of 3 GB is for scans.
 void check_address_space() {

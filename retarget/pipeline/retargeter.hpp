@@ -13,7 +13,7 @@ namespace understudy {
 /// An observer and a performer. One thread at a time.
 class Retargeter {
  public:
-  /// With a transfer and a deformer it wants a target; without, it repairs and smooths the source alone.
+  /// With a transfer and a deformer it needs a target; without, it repairs and smooths the source alone.
   explicit Retargeter(Networks networks, const RetargetOptions& options = {})
       : networks_(std::move(networks)), options_(options), observer_(networks_.extractor) {
     if (!networks_.transfer && !networks_.deformer) performer_.emplace(options);

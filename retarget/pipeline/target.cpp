@@ -36,7 +36,7 @@ Symmetry symmetry(const Points& points) {
   return {middle, sum / static_cast<float>(flipped.rows())};
 }
 
-std::vector<std::string> complaints(const Mesh& mesh, const Joints& joints) {
+std::vector<std::string> warnings_about(const Mesh& mesh, const Joints& joints) {
   std::vector<std::string> result;
   const Vec3 size = (mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff()).transpose();
   const Joints& human = human_rest();
@@ -108,7 +108,7 @@ Target prepare_target(const Mesh& mesh, SkeletonExtractor& extractor) {
 
 Target prepare_target(const Mesh& mesh, const Joints& joints) {
   Target target{mesh, joints, {}};
-  target.warnings = complaints(finite_part(mesh), joints);
+  target.warnings = warnings_about(finite_part(mesh), joints);
   return target;
 }
 

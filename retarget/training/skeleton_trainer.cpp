@@ -20,7 +20,7 @@ constexpr int kFollowed = 5;  // frames that a person is followed for, at most
 /// Several copies of one network on as many threads. Their parameters are the same memory, their gradients
 /// are their own: each thread makes and learns from its own scans, then the gradients are averaged. Scales
 /// better on small tensors than threads inside each operation, and does not collapse when another process
-/// wants a core.
+/// needs a core.
 struct Replica {
   std::shared_ptr<SkeletonForm> net;
   std::unique_ptr<ScanStreams> streams;

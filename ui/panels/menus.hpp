@@ -10,7 +10,7 @@ namespace understudy::ui {
 
 struct MenuItem {
   std::string label = {};    ///< empty: a line between groups
-  std::string command = {};  ///< one that wants a path and has none opens the dialog that asks for it
+  std::string command = {};  ///< one that needs a path and has none opens the dialog that asks for it
   app::Arguments arguments = {};
   bool checked = false;               ///< on, or chosen
   std::vector<MenuItem> inside = {};  ///< a menu of its own

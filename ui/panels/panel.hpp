@@ -50,7 +50,7 @@ int known_frames(const app::Session& session);
 double frames_per_second(const app::Session& session);
 
 /// Whether a part of the window is shown: a panel (for those in the side panel: its tab), "side", or
-/// "side_over", the side panel where it lies over the views for want of room.
+/// "side_over", the side panel where it lies over the views for lack of room.
 bool panel_shown(const app::Session& session, const std::string& panel);
 
 /// The tools in menus and bars.

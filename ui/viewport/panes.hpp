@@ -48,7 +48,7 @@ bool shows_as_loaded(const app::Session& session, const PaneContent& pane);
 /// The mesh drawn for a take: its target, or before that the character as loaded; null before both.
 std::shared_ptr<const Target> shown_target(const app::TakeState& take);
 
-/// What a pane's camera adds to its target: app::follow_offset() of its person, or the way to the T-pose.
+/// What a pane's camera adds to its target: app::follow_offset() of its person, or the offset to the T-pose.
 Vec3 follow_offset(const app::Session& session, const PaneContent& pane);
 /// The camera that a pane is drawn with.
 render::Camera pane_camera(const app::Session& session, const PaneContent& pane);

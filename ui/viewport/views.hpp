@@ -17,7 +17,7 @@ class Views {
   /// Fills what is left of the current window with the panes of the layout. Redraws a pane only when
   /// its content, camera or size has changed. Marks: "view.0" the source, "view.1" the first take
   /// ..., "view.wipe" the line of a wipe, "view.legend", "view.warning", "view.tip". Throws Error where the
-  /// context's complaints are fatal.
+  /// context's messages are fatal.
   void draw(const app::Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui);
 
   /// Drops everything shown: the document was closed.

@@ -33,7 +33,7 @@ struct ButtonOptions {
   ButtonLook look = ButtonLook::Plain;
   std::string tooltip, shortcut;
   bool disabled = false;
-  float width = 0;  ///< pixels; 0: as its words want; negative: up to so far from the right edge
+  float width = 0;  ///< pixels; 0: as wide as its text; negative: up to so far from the right edge
 };
 bool button(Ui& ui, const std::string& name, const std::string& label, const ButtonOptions& options = {});
 

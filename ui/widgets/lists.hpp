@@ -25,7 +25,7 @@ struct Column {
 /// A table with a fixed header. Draw rows only while open() is true.
 class Table {
  public:
-  /// `height` pixels; 0: as its rows want.
+  /// `height` pixels; 0: as high as its rows.
   Table(Ui& ui, const std::string& name, std::vector<Column> columns, float height = 0);
   ~Table();
   Table(const Table&) = delete;
