@@ -86,7 +86,7 @@ const std::vector<Table>& tables() {
        kRotations},
       {"contexts", "Contexts",
        "The method forgets the past after so many frames; each network of `paper` was trained on sequences "
-       "of that length. Places start anew, so only figures after alignment are compared.",
+       "of that length. Positions restart, so only figures after alignment are compared.",
        kAligned},
       {"rotation", "Rotation forms of the network, with and without a rotation loss",
        "All trained with the same budget, shorter than that of the shipped weights.", kPerformance},

@@ -187,7 +187,7 @@ void add_weight_tools(Commands& commands) {
     keep(c, smoothed(weights, c.studio.neighbours(c.take_number()), {}, strength));
   });
   commands.add_edit(
-      {"edit.weights_reproject", "Bring painted weights to the target as it is now", "TAKE"}, [](Call& c) {
+      {"edit.weights_reproject", "Transfer painted weights to the present target", "TAKE"}, [](Call& c) {
         auto& weights = c.take().target_edits.weights;
         const auto& target = c.take_state().target;
         US_CHECK(weights && target, "there are no painted weights, or the target is still being prepared");

@@ -342,7 +342,7 @@ void turn_over(PreparedCharacter& c, const CharacterOptions& options) {
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
   SideViews seen = seen_from_sides(c.surface.mesh, any_pose);
-  if (stands_on_head(seen)) {
+  if (is_upside_down(seen)) {
     US_CHECK(options.turn_if_lying || options.up == "auto", c.character.called(), ": is upside down with ",
              options.up, " up, another up axis (--target-up) turns it over");
     turn_over(c, options);

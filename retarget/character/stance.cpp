@@ -144,7 +144,7 @@ SideViews seen_from_sides(const Mesh& mesh, SkeletonExtractor& extractor) {
   return views;
 }
 
-bool stands_on_head(const SideViews& seen) {
+bool is_upside_down(const SideViews& seen) {
   float head = 0, ankles = 0;  // over the pelvis, mean of all sides, shares of the legs
   for (const Extraction& view : seen) {
     const Joints& joints = view.joints;

@@ -39,7 +39,7 @@ SideViews seen_from_sides(const Mesh& mesh, SkeletonExtractor& extractor);
 float body_heading(const Mesh& mesh, const SideViews& seen);
 
 /// Whether a body without bones is upside down: the head is seen below the pelvis and the ankles above it.
-bool stands_on_head(const SideViews& seen);
+bool is_upside_down(const SideViews& seen);
 
 /// The heading near `guess` about which points are most symmetric; the guess where none stands out.
 float symmetric_heading(const Points& points, float guess);

@@ -135,7 +135,7 @@ UpGuess forced_up(const std::string& up, const Points& points, const std::array<
   const bool negative = !up.empty() && up[0] == '-';
   const std::string letter = negative ? up.substr(1) : up;
   US_CHECK(letter == "x" || letter == "y" || letter == "z", "the up axis '", up,
-           "' is none of x, y, z, -x, -y, -z");
+           "' is not one of x, y, z, -x, -y, -z");
   UpGuess guess{letter[0] - 'x', negative, {}};
   const FloorSlab floor = find_floor(points, guess.axis, views[guess.axis]);
   if (floor.seen && floor.at_high_end == negative) guess.floor = floor;
@@ -178,7 +178,7 @@ std::string decide_units(float height, float extent, const std::string& forced, 
   for (const auto& candidate : kUnits)
     if (guess ? height >= candidate.low && height < candidate.high : forced == candidate.name)
       unit = &candidate;
-  US_CHECK(guess || unit, "the unit '", forced, "' is none of m, dm, cm, mm, in");
+  US_CHECK(guess || unit, "the unit '", forced, "' is not one of m, dm, cm, mm, in");
   if (!unit) return decide_odd_size(height, extent, decision);
   decision.units = unit->name;
   decision.scale = unit->metres;

@@ -66,7 +66,7 @@ void report_gaps(const std::string& source, const std::vector<FrameGap>& gaps) {
   log::warn(source + ": frames are missing: " + text + (gaps.size() > 5 ? " and more" : ""));
 }
 
-constexpr int kHopeless = 100;  // frames that cannot be read from the first on: nobody has such a capture
+constexpr int kHopeless = 100;  // unreadable frames from the first on, after which a sequence is given up
 
 class FileFrames : public ScanSource::Frames {
  public:

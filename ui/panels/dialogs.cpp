@@ -84,7 +84,7 @@ void draw_paint(const app::Session& session, PanelContext& context) {
   QuestionWords question;
   question.title = "Painted weights do not fit";
   question.sentence = session.question->text;
-  question.yes = known ? "Bring them over" : "Drop them", question.no = known ? "Drop them" : "";
+  question.yes = known ? "Transfer them" : "Drop them", question.no = known ? "Drop them" : "";
   question.cancel = "Decide later", question.dangerous = !known;
   const Answer answer = ask(context.ui, "paint", question);
   if (answer == Answer::None) return;

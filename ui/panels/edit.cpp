@@ -99,7 +99,7 @@ void draw_scan(const app::Session& session, PanelContext& context) {
 
 void draw_falloff(const app::Session& session, PanelContext& context, const std::string& name) {
   float frames = static_cast<float>(session.falloff);
-  row(context.ui, "Falloff", "How many frames to each side follow, less and less");
+  row(context.ui, "Falloff", "How many frames on each side follow, less and less");
   if (number(context.ui, name, frames, {0, 120, 0.1f, "\u00b1 %.0f frames", 5, true}))
     context.ask("tool.falloff", {argument(std::round(frames))});
 }

@@ -145,7 +145,8 @@ TEST(Import, RefusesUnknownOptionsAndNothing) {
   ImportOptions units, up;
   units.units = "furlong";
   up.up = "w";
-  EXPECT_EQ(error_of([&] { decide_import(file, units); }), "the unit 'furlong' is none of m, dm, cm, mm, in");
+  EXPECT_EQ(error_of([&] { decide_import(file, units); }),
+            "the unit 'furlong' is not one of m, dm, cm, mm, in");
   EXPECT_NE(error_of([&] { decide_import(file, up); }), "");
   Mesh nothing;
   nothing.vertices = Points::Constant(5, 3, std::numeric_limits<float>::quiet_NaN());
