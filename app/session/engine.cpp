@@ -208,6 +208,10 @@ void Engine::Impl::adopt(Plan wanted) {
   takes = std::move(kept);
   skeleton_is = skeleton_wanted;
   plan = std::move(wanted);
+  std::map<std::string, Stream> still_wanted;  // what only removed takes used is dropped
+  for (const Method& method : wanted_extractions())
+    still_wanted.insert(streams.extract(extraction_key(method)));
+  streams = std::move(still_wanted);
 }
 
 void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {

@@ -156,16 +156,15 @@ void Studio::follow_document() {
   session_.selected_take =
       std::max(0, std::min(session_.selected_take, static_cast<int>(session_.takes.size()) - 1));
   forget_removed();
-  try {
+  const std::string problem = failure_of([&] {
     follow_source(other_source);
     follow_edits();
     if (key == b.plan_key) return;
     b.engine.set_plan(std::move(plan));
     b.plan_key = std::move(key);
     session_.working = true;
-  } catch (const std::exception& error) {
-    fail(error.what());  // what was not followed differs from its key, and is at the next time
-  }
+  });
+  if (!problem.empty()) fail(problem);  // what was not followed differs from its key, and is at the next time
 }
 
 /// Of a target prepared in another way only the file is the same.
@@ -233,19 +232,21 @@ void Studio::follow_edits() {
 void Studio::apply_weights(size_t k) {
   Background::Applied& applied = background_->applied[background_->take_ids[k]];
   TakeState& state = session_.takes[k];
-  applied.weights = session_.document.takes[k].target_edits.weights;
+  const auto weights_wanted = session_.document.takes[k].target_edits.weights;
+  applied.weights.reset();  // until they are there: what throws is done at the next time
   if (!applied.deformer) return;
   state.deformer = applied.deformer;
   state.paint_problem.clear();
   applied.asked_about_paint = false;
-  if (applied.weights && !applied.weights->empty()) try {
+  if (weights_wanted && !weights_wanted->empty()) try {
       RowMatrix weights = applied.deformer->weights();
-      understudy::apply(*applied.weights, weights);
+      understudy::apply(*weights_wanted, weights);
       state.deformer = applied.deformer->with_weights(std::move(weights));
     } catch (const Error& error) {
       state.paint_problem = session_.document.takes[k].name + ": " + error.what();
     }
   state.weights = std::shared_ptr<const RowMatrix>(state.deformer, &state.deformer->weights());
+  applied.weights = weights_wanted;
   ++state.generation;
 }
 

@@ -1,5 +1,9 @@
 #include "app/session/engine.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -110,6 +114,8 @@ TEST_F(StudioTest, AFrameThatCannotBeReadIsFlaggedAndTheRestPerformed) {
   for (size_t t = 0; t < 6; ++t) {
     EXPECT_EQ(session.source.frames[t].flagged, t == 3) << t;
     EXPECT_EQ(session.takes[0].shown.flags[t] != 0, t == 3) << t;
+    EXPECT_EQ(session.source.frames[t].confidence, t == 3 ? 0 : 1) << t;
+    EXPECT_EQ(find(session.takes[0].series, "confidence")->values[t], t == 3 ? 0 : 1) << t;
   }
   EXPECT_EQ(session.takes[0].shown.poses[3].local[LeftHip], session.takes[0].shown.poses[2].local[LeftHip]);
 }
@@ -138,6 +144,39 @@ TEST_F(StudioTest, ATargetThatNoNetworkTakesIsToldAndExchanged) {
   studio.run("method.engine", {"0", "paper"});
   studio.wait_idle(60);
   EXPECT_EQ(frame_count(studio.session()), kFrames);
+}
+
+/// Refuses its tenth frame.
+class RefusingTransfer final : public MotionTransfer {
+ public:
+  void reset(const Joints&) override { frames_ = 0; }
+  Rotations push(const Extraction&, float) override {
+    US_CHECK(++frames_ != 10 || refused_++ > 0, "nobody moves like this");
+    return identity_rotations();
+  }
+  std::any memory() const override { return frames_; }
+  void restore(const std::any& memory) override { frames_ = std::any_cast<int>(memory); }
+  std::string name() const override { return "refusing"; }
+
+ private:
+  int frames_ = 0, refused_ = 0;
+};
+
+TEST_F(StudioTest, AFrameThatIsNotTransferredHasNoConfidence) {
+  StudioServices own = services();
+  own.networks = [usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (parts.transfer) networks.transfer = std::make_shared<RefusingTransfer>();
+    return networks;
+  };
+  Studio studio(own);
+  open_both(studio);
+  const TakeState& take = studio.session().takes[0];
+  ASSERT_EQ(take.performed.size(), static_cast<size_t>(kFrames));
+  for (size_t t = 0; t < kFrames; ++t) {
+    EXPECT_EQ(take.performed[t].flagged, t == 9) << t;
+    EXPECT_EQ(find(take.series, "confidence")->values[t], t == 9 ? 0 : 1) << t;
+  }
 }
 
 /// Fails at its tenth frame with what is no Error of ours.
@@ -200,6 +239,37 @@ TEST_F(StudioTest, ASkeletonIsShownAndExportedAsItsTakeTransferredIt) {
   EXPECT_NE(frames[10].joints, frames[10].raw);  // as before there was a target
 }
 
+TEST_F(StudioTest, ExportedSkeletonsComeWithTheWayBackToTheScan) {
+  Npz scan = read_npz(path("scan.npz"));
+  NpyArray& points = scan.at("points");
+  for (size_t i = 0; i < points.values.size(); i += 3) {  // centimetres, z up, off the origin
+    float* const p = points.values.data() + i;
+    const float y = p[1];
+    p[0] = 300 + 100 * p[0], p[1] = -70 - 100 * p[2], p[2] = 40 + 100 * y;
+  }
+  write_npz(path("scan.npz"), scan);
+  Studio studio(services());
+  open_both(studio);
+  for (const char* filter : {"smooth", "lengths", "swaps"}) studio.run("method.filter", {"0", filter, "off"});
+  studio.wait_idle(60);
+  studio.run("export.run", {"0", path("out.npz")});
+  studio.wait_idle(60);
+  ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
+  const Npz out = read_npz(path("out.npz"));
+  const Eigen::Matrix4f to_scan =
+      Eigen::Map<const Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(out.at("source_to_scan").values.data());
+  const auto row = [](const NpyArray& array, int64_t t, int64_t i) {
+    return Vec3(Eigen::Map<const Vec3>(array.values.data() + 3 * (t * array.shape[1] + i)));
+  };
+  for (int64_t t = 0; t < kFrames; ++t)
+    for (int64_t j = 0; j < kJointCount; ++j) {  // a scan's last points are its joints
+      const Vec3 joint = row(out.at("source_joints"), t, j);
+      const Vec3 in_scan = row(points, t, points.shape[1] - kJointCount + j);
+      EXPECT_LT(((to_scan * joint.homogeneous()).head<3>() - in_scan).norm(), 0.02f) << t << ", joint " << j;
+      EXPECT_LT(std::abs(joint.y() - 1), 1.1f) << t << ", joint " << j;  // metres over the floor
+    }
+}
+
 TEST_F(StudioTest, ASkeletonIsShownRepairedWhereTheTargetIsBroken) {
   Studio alone(services());
   alone.run("open", {path("scan.npz")});
@@ -242,6 +312,34 @@ TEST_F(StudioTest, NetworksAreLoadedWhenTheyAreNeeded) {
   studio.run("method.engine", {"0", "paper"});
   studio.wait_idle(60);
   expect(1, 2, 3);
+}
+
+TEST_F(StudioTest, WhatWasExtractedForRemovedTakesAloneIsForgotten) {
+  std::vector<std::weak_ptr<SkeletonExtractor>> extractors;  // one for each extraction of the engine
+  StudioServices own = services();
+  own.networks = [&extractors, usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (networks.extractor) extractors.push_back(networks.extractor);
+    return networks;
+  };
+  const auto kept = [&extractors] {
+    return std::count_if(extractors.begin(), extractors.end(), [](const auto& e) { return !e.expired(); });
+  };
+  Studio studio(own);
+  open_both(studio);
+  studio.run("compare.add", {"0", "near=off"});
+  studio.run("compare.add", {"0", "extractor=paper"});
+  studio.wait_idle(60);
+  EXPECT_EQ(*extractions_, 3 * kFrames);
+  EXPECT_EQ(kept(), 3);
+  studio.run("target.remove", {"2"});
+  studio.run("target.remove", {"1"});
+  studio.wait_idle(60);
+  EXPECT_EQ(kept(), 1);
+  studio.run("compare.add", {"0", "root=in-place"});
+  studio.wait_idle(60);
+  EXPECT_EQ(*extractions_, 3 * kFrames);  // what is still wanted stays
+  EXPECT_EQ(studio.session().takes[1].performed.size(), static_cast<size_t>(kFrames));
 }
 
 TEST_F(StudioTest, RetargetingAgainMakesEveryFrameAnew) {

@@ -106,6 +106,52 @@ TEST_F(StudioTest, PaintOfAnotherSurfaceIsAskedAboutAndBroughtOver) {
   EXPECT_EQ(take().paint_problem, "");
 }
 
+/// Has no memory for other weights so many times.
+class ScantDeformer : public NearestDeformer {
+ public:
+  ScantDeformer(const NearestDeformer& with, std::shared_ptr<std::atomic<int>> refusals)
+      : NearestDeformer(with), refusals_(std::move(refusals)) {}
+  std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override {
+    if ((*refusals_)-- > 0) throw std::bad_alloc();
+    const auto other = NearestDeformer::with_weights(std::move(weights));
+    return std::make_shared<ScantDeformer>(dynamic_cast<const NearestDeformer&>(*other), refusals_);
+  }
+
+ private:
+  std::shared_ptr<std::atomic<int>> refusals_;
+};
+
+TEST_F(StudioTest, AnEditThatCouldNotBeFollowedIsToldAndFollowedWithTheNextCommand) {
+  auto refusals = std::make_shared<std::atomic<int>>(0);
+  StudioServices own = services();
+  own.networks = [refusals, usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (parts.deformer) networks.deformer = std::make_shared<ScantDeformer>(NearestDeformer(), refusals);
+    return networks;
+  };
+  Studio studio(own);
+  open_both(studio);
+  const Session& session = studio.session();
+  *refusals = 1;
+  EXPECT_NO_THROW(paint(studio, 100));
+  ASSERT_EQ(session.errors.size(), 1u);
+  EXPECT_EQ(session.errors[0].text, "there is not enough memory");
+  ASSERT_TRUE(session.document.takes[0].target_edits.weights);  // the edit itself is done, and can be undone
+  EXPECT_LT((*session.takes[0].weights)(100, Head), 0.1f);
+  studio.run("select.joint", {"neck"});
+  EXPECT_GT((*session.takes[0].weights)(100, Head), 0.1f);
+  *refusals = 1;
+  paint(studio, 200);
+  studio.run("compare.add", {"0", "engine=paper"});  // what else is wanted is made, too
+  studio.wait_idle(60);
+  ASSERT_EQ(session.takes.size(), 2u);
+  EXPECT_EQ(session.takes[1].performed.size(), static_cast<size_t>(kFrames));
+  EXPECT_EQ(session.errors.size(), 2u);
+  studio.run("edit.undo");
+  studio.run("edit.undo");
+  EXPECT_LT((*session.takes[0].weights)(200, Head), 0.1f);
+}
+
 TEST_F(StudioTest, PaintThatDoesNotFitKeepsNothingElseFromBeingDone) {
   Studio studio(services());
   open_both(studio);
