@@ -1,11 +1,16 @@
 #!/bin/bash
-# Fails when a file includes what its folder's row in layers.txt does not allow.
+# Fails when a file includes what its folder's row in layers.txt does not allow, or changes the environment where threads
+# may run: whoever reads it meanwhile may crash.
 # check_layers.sh [ROOT [TABLE]]: the tree to check, by default the one that this script is in.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 cd "${1:-$here/..}"
 folders=()
 for folder in retarget render ui app; do [ -d $folder ] && folders+=("$folder"); done
+# main() prepares the environment before anything else; the first window is made before the studio has its threads.
+changes=$(grep -rnE --include='*.hpp' --include='*.cpp' '\<(setenv|unsetenv|putenv|clearenv|prepare_environment) *\(' \
+  "${folders[@]}" | grep -vE '^(app/main\.cpp|retarget/networks/networks\.[ch]pp|render/context/glfw\.cpp):' || true)
+[ -z "$changes" ] || { echo "$changes"; echo "The environment is changed where threads may run."; exit 1; }
 grep -rnE --include='*.hpp' --include='*.cpp' '^ *#include *[<"]' "${folders[@]}" | awk -v table="${2:-$here/layers.txt}" '
   function row(path) {  # the longest folder of the table that the path lies in, "" if none
     while (sub("/[^/]*$", "", path)) if (path in floor) return path

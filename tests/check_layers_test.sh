@@ -47,6 +47,14 @@ refuse app/cli/bad.cpp '"ui/gui/ui.hpp"' 'may not include ui'
 refuse app/cli/bad.cpp ' "retarget/unheard_of/x.hpp"' 'without a row'
 refuse retarget/unheard_of/bad.cpp '"retarget/base/error.hpp"' 'no row'
 
+# Only main() and the first window may change the environment.
+echo '  setenv("LANG", "C", 1);' >>"$tree/app/main.cpp"
+"$checker" "$tree" >"$tree/said" || { echo "main() may not change the environment:"; cat "$tree/said"; exit 1; }
+echo '  setenv("LANG", "C", 1);' >"$tree/app/run/bad.cpp"
+! "$checker" "$tree" >"$tree/said" || { echo "not found: the environment is changed beside threads"; exit 1; }
+grep -q '^app/run/bad.cpp:1:.*setenv' "$tree/said"
+rm "$tree/app/run/bad.cpp"
+
 # A table of one's own: a folder that is free of LibTorch may not include one that is not, however low that stands.
 printf '%s\n' '# comment' 'retarget/nn 0 torch' 'retarget/pipeline 1' 'render 2 gl' 'ui 3 app' 'app 4' \
   'retarget/plugin 5 torch' >"$tree/table"

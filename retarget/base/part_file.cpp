@@ -47,6 +47,15 @@ void check_replaceable(const std::string& path, const std::string& part) {
   US_CHECK(replaceable(part), part, ": exists but was not left by an export; remove it first");
 }
 
+/// Brings what is `at`, a file or a folder's list of names, to the disk, which may only now find that it is full.
+void sync_to_disk(const std::string& at, const std::string& path) {
+  const int handle = ::open(at.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool good = handle >= 0 && (::fsync(handle) == 0 || errno == EINVAL);
+  const int why = errno;
+  ::close(handle);
+  US_CHECK(good, path, ": cannot be written (", std::strerror(why), ")");
+}
+
 }  // namespace
 
 PartFile::PartFile(const std::string& path) : path_(path), target_(path) {
@@ -100,16 +109,9 @@ const std::string& PartFile::part() {
 
 void PartFile::finish(bool synced) {
   check(std::fclose(std::exchange(file_, nullptr)) == 0);
-  // a library may have put a file of its own here
-  const int handle = ::open(part_.c_str(), O_RDONLY | O_CLOEXEC);
-  check(handle >= 0);
-  const bool good =
-      (mode_ < 0 || ::fchmod(handle, static_cast<mode_t>(mode_)) == 0) &&
-      (!synced || ::fsync(handle) == 0 || errno == EINVAL);  // a disk may only now find that it is full
-  const int why = errno;
-  ::close(handle);
-  errno = why;
-  check(good && std::rename(part_.c_str(), target_.c_str()) == 0);
+  if (synced) sync_to_disk(part_, path_);  // opened anew: a library may have put a file of its own here
+  check((mode_ < 0 || ::chmod(part_.c_str(), static_cast<mode_t>(mode_)) == 0) &&
+        std::rename(part_.c_str(), target_.c_str()) == 0);
   part_.clear();
 }
 
@@ -147,6 +149,8 @@ void PartFolder::finish() {
   US_CHECK(replaceable(path_), path_, ": something else was put there meanwhile");
   const std::string old = path_ + ".old.part";
   std::error_code error;
+  for (const auto& frame : fs::directory_iterator(part_, error)) sync_to_disk(frame.path(), path_);
+  sync_to_disk(part_, path_);
   fs::remove_all(old, error);
   const bool was_there = fs::exists(path_);
   if (was_there) fs::rename(path_, old, error);

@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/cli/evaluation.hpp"
 #include "app/cli/options.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -39,6 +41,31 @@ TEST(MethodOptions, ReachThePipelineAndTheNetworks) {
   EXPECT_FALSE(networks.near || networks.offsets);
   EXPECT_EQ(networks.engine + networks.extractor, "paperpaper");
   EXPECT_EQ(networks.weights + networks.engine_file + networks.extractor_file, "wex");
+}
+
+/// What the report of an evaluation says of its method: "engine copy, no near".
+std::string reported(const std::string& line) {
+  EvalOptions options;
+  options.how = parsed(line);
+  options.how.weights = "no/such/folder";
+  const Json report = report_of(options, Evaluation());
+  std::string all;
+  for (const auto& [key, value] : report.items())
+    if (value == false)
+      append_item(all, "no " + key);
+    else if (key == "extractor" || key == "root" || key == "engine")
+      append_item(all, key + " " + value.get<std::string>());
+  return all;
+}
+
+TEST(EvaluationReport, NamesWhatOfTheMethodIsSwitched) {
+  EXPECT_EQ(reported(""), "engine " + Method().engine);
+  EXPECT_EQ(reported("--no-hand-contacts"), "engine " + Method().engine + ", no hand_contacts");
+  EXPECT_EQ(
+      reported("--engine paper --extractor paper --root in-place --no-near --no-swap-repair --no-smoothing "
+               "--no-fixed-lengths --no-foot-lock --no-hand-contacts --no-offsets"),
+      "engine paper, no offsets, no near, no foot_lock, no hand_contacts, no swap_repair, no smoothing, "
+      "no length_repair, extractor paper, root in-place");
 }
 
 }  // namespace

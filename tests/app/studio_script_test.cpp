@@ -1,6 +1,10 @@
 // Scripts drive the whole studio as a user would: on the null context, so without a picture.
 #include "app/studio/script.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <fstream>
 
 #include "app/studio/facts.hpp"
@@ -179,6 +183,20 @@ TEST_F(ApplicationTest, ARecordingPlaysAgainToTheSameEnd) {
   play(tests::read_bytes(recording));
   play("frames 3");
   EXPECT_EQ(fact(session(), "frame"), frame);
+}
+
+TEST_F(ApplicationTest, NothingIsRecordedIntoAPipe) {
+  make();
+  const std::string pipe = path("pipe.us");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDWR);  // so that whoever opens it goes on, and the test fails
+  try {
+    Recorder(pipe, *application_);
+    ADD_FAILURE() << "it was written into";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), pipe + ": is a pipe or a device, not a file");
+  }
+  ::close(reader);
 }
 
 TEST_F(ApplicationTest, GivesTheLogBack) {

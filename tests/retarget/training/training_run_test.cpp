@@ -1,7 +1,9 @@
 // What all trainers have in common, shown on a network of one number.
 #include "retarget/training/training_run.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -101,6 +103,22 @@ TEST_F(Run, ACurveWithOtherColumnsGoesOnBelowItsNewOnes) {
   std::ofstream(folder_ / "fake.weights.csv") << "minutes,loss\n1,2\n";
   EXPECT_EQ(Fake(options(8), rate(0.1)).run(), 0);
   EXPECT_EQ(text("fake.weights.csv").rfind("minutes,loss\n1,2\nminutes,step,", 0), 0u);
+}
+
+TEST_F(Run, RefusesAPipeAsItsCurve) {
+  nn::TrainOptions piped = options(8);
+  piped.curve = (folder_ / "pipe").string();
+  ASSERT_EQ(::mkfifo(piped.curve.c_str(), 0600), 0);
+  // Whoever would read a row from it or write into it goes on, so that the test fails and does not hang.
+  const int both = ::open(piped.curve.c_str(), O_RDWR);
+  ASSERT_EQ(::write(both, "\n", 1), 1);
+  try {
+    Fake(piped, rate(0.1)).run();
+    ADD_FAILURE() << "it was written into";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), piped.curve + ": is a pipe or a device, not a file");
+  }
+  ::close(both);
 }
 
 TEST_F(Run, TheRateWarmsUpThenFallsAlongACosine) {
