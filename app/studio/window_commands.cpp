@@ -160,9 +160,9 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
         US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
         workspace.open_dialog(c.session, c.arguments[0]);
       });
-  commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [](Call& c) {
+  commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [&workspace](Call& c) {
     const bool shown = ui::panel_shown(c.session, c.word(0, "panel"));
-    c.session.settings.panels[c.arguments[0]] = c.switched(1, shown);
+    workspace.show_panel(c.session.settings, c.arguments[0], c.switched(1, shown));
   });
   commands.add({"help.keys", "All keys"},
                [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });

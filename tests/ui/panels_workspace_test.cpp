@@ -113,18 +113,42 @@ TEST_F(WorkspaceTest, ASmallWindowKeepsTheViewsAndThePlayButton) {
   EXPECT_TRUE(shown("layers.source.surface"));
 }
 
-TEST_F(WorkspaceTest, TabsAndPanelsFollowTheirCommands) {
-  for (size_t i = 1; i < kTabs.size(); ++i) {
-    click("side.tab." + std::to_string(i));
+/// The widget of each tab that no other has, in the order of the tabs.
+const Lines kOfTabs = {"inspector.source", "layers.source.surface", "edit.scan", "metrics.curves"};
+
+TEST_F(WorkspaceTest, EveryClickAtATabShowsThatTabAlone) {
+  session.settings.panels = {{"inspector", true}, {"layers", true}, {"metrics", true}};  // kept from long ago
+  for (int turn = 0; turn < 2; ++turn)
+    for (const size_t clicked : {1u, 0u, 2u, 3u, 2u, 1u, 3u, 0u}) {
+      click("side.tab." + std::to_string(clicked));
+      frame(5);  // and it stays so
+      for (size_t i = 0; i < kTabs.size(); ++i) {
+        EXPECT_EQ(panel_shown(session, kTabs[i].name), i == clicked) << kTabs[i].name << " of " << clicked;
+        EXPECT_EQ(gui.find(kOfTabs[i]) != nullptr, i == clicked) << kOfTabs[i] << " on tab " << clicked;
+      }
+      EXPECT_EQ(take_log(), Lines{std::string("panel.show ") + kTabs[clicked].name + " on"});
+    }
+}
+
+TEST_F(WorkspaceTest, KeysAndMenuChooseTabsAsClicksDo) {
+  for (const auto& [key_of_tab, tab] : {std::pair(Key::Digit3, 2), {Key::Digit1, 0}, {Key::Digit3, 2}}) {
+    key(key_of_tab, {false, false, true});
     frame(2);
+    EXPECT_STREQ(shown_tab(session).title, kTabs[static_cast<size_t>(tab)].title);
   }
-  int on = 0;
-  for (const Panel& tab : kTabs) on += panel_shown(session, tab.name) ? 1 : 0;
-  EXPECT_EQ(on, 1) << "one tab is on at a time";
+  click("menu.window");
+  frame(2);
+  click("menu.panel.show.metrics.on");
+  frame(2);
+  EXPECT_NE(gui.find(kOfTabs[3]), nullptr);
+  EXPECT_EQ(gui.find(kOfTabs[2]), nullptr);
+}
+
+TEST_F(WorkspaceTest, TabsAndPanelsFollowTheirCommands) {
   session.settings.panels["side"] = false;
   frame(2);
   EXPECT_FALSE(shown("side.tab"));
-  session.settings.panels["edit"] = true;  // as a script does
+  queue.emplace_back("panel.show", app::Arguments{"edit", "on"});  // as a script does
   frame(3);
   EXPECT_TRUE(shown("edit.scan"));
   session.settings.panels["timeline"] = false;

@@ -128,7 +128,8 @@ Items tools_menu(const app::Session& session) {
 Items window_menu(const app::Session& session) {
   Items items;
   for (const Panel& panel : panels())
-    if (panel.dock == Panel::Dock::Side) items.push_back({panel.title, "panel.show", {panel.name, "on"}});
+    if (panel.dock == Panel::Dock::Side)
+      items.push_back({panel.title, "panel.show", {panel.name, "on"}, panel_shown(session, panel.name)});
   items.push_back(kLine);
   items.push_back(flag("Side panel", "panel.show", panel_shown(session, "side"), {"side"}));
   for (const Panel& panel : panels())

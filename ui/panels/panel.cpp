@@ -87,11 +87,13 @@ double frames_per_second(const app::Session& session) {
 }
 
 bool panel_shown(const app::Session& session, const std::string& panel) {
-  const auto found = session.settings.panels.find(panel);
-  if (found != session.settings.panels.end()) return found->second;
-  for (const Panel& one : panels())
-    if (panel == one.name) return one.shown;
-  return panel != "side_over";
+  const auto& all = panels();
+  const auto known =
+      std::find_if(all.begin(), all.end(), [&](const Panel& one) { return panel == one.name; });
+  if (known != all.end() && known->dock == Panel::Dock::Side) return &*known == &shown_tab(session);
+  const auto flag = session.settings.panels.find(panel);
+  if (flag != session.settings.panels.end()) return flag->second;
+  return known != all.end() ? known->shown : panel != "side_over";
 }
 
 bool possible(const app::Session& session, const std::string& command) {

@@ -30,4 +30,15 @@ const Panel& panel_of(const std::string& name) {
   throw Error("there is no panel " + name);
 }
 
+const Panel& shown_tab(const app::Session& session) {
+  const Panel* first = nullptr;
+  for (const Panel& panel : panels()) {
+    if (panel.dock != Panel::Dock::Side) continue;
+    if (first == nullptr) first = &panel;
+    const auto flag = session.settings.panels.find(panel.name);
+    if (flag != session.settings.panels.end() && flag->second) return panel;
+  }
+  return *first;
+}
+
 }  // namespace understudy::ui

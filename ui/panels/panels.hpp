@@ -28,6 +28,8 @@ struct Panel {
 const std::vector<Panel>& panels();
 /// Throws Error for a name that no panel has.
 const Panel& panel_of(const std::string& name);
+/// The tab of the side panel that is on: the first whose flag says so, else the first of all.
+const Panel& shown_tab(const app::Session& session);
 
 /// What a panel keeps between frames: one T a window, T() at first. Panels may share one.
 template <class T>

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
-#include "retarget/base/index.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/bars.hpp"
 #include "ui/panels/bindings.hpp"
@@ -72,7 +71,6 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   parts_.timeline = open && panel_shown(session, "timeline");
   parts_.below = !panels_in(Panel::Dock::Below, session).empty();
   places_ = arrange(display, context.ui.scale(), parts_);
-  follow_tabs(session, context);
   if (!places_.top.empty()) draw_top_bar(session, context, places_.top);
   draw_centre(session, context);
   draw_below(session, context);
@@ -122,12 +120,14 @@ void Workspace::draw_side(const app::Session& session, PanelContext& context) {
   }
   const Frame frame(ui, "##side", places_.side, {12, 8}, ui.theme().panel);
   const auto tabs = panels_in(Panel::Dock::Side, session);
+  const Panel& shown = shown_tab(session);
   std::vector<std::string> titles;
   for (const Panel* panel : tabs) titles.push_back(panel->title);
-  if (segmented(ui, "side.tab", titles, tab_)) context.ask("panel.show", {tabs[tab_]->name, "on"});
+  int chosen = static_cast<int>(std::find(tabs.begin(), tabs.end(), &shown) - tabs.begin());
+  if (segmented(ui, "side.tab", titles, chosen)) context.ask("panel.show", {tabs[chosen]->name, "on"});
   ImGui::Dummy({0, ui.px(2)});
-  if (ImGui::BeginChild(tabs[tab_]->name, {0, 0}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar))
-    tabs[tab_]->draw(session, context);
+  if (ImGui::BeginChild(shown.name, {0, 0}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar))
+    shown.draw(session, context);
   ImGui::EndChild();
 }
 
@@ -142,17 +142,13 @@ void Workspace::draw_bottom(const app::Session& session, PanelContext& context, 
   draw_status(session, context, frame_rate);
 }
 
-/// The tab that is on; where another was turned on (by a script, the menu), that one. Only one stays on.
-void Workspace::follow_tabs(const app::Session& session, PanelContext& context) {
-  const auto tabs = panels_in(Panel::Dock::Side, session);
-  int turned_on = -1;
-  for (int i = 0; i < ssize(tabs); ++i)
-    if (i != tab_ && panel_shown(session, tabs[i]->name)) turned_on = i;
-  if (turned_on < 0) return;
-  if (panel_shown(session, tabs[tab_]->name)) context.ask("panel.show", {tabs[tab_]->name, "off"});
-  tab_ = turned_on;
-  const char* side = places_.narrow ? "side_over" : "side";
-  if (!panel_shown(session, side)) context.ask("panel.show", {side, "on"});
+void Workspace::show_panel(app::Settings& settings, const std::string& name, bool on) const {
+  if (name != "side" && name != "side_over" && panel_of(name).dock == Panel::Dock::Side && on) {
+    for (const Panel& panel : panels())
+      if (panel.dock == Panel::Dock::Side) settings.panels.erase(panel.name);
+    settings.panels[places_.narrow ? "side_over" : "side"] = true;
+  }
+  settings.panels[name] = on;
 }
 
 std::string Workspace::dialog() const {

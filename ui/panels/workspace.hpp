@@ -33,6 +33,9 @@ class Workspace {
   /// open, open_scan, open_motion, open_target, replace_target, open_document, save_as, export, csv, picture,
   /// video, compare, settings, about, keys; "none" closes. Throws Error for another name.
   void open_dialog(const app::Session& session, const std::string& name);
+  /// Shows or hides a panel, "side" or "side_over". A tab of the side panel replaces the one that was on, and
+  /// the side panel comes with it. Throws Error for another name.
+  void show_panel(app::Settings& settings, const std::string& name, bool on) const;
   /// The dialog that is open, or ""; the file browser is "files".
   std::string dialog() const;
 
@@ -46,12 +49,10 @@ class Workspace {
   void draw_below(const app::Session& session, PanelContext& context);
   void draw_bottom(const app::Session& session, PanelContext& context, float frame_rate);
   void draw_dialog(const app::Session& session, PanelContext& context);
-  void follow_tabs(const app::Session& session, PanelContext& context);
 
   WorkspaceServices services_;
   Arrangement places_;
   Parts parts_;
-  int tab_ = 0;
   std::string dialog_, about_;
   ExportState export_;
   CompareState compare_;

@@ -182,7 +182,7 @@ void WorkspaceTest::obey() {
   for (const auto& [name, arguments] : std::exchange(queue, {})) {
     expect_known(name);
     log.push_back(app::join_line(name, arguments));
-    if (name == "panel.show") session.settings.panels[arguments[0]] = arguments[1] == "on";
+    if (name == "panel.show") workspace.show_panel(session.settings, arguments[0], arguments[1] == "on");
     if (name == "dialog.open") workspace.open_dialog(session, arguments[0]);
     if (name == "help.keys") workspace.open_dialog(session, "keys");
     if (name == "question.answer") session.question.reset();
