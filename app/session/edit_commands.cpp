@@ -30,21 +30,36 @@ int falloff_argument(const Call& c, size_t i) {
   return falloff;
 }
 
+/// With the tool that moves the box; a box that is new has open sides.
 void crop(Call& c) {
   auto& crop = c.document.scan_edits.crop;
-  const std::string& box = c.word(0, "box");
-  if (box == "off") return crop.reset();
-  if (box == "on") {
-    if (!crop) crop = person_box(c.session).value_or(Box{{-1, -0.1f, -1}, {1, 2.2f, 1}});
+  const std::string& what = c.word(0, "box");
+  if (what == "off") {
+    if (c.session.tool == Tool::Crop) c.session.tool = Tool::Look;
+    return crop.reset();
+  }
+  const Box before = crop.value_or(Box::open());
+  if (what == "on") {
+    c.session.tool = Tool::Crop;
+    crop = before;
     return;
   }
-  crop = Box{c.vector(0, "corner"), c.vector(3, "corner")};
+  const auto side = std::find(kBoxSides.begin(), kBoxSides.end(), what);
+  if (side == kBoxSides.end()) {
+    crop = Box{c.vector(0, "corner"), c.vector(3, "corner")};
+  } else {
+    const int i = static_cast<int>(side - kBoxSides.begin());
+    crop = before;
+    crop->side(i) = c.word(1, "side") == "off" ? Box::open().side(i) : c.number(1, "side");
+  }
   US_CHECK((crop->high - crop->low).minCoeff() > 0, "the crop box has no inside");
 }
 
 void add_scan_edits(Commands& commands) {
-  commands.add_slider(
-      {"edit.crop", "Crop the scan", "LOW HIGH (six numbers, metres) | on: around the person | off"}, crop);
+  commands.add_slider({"edit.crop", "Crop the scan",
+                       "on: a box around everything | off | SIDE METRES|off: low.x, high.x ... high.z | LOW "
+                       "HIGH: six numbers"},
+                      crop);
   commands.add_slider({"edit.floor_removal", "Remove the floor", "on|off [HEIGHT]"}, [](Call& c) {
     auto& floor = c.document.scan_edits.floor;
     floor = only_if(c.on(0), FloorCut{});
@@ -201,7 +216,9 @@ void add_history(Commands& commands) {
   const auto step = [](Call& c, bool back) {
     History& history = c.session.history;
     const std::string label = back ? history.undo_label() : history.redo_label();
+    const bool cropped = c.document.scan_edits.crop.has_value();
     c.document = back ? history.undo(c.document) : history.redo(c.document);
+    if (cropped && !c.document.scan_edits.crop && c.session.tool == Tool::Crop) c.session.tool = Tool::Look;
     c.session.changed = true;
     c.studio.notify((back ? "Undone: " : "Redone: ") + label);
   };

@@ -34,6 +34,7 @@ std::shared_ptr<const SafeBinding> binding_of(const std::shared_ptr<const Deform
 struct Seen {
   Observation observation;
   double read_ms = 0;
+  std::optional<Box> extent;  // of the scan before any edit
 };
 
 /// One extractor over the source so far.
@@ -60,7 +61,7 @@ struct TakeWork {
 Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
   Plan plan;
   plan.source = document.source;
-  plan.scan_edits = document.scan_edits;
+  plan.scan_edits = in_effect(document.scan_edits);
   plan.skeleton_edits = document.skeleton_edits;
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const Take& take = document.takes[k];
@@ -360,10 +361,15 @@ bool Engine::Impl::read_frame() {
       return false;
     }
     has_faces = has_faces || !frame->mesh.is_cloud();
+    const std::optional<Box> extent = frame->usable ? extent_of(frame->mesh.vertices) : std::nullopt;
     if (frame->usable) frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
     const double read_ms = ms_since(began);
-    for (const Method& method : wanted)
-      if (stream_of(method).frames.size() == behind) observe(*frame, method, read_ms);
+    for (const Method& method : wanted) {
+      Stream& stream = stream_of(method);
+      if (stream.frames.size() != behind) continue;
+      observe(*frame, method, read_ms);
+      if (stream.frames.size() > behind) stream.frames.back().extent = extent;
+    }
     return true;
   } catch (const std::exception& error) {
     source.reset();
@@ -384,7 +390,7 @@ void Engine::Impl::observe(const SourceFrame& frame, const Method& method, doubl
     if (extraction_key(plan.shown) == key) throw;
     return;
   }
-  stream.frames.push_back({observed(*stream.observer, frame, interval()), read_ms});
+  stream.frames.push_back({observed(*stream.observer, frame, interval()), read_ms, std::nullopt});
   const std::string& warning = stream.frames.back().observation.warning;
   if (!warning.empty()) log::warn(plan.source.path + ": " + warning);
 }
@@ -424,6 +430,7 @@ bool Engine::Impl::send_source() {
     KeptSource kept;
     kept.raw = frames[sent].observation.joints;
     kept.points = static_cast<int>(seen.points);
+    kept.extent = frames[sent].extent;
     kept.reason = refusal(seen);
     kept.flagged = !kept.reason.empty();
     if (!kept.flagged) kept.confidence_of = seen.confidence;

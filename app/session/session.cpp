@@ -9,7 +9,8 @@ namespace {
 constexpr float kLowConfidence = 0.5f, kWeakLimb = 0.3f, kLengthOff = 0.2f;
 constexpr float kAroundJoints = 0.3f,
                 kBelowJoints = 0.12f;  // metres that a body reaches further than its joints, at most
-constexpr float kLengthOffM = 0.05f;   // short bones are never seen to 20 %
+constexpr float kAroundPoints = 0.03f, kThinnest = 0.05f;  // metres, of a box
+constexpr float kLengthOffM = 0.05f;                       // short bones are never seen to 20 %
 
 /// Why a frame of the source is not to be trusted; empty when it is.
 std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {
@@ -38,6 +39,26 @@ Eigen::Array<float, kJointCount, 1> usual_lengths(const SharedFrames<KeptSource>
   return good > 0 ? Eigen::Array<float, kJointCount, 1>(sum / static_cast<float>(good)) : sum;
 }
 
+/// Around the points of a frame, or around a body with these joints where it has none.
+std::optional<Box> around(const KeptSource& frame) {
+  const Vec3 margin = Vec3::Constant(kAroundPoints);
+  if (frame.extent) return Box{frame.extent->low - margin, frame.extent->high + margin};
+  if (frame.flagged || !frame.joints.allFinite()) return std::nullopt;
+  return Box{frame.joints.colwise().minCoeff().transpose() - Vec3(kAroundJoints, kBelowJoints, kAroundJoints),
+             frame.joints.colwise().maxCoeff().transpose() + Vec3::Constant(kAroundJoints)};
+}
+
+/// Around all frames so far; none before the first.
+std::optional<Box> everything(const Session& session) {
+  std::optional<Box> all;
+  for (const KeptSource& frame : session.source.frames) {
+    const std::optional<Box> box = around(frame);
+    if (!box) continue;
+    all = all ? Box{all->low.cwiseMin(box->low), all->high.cwiseMax(box->high)} : *box;
+  }
+  return all;
+}
+
 }  // namespace
 
 int frame_count(const Session& session) {
@@ -50,16 +71,16 @@ int shown_frame(const Session& session) {
   return shown_frame(session.playback, frame_count(session));
 }
 
-std::optional<Box> person_box(const Session& session) {
-  std::optional<Box> box;
-  for (const KeptSource& frame : session.source.frames) {
-    if (frame.flagged || !frame.joints.allFinite()) continue;
-    const Vec3 low = frame.joints.colwise().minCoeff(), high = frame.joints.colwise().maxCoeff();
-    box = box ? Box{box->low.cwiseMin(low), box->high.cwiseMax(high)} : Box{low, high};
+Box shown_crop(const Session& session) {
+  Box box = everything(session).value_or(Box{{-1, -0.1f, -1}, {1, 2.2f, 1}});
+  const std::optional<Box>& crop = session.document.scan_edits.crop;
+  for (int side = 0; crop && side < 6; ++side)
+    if (std::abs(crop->side(side)) < kOpenSide) box.side(side) = crop->side(side);
+  for (int axis = 0; axis < 3; ++axis) {  // a side may be beyond all points
+    const bool low_is_open = !crop || crop->low[axis] <= -kOpenSide;
+    if (low_is_open) box.low[axis] = std::min(box.low[axis], box.high[axis] - kThinnest);
+    box.high[axis] = std::max(box.high[axis], box.low[axis] + kThinnest);
   }
-  if (!box) return box;
-  box->low -= Vec3(kAroundJoints, kBelowJoints, kAroundJoints);
-  box->high += Vec3::Constant(kAroundJoints);
   return box;
 }
 

@@ -31,8 +31,9 @@ struct KeptSource {
   Joints joints = Joints::Zero();  ///< edited, repaired and smoothed; of the last good frame where flagged
   float confidence = 0;            ///< mean over joints
   bool flagged = false;
-  std::string reason;  ///< why; empty when good
-  int points = 0;      ///< in the scan
+  std::string reason;         ///< why; empty when good
+  int points = 0;             ///< in the scan
+  std::optional<Box> extent;  ///< of the scan before any edit; none: it has no points
 };
 
 /// The source, as far as it has been read.
@@ -148,8 +149,9 @@ struct Session {
 int frame_count(const Session& session);
 /// The frame shown, -1 without one.
 int shown_frame(const Session& session);
-/// The box around the person in all good frames of the source, metres; none before the first.
-std::optional<Box> person_box(const Session& session);
+/// The crop box as it is shown: open sides, and all of them without a crop, around all points of all frames
+/// so far (of a skeletal motion: around its people).
+Box shown_crop(const Session& session);
 /// Frames to mark as bad, with the reason ("low confidence").
 struct BadFrame {
   int frame;

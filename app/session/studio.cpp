@@ -193,9 +193,10 @@ void Studio::forget_removed() {
 void Studio::follow_source(bool other_path) {
   Background& b = *background_;
   const Document& document = session_.document;
-  const std::string key = key_of(document.source, document.scan_edits);
+  const ScanEdits edits = in_effect(document.scan_edits);
+  const std::string key = key_of(document.source, edits);
   if (key != b.source_key) {
-    cache_.set_source(document.source, document.scan_edits);
+    cache_.set_source(document.source, edits);
     b.source_key = key;
     if (other_path) session_.source.clips.clear();
     if (document.source.path.empty()) session_.source = SourceState{};

@@ -213,6 +213,21 @@ std::optional<FloorPlane> detect_floor(const Points& all) {
   return plane;
 }
 
+std::optional<Box> extent_of(const Points& points) {
+  std::optional<Box> box;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Vec3 p = points.row(i);
+    if (!p.allFinite()) continue;
+    box = box ? Box{box->low.cwiseMin(p), box->high.cwiseMax(p)} : Box{p, p};
+  }
+  return box;
+}
+
+ScanEdits in_effect(ScanEdits edits) {
+  if (edits.crop && edits.crop->is_open()) edits.crop.reset();
+  return edits;
+}
+
 Mesh apply(const ScanEdits& edits, const Mesh& scan) {
   if (edits.empty()) return scan;
   const Kept kept = kept_flags(edits, scan);

@@ -9,9 +9,18 @@
 
 namespace understudy {
 
+/// A side of a box this far out, metres, is open: it cuts nothing.
+constexpr float kOpenSide = 1e6f;
+
 /// An axis-aligned box in the world, metres.
 struct Box {
   Vec3 low = Vec3::Constant(-1), high = Vec3::Constant(1);
+  /// All sides open.
+  static Box open() { return {Vec3::Constant(-kOpenSide), Vec3::Constant(kOpenSide)}; }
+  bool is_open() const { return low.maxCoeff() <= -kOpenSide && high.minCoeff() >= kOpenSide; }
+  /// Side 2 * axis is the low one, 2 * axis + 1 the high one; in the order of kBoxSides.
+  float& side(int i) { return (i % 2 == 0 ? low : high)[i / 2]; }
+  float side(int i) const { return (i % 2 == 0 ? low : high)[i / 2]; }
   bool contains(const Vec3& point) const {
     return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
   }
@@ -21,6 +30,10 @@ FieldsOf<S, Box> fields(V& visit, S& box) {
   visit("low", box.low);
   visit("high", box.high);
 }
+/// Around the points that are finite; none without one.
+std::optional<Box> extent_of(const Points& points);
+/// What commands call a box's sides.
+constexpr Names<6> kBoxSides{"low.x", "high.x", "low.y", "high.y", "low.z", "high.z"};
 
 /// The points x with normal . x = height; normal has unit length and points up.
 struct FloorPlane {
@@ -61,7 +74,7 @@ struct ScanEdits {
   std::optional<FloorCut> floor;
   bool largest_cluster = false;  ///< a second person or a prop goes
   float cluster_gap_m = 0.08f;   ///< parts further apart than this are not one
-  bool empty() const { return !crop && !floor && !largest_cluster; }
+  bool empty() const { return (!crop || crop->is_open()) && !floor && !largest_cluster; }
 };
 template <class V, class S>
 FieldsOf<S, ScanEdits> fields(V& visit, S& edits) {
@@ -70,6 +83,9 @@ FieldsOf<S, ScanEdits> fields(V& visit, S& edits) {
   visit("largest_cluster", edits.largest_cluster);
   visit("cluster_gap_m", edits.cluster_gap_m);
 }
+
+/// Without a crop that cuts nothing: what scans are made with.
+ScanEdits in_effect(ScanEdits edits);
 
 /// The scan that is left after crop, then floor, then cluster, in its old order, colours too: vertices that
 /// stay, and of a mesh the faces whose three corners stay and the vertices that these use. May be empty.

@@ -22,19 +22,49 @@ TEST_F(StudioTest, OneEditIsRemovedAndTheOthersStay) {
   EXPECT_THROW(studio.run("edit.remove", {"skeleton", "3"}), Error);
 }
 
-TEST_F(StudioTest, ANewCropHoldsThePerson) {
+TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
   Studio studio(services());
   open_both(studio);
-  const auto person = person_box(studio.session());
-  ASSERT_TRUE(person);
-  for (const KeptSource& frame : studio.session().source.frames)
-    for (int j = 0; j < kJointCount; ++j) {
-      EXPECT_TRUE((frame.joints.row(j).transpose().array() > person->low.array()).all());
-      EXPECT_TRUE((frame.joints.row(j).transpose().array() < person->high.array()).all());
-    }
+  const Session& session = studio.session();
+  const auto points = [&] {
+    studio.wait_idle(60);
+    std::vector<int> all;
+    for (const KeptSource& frame : session.source.frames) all.push_back(frame.points);
+    return all;
+  };
+  const std::vector<int> before = points();
+  const int extracted = *extractions_;
   studio.run("edit.crop", {"on"});
-  ASSERT_TRUE(studio.session().document.scan_edits.crop);
-  EXPECT_EQ(studio.session().document.scan_edits.crop->low, person->low);
+  EXPECT_EQ(session.tool, Tool::Crop);
+  EXPECT_EQ(points(), before);
+  EXPECT_EQ(*extractions_, extracted);
+  const Box box = shown_crop(session);
+  for (const KeptSource& frame : session.source.frames) {
+    ASSERT_TRUE(frame.extent);
+    EXPECT_TRUE(box.contains(frame.extent->low) && box.contains(frame.extent->high));
+  }
+  const float middle = 0.5f * (box.low.y() + box.high.y());
+  studio.run("edit.crop", {"high.y", std::to_string(middle)});
+  const std::vector<int> after = points();
+  for (size_t i = 0; i < before.size(); ++i) EXPECT_LT(after.at(i), before[i]) << i;
+  EXPECT_EQ(session.document.scan_edits.crop->low, Box::open().low);
+  studio.run("edit.undo");
+  EXPECT_EQ(points(), before);
+  EXPECT_EQ(session.tool, Tool::Crop);
+  studio.run("edit.undo");
+  EXPECT_FALSE(session.document.scan_edits.crop);
+  EXPECT_EQ(session.tool, Tool::Look);
+}
+
+TEST_F(StudioTest, ASideOfTheCropThatIsDraggedIsOneStepBack) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("edit.crop", {"on"});
+  for (const char* metres : {"-0.5", "-0.4", "-0.3"}) studio.run("edit.crop", {"low.x", metres});
+  studio.run("edit.undo");
+  EXPECT_TRUE(studio.session().document.scan_edits.crop->is_open());
+  EXPECT_THROW(studio.run("edit.crop", {"low.w", "1"}), Error);
+  EXPECT_THROW(studio.run("edit.crop", {"high.x", "-2000000"}), Error);
 }
 
 TEST_F(StudioTest, PaintedWeightsShowAtOnceAndAreUndone) {

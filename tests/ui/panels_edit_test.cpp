@@ -18,8 +18,8 @@ class EditPanel : public PanelsTest {
 TEST_F(EditPanel, OfTheScan) {
   expect_click("edit.crop", {"edit.crop off"});
   expect_click("edit.crop_tool", {"tool crop"});
-  expect_drag("edit.crop.low.x", "edit.crop ");
-  expect_drag("edit.crop.high.y", "edit.crop -1 0 -1 1 ");
+  expect_drag("edit.crop.low.x", "edit.crop low.x ");
+  expect_drag("edit.crop.high.y", "edit.crop high.y ");
   expect_click("edit.floor_removal", {"edit.floor_removal off"});
   expect_drag("edit.floor_height", "edit.floor_removal on ");
   expect_click("edit.cluster", {"edit.cluster on"});

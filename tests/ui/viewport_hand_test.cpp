@@ -295,15 +295,31 @@ TEST_F(ViewsTest, WithoutAJointNothingIsPainted) {
   EXPECT_EQ(count("edit.paint"), 0);
 }
 
-TEST_F(ViewsTest, AHandleOfTheCropBoxMovesItsFace) {
+TEST_F(ViewsTest, AHandleOfTheCropBoxMovesItsSideAlone) {
   stage.session.tool = app::Tool::Crop;
   stage.session.document.scan_edits.crop = Box{Vec3(-1, 0, -0.5f), Vec3(1, 2, 1)};
   stage.session.view.cameras[0].distance = 6;
   frame();
-  drag(seen(0, Vec3(0, 2, 0.25f)), seen(0, Vec3(0, 1.8f, 0.25f)));
+  drag(mark("view.crop.high.y").rect.at(0.5f, 0.5f), seen(0, Vec3(0, 1.8f, 0.25f)));
   const app::Arguments words = asked("edit.crop");
-  EXPECT_NEAR((vector_at(words, 0) - Vec3(-1, 0, -0.5f)).norm(), 0, 1e-5f);
-  EXPECT_NEAR((vector_at(words, 3) - Vec3(1, 1.8f, 1)).norm(), 0, 0.01f);
+  ASSERT_EQ(words.size(), 2u);
+  EXPECT_EQ(words[0], "high.y");
+  EXPECT_NEAR(std::stof(words[1]), 1.8f, 0.01f);
+}
+
+TEST_F(ViewsTest, HandlesOfTheCropBoxAreTenPixelsFromAnyDistance) {
+  EXPECT_FALSE(shown("view.crop.high.y"));
+  stage.session.tool = app::Tool::Crop;
+  stage.session.document.scan_edits.crop = Box::open();
+  for (const float metres : {4.f, 12.f}) {
+    stage.session.view.cameras[0].distance = metres;
+    frame(2);
+    for (const char* side : kBoxSides)
+      EXPECT_NEAR(mark(std::string("view.crop.") + side).rect.width(), 10, 0.01f) << side << metres;
+  }
+  // The box is around everybody; its handles are met where they are seen.
+  drag(mark("view.crop.low.y").rect.at(0.5f, 0.5f), seen(0, source_joint(Pelvis)));
+  EXPECT_EQ(asked("edit.crop")[0], "low.y");
 }
 
 TEST_F(ViewsTest, TheWipesLineIsDragged) {

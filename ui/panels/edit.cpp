@@ -48,35 +48,30 @@ void clear_button(PanelContext& context, const std::string& command, bool any, c
   ask_button(context, {command, "Clear", "Clears these edits; can be undone", command + " " + take}, any);
 }
 
-void ask_for_crop(PanelContext& context, const Box& box) {
-  app::Arguments arguments;
-  for (const Vec3& corner : {box.low, box.high})
-    for (int axis = 0; axis < 3; ++axis) arguments.push_back(argument(corner[axis]));
-  context.ask("edit.crop", arguments);
-}
-
 void draw_crop(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const std::optional<Box>& crop = session.document.scan_edits.crop;
-  ask_toggle(context, {"edit.crop", "Crop", "Uses only the points inside a box"}, crop.has_value());
+  ask_toggle(context,
+             {"edit.crop", "Crop", "Shows a box around everything; what you leave outside is not used"},
+             crop.has_value());
   if (!crop) return;
   tool_button(session, context, "edit.crop_tool", app::Tool::Crop);
-  const char* axes = "xyz";
+  hint(ui, "Drag the box's handles in the view, or its numbers here.");
+  const Box box = app::shown_crop(session);
   for (int axis = 0; axis < 3; ++axis) {
-    Box box = *crop;
-    row(ui, std::string(1, axes[axis]) + " from, to", "The box's sides, metres");
+    row(ui, std::string(1, "xyz"[axis]) + " from, to", "Where the box begins and ends, in metres");
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
-    bool changed = false;
-    for (const bool low : {true, false}) {
-      const std::string name = std::string("edit.crop.") + (low ? "low." : "high.") + axes[axis];
+    for (int side = 2 * axis; side <= 2 * axis + 1; ++side) {
+      const std::string name = std::string("edit.crop.") + kBoxSides[side];
+      const bool low = side % 2 == 0;
       ImGui::BeginChild(name.c_str(), {std::max(1.f, half), ImGui::GetFrameHeight()});
-      NumberOptions options{-50, 50, 0.01f, "%.2f m"};
-      options.min = low ? -50 : box.low[axis] + 0.01f, options.max = low ? box.high[axis] - 0.01f : 50;
-      changed |= number(ui, name, low ? box.low[axis] : box.high[axis], options);
+      NumberOptions options{-1000, 1000, 0.01f, "%.2f m"};
+      (low ? options.max : options.min) = low ? box.high[axis] - 0.01f : box.low[axis] + 0.01f;
+      float value = box.side(side);
+      if (number(ui, name, value, options)) context.ask("edit.crop", {kBoxSides[side], argument(value)});
       ImGui::EndChild();
       if (low) ImGui::SameLine();
     }
-    if (changed) ask_for_crop(context, box);
   }
 }
 

@@ -272,7 +272,7 @@ std::shared_ptr<const app::PosedPicture> Hand::turned_picture(const HandPlace& p
 bool Hand::work_on_box(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
   if (!place.pane.source) return false;
   if (!busy()) {
-    box_ = crop_box(place.session, place.pictures);
+    box_ = app::shown_crop(place.session);
     const Points centres = face_centres(box_);
     face_ = point_at(place.view, centres, pointer.at, 1.3f * kReach * place.scale);
     if (!pointer.pressed || face_ < 0) return face_ >= 0;
@@ -286,15 +286,12 @@ bool Hand::work_on_box(const HandPlace& place, const Pointer& pointer, app::Comm
   const auto handle = static_cast<GizmoHandle>(static_cast<int>(GizmoHandle::AxisX) + axis);
   const Vec3 moved = render::dragged(gizmo_, handle, place.view.camera, start_, place.view.ray(pointer.at));
   const float to = gizmo_.position[axis] + moved[axis];
-  if (face_ % 2 == 1)
-    box_.high[axis] = std::max(to, box_.low[axis] + kThinnest);
-  else
-    box_.low[axis] = std::min(to, box_.high[axis] - kThinnest);
+  box_.side(face_) =
+      face_ % 2 == 1 ? std::max(to, box_.low[axis] + kThinnest) : std::min(to, box_.high[axis] - kThinnest);
   if (pointer.released || !pointer.held) {
     grip_ = Grip::None;
-    app::Arguments words;
-    words << box_.low << box_.high;
-    if (std::abs(moved[axis]) >= kLeastMove) queue.push_back({"edit.crop", words});
+    if (std::abs(moved[axis]) >= kLeastMove)
+      queue.push_back({"edit.crop", {kBoxSides[face_], argument(box_.side(face_))}});
   }
   return true;
 }

@@ -41,6 +41,7 @@ class Writer {
   void draw_categories();
   void draw_missing();
   void draw_labels();
+  void draw_handles();
   void draw_tip();
 
   Ui& ui_;
@@ -51,6 +52,7 @@ class Writer {
 void Writer::draw() {
   list_.PushClipRect(in_.rect.min, in_.rect.max, true);
   draw_labels();
+  draw_handles();
   draw_title();
   draw_hint();
   if (!in_.legend.title.empty()) {
@@ -189,6 +191,18 @@ void Writer::draw_labels() {
     const ImVec2 at(label.at.x + away, label.at.y - size.y / 2);
     box(around(at, size, px(3), px(1)), ui_.theme().panel, label.strong ? 0.85f : 0.6f);
     text(at, label.strong ? ui_.theme().text : ui_.theme().text_dim, label.text);
+  }
+}
+
+/// Of one size on the screen, whatever the distance.
+void Writer::draw_handles() {
+  const float half = px(5);
+  for (const Overlay::Handle& handle : in_.handles) {
+    const Rect rect = around(handle.at, {0, 0}, half, half);
+    const ImVec4 fill = handle.hovered ? ui_.theme().accent_hover : ImVec4(1, 1, 1, 1);
+    list_.AddRectFilled(rect.min, rect.max, color(fill), px(2));
+    list_.AddRect(rect.min, rect.max, color(ImVec4(0, 0, 0, 0.8f)), px(2), 0, px(1));
+    ui_.mark(handle.name, rect);
   }
 }
 

@@ -22,7 +22,13 @@ struct Overlay {
     bool strong = false;  ///< hovered or chosen: with a ring around the place
   };
   std::vector<Label> labels;  ///< of joints
-  std::string tip;            ///< beside the pointer
+  struct Handle {
+    ImVec2 at;
+    std::string name;  ///< its mark
+    bool hovered = false;
+  };
+  std::vector<Handle> handles;  ///< of the crop box
+  std::string tip;              ///< beside the pointer
   ImVec2 tip_at{0, 0};
   bool active = false;  ///< the pane that keys and panels are about, among several
 };

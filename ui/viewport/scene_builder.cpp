@@ -17,9 +17,7 @@ using app::Session;
 using render::SharedPoints;
 
 constexpr float kGhostOpacity = 0.16f, kOverlaidOpacity = 0.62f, kTrailSeconds = 1.2f;
-constexpr float kDisc = 1.15f;           // a scan's discs against its spacing: few holes, edges still sharp
-constexpr float kAroundScan = 0.05f;     // metres, of a new crop box where nobody was found
-constexpr float kHandleRadius = 0.022f;  // metres, of the crop box's handles
+constexpr float kDisc = 1.15f;  // a scan's discs against its spacing: few holes, edges still sharp
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
 /// A member of something shared, shared with the whole.
@@ -256,17 +254,11 @@ void Builder::add_cropped_away() {
 
 void Builder::add_crop_box() {
   if (session_.tool != app::Tool::Crop || !in_.pane.source) return;
-  const Box box = in_.preview.crop.value_or(crop_box(session_, in_.pictures));
-  const Vec3 color(0.90f, 0.62f, 0.20f);
+  const Box box = in_.preview.crop.value_or(app::shown_crop(session_));
+  const Vec3 color = Vec3::Constant(in_.theme == ThemeKind::Dark ? 0.96f : 0.12f);
   render::LinesView lines = render::box(box.low, box.high, color, 2);
   lines.x_ray = true, lines.opacity = 0.9f;
   out_.scene.lines.push_back(std::move(lines));
-  render::PointsView handles;
-  Points colors = color.transpose().replicate(6, 1);
-  if (in_.preview.crop_face >= 0) colors.row(in_.preview.crop_face) = Vec3(1, 0.85f, 0.4f);
-  handles.positions = face_centres(box), handles.colors = std::move(colors);
-  handles.radius = kHandleRadius;
-  out_.scene.clouds.push_back(std::move(handles));
 }
 
 void Builder::set_ground() {
@@ -333,20 +325,9 @@ PaneScene build_scene(const SceneInput& input, ColourMemory& memory) {
   return Builder(input, memory).build();
 }
 
-Box crop_box(const Session& session, const PanePictures& pictures) {
-  if (session.document.scan_edits.crop) return *session.document.scan_edits.crop;
-  if (const auto person = app::person_box(session)) return *person;
-  if (pictures.scan == nullptr || pictures.scan->mesh.vertices.rows() == 0)
-    return {Vec3(-1, -0.1f, -1), Vec3(1, 2.1f, 1)};
-  const Points& points = pictures.scan->mesh.vertices;
-  const Vec3 around = Vec3::Constant(kAroundScan);
-  return {points.colwise().minCoeff().transpose() - around, points.colwise().maxCoeff().transpose() + around};
-}
-
 Points face_centres(const Box& box) {
   Points centres = ((box.low + box.high) / 2).transpose().replicate(6, 1);
-  for (int face = 0; face < 6; ++face)
-    centres(face, face / 2) = face % 2 == 1 ? box.high[face / 2] : box.low[face / 2];
+  for (int face = 0; face < 6; ++face) centres(face, face / 2) = box.side(face);
   return centres;
 }
 

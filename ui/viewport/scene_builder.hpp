@@ -18,7 +18,7 @@ struct EditPreview {
   std::optional<Joints> source_joints;  ///< in place of the extracted ones
   std::optional<Joints> take_joints;    ///< in place of those of the pane's first take (or of its T-pose)
   std::optional<Box> crop;              ///< in place of the document's
-  int crop_face = -1;                   ///< the one under the pointer: 2 * axis, + 1 the high one
+  int crop_face = -1;                   ///< the one under the pointer, in the order of kBoxSides
   std::optional<render::GizmoView> gizmo;
 };
 
@@ -53,9 +53,7 @@ struct PaneScene {
 /// while that tool is active. What is not there yet is left out.
 PaneScene build_scene(const SceneInput& input, ColourMemory& memory);
 
-/// The box that the crop tool shows: the document's, or one around the person in all frames so far.
-Box crop_box(const app::Session& session, const PanePictures& pictures);
-/// The middles of a box's faces, [6, 3], in the order of EditPreview::crop_face.
+/// The middles of a box's faces, [6, 3], in the order of kBoxSides.
 Points face_centres(const Box& box);
 /// What is behind everything.
 render::BackgroundView background_of(ThemeKind theme);

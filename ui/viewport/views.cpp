@@ -264,6 +264,13 @@ void Views::describe(const Session& session, const Pane& pane, Overlay& overlay)
   if (joints != nullptr)
     overlay.labels = joint_labels(pane.view, *joints, layers.joint_names && layers.skeleton,
                                   hand_.hovered_joint(pane.content), selected);
+  if (session.tool == app::Tool::Crop && pane.content.source) {
+    const Points centres = face_centres(pane.preview.crop.value_or(app::shown_crop(session)));
+    for (int face = 0; face < 6; ++face)
+      if (const auto at = pane.view.project(centres.row(face)))
+        overlay.handles.push_back(
+            {*at, std::string("view.crop.") + kBoxSides[face], face == pane.preview.crop_face});
+  }
   if (under_ != &pane) return;
   overlay.tip_at = pointer_.at;
   overlay.tip = hand_.tip();
