@@ -168,7 +168,7 @@ Kind kind_of(const Document& document, const std::string& path) {
   if (can_be(path, kDocument)) return Kind::Document;
   if (fs::path(path).filename() == "case.json") return Kind::Case;
   if (can_be(path, kBody)) return kind_of_npz(path);
-  if (!can_be(path, kTarget)) {
+  if (format_of_file(path, kTarget) == nullptr) {
     US_CHECK(can_be(path, kMotion | kScanSequence), path,
              ": is neither a scan, a target, a motion nor a document");
     return Kind::Scans;

@@ -2,6 +2,7 @@
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/body/body.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/motion/read_motion.hpp"
@@ -25,21 +26,24 @@ void set_source(Call& c, SourceOptions source) {
 
 void add_opening(Commands& commands) {
   commands.add_edit(
-      {"source.open", "Open scan",
+      {"source.open", "Open source",
        "PATH: scans (folder, list, array) or a skeletal motion (" + format_names(kMotion) + ")"},
       [](Call& c) {
         SourceOptions source;
         source.path = c.path(0);
+        US_CHECK(!is_smpl_body(source.path), source.path,
+                 ": is a body; choose the motion that it performs as well");
         if (!is_motion_file(source.path)) ScanSource{source.path};  // throws at once when there is no frame
         set_source(c, source);
       });
-  commands.add_edit({"source.motion", "Open motion", "BODY MOTION: SMPL-format body, AMASS-format motion"},
-                    [](Call& c) {
-                      SourceOptions source;
-                      source.path = c.path(0, "body");
-                      source.motion = c.path(1, "motion");
-                      set_source(c, source);
-                    });
+  commands.add_edit(
+      {"source.motion", "Open body and motion", "BODY MOTION: SMPL-format body, AMASS-format motion"},
+      [](Call& c) {
+        SourceOptions source;
+        source.path = c.path(0, "body");
+        source.motion = c.path(1, "motion");
+        set_source(c, source);
+      });
   commands.add_edit({"source.fps", "Frame rate", "FRAMES_PER_SECOND; 0: the source's own, or 30"},
                     [](Call& c) {
                       const auto fps = c.number<double>(0, "frame rate");

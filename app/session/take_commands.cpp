@@ -17,7 +17,7 @@ std::string target_file(const Call& c, size_t i) {
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file");
   US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
-  US_CHECK(can_be(path, kTarget), path, ": is not a known character or mesh format");
+  US_CHECK(format_of_file(path, kTarget) != nullptr, path, ": is not a known character or mesh format");
   return path;
 }
 

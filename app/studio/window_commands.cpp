@@ -152,14 +152,13 @@ void save_video(Call& c) {
 }  // namespace
 
 void add_window_commands(Commands& commands, ui::Workspace& workspace) {
-  commands.add(
-      {"dialog.open", "Open dialog",
-       "open|open_scan|open_motion|open_target|replace_target|open_document|save_as|export|csv|picture|"
-       "video|compare|settings|about|keys|none"},
-      [&workspace](Call& c) {
-        US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
-        workspace.open_dialog(c.session, c.arguments[0]);
-      });
+  commands.add({"dialog.open", "Open dialog",
+                "open|open_source|open_target|replace_target|open_document|save_as|export|csv|picture|"
+                "video|compare|settings|about|keys|none"},
+               [&workspace](Call& c) {
+                 US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
+                 workspace.open_dialog(c.session, c.arguments[0]);
+               });
   commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [&workspace](Call& c) {
     const bool shown = ui::panel_shown(c.session, c.word(0, "panel"));
     workspace.show_panel(c.session.settings, c.arguments[0], c.switched(1, shown));

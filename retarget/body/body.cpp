@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "retarget/base/error.hpp"
+#include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -81,6 +82,16 @@ Points posed_vertices(const ShapedBody& body, const Pose& pose) {
     flat.noalias() += *body.pose_dirs * pose_features(pose.local);
   }
   return linear_blend_skinning(rest, body.weights, body.joints, forward_kinematics(body.joints, pose));
+}
+
+bool is_smpl_body(const std::string& path) {
+  if (!can_be(path, kBody)) return false;
+  try {
+    const std::vector<std::string> names = npz_names(path);
+    return std::find(names.begin(), names.end(), "v_template") != names.end();
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 Body read_smpl_body(const std::string& path) {

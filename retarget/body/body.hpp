@@ -40,6 +40,8 @@ Points posed_vertices(const ShapedBody& body, const Pose& pose);
 /// Reads an SMPL-format .npz: SMPL (24 joints), SMPL-H (52) or 22. Joints past the 22 are folded into their
 /// ancestors. Throws Error naming the file and what is wrong.
 Body read_smpl_body(const std::string& path);
+/// Whether an .npz holds such a body, by the names of its arrays; false for what cannot be read.
+bool is_smpl_body(const std::string& path);
 
 /// What an AMASS-format file holds.
 struct AmassArrays {

@@ -1,5 +1,9 @@
 #include "retarget/formats/file_formats.hpp"
 
+#include <algorithm>
+#include <fstream>
+
+#include "retarget/base/file.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy {
@@ -56,7 +60,7 @@ const std::vector<FileFormat>& file_formats() {
       {"PTS", {".pts"}, kSurface, parse_pts},
       {"TXT", {".txt", ".csv"}, kSurface, parse_xyz, nullptr, false, nullptr, true},
       {"PCD", {".pcd"}, kSurface, parse_pcd, is_pcd, true},
-      {"glTF", {".glb", ".gltf"}, kSurface | kMotion, parse_gltf, is_gltf, true},
+      {"glTF", {".glb", ".gltf", ".vrm"}, kSurface | kMotion, parse_gltf, is_gltf, true},
       {"FBX", {".fbx"}, kTarget | kMotion, nullptr, is_fbx},
       {"DAE", {".dae"}, kTarget | kMotion, nullptr, is_dae},
       {"BVH", {".bvh"}, kMotion},
@@ -74,6 +78,15 @@ const FileFormat* format_of_suffix(std::string_view path, unsigned uses) {
     for (const char* const known : format.suffixes)
       if ((format.uses & uses) && suffix == known) return &format;
   return nullptr;
+}
+
+const FileFormat* format_of_file(const std::string& path, unsigned uses) {
+  if (const FileFormat* const known = format_of_suffix(path, uses)) return known;
+  if (can_be(path, ~0u)) return nullptr;
+  constexpr uint64_t kGlance = 1 << 20;
+  std::string bytes(std::min(check_file(path), kGlance), '\0');
+  std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return format_of_content(bytes, uses);
 }
 
 const FileFormat* format_of_content(std::string_view bytes, unsigned uses) {

@@ -41,14 +41,14 @@ TEST_F(ApplicationTest, AFrameThatGoesWrongIsToldAndTheStudioGoesOn) {
 
 TEST_F(ApplicationTest, ShowsTheStartScreenAtFirst) {
   make();
-  play("frames 3\nexpect start.open_scan\nexpect menu.file\nexpect_value frames 0");
+  play("frames 3\nexpect start.open_source\nexpect menu.file\nexpect_value frames 0");
 }
 
 TEST_F(ApplicationTest, OpensPlaysAndSteps) {
   make();
   play(kOpenBoth);
   play(
-      "expect_value frames 24\nexpect_value ready_takes 1\nexpect_no start.open_scan\n"
+      "expect_value frames 24\nexpect_value ready_takes 1\nexpect_no start.open_source\n"
       "playback.frame 3\nkey Right\nexpect_value frame 4\nkey Left\nexpect_value frame 3\n"
       "key Space\nexpect_value playing yes\nframes 30\nkey Space\nexpect_value frame >= 5");
 }
@@ -86,7 +86,7 @@ TEST_F(ApplicationTest, WhatWasClosedIsShownNoMore) {
   play(kOpenBoth);
   play("frames 5");
   EXPECT_TRUE(application_->shows_take(0));
-  play("document.new\nquestion.answer discard\nframes 3\nexpect start.open_scan");
+  play("document.new\nquestion.answer discard\nframes 3\nexpect start.open_source");
   EXPECT_FALSE(application_->shows_take(0));
   play("target.add samples/target.obj\nwait\nframes 5");
   EXPECT_TRUE(application_->shows_take(0));

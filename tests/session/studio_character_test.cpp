@@ -39,6 +39,21 @@ class StudioCharacter : public StudioTest {
   }
 };
 
+TEST_F(StudioCharacter, OpensWhateverTheReaderTakesByItsSuffixOrItsContent) {
+  Studio studio(services());
+  for (const char* name : {"made.vrm", "made.character"}) {
+    fs::copy_file(path("made.glb"), path(name));
+    studio.run("open", {path(name)});
+  }
+  studio.wait_idle(60);
+  ASSERT_EQ(studio.session().takes.size(), 2u);
+  for (const TakeState& take : studio.session().takes) EXPECT_TRUE(take.ready) << take.problem;
+  std::ofstream(path("letter.doc")) << "Dear Ada";
+  EXPECT_NE(refusal(studio, "target.add", {path("letter.doc")}).find("not a known"), std::string::npos);
+  EXPECT_NE(refusal(studio, "open", {path("letter.doc")}).find("neither a scan"), std::string::npos);
+  EXPECT_EQ(studio.session().takes.size(), 2u);
+}
+
 TEST_F(StudioCharacter, PerformsOnItsOwnBonesFromAnyPoseAndHeading) {
   Studio studio(services());
   open(studio);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "retarget/formats/file_formats.hpp"
 #include "tests/ui/support/ui_test.hpp"
 
 namespace understudy::ui {
@@ -58,7 +59,7 @@ class Browser : public UiTest {
 };
 
 TEST_F(Browser, ShowsWhatFitsInNaturalOrder) {
-  open({filter_of(FileKind::Motion)});
+  open({filter_of(FileKind::Source)});
   ASSERT_TRUE(shown("browser.entry.take2.bvh"));
   EXPECT_FALSE(shown("browser.entry.notes.md"));
   EXPECT_FALSE(shown("browser.entry..hidden.obj"));
@@ -67,21 +68,22 @@ TEST_F(Browser, ShowsWhatFitsInNaturalOrder) {
 }
 
 TEST_F(Browser, ShowsEveryFormatThatCanBeOpenedInAnyCase) {
-  const std::vector<std::string> targets = {"t.FBX", "t.dae", "t.xyz", "t.pcd", "t.GLB", "t.npz", "t.coff"},
+  const std::vector<std::string> targets = {"t.FBX", "t.dae", "t.xyz",  "t.pcd",
+                                            "t.GLB", "t.npz", "t.coff", "t.VRM"},
                                  motions = {"m.BVH", "m.dae", "m.Npz"};
   for (const auto& name : targets) write(name);
   for (const auto& name : motions) write(name);
   open({filter_of(FileKind::Target)});
   for (const auto& name : targets) EXPECT_TRUE(shown("browser.entry." + name)) << name;
   EXPECT_FALSE(shown("browser.entry.m.BVH"));
-  open({filter_of(FileKind::Motion)});
+  open({filter_of(FileKind::Source)});
   for (const auto& name : motions) EXPECT_TRUE(shown("browser.entry." + name)) << name;
 }
 
 TEST_F(Browser, AFolderOfGlbFramesIsAScanAndOneOfCharactersIsNot) {
   for (const char* folder : {"scan", "people"}) fs::create_directories(root / folder);
   for (const char* name : {"scan/f_1.glb", "scan/f_2.GLB", "people/anna.glb", "people/bert.glb"}) write(name);
-  open({filter_of(FileKind::Scan)});
+  open({filter_of(FileKind::Source)});
   EXPECT_TRUE(shown("browser.look.scan"));
   EXPECT_FALSE(shown("browser.look.people"));
 }
@@ -94,7 +96,7 @@ TEST_F(Browser, ADoubleClickChoosesAFile) {
 }
 
 TEST_F(Browser, AFolderOfFramesIsChosenAsAWhole) {
-  open({filter_of(FileKind::Scan)});
+  open({filter_of(FileKind::Source)});
   EXPECT_TRUE(shown("browser.look.walk"));
   EXPECT_FALSE(shown("browser.look.single"));
   click("browser.entry.walk");
@@ -103,7 +105,7 @@ TEST_F(Browser, AFolderOfFramesIsChosenAsAWhole) {
 }
 
 TEST_F(Browser, AFolderOfFramesCanBeLookedInto) {
-  open({filter_of(FileKind::Scan)});
+  open({filter_of(FileKind::Source)});
   click("browser.look.walk");
   settle();
   EXPECT_EQ(browser.folder(), path("walk"));
@@ -112,7 +114,7 @@ TEST_F(Browser, AFolderOfFramesCanBeLookedInto) {
 }
 
 TEST_F(Browser, AnOrdinaryFolderIsEntered) {
-  open({filter_of(FileKind::Scan)});
+  open({filter_of(FileKind::Source)});
   double_click("browser.entry.single");
   settle();
   EXPECT_EQ(browser.folder(), path("single"));
@@ -120,7 +122,7 @@ TEST_F(Browser, AnOrdinaryFolderIsEntered) {
 }
 
 TEST_F(Browser, IsUsedWithKeysAlone) {
-  open({filter_of(FileKind::Scan)});
+  open({filter_of(FileKind::Source)});
   key(Key::End);
   type("wa");
   key(Key::Right);  // looks inside
@@ -205,7 +207,7 @@ TEST_F(Browser, MakesFolders) {
 
 TEST_F(Browser, PlacesAndFiltersLeadElsewhere) {
   browser.places.push_back({"Samples", path("walk"), Icon::Person});
-  open({filter_of(FileKind::Target), filter_of(FileKind::Motion)});
+  open({filter_of(FileKind::Target), {"Motions", format_suffixes(kMotion)}});
   click("browser.filter"), click("browser.filter.1");
   settle();
   EXPECT_TRUE(shown("browser.entry.take2.bvh"));

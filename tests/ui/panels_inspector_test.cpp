@@ -13,8 +13,7 @@ class Inspector : public PanelsTest {
 };
 
 TEST_F(Inspector, ButtonsAskForTheirCommands) {
-  expect_click("source.open", {"dialog.open open_scan"});
-  expect_click("source.motion", {"dialog.open open_motion"});
+  expect_click("source.open", {"dialog.open open_source"});
   expect_click("take.add", {"dialog.open open_target"});
   expect_click("take.replace", {"dialog.open replace_target"});
   expect_click("take.remove", {"target.remove 0"});

@@ -148,9 +148,9 @@ TEST_F(PanelsTest, StartOpensSamplesRecentDocumentsAndDialogs) {
   panel([&] { draw_start(session, context, samples); });
   expect_click("start.sample.0", {"open /s/scan /s/adult.glb"});
   expect_click("start.recent.0", {"document.open \"/home/ada/a dance.understudy\""});
-  expect_click("start.recent_scan.0", {"open /data/dance"});
+  expect_click("start.recent_source.0", {"open /data/dance"});
   expect_click("start.recent_target.0", {"open /data/adult.glb"});
-  expect_click("start.open_scan", {"dialog.open open_scan"});
+  expect_click("start.open_source", {"dialog.open open_source"});
   expect_click("start.open_target", {"dialog.open open_target"});
   expect_click("start.open_document", {"dialog.open open_document"});
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "retarget/base/error.hpp"
+#include "retarget/formats/npz.hpp"
 #include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/menus.hpp"
@@ -46,8 +47,8 @@ TEST_F(WorkspaceTest, DrawsAtAnySizeWithAndWithoutAnythingOpen) {
 TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
   for (const auto& [size, scale] : kSizes)
     for (const char* name :
-         {"open", "open_scan", "open_motion", "open_target", "replace_target", "open_document", "save_as",
-          "export", "csv", "picture", "video", "compare", "settings", "about", "keys"}) {
+         {"open", "open_source", "open_target", "replace_target", "open_document", "save_as", "export", "csv",
+          "picture", "video", "compare", "settings", "about", "keys"}) {
       input.size = size, input.scale = scale;
       workspace.open_dialog(session, name);
       frame(3);
@@ -223,7 +224,7 @@ TEST_F(WorkspaceTest, MenusOpenAndAsk) {
   click("menu.file");
   frame(2);
   click("menu.source.open");
-  EXPECT_EQ(take_log(), Lines{"dialog.open open_scan"});
+  EXPECT_EQ(take_log(), Lines{"dialog.open open_source"});
   frame(2);
   EXPECT_EQ(workspace.dialog(), "files");
   click("browser.cancel");
@@ -239,6 +240,38 @@ TEST_F(WorkspaceTest, MenusOpenAndAsk) {
   frame(2);
   click("menu.dialog.open.about");
   EXPECT_EQ(take_log(), Lines{"dialog.open about"});
+}
+
+TEST_F(WorkspaceTest, OneDialogOpensAllThatMovesAndABodyAsksForItsMotion) {
+  const auto folder = std::filesystem::temp_directory_path() / "understudy_panels_source";
+  std::filesystem::create_directories(folder);
+  const auto file = [&](const char* name, const char* array) {
+    write_npz((folder / name).string(), {{array, {{1, 3}, {0, 0, 0}, ""}}});
+    return (folder / name).string();
+  };
+  const std::string body = file("body.npz", "v_template"), motion = file("walk.npz", "poses");
+  const auto choose = [&](const std::string& path) {
+    frame(3);
+    click("browser.path");
+    frame(3);
+    key(Key::A, {false, true});
+    type(path);
+    key(Key::Enter);
+    frame(3);
+  };
+  session = app::Session();
+  frame(3);
+  click("start.open_source");
+  choose(body);
+  EXPECT_EQ(take_log(), Lines{"dialog.open open_source"}) << "a body alone does not move";
+  EXPECT_EQ(workspace.dialog(), "files");
+  choose(motion);
+  EXPECT_EQ(take_log(), Lines{"source.motion " + body + " " + motion});
+  EXPECT_EQ(workspace.dialog(), "");
+  workspace.open_dialog(session, "open_source");
+  choose(motion);  // a motion that needs no body
+  EXPECT_EQ(take_log(), Lines{"source.open " + motion});
+  std::filesystem::remove_all(folder);
 }
 
 void collect(const std::vector<MenuItem>& items, std::vector<MenuItem>& all) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "retarget/body/body.hpp"
+
 namespace understudy::ui {
 namespace fs = std::filesystem;
 namespace {
@@ -18,9 +20,8 @@ struct FileDialog {
 // In the order of FilePurpose.
 constexpr FileDialog kDialogs[] = {
     {"open", "open", "Open", "Open", FileKind::Known},
-    {"open_scan", "source.open", "Open scan", "Open", FileKind::Scan},
-    {"open_motion", "source.motion", "Open motion: first the body", "Next", FileKind::Body},
-    {"", "source.motion", "Open motion: now the motion", "Open", FileKind::Motion},
+    {"open_source", "source.open", "Open source", "Open", FileKind::Source},
+    {"", "source.motion", "Open source: now the motion of ", "Open", FileKind::BodyMotion},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},
     {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},
     {"open_document", "document.open", "Open document", "Open", FileKind::Document},
@@ -58,7 +59,8 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
   const FileDialog& dialog = dialog_of(purpose);
   BrowseRequest request{dialog.title, dialog.accept, dialog.save, {filter_of(dialog.files)}, "", ""};
   state.purpose = purpose;
-  if (purpose == FilePurpose::Relocate) state.first = name, request.title += file_name(name);
+  if (purpose == FilePurpose::Relocate || purpose == FilePurpose::BodyMotion)
+    state.first = name, request.title += file_name(name);
   if (dialog.save) {
     const fs::path proposed = name.empty() ? fs::path(document_name(session)) : fs::path(name);
     request.name = proposed.filename().string();
@@ -74,15 +76,14 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
 std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state) {
   const std::optional<std::string> path = state.browser.draw(context.ui);
   if (!path || state.purpose == FilePurpose::Export) return path;
-  if (state.purpose == FilePurpose::MotionBody) {
-    state.first = *path;
-    choose_file(session, state, FilePurpose::Motion);
+  if (state.purpose == FilePurpose::Source && is_smpl_body(*path)) {
+    choose_file(session, state, FilePurpose::BodyMotion, *path);
     return std::nullopt;
   }
   app::Arguments arguments = {*path};
   if (state.purpose == FilePurpose::ReplaceTarget)
     arguments.insert(arguments.begin(), std::to_string(session.selected_take));
-  if (state.purpose == FilePurpose::Motion || state.purpose == FilePurpose::Relocate)
+  if (state.purpose == FilePurpose::BodyMotion || state.purpose == FilePurpose::Relocate)
     arguments.insert(arguments.begin(), state.first);
   context.ask(dialog_of(state.purpose).command, arguments);
   const bool waits = session.question && session.question->kind == app::Question::Kind::UnsavedChanges;

@@ -12,9 +12,8 @@ namespace understudy::ui {
 /// The purpose of a path: a row of the table in files.cpp.
 enum class FilePurpose {
   Anything,
-  Scan,
-  MotionBody,  ///< the first of two; the motion is asked for next
-  Motion,
+  Source,      ///< an SMPL-format body is the first of two: its motion is asked for next
+  BodyMotion,  ///< the second
   Target,
   ReplaceTarget,
   Document,
@@ -26,15 +25,16 @@ enum class FilePurpose {
 struct FilesState {
   FileBrowser browser;
   FilePurpose purpose = FilePurpose::Anything;
-  std::string first;  ///< Motion: the body; Relocate: the old place
+  std::string first;  ///< BodyMotion: the body; Relocate: the old place
 };
 
-/// The purpose of a dialog that dialog.open names ("open_scan"); none where it asks for no path.
+/// The purpose of a dialog that dialog.open names ("open_source"); none where it asks for no path.
 std::optional<FilePurpose> purpose_of(const std::string& dialog);
 /// The dialog that asks for the path of a command; null where there is none.
 const char* file_dialog_for(const std::string& command);
 
-/// Opens the browser. `name`: when saving, the path proposed; Relocate: the old place.
+/// Opens the browser. `name`: when saving, the path proposed; Relocate: the old place;
+/// BodyMotion: the body.
 void choose_file(const app::Session& session, FilesState& state, FilePurpose purpose,
                  const std::string& name = {});
 

@@ -144,9 +144,7 @@ void draw_source(const app::Session& session, PanelContext& context) {
     draw_source_facts(session, ui);
     draw_source_fields(session, context);
   }
-  ButtonRow buttons(2);
-  buttons.ask(context, {"source.open", "Open scan\u2026", "", "dialog.open open_scan"});
-  buttons.ask(context, {"source.motion", "Open motion\u2026", "", "dialog.open open_motion"});
+  ask_button(context, {"source.open", "Open source\u2026", "A scan or a motion", "dialog.open open_source"});
 }
 
 void draw_takes(const app::Session& session, PanelContext& context) {

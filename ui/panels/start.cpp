@@ -70,7 +70,7 @@ void draw_openers(PanelContext& context) {
   struct Opener {
     const char *name, *label, *dialog;
   };
-  constexpr Opener kOpeners[] = {{"start.open_scan", "Open scan\u2026", "open_scan"},
+  constexpr Opener kOpeners[] = {{"start.open_source", "Open scan or motion\u2026", "open_source"},
                                  {"start.open_target", "Open target\u2026", "open_target"},
                                  {"start.open_document", "Open document\u2026", "open_document"}};
   const float end = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
@@ -118,7 +118,7 @@ void draw_start(const app::Session& session, PanelContext& context, const std::v
     text_cut(ui, "Any body, any motion");
   }
   ImGui::PushTextWrapPos(0);
-  ImGui::TextColored(ui.theme().text_dim, "%s", "Drop a scan folder or a character here.");
+  ImGui::TextColored(ui.theme().text_dim, "%s", "Drop a scan or motion and a character here.");
   ImGui::PopTextWrapPos();
   ImGui::Dummy({0, ui.px(6)});
   draw_openers(context);
@@ -128,7 +128,7 @@ void draw_start(const app::Session& session, PanelContext& context, const std::v
   }
   const app::Settings& settings = session.settings;
   draw_recent({"Recent", "start.recent", "document.open", settings.recent}, context);
-  draw_recent({"Recent scans", "start.recent_scan", "open", settings.recent_sources}, context);
+  draw_recent({"Recent scans and motions", "start.recent_source", "open", settings.recent_sources}, context);
   draw_recent({"Recent targets", "start.recent_target", "open", settings.recent_targets}, context);
   ImGui::EndChild();
 }

@@ -1,6 +1,6 @@
 // The start screen in place of the views: samples, recent documents, what can be dropped.
-// Marks: start.sample.K, start.recent.K (documents), start.recent_scan.K, start.recent_target.K,
-// start.open_scan, start.open_target, start.open_document.
+// Marks: start.sample.K, start.recent.K (documents), start.recent_source.K, start.recent_target.K,
+// start.open_source, start.open_target, start.open_document.
 #pragma once
 
 #include <string>

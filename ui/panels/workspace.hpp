@@ -30,7 +30,7 @@ class Workspace {
   /// `frame_rate`: of the window, frames per second, for the status line.
   void draw(const app::Session& session, PanelContext& context, float frame_rate = 0);
 
-  /// open, open_scan, open_motion, open_target, replace_target, open_document, save_as, export, csv, picture,
+  /// open, open_source, open_target, replace_target, open_document, save_as, export, csv, picture,
   /// video, compare, settings, about, keys; "none" closes. Throws Error for another name.
   void open_dialog(const app::Session& session, const std::string& name);
   /// Shows or hides a panel, "side" or "side_over". A tab of the side panel replaces the one that was on, and

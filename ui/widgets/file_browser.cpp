@@ -70,11 +70,10 @@ bool FileFilter::passes(const std::string& name) const {
 }
 
 FileFilter filter_of(FileKind kind) {
-  static const std::array<FileFilter, 7> kFilters = {{
-      {"Scans", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
+  static const std::array<FileFilter, 6> kFilters = {{
+      {"Scans and motions", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
       {"Targets", format_suffixes(kTarget)},
-      {"Motions", format_suffixes(kMotion)},
-      {"SMPL-format bodies", format_suffixes(kBody)},
+      {"AMASS-format motions", format_suffixes(kBody)},  // both are .npz
       {"Understudy documents", format_suffixes(kDocument)},
       {"All supported files", format_suffixes(~0u), true},
       {"All files", {}, true},

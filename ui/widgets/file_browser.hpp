@@ -20,7 +20,8 @@ struct FileFilter {
   bool folders = false;               ///< a folder of scan frames, or a case, may be chosen
   bool passes(const std::string& name) const;
 };
-enum class FileKind { Scan, Target, Motion, Body, Document, Known, Any };  ///< Known: all that opens
+/// Source: all that moves. BodyMotion: what an SMPL-format body performs. Known: all that opens.
+enum class FileKind { Source, Target, BodyMotion, Document, Known, Any };
 FileFilter filter_of(FileKind kind);
 
 struct Place {

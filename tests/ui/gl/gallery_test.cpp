@@ -109,7 +109,7 @@ TEST_P(Gallery, CutsNoWordOfTheBrowserOrADialog) {
   browser.preview = [](const std::string&) { return FilePreview{nullptr, 0, 0, "9,830 points each"}; };
   BrowseRequest request;
   request.title = "Open a scan", request.folder = US_SOURCE_DIR "/assets/samples";
-  request.filters = {filter_of(FileKind::Scan), filter_of(FileKind::Any)};
+  request.filters = {filter_of(FileKind::Source), filter_of(FileKind::Any)};
   browser.open(request);
   Notices notices;
   notices.add("Saved walk_female_03.understudy", NoticeKind::Good, 4);
