@@ -40,6 +40,7 @@ struct Studio::Background {
   Refiner refiner;
   Document followed;
   std::vector<int64_t> take_ids;  // beside document.takes
+  int followed_take = -1;         // Session::selected_take then; -1: of another document
   int64_t next_id = 1;
   std::map<int64_t, Applied> applied;
   std::set<int64_t> dirty;  // takes whose result is to be refined

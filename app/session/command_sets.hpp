@@ -70,6 +70,7 @@ class Call : public ArgumentReader {
   Studio& studio;
   Session& session;
   Document& document;
+  std::string label;  ///< of this run, for undo: "Remove adult"; empty: the command's
 };
 
 /// `value` where it is `wanted`, else none.

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/run/case_folder.hpp"
+#include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/file_formats.hpp"
@@ -213,6 +214,7 @@ void open_case(Studio& studio, std::string folder) {
 }  // namespace
 
 void Studio::replace_document(SavedDocument saved, const std::string& path) {
+  session_.selected_take = 0;
   session_.document = std::move(saved.document);
   session_.view = std::move(saved.view);
   if (session_.view.cameras.empty()) session_.view.cameras.push_back({});
@@ -222,7 +224,9 @@ void Studio::replace_document(SavedDocument saved, const std::string& path) {
   session_.path = path;
   session_.changed = false;
   session_.history.clear();
-  session_.selected_take = 0;
+  choose_pane(session_, session_.view.active_pane);
+  if (saved.selected_take) session_.selected_take = *saved.selected_take;
+  background_->followed_take = -1;
   session_.selected_joint = -1;
   session_.tool = Tool::Look;
   ask_for_missing(session_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct SavedDocument {
   Document document;
   View view;
   Playback playback;
-  std::string weights;  ///< the networks' checksums when it was saved
+  std::string weights;                 ///< the networks' checksums when it was saved
+  std::optional<int> selected_take{};  ///< the current take; none in older files: that of the active view
 };
 template <class V, class S>
 FieldsOf<S, SavedDocument> fields(V& visit, S& saved) {
@@ -27,6 +29,7 @@ FieldsOf<S, SavedDocument> fields(V& visit, S& saved) {
   fields(visit, saved.document);
   visit("view", saved.view);
   visit("playback", saved.playback);
+  visit("selected_take", saved.selected_take, kFrameNumbers);
 }
 
 nlohmann::ordered_json to_json(const SavedDocument& saved, const std::string& folder);

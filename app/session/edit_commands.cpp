@@ -212,18 +212,35 @@ void add_weight_tools(Commands& commands) {
                     [](Call& c) { c.take().target_edits.weights.reset(); });
 }
 
+/// The take that an undone step had removed is the current one again.
+void choose_returned(Session& session, const std::vector<Take>& before) {
+  const std::vector<Take>& now = session.document.takes;
+  if (now.size() <= before.size()) return;
+  const auto alike = [](const Take& a, const Take& b) {
+    return a.name == b.name && same(a.target, b.target);
+  };
+  const auto returned = std::mismatch(before.begin(), before.end(), now.begin(), alike).second;
+  choose_take(session, static_cast<int>(returned - now.begin()));
+}
+
 void add_history(Commands& commands) {
   const auto step = [](Call& c, bool back) {
     History& history = c.session.history;
     const std::string label = back ? history.undo_label() : history.redo_label();
+    US_CHECK(c.arguments.empty() || c.arguments[0] == label, "'", c.word(0, "step"),
+             "' is no longer the last step");
+    const std::vector<Take> before = c.document.takes;
     const bool cropped = c.document.scan_edits.crop.has_value();
     c.document = back ? history.undo(c.document) : history.redo(c.document);
     if (cropped && !c.document.scan_edits.crop && c.session.tool == Tool::Crop) c.session.tool = Tool::Look;
+    choose_returned(c.session, before);
     c.session.changed = true;
     c.studio.notify((back ? "Undone: " : "Redone: ") + label);
   };
-  commands.add({"edit.undo", "Undo", "", "Ctrl+Z"}, [step](Call& c) { step(c, true); });
-  commands.add({"edit.redo", "Redo", "", "Ctrl+Shift+Z"}, [step](Call& c) { step(c, false); });
+  commands.add({"edit.undo", "Undo", "[STEP: only where it is the last one]", "Ctrl+Z"},
+               [step](Call& c) { step(c, true); });
+  commands.add({"edit.redo", "Redo", "[STEP: only where it is the next one]", "Ctrl+Shift+Z"},
+               [step](Call& c) { step(c, false); });
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 /// Goes as far back as the spread arms of a T-pose ask; never nearer.
 void see_whole(Call& c) {
   View& view = c.session.view;
-  if (!view.linked) view.active_pane = c.session.selected_take + 1;
+  if (!view.linked) choose_take(c.session, c.session.selected_take);
   const size_t i = view.linked ? 0 : view.active_pane;
   const View before = view;
   c.studio.run("view.fit");

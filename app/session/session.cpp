@@ -61,6 +61,23 @@ std::optional<Box> everything(const Session& session) {
 
 }  // namespace
 
+void choose_take(Session& session, int take) {
+  session.selected_take = take;
+  session.view.active_pane = take + 1;
+}
+
+void choose_pane(Session& session, int pane) {
+  session.view.active_pane = pane;
+  if (pane > 0) session.selected_take = pane - 1;
+}
+
+void settle_current_take(Session& session) {
+  const int last = static_cast<int>(session.document.takes.size()) - 1;
+  session.selected_take = std::max(0, std::min(session.selected_take, last));
+  int& pane = session.view.active_pane;
+  pane = last < 0 || pane <= 0 ? 0 : session.selected_take + 1;
+}
+
 int frame_count(const Session& session) {
   const size_t selected = session.selected_take;
   if (selected < session.takes.size()) return session.takes[selected].shown.poses.size();

@@ -84,6 +84,12 @@ struct JobView {
   bool cancellable = true;
 };
 
+/// What a notice offers to do about it: a button.
+struct Offer {
+  std::string label{};    ///< "Undo"; empty: nothing is offered
+  std::string command{};  ///< as a line of a script
+};
+
 /// A message. Dialogs wait for the user; notices disappear after a while.
 struct Notice {
   enum class Kind { Info, Warning, Error };
@@ -91,6 +97,7 @@ struct Notice {
   std::string text;     ///< one sentence
   std::string details;  ///< for "copy details": the command and the versions
   double until = 0;     ///< Session::time at which a notice disappears
+  Offer offer{};
 };
 
 struct LogLine {
@@ -139,12 +146,19 @@ struct Session {
 
   Tool tool = Tool::Look;
   int selected_joint = -1;  ///< of the active pane
-  int selected_take = 0;    ///< the one that inspector, metrics and edits are about
+  int selected_take = 0;    ///< the current one: that of the active view, else the last that was
   Brush brush;
   int falloff = 5;  ///< frames, of edits by hand
   bool drag_children = false, mirror_joint = true;
 };
 
+/// Makes a take the current one and its view the active one. The take must be in the document, or come with the
+/// command that runs.
+void choose_take(Session& session, int take);
+/// Makes a view the active one: 0 the source's, k that of the take k - 1, which becomes the current one.
+void choose_pane(Session& session, int pane);
+/// After takes have come or gone: the current take is one that there is, and the active view is its or the source's.
+void settle_current_take(Session& session);
 /// The number of frames that can be shown: of the selected take, or of the source where there is no take.
 int frame_count(const Session& session);
 /// The frame shown, -1 without one.

@@ -13,7 +13,7 @@
 namespace understudy::app {
 namespace {
 
-constexpr double kNoticeSeconds = 6;
+constexpr double kNoticeSeconds = 8;
 
 /// For each take of `now` the index of the take of `before` that it continues, -1 for a new one: the same
 /// target made the same way, else the same target, else the same file.
@@ -99,7 +99,7 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
   }
   const bool merges = command->undo == Command::Undo::Merged;
   const std::string merge = merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
-  session_.history.add(before, command->label, merge);
+  session_.history.add(before, call.label.empty() ? command->label : call.label, merge);
   session_.changed = true;
 }
 
@@ -121,9 +121,9 @@ void Studio::fail(const std::string& sentence, const std::string& details) {
   session_.errors.push_back({Notice::Kind::Error, sentence, details, 0});
 }
 
-void Studio::notify(const std::string& sentence, bool warning) {
+void Studio::notify(const std::string& sentence, bool warning, const Offer& offer) {
   const auto kind = warning ? Notice::Kind::Warning : Notice::Kind::Info;
-  session_.notices.push_back({kind, sentence, "", session_.time + kNoticeSeconds});
+  session_.notices.push_back({kind, sentence, "", session_.time + kNoticeSeconds, offer});
 }
 
 /// Gives the background the plan, and drops what no longer belongs to anything. Where it throws nothing has
@@ -150,11 +150,10 @@ void Studio::follow_document() {
     if (other_method[k]) takes[k].problem.clear(), takes[k].latency = {};
   }
   session_.takes = std::move(takes);
+  follow_current_take(ids);
   b.take_ids = std::move(ids);
   const bool other_source = now.source.path != b.followed.source.path;
   b.followed = std::move(now);
-  session_.selected_take =
-      std::max(0, std::min(session_.selected_take, static_cast<int>(session_.takes.size()) - 1));
   forget_removed();
   const std::string problem = failure_of([&] {
     follow_source(other_source);
@@ -165,6 +164,19 @@ void Studio::follow_document() {
     session_.working = true;
   });
   if (!problem.empty()) fail(problem);  // what was not followed differs from its key, and is at the next time
+}
+
+/// The current take stays so when others go, unless the command chose another.
+void Studio::follow_current_take(const std::vector<int64_t>& ids_now) {
+  Background& b = *background_;
+  const int64_t* const current = at_or_null(b.take_ids, session_.selected_take);
+  const bool any_gone = ids_now.size() < b.take_ids.size();
+  if (current && any_gone && session_.selected_take == b.followed_take) {
+    const auto found = std::find(ids_now.begin(), ids_now.end(), *current);
+    if (found != ids_now.end()) session_.selected_take = static_cast<int>(found - ids_now.begin());
+  }
+  settle_current_take(session_);
+  b.followed_take = session_.selected_take;
 }
 
 /// Of a target prepared in another way only the file is the same.
@@ -349,7 +361,7 @@ void Studio::end_autosave() {
 }
 
 SavedDocument Studio::saved_document() const {
-  return {session_.document, session_.view, session_.playback, session_.weights};
+  return {session_.document, session_.view, session_.playback, session_.weights, session_.selected_take};
 }
 
 bool Studio::idle() const {

@@ -54,8 +54,8 @@ class Studio {
   bool made() const;
   /// Shows a sentence in a dialog; details are for "copy details".
   void fail(const std::string& sentence, const std::string& details = "");
-  /// Shows a sentence for some seconds.
-  void notify(const std::string& sentence, bool warning = false);
+  /// Shows a sentence for some seconds, with what can be done about it.
+  void notify(const std::string& sentence, bool warning = false, const Offer& offer = {});
   /// The document as it would be saved now.
   SavedDocument saved_document() const;
   /// Replaces the open document by a new, an opened or a recovered one.
@@ -75,6 +75,7 @@ class Studio {
   void ask_about_autosaves();
   void load_weights_name();
   void follow_document();
+  void follow_current_take(const std::vector<int64_t>& ids_now);
   void follow_source(bool other_path);
   void follow_edits();
   static void forget_target(TakeState& state);

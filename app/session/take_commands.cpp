@@ -25,6 +25,19 @@ void check_room(const Document& document) {
   US_CHECK(document.takes.size() < kMostTakes, "there are ", kMostTakes, " takes already");
 }
 
+bool is_edited(const Take& take) {
+  return !take.pose_edits.empty() || !take.target_edits.joints.empty() || take.target_edits.weights;
+}
+
+/// Says which take went, and offers it back.
+void remove_take(Call& c) {
+  const Take& take = c.take();
+  c.label = "Remove " + take.name;
+  c.studio.notify("Removed " + take.name + (is_edited(take) ? " with its edits" : ""), false,
+                  {"Undo", join_line("edit.undo", {c.label})});
+  c.document.takes.erase(c.document.takes.begin() + static_cast<std::ptrdiff_t>(c.take_number()));
+}
+
 void add_targets(Commands& commands) {
   commands.add_edit({"target.add", "Add target", "PATH"}, [](Call& c) {
     check_room(c.document);
@@ -33,7 +46,7 @@ void add_targets(Commands& commands) {
     take.name = fs::path(take.target.path).stem().string();
     remember(c.session.settings.recent_targets, take.target.path);
     c.document.takes.push_back(std::move(take));
-    c.session.selected_take = c.document.takes.size() - 1;
+    choose_take(c.session, static_cast<int>(c.document.takes.size()) - 1);
   });
   commands.add_edit({"target.replace", "Replace target", "TAKE PATH"}, [](Call& c) {
     Take& take = c.take();
@@ -42,13 +55,9 @@ void add_targets(Commands& commands) {
     take.target_edits = {};
     take.name = fs::path(take.target.path).stem().string();
   });
-  commands.add_edit({"target.remove", "Remove take", "TAKE"}, [](Call& c) {
-    c.document.takes.erase(c.document.takes.begin() + static_cast<std::ptrdiff_t>(c.take_number()));
-  });
-  commands.add({"target.select", "Select take", "TAKE"}, [](Call& c) {
-    c.session.selected_take = c.take_number();
-    c.session.view.active_pane = c.session.selected_take + 1;
-  });
+  commands.add_edit({"target.remove", "Remove take", "TAKE"}, remove_take);
+  commands.add({"target.select", "Select take", "TAKE"},
+               [](Call& c) { choose_take(c.session, static_cast<int>(c.take_number())); });
   commands.add_edit({"take.rename", "Rename take", "TAKE NAME"},
                     [](Call& c) { c.take().name = c.word(1, "name"); });
 }

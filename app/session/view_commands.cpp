@@ -196,8 +196,7 @@ void add_panes(Commands& commands) {
   commands.add({"view.pane", "Active view", "PANE: 0 the source, K + 1 the take K"}, [](Call& c) {
     const int pane = c.number<int>(0, "pane");
     US_CHECK(pane >= 0 && pane <= ssize(c.document.takes), "there is no view ", pane);
-    c.session.view.active_pane = pane;
-    if (pane > 0) c.session.selected_take = pane - 1;
+    choose_pane(c.session, pane);
   });
   commands.add({"view.wipe", "Wipe line", "SHARE: 0 to 1 of the width"},
                [](Call& c) { c.session.view.wipe = c.clamped(0, "share", 0.f, 1.f); });

@@ -98,6 +98,7 @@ SavedDocument full_document(const std::string& folder) {
   saved.playback.in = 3;
   saved.playback.out = 77;
   saved.weights = "skeleton.weights:0a1b2c3d";
+  saved.selected_take = 1;
   return saved;
 }
 

@@ -1,4 +1,5 @@
 #include "app/session/document_file.hpp"
+#include "retarget/base/error.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -25,6 +26,72 @@ TEST_F(StudioTest, ASavedDocumentGivesTheSameResult) {
   ASSERT_TRUE(studio.session().errors.empty());
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
   EXPECT_EQ(studio.session().document.takes[0].pose_edits.skip.count(3), 1u);
+}
+
+/// The view that is framed and the take that commands act on: one, before and after.
+void expect_current(const Session& session, int take, const std::string& when) {
+  EXPECT_EQ(session.selected_take, take) << when;
+  EXPECT_EQ(session.view.active_pane, take + 1) << when;
+}
+
+TEST_F(StudioTest, AReopenedDocumentFramesTheTakeThatCommandsActOn) {
+  fs::copy_file(path("target.obj"), path("other.obj"));
+  for (const bool source_framed : {false, true}) {
+    const std::string document = path(source_framed ? "a.understudy" : "b.understudy");
+    {
+      Studio studio(services());
+      open_both(studio);
+      studio.run("open", {path("other.obj")});
+      expect_current(studio.session(), 1, "added");
+      if (source_framed) studio.run("view.pane", {"0"});
+      studio.run("document.save_as", {document});
+    }
+    Studio studio(services());
+    studio.run("open", {path("target.obj")});
+    studio.session().changed = false;
+    studio.run("document.open", {document});
+    EXPECT_EQ(studio.session().selected_take, 1);
+    EXPECT_EQ(studio.session().view.active_pane, source_framed ? 0 : 2);
+  }
+}
+
+TEST_F(StudioTest, ADocumentOfBeforeFramesTheTakeOfItsActiveView) {
+  SavedDocument saved;
+  saved.document.takes.resize(3);
+  for (Take& take : saved.document.takes) take.target.path = path("target.obj");
+  saved.view.active_pane = 3;
+  write_document(path("old.understudy"), saved);
+  Studio studio(services());
+  studio.run("document.open", {path("old.understudy")});
+  expect_current(studio.session(), 2, "opened");
+}
+
+TEST_F(StudioTest, TheCurrentTakeStaysWhenAnotherGoesAndComesBackFromTheNotice) {
+  Studio studio(services());
+  Session& session = studio.session();
+  for (const char* name : {"a.obj", "b.obj", "c.obj"}) {
+    fs::copy_file(path("target.obj"), path(name));
+    studio.run("open", {path(name)});
+  }
+  studio.run("edit.heading", {"0", "30"});
+  studio.run("target.select", {"1"});
+  studio.run("target.remove", {"0"});
+  expect_current(session, 0, "another removed");
+  EXPECT_EQ(session.document.takes[0].name, "b");
+  EXPECT_EQ(session.history.undo_label(), "Remove a");
+  ASSERT_FALSE(session.notices.empty());
+  const Notice notice = session.notices.back();
+  EXPECT_EQ(notice.text, "Removed a with its edits");
+  EXPECT_EQ(notice.offer.label, "Undo");
+  const Arguments words = split_line(notice.offer.command);
+  studio.run(words[0], {words.begin() + 1, words.end()});
+  ASSERT_EQ(session.document.takes.size(), 3u);
+  EXPECT_TRUE(session.document.takes[0].pose_edits.heading);
+  expect_current(session, 0, "undone");
+  studio.run("take.rename", {"2", "d"});
+  EXPECT_THROW(studio.run(words[0], {words.begin() + 1, words.end()}), Error)
+      << "another step came meanwhile";
+  EXPECT_EQ(session.document.takes[2].name, "d");
 }
 
 TEST_F(StudioTest, AsksBeforeUnsavedWorkIsLost) {

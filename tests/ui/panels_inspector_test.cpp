@@ -91,6 +91,19 @@ TEST_F(Inspector, EscapeAndNonsenseAskForNothing) {
   expect_typed("source.yaw", "north", {});
 }
 
+TEST_F(Inspector, TheCurrentTakeIsNamedWhereItIsActedOn) {
+  EXPECT_EQ(take_title(session, "Result"), "Result: adult");
+  const float adult = mark("take.remove").rect.width();
+  app::choose_pane(session, 2);
+  EXPECT_EQ(take_title(session, "Result"), "Result: child");
+  frame(2);
+  EXPECT_EQ(mark("take.remove").rect.width(), adult);  // over the whole width, whatever the name
+  expect_click("take.remove", {"target.remove 1"});
+  session.document.takes[1].name = std::string(200, 'x');
+  frame(2);
+  expect_click("take.remove", {"target.remove 1"});
+}
+
 TEST_F(Inspector, MethodSwitchesNameTheSelectedTake) {
   session.selected_take = 1;
   frame(2);

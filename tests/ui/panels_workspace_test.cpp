@@ -617,6 +617,25 @@ TEST_F(WorkspaceTest, NoticesComeOnce) {
   EXPECT_FALSE(shown("notice.0"));
 }
 
+TEST_F(WorkspaceTest, ANoticesButtonAsksForWhatItOffersAndANoticeMadeLaterStillComes) {
+  session.time = 10;
+  session.notices.push_back({app::Notice::Kind::Info,
+                             "Removed adult with its edits",
+                             "",
+                             18,
+                             {"Undo", "edit.undo \"Remove adult\""}});
+  frame(3);
+  click("notice.0.offer");
+  EXPECT_EQ(take_log(), Lines{"edit.undo \"Remove adult\""});
+  frame(2);
+  EXPECT_FALSE(shown("notice.0"));
+  session.time = 11;
+  session.notices.push_back({app::Notice::Kind::Info, "Undone: Remove adult", "", 19});
+  frame(3);
+  EXPECT_TRUE(shown("notice.0"));
+  EXPECT_FALSE(shown("notice.0.offer"));
+}
+
 TEST_F(WorkspaceTest, WordsOfFixedPlacesFit) {
   frame(3);
   const float padding = 6;

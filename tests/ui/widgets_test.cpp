@@ -188,7 +188,7 @@ TEST_F(Widgets, TableRowsAreClicked) {
 TEST_F(Widgets, NoticesGoAwayAndStayUnderThePointer) {
   Notices notices;
   content = [&](Ui& ui) { notices.draw(ui); };
-  notices.add("Saved walk.understudy", NoticeKind::Good, 1);
+  notices.add({"Saved walk.understudy", NoticeKind::Good, 1});
   frame(3);
   EXPECT_TRUE(shown("notice.0"));
   hover("notice.0");

@@ -190,12 +190,14 @@ void draw_notices(const app::Session& session, PanelContext& context, NoticesSta
   for (const app::Notice& notice : session.notices) {
     if (notice.until <= state.newest) continue;
     const bool info = notice.kind == app::Notice::Kind::Info;
-    state.shown.add(notice.text, info ? NoticeKind::Good : NoticeKind::Warning,
-                    static_cast<float>(std::max(1.0, notice.until - session.time)));
+    state.shown.add({notice.text, info ? NoticeKind::Good : NoticeKind::Warning,
+                     static_cast<float>(std::max(1.0, notice.until - session.time)), notice.offer.label,
+                     notice.offer.command});
     newest = std::max(newest, notice.until);
   }
   state.newest = newest;
-  state.shown.draw(context.ui, over);
+  const std::string chosen = state.shown.draw(context.ui, over);
+  if (!chosen.empty()) push(context, {chosen, ""});
 }
 
 bool draw_about(PanelContext& context, const std::string& about) {

@@ -217,7 +217,7 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
 
 void draw_result(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
-  if (!section(ui, "edit.result", "Result")) return;
+  if (!section(ui, "edit.result", take_title(session, "Result"))) return;
   const app::Take* take = selected_take(session);
   if (take == nullptr) return hint(ui, "Add a target first.");
   const PoseEdits& edits = take->pose_edits;
@@ -239,7 +239,7 @@ void draw_result(const app::Session& session, PanelContext& context) {
 
 void draw_target(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
-  if (!section(ui, "edit.target", "Joints of the target", false)) return;
+  if (!section(ui, "edit.target", take_title(session, "Joints of the target"), false)) return;
   const app::Take* take = selected_take(session);
   if (take == nullptr) return hint(ui, "Add a target first.");
   tool_button(session, context, "edit.target_tool", app::Tool::TargetJoints);
@@ -272,7 +272,7 @@ void draw_brush(const app::Session& session, PanelContext& context) {
 
 void draw_weights(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
-  if (!section(ui, "edit.weights", "Skin weights", false)) return;
+  if (!section(ui, "edit.weights", take_title(session, "Skin weights"), false)) return;
   const app::Take* take = selected_take(session);
   if (take == nullptr) return hint(ui, "Add a target first.");
   const std::string k = std::to_string(session.selected_take);

@@ -170,12 +170,14 @@ void draw_takes(const app::Session& session, PanelContext& context) {
                  cut_to(takes[i].name, width - room - ui.px(10)).c_str());
     list.AddText({at.x + width - room + ui.px(8), y}, color(ui.theme().text_dim), how.c_str());
   }
-  ButtonRow buttons(2);
-  buttons.ask(context, {"take.add", "Add target\u2026", "", "dialog.open open_target"});
-  const std::string k = std::to_string(session.selected_take);
-  buttons.ask(context,
-              {"take.remove", "Remove", "Removes the selected take; can be undone", "target.remove " + k},
-              selected_take(session) != nullptr);
+  ask_button(context, {"take.add", "Add target\u2026", "", "dialog.open open_target"});
+  const app::Take* take = selected_take(session);
+  const std::string label = take == nullptr ? "Remove" : "Remove " + take->name;
+  ask_button(
+      context,
+      {"take.remove", cut_to(label, ImGui::GetContentRegionAvail().x - ui.px(28)),
+       "Removes the current take; can be undone", "target.remove " + std::to_string(session.selected_take)},
+      take != nullptr);
 }
 
 /// How much of it the shape binds; the view can be coloured by it.
@@ -213,7 +215,7 @@ void draw_target_facts(const app::TakeState& state, Ui& ui) {
 void draw_target_facts(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::Take* take = selected_take(session);
-  if (take == nullptr || !section(ui, "inspector.target", "Target")) return;
+  if (take == nullptr || !section(ui, "inspector.target", take_title(session, "Target"))) return;
   const std::string k = std::to_string(session.selected_take);
   if (const auto name = text_row(ui, {"take.name", "Name", ""}, take->name))
     if (!name->empty()) context.ask("take.rename", {k, *name});
@@ -253,7 +255,7 @@ void draw_work(const app::Session& session, PanelContext& context) {
 void draw_method(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::Take* take = selected_take(session);
-  if (take == nullptr || !section(ui, "inspector.method", "Method")) return;
+  if (take == nullptr || !section(ui, "inspector.method", take_title(session, "Method"))) return;
   const std::string k = std::to_string(session.selected_take);
   const app::Method& method = take->method;
   ask_method(

@@ -103,11 +103,12 @@ Items view_menu(const app::Session& session) {
 }
 
 Items target_menu(const app::Session& session) {
+  const app::Take* take = selected_take(session);
   const std::string k = std::to_string(session.selected_take);
   Items items = {{"Add target\u2026", "target.add"},
                  {"Replace\u2026", "target.replace"},
                  {"Compare with\u2026", "compare.add"},
-                 {"Remove", "target.remove", {k}}};
+                 {take == nullptr ? "Remove" : "Remove " + take->name, "target.remove", {k}}};
   if (!session.document.takes.empty()) items.push_back(kLine);
   for (size_t i = 0; i < session.document.takes.size(); ++i)
     items.push_back({session.document.takes[i].name,

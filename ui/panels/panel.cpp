@@ -72,6 +72,11 @@ const app::TakeState* selected_state(const app::Session& session) {
   return at_or_null(session.takes, session.selected_take);
 }
 
+std::string take_title(const app::Session& session, const std::string& words) {
+  const app::Take* take = selected_take(session);
+  return take == nullptr ? words : words + ": " + take->name;
+}
+
 bool has_document(const app::Session& session) {
   return !session.document.source.path.empty() || !session.document.takes.empty();
 }

@@ -43,6 +43,8 @@ std::string figure(double value, const std::string& unit);
 /// The selected take; null when there is none.
 const app::Take* selected_take(const app::Session& session);
 const app::TakeState* selected_state(const app::Session& session);
+/// A section about the current take: "Result: adult"; without a take the words alone.
+std::string take_title(const app::Session& session, const std::string& words);
 /// Whether anything is open.
 bool has_document(const app::Session& session);
 /// The timeline's length: the frames known to come, or those made.

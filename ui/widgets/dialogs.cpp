@@ -43,12 +43,13 @@ Answer draw_choices(Ui& ui, const std::vector<Choice>& choices) {
 
 }  // namespace
 
-void Notices::add(const std::string& sentence, NoticeKind kind, float seconds) {
-  notices_.push_back({sentence, kind, seconds});
+void Notices::add(Toast notice) {
+  notices_.push_back(std::move(notice));
   if (notices_.size() > 3) notices_.erase(notices_.begin());
 }
 
-void Notices::draw(Ui& ui, const Rect& over) {
+std::string Notices::draw(Ui& ui, const Rect& over) {
+  std::string chosen;
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   const Rect area = over.empty() ? Rect{{0, 0}, display} : over;
   const float room = std::max(ui.px(120), std::min(ui.px(420), area.width() - ui.px(20)));
@@ -70,11 +71,16 @@ void Notices::draw(Ui& ui, const Rect& over) {
     ImGui::PushTextWrapPos(room - ui.px(20));
     ImGui::TextUnformatted(notice.sentence.c_str());
     ImGui::PopTextWrapPos();
+    bool offered = false;
+    if (!notice.button.empty()) {
+      offered = button(ui, name + ".offer", notice.button);
+      if (offered) chosen = notice.command, notice.seconds_left = 0;
+    }
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     ui.mark(name, {at, {at.x + size.x, at.y + size.y}});
-    const bool hovered = ImGui::IsWindowHovered();
+    const bool hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (!hovered) notice.seconds_left -= ImGui::GetIO().DeltaTime;
-    if (hovered && ImGui::IsMouseClicked(0)) notice.seconds_left = 0;
+    if (hovered && ImGui::IsMouseClicked(0) && !ImGui::IsAnyItemHovered()) notice.seconds_left = 0;
     top += size.y + ui.px(8);
     ImGui::End();
     ImGui::PopStyleVar();
@@ -82,6 +88,7 @@ void Notices::draw(Ui& ui, const Rect& over) {
   notices_.erase(
       std::remove_if(notices_.begin(), notices_.end(), [](const Toast& n) { return n.seconds_left <= 0; }),
       notices_.end());
+  return chosen;
 }
 
 bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width, float height) {

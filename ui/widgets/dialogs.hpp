@@ -14,18 +14,20 @@ enum class NoticeKind { Good, Warning };
 /// application keeps one and draws it last.
 class Notices {
  public:
-  void add(const std::string& sentence, NoticeKind kind, float seconds);
+  struct Toast {
+    std::string sentence;
+    NoticeKind kind = NoticeKind::Good;
+    float seconds_left = 0;
+    std::string button{}, command{};  ///< what it offers, and what draw() then returns; empty: nothing
+  };
+  void add(Toast notice);
   /// Call once a frame, outside any window. A notice stays while the pointer is on it; a click removes it.
-  /// The newest is on top, at the top right of `over` (empty: of the window), and marked notice.0.
-  void draw(Ui& ui, const Rect& over = {});
+  /// The newest is on top, at the top right of `over` (empty: of the window), and marked notice.0, its button
+  /// notice.0.offer. Returns the command of a button that was clicked, else "".
+  std::string draw(Ui& ui, const Rect& over = {});
   bool empty() const { return notices_.empty(); }
 
  private:
-  struct Toast {
-    std::string sentence;
-    NoticeKind kind;
-    float seconds_left;
-  };
   std::vector<Toast> notices_;
 };
 

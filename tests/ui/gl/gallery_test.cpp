@@ -112,7 +112,7 @@ TEST_P(Gallery, CutsNoWordOfTheBrowserOrADialog) {
   request.filters = {filter_of(FileKind::Source), filter_of(FileKind::Any)};
   browser.open(request);
   Notices notices;
-  notices.add("Saved walk_female_03.understudy", NoticeKind::Good, 4);
+  notices.add({"Saved walk_female_03.understudy", NoticeKind::Good, 4});
   bool asking = false;
   const auto draw = [&]() -> const ImDrawData& {
     gui.begin_frame(input);
