@@ -34,6 +34,7 @@ void run_export(Call& c) {
       [&studio = c.studio, path, cost] {
         studio.notify("Exported " + file_name(path) + ": " + sentence(*cost));
       });
+  c.session.settings.export_format = format.name;
 }
 
 void export_figures(Call& c) {
@@ -46,6 +47,7 @@ void export_figures(Call& c) {
         write_csv(path, series, fps);
       },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path)); });
+  c.session.settings.export_format = "csv";
 }
 
 }  // namespace

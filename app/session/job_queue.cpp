@@ -33,7 +33,7 @@ void JobControl::check() const {
 
 struct JobQueue::Job final : JobControl {
   int64_t id = 0;
-  std::string name;
+  std::string name, command;
   Done done;
   Clock::time_point began = Clock::now();
   std::atomic<float> share{-1};
@@ -90,6 +90,7 @@ int64_t JobQueue::start(const std::string& name, Work work, Done done) {
   auto job = std::make_shared<Job>();
   job->id = next_id_++;
   job->name = name;
+  job->command = command_;
   job->done = std::move(done);
   jobs_.reserve(jobs_.size() + 1);  // from the thread's start on nothing may throw
   try {
@@ -113,7 +114,7 @@ bool JobQueue::running() const {
   return !jobs_.empty();
 }
 
-std::vector<std::string> JobQueue::drain() {
+std::vector<JobQueue::Failure> JobQueue::drain() {
   // Taken out first: what is done may start another job.
   const auto middle =
       std::stable_partition(jobs_.begin(), jobs_.end(), [](const auto& job) { return !job->ended; });
@@ -122,16 +123,16 @@ std::vector<std::string> JobQueue::drain() {
 
   for (const auto& job : ended) job->thread.join();
 
-  std::vector<std::string> problems;
+  std::vector<Failure> failures;
   for (const auto& job : ended) {
     try {
       if (!job->failed && job->done) job->done();
     } catch (const std::exception& error) {  // the other jobs' results must not be lost
       job->problem = error.what();
     }
-    if (!job->problem.empty()) problems.push_back(job->problem);
+    if (!job->problem.empty()) failures.push_back({job->problem, job->command});
   }
-  return problems;
+  return failures;
 }
 
 std::vector<JobView> JobQueue::views() const {

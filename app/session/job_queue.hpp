@@ -35,15 +35,22 @@ class JobQueue {
   void cancel(int64_t id);
   /// Whether any job runs, or waits for drain().
   bool running() const;
-  /// On the UI thread: calls `done` of finished jobs and returns the sentences of those that failed (none for
-  /// cancelled ones).
-  std::vector<std::string> drain();
+  /// A job that was not cancelled and failed.
+  struct Failure {
+    std::string sentence;
+    std::string command;  ///< that started it, as a line; empty: none did
+  };
+  /// On the UI thread: calls `done` of finished jobs and returns those that failed.
+  std::vector<Failure> drain();
+  /// The command that runs now: of the jobs that are started from here on.
+  void set_command(std::string line) { command_ = std::move(line); }
   std::vector<JobView> views() const;
 
  private:
   struct Job;
   std::vector<std::shared_ptr<Job>> jobs_;
   int64_t next_id_ = 1;
+  std::string command_;
 };
 
 }  // namespace understudy::app

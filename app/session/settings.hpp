@@ -21,6 +21,7 @@ struct Settings {
   std::vector<std::string> recent_sources, recent_targets;
   std::map<std::string, bool> panels;  ///< shown or not, by name; missing: as the window has it
   std::string last_folder;             ///< of the file browser
+  std::string export_format;           ///< the last one used, by name; "csv": figures; empty: none yet
   int window_width = 1280, window_height = 800;
 };
 template <class V, class S>
@@ -39,6 +40,7 @@ FieldsOf<S, Settings> fields(V& visit, S& settings) {
   visit("recent_targets", settings.recent_targets);
   visit("panels", settings.panels);
   visit("last_folder", settings.last_folder);
+  visit("export_format", settings.export_format);
 }
 
 /// $XDG_CONFIG_HOME/understudy or ~/.config/understudy; UNDERSTUDY_CONFIG overrides it.

@@ -104,11 +104,14 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
 }
 
 void Studio::try_run(const std::string& name, const Arguments& arguments) {
+  const std::string line = join_line(name, arguments);
+  jobs_.set_command(line);
   try {
     run(name, arguments);
   } catch (const std::exception& error) {
-    fail(error.what(), join_line(name, arguments));
+    fail(error.what(), line);
   }
+  jobs_.set_command("");
 }
 
 void Studio::run_all(CommandQueue& queue) {

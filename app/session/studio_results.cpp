@@ -306,7 +306,7 @@ void Studio::take_in_results() {
   ask_about_paint();
   take_in_refined();
   refine_dirty();
-  for (const std::string& sentence : jobs_.drain()) fail(sentence);
+  for (const JobQueue::Failure& failed : jobs_.drain()) fail(failed.sentence, failed.command);
   for (auto& [id, applied] : b.applied) {  // a measuring that failed or was cancelled is over, too
     const auto views = jobs_.views();
     const bool running = std::any_of(views.begin(), views.end(), [&applied = applied](const JobView& view) {

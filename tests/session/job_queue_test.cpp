@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 std::vector<std::string> finish(JobQueue& jobs) {
   std::vector<std::string> problems;
   while (jobs.running()) {
-    for (const std::string& problem : jobs.drain()) problems.push_back(problem);
+    for (const JobQueue::Failure& failed : jobs.drain()) problems.push_back(failed.sentence);
     std::this_thread::sleep_for(1ms);
   }
   return problems;
@@ -169,12 +169,17 @@ TEST(JobQueue, WhatIsDoneMayStartAnotherJob) {
 TEST(JobQueue, AResultThatCannotBeTakenLosesNoOther) {
   JobQueue jobs;
   bool second = false;
+  jobs.set_command("export.run 0 dance.glb");
   jobs.start(
       "First", [](JobControl&) {}, [] { throw Error("the target is gone"); });
+  jobs.set_command("");
   jobs.start(
       "Second", [](JobControl&) {}, [&] { second = true; });
   while (!jobs.views().empty()) std::this_thread::sleep_for(1ms);
-  EXPECT_EQ(jobs.drain(), std::vector<std::string>{"the target is gone"});
+  const auto failed = jobs.drain();
+  ASSERT_EQ(failed.size(), 1u);
+  EXPECT_EQ(failed[0].sentence, "the target is gone");
+  EXPECT_EQ(failed[0].command, "export.run 0 dance.glb");
   EXPECT_TRUE(second);
 }
 

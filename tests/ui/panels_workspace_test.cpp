@@ -561,6 +561,86 @@ TEST_F(Exporting, PicturesAndVideosHaveASize) {
   click("export.size.0");
   click("export.save");
   EXPECT_EQ(take_log(), Lines{"video.save " + (folder / "dance.mp4").string() + " 1280 720 view"});
+  open("video");
+  click("export.as.1");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"video.save " + (folder / "dance").string() + " 1280 720 view"});
+}
+
+TEST_F(Exporting, TheNameFollowsTheTakeUntilItIsTyped) {
+  open("export");
+  session.selected_take = 1;  // as the list of takes does
+  frame(2);
+  write_into("export.path", "dance");
+  click("export.in_place");  // what is typed counts without Enter
+  session.selected_take = 0;
+  frame(2);
+  click("export.format");
+  frame(2);
+  click("export.format.2");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "dance.bvh").string() + " format=bvh in_place=on"})
+      << "beside the document, with its suffix";
+  open("export");
+  session.selected_take = 1;
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 1 " + (folder / "child.glb").string() + " format=glb in_place=on"});
+  open("export");
+  write_into("export.path", "dance");
+  click("export.in_place");
+  write_into("export.path", " ");
+  key(Key::Backspace), key(Key::Enter);  // emptied: proposed again
+  EXPECT_EQ(take_log(), Lines{"export.run 1 " + (folder / "child.glb").string() + " format=glb"});
+}
+
+TEST_F(Exporting, EnterSaves) {
+  open("export");
+  key(Key::Enter);
+  frame(2);
+  EXPECT_EQ(workspace.dialog(), "");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb"});
+  open("export");
+  write_into("export.reduce", "0.5");
+  key(Key::Enter);  // ends the number alone
+  EXPECT_EQ(workspace.dialog(), "export");
+  write_into("export.path", (folder / "sub").string() + "/mine.v2");
+  key(Key::Enter);
+  frame(2);
+  EXPECT_EQ(workspace.dialog(), "");
+  EXPECT_EQ(take_log(),
+            Lines{"export.run 0 " + (folder / "sub/mine.v2.glb").string() + " format=glb reduce=0.5"});
+}
+
+TEST_F(Exporting, AFailureBringsTheDialogBackWithAllThatWasChosen) {
+  open("export");
+  click("export.influences.1");
+  write_into("export.path", "dance");
+  click("export.save");
+  const Lines asked = take_log();
+  session.errors.push_back({app::Notice::Kind::Error, "dance.glb: the disk is full", asked.at(0), 0});
+  frame(3);
+  click("error.close");
+  frame(3);
+  EXPECT_EQ(workspace.dialog(), "export");
+  take_log();
+  click("export.save");
+  EXPECT_EQ(take_log(), asked);
+  session.errors.push_back({app::Notice::Kind::Error, "no such joint", "edit.drag 1 nose", 0});
+  frame(3);
+  click("error.close");
+  frame(3);
+  EXPECT_EQ(workspace.dialog(), "") << "another command's failure does not";
+}
+
+TEST_F(Exporting, BeginsWithTheFormatUsedLast) {
+  session.settings.export_format = "bvh";
+  open("export");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.bvh").string() + " format=bvh"});
+  session.settings.export_format = "csv";
+  open("export");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.csv 0 " + (folder / "adult.csv").string()});
 }
 
 TEST_F(Exporting, BrowsingComesBackWithThePath) {

@@ -8,6 +8,7 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "ui/gui/gui.hpp"
 #include "ui/panels/dialogs.hpp"
 #include "ui/panels/rows.hpp"
 
@@ -47,28 +48,51 @@ std::string suffix_of(const ExportState& state) {
     const app::ExportFormat* const format = format_of(state);
     return format != nullptr ? format->suffix : ".csv";
   }
-  return state.kind == ExportKind::Picture ? ".png" : ".mp4";
+  return state.kind == ExportKind::Picture ? ".png" : state.as_pictures ? "" : ".mp4";
 }
 
-/// "dance.glb" beside the document, or in the folder used last.
-std::string proposed_path(const app::Session& session, const ExportState& state) {
+/// Of a name without one: the document's, or the one used last.
+fs::path usual_folder(const app::Session& session) {
   const fs::path folder =
       session.path.empty() ? fs::path(session.settings.last_folder) : fs::path(session.path).parent_path();
+  return folder.empty() ? fs::current_path() : folder;
+}
+
+/// "dance.glb" in the usual folder.
+std::string proposed_path(const app::Session& session, const ExportState& state) {
   const app::Take* take = selected_take(session);
   std::string name = take != nullptr ? take->name : session.source.name;
   if (state.kind != ExportKind::Animation && !session.path.empty())
     name = fs::path(session.path).stem().string();
-  const fs::path file = safe_name(name) + suffix_of(state);
-  return (folder.empty() ? fs::absolute(file) : folder / file).string();
+  return (usual_folder(session) / (safe_name(name) + suffix_of(state))).string();
+}
+
+/// What was typed as a whole path: in the usual folder where it names none, with the suffix where that is missing; in
+/// a folder that is there, the name proposed.
+std::string whole_path(const app::Session& session, const ExportState& state, const std::string& typed) {
+  const std::string suffix = suffix_of(state);
+  fs::path path = (usual_folder(session) / typed).lexically_normal();
+  std::error_code ignored;
+  if (!path.has_filename() || (!suffix.empty() && fs::is_directory(path, ignored)))
+    path /= fs::path(proposed_path(session, state)).filename();
+  if (!suffix.empty() && file_suffix(path.string()) != suffix) path += suffix;
+  return path.string();
+}
+
+/// After a choice that changes the suffix of the file.
+void follow_suffix(ExportState& state, const std::string& before) {
+  if (!state.typed) return;
+  fs::path path = state.path;
+  if (!before.empty() && file_suffix(state.path) == before) path.replace_extension();
+  state.path = path.string() + suffix_of(state);
 }
 
 void draw_format(Ui& ui, ExportState& state) {
   std::vector<std::string> labels;
   for (const app::ExportFormat& info : app::export_formats()) labels.push_back(info.label);
   labels.push_back("Figures");
-  const bool own = !state.path.empty() && file_suffix(state.path) == suffix_of(state);
-  if (choice_row(ui, {"export.format", "Format"}, labels, state.format) && own)
-    state.path = fs::path(state.path).replace_extension(suffix_of(state)).string();
+  const std::string before = suffix_of(state);
+  if (choice_row(ui, {"export.format", "Format"}, labels, state.format)) follow_suffix(state, before);
 }
 
 /// What only an animated character has.
@@ -189,23 +213,30 @@ app::Arguments export_words(const app::ExportFormat& format, const app::ExportCh
   return words;
 }
 
+/// Pushes a command, and keeps it to know a failure as its own.
+void ask_noted(PanelContext& context, ExportState& state, const std::string& command,
+               app::Arguments arguments) {
+  state.asked = app::join_line(command, arguments);
+  context.ask(command, std::move(arguments));
+}
+
 /// Pushes the command that writes it.
-void ask_for_export(const app::Session& session, PanelContext& context, const ExportState& state) {
+void ask_for_export(const app::Session& session, PanelContext& context, ExportState& state) {
   if (state.kind == ExportKind::Animation) {
     const std::vector<size_t> takes = clips_of(session, state);
     if (takes.empty()) return;
     app::Arguments asked = {std::to_string(takes[0]), state.path};
     const app::ExportFormat* const format = format_of(state);
-    if (format == nullptr) return context.ask("export.csv", asked);
+    if (format == nullptr) return ask_noted(context, state, "export.csv", asked);
     for (std::string& word : export_words(*format, state.choice)) asked.push_back(std::move(word));
     for (size_t i = 1; i < takes.size(); ++i)
       asked.push_back("take=" + word_for_take(session.document, takes[i]));
-    return context.ask("export.run", asked);
+    return ask_noted(context, state, "export.run", asked);
   }
   app::Arguments arguments = {state.path, std::to_string(state.width), std::to_string(state.height)};
   if (state.kind == ExportKind::Picture && state.transparent) arguments.push_back("transparent");
   arguments.push_back(state.all ? "all" : "view");
-  context.ask(state.kind == ExportKind::Picture ? "picture.save" : "video.save", arguments);
+  ask_noted(context, state, state.kind == ExportKind::Picture ? "picture.save" : "video.save", arguments);
 }
 
 void draw_size_rows(Ui& ui, ExportState& state) {
@@ -226,6 +257,16 @@ void draw_size_rows(Ui& ui, ExportState& state) {
     state.height = whole(*h);
 }
 
+/// A film or a folder of pictures.
+void draw_film_row(Ui& ui, ExportState& state) {
+  const std::string before = suffix_of(state);
+  int how = state.as_pictures ? 1 : 0;
+  const Control control{"export.as", "As", "One MP4 file, or a folder of PNG pictures"};
+  if (!choice_row(ui, control, {"Film", "Pictures"}, how)) return;
+  state.as_pictures = how == 1;
+  follow_suffix(state, before);
+}
+
 void draw_picture_rows(Ui& ui, ExportState& state) {
   draw_size_rows(ui, state);
   int what = state.all ? 0 : 1;
@@ -233,20 +274,35 @@ void draw_picture_rows(Ui& ui, ExportState& state) {
   if (state.kind == ExportKind::Picture)
     toggle_row(ui, {"export.transparent", "Transparent", "Leaves out the background"}, state.transparent);
   else
-    hint(ui, "A name ending in .mp4 gives a film, any other name a folder of PNG pictures.");
+    draw_film_row(ui, state);
 }
 
-/// The path to write; true when the user wants to browse.
-bool draw_path(const app::Session& session, Ui& ui, ExportState& state) {
-  if (state.path.empty()) state.path = proposed_path(session, state);
-  row(ui, "File");
+bool enter_pressed() {
+  return key_pressed(render::Key::Enter, false) || key_pressed(render::Key::KeypadEnter, false);
+}
+
+struct PathAnswer {
+  bool browse = false;  ///< the user wants to
+  bool entered = false;
+};
+/// The path to write, which follows the take until one is typed.
+PathAnswer draw_path(const app::Session& session, Ui& ui, ExportState& state) {
+  PathAnswer answer;
+  if (!state.typed) state.path = proposed_path(session, state);
+  row(ui, suffix_of(state).empty() ? "Folder" : "File");
   const float side = ImGui::GetFrameHeight();
   ImGui::BeginChild("##path", {std::max(1.f, ImGui::GetContentRegionAvail().x - side - ui.px(6)), side});
-  if (const auto path = committed_text(ui, "export.path", state.path)) state.path = *path;
+  const auto path = committed_text(ui, "export.path", state.path);
+  answer.entered = ImGui::IsItemDeactivated() && enter_pressed();
   ImGui::EndChild();
+  if (path) {
+    state.typed = !path->empty();
+    state.path = state.typed ? whole_path(session, state, *path) : proposed_path(session, state);
+  }
   ImGui::SameLine(0, ui.px(6));
-  return icon_button(ui, "export.browse", Icon::Folder,
-                     {"Choose the folder and the name", "", false, false, side / ui.scale()});
+  answer.browse = icon_button(ui, "export.browse", Icon::Folder,
+                              {"Choose the folder and the name", "", false, false, side / ui.scale()});
+  return answer;
 }
 
 /// Whether the dialog stays.
@@ -275,7 +331,7 @@ bool file_is_there(const std::string& path) {
 
 }  // namespace
 
-bool begin_export(ExportState& state, const std::string& dialog) {
+bool begin_export(const app::Session& session, ExportState& state, const std::string& dialog) {
   constexpr std::pair<const char*, ExportKind> kKinds[] = {{"export", ExportKind::Animation},
                                                            {"csv", ExportKind::Animation},
                                                            {"picture", ExportKind::Picture},
@@ -283,9 +339,25 @@ bool begin_export(ExportState& state, const std::string& dialog) {
   const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
                                  [&](const auto& one) { return dialog == one.first; });
   if (kind == std::end(kKinds)) return false;
-  state.kind = kind->second, state.format = dialog == "csv" ? app::export_formats().size() : 0;
-  state.path.clear(), state.agreed.clear(), state.left_out.clear();
-  state.asking = false;
+  const auto& formats = app::export_formats();
+  const std::string last = dialog == "csv" ? "csv" : session.settings.export_format;
+  const auto used =
+      std::find_if(formats.begin(), formats.end(), [&](const auto& one) { return last == one.name; });
+  const bool known = used != formats.end() || last == "csv";  // behind the formats: the figures
+  state.kind = kind->second, state.format = known ? static_cast<int>(used - formats.begin()) : 0;
+  state.path.clear(), state.agreed.clear(), state.asked.clear(), state.left_out.clear();
+  state.typed = state.asking = false;
+  return true;
+}
+
+void choose_path(ExportState& state, const std::string& path) {
+  state.path = state.agreed = path, state.typed = true;
+}
+
+bool export_failed(const app::Session& session, ExportState& state) {
+  const auto is_it = [&](const app::Notice& error) { return error.details == state.asked; };
+  if (state.asked.empty() || std::none_of(session.errors.begin(), session.errors.end(), is_it)) return false;
+  state.asked.clear(), state.agreed.clear();
   return true;
 }
 
@@ -297,14 +369,17 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
     draw_animation_rows(session, context, state);
   else
     draw_picture_rows(ui, state);
-  if (draw_path(session, ui, state)) choose_file(session, files, FilePurpose::Export, state.path);
+  const PathAnswer path = draw_path(session, ui, state);
+  if (path.browse) choose_file(session, files, FilePurpose::Export, state.path);
   ImGui::Dummy({0, ui.px(4)});
   ButtonRow buttons(2);
   ButtonOptions save;
   save.look = ButtonLook::Main, save.disabled = state.path.empty() || (state.kind == ExportKind::Animation &&
                                                                        clips_of(session, state).empty());
   bool stays = !buttons.add(ui, "export.cancel", "Cancel", {});
-  if (buttons.add(ui, "export.save", "Save", save)) {
+  const bool entered = path.entered || (enter_pressed() && !ImGui::GetIO().WantTextInput);
+  if (buttons.add(ui, "export.save", "Save", save) ||
+      (entered && !save.disabled && !ImGui::IsWindowAppearing())) {
     state.asking = state.path != state.agreed && file_is_there(state.path);
     if (!state.asking) ask_for_export(session, context, state), stays = false;
   }

@@ -1,7 +1,7 @@
 // The export dialog: animations, figures, pictures, video.
 // Marks: export.format, export.take, export.rig, export.influences, export.morphs, export.reduce,
 // export.in_place, export.t_pose, export.keep_clips, export.all_takes, export.clip.TAKE, export.path,
-// export.browse, export.size, export.width, export.height, export.all, export.transparent, export.save,
+// export.browse, export.size, export.width, export.height, export.all, export.transparent, export.as, export.save,
 // export.cancel; export.overwrite.yes and .cancel.
 #pragma once
 
@@ -21,17 +21,24 @@ struct ExportState {
   app::ExportChoice choice;   ///< of an animation, kept for the next one; its format is not used
   bool all_takes = false;     ///< of the selected take's target, as clips of one file
   std::set<size_t> left_out;  ///< of those
-  std::string path;           ///< empty: proposes one
+  std::string path;           ///< whole, with its suffix
+  bool typed = false;         ///< the path, or chosen; else it follows the take
   int width = 1920, height = 1080;
   bool all = true;           ///< all views; false: the active one
   bool transparent = false;  ///< pictures
+  bool as_pictures = false;  ///< a video: a folder of them
   bool asking = false;       ///< whether to write over the file that is there
   std::string agreed;        ///< the path that may be written over, as the browser has asked
+  std::string asked;         ///< the command that was pushed last, as a line
 };
 
-/// Opens the dialog of that name, with a new path to propose: export, csv, picture or video. False, and nothing
-/// changed, for another name.
-bool begin_export(ExportState& state, const std::string& dialog);
+/// Opens the dialog of that name, with a new path to propose and the format used last: export, csv, picture or
+/// video. False, and nothing changed, for another name.
+bool begin_export(const app::Session& session, ExportState& state, const std::string& dialog);
+/// Takes the path that the browser gave.
+void choose_path(ExportState& state, const std::string& path);
+/// Whether what the dialog asked for last is among the errors: it comes back then, with all its choices. True once.
+bool export_failed(const app::Session& session, ExportState& state);
 
 /// A dialog; call every frame while it is open. False once done or cancelled. Opens the browser where the user
 /// wants to choose the path.

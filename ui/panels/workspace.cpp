@@ -157,7 +157,7 @@ std::string Workspace::dialog() const {
 
 void Workspace::open_dialog(const app::Session& session, const std::string& name) {
   if (const auto purpose = purpose_of(name)) return choose_file(session, files_, *purpose);
-  const bool exports = begin_export(export_, name);
+  const bool exports = begin_export(session, export_, name);
   if (name == "about" && services_.about) about_ = services_.about();
   const auto known = {"compare", "settings", "about", "keys", "none"};
   US_CHECK(exports || std::find(known.begin(), known.end(), name) != known.end(), "there is no dialog ",
@@ -166,12 +166,13 @@ void Workspace::open_dialog(const app::Session& session, const std::string& name
 }
 
 void Workspace::draw_dialog(const app::Session& session, PanelContext& context) {
+  if (export_failed(session, export_)) dialog_ = "export";
   const bool any = !session.errors.empty() || session.question || !dialog().empty();
   if (draw_error(session, context)) {
     // One after the other: what else is open comes back when the error was read.
   } else if (files_.browser.is_open()) {
     const auto path = draw_files(session, context, files_);
-    if (path) export_.path = *path, export_.agreed = *path;
+    if (path) choose_path(export_, *path);
   } else if (session.question) {
     draw_question(session, context, files_);
   } else {
