@@ -7,11 +7,14 @@
 namespace understudy::app {
 namespace {
 
-int frame_argument(const Call& c, size_t i) {
-  const int frame = c.number<int>(i, "frame");
+int checked_frame(const Call& c, int frame) {
   const int count = std::max<int>(frame_count(c.session), c.session.source.frames.size());
   US_CHECK(frame >= 0 && frame < count, "there is no frame ", frame, " among ", count);
   return frame;
+}
+
+int frame_argument(const Call& c, size_t i) {
+  return checked_frame(c, c.number<int>(i, "frame"));
 }
 
 template <class Range>
@@ -122,16 +125,83 @@ void remove_at(std::vector<Edit>& edits, const Call& c, size_t i) {
   edits.erase(edits.begin() + index);
 }
 
-void add_removal(Commands& commands) {
+/// The frame that an edit is of; null of an exchanged range.
+int* frame_of(SkeletonEdit& edit) {
+  auto* drag = std::get_if<DragEdit>(&edit);
+  return drag != nullptr ? &drag->frame : nullptr;
+}
+int* frame_of(RotateEdit& edit) {
+  return &edit.frame;
+}
+
+template <class Edit>
+void check_any_at(std::vector<Edit>& edits, int frame) {
+  US_CHECK(std::any_of(edits.begin(), edits.end(),
+                       [&](Edit& edit) { return frame_of(edit) != nullptr && *frame_of(edit) == frame; }),
+           "there is no edit at frame ", frame);
+}
+
+template <class Edit>
+void remove_all_at(std::vector<Edit>& edits, int frame) {
+  check_any_at(edits, frame);
+  const auto there = [&](Edit& edit) { return frame_of(edit) != nullptr && *frame_of(edit) == frame; };
+  edits.erase(std::remove_if(edits.begin(), edits.end(), there), edits.end());
+}
+
+template <class Edit>
+void move_all_at(std::vector<Edit>& edits, int frame, int to) {
+  check_any_at(edits, frame);
+  for (Edit& edit : edits)
+    if (int* const at = frame_of(edit); at != nullptr && *at == frame) *at = to;
+}
+
+void remove_edit(Call& c) {
+  const size_t kind = c.choice(0, "kind", {"skeleton", "drags", "rotation", "rotations", "joint"});
+  if (kind == 0) return remove_at(c.document.skeleton_edits, c, 1);
+  if (kind == 1) return remove_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"));
+  Take& take = c.take(1);
+  if (kind == 2) return remove_at(take.pose_edits.rotate, c, 2);
+  if (kind == 3) return remove_all_at(take.pose_edits.rotate, c.number<int>(2, "frame"));
+  remove_at(take.target_edits.joints, c, 2);
+}
+
+void move_swap(Call& c) {
+  auto& edits = c.document.skeleton_edits;
+  const int index = c.number<int>(1, "edit");
+  auto* const swap = index >= 0 && index < ssize(edits) ? std::get_if<SwapEdit>(&edits[index]) : nullptr;
+  US_CHECK(swap, "edit ", index, " does not exchange left and right");
+  const int length = swap->last - swap->first;
+  swap->first = frame_argument(c, 2);
+  swap->last = checked_frame(c, swap->first + length);
+}
+
+void move_skips(Call& c) {
+  auto& skip = c.take(1).pose_edits.skip;
+  const int first = c.number<int>(2, "frame"), last = c.number<int>(3, "frame"), to = frame_argument(c, 4);
+  checked_frame(c, to + last - first);
+  std::set<int> moved;
+  for (auto at = skip.lower_bound(first); at != skip.end() && *at <= last; at = skip.erase(at))
+    moved.insert(*at - first + to);
+  skip.insert(moved.begin(), moved.end());
+}
+
+void move_edit(Call& c) {
+  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips"});
+  if (kind == 0)
+    return move_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"), frame_argument(c, 2));
+  if (kind == 1) return move_swap(c);
+  if (kind == 3) return move_skips(c);
+  move_all_at(c.take(1).pose_edits.rotate, c.number<int>(2, "frame"), frame_argument(c, 3));
+}
+
+void add_rearrangement(Commands& commands) {
   commands.add_edit(
-      {"edit.remove", "Remove an edit", "skeleton INDEX | rotation TAKE INDEX | joint TAKE INDEX"},
-      [](Call& c) {
-        const size_t kind = c.choice(0, "kind", {"skeleton", "rotation", "joint"});
-        if (kind == 0) return remove_at(c.document.skeleton_edits, c, 1);
-        Take& take = c.take(1);
-        if (kind == 1) return remove_at(take.pose_edits.rotate, c, 2);
-        remove_at(take.target_edits.joints, c, 2);
-      });
+      {"edit.remove", "Remove an edit",
+       "skeleton INDEX | drags FRAME | rotation TAKE INDEX | rotations TAKE FRAME | joint TAKE INDEX"},
+      remove_edit);
+  commands.add_edit({"edit.move", "Move an edit in time",
+                     "drags FRAME TO | swap INDEX TO | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO"},
+                    move_edit);
 }
 
 void add_pose_ranges(Commands& commands) {
@@ -140,11 +210,15 @@ void add_pose_ranges(Commands& commands) {
     trim.reset();
     if (c.word(1, "frame") != "off") trim = frame_range<Trim>(c, 1);
   });
-  commands.add_edit({"edit.skip", "Skip a frame", "TAKE FRAME on|off"}, [](Call& c) {
-    const int frame = frame_argument(c, 1);
+  commands.add_edit({"edit.skip", "Skip frames", "TAKE FRAME [LAST] on|off"}, [](Call& c) {
+    const int first = frame_argument(c, 1), last = c.arguments.size() > 3 ? frame_argument(c, 2) : first;
+    const bool on = c.on(c.arguments.size() > 3 ? 3 : 2);
     auto& skip = c.take().pose_edits.skip;
-    skip.erase(frame);
-    if (c.on(2)) skip.insert(frame);
+    for (int frame = first; frame <= last; ++frame)
+      if (on)
+        skip.insert(frame);
+      else
+        skip.erase(frame);
   });
   commands.add_edit({"edit.poses_clear", "Clear the result's edits", "TAKE"},
                     [](Call& c) { c.take().pose_edits = PoseEdits{}; });
@@ -251,7 +325,7 @@ void add_edit_commands(Commands& commands) {
   add_skeleton_edits(commands);
   add_pose_edits(commands);
   add_pose_ranges(commands);
-  add_removal(commands);
+  add_rearrangement(commands);
   add_target_edits(commands);
   add_weight_tools(commands);
 }

@@ -22,6 +22,41 @@ TEST_F(StudioTest, OneEditIsRemovedAndTheOthersStay) {
   EXPECT_THROW(studio.run("edit.remove", {"skeleton", "3"}), Error);
 }
 
+TEST_F(StudioTest, EditsOfAFrameAreMovedInTimeAndRemovedTogether) {
+  Studio studio(services());
+  open_both(studio);
+  const Document& document = studio.session().document;
+  studio.run("edit.drag", {"5", "left_wrist", "0", "0.1", "0"});
+  studio.run("edit.drag", {"5", "head", "0", "0.1", "0"});
+  studio.run("edit.drag", {"7", "head", "0", "0.1", "0"});
+  studio.run("edit.swap", {"2", "4", "legs"});
+  const auto frames = [&] {
+    std::vector<int> all;
+    for (size_t i = 0; i < 3; ++i) all.push_back(std::get<DragEdit>(document.skeleton_edits[i]).frame);
+    return all;
+  };
+  studio.run("edit.move", {"drags", "5", "9"});
+  EXPECT_EQ(frames(), (std::vector<int>{9, 9, 7}));
+  studio.run("edit.undo");
+  EXPECT_EQ(frames(), (std::vector<int>{5, 5, 7}));
+  studio.run("edit.move", {"swap", "3", "10"});
+  EXPECT_EQ(std::get<SwapEdit>(document.skeleton_edits[3]).first, 10);
+  EXPECT_EQ(std::get<SwapEdit>(document.skeleton_edits[3]).last, 12);
+  EXPECT_THROW(studio.run("edit.move", {"swap", "3", "23"}), Error);
+  EXPECT_THROW(studio.run("edit.move", {"drags", "6", "9"}), Error);
+  studio.run("edit.remove", {"drags", "5"});
+  EXPECT_EQ(document.skeleton_edits.size(), 2u);
+  const PoseEdits& edits = document.takes[0].pose_edits;
+  studio.run("edit.rotate", {"0", "5", "left_elbow", "0", "0", "1"});
+  studio.run("edit.move", {"rotations", "0", "5", "8"});
+  EXPECT_EQ(edits.rotate[0].frame, 8);
+  studio.run("edit.skip", {"0", "3", "5", "on"});
+  studio.run("edit.move", {"skips", "0", "3", "5", "4"});
+  EXPECT_EQ(edits.skip, (std::set<int>{4, 5, 6}));
+  studio.run("edit.skip", {"0", "4", "5", "off"});
+  EXPECT_EQ(edits.skip, (std::set<int>{6}));
+}
+
 TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
   Studio studio(services());
   open_both(studio);

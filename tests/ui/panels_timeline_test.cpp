@@ -59,6 +59,84 @@ TEST_F(Timeline, LoopMarksAreDragged) {
   EXPECT_EQ(lines.back(), "playback.in 12");
 }
 
+TEST_F(Timeline, TrimmedEndsAreGreyedUntilTheyAreBack) {
+  const Rect track = mark("timeline.track").rect;
+  EXPECT_NEAR(mark("timeline.track.trimmed.before").rect.max.x, track.at(1.5f / 59, 0).x, 1);
+  EXPECT_NEAR(mark("timeline.track.trimmed.after").rect.min.x, track.at(40.5f / 59, 0).x, 1);
+  session.document.takes[0].pose_edits.trim.reset();
+  frame();
+  EXPECT_FALSE(shown("timeline.track.trimmed.before"));
+  EXPECT_FALSE(shown("timeline.track.trimmed.after"));
+}
+
+TEST_F(Timeline, AClickAtAnEditGoesThere) {
+  expect_click("timeline.track.drags.4", {"playback.frame 4"});
+  expect_click("timeline.track.swap.1", {"playback.frame 10"});
+  expect_click("timeline.track.rotations.12", {"playback.frame 12"});
+  session.playback.frame = 0;
+  expect_click("timeline.track.fill.20", {"playback.frame 20"});
+}
+
+TEST_F(Timeline, ADraggedEditIsMovedOnceWhereItIsLetGo) {
+  session.document.takes[0].pose_edits.skip = {22, 23, 24};
+  frame();
+  const Rect track = mark("timeline.track").rect;
+  const float ten = track.width() * 10 / 59;
+  const auto moved = [&](const std::string& name, float by) {
+    queue.clear();
+    const ImVec2 from = mark("timeline.track." + name).rect.at(0.5f, 0.5f);
+    drag(from, {from.x + by, from.y});
+    Lines lines = asked();
+    lines.erase(std::remove_if(lines.begin(), lines.end(),
+                               [](const std::string& line) { return starts_with(line, "playback.frame "); }),
+                lines.end());
+    return lines;
+  };
+  EXPECT_EQ(moved("drags.4", ten), Lines{"edit.move drags 4 14"});
+  EXPECT_EQ(moved("swap.1", ten), Lines{"edit.move swap 1 20"});
+  EXPECT_EQ(moved("rotations.12", -ten), Lines{"edit.move rotations 0 12 2"});
+  EXPECT_EQ(moved("skip.22", ten), Lines{"edit.move skips 0 22 24 32"});
+  EXPECT_EQ(moved("skip.22", 100 * ten), Lines{"edit.move skips 0 22 24 45"});  // inside what is made
+  EXPECT_EQ(moved("fill.20", ten), Lines{});
+}
+
+TEST_F(Timeline, DeleteRemovesTheEditThatWasClickedAndNothingElse) {
+  session.document.takes[0].pose_edits.skip = {22, 23, 24};
+  frame();
+  const auto deleted = [&](const std::string& name) {
+    click("timeline.track." + name);
+    queue.clear();
+    key(render::Key::Delete);
+    return asked();
+  };
+  EXPECT_EQ(deleted("drags.4"), Lines{"edit.remove drags 4"});
+  EXPECT_EQ(deleted("swap.1"), Lines{"edit.remove skeleton 1"});
+  EXPECT_EQ(deleted("rotations.12"), Lines{"edit.remove rotations 0 12"});
+  EXPECT_EQ(deleted("skip.22"), Lines{"edit.skip 0 22 24 off"});
+  EXPECT_EQ(deleted("fill.20"), Lines{});
+  click("timeline.track.drags.4");
+  click(mark("timeline.track").rect.at(0.9f, 0.3f));
+  queue.clear();
+  key(render::Key::Delete);
+  EXPECT_EQ(asked(), Lines{});
+}
+
+TEST_F(Timeline, TheEditedJointsChannelIsDrawnWithItsKeys) {
+  EXPECT_FALSE(shown("timeline.track.key.0"));
+  session.tool = app::Tool::Joints, session.selected_joint = LeftWrist;
+  frame(2);
+  const Rect track = mark("timeline.track").rect;
+  EXPECT_NEAR(mark("timeline.track.key.0").rect.at(0.5f, 0).x, track.at(4.f / 59, 0).x, 1);
+  EXPECT_TRUE(starts_with(panel_state<Channel>(context).label, "Left wrist: place"));
+  session.tool = app::Tool::Bones, session.selected_joint = LeftElbow;
+  frame(2);
+  EXPECT_NEAR(mark("timeline.track.key.0").rect.at(0.5f, 0).x, track.at(12.f / 59, 0).x, 1);
+  EXPECT_FALSE(shown("timeline.track.key.1"));
+  session.tool = app::Tool::Look;
+  frame(2);
+  EXPECT_FALSE(shown("timeline.track.key.0"));
+}
+
 TEST_F(Timeline, KnowsTheBadFramesAndWhy) {
   EXPECT_EQ(state.why(20), "no points");
   EXPECT_EQ(state.why(31), "low confidence");

@@ -6,7 +6,6 @@
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
-#include "ui/widgets/timeline_track.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -132,6 +131,18 @@ void draw_readout(const app::Session& session, PanelContext& context) {
   if (minutes && rest) context.ask("playback.seek", {argument(60 * *minutes + *rest)});
 }
 
+/// Asks for what was done with a mark of an edit.
+void answer_marks(PanelContext& context, const std::vector<EditMark>& edits, const TrackAnswer& answer) {
+  if (answer.move) {
+    app::Arguments words = edits[answer.move->mark].move;
+    words.push_back(std::to_string(answer.move->first));
+    context.ask("edit.move", words);
+  }
+  if (!answer.remove) return;
+  const app::Arguments words = app::split_line(edits[*answer.remove].remove);
+  context.ask(words[0], {words.begin() + 1, words.end()});
+}
+
 void draw_track(const app::Session& session, PanelContext& context, const TimelineState& state,
                 const Metric* metric) {
   TrackData data;
@@ -144,12 +155,24 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   if (marked && !range.empty()) data.loop = LoopRange{range.first, range.last};
   data.bad_frames = state.bad_numbers;
   if (metric != nullptr) data.curve = metric->values, data.curve_label = metric->label;
+  auto& channel = panel_state<Channel>(context);
+  channel.follow(session);
+  if (!channel.label.empty()) {
+    data.channel = {channel.values[0], channel.values[1], channel.values[2]};
+    data.keys = channel.keys, data.curve_label = channel.label;
+  }
+  const std::vector<EditMark> edits = edit_marks(session, state.fills);
+  for (const EditMark& edit : edits) data.marks.push_back(edit.mark);
+  const app::Take* take = selected_take(session);
+  if (take != nullptr && take->pose_edits.trim)
+    data.kept = LoopRange{take->pose_edits.trim->first, take->pose_edits.trim->last};
   data.describe = [&state](int frame) { return state.why(frame); };
   data.follow = session.playback.playing;
   data.height = ImGui::GetContentRegionAvail().y / context.ui.scale();
   const TrackAnswer answer = timeline_track(context.ui, "timeline.track", data);
   if (answer.seek && *answer.seek != data.current)
     context.ask("playback.frame", {std::to_string(*answer.seek)});
+  answer_marks(context, edits, answer);
   if (!answer.loop) return;
   if (answer.loop->first != range.first) context.ask("playback.in", {std::to_string(answer.loop->first)});
   if (answer.loop->last != range.last) context.ask("playback.out", {std::to_string(answer.loop->last)});
@@ -173,7 +196,15 @@ void TimelineState::follow(const app::Session& session) {
   looked = true, frames = now;
   bad = app::bad_frames(session);
   bad_numbers.clear();
-  for (const app::BadFrame& frame : bad) bad_numbers.push_back(frame.frame);
+  fills.clear();
+  for (const app::BadFrame& frame : bad) {
+    bad_numbers.push_back(frame.frame);
+    if (!source.frames[frame.frame].flagged) continue;
+    if (!fills.empty() && fills.back().last + 1 == frame.frame && fills.back().why == frame.why)
+      fills.back().last = frame.frame;
+    else
+      fills.push_back({frame.frame, frame.frame, frame.why});
+  }
 }
 
 std::string TimelineState::why(int frame) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ui/panels/panel.hpp"
+#include "ui/widgets/timeline_track.hpp"
 
 namespace understudy::ui {
 
@@ -18,6 +19,11 @@ struct TimelineState {
   std::vector<app::BadFrame> bad;
   std::vector<int> bad_numbers;
   std::vector<float> confidence;  ///< of the source, a value a frame
+  struct Fill {
+    int first = 0, last = 0;
+    std::string why;
+  };
+  std::vector<Fill> fills;  ///< runs of frames without a pose of their own: the last good one fills them
 
   /// Updates it from the session.
   void follow(const app::Session& session);
@@ -25,7 +31,31 @@ struct TimelineState {
   std::string why(int frame) const;
 };
 
+/// The channel that the hand edits: three values a frame of the selected joint, while a tool for joints or
+/// bones is taken.
+struct Channel {
+  std::string label;  ///< "Left elbow: rotation about x, y, z, °"; empty: there is none
+  std::vector<float> values[3];
+  std::vector<int> keys;  ///< frames with edits of this joint
+
+  /// Updates it from the session; only frames that are new or changed are looked at.
+  void follow(const app::Session& session);
+
+ private:
+  std::vector<int64_t> about_;  // what the values are of
+};
+
+/// An edit as the timeline shows it, and the commands that move and remove it.
+struct EditMark {
+  TrackMark mark;
+  app::Arguments move;  ///< of edit.move, without the frame
+  std::string remove;   ///< a command with its arguments, as a line of a script
+};
+/// All edits over time of the source and of the selected take: dragged joints, exchanged ranges and fills in
+/// row 0, rotated bones and skips in row 1.
+std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills);
+
 /// Heights at scale 1: with the track, and the transport alone.
-constexpr float kTimelineHeight = 128, kTransportHeight = 44;
+constexpr float kTimelineHeight = 152, kTransportHeight = 44;
 
 }  // namespace understudy::ui

@@ -1,4 +1,5 @@
-// The timeline's track: processed frames, the playhead, bad frames, loop marks and a curve.
+// The timeline's track: processed frames, the playhead, bad frames, loop marks, edits, and a curve or the
+// channel being edited.
 #pragma once
 
 #include <functional>
@@ -16,6 +17,18 @@ struct LoopRange {
   int first = 0, last = 0;
 };
 
+/// An edit: a diamond at a frame, or a bar over a range of them.
+struct TrackMark {
+  std::string name;   ///< names its mark in the track, "drags.12"; each once
+  std::string words;  ///< what it is, for the tooltip
+  int first = 0, last = 0;
+  bool diamond = false;
+  int reach = 0;       ///< of a diamond: frames to each side that follow
+  int row = 0;         ///< 0 or 1: the lower one
+  int color = 0;       ///< of Theme::series
+  bool fixed = false;  ///< nobody's edit: can be clicked, not moved or deleted
+};
+
 struct TrackData {
   int total = 0;      ///< frames of the sequence; may grow while it is followed
   int processed = 0;  ///< frames 0..processed-1 are finished
@@ -23,21 +36,32 @@ struct TrackData {
   double fps = 30;
   std::optional<LoopRange> loop;
   std::vector<int> bad_frames;
-  Values curve;                              ///< drawn inside, one value a frame
-  std::string curve_label;                   ///< with its unit
+  Values curve;                 ///< drawn inside, one value a frame
+  std::string curve_label;      ///< with its unit
+  std::vector<Values> channel;  ///< drawn in place of the curve, in the curve's label: x, y and z
+  std::vector<int> keys;        ///< frames in which the channel was edited: diamonds on its curves
+  std::vector<TrackMark> marks;
+  std::optional<LoopRange> kept;             ///< the ends outside it are greyed: they were trimmed
   std::function<std::string(int)> describe;  ///< extra text for the frame under the pointer
   bool follow = false;                       ///< keep the playhead in view while it plays
   float height = 74;                         ///< at scale 1
 };
 
 struct TrackAnswer {
-  std::optional<int> seek;        ///< clicked or dragged there
+  std::optional<int> seek;  ///< clicked or dragged there
+  struct Move {
+    size_t mark = 0;  ///< among TrackData::marks
+    int first = 0;    ///< the frame that it is to begin at
+  };
+  std::optional<Move> move;       ///< a mark was dragged and let go
+  std::optional<size_t> remove;   ///< Delete was pressed while this mark was chosen
   std::optional<LoopRange> loop;  ///< a loop mark was dragged
 };
 
 /// Over the width that is left. Wheel zooms about the pointer, Shift+wheel or the middle button pans, a
-/// double click in the ruler shows everything. Marks: NAME (the part under the ruler), NAME.ruler,
-/// NAME.loop_first, NAME.loop_last, NAME.playhead.
+/// double click in the ruler shows everything. A click at a mark chooses it and goes there. Marks: NAME (the
+/// part under the ruler), NAME.ruler, NAME.loop_first, NAME.loop_last, NAME.playhead, NAME.MARK, NAME.trimmed
+/// (.before, .after), NAME.key.K (the K-th key), NAME.chosen (the mark chosen).
 TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& data);
 
 /// "0:03.27": minutes, seconds, hundredths.

@@ -1,0 +1,148 @@
+// What the timeline shows of edits: their marks, and the channel that the hand edits.
+#include <algorithm>
+#include <map>
+
+#include "retarget/base/index.hpp"
+#include "retarget/math/rotation.hpp"
+#include "ui/panels/timeline.hpp"
+
+namespace understudy::ui {
+namespace {
+
+enum : int { kBlue, kOrange, kGreen, kPink };  // of Theme::series
+
+/// The edits of one frame, which move together.
+struct KeyFrame {
+  std::string words;
+  int reach = 0;
+};
+using KeyFrames = std::map<int, KeyFrame>;
+
+template <class Edit>
+void add(KeyFrames& keys, const Edit& edit, const char* done) {
+  KeyFrame& key = keys[edit.frame];
+  key.words += (key.words.empty() ? "" : "\n") + std::string(done) + ": " + joint_label(edit.joint);
+  key.reach = std::max(key.reach, edit.falloff);
+}
+
+/// Diamonds; `kind` and `take` begin the arguments of the commands.
+void add_diamonds(std::vector<EditMark>& all, const KeyFrames& keys, const app::Arguments& kind, int row) {
+  for (const auto& [frame, key] : keys) {
+    EditMark edit;
+    const std::string number = std::to_string(frame);
+    edit.mark = {kind[0] + "." + number,   key.words, frame, frame, true, key.reach, row,
+                 row == 0 ? kGreen : kPink};
+    edit.move = kind;
+    edit.move.push_back(number);
+    edit.remove = app::join_line("edit.remove", edit.move);
+    all.push_back(std::move(edit));
+  }
+}
+
+std::string frames_text(int first, int last) {
+  return first == last ? "frame " + std::to_string(first)
+                       : "frames " + std::to_string(first) + " to " + std::to_string(last);
+}
+
+void add_source_edits(std::vector<EditMark>& all, const app::Session& session) {
+  const char* limbs[] = {"arms", "legs", "arms and legs"};
+  KeyFrames drags;
+  const auto& edits = session.document.skeleton_edits;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    if (const auto* drag = std::get_if<DragEdit>(&edits[i])) {
+      add(drags, *drag, "Dragged");
+      continue;
+    }
+    const SwapEdit& swap = std::get<SwapEdit>(edits[i]);
+    const std::string number = std::to_string(i);
+    const std::string words = std::string("Left and right exchanged: ") +
+                              limbs[static_cast<int>(swap.limbs)] + ", " + frames_text(swap.first, swap.last);
+    all.push_back({{"swap." + number, words, swap.first, swap.last, false, 0, 0, kOrange},
+                   {"swap", number},
+                   "edit.remove skeleton " + number});
+  }
+  add_diamonds(all, drags, {"drags"}, 0);
+}
+
+void add_skips(std::vector<EditMark>& all, const std::set<int>& skip, const std::string& take) {
+  for (auto at = skip.begin(); at != skip.end();) {
+    const int first = *at;
+    int last = first;
+    while (++at != skip.end() && *at == last + 1) last = *at;
+    const std::string range = take + " " + std::to_string(first) + " " + std::to_string(last);
+    all.push_back({{"skip." + std::to_string(first), "Skipped: " + frames_text(first, last), first, last,
+                    false, 0, 1, kBlue},
+                   {"skips", take, std::to_string(first), std::to_string(last)},
+                   "edit.skip " + range + " off"});
+  }
+}
+
+/// The joint whose channel is shown, and whether it is the result's; -1 without a tool for it.
+std::pair<int, bool> channel_joint(const app::Session& session) {
+  const bool bones = session.tool == app::Tool::Bones;
+  if (!bones && session.tool != app::Tool::Joints) return {-1, false};
+  return {session.selected_joint, bones};
+}
+
+std::vector<int> edited_frames(const app::Session& session, int joint, bool bones) {
+  std::vector<int> keys;
+  const auto add = [&](const auto& edit) {
+    if (edit.joint == joint) keys.push_back(edit.frame);
+  };
+  const app::Take* take = selected_take(session);
+  if (bones && take != nullptr)
+    for (const RotateEdit& edit : take->pose_edits.rotate) add(edit);
+  if (!bones)
+    for (const SkeletonEdit& edit : session.document.skeleton_edits)
+      if (const auto* drag = std::get_if<DragEdit>(&edit)) add(*drag);
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+}  // namespace
+
+std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills) {
+  std::vector<EditMark> all;
+  for (const TimelineState::Fill& fill : fills)
+    all.push_back(
+        {{"fill." + std::to_string(fill.first),
+          "Filled from the last good frame: " + frames_text(fill.first, fill.last) + ", " + fill.why,
+          fill.first, fill.last, false, 0, 0, kBlue, true},
+         {},
+         ""});
+  add_source_edits(all, session);
+  const app::Take* take = selected_take(session);
+  if (take == nullptr) return all;
+  const std::string k = std::to_string(session.selected_take);
+  add_skips(all, take->pose_edits.skip, k);
+  KeyFrames rotations;
+  for (const RotateEdit& edit : take->pose_edits.rotate) add(rotations, edit, "Rotated");
+  add_diamonds(all, rotations, {"rotations", k}, 1);
+  return all;
+}
+
+void Channel::follow(const app::Session& session) {
+  const auto [joint, bones] = channel_joint(session);
+  const app::TakeState* take = selected_state(session);
+  label.clear(), keys.clear();
+  if (joint < 0 || (bones && take == nullptr)) return;
+  std::string name = joint_label(joint);
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  label = name + (bones ? ": rotation about x, y, z, \u00b0" : ": place x, y, z, m");
+  keys = edited_frames(session, joint, bones);
+  const std::vector<int64_t> about = {joint, bones, session.selected_take,
+                                      bones ? take->generation : session.source.generation};
+  if (about != about_)
+    for (auto& axis : values) axis.clear();
+  about_ = about;
+  const size_t frames = bones ? take->shown.poses.size() : session.source.frames.size();
+  for (auto& axis : values) axis.resize(std::min(axis.size(), frames));
+  for (size_t f = values[0].size(); f < frames; ++f) {
+    const Vec3 value = bones ? Vec3(rotation_to_axis_angle(take->shown.poses[f].local[joint]) * 180 / kPi)
+                             : Vec3(session.source.frames[f].joints.row(joint));
+    for (int axis = 0; axis < 3; ++axis) values[axis].push_back(value[axis]);
+  }
+}
+
+}  // namespace understudy::ui
