@@ -327,6 +327,10 @@ std::optional<ui::Mark> Application::find(const std::string& name) const {
 void Application::write_marks() {
   std::ostringstream text;
   for (const auto& [key, value] : facts(session())) text << join_line("fact", {key, value}) << '\n';
+  for (std::string& shown : shown_texts(session())) {
+    std::replace(shown.begin(), shown.end(), '\n', ' ');
+    text << join_line("text", {shown}) << '\n';
+  }
   for (const ui::Mark& mark : marks()) {
     if (mark.visible.empty()) continue;
     text << "mark " << mark.name << ' ' << mark.visible.min.x << ' ' << mark.visible.min.y << ' '

@@ -75,6 +75,15 @@ std::string fact(const Session& session, const std::string& key) {
   throw Error("there is no fact " + key + " (there are " + known + ")");
 }
 
+std::vector<std::string> shown_texts(const Session& session) {
+  std::vector<std::string> texts;
+  for (const Notice& notice : session.errors) texts.push_back(notice.text);
+  for (const Notice& notice : session.notices) texts.push_back(notice.text);
+  if (session.question) texts.push_back(session.question->text);
+  for (const LogLine& line : session.log) texts.push_back(line.text);
+  return texts;
+}
+
 bool holds(const std::string& value, const std::string& comparison, const std::string& wanted) {
   if (comparison == "=" || comparison.empty()) return value == wanted;
   if (comparison == "!=") return value != wanted;

@@ -383,13 +383,8 @@ struct Script::Player {
   }
 
   void expect_text(const Words& words) {
-    const Session& session = application.session();
     std::string texts;
-    const auto add = [&texts](const std::string& text) { texts += text + "\n"; };
-    for (const Notice& notice : session.errors) add(notice.text);
-    for (const Notice& notice : session.notices) add(notice.text);
-    if (session.question) add(session.question->text);
-    for (const LogLine& line : session.log) add(line.text);
+    for (const std::string& text : shown_texts(application.session())) texts += text + "\n";
     US_CHECK(texts.find(words[1]) != std::string::npos, "no dialog, notice or line of the log says \"",
              words[1], "\"");
   }
