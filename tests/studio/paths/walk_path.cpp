@@ -218,11 +218,19 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
         << " is " << facts_[key] << ": " << seen();
   }
 
+  /// Whether the condition comes true, and stays so: what flashes up for a frame was not shown.
+  template <class Condition>
+  bool comes_and_stays(Condition condition) {
+    if (!wait_until(condition)) return false;
+    frames({"frames", "20"});
+    look();
+    return condition();
+  }
   void expect(const Words& words) {
-    ASSERT_TRUE(wait_until([&] { return widgets_.count(words.at(1)) > 0; })) << words[1] << ": " << seen();
+    ASSERT_TRUE(comes_and_stays([&] { return widgets_.count(words.at(1)) > 0; })) << seen();
   }
   void expect_no(const Words& words) {
-    ASSERT_TRUE(wait_until([&] { return widgets_.count(words.at(1)) == 0; })) << words[1] << ": " << seen();
+    ASSERT_TRUE(comes_and_stays([&] { return widgets_.count(words.at(1)) == 0; })) << seen();
   }
 
   void expect_text(const Words& words) {
