@@ -73,6 +73,11 @@ class Call : public ArgumentReader {
   std::string label;  ///< of this run, for undo: "Remove adult"; empty: the command's
 };
 
+/// The offer of a notice about a file that was written.
+inline Offer showing(const std::string& path) {
+  return {"Show in folder", join_line("file.show", {path})};
+}
+
 /// `value` where it is `wanted`, else none.
 template <class Value>
 std::optional<Value> only_if(bool wanted, Value value) {

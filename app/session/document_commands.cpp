@@ -214,6 +214,8 @@ void open_case(Studio& studio, std::string folder) {
 }  // namespace
 
 void Studio::replace_document(SavedDocument saved, const std::string& path) {
+  session_.failures.clear();
+  session_.said_before = session_.time;
   session_.selected_take = 0;
   session_.document = std::move(saved.document);
   session_.view = std::move(saved.view);

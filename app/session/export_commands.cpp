@@ -32,7 +32,7 @@ void run_export(Call& c) {
         *cost = export_motion(path, format, *input);
       },
       [&studio = c.studio, path, cost] {
-        studio.notify("Exported " + file_name(path) + ": " + sentence(*cost));
+        studio.notify("Exported " + file_name(path) + ": " + sentence(*cost), false, showing(path));
       });
   c.session.settings.export_format = format.name;
 }
@@ -46,7 +46,7 @@ void export_figures(Call& c) {
       [path, series = state.series, fps = c.session.source.fps](JobControl&) {
         write_csv(path, series, fps);
       },
-      [&studio = c.studio, path] { studio.notify("Exported " + file_name(path)); });
+      [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   c.session.settings.export_format = "csv";
 }
 

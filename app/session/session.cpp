@@ -12,6 +12,15 @@ constexpr float kAroundJoints = 0.3f,
 constexpr float kAroundPoints = 0.03f, kThinnest = 0.05f;  // metres, of a box
 constexpr float kLengthOffM = 0.05f;                       // short bones are never seen to 20 %
 
+constexpr double kStatusSeconds = 10;
+/// Commands of which the success of one mends the failure of another.
+const std::vector<std::vector<std::string>> kMendEachOther = {
+    {"open", "document.open", "source.open", "source.motion"},
+    {"open", "target.add", "target.replace", "target.remove"},
+    {"document.save", "document.save_as"},
+    {"picture.save", "video.save"},
+    {"export.run", "export.csv"}};
+
 /// Why a frame of the source is not to be trusted; empty when it is.
 std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {
   if (frame.flagged) return frame.reason;
@@ -82,6 +91,29 @@ int frame_count(const Session& session) {
   const size_t selected = session.selected_take;
   if (selected < session.takes.size()) return session.takes[selected].shown.poses.size();
   return session.source.frames.size();
+}
+
+std::optional<LogLine> status_line(const Session& session) {
+  if (!session.log.empty()) {
+    const LogLine& newest = session.log.back();
+    if (newest.time > session.said_before && session.time < newest.time + kStatusSeconds) return newest;
+  }
+  if (session.failures.empty()) return std::nullopt;
+  return LogLine{true, session.failures.back().text};
+}
+
+void mend(Session& session, const std::string& command) {
+  const auto mended = [&](const Failure& failure) {
+    if (failure.command == command) return true;
+    const auto holds = [](const auto& names, const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    return std::any_of(kMendEachOther.begin(), kMendEachOther.end(), [&](const auto& names) {
+      return holds(names, command) && holds(names, failure.command);
+    });
+  };
+  auto& failures = session.failures;
+  failures.erase(std::remove_if(failures.begin(), failures.end(), mended), failures.end());
 }
 
 int shown_frame(const Session& session) {

@@ -103,6 +103,13 @@ struct Notice {
 struct LogLine {
   bool warning = false;
   std::string text;
+  double time = 0;  ///< Session::time
+};
+
+/// A command that failed and whose reason still stands.
+struct Failure {
+  std::string text;     ///< one sentence
+  std::string command;  ///< its name
 };
 
 /// A question that the user must answer before the studio continues.
@@ -137,7 +144,9 @@ struct Session {
   bool paused = false;                 ///< the user paused the making of frames
 
   std::vector<JobView> jobs;
-  std::deque<LogLine> log;  ///< the newest 2,000
+  std::deque<LogLine> log;        ///< the newest 2,000
+  double said_before = -1;        ///< Session::time up to which messages belong to another document
+  std::vector<Failure> failures;  ///< not mended yet, the newest last
   std::vector<Notice> notices;
   std::deque<Notice> errors;  ///< shown one after the other in a dialog
   std::optional<Question> question;
@@ -161,6 +170,10 @@ void choose_pane(Session& session, int pane);
 void settle_current_take(Session& session);
 /// The number of frames that can be shown: of the selected take, or of the source where there is no take.
 int frame_count(const Session& session);
+/// What the status bar says: the newest message for ten seconds, then the newest failure until it is mended.
+std::optional<LogLine> status_line(const Session& session);
+/// Drops the failures that a command's success mends.
+void mend(Session& session, const std::string& command);
 /// The frame shown, -1 without one.
 int shown_frame(const Session& session);
 /// The crop box as it is shown: open sides, and all of them without a crop, around all points of all frames

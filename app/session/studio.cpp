@@ -86,11 +86,12 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
   if (command->undo == Command::Undo::None) {
     command->run(call);
     follow_document();
-    return;
+    return mend(session_, name);
   }
   const Document before = session_.document;
   try {
     command->run(call);
+    mend(session_, name);
     if (same(before, session_.document)) return;
     follow_document();
   } catch (...) {
@@ -122,6 +123,8 @@ void Studio::run_all(CommandQueue& queue) {
 void Studio::fail(const std::string& sentence, const std::string& details) {
   log::warn(sentence);
   session_.errors.push_back({Notice::Kind::Error, sentence, details, 0});
+  const std::string command = details.substr(0, details.find(' '));
+  if (commands_.find(command) != nullptr) session_.failures.push_back({sentence, command});
 }
 
 void Studio::notify(const std::string& sentence, bool warning, const Offer& offer) {

@@ -205,6 +205,7 @@ std::string Application::fingerprint() const {
     key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
                   take.performed.size(), take.series.size(), take.as_loaded != nullptr);
   for (const JobView& job : s.jobs) key += key_of(job.id, static_cast<int>(job.progress * 200));
+  if (const auto said = status_line(s)) key += key_of(said->text);
   return key;
 }
 
@@ -287,6 +288,7 @@ void Application::take_log() {
     lines.swap(log_->lines);
   }
   auto& log = studio_->session().log;
+  for (LogLine& line : lines) line.time = session().time;
   log.insert(log.end(), lines.begin(), lines.end());
   while (log.size() > kLogLines) log.pop_front();
 }

@@ -1,5 +1,9 @@
 #include "app/studio/window_commands.hpp"
 
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -111,7 +115,9 @@ void save_picture(Call& c) {
         Stage stage(std::move(*session), saving);
         render::write_png(saving.path, stage.picture(frame));
       },
-      [&studio = c.studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+      [&studio = c.studio, saving] {
+        studio.notify("Saved " + file_name(saving.path), false, showing(saving.path));
+      });
 }
 
 /// The frames that play, without those left out, in order.
@@ -146,7 +152,25 @@ void save_video(Call& c) {
         control.check();
         writer.finish();
       },
-      [&studio = c.studio, saving] { studio.notify("Saved " + file_name(saving.path)); });
+      [&studio = c.studio, saving] {
+        studio.notify("Saved " + file_name(saving.path), false, showing(saving.path));
+      });
+}
+
+/// Opens the folder of a file in the system's file manager.
+void show_file(Call& c) {
+  const fs::path path = c.path(0);
+  const std::string folder = path.parent_path().string();
+  US_CHECK(fs::is_directory(folder), folder, ": there is no such folder");
+  constexpr const char* kScript =
+      "command -v xdg-open >/dev/null || exit 1; xdg-open \"$1\" </dev/null >/dev/null 2>&1 &";
+  const char* const arguments[] = {"sh", "-c", kScript, "sh", folder.c_str(), nullptr};
+  pid_t pid = 0;
+  int status = 1;
+  const bool began =
+      ::posix_spawn(&pid, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(arguments), environ) == 0;
+  US_CHECK(began && ::waitpid(pid, &status, 0) == pid && status == 0, folder,
+           ": cannot be shown, xdg-open is not installed");
 }
 
 }  // namespace
@@ -165,6 +189,7 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
   });
   commands.add({"help.keys", "All keys"},
                [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
+  commands.add({"file.show", "Show in folder", "PATH"}, show_file);
   commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]"},
                save_picture);
   commands.add({"video.save", "Save video", "PATH.mp4 or FOLDER [WIDTH HEIGHT] [view|all]"}, save_video);

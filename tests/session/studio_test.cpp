@@ -53,6 +53,9 @@ TEST_F(StudioTest, AnExportSaysWhatItCostsAndWhatItCannotDo) {
   std::string told;
   for (const Notice& notice : studio.session().notices) told += notice.text + "; ";
   EXPECT_NE(told.find("Exported out.bvh: 24 frames"), std::string::npos) << told;
+  const Offer& offer = studio.session().notices.back().offer;
+  EXPECT_EQ(offer.label, "Show in folder");
+  EXPECT_EQ(split_line(offer.command).at(0), "file.show");
   EXPECT_NE(told.find("mean 0.00 mm"), std::string::npos) << told;
   const auto refused = [&](const Arguments& arguments) {
     try {
@@ -66,6 +69,27 @@ TEST_F(StudioTest, AnExportSaysWhatItCostsAndWhatItCannotDo) {
   EXPECT_NE(refused({"0", path("out.glb"), "bones=9"}).find("bones"), std::string::npos);
   EXPECT_NE(refused({"0", path("out.glb"), "influences=5"}).find("4, 8"), std::string::npos);
   EXPECT_NE(refused({"7", path("out.glb")}).find("no take 7"), std::string::npos);
+}
+
+TEST_F(StudioTest, AFailureIsSaidUntilTheCommandSucceedsOrTheDocumentIsNew) {
+  Studio studio(services());
+  const auto said = [&] {
+    studio.tick(20);
+    const auto line = status_line(studio.session());
+    return line ? line->text : std::string();
+  };
+  studio.try_run("source.open", {path("nowhere")});
+  EXPECT_NE(said().find("nowhere"), std::string::npos);
+  studio.run("tool", {"look"});
+  EXPECT_NE(said().find("nowhere"), std::string::npos) << "that mends nothing";
+  studio.run("open", {path("scan.npz")});
+  EXPECT_EQ(said(), "");
+  studio.try_run("target.add", {path("nobody.obj")});
+  EXPECT_NE(said().find("nobody"), std::string::npos);
+  studio.run("document.new");
+  EXPECT_NE(said().find("nobody"), std::string::npos) << "it asks about the changes first";
+  studio.run("question.answer", {"discard"});
+  EXPECT_EQ(said(), "");
 }
 
 TEST_F(StudioTest, ACancelledExportLeavesTheOldFile) {

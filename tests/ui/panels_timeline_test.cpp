@@ -217,6 +217,24 @@ TEST_F(PanelsTest, StatusShowsJobsAndCancelsThem) {
   EXPECT_TRUE(shown("status.rate"));
 }
 
+TEST_F(PanelsTest, StatusForgetsMessagesAfterTenSecondsAndErrorsWhenMended) {
+  input.size = {1280, 60};
+  panel([this] { draw_status(session, context, 60); });
+  const auto after = [&](double seconds) {
+    session.time = seconds;
+    frame(2);
+    return shown("status.message");
+  };
+  EXPECT_TRUE(after(9.9));
+  EXPECT_FALSE(after(10.1));
+  session.failures = {{"dance: no such folder", "source.open"}};
+  EXPECT_TRUE(after(500));
+  mend(session, "source.fps");
+  EXPECT_TRUE(after(501));
+  mend(session, "source.motion");  // another source is open
+  EXPECT_FALSE(after(502));
+}
+
 TEST_F(PanelsTest, StartOpensSamplesRecentDocumentsAndDialogs) {
   input.size = {900, 800};
   session = app::Session();

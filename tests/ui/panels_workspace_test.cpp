@@ -716,6 +716,14 @@ TEST_F(WorkspaceTest, ANoticesButtonAsksForWhatItOffersAndANoticeMadeLaterStillC
   EXPECT_FALSE(shown("notice.0.offer"));
 }
 
+TEST_F(WorkspaceTest, ANoticeOfAFileShowsItsFolder) {
+  session.notices.push_back(
+      {app::Notice::Kind::Info, "Exported a b.glb", "", 8, {"Show in folder", "file.show \"/d/a b.glb\""}});
+  frame(3);
+  click("notice.0.offer");
+  EXPECT_EQ(take_log(), Lines{"file.show \"/d/a b.glb\""});
+}
+
 TEST_F(WorkspaceTest, WordsOfFixedPlacesFit) {
   frame(3);
   const float padding = 6;

@@ -41,16 +41,16 @@ void draw_more_jobs(const app::Session& session, PanelContext& context) {
   ImGui::EndPopup();
 }
 
-/// What is shown without a job: the newest warning or line of the log.
+/// The newest message, or what still has to be mended.
 void draw_message(const app::Session& session, PanelContext& context, float width) {
   Ui& ui = context.ui;
-  if (session.log.empty() || width < ui.px(40)) return;
-  const app::LogLine& line = session.log.back();
+  const std::optional<app::LogLine> line = app::status_line(session);
+  if (!line || width < ui.px(40)) return;
   ImGui::SetCursorPosY((ui.px(kStatusHeight) - ImGui::GetFrameHeight()) / 2);
-  const std::string words = cut_to(line.text, width - ui.px(20));
+  const std::string words = cut_to(line->text, width - ui.px(20));
   ButtonOptions options;
-  options.look = ButtonLook::Quiet, options.tooltip = line.text;
-  const ColorScope color(ImGuiCol_Text, line.warning ? ui.theme().warning : ui.theme().text_dim);
+  options.look = ButtonLook::Quiet, options.tooltip = line->text;
+  const ColorScope color(ImGuiCol_Text, line->warning ? ui.theme().warning : ui.theme().text_dim);
   if (button(ui, "status.message", words, options))
     context.ask("panel.show", {"log", on_off(!panel_shown(session, "log"))});
 }

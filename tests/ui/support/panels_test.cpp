@@ -114,8 +114,8 @@ void PanelsTest::panel(const std::string& name) {
 }
 
 void PanelsTest::expect_known(const std::string& command) const {
-  static const std::set<std::string> kOfTheWindow = {"dialog.open", "panel.show", "help.keys", "picture.save",
-                                                     "video.save"};
+  static const std::set<std::string> kOfTheWindow = {"dialog.open",  "panel.show", "help.keys",
+                                                     "picture.save", "video.save", "file.show"};
   EXPECT_TRUE(kOfTheWindow.count(command) > 0 || studio.commands().find(command) != nullptr)
       << "there is no command " << command;
 }
