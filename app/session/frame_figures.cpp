@@ -48,7 +48,7 @@ std::vector<Series> joint_figures(const FigureInput& input) {
              {}};
   std::vector<Series> all;
   for (const Metric& metric : metric_table()) {
-    if (!metric.per_frame || metric.needs == 0 || !is_known(metric, seen, truth)) continue;
+    if (!metric.per_frame || is_of_surfaces(metric) || !is_known(metric, seen, truth)) continue;
     all.push_back(blank_series(metric.key, count));
     all.back().values = per_frame_figures(metric, seen, truth, count, input.shown.fps);
   }

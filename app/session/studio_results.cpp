@@ -250,7 +250,8 @@ void evaluate_all(Measuring& m, JobControl& control) {
   const Mesh target = m.character->target_in_file_order();
   Evaluator evaluator(m.shown.fps, comparable ? m.truth.get() : nullptr, &target);
   for (const Metric& metric : metric_table())
-    if (metric.per_frame && metric.needs == 0) m.series.push_back(blank_series(metric.key, count));
+    if (metric.per_frame && is_of_surfaces(metric) && (comparable || (metric.needs & kNeedsTruth) == 0))
+      m.series.push_back(blank_series(metric.key, count));
   SourceOptions quiet = m.source;
   quiet.quiet = true;
   const std::unique_ptr<Source> source = open_source(quiet);

@@ -112,9 +112,9 @@ std::vector<Metric> made_table() {
        [](S p, S q, double fps) { return acceleration_error(p.joints, q.joints, fps); }, 0,
        acceleration_errors},
       {"pa_acc", "PA acceleration error", per_frame2, 4, whole, lower, kOfJoints, aligned_acceleration_error},
-      {"mpvd_m", "MPVD", "m", 4, each, lower},
-      {"pa_mpvd_m", "PA-MPVD", "m", 4, each, lower},
-      {"medl_mm", "MEDL", "mm", 3, each, lower},
+      {"mpvd_m", "MPVD", "m", 4, each, lower, kNeedsTruth},
+      {"pa_mpvd_m", "PA-MPVD", "m", 4, each, lower, kNeedsTruth},
+      {"medl_mm", "MEDL", "mm", 3, each, lower, kNeedsTruth},
       {"rot_deg", "Rotation error", "deg", 1, each, lower, kOfRotations, turned<&RotationError::all_deg>},
       {"head_deg", "Head rotation error", "deg", 1, each, lower, kOfRotations,
        turned<&RotationError::head_deg>},
@@ -137,17 +137,17 @@ std::vector<Metric> made_table() {
        [](S p, S, double fps) { return foot_skate(p.joints, fps); }, 1},
       {"floor_mm", "Floor penetration", "mm", 2, each, lower},
       {"floor_worst_mm", "Deepest floor penetration", "mm", 1, whole, lower},
-      {"hand_contacts", "Hand contacts of the source", "", 0, whole, neither},
-      {"hand_contact_kept", "Hand contacts kept", "", 2, whole, higher},
-      {"hand_contact_gap_mm", "Gap in hand contacts", "mm", 1, whole, lower},
-      {"arm_buried", "Arms inside the body", "", 4, whole, neither},
-      {"arm_buried_added", "Arms inside the body, beyond the source's", "", 4, whole, lower},
-      {"bent_volume", "Volume kept in bends", "", 3, whole, neither},
-      {"bent_volume_true", "Volume kept in bends, truth", "", 3, whole, neither},
-      {"hand_stretch", "Hand stretch", "", 4, whole, neither},
-      {"hand_stretch_true", "Hand stretch, truth", "", 4, whole, neither},
-      {"head_stretch", "Head stretch", "", 4, whole, neither},
-      {"head_stretch_true", "Head stretch, truth", "", 4, whole, neither},
+      {"hand_contacts", "Hand contacts of the source", "", 0, whole, neither, kNeedsTruth},
+      {"hand_contact_kept", "Hand contacts kept", "", 2, whole, higher, kNeedsTruth},
+      {"hand_contact_gap_mm", "Gap in hand contacts", "mm", 1, whole, lower, kNeedsTruth},
+      {"arm_buried", "Arms inside the body", "", 4, whole, neither, kNeedsTruth},
+      {"arm_buried_added", "Arms inside the body, beyond the source's", "", 4, whole, lower, kNeedsTruth},
+      {"bent_volume", "Volume kept in bends", "", 3, whole, neither, kNeedsTruth},
+      {"bent_volume_true", "Volume kept in bends, truth", "", 3, whole, neither, kNeedsTruth},
+      {"hand_stretch", "Hand stretch", "", 4, whole, neither, kNeedsTruth},
+      {"hand_stretch_true", "Hand stretch, truth", "", 4, whole, neither, kNeedsTruth},
+      {"head_stretch", "Head stretch", "", 4, whole, neither, kNeedsTruth},
+      {"head_stretch_true", "Head stretch, truth", "", 4, whole, neither, kNeedsTruth},
       {"jerk", "Jerk", per_s3, 2, each, lower, kNeedsJoints,
        [](S p, S, double fps) { return jerk(p.joints, fps); }, 3},
       {"self_penetration", "Self-penetration", "", 4, each, lower},
@@ -165,6 +165,10 @@ const Metric* find_metric(const std::string& key) {
   for (const Metric& metric : metric_table())
     if (key == metric.key) return &metric;
   return nullptr;
+}
+
+bool is_of_surfaces(const Metric& metric) {
+  return metric.of == nullptr && metric.series == nullptr;
 }
 
 bool is_known(const Metric& metric, const MetricSequence& p, const MetricSequence& q) {

@@ -50,6 +50,8 @@ const std::vector<Metric>& metric_table();
 /// Null when there is none with this key.
 const Metric* find_metric(const std::string& key);
 
+/// Whether it is of surfaces: summed as frames come, not made from what is kept.
+bool is_of_surfaces(const Metric& metric);
 /// Whether all that the metric looks at is known in p, and in q where it needs the truth.
 bool is_known(const Metric& metric, const MetricSequence& p, const MetricSequence& q);
 /// The figure of every frame, `frames` in all, NaN where it is undefined. For metrics with a function and

@@ -1,4 +1,8 @@
 // Inspector, layers and metrics: what each control asks for.
+#include <imgui_internal.h>
+
+#include <algorithm>
+
 #include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/metrics.hpp"
 
@@ -207,6 +211,27 @@ TEST_F(MetricsPanel, TheHistogramShowsTheStageChosen) {
   EXPECT_EQ(state.durations.size(), 256u);
   EXPECT_LT(state.durations.back(), whole);
   EXPECT_NEAR(state.durations[128], 2.1, 0.1);
+}
+
+TEST_F(MetricsPanel, NamesAreWholeAndPlainAndWhatNeedsTruthIsNamed) {
+  session.takes[0].metrics = {{"arm_buried_added", 0.01}, {"new_in_2_0", 3}};
+  std::string words;
+  panel([&] {
+    ImGui::LogToBuffer();
+    panel_of("metrics").draw(session, context);
+    words = ImGui::GetCurrentContext()->LogBuffer.c_str();
+    ImGui::LogFinish();
+  });
+  std::replace(words.begin(), words.end(), '\n', ' ');
+  const auto told = [&](const std::string& what) { return words.find(what) != std::string::npos; };
+  EXPECT_GT(mark("metrics.figures.0.text").rect.height(),
+            1.8f * mark("metrics.figures.1.text").rect.height());
+  EXPECT_TRUE(told("New in 2 0"));
+  EXPECT_FALSE(told("arm_buried") || told("new_in"));
+  EXPECT_TRUE(told("Needs ground truth"));
+  session.truth = std::make_shared<app::Truth>();
+  frame();
+  EXPECT_FALSE(shown("metrics.needs_truth"));
 }
 
 TEST_F(MetricsPanel, WithoutTakesItSaysSo) {

@@ -693,6 +693,9 @@ TEST_F(WorkspaceTest, NoticesComeOnce) {
   session.notices.push_back({app::Notice::Kind::Info, "Saved dance.understudy", "", 12});
   frame(3);
   EXPECT_TRUE(shown("notice.0"));
+  const Rect views = mark("views").rect, notice = mark("notice.0").rect;
+  EXPECT_GT(notice.min.y, views.at(0, 0.75f).y);  // below the figures, not over their heads
+  EXPECT_LE(notice.max.y, views.max.y);
   frame(240);
   EXPECT_FALSE(shown("notice.0"));
 }

@@ -341,6 +341,21 @@ TEST_F(ViewsTest, ValuesAreToldUnderThePointer) {
   EXPECT_TRUE(shown("view.tip"));
 }
 
+TEST_F(ViewsTest, TheColoursOfAllJointsAreExplainedOnceBesideTheViews) {
+  stage.add_take("child", 1);
+  stage.session.view.take.colouring = app::Colouring::Weights;
+  frame(2), stage.cache->wait(), frame(2);
+  const Rect legend = mark("view.legend").rect;
+  for (const char* view : {"view.0", "view.1", "view.2"}) {
+    const Rect pane = mark(view).rect;
+    EXPECT_TRUE(intersection(legend, pane).empty()) << view;
+  }
+  EXPECT_GT(legend.height(), 300);
+  stage.session.view.weights_joint = LeftElbow;  // a scale again, in each view
+  frame(2);
+  EXPECT_FALSE(intersection(mark("view.legend").rect, mark("view.2").rect).empty());
+}
+
 TEST_F(ViewsTest, AnEmptyStudioAndATinyWindowAreFine) {
   stage.session = app::Session();
   frame(3);

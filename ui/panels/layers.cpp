@@ -39,7 +39,7 @@ const std::vector<Colour> kTakeColours = {{Colouring::Plain, "Plain"},
                                           {Colouring::Weights, "Skin weights"},
                                           {Colouring::Uncertainty, "Binding uncertainty, %"},
                                           {Colouring::Offsets, "Corrective offsets, mm"},
-                                          {Colouring::Error, "Error to the truth, mm"},
+                                          {Colouring::Error, "Error against ground truth, mm"},
                                           {Colouring::Difference, "Difference to take 1, mm"}};
 
 void draw_colour(PanelContext& context, const std::string& pane, const std::vector<Colour>& colours,

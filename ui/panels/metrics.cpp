@@ -1,6 +1,7 @@
 #include "ui/panels/metrics.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/index.hpp"
@@ -32,6 +33,29 @@ std::vector<PlotLine> overlaid(const app::Session& session, const app::Series& o
   return all;
 }
 
+/// "PA-MPJPE, m" for "pa_mpjpe_m"; a metric of a newer version as plain words.
+std::string words_of(const std::string& key) {
+  const Metric* const known = find_metric(key);
+  if (known != nullptr)
+    return *known->unit == 0 ? known->label : std::string(known->label) + ", " + known->unit;
+  std::string words = key;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
+/// For people who do not know it.
+std::string hint_of(const std::string& key) {
+  const Metric* const known = find_metric(key);
+  if (known == nullptr) return "";
+  std::string words = known->better == Better::Lower    ? "The lower, the better."
+                      : known->better == Better::Higher ? "The higher, the better."
+                                                        : "";
+  if ((known->needs & kNeedsTruth) != 0)
+    words += words.empty() ? "Needs ground truth." : " Needs ground truth.";
+  return words;
+}
+
 void draw_curve_of(const app::Session& session, PanelContext& context, const TimelineState& timeline,
                    const app::Series& series) {
   Ui& ui = context.ui;
@@ -40,6 +64,7 @@ void draw_curve_of(const app::Session& session, PanelContext& context, const Tim
   const FontScope strong(ui.fonts().strong);
   ImGui::AlignTextToFramePadding();
   text_cut(ui, series.label, ImGui::GetContentRegionAvail().x - side - ui.px(8));
+  if (const std::string words = hint_of(series.key); !words.empty()) tooltip(ui, series.label + ". " + words);
   ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - side);
   const FontScope body(ui.fonts().body);
   if (icon_button(ui, "metrics.in_timeline." + series.key, Icon::Chart,
@@ -69,18 +94,14 @@ std::string figure_of(const app::Metrics& metrics, const std::string& key) {
   return "\u2013";
 }
 
-/// "PA-MPJPE, m" for "pa_mpjpe_m".
-std::string words_of(const std::string& key) {
-  const Metric* const known = find_metric(key);
-  if (known == nullptr) return key;
-  return *known->unit == 0 ? known->label : std::string(known->label) + ", " + known->unit;
-}
-
-/// For people who do not know it.
-const char* hint_of(const std::string& key) {
-  const Metric* const known = find_metric(key);
-  if (known == nullptr || known->better == Better::Neither) return nullptr;
-  return known->better == Better::Lower ? "The lower, the better" : "The higher, the better";
+/// What is left out while there is no ground truth.
+void draw_needing_truth(const app::Session& session, Ui& ui) {
+  if (session.truth != nullptr) return;
+  std::string names;
+  for (const Metric& metric : metric_table())
+    if ((metric.needs & kNeedsTruth) != 0) names += (names.empty() ? "" : ", ") + std::string(metric.label);
+  hint(ui, "Needs ground truth, which a case folder has: " + names + ".");
+  ui.mark("metrics.needs_truth");
 }
 
 void draw_figures(const app::Session& session, Ui& ui) {
@@ -89,15 +110,15 @@ void draw_figures(const app::Session& session, Ui& ui) {
     hint(ui, session.working ? "Shown once all frames are made." : "Nothing to compare yet.");
     return;
   }
-  std::vector<Column> columns = {{"Figure", 0, false}};
+  std::vector<Column> columns = {{"Metric", 0, false}};
   for (size_t k = 0; k < session.takes.size() && k < session.document.takes.size(); ++k)
     columns.push_back({session.document.takes[k].name, 72, true});
   Table table(ui, "metrics.figures", columns);
   if (!table.open()) return;
   for (const std::string& key : keys) {
     table.row(false, false);
-    table.cell(words_of(key));
-    if (const char* const words = hint_of(key)) tooltip(ui, words);
+    table.whole_cell(words_of(key));
+    if (const std::string words = hint_of(key); !words.empty()) tooltip(ui, words);
     for (size_t k = 0; k + 1 < columns.size(); ++k) table.cell(figure_of(session.takes[k].metrics, key));
   }
 }
@@ -151,15 +172,18 @@ void draw_metrics(const app::Session& session, PanelContext& context) {
   const app::TakeState* take = selected_state(session);
   if (section(ui, "metrics.curves", "Over time")) {
     const bool any = take != nullptr && !take->series.empty();
-    if (!any) hint(ui, "Figures appear as frames are made.");
+    if (!any) hint(ui, "Metrics appear as frames are made.");
     if (any)
       for (const app::Series& series : take->series) draw_curve_of(session, context, timeline, series);
     ask_button(context,
                {"metrics.csv", "Export CSV\u2026",
-                "Exports every figure of every frame as a table for other programs", "dialog.open csv"},
+                "Exports every metric of every frame as a table for other programs", "dialog.open csv"},
                any);
   }
-  if (section(ui, "metrics.table", "Whole sequence")) draw_figures(session, ui);
+  if (section(ui, "metrics.table", "Whole sequence")) {
+    draw_figures(session, ui);
+    draw_needing_truth(session, ui);
+  }
   if (section(ui, "metrics.latency", "Latency"))
     draw_latency(session, context, panel_state<MetricsState>(context));
 }

@@ -15,6 +15,19 @@ ImU32 color_of(const Vec3& rgb) {
   return color(ImVec4(rgb.x(), rgb.y(), rgb.z(), 1));
 }
 
+/// Colours and their names, one a line, under a title at `at`.
+void draw_swatches(Ui& ui, const Legend& legend, const ImVec2& at) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float swatch = ui.px(9), line = ImGui::GetTextLineHeight(), step = line + ui.px(1);
+  for (size_t i = 0; i < legend.categories.size(); ++i) {
+    const float y = at.y + ui.px(6) + step * static_cast<float>(i + 1), middle = y + line / 2 - swatch / 2;
+    const ImVec2 from(at.x + ui.px(8), middle), to(from.x + swatch, from.y + swatch);
+    list.AddRectFilled(from, to, color_of(legend.categories[i].color), ui.px(2));
+    list.AddRect(from, to, color(ui.theme().text_dim, 0.6f), ui.px(2));
+    list.AddText({to.x + ui.px(6), y}, color(ui.theme().text_dim), legend.categories[i].label.c_str());
+  }
+}
+
 class Writer {
  public:
   Writer(Ui& ui, const Overlay& overlay) : ui_(ui), in_(overlay), list_(*ImGui::GetWindowDrawList()) {}
@@ -153,23 +166,12 @@ void Writer::draw_scale() {
 /// All of them in one column, or nothing but the title where there is no room.
 void Writer::draw_categories() {
   const FontScope small(ui_.fonts().small);
-  const float swatch = px(9), step = line() + px(1);
-  const auto& all = in_.legend.categories;
-  float widest = ImGui::CalcTextSize(in_.legend.title.c_str()).x;
-  for (const auto& one : all)
-    widest = std::max(widest, swatch + px(6) + ImGui::CalcTextSize(one.label.c_str()).x);
-  const float whole = step * static_cast<float>(all.size() + 1) + px(12);
-  const bool room = whole < in_.rect.height() - px(70) && widest < 0.4f * in_.rect.width();
-  const float height = room ? whole : step + px(8);
-  const ImVec2 at = legend_box({widest, height}, ui_.theme().text, in_.legend.title);
-  if (!room) return;
-  for (size_t i = 0; i < all.size(); ++i) {
-    const float y = at.y + px(6) + step * static_cast<float>(i + 1), middle = y + line() / 2 - swatch / 2;
-    const ImVec2 from(at.x + px(8), middle), to(from.x + swatch, from.y + swatch);
-    list_.AddRectFilled(from, to, color_of(all[i].color), px(2));
-    list_.AddRect(from, to, color(ui_.theme().text_dim, 0.6f), px(2));
-    text({at.x + px(8) + swatch + px(6), y}, ui_.theme().text_dim, all[i].label);
-  }
+  const ImVec2 whole = legend_size(ui_, in_.legend);
+  const bool room = whole.y < in_.rect.height() - px(70) && whole.x < 0.4f * in_.rect.width();
+  const float title = ImGui::CalcTextSize(in_.legend.title.c_str()).x;
+  const ImVec2 inner = room ? whole : ImVec2(title, line() + px(9));
+  const ImVec2 at = legend_box(inner, ui_.theme().text, in_.legend.title);
+  if (room) draw_swatches(ui_, in_.legend, at);
 }
 
 void Writer::draw_missing() {
@@ -224,6 +226,24 @@ void Writer::draw_tip() {
 void draw_overlay(Ui& ui, const Overlay& overlay) {
   if (overlay.rect.empty()) return;
   Writer(ui, overlay).draw();
+}
+
+ImVec2 legend_size(Ui& ui, const Legend& legend) {
+  const FontScope small(ui.fonts().small);
+  float widest = ImGui::CalcTextSize(legend.title.c_str()).x;
+  for (const auto& one : legend.categories)
+    widest = std::max(widest, ui.px(15) + ImGui::CalcTextSize(one.label.c_str()).x);
+  const float step = ImGui::GetTextLineHeight() + ui.px(1);
+  return {widest, step * static_cast<float>(legend.categories.size() + 1) + ui.px(12)};
+}
+
+void draw_legend(Ui& ui, const Legend& legend, const Rect& rect) {
+  const FontScope small(ui.fonts().small);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(rect.min, rect.max, color(ui.theme().panel));
+  list.AddText({rect.min.x + ui.px(8), rect.min.y + ui.px(4)}, color(ui.theme().text), legend.title.c_str());
+  draw_swatches(ui, legend, rect.min);
+  ui.mark("view.legend", rect);
 }
 
 std::vector<Overlay::Label> joint_labels(const PaneView& view, const Joints& joints, bool all, int hovered,

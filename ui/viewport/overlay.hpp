@@ -36,6 +36,11 @@ struct Overlay {
 /// Draws into the current window.
 void draw_overlay(Ui& ui, const Overlay& overlay);
 
+/// The size of a legend's categories in a column.
+ImVec2 legend_size(Ui& ui, const Legend& legend);
+/// Its categories in a column, beside the views. Marked "view.legend".
+void draw_legend(Ui& ui, const Legend& legend, const Rect& rect);
+
 /// The labels of a pane's joints: all where the layer shows them, hovered and selected ones always.
 std::vector<Overlay::Label> joint_labels(const PaneView& view, const Joints& joints, bool all, int hovered,
                                          int selected);

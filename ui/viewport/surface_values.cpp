@@ -39,9 +39,7 @@ SurfaceValues weights(const Session& session, const app::TakeState& take) {
   if (joint >= 0 && joint < take.weights->cols())
     return scaled("Weight, " + joint_label(joint), "", 1, Scale::Viridis, take.weights->col(joint));
   SurfaceValues out;
-  out.legend.title = "Skin weights";
-  for (int j = 0; j < kJointCount; ++j)
-    out.legend.categories.push_back({joint_label(j), render::kCategories[j]});
+  out.legend = joints_legend(session);
   return out;
 }
 
@@ -54,7 +52,7 @@ SurfaceValues binding_uncertainty(const app::TakeState& take, Eigen::Index verti
 
 SurfaceValues error(const Session& session, const Points& vertices, int frame) {
   const char* const title = "Error";
-  if (session.truth == nullptr) return missing(title, "no ground truth is open");
+  if (session.truth == nullptr) return missing(title, "needs ground truth");
   const app::Truth& truth = *session.truth;
   if (truth.vertices.empty()) return missing(title, "the truth has no vertices");
   if (truth.vertex_count != vertices.rows()) return missing(title, "the truth is of another mesh");
@@ -90,6 +88,14 @@ Colouring take_colouring(const Session& session) {
 int weights_joint(const Session& session) {
   if (session.tool == app::Tool::Paint && session.selected_joint >= 0) return session.selected_joint;
   return session.view.weights_joint;
+}
+
+Legend joints_legend(const Session& session) {
+  Legend legend;
+  if (take_colouring(session) != Colouring::Weights || weights_joint(session) >= 0) return legend;
+  legend.title = "Skin weights";
+  for (int j = 0; j < kJointCount; ++j) legend.categories.push_back({joint_label(j), render::kCategories[j]});
+  return legend;
 }
 
 SurfaceValues take_values(const Session& session, int k, const PanePictures& pictures, const Picture& posed) {

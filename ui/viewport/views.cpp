@@ -73,11 +73,11 @@ void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQue
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
   if (ImGui::BeginChild("##views", {0, 0}, false, kFlags)) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
-    const Rect area{{std::floor(at.x), std::floor(at.y)},
-                    {std::floor(at.x + size.x), std::floor(at.y + size.y)}};
+    Rect area{{std::floor(at.x), std::floor(at.y)}, {std::floor(at.x + size.x), std::floor(at.y + size.y)}};
     const std::vector<PaneContent> contents = panes_of(f.session);
     prepare(f, contents.size());
     keep_view_when_following_changes(f);
+    place_legend(f, area);
     if (area.width() >= kLeastSide && area.height() >= kLeastSide) {
       if (f.session.view.layout == app::Layout::Wipe && contents.size() == 2)
         draw_wipe(f, contents, area);
@@ -103,6 +103,18 @@ void Views::prepare(const Frame& f, size_t count) {
   if (tool_ != f.session.tool || (hand_.busy() && key_pressed(render::Key::Escape, false))) hand_.let_go();
   tool_ = f.session.tool;
   under_ = nullptr;
+}
+
+/// The joints' colours, once, at the right of all views; takes its place from their area where that is wide.
+void Views::place_legend(const Frame& f, Rect& area) {
+  const Legend legend = joints_legend(f.session);
+  const ImVec2 size = legend_size(f.ui, legend);
+  const float width = std::ceil(size.x + f.ui.px(16));
+  legend_beside_ = !legend.title.empty() && !f.session.takes.empty() && size.y <= area.height() &&
+                   4 * width <= area.width();
+  if (!legend_beside_) return;
+  area.max.x -= width;
+  draw_legend(f.ui, legend, {{area.max.x, area.min.y}, {area.max.x + width, area.max.y}});
 }
 
 void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
@@ -251,7 +263,7 @@ void Views::describe(const Session& session, const Pane& pane, Overlay& overlay)
                        : rest                                 ? "T-pose"
                        : frame >= 0                           ? "frame " + std::to_string(frame)
                                                               : "";
-    overlay.legend = pane.made.legend;
+    if (!legend_beside_ || pane.made.legend.categories.empty()) overlay.legend = pane.made.legend;
   }
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
   if (seen != nullptr && seen->flagged) overlay.warning = seen->reason;

@@ -39,6 +39,7 @@ class Views {
     Ui& ui;
   };
   void prepare(const Frame& f, size_t count);
+  void place_legend(const Frame& f, Rect& area);
   void draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
   void draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area);
   static float wipe_line(const Frame& f, const Rect& area);
@@ -63,7 +64,8 @@ class Views {
   Pane* under_ = nullptr;  ///< which
   app::Tool tool_ = app::Tool::Look;
   std::optional<bool> followed_;
-  bool hold_ = false;  ///< cameras stay for this frame as they were
+  bool legend_beside_ = false;  ///< the joints' colours stand beside the views, not in each
+  bool hold_ = false;           ///< cameras stay for this frame as they were
   int64_t drawn_ = 0;
 };
 

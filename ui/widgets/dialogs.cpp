@@ -53,11 +53,11 @@ std::string Notices::draw(Ui& ui, const Rect& over) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   const Rect area = over.empty() ? Rect{{0, 0}, display} : over;
   const float room = std::max(ui.px(120), std::min(ui.px(420), area.width() - ui.px(20)));
-  float top = area.min.y + ui.px(10);
+  float bottom = area.max.y - ui.px(10);
   for (size_t k = notices_.size(); k-- > 0;) {
     Toast& notice = notices_[k];
     const std::string name = "notice." + std::to_string(notices_.size() - 1 - k);
-    ImGui::SetNextWindowPos({area.max.x - ui.px(10), top}, ImGuiCond_Always, {1, 0});
+    ImGui::SetNextWindowPos({area.max.x - ui.px(10), bottom}, ImGuiCond_Always, {1, 1});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {room, FLT_MAX});
     const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::clamp(notice.seconds_left / 0.3f, 0.05f, 1.f));
@@ -81,7 +81,7 @@ std::string Notices::draw(Ui& ui, const Rect& over) {
     const bool hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (!hovered) notice.seconds_left -= ImGui::GetIO().DeltaTime;
     if (hovered && ImGui::IsMouseClicked(0) && !ImGui::IsAnyItemHovered()) notice.seconds_left = 0;
-    top += size.y + ui.px(8);
+    bottom -= size.y + ui.px(8);
     ImGui::End();
     ImGui::PopStyleVar();
   }

@@ -124,6 +124,13 @@ void Table::cell(const std::string& text) {
   write(columns_[std::min<int>(column_++, columns_.size() - 1)], text);
 }
 
+void Table::whole_cell(const std::string& text) {
+  if (column_ != ImGui::TableGetColumnIndex()) ImGui::TableSetColumnIndex(column_);
+  ++column_;
+  ImGui::TextWrapped("%s", text.c_str());
+  ui_.mark(name_ + "." + std::to_string(row_) + ".text");
+}
+
 void Table::cell(double value) {
   cell(std::isfinite(value) ? printed("%.1f", value) : "\u2013");
 }

@@ -37,6 +37,8 @@ class Table {
   /// The next cell of the row. Text is cut to fit; numbers align to the right.
   void cell(const std::string& text);
   void cell(double value);
+  /// The next cell, its text whole: in as many lines as it needs. Marked NAME.ROW.text.
+  void whole_cell(const std::string& text);
 
  private:
   void write(const Column& column, const std::string& text);
