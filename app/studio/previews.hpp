@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "app/studio/preview_content.hpp"
 #include "render/gl/object.hpp"
 #include "render/renderer.hpp"
 #include "retarget/base/worker.hpp"
-#include "retarget/geometry/mesh.hpp"
 #include "ui/gui/draw_pass.hpp"
 
 namespace understudy::app {
@@ -31,7 +31,7 @@ class Previews {
   Previews(const Previews&) = delete;
   Previews& operator=(const Previews&) = delete;
 
-  /// One picture of the scans, targets and documents at these paths, side by side. Empty while it is being
+  /// One picture of the scans, motions, targets and documents at these paths, side by side. Empty while it is being
   /// made. Never waits.
   const FilePreview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark);
   /// Draws at most one picture from what has been read. True when there is a new one.
@@ -40,24 +40,18 @@ class Previews {
   bool busy() const;
 
  private:
-  /// The contents of a path, in metres or the file's own unit.
-  struct Content {
-    Mesh mesh;
-    std::string text;
-  };
   struct Reading {
     std::string key;
     render::PixelSize size;
     bool dark = true;
     std::vector<std::string> paths;
-    std::vector<Content> contents;
+    std::vector<PreviewContent> contents;
   };
   struct Picture {
     FilePreview preview;
     std::unique_ptr<render::gl::Texture> texture;
     int64_t used = 0;
   };
-  static Content read(const std::string& path);
   Worker::Task next();
   void draw(const Reading& reading);
   std::unique_ptr<render::gl::Texture> picture_of(const render::Scene& scene, render::PixelSize size);
