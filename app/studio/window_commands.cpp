@@ -187,8 +187,7 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
     const bool shown = ui::panel_shown(c.session, c.word(0, "panel"));
     workspace.show_panel(c.session.settings, c.arguments[0], c.switched(1, shown));
   });
-  commands.add({"help.keys", "All keys"},
-               [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
+  commands.add({"help.keys", "Help"}, [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
   commands.add({"file.show", "Show in folder", "PATH"}, show_file);
   commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]"},
                save_picture);

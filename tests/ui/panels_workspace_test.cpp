@@ -9,6 +9,7 @@
 #include "retarget/formats/npz.hpp"
 #include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/bindings.hpp"
+#include "ui/panels/help.hpp"
 #include "ui/panels/menus.hpp"
 
 namespace understudy::ui {
@@ -340,15 +341,72 @@ TEST_F(WorkspaceTest, KeysAskUnlessSomethingIsWritten) {
 }
 
 TEST_F(WorkspaceTest, KeysAreListedSearchedAndChosen) {
-  key(Key::H);
-  frame(3);
+  const auto run = [&](const std::string& words) {
+    key(Key::H);
+    frame(3);
+    EXPECT_EQ(workspace.dialog(), "keys");
+    type(words);  // the field is ready
+    key(Key::Enter);
+    frame(3);
+    Lines lines = take_log();
+    lines.erase(lines.begin());
+    return lines;
+  };
+  EXPECT_EQ(run("turntable"), Lines{"view.turntable"});
+  EXPECT_EQ(workspace.dialog(), "");
+  EXPECT_EQ(run("overlay"), Lines{"view.layout overlay"}) << "an entry of an inner menu";
+  EXPECT_EQ(run("panel: edit"), Lines{"panel.show edit on"});
+  EXPECT_EQ(run("export"), Lines{"dialog.open export"}) << "what asks for more opens its dialog";
+  EXPECT_EQ(workspace.dialog(), "export");
+  workspace.open_dialog(session, "none");
+  frame(2);
+  session.history.clear();
+  EXPECT_EQ(run("redo"), Lines()) << "not possible now";
   EXPECT_EQ(workspace.dialog(), "keys");
-  click("keys.search");
-  type("turntable");
-  key(Key::Enter);
+  key(Key::Escape);
   frame(2);
   EXPECT_EQ(workspace.dialog(), "");
-  EXPECT_EQ(take_log(), (Lines{"help.keys", "view.turntable"}));
+}
+
+TEST_F(WorkspaceTest, EveryCommandOfThePaletteRunsAsItIs) {
+  for (const MenuItem& entry : palette(session, studio.commands())) {
+    expect_known(entry.command);
+    EXPECT_FALSE(entry.label.empty()) << entry.command;
+  }
+}
+
+TEST_F(WorkspaceTest, ScriptsAreOnTheSecondPageAndCopied) {
+  key(Key::F3);
+  frame(3);
+  click("keys.page.1");
+  frame(2);
+  type("playback.seek");
+  key(Key::Enter);
+  frame(2);
+  EXPECT_EQ(std::string(ImGui::GetClipboardText()).rfind("playback.seek ", 0), 0u)
+      << ImGui::GetClipboardText();
+  EXPECT_EQ(take_log(), Lines{"help.keys"}) << "nothing runs";
+  click("keys.page.2");
+  frame(2);
+  EXPECT_FALSE(shown("scripts.search"));
+  click("keys.close");
+}
+
+TEST_F(WorkspaceTest, TheStatusBarTellsWhatClicksDoInTheCurrentTool) {
+  input.size = {3000, 800};  // nothing is cut
+  session.log.clear();
+  std::set<float> widths;
+  for (const app::Tool tool : {app::Tool::Look, app::Tool::Paint, app::Tool::Crop}) {
+    session.tool = tool;
+    frame(2);
+    EXPECT_TRUE(shown("status.mouse"));
+    widths.insert(mark("status.mouse").rect.width());
+  }
+  EXPECT_EQ(widths.size(), 3u);
+  session.log = {{true, "frame 20 has no points"}};
+  frame(2);
+  EXPECT_FALSE(shown("status.mouse")) << "a message comes first";
+  EXPECT_TRUE(shown("status.message"));
 }
 
 TEST_F(WorkspaceTest, ErrorsComeOneAfterTheOther) {

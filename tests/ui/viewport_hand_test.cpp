@@ -1,8 +1,13 @@
 // What the mouse does in the views: real input, a null context, and the commands that come out.
+#include <sstream>
+#include <tuple>
+
 #include "render/context/context.hpp"
 #include "render/gizmo.hpp"
+#include "retarget/base/text.hpp"
 #include "tests/ui/support/ui_test.hpp"
 #include "tests/ui/support/viewport_stage.hpp"
+#include "ui/panels/help.hpp"
 #include "ui/viewport/views.hpp"
 
 namespace understudy::ui {
@@ -98,6 +103,33 @@ TEST_F(ViewsTest, DraggingTurnsTheCamera) {
   drag(from, {from.x + 60, from.y});
   EXPECT_LT(stage.session.view.cameras[0].yaw, yaw - 0.2f);
   EXPECT_EQ(asked("view.camera_state")[0], "0");
+}
+
+TEST_F(ViewsTest, TheMouseDoesInTheViewsWhatTheHelpSays) {
+  const std::tuple<const char*, render::MouseButton, bool> ways[] = {
+      {"left", render::MouseButton::Left, false},
+      {"right", render::MouseButton::Right, false},
+      {"middle", render::MouseButton::Middle, false},
+      {"shift+left", render::MouseButton::Left, true}};
+  const auto said_of = [](const std::string& way) -> std::string {
+    for (const MouseUse& use : mouse_uses(app::Tool::Look)) {
+      std::istringstream words(lower_case(use.buttons));
+      for (std::string word; words >> word;)
+        if (word == way) return use.does;
+    }
+    return "";
+  };
+  for (const auto& [way, which, shift] : ways) {
+    const app::CameraState before = stage.session.view.cameras[0];
+    const ImVec2 from = mark("view.0").rect.at(0.1f, 0.8f);
+    render::Modifiers held;
+    held.shift = shift;
+    drag(from, {from.x + 40, from.y - 30}, held, which);
+    const app::CameraState& after = stage.session.view.cameras[0];
+    EXPECT_EQ(after.yaw != before.yaw, said_of(way) == "Turns the view") << way;
+    EXPECT_EQ(after.target != before.target, said_of(way) == "Moves the view") << way;
+    EXPECT_FALSE(said_of(way).empty()) << way;
+  }
 }
 
 TEST_F(ViewsTest, ShiftDraggingMovesTheTargetWithThePointer) {

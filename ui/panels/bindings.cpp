@@ -8,9 +8,6 @@
 #include "ui/gui/key_chord.hpp"
 #include "ui/panels/files.hpp"
 #include "ui/panels/panels.hpp"
-#include "ui/widgets/controls.hpp"
-#include "ui/widgets/dialogs.hpp"
-#include "ui/widgets/lists.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -24,8 +21,9 @@ const std::vector<Binding> kBuiltIn = {{"Ctrl+O", "open", {}, "Open"},
                                        {"Ctrl+Y", "edit.redo", {}, "Redo"},
                                        {"Shift+Left", "playback.step", {"-10"}, "Ten frames back"},
                                        {"Shift+Right", "playback.step", {"10"}, "Ten frames forward"},
-                                       {"H", "help.keys", {}, "All keys"},
-                                       {"?", "help.keys", {}, "All keys"}};
+                                       {"H", "help.keys", {}, "Help"},
+                                       {"?", "help.keys", {}, "Help"},
+                                       {"F3", "help.keys", {}, "Help"}};
 
 /// Whether keys with these arguments do, or undo, what `asked` does.
 bool same_or_toggles(const app::Arguments& keys, const app::Arguments& asked) {
@@ -40,28 +38,6 @@ const char* dialog_for(const app::Session& session, const std::string& command) 
   if (command == "picture.save") return "picture";
   if (command == "video.save") return "video";
   return command == "compare.add" ? "compare" : file_dialog_for(command);
-}
-
-/// What has keys first, then the mouse, then every other command; without a command where nothing can be done.
-std::vector<Binding> all_lines(const app::Commands& commands) {
-  std::vector<Binding> lines = bindings(commands);
-  constexpr const char* kMouse[][2] = {{"Orbit the view", "Left or middle drag"},
-                                       {"Pan the view", "Shift+drag or right drag"},
-                                       {"Zoom the view", "Wheel"},
-                                       {"Zoom the timeline", "Wheel on it"},
-                                       {"Pan the timeline", "Shift+wheel on it"},
-                                       {"Type a number", "Double click on it"}};
-  for (const auto& [label, mouse] : kMouse) lines.push_back({mouse, "", {}, label});
-  for (const app::Command& command : commands.all()) {
-    const auto has_keys = [&](const Binding& b) { return b.command == command.name; };
-    if (std::any_of(lines.begin(), lines.end(), has_keys)) continue;
-    const std::string usage = command.usage.substr(0, command.usage.find(':'));
-    lines.push_back({command.name + (usage.empty() ? "" : " " + usage),
-                     usage.empty() ? command.name : "",
-                     {},
-                     command.label});
-  }
-  return lines;
 }
 
 }  // namespace
@@ -122,27 +98,6 @@ void ask_for_keys(const app::Session& session, PanelContext& context) {
   if (!any || io.WantTextInput || ImGui::GetTopMostPopupModal() != nullptr) return;
   for (const Binding& binding : bindings(context.commands))
     if (pressed(binding.keys)) return ask_or_open(session, context, binding.command, binding.arguments);
-}
-
-bool draw_keys(const app::Session& session, PanelContext& context) {
-  Ui& ui = context.ui;
-  if (!begin_dialog(ui, "keys", "Keys and commands", 620)) return true;
-  const std::vector<Binding> lines = all_lines(context.commands);
-  std::vector<ListItem> items;
-  for (const Binding& line : lines) items.push_back({line.label, line.keys});
-  const float room = ImGui::GetIO().DisplaySize.y - ui.px(150);
-  const int chosen = searchable_list(ui, "keys", items, -1, std::max(ui.px(40), std::min(room, ui.px(460))));
-  ButtonOptions close;
-  close.width = -1;
-  bool stays = !button(ui, "keys.close", "Close", close);
-  stays &= ImGui::IsWindowAppearing() || !key_pressed(render::Key::Escape, false);
-  if (chosen >= 0 && !lines[chosen].command.empty()) {
-    ask_or_open(session, context, lines[chosen].command, lines[chosen].arguments);
-    stays = false;
-  }
-  if (!stays) ImGui::CloseCurrentPopup();
-  end_dialog();
-  return stays;
 }
 
 }  // namespace understudy::ui

@@ -1,5 +1,4 @@
-// Which key does what: the registry's shortcuts, keys for commands with arguments, and the list of all.
-// Marks of the list: keys.search, keys.K (a command of the list), keys.close.
+// Which key does what: the registry's shortcuts, and keys for commands with arguments.
 #pragma once
 
 #include <string>
@@ -33,9 +32,5 @@ void ask_for_keys(const app::Session& session, PanelContext& context);
 /// Pushes a command, or opens the dialog that asks for its missing path.
 void ask_or_open(const app::Session& session, PanelContext& context, const std::string& command,
                  const app::Arguments& arguments = {});
-
-/// The searchable list of all keys and commands, a dialog; call every frame while it is open. False once
-/// closed. Pushes a chosen command that needs no arguments.
-bool draw_keys(const app::Session& session, PanelContext& context);
 
 }  // namespace understudy::ui

@@ -161,7 +161,7 @@ std::vector<Menu> menus(const app::Session& session) {
           {"window", "Window", window_menu(session)},
           {"help",
            "Help",
-           {{"All keys", "help.keys"},
+           {{"Commands, scripts, mouse\u2026", "help.keys"},
             {"About Understudy", "dialog.open", {"about"}},
             {"Log", "panel.show", {"log", "on"}}}}};
 }

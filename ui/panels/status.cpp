@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/panels/help.hpp"
 #include "ui/widgets/controls.hpp"
 
 namespace understudy::ui {
@@ -41,11 +42,27 @@ void draw_more_jobs(const app::Session& session, PanelContext& context) {
   ImGui::EndPopup();
 }
 
-/// The newest message, or what still has to be mended.
+/// What the mouse does in the views with the current tool.
+void draw_mouse_hint(const app::Session& session, Ui& ui, float width) {
+  if (!has_document(session)) return;
+  std::string words;
+  for (const MouseUse& use : mouse_uses(session.tool)) {
+    std::string does = use.does;
+    does[0] = static_cast<char>(does[0] - 'A' + 'a');
+    words += (words.empty() ? "" : "   \u00b7   ") + std::string(use.buttons) + ": " + does;
+  }
+  ImGui::SetCursorPosY((ui.px(kStatusHeight) - ImGui::GetTextLineHeight()) / 2);
+  const ColorScope faint(ImGuiCol_Text, ui.theme().text_dim);
+  text_cut(ui, words, width - ui.px(20));
+  ui.mark("status.mouse");
+}
+
+/// The newest message, or what still has to be mended; else what the mouse does.
 void draw_message(const app::Session& session, PanelContext& context, float width) {
   Ui& ui = context.ui;
   const std::optional<app::LogLine> line = app::status_line(session);
-  if (!line || width < ui.px(40)) return;
+  if (width < ui.px(40)) return;
+  if (!line) return draw_mouse_hint(session, ui, width);
   ImGui::SetCursorPosY((ui.px(kStatusHeight) - ImGui::GetFrameHeight()) / 2);
   const std::string words = cut_to(line->text, width - ui.px(20));
   ButtonOptions options;

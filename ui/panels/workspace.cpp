@@ -9,6 +9,7 @@
 #include "ui/gui/gui.hpp"
 #include "ui/panels/bars.hpp"
 #include "ui/panels/bindings.hpp"
+#include "ui/panels/help.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/widgets/controls.hpp"
 

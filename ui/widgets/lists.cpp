@@ -30,6 +30,9 @@ std::vector<int> matching(const std::vector<ListItem>& items, const std::string&
   std::vector<int> found;
   for (int i = 0; i < ssize(items); ++i)
     if (matches(items[i].text + " " + items[i].note, search)) found.push_back(i);
+  const std::string words = lower_case(search);
+  std::stable_partition(found.begin(), found.end(),
+                        [&](int i) { return starts_with(lower_case(items[i].text), words); });
   return found;
 }
 
@@ -39,12 +42,14 @@ bool draw_item(Ui& ui, const std::string& name, const ListItem& item, bool selec
   const float note = item.note.empty() ? 0 : ImGui::CalcTextSize(item.note.c_str()).x + ui.px(12);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetTextLineHeight() + ui.px(8);
+  const DisabledScope disabled(!item.enabled);
   const bool clicked = ImGui::Selectable(("##" + name).c_str(), selected, 0, {0, height});
   ui.mark(name);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (under_cursor)
     list.AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), color(ui.theme().accent), ui.px(3));
-  list.AddText({at.x + ui.px(4), at.y + ui.px(4)}, color(ui.theme().text),
+  list.AddText({at.x + ui.px(4), at.y + ui.px(4)},
+               color(item.enabled ? ui.theme().text : ui.theme().text_faint),
                cut_to(item.text, width - note - ui.px(8)).c_str());
   if (note > 0)
     list.AddText({at.x + width - note + ui.px(8), at.y + ui.px(4)}, color(ui.theme().text_dim),
@@ -57,6 +62,7 @@ bool draw_item(Ui& ui, const std::string& name, const ListItem& item, bool selec
 int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>& items, int selected,
                     float height) {
   auto& state = ui.state<ListState>(ImGui::GetID(name.c_str()));
+  if (ImGui::IsWindowAppearing()) state = {};
   if (text_field(ui, name + ".search", state.search, "Search")) state.cursor = 0;
   const bool typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
   const std::vector<int> shown = matching(items, state.search);
@@ -78,7 +84,7 @@ int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>
     if (shown.empty()) hint(ui, "Nothing matches.");
   }
   ImGui::EndChild();
-  return chosen;
+  return chosen >= 0 && items[chosen].enabled ? chosen : -1;
 }
 
 Table::Table(Ui& ui, const std::string& name, std::vector<Column> columns, float height)

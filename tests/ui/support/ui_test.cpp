@@ -115,11 +115,10 @@ void UiTest::drag(const std::string& name, float from, float to) {
   drag(target.rect.at(from, 0.5f), target.rect.at(to, 0.5f));
 }
 
-void UiTest::drag(ImVec2 from, ImVec2 to, render::Modifiers modifiers) {
-  const auto left = render::MouseButton::Left;
+void UiTest::drag(ImVec2 from, ImVec2 to, render::Modifiers modifiers, render::MouseButton which) {
   const ImVec2 half((from.x + to.x) / 2, (from.y + to.y) / 2);
-  play(with_modifiers(modifiers, {move_to(from), button(from, left, true, modifiers), move_to(half),
-                                  move_to(to), button(to, left, false, modifiers)}));
+  play(with_modifiers(modifiers, {move_to(from), button(from, which, true, modifiers), move_to(half),
+                                  move_to(to), button(to, which, false, modifiers)}));
 }
 
 void UiTest::scroll(const std::string& name, float notches, render::Modifiers modifiers) {

@@ -36,7 +36,8 @@ class UiTest : public testing::Test {
   void hover(const std::string& name, float x = 0.5f, float y = 0.5f);
   /// Presses at one share of the mark's width, moves to another, releases.
   void drag(const std::string& name, float from, float to);
-  void drag(ImVec2 from, ImVec2 to, render::Modifiers modifiers = {});
+  void drag(ImVec2 from, ImVec2 to, render::Modifiers modifiers = {},
+            render::MouseButton button = render::MouseButton::Left);
   void scroll(const std::string& name, float notches, render::Modifiers modifiers = {});
   void type(const std::string& text);
   void key(render::Key key, render::Modifiers modifiers = {});

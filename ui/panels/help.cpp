@@ -1,0 +1,156 @@
+#include "ui/panels/help.hpp"
+
+#include <algorithm>
+
+#include "ui/gui/gui.hpp"
+#include "ui/panels/bindings.hpp"
+#include "ui/panels/panels.hpp"
+#include "ui/widgets/controls.hpp"
+#include "ui/widgets/dialogs.hpp"
+#include "ui/widgets/lists.hpp"
+
+namespace understudy::ui {
+namespace {
+
+constexpr MouseUse kInViews[] = {{"Left or right drag", "Turns the view"},
+                                 {"Middle or Shift+left drag", "Moves the view"},
+                                 {"Wheel", "Zooms to the pointer"},
+                                 {"Double click", "Centres the view there"}};
+constexpr MouseUse kInTimeline[] = {{"Click or drag", "Goes to the frame"},
+                                    {"Drag a diamond or a bar", "Moves the edit"},
+                                    {"Wheel", "Zooms the timeline"},
+                                    {"Middle drag or Shift+wheel", "Moves along the timeline"},
+                                    {"Double click in the ruler", "Shows all frames"}};
+constexpr MouseUse kInNumbers[] = {{"Drag", "Changes the number"}, {"Double click", "Lets you type it"}};
+
+/// What a tool's own clicks do.
+std::vector<MouseUse> own_uses(app::Tool tool) {
+  switch (tool) {
+    case app::Tool::Joints:
+      return {{"Drag a joint of the source", "Moves it in this frame and those around"}};
+    case app::Tool::Bones:
+      return {{"Click a joint of the result", "Chooses its bone"}, {"Drag a ring", "Turns the bone"}};
+    case app::Tool::TargetJoints:
+      return {{"Drag a joint of the target", "Moves it in the T-pose"}};
+    case app::Tool::Paint:
+      return {{"Click a joint", "Chooses whose weights are painted"}, {"Drag on the target", "Paints them"}};
+    case app::Tool::Crop:
+      return {{"Drag a handle of the box", "Moves that side of it"}};
+    default:
+      return {};
+  }
+}
+
+void add_entries(const std::vector<MenuItem>& items, const std::string& before, const app::Commands& commands,
+                 std::vector<MenuItem>& all) {
+  for (const MenuItem& item : items) {
+    add_entries(item.inside, item.label + ": ", commands, all);
+    const bool has_keys = !item.command.empty() && !keys_of(commands, item.command, item.arguments).empty();
+    if (item.command.empty() || has_keys) continue;
+    all.push_back(item);
+    all.back().label = before + item.label;
+  }
+}
+
+struct HelpState {
+  int page = 0;
+};
+
+/// The command chosen; null while none is.
+const MenuItem* draw_palette(PanelContext& context, const app::Session& session,
+                             const std::vector<MenuItem>& entries, float height) {
+  std::vector<ListItem> items;
+  for (const MenuItem& entry : entries)
+    items.push_back(
+        {entry.label, keys_of(context.commands, entry.command, entry.arguments), possible(session, entry)});
+  const int chosen = searchable_list(context.ui, "keys", items, -1, height);
+  return chosen < 0 ? nullptr : &entries[chosen];
+}
+
+void draw_scripts(PanelContext& context, float height) {
+  ImGui::PushTextWrapPos(0);
+  hint(context.ui,
+       "A script is a text file, a command a line; \"words in quotes\" are one argument, # begins a comment. "
+       "understudy play FILE.us runs it, understudy studio --record FILE.us writes one. Choose a line to "
+       "copy it.");
+  ImGui::PopTextWrapPos();
+  std::vector<ListItem> items;
+  for (const app::Command& command : context.commands.all())
+    items.push_back({command.name + (command.usage.empty() ? "" : " " + command.usage), command.label});
+  height -= 2 * ImGui::GetTextLineHeightWithSpacing();
+  const int chosen = searchable_list(context.ui, "scripts", items, -1, height);
+  if (chosen >= 0) ImGui::SetClipboardText(items[chosen].text.c_str());
+}
+
+template <class Uses>
+void draw_uses(Ui& ui, const std::string& where, const Uses& uses) {
+  if (std::begin(uses) == std::end(uses)) return;
+  {
+    const FontScope strong(ui.fonts().strong);
+    ImGui::TextUnformatted(where.c_str());
+  }
+  for (const MouseUse& use : uses) row_text(ui, use.buttons, use.does);
+  ImGui::Dummy({0, ui.px(6)});
+}
+
+void draw_mouse(Ui& ui, float height) {
+  if (ImGui::BeginChild("##mouse", {0, height})) {
+    draw_uses(ui, "In the views", kInViews);
+    for (const ToolChoice& tool : kTools)
+      draw_uses(ui, std::string("With the tool \u201c") + tool.label + "\u201d", own_uses(tool.tool));
+    draw_uses(ui, "In the timeline", kInTimeline);
+    draw_uses(ui, "On numbers", kInNumbers);
+  }
+  ImGui::EndChild();
+}
+
+}  // namespace
+
+std::vector<MouseUse> mouse_uses(app::Tool tool) {
+  std::vector<MouseUse> uses = own_uses(tool);
+  uses.insert(uses.end(), std::begin(kInViews), std::end(kInViews));
+  return uses;
+}
+
+std::vector<MenuItem> palette(const app::Session& session, const app::Commands& commands) {
+  std::vector<MenuItem> all;
+  const auto is_there = [&](const std::string& command, const app::Arguments& arguments) {
+    return std::any_of(all.begin(), all.end(), [&](const MenuItem& one) {
+      return one.command == command && one.arguments == arguments;
+    });
+  };
+  for (const Binding& binding : bindings(commands))
+    if (binding.command != "help.keys" && !is_there(binding.command, binding.arguments))
+      all.push_back({binding.label, binding.command, binding.arguments});
+  for (const Menu& menu : menus(session)) add_entries(menu.items, "", commands, all);
+  for (const app::Command& command : commands.all()) {
+    const bool runs = command.usage.empty() && possible(session, command.name);
+    if (runs && command.name != "help.keys" && !is_there(command.name, {}))
+      all.push_back({command.label, command.name});
+  }
+  return all;
+}
+
+bool draw_keys(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  if (!begin_dialog(ui, "keys", "Help", 620)) return true;
+  auto& state = panel_state<HelpState>(context);
+  const bool other = segmented(ui, "keys.page", {"Commands", "Scripts", "Mouse"}, state.page);
+  const float room = ImGui::GetIO().DisplaySize.y - ui.px(190);
+  const float height = std::max(ui.px(40), std::min(room, ui.px(460)));
+  if (state.page < 2 && (other || ImGui::IsWindowAppearing())) ImGui::SetKeyboardFocusHere();
+  const std::vector<MenuItem> entries = palette(session, context.commands);
+  const MenuItem* chosen = state.page == 0 ? draw_palette(context, session, entries, height) : nullptr;
+  if (state.page == 1) draw_scripts(context, height);
+  if (state.page == 2) draw_mouse(ui, height + ImGui::GetFrameHeightWithSpacing());
+  ButtonOptions close;
+  close.width = -1;
+  bool stays = chosen == nullptr && !button(ui, "keys.close", "Close", close);
+  stays &= ImGui::IsWindowAppearing() || !key_pressed(render::Key::Escape, false);
+  if (chosen != nullptr) ask_or_open(session, context, chosen->command, chosen->arguments);
+  if (!stays) ImGui::CloseCurrentPopup();
+  end_dialog();
+  return stays;
+}
+
+}  // namespace understudy::ui
