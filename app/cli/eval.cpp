@@ -69,6 +69,7 @@ Action declare_eval(CLI::App& command) {
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
       ->check(CLI::Range(0, 10000));
   command.add_option("--pictures", files->pictures, "folder for pictures of the worst frames");
+  add_scan_options(command, options->edits);
   add_method_options(command, options->how);
   return [options, files] { return eval(*options, files->out, files->pictures); };
 }

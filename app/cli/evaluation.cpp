@@ -76,7 +76,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
            ": --oracle skeleton needs source_joints");
   Retargeter retargeter(std::move(networks), retarget_options(options.how.method));
   if (character) retargeter.set_target(character->target);
-  RetargetedSource retargeted(*source, retargeter, c.source);
+  RetargetedSource retargeted(*source, retargeter, c.source, options.edits);
   for (size_t t = 0;; ++t) {
     check_interrupt("in case " + c.name);
     US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");
@@ -231,6 +231,9 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   Json report = report_header(nn::weights_folder(network_options(options.how)));
   report["engine"] = options.how.method.engine;
   if (!options.oracle.empty()) report["oracle"] = options.oracle;
+  if (options.edits.floor) report["remove_floor"] = true;
+  if (options.edits.largest_cluster) report["largest_part"] = true;
+  if (options.edits.crop) report["crop"] = true;
   if (!options.baseline.empty()) report["baseline"] = options.baseline;
   const Method& method = options.how.method;
   const std::pair<const char*, bool> switches[] = {

@@ -21,6 +21,7 @@ struct EvalOptions {
   std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
   std::string body;                ///< SMPL-format, of the baseline "fit"
   int worst = 20;                  ///< frames listed as the worst
+  ScanEdits edits;                 ///< of each scan, before anybody is looked for
   MethodOptions how;
 };
 

@@ -62,7 +62,7 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
   SourceOptions one = options.source;
   one.path = path;
   const auto source = open_source(one);
-  RetargetedSource retargeted(*source, retargeter, path);
+  RetargetedSource retargeted(*source, retargeter, path, one.edits);
   CharacterClip clip{clip_name(path), source->fps(), {}};
   Progress progress(clip.name + " -> " + clip_name(options.target.path), source->count().value_or(0));
   while (const auto frame = retargeted.next()) {
@@ -110,6 +110,7 @@ void check_session(const Session& session) {
            session.question->missing[0], ": is a file of the document, but does not exist");
   US_CHECK(!session.question || session.question->kind != Question::Kind::PaintMisfit,
            session.question->text);
+  US_CHECK(!session.question || session.question->kind != Question::Kind::NotAPerson, session.question->text);
   US_CHECK(session.errors.empty(), session.errors.front().text);
 }
 

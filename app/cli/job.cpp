@@ -101,7 +101,8 @@ Running start(const JobOptions& options) {
   log::info("inference threads: " + nn::runtime_report().threads_why);
   job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how.method));
   job.retargeter->set_target(job.character->target);
-  job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source.path);
+  job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source.path,
+                                                      options.source.edits);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);

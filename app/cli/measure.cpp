@@ -42,7 +42,7 @@ Measured measured(const MeasureOptions& options) {
   seeing.extractor = true;
   Retargeter retargeter(nn::load_networks(network_options(options.how), seeing),
                         retarget_options(options.how.method));
-  RetargetedSource retargeted(*source, retargeter, options.source.path);
+  RetargetedSource retargeted(*source, retargeter, options.source.path, options.source.edits);
   Measured result(source->fps(), options.every);
   log::Tally problems;
   while (const auto frame = retargeted.next()) {

@@ -9,7 +9,27 @@
 
 namespace understudy::app {
 
+void add_scan_options(CLI::App& command, ScanEdits& edits) {
+  command.add_flag_callback(
+      "--remove-floor", [&edits] { edits.floor = FloorCut{}; },
+      "takes the floor out of each scan, but not the soles");
+  command.add_flag("--largest-part", edits.largest_cluster,
+                   "keeps only the largest part of each scan: takes a second person or a prop out");
+  command
+      .add_option_function<std::vector<float>>(
+          "--crop",
+          [&edits](const std::vector<float>& box) {
+            edits.crop = Box{Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5])};
+            US_CHECK((edits.crop->high - edits.crop->low).minCoeff() > 0,
+                     "--crop: the box has no inside; it is X Y Z of its low corner, then of its high one");
+          },
+          "keeps only what is inside a box: X Y Z of its low corner and of its high one, metres, y up")
+      ->expected(6)
+      ->delimiter(',');
+}
+
 void add_source_options(CLI::App& command, SourceOptions& source) {
+  add_scan_options(command, source.edits);
   command.add_option("--motion", source.motion,
                      "AMASS-format motion that an SMPL-format source body performs");
   command.add_option("--source-betas", source.betas, "shape parameters of the source body")->delimiter(',');
@@ -27,6 +47,8 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
       ->check(CLI::Range(1.0, 1000.0));
   command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
+  command.add_option("--height", source.import.height,
+                     "metres that the person in the source is made tall (default: by its units, else 1.7)");
   command.add_option("--yaw", source.import.yaw_deg, "turns the source about y, degrees");
   command.add_option("--floor", source.import.floor,
                      "height of the source's floor, metres (default: the lowest points)");
@@ -42,6 +64,12 @@ void add_target_options(CLI::App& command, TargetOptions& target) {
       R"(JSON that names the character's bones: {"left_wrist": "Hand.L"})");
   command.add_option("--betas", target.betas, "shape parameters of an SMPL-format target")->delimiter(',');
   command.add_option("--target-units", target.import.units, "the target's units: auto, m, dm, cm, mm, in");
+  command.add_option("--target-height", target.import.height,
+                     "metres that the target is made tall (default: by its units, else 1.7)");
+  target.not_a_person = NotAPerson::Refuse;
+  command.add_flag_callback(
+      "--use-anyway", [&target] { target.not_a_person = NotAPerson::Use; },
+      "uses a target that does not look like a person");
   command.add_option("--target-up", target.import.up, "the target's up axis: auto, y (default), z, ...");
   command.add_option_function<float>(
       "--target-yaw",

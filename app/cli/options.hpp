@@ -12,6 +12,9 @@ class App;
 
 namespace understudy::app {
 
+/// What takes a floor or a second person out of scans.
+void add_scan_options(CLI::App& command, ScanEdits& edits);
+
 /// All options of a source but --source itself.
 void add_source_options(CLI::App& command, SourceOptions& source);
 

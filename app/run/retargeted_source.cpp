@@ -16,8 +16,8 @@ Observation observed(Observer& observer, const SourceFrame& frame, float dt) {
   return seen;
 }
 
-RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, std::string name)
-    : source_(source), retargeter_(retargeter), name_(std::move(name)) {
+RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, std::string name, ScanEdits edits)
+    : source_(source), retargeter_(retargeter), name_(std::move(name)), edits_(std::move(edits)) {
   retargeter_.restart();
 }
 
@@ -25,6 +25,7 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
   const auto began = std::chrono::steady_clock::now();
   auto scan = source_.next();
   if (!scan) return std::nullopt;
+  if (scan->usable && !edits_.empty()) scan->mesh = understudy::apply(edits_, scan->mesh);
   RetargetedFrame frame;
   frame.times.read = ms_since(began);
   const float dt = static_cast<float>(1 / source_.fps());
@@ -32,7 +33,8 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
   Extraction given;
   if (known) given.joints = *known;
   const Observation seen = known ? observer.observe(given, scan->mesh, dt) : observed(observer, *scan, dt);
-  if (!seen.warning.empty()) log::warn(name_ + ": " + seen.warning);
+  if (!seen.warning.empty()) doubt_ = seen.warning;
+  if (scan->usable && !scan->skeleton && !refusal(seen).empty()) ++unrecognised_;
   frame.result = retargeter_.push(seen, dt);
   frame.times.total = ms_since(began);
   frame.times.extract = seen.extract_ms;
@@ -45,7 +47,16 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
 }
 
 void RetargetedSource::check_used() const {
-  US_CHECK(frames_ > flagged_, name_, ": no frame in it could be used");
+  const std::string advice =
+      std::string("; where a scan holds a floor or a second person, ") + kCleaning + " take them out";
+  US_CHECK(frames_ > flagged_, name_, ": no frame in it could be used", unrecognised_ > 0 ? advice : "");
+  if (unrecognised_ == 0 && doubt_.empty()) return;
+  std::string sentence = name_ + ": ";
+  if (unrecognised_ > 0)
+    sentence += "nobody is recognised in " + std::to_string(unrecognised_) + " of " +
+                std::to_string(frames_) + " frames";
+  if (!doubt_.empty()) sentence += (unrecognised_ > 0 ? ", and it " : "") + doubt_;
+  log::warn(sentence + advice);
 }
 
 }  // namespace understudy::app

@@ -21,24 +21,26 @@ struct RetargetedFrame {
   FrameTimes times;
 };
 
-/// Goes through a source once, counts its frames and takes their times. Logs a warning where the source may
-/// not be a person.
+/// Goes through a source once, counts its frames and takes their times.
 class RetargetedSource {
  public:
-  /// `retargeter` starts anew. Both must outlive this. name: for people.
-  RetargetedSource(Source& source, Retargeter& retargeter, std::string name);
+  /// `retargeter` starts anew. Both must outlive this. name: for people. `edits` are applied to each scan first.
+  RetargetedSource(Source& source, Retargeter& retargeter, std::string name, ScanEdits edits = {});
   /// None at the end. known: the source's joints, where they are not to be extracted.
   std::optional<RetargetedFrame> next(const std::optional<Joints>& known = {});
   int64_t frames() const { return frames_; }
   int64_t flagged() const { return flagged_; }
-  /// Throws Error naming the source where all frames so far are flagged.
+  /// At the end: warns, in one sentence that names the options, where nobody is recognised in frames that have points.
+  /// Throws Error naming the source where all frames are flagged.
   void check_used() const;
 
  private:
   Source& source_;
   Retargeter& retargeter_;
   std::string name_;
-  int64_t frames_ = 0, flagged_ = 0;
+  ScanEdits edits_;
+  std::string doubt_;  // why the source may be no person; empty: nothing speaks against it
+  int64_t frames_ = 0, flagged_ = 0, unrecognised_ = 0;
 };
 
 }  // namespace understudy::app

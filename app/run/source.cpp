@@ -256,11 +256,15 @@ void check_body_options(const SourceOptions& options) {
   const std::string& units = options.import.units;
   US_CHECK(units.empty() || units == "auto" || units == "m", options.path,
            ": is a body in metres, other units (--units) are for scans and rigs");
+  US_CHECK(!options.import.height, options.path,
+           ": is a body in metres, its height follows from its shape (--source-betas)");
   US_CHECK(!options.follow, options.path,
            ": is a body that performs a motion, only a folder of scans can be followed");
 }
 
 void check_skeletal_options(const SourceOptions& options) {
+  US_CHECK(options.edits.empty(), options.path, ": is a skeletal motion, only scans are cleaned (", kCleaning,
+           ")");
   US_CHECK(options.betas.empty(), options.path,
            ": is a skeletal motion, only an SMPL-format body that performs a --motion takes --source-betas");
   US_CHECK(!options.follow, options.path, ": is a skeletal motion, only a folder of scans can be followed");

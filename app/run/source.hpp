@@ -10,6 +10,7 @@
 #include "retarget/base/fields.hpp"
 #include "retarget/character/bone_map.hpp"
 #include "retarget/character/character.hpp"
+#include "retarget/editing/scan_edits.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/pipeline/interfaces.hpp"
@@ -28,8 +29,10 @@ struct SourceOptions {
   std::string clip;      ///< of a skeletal motion's animations, by name or number from 1; empty: the longest
   BoneChoices bones;     ///< of a skeletal motion, as the user wants them
   bool quiet = false;    ///< log nothing: another source has logged it all
+  ScanEdits
+      edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
-/// What documents keep of it: `follow` and `quiet` belong to one run.
+/// What documents keep of it: `follow`, `quiet` and `edits` belong to one run.
 template <class V, class S>
 FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("path", source.path, FilePath{});
@@ -52,6 +55,9 @@ struct SourceClip {
   std::string name;
   double seconds = 0;
 };
+
+/// What takes away that is no person, as options.
+constexpr const char* kCleaning = "--remove-floor, --largest-part, --crop";
 
 /// Hands out frames in metres, y up, floor at 0, one at a time and never a later one early.
 class Source {

@@ -20,6 +20,8 @@ CharacterOptions character_options(const TargetOptions& options) {
   result.up = options.import.up.empty() ? "y" : options.import.up;
   result.turn_if_lying = options.import.up.empty();
   result.floor = options.import.floor;
+  result.height = options.import.height;
+  result.not_a_person = options.not_a_person;
   if (!options.forward || options.import.yaw_deg != 0) result.yaw_deg = options.import.yaw_deg;
   result.own_joints = options.rig != "ours";
   return result;
@@ -30,6 +32,8 @@ template <class Work>
 auto naming(const std::string& path, Work work) {
   try {
     return work();
+  } catch (const NotAPersonError&) {  // it names the character
+    throw;
   } catch (const Error& error) {
     const std::string what = error.what();
     throw Error(what.find(path) != what.npos ? what : path + ": " + what);
@@ -82,7 +86,11 @@ std::shared_ptr<const PreparedCharacter> bind_target(std::shared_ptr<PreparedCha
 }
 
 std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks) {
-  return bind_target(load_target(options), options, networks);
+  try {
+    return bind_target(load_target(options), options, networks);
+  } catch (const NotAPersonError& error) {
+    throw NotAPersonError(options.path + ": " + error.what() + " (--use-anyway uses it all the same)");
+  }
 }
 
 bool on_their_rig(const TargetOptions& options, const PreparedCharacter& character) {

@@ -18,6 +18,7 @@ struct TargetOptions {
   bool forward = true;       ///< without a yaw it is turned so that it faces +z; false: it stays as it is
   std::string rig = "auto";  ///< theirs: its own bones and skin; ours: the 22 joints; auto: its own, if any
   BoneChoices bones;         ///< the user's corrections of which bone is which joint
+  NotAPerson not_a_person = NotAPerson::RefuseClear;  ///< Refuse: of what a user opens
 };
 template <class V, class S>
 FieldsOf<S, TargetOptions> fields(V& visit, S& target) {
@@ -27,11 +28,13 @@ FieldsOf<S, TargetOptions> fields(V& visit, S& target) {
   visit("forward", target.forward);
   visit("rig", target.rig);
   visit("bones", target.bones);
+  visit("not_a_person", target.not_a_person, kNotAPersonNames);
 }
 
 /// The target as the retargeter needs it. The networks' extractors find the joints of what has no rig; they
 /// are only used during the call. Logs what it decided. Throws Error naming the file: it cannot be
-/// read, no body is found in it, its own rig is wanted and its bones are not known.
+/// read, it does not look like a person (NotAPersonError, which names --use-anyway), its own rig is wanted and its
+/// bones are not known.
 std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks);
 
 /// The first half of it, which uses no network: as the file has it, upright and at its size, to be shown.

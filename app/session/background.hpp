@@ -28,6 +28,13 @@ struct Studio::Background {
     int64_t measuring = 0;  // the job; 0: none
   };
 
+  /// What was there before something was opened, until that has been read.
+  struct Opening {
+    Document before;
+    size_t steps = 0;      // of undo, with this one
+    bool changed = false;  // the document before
+  };
+
   /// Shared with the job that writes the copy for recovery.
   struct Autosaving {
     bool running = false;  // the UI thread's own
@@ -43,7 +50,11 @@ struct Studio::Background {
   int followed_take = -1;         // Session::selected_take then; -1: of another document
   int64_t next_id = 1;
   std::map<int64_t, Applied> applied;
-  std::set<int64_t> dirty;  // takes whose result is to be refined
+  std::set<int64_t> dirty;                    // takes whose result is to be refined
+  std::map<int64_t, Opening> opened_targets;  // by the take
+  std::optional<Opening> opened_source;
+  std::string advised;        // the source key for which a clean-up was offered
+  std::set<int64_t> doubted;  // takes whose target may be no person: to be asked about
   std::string plan_key, source_key, truth_path;
   std::string autosave_problem;  // the last one reported
   double since_autosave = 0;

@@ -53,6 +53,14 @@ bool ArgumentReader::switched(size_t i, bool now) const {
   return how == 2 ? !now : how == 1;
 }
 
+std::optional<float> ArgumentReader::body_height(size_t i) const {
+  if (word(i, "height") == "auto") return std::nullopt;
+  const auto height = number(i, "height");
+  US_CHECK(height >= kBodyHeights.low && height <= kBodyHeights.high, "a height is ", kBodyHeights.low,
+           " to ", kBodyHeights.high, " m, not ", height);
+  return height;
+}
+
 int ArgumentReader::joint(size_t i) const {
   const std::string& text = word(i, "joint");
   for (int j = 0; j < kJointCount; ++j)

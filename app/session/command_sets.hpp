@@ -42,6 +42,8 @@ class ArgumentReader {
   }
   /// The argument, which is one of `words`.
   const std::string& one_of(size_t i, const char* what, const std::vector<std::string>& words) const;
+  /// Metres that a body is made tall; none for "auto".
+  std::optional<float> body_height(size_t i) const;
   /// A joint by name ("left_wrist") or number.
   int joint(size_t i) const;
   Vec3 vector(size_t i, const char* what) const;

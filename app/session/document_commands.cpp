@@ -8,6 +8,7 @@
 #include "app/session/background.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/motion/read_motion.hpp"
@@ -66,6 +67,8 @@ void answer(Call& c) {
     save_document(c.studio, session.path);
   }
   session.question.reset();
+  if (question.kind == Question::Kind::NotAPerson && question.take < ssize(session.takes))
+    c.studio.take_back_target(question.take);
   if (how == "cancel" || question.kind != Question::Kind::UnsavedChanges) return;
   session.changed = false;
   const Arguments words = split_line(question.then);
@@ -229,6 +232,8 @@ void Studio::replace_document(SavedDocument saved, const std::string& path) {
   choose_pane(session_, session_.view.active_pane);
   if (saved.selected_take) session_.selected_take = *saved.selected_take;
   background_->followed_take = -1;
+  background_->opened_targets.clear();
+  background_->opened_source.reset();
   session_.selected_joint = -1;
   session_.tool = Tool::Look;
   ask_for_missing(session_);

@@ -68,6 +68,12 @@ void add_scan_edits(Commands& commands) {
     floor = only_if(c.on(0), FloorCut{});
     if (floor && c.arguments.size() > 1) floor->height_m = c.number(1, "height");
   });
+  commands.add_edit({"edit.clean_up", "Clean up the scan", "removes the floor and all but the largest part"},
+                    [](Call& c) {
+                      auto& edits = c.document.scan_edits;
+                      if (!edits.floor) edits.floor = FloorCut{};
+                      edits.largest_cluster = true;
+                    });
   commands.add_edit({"edit.cluster", "Largest cluster only", "on|off"},
                     [](Call& c) { c.document.scan_edits.largest_cluster = c.on(0); });
 }

@@ -92,7 +92,9 @@ struct Engine::Impl {
   bool opened = false, ended = false;
   size_t sent = 0;                 // frames of the shown stream that have been sent
   std::optional<Performer> alone;  // repairs and smooths what is shown where no take does
-  bool has_faces = false;
+  bool has_faces = false, any_usable = false;
+  std::string unusable;  // why the last frame is that cannot be used
+  std::string doubt;     // why the source may be no person; empty once sent
   std::vector<TakeWork> takes;
   Worker worker{"retargeting", [this] { return next(); }};
 
@@ -115,6 +117,7 @@ struct Engine::Impl {
   const std::shared_ptr<SkeletonExtractor>& extractor_of(const Method& method);
   std::vector<Method> wanted_extractions() const;
   bool read_frame();
+  std::string nothing_in_it() const;
   void observe(const SourceFrame& frame, const Method& method, double read_ms);
   float interval() const;
   Observation edited(const Seen& seen, size_t frame) const;
@@ -235,7 +238,9 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
 void Engine::Impl::close_source() {
   source.reset();
   for (auto& [name, stream] : streams) stream.frames.clear(), stream.observer.reset();
-  opened = ended = has_faces = false;
+  opened = ended = has_faces = any_usable = false;
+  unusable.clear();
+  doubt.clear();
   sent = 0;
   for (TakeWork& take : takes) {
     if (take.performer) take.performer->restart();
@@ -263,11 +268,19 @@ bool Engine::Impl::step() {
 /// Works for one take; an error ends that take alone.
 template <class Work>
 bool Engine::Impl::of_take(TakeWork& take, Work work) {
-  const std::string problem = failure_of(work);
+  bool not_a_person = false;
+  const std::string problem = failure_of([&] {
+    try {
+      work();
+    } catch (const NotAPersonError&) {
+      not_a_person = true;
+      throw;
+    }
+  });
   if (problem.empty()) return true;
   take.failed = true;
   take.performer.reset();
-  emit(TakeFailed{take.plan.id, problem});
+  emit(TakeFailed{take.plan.id, problem, !take.character && !take.loaded, not_a_person});
   return true;
 }
 
@@ -358,8 +371,11 @@ bool Engine::Impl::read_frame() {
     auto frame = source->next();
     if (!frame) {
       ended = true;
+      if (!any_usable) emit(SourceFailed{nothing_in_it()});
       return false;
     }
+    any_usable = any_usable || frame->usable;
+    if (!frame->usable) unusable = frame->problem;
     has_faces = has_faces || !frame->mesh.is_cloud();
     const std::optional<Box> extent = frame->usable ? extent_of(frame->mesh.vertices) : std::nullopt;
     if (frame->usable) frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
@@ -378,6 +394,12 @@ bool Engine::Impl::read_frame() {
   }
 }
 
+/// Of a source that has ended.
+std::string Engine::Impl::nothing_in_it() const {
+  const std::string& path = plan.source.motion.empty() ? plan.source.path : plan.source.motion;
+  return unusable.empty() ? path + ": has no frames" : path + ": no frame in it could be used: " + unusable;
+}
+
 /// Takes whose extractor cannot be had end here; where it is the view's, too, the source does.
 void Engine::Impl::observe(const SourceFrame& frame, const Method& method, double read_ms) {
   Stream& stream = stream_of(method);
@@ -392,7 +414,7 @@ void Engine::Impl::observe(const SourceFrame& frame, const Method& method, doubl
   }
   stream.frames.push_back({observed(*stream.observer, frame, interval()), read_ms, std::nullopt});
   const std::string& warning = stream.frames.back().observation.warning;
-  if (!warning.empty()) log::warn(plan.source.path + ": " + warning);
+  if (!warning.empty()) doubt = warning;
 }
 
 /// Seconds between two frames.
@@ -425,6 +447,7 @@ bool Engine::Impl::send_source() {
   event.decision = source ? source->decision() : "";
   if (source) event.to_file = source->to_file();
   event.has_faces = has_faces;
+  event.doubt = std::exchange(doubt, {});
   for (int n = 0; n < kReplayChunk && sent < frames.size(); ++n, ++sent) {
     const Observation seen = edited(frames[sent], sent);
     KeptSource kept;

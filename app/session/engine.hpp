@@ -62,6 +62,7 @@ struct SourceFailed {
 struct SourceFrames {
   int first = 0;
   bool has_faces = false;
+  std::string doubt;                                      ///< why it may be no person; set once
   std::string decision;                                   ///< about units, axes and floor
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();  ///< as SourceState's
   std::vector<KeptSource> frames;
@@ -81,6 +82,8 @@ struct TakeReady {
 struct TakeFailed {
   int64_t id = 0;
   std::string sentence;
+  bool not_opened = false;    ///< its target's file is to blame
+  bool not_a_person = false;  ///< the target could be used all the same
 };
 /// Frames of a take from `first` on, new or redone.
 struct TakeFrames {

@@ -36,6 +36,16 @@ void History::add(const Document& before, const std::string& label, const std::s
   set_depth(depth_);
 }
 
+void History::change_all(const std::function<void(Document&)>& change, const Document& now) {
+  for (Step& step : past_) change(step.document);
+  for (size_t i = past_.size(); i-- > 0;) {
+    const Document& after = i + 1 < past_.size() ? past_[i + 1].document : now;
+    if (same(past_[i].document, after)) past_.erase(past_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  future_.clear();
+  merge_.clear();
+}
+
 std::string History::undo_label() const {
   return past_.empty() ? "" : past_.back().label;
 }

@@ -39,6 +39,7 @@ struct KeptSource {
 /// The source, as far as it has been read.
 struct SourceState {
   std::string name;              ///< for people
+  std::string problem;           ///< why it gives no frames, one sentence; empty: no problem
   std::optional<int64_t> count;  ///< frames in all, where known
   double fps = 30;
   std::string decision;  ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
@@ -114,13 +115,14 @@ struct Failure {
 
 /// A question that the user must answer before the studio continues.
 struct Question {
-  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit };
+  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit, NotAPerson };
   Kind kind = Kind::UnsavedChanges;
   std::string text{};
   std::string then{};                  ///< the command to continue with ("app.quit", "document.open PATH")
   std::vector<std::string> missing{};  ///< MissingFiles: the missing paths
   std::vector<Autosave> autosaves{};   ///< Recover
-  int take = -1;                       ///< PaintMisfit: whose weights were painted on another surface
+  int take =
+      -1;  ///< PaintMisfit: whose weights were painted on another surface; NotAPerson: whose target it is
 };
 
 /// What the mouse does in the views.

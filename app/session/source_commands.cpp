@@ -52,11 +52,24 @@ void add_opening(Commands& commands) {
                     });
 }
 
+/// Refuses an option that does not apply to such a source.
+void set_options(Call& c, SourceOptions source) {
+  if (!source.path.empty()) check_source_options(source);
+  c.document.source = std::move(source);
+}
+
 void add_import(Commands& commands) {
   commands.add_edit({"source.units", "Units of the scan", "auto|m|dm|cm|mm|in"},
                     [](Call& c) { c.document.source.import.units = c.one_of(0, "unit", kUnitNames); });
   commands.add_edit({"source.up", "Up axis of the scan", "auto|x|y|z|-x|-y|-z"},
                     [](Call& c) { c.document.source.import.up = c.one_of(0, "axis", kAxisNames); });
+  commands.add_edit(
+      {"source.height", "Height of the person in the source", "METRES|auto: by its units, else 1.7 m"},
+      [](Call& c) {
+        SourceOptions source = c.document.source;
+        source.import.height = c.body_height(0);
+        set_options(c, std::move(source));
+      });
   commands.add_slider({"source.yaw", "Turn the scan", "DEGREES"},
                       [](Call& c) { c.document.source.import.yaw_deg = c.number(0, "angle"); });
   commands.add_slider({"source.floor", "Floor of the scan", "METRES|auto"}, [](Call& c) {
@@ -82,24 +95,18 @@ void check_clip(const SourceState& source, const std::string& clip) {
   throw Error(source.name + ": has no animation '" + clip + "', only " + all);
 }
 
-/// Refuses an option that does not apply to such a source.
-void set_skeletal(Call& c, SourceOptions source) {
-  if (!source.path.empty()) check_source_options(source);
-  c.document.source = std::move(source);
-}
-
 void add_skeletal(Commands& commands) {
   commands.add_edit({"source.clip", "Animation of the source", "NAME|NUMBER|longest"}, [](Call& c) {
     SourceOptions source = c.document.source;
     source.clip = c.word(0, "animation");
     if (source.clip == "longest") source.clip.clear();
     check_clip(c.session.source, source.clip);
-    set_skeletal(c, std::move(source));
+    set_options(c, std::move(source));
   });
   commands.add_edit({"source.as_scan", "Use an animated source as a scan", "on|off"}, [](Call& c) {
     SourceOptions source = c.document.source;
     source.as_scan = c.one_of(0, "switch", {"on", "off"}) == "on";
-    set_skeletal(c, std::move(source));
+    set_options(c, std::move(source));
   });
   commands.add_edit(
       {"source.bone", "Bone of the source for a joint", "JOINT BONE|auto|none; auto: the bone found for it"},
@@ -110,7 +117,7 @@ void add_skeletal(Commands& commands) {
                  "there is no joint '", joint, "'");
         source.bones[joint] = bone == "none" ? "" : bone;
         if (bone == "auto") source.bones.erase(joint);
-        set_skeletal(c, std::move(source));
+        set_options(c, std::move(source));
       });
 }
 

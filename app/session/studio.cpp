@@ -89,6 +89,8 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
     return mend(session_, name);
   }
   const Document before = session_.document;
+  const std::vector<int64_t> ids_before = background_->take_ids;
+  const bool changed_before = session_.changed;
   try {
     command->run(call);
     mend(session_, name);
@@ -102,6 +104,7 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
   const std::string merge = merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
   session_.history.add(before, call.label.empty() ? command->label : call.label, merge);
   session_.changed = true;
+  note_openings(before, ids_before, changed_before);
 }
 
 void Studio::try_run(const std::string& name, const Arguments& arguments) {
@@ -201,7 +204,7 @@ void Studio::forget_removed() {
     const int64_t id = applied->first;
     const bool stays = std::find(b.take_ids.begin(), b.take_ids.end(), id) != b.take_ids.end();
     if (!stays && applied->second.measuring != 0) jobs_.cancel(applied->second.measuring);
-    if (!stays) b.dirty.erase(id);
+    if (!stays) b.dirty.erase(id), b.opened_targets.erase(id), b.doubted.erase(id);
     any = any || !stays;
     applied = stays ? std::next(applied) : b.applied.erase(applied);
   }
@@ -216,6 +219,7 @@ void Studio::follow_source(bool other_path) {
   if (key != b.source_key) {
     cache_.set_source(document.source, edits);
     b.source_key = key;
+    session_.source.problem.clear();
     if (other_path) session_.source.clips.clear();
     if (document.source.path.empty()) session_.source = SourceState{};
   }

@@ -58,6 +58,9 @@ class Studio {
   void notify(const std::string& sentence, bool warning = false, const Offer& offer = {});
   /// The document as it would be saved now.
   SavedDocument saved_document() const;
+  /// Takes back the opening of a take's target. False, and nothing is done, where it came with the document or has been
+  /// read already.
+  bool take_back_target(size_t k);
   /// Replaces the open document by a new, an opened or a recovered one.
   void replace_document(SavedDocument saved, const std::string& path);
   void save_settings();
@@ -82,6 +85,12 @@ class Studio {
   void forget_removed();
   void apply_weights(size_t k);
   void ask_about_paint();
+  void ask_about_persons();
+  void offer_clean_up(const std::string& doubt);
+  void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
+  void roll_back_source();
+  using Change = std::function<void(Document&)>;
+  void roll_back(size_t steps, bool changed_before, const Change& change);
   void take_in_results();
   template <class Event>
   void take_in(Event& event);

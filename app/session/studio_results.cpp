@@ -1,5 +1,6 @@
 // What the background has finished, taken into the session.
 #include <algorithm>
+#include <cmath>
 
 #include "app/session/background.hpp"
 #include "app/session/frame_figures.hpp"
@@ -99,7 +100,9 @@ void Studio::take_in(SourceOpened& event) {
 
 template <>
 void Studio::take_in(SourceFailed& event) {
+  session_.source.problem = event.sentence;
   if (asked_for(session_, event.sentence)) return log::warn(event.sentence);
+  roll_back_source();
   fail(event.sentence, "source.open");
 }
 
@@ -117,8 +120,14 @@ void Studio::take_in(SourceFrames& event) {
   SourceState& source = session_.source;
   if (put(source.frames, event.first, std::move(event.frames))) ++source.generation;
   show_skeleton(event.first);
+  for (const KeptSource& frame : source.frames)
+    if (frame.points > 0 || !frame.flagged) {
+      background_->opened_source.reset();
+      break;
+    }
   source.decision = event.decision;
   source.to_file = event.to_file;
+  offer_clean_up(event.doubt);
   source.has_faces = event.has_faces;
 }
 
@@ -128,18 +137,35 @@ void Studio::take_in(TakeLoaded& event) {
   if (take && !take->target) take->as_loaded = std::move(event.as_loaded);
 }
 
+namespace {
+
+/// A body taller than its view shows makes the camera go back; nothing brings it nearer.
+void show_head(View& view, size_t pane, const Target& target) {
+  CameraState* const camera = at_or_null(view.cameras, view.linked ? 0 : static_cast<std::ptrdiff_t>(pane));
+  if (!camera || target.mesh.vertices.rows() == 0) return;
+  const auto y = target.mesh.vertices.col(1);
+  const float tall = 1.1f * (y.maxCoeff() - y.minCoeff()), opening = std::tan(0.5f * camera->fov);
+  if (!(tall > camera->target.y() + camera->distance * opening) || !std::isfinite(tall)) return;
+  camera->target.y() = 0.5f * tall;
+  camera->distance = std::max(camera->distance, 0.5f * tall / opening);
+}
+
+}  // namespace
+
 template <>
 void Studio::take_in(TakeReady& event) {
   TakeState* const take = take_of(event.id);
   if (!take) return;
   take->ready = true;
   take->problem.clear();
+  background_->opened_targets.erase(event.id);
   take->character = event.character;
   take->target = event.target;
   take->binding = event.binding;
   take->as_loaded.reset();
   background_->applied[event.id].deformer = event.deformer;
   apply_weights(take - session_.takes.data());
+  show_head(session_.view, take - session_.takes.data() + 1, *event.target);
   for (const std::string& warning : event.target->warnings) notify(warning, true);
 }
 
@@ -149,6 +175,12 @@ void Studio::take_in(TakeFailed& event) {
   if (!take) return;
   take->problem = event.sentence;
   if (asked_for(session_, event.sentence)) return log::warn(event.sentence);
+  if (event.not_a_person) {
+    log::warn(event.sentence);
+    background_->doubted.insert(event.id);
+    return;
+  }
+  if (event.not_opened) take_back_target(take - session_.takes.data());
   fail(event.sentence, "target.add");
 }
 
@@ -305,6 +337,7 @@ void Studio::take_in_results() {
   session_.working = b.engine.working();
   for (EngineEvent& event : b.engine.drain()) std::visit([this](auto& e) { take_in(e); }, event);
   ask_about_paint();
+  ask_about_persons();
   take_in_refined();
   refine_dirty();
   for (const JobQueue::Failure& failed : jobs_.drain()) fail(failed.sentence, failed.command);

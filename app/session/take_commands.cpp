@@ -43,6 +43,7 @@ void add_targets(Commands& commands) {
     check_room(c.document);
     Take take;
     take.target.path = target_file(c, 0);
+    take.target.not_a_person = NotAPerson::Refuse;
     take.name = fs::path(take.target.path).stem().string();
     remember(c.session.settings.recent_targets, take.target.path);
     c.document.takes.push_back(std::move(take));
@@ -52,6 +53,7 @@ void add_targets(Commands& commands) {
     Take& take = c.take();
     take.target = TargetOptions{};
     take.target.path = target_file(c, 1);
+    take.target.not_a_person = NotAPerson::Refuse;
     take.target_edits = {};
     take.name = fs::path(take.target.path).stem().string();
   });
@@ -62,11 +64,22 @@ void add_targets(Commands& commands) {
                     [](Call& c) { c.take().name = c.word(1, "name"); });
 }
 
+void use_anyway(Call& c) {
+  c.take().target.not_a_person = NotAPerson::Use;
+  auto& question = c.session.question;
+  const bool asked = question && question->kind == Question::Kind::NotAPerson;
+  if (asked && question->take == static_cast<int>(c.take_number())) question.reset();
+}
+
 void add_target_import(Commands& commands) {
   commands.add_edit({"target.units", "Units of the target", "TAKE auto|m|dm|cm|mm|in"},
                     [](Call& c) { c.take().target.import.units = c.one_of(1, "unit", kUnitNames); });
   commands.add_edit({"target.up", "Up axis of the target", "TAKE auto|x|y|z|-x|-y|-z"},
                     [](Call& c) { c.take().target.import.up = c.one_of(1, "axis", kAxisNames); });
+  commands.add_edit({"target.height", "Height of the target", "TAKE METRES|auto: by its units, else 1.7 m"},
+                    [](Call& c) { c.take().target.import.height = c.body_height(1); });
+  commands.add_edit({"target.use_anyway", "Use a target that does not look like a person", "TAKE"},
+                    use_anyway);
   commands.add_slider({"target.yaw", "Turn the target", "TAKE DEGREES|auto: so that it faces +z"},
                       [](Call& c) {
                         TargetOptions& target = c.take().target;

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -71,57 +72,92 @@ void add_cameras(Commands& commands) {
   });
 }
 
-/// The T-pose placed where the person would be: on the floor, under the following camera.
-Joints rest_as_shown(const Target& target) {
-  const float floor = target.mesh.vertices.rows() > 0 ? target.mesh.vertices.col(1).minCoeff() : 0;
-  const Vec3 from(target.joints(Pelvis, 0), floor, target.joints(Pelvis, 2));
-  return target.joints.rowwise() - from.transpose();
+using Extent = Eigen::AlignedBox3f;
+
+void add_points(Extent& all, const Points& points, const Vec3& offset) {
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (points.row(i).allFinite()) all.extend(Vec3(points.row(i).transpose() - offset));
 }
 
-/// Joints of everybody who is shown at the frame, as their cameras see them; of the targets in T-pose while
-/// there is no frame.
-std::vector<Joints> shown_joints(const Session& session) {
-  std::vector<Joints> all;
+/// The T-pose, or the mesh as it was loaded, placed where the person would be: on the floor, under the following
+/// camera.
+void add_rest(Extent& all, const TakeState& take) {
+  const Target* const target = take.target ? take.target.get() : take.as_loaded.get();
+  if (!target || target->mesh.vertices.rows() == 0) return;
+  const Points& vertices = target->mesh.vertices;
+  Vec3 from = 0.5f * (vertices.colwise().minCoeff() + vertices.colwise().maxCoeff()).transpose();
+  if (take.target) from = target->joints.row(Pelvis);
+  from.y() = vertices.col(1).minCoeff();
+  add_points(all, vertices, from);
+}
+
+/// Around the scan, no further from the person than half a metre: strays and the floor do not count. Of a take that is
+/// not bound around its joints.
+Extent scan_extent(const Session& session, int pane, int frame, const Joints& joints) {
+  constexpr float kBody = 0.2f,
+                  kReach = 0.5f;  // metres of a body beyond its outermost joints; of clothes and props
+  Extent all;
+  if (!joints.allFinite()) return all;
+  const Extent person(joints.colwise().minCoeff().transpose(), joints.colwise().maxCoeff().transpose());
+  const auto grown = [&](float by) {
+    return Extent(person.min() - Vec3::Constant(by), person.max() + Vec3::Constant(by));
+  };
+  const ScanEdits& edits = session.document.scan_edits;
+  const bool thinned = edits.floor || edits.largest_cluster;
+  const bool scanned = pane == 0 && frame < ssize(session.source.frames) && !thinned;
+  const std::optional<Box> box = scanned ? session.source.frames[frame].extent : std::nullopt;
+  if (!box) return grown(kBody);
+  all = grown(kReach).intersection(Extent(box->low, box->high));
+  if (edits.crop) all = all.intersection(Extent(edits.crop->low, edits.crop->high));
+  return all.isEmpty() ? grown(kBody) : all;
+}
+
+/// What a pane draws: the surface; the joints where there is none.
+void add_pane(Extent& all, const Session& session, int pane, int frame) {
+  const TakeState* const take = at_or_null(session.takes, pane - 1);
+  const bool placing = session.tool == Tool::TargetJoints && pane == session.selected_take + 1;
+  const Joints* const joints = pane_joints(session, pane, frame);
+  if (take && (placing || !joints)) add_rest(all, *take);
+  if (!joints) return;
+  const Vec3 offset = follow_offset(session, pane, frame);
+  if (take && take->deformer && frame < ssize(take->shown.poses))
+    add_points(all, take->deformer->deform(take->shown.poses[frame]), offset);
+  else
+    all.extend(scan_extent(session, pane, frame, *joints).translate(-offset));
+}
+
+/// Of the panes that share the active camera.
+Extent shown_extent(const Session& session) {
+  const View& view = session.view;
+  const bool alone = view.layout == Layout::Single || (view.layout == Layout::SideBySide && !view.linked);
   const int frame = shown_frame(session);
-  for (int pane = 0; pane <= ssize(session.takes); ++pane) {
-    const Joints* const joints = pane_joints(session, pane, frame);
-    const Vec3 offset = follow_offset(session, pane, frame);
-    if (joints)
-      all.push_back(joints->rowwise() - offset.transpose());
-    else if (pane > 0 && session.takes[pane - 1].target)
-      all.push_back(session.takes[pane - 1].target->joints);
-  }
-  const size_t selected = session.selected_take;
-  if (session.tool == Tool::TargetJoints && selected < session.takes.size() && session.takes[selected].target)
-    all.push_back(rest_as_shown(*session.takes[selected].target));
+  Extent all;
+  if (alone) add_pane(all, session, view.active_pane, frame);
+  for (int pane = 0; !alone && pane <= ssize(session.takes); ++pane) add_pane(all, session, pane, frame);
   return all;
 }
 
-/// Turns the camera to the middle of everyone shown and moves it back until all fit the view's narrow side.
+/// Turns the camera to the middle of all that is drawn and moves it back until it fits the view's narrow side.
 void fit(Call& call) {
-  constexpr float kBody = 0.2f;          // metres of a body beyond its outermost joints
+  constexpr float kAir = 0.06f;          // of the height, around
   constexpr float kTitle = 0.08f;        // of the height stays free above the heads, for words
   constexpr float kViewsAspect = 1.55f;  // of all views together in a usual window
   const Session& session = call.session;
   CameraState& c = active_camera(call.session);
-  const std::vector<Joints> people = shown_joints(session);
-  if (people.empty()) {
+  Extent shown = shown_extent(session);
+  if (shown.isEmpty()) {
     c.target = CameraState{}.target;
     c.distance = CameraState{}.distance;
     return;
   }
-  Vec3 low = Vec3::Constant(1e9f), high = -low;
-  for (const Joints& joints : people) {
-    low = low.cwiseMin(joints.colwise().minCoeff().transpose());
-    high = high.cwiseMax(joints.colwise().maxCoeff().transpose());
-  }
-  high.y() += kTitle * (high.y() - low.y() + 2 * kBody);
-  c.target = 0.5f * (low + high);
+  const Vec3 air = Vec3::Constant(kAir * shown.sizes().y());
+  shown = Extent(shown.min() - air, shown.max() + air + Vec3(0, kTitle * shown.sizes().y(), 0));
+  c.target = shown.center();
   const size_t panes = session.view.layout == Layout::SideBySide ? 1 + session.takes.size() : 1;
   const float aspect = kViewsAspect / static_cast<float>(panes);
-  const float tall = 0.5f * (high.y() - low.y()) + kBody;
-  const float wide = 0.5f * std::hypot(high.x() - low.x(), high.z() - low.z()) + kBody;
-  c.distance = std::max(tall, wide / aspect) / std::tan(0.5f * c.fov) + 0.5f * wide;
+  const Vec3 half = 0.5f * shown.sizes();
+  const float wide = std::hypot(half.x(), half.z());
+  set_distance(c, std::max(half.y(), wide / aspect) / std::tan(0.5f * c.fov) + 0.5f * wide);
 }
 
 void add_camera_motion(Commands& commands) {

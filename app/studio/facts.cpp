@@ -14,7 +14,7 @@ std::string yes_no(bool yes) {
 }
 
 const char* question_name(const Session& session) {
-  constexpr Names<4> kNames{"unsaved", "recover", "missing", "paint"};
+  constexpr Names<5> kNames{"unsaved", "recover", "missing", "paint", "not-a-person"};
   return session.question ? kNames[static_cast<size_t>(session.question->kind)] : "none";
 }
 

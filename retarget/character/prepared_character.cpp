@@ -165,17 +165,22 @@ std::string up_of_lying(const PreparedCharacter& c, ImportOptions import) {
   return (stance_of(upright).centre < 0.46f ? "-" : "") + decision.up;
 }
 
-/// Millimetres are guessed of people down to half a metre, but a character of a few hundred units has units
-/// of its own.
-void refit(ImportDecision& decision, const std::string& told_units) {
-  constexpr float kSmallest = 0.84f, kUsual = 1.7f;
-  const bool guessed = told_units.empty() || told_units == "auto";
-  if (!guessed || decision.units != "mm" || decision.height >= kSmallest) return;
+/// A source may crouch, a character stands: below half a metre it is nobody's size. Millimetres are guessed of people
+/// down to there, but a character of a few hundred units has units of its own.
+void refit(ImportDecision& decision, const CharacterOptions& options, Mesh mesh) {
+  constexpr float kSmallest = 0.5f, kSmallestInMm = 0.84f, kUsual = 1.7f;
+  const bool guessed = (options.units.empty() || options.units == "auto") && !options.height;
+  const bool in_mm = decision.units == "mm";
+  if (!guessed || decision.height >= (in_mm ? kSmallestInMm : kSmallest) || !(decision.height > 1e-9f))
+    return;
+  decision.apply(mesh);
+  if (!in_mm && lies_down(stance_of(mesh))) return;
   const float factor = kUsual / decision.height;
   decision.sentence = "its units are unknown: it is made 1.7 m tall, up: " + decision.up;
   decision.scale *= factor;
   decision.floor *= factor;
   decision.height = kUsual;
+  decision.units = "fit";
 }
 
 void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
@@ -184,6 +189,7 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   import.units = options.units;
   import.up = options.up;
   import.floor = options.floor;
+  import.height = options.height;
   if (c.rigged && (import.up.empty() || import.up == "auto")) import.up = up_of_rig(c.map, c.bind);
   c.surface = merged_surface(c.character, file);
   const std::string seen = c.rigged ? up_of_rig(c.map, c.bind) : "";
@@ -198,7 +204,7 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
                                        : "it lies down with y up, so " + import.up + " is taken as up");
   }
   ImportDecision decision = decide_import(c.surface.mesh, import);
-  refit(decision, options.units);
+  refit(decision, options, c.surface.mesh);
   US_CHECK(decision.height > 1e-9f && std::isfinite(decision.height), c.character.called(),
            ": has no height");
   c.to_world.scale = decision.scale;
@@ -207,6 +213,28 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   c.surface.mesh.vertices = c.to_world.apply(c.surface.mesh.vertices);
   paint(c.surface, c.character);
   c.notes.push_back(decision.sentence);
+  if (decision.units == "fit" && !options.height) c.doubt = "its size is no person's in any unit";
+}
+
+/// Refuses or warns of what does not stand like a person. Bones that are a person's outweigh wide wings, not feet far
+/// apart.
+void check_stance(PreparedCharacter& c, const CharacterOptions& options) {
+  constexpr float kFourFeet = 0.6f;
+  const Stance stance = stance_of(c.surface.mesh);
+  const std::string why_not = refusal(stance), why_implausible = implausibility(stance);
+  const bool refused = !c.rigged || (options.not_a_person == NotAPerson::Refuse && stance.feet > kFourFeet);
+  if (!why_not.empty() && refused && options.not_a_person != NotAPerson::Use)
+    throw NotAPersonError(c.character.called() + ": does not look like a person: " + why_not);
+  if (!(c.rigged ? why_not : why_implausible).empty())
+    c.target.warnings.push_back("the target may not be a person: " + why_implausible);
+  if (c.doubt.empty()) c.doubt = doubt(stance);
+}
+
+/// The same of what no person is recognised in.
+void check_person(const PreparedCharacter& c, const SideViews& seen, const CharacterOptions& options) {
+  if (options.not_a_person != NotAPerson::Refuse || c.doubt.empty() || !shows_nobody(seen)) return;
+  throw NotAPersonError(c.character.called() +
+                        ": does not look like a person: nobody is recognised in it, and " + c.doubt);
 }
 
 void note_turns(PreparedCharacter& c) {
@@ -342,6 +370,7 @@ void turn_over(PreparedCharacter& c, const CharacterOptions& options) {
 void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonExtractor* t_pose,
                    const CharacterOptions& options) {
   SideViews seen = seen_from_sides(c.surface.mesh, any_pose);
+  check_person(c, seen, options);
   if (is_upside_down(seen)) {
     US_CHECK(options.turn_if_lying || options.up == "auto", c.character.called(), ": is upside down with ",
              options.up, " up, another up axis (--target-up) turns it over");
@@ -402,11 +431,7 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
     c.notes.push_back("its bones could not be mapped (" + std::to_string(c.map.count()) +
                       " of 22): its own rig is not used");
   place_in_world(c, options);
-  const Stance stance = stance_of(c.surface.mesh);
-  const std::string why_not = refusal(stance), why_implausible = implausibility(stance);
-  US_CHECK(why_not.empty() || c.rigged, c.character.called(), ": does not look like a person: ", why_not);
-  if (!(c.rigged ? why_not : why_implausible).empty())
-    c.target.warnings.push_back("the target may not be a person: " + why_implausible);
+  check_stance(c, options);
   if (c.rigged)
     turn_rig_forward(c, options);
   else if (options.yaw_deg && *options.yaw_deg != 0)

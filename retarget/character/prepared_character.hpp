@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "retarget/base/error.hpp"
+#include "retarget/base/fields.hpp"
 #include "retarget/character/bone_map.hpp"
 #include "retarget/character/character.hpp"
 #include "retarget/character/rest_pose.hpp"
@@ -17,13 +19,28 @@ namespace understudy {
 /// The name of the skin on the 22 joints, in files that we write.
 constexpr const char* kOurSkin = "22 joints";
 
+/// What happens to a character that does not look like a person.
+enum class NotAPerson {
+  RefuseClear,  ///< refused where no person can be so, else a warning: of documents of before, and of cases
+  Refuse,       ///< refused where it is doubtful and nobody is recognised in it, too
+  Use           ///< used all the same, with a warning
+};
+constexpr Names<3> kNotAPersonNames{"refuse-clear", "refuse", "use"};
+
+/// A character that does not look like a person is not used unasked.
+struct NotAPersonError : Error {
+  using Error::Error;
+};
+
 struct CharacterOptions {
   BoneChoices choices;           ///< the user's corrections of the map
   std::string units, up = "y";   ///< as in ImportOptions; empty: guessed
   bool turn_if_lying = true;     ///< who lies or is upside down with y up is turned upright, with a note
   std::optional<float> floor;    ///< its height after scale and axes, metres; none: the lowest points
   std::optional<float> yaw_deg;  ///< turns it about y; none: so that it faces +z
-  bool own_joints = true;        ///< false: the T-pose joints are found by the network, not the bones
+  std::optional<float> height;   ///< metres that it is made tall; none: see decide_import()
+  NotAPerson not_a_person = NotAPerson::RefuseClear;
+  bool own_joints = true;  ///< false: the T-pose joints are found by the network, not the bones
 };
 
 /// Everything in metres, y up, facing +z, the floor at 0. The vertices of surface, weights and target are the
@@ -42,6 +59,7 @@ struct PreparedCharacter {
   Target target;            ///< in T-pose
   std::vector<int> driver;  ///< of each node the joint that moves it, -1: it keeps its place on its parent
   std::vector<std::string> notes;  ///< what was decided, a sentence each
+  std::string doubt;  ///< why it may be no person, by size and shape; empty: nothing speaks against it
   /// The target's T-pose with the file's own vertices, in its count and order.
   Mesh target_in_file_order() const;
 };

@@ -10,6 +10,7 @@
 #include "retarget/character/rest_pose.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/pipeline/observer.hpp"
 
 namespace understudy {
 namespace {
@@ -109,6 +110,21 @@ std::string implausibility(const Stance& s) {
     return "it is " + centimetres(1, s.height) + " tall, " + centimetres(s.length, s.height) + " wide and " +
            centimetres(s.width, s.height) + " deep";
   return {};
+}
+
+std::string doubt(const Stance& s) {
+  const std::string why = implausibility(s);
+  if (!why.empty() || s.feet <= 0.4f) return why;
+  return "its feet are " + centimetres(s.feet, s.height) + " apart";
+}
+
+bool shows_nobody(const SideViews& seen) {
+  const auto nobody = [](const Extraction& view) {
+    Observation observation;
+    static_cast<Extraction&>(observation) = view;
+    return !refusal(observation).empty() || is_implausible(view);
+  };
+  return std::count_if(seen.begin(), seen.end(), nobody) + 1 >= static_cast<long>(kSides);
 }
 
 float symmetric_heading(const Points& points, float guess) {

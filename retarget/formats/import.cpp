@@ -159,11 +159,13 @@ std::string short_number(float value) {
   return printed("%.4g", static_cast<double>(value));
 }
 
-// No person has this height in any unit. Somebody who lies, or a giant, is still in metres; the rest, small or
-// large, are characters of arbitrary size, and become as tall as people are.
+// No person has this height in any unit. Somebody who lies is still in metres; the rest, small or large, are
+// characters of arbitrary size, and become as tall as people are.
 std::string decide_odd_size(float height, float extent, ImportDecision& decision) {
   const bool has_size = height > 1e-20f && height < 1e30f;
-  const bool metric = !has_size || (extent >= 0.5f && extent < 5.0f);
+  const Unit& metres = kUnits[0];
+  const bool lies = height < metres.low && extent >= metres.low && extent < metres.high;
+  const bool metric = !has_size || lies;
   const std::string what = "a height of " + short_number(height) + " fits no person in any unit";
   decision.units = metric ? "m" : "fit";
   decision.scale = metric ? 1.0f : kUsualHeight / height;
@@ -171,14 +173,25 @@ std::string decide_odd_size(float height, float extent, ImportDecision& decision
   return std::string("units: ") + (metric ? "metres (" : "unknown, made 1.7 m tall (") + what + ")";
 }
 
+std::string given_height(float height, float wanted, ImportDecision& decision) {
+  US_CHECK(wanted >= kBodyHeights.low && wanted <= kBodyHeights.high, "a height is ", kBodyHeights.low,
+           " to ", kBodyHeights.high, " m, not ", wanted);
+  US_CHECK(height > 1e-20f && height < 1e30f, "what has no height cannot be made ", wanted, " m tall");
+  decision.units = "fit";
+  decision.scale = wanted / height;
+  return "height: " + short_number(wanted) + " m (given)";
+}
+
 // Writes unit and scale into the decision; returns the words about it. extent: the largest along any axis.
-std::string decide_units(float height, float extent, const std::string& forced, ImportDecision& decision) {
+std::string decide_size(float height, float extent, const ImportOptions& options, ImportDecision& decision) {
+  const std::string& forced = options.units;
   const bool guess = forced.empty() || forced == "auto";
   const Unit* unit = nullptr;
   for (const auto& candidate : kUnits)
     if (guess ? height >= candidate.low && height < candidate.high : forced == candidate.name)
       unit = &candidate;
   US_CHECK(guess || unit, "the unit '", forced, "' is not one of m, dm, cm, mm, in");
+  if (options.height) return given_height(height, *options.height, decision);
   if (!unit) return decide_odd_size(height, extent, decision);
   decision.units = unit->name;
   decision.scale = unit->metres;
@@ -224,7 +237,7 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   const float extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
   ImportDecision decision;
   decision.up = std::string(up.negative ? "-" : "") + static_cast<char>('x' + up.axis);
-  decision.sentence = decide_units(high - low, extent, forced.units, decision);
+  decision.sentence = decide_size(high - low, extent, forced, decision);
   decision.height = (high - low) * decision.scale;
   decision.axes = rotation_about_y(forced.yaw_deg * kPi / 180.0f) * to_y_up(up);
   const float measured = low * decision.scale;

@@ -9,12 +9,17 @@
 
 namespace understudy {
 
+/// Heights that can be asked for, metres.
+constexpr Within<float> kBodyHeights{0.05f, 100};
+
 /// What the user forces; what is left empty is guessed.
 struct ImportOptions {
   std::string units;  ///< "m", "cm", "mm", "dm", "in"; empty or "auto": from the height of the body
   std::string up;     ///< "x", "y", "z", "-x", "-y", "-z"; empty or "auto": from where the body extends
   float yaw_deg = 0;  ///< turns the scan about y at the end, from +z towards +x
   std::optional<float> floor;  ///< height of the floor in the file, in metres; none: the lowest points
+  std::optional<float>
+      height{};  ///< metres that the body is made tall, whatever its units; none: by its units
 };
 template <class V, class S>
 FieldsOf<S, ImportOptions> fields(V& visit, S& import) {
@@ -22,6 +27,7 @@ FieldsOf<S, ImportOptions> fields(V& visit, S& import) {
   visit("up", import.up);
   visit("yaw_deg", import.yaw_deg);
   visit("floor_m", import.floor);
+  visit("height_m", import.height, kBodyHeights);
 }
 
 /// How to bring every frame of a sequence into the program's world; decided from its first frame alone.
@@ -41,8 +47,9 @@ struct ImportDecision {
 };
 
 /// Decides from the first usable frame. Outliers are left aside; a flat floor in the scan shows where down
-/// is. What is not 0.5 to 2.6 m tall in any unit is taken as metres where its largest extent is 0.5 to 5 m
-/// (somebody who lies, a giant), else made 1.7 m tall, with a warning. Axes can only be guessed positive unless
+/// is. One rule of size for sources and targets: what is 0.5 to 2.6 m tall in some unit keeps that size, and so does
+/// who is lower and 0.5 to 2.6 m long (somebody who lies or crouches, in metres); all else is made 1.7 m tall, with a
+/// warning. Axes can only be guessed positive unless
 /// a floor is seen. Throws Error when the options are not among those named, or there is no finite point.
 ImportDecision decide_import(const Mesh& first, const ImportOptions& forced);
 

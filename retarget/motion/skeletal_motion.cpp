@@ -103,6 +103,7 @@ PreparedCharacter prepared(Character character, const SkeletalMotionOptions& opt
   CharacterOptions how;
   how.choices = options.bones;
   how.units = options.import.units;
+  how.height = options.import.height;
   how.up = "auto";
   return prepare_character(std::move(character), nullptr, nullptr, how);
 }

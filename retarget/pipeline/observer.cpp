@@ -35,12 +35,15 @@ float bone_implausibility(const Joints& joints) {
   return std::sqrt((ratio - ratio.mean()).square().mean());
 }
 
+bool is_implausible(const Extraction& seen) {
+  const float implausibility = bone_implausibility(seen.joints);
+  return implausibility > kImplausible || (implausibility > kOdd && seen.confidence.mean() < kUnsure);
+}
+
 std::string PersonCheck::push(const Extraction& seen) {
   if (seen.exact || warned_ || frames_ >= kFirst || !seen.joints.allFinite()) return {};
-  const float implausibility = bone_implausibility(seen.joints);
   ++frames_;
-  if (implausibility > kImplausible || (implausibility > kOdd && seen.confidence.mean() < kUnsure))
-    ++implausible_;
+  if (is_implausible(seen)) ++implausible_;
   warned_ = frames_ >= kFewest && implausible_ * 5 >= frames_ * 4;
   if (!warned_) return {};
   return "may not be a person, or its poses are not recognised: its bones are unlike a human's in " +

@@ -13,6 +13,9 @@ namespace understudy {
 /// to 0.7 comes out.
 float bone_implausibility(const Joints& joints);
 
+/// Whether the bones are no person's, or unlike a person's and seen with little confidence.
+bool is_implausible(const Extraction& seen);
+
 /// Looks at what is extracted from a source, frame after frame.
 class PersonCheck {
  public:

@@ -52,6 +52,18 @@ TEST_F(Measuring, ABaselineIsEvaluatedInPlaceOfTheExtractor) {
   expect_clean_failure(run_program({"eval", cases, "--baseline", "fit"}), "--body");
 }
 
+TEST_F(Measuring, ScansAreCleanedAndSkeletonsAreNot) {
+  const Finished run = run_program({"measure", scans(), "--out", out("m.json"), "--remove-floor",
+                                    "--largest-part", "--crop", "-3,-1,-3,3,3,3"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_GT(Json::parse(read_bytes(out("m.json")))["frames"], 0);
+  std::filesystem::remove_all(scratch.path("out"));
+  expect_clean_failure(run_program({"measure", scans(), "--crop", "1,1,1,0,2,2"}), "has no inside");
+  expect_clean_failure(
+      run_program({"measure", US_SOURCE_DIR "/tests/fuzz/corpus/bvh/walk.bvh", "--remove-floor"}),
+      "only scans are cleaned");
+}
+
 TEST_F(Measuring, ReportWritesAPageAndSaysWhatIsLeftOut) {
   make_suite("extraction");
   write_text(scratch.path("rows.json"),

@@ -91,17 +91,25 @@ TEST(DocumentFile, GivesBackAllThatWasSaved) {
 }
 
 /// Saved when documents still held whether the source's folder was being written, and no switches of a second
-/// look and of hand contacts: those were on.
+/// look and of hand contacts: those were on. Targets were not asked whether they are persons.
 TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   const std::string text = read_bytes(US_SOURCE_DIR "/tests/session/saved_before.understudy");
   const SavedDocument read = from_json(parse_document(text, "doc"), "/a/documents", "doc");
   Document wanted = full_document("/a").document;
-  for (Take& take : wanted.takes) take.method.near = take.method.keep_contacts = true;
+  wanted.source.import.height.reset();
+  for (Take& take : wanted.takes) {
+    take.method.near = take.method.keep_contacts = true;
+    take.target.import.height.reset();
+    take.target.not_a_person = NotAPerson::RefuseClear;
+  }
   EXPECT_TRUE(same(read.document, wanted));
   std::string without = text;
   without.erase(without.find("  \"follow\": true,\n", without.find("floor_m")), 18);
   auto written = to_json(read, "/a/documents");
-  for (auto& take : written["takes"]) take["method"].erase("near"), take["method"].erase("keep_contacts");
+  for (auto& take : written["takes"]) {
+    take["method"].erase("near"), take["method"].erase("keep_contacts");
+    take["target"].erase("not_a_person");
+  }
   EXPECT_EQ(document_text(written), without);
 }
 

@@ -152,9 +152,9 @@ const Changes& document_changes() {
 /// Does not compile once a member is added: then it belongs into fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
-  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones,
-                                quiet] = SourceOptions();
-  [[maybe_unused]] const auto& [units, up, yaw, floor] = ImportOptions();
+  [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
+                                edits] = SourceOptions();
+  [[maybe_unused]] const auto& [units, up, yaw, floor, body_height] = ImportOptions();
   [[maybe_unused]] const auto& [crop, cut, cluster, gap] = ScanEdits();
   [[maybe_unused]] const auto& [low, high] = Box();
   [[maybe_unused]] const auto& [cut_height, plane, tolerance, radius, band] = FloorCut();
@@ -163,7 +163,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [swap_first, swap_last, limbs] = SwapEdit();
   [[maybe_unused]] const auto& [name, target, method, target_edits, pose_edits] = Take();
   [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
-                                target_bones] = TargetOptions();
+                                target_bones, not_a_person] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,
                                 root] = Method();
   [[maybe_unused]] const auto& [moves, weights] = TargetEdits();

@@ -41,9 +41,13 @@ PoseEdits pose_edits() {
 Take take(const std::string& folder) {
   Take take;
   take.name = "Gräfin \"Zwei\"";
-  take.target = {
-      folder + "/targets/a b ü.obj",           {0.5f, -1.25f}, {"cm", "-z", 12.5f, 0.01f}, false, "ours",
-      {{"left_wrist", "Hand.L"}, {"head", ""}}};
+  take.target = {folder + "/targets/a b ü.obj",
+                 {0.5f, -1.25f},
+                 {"cm", "-z", 12.5f, 0.01f, 1.62f},
+                 false,
+                 "ours",
+                 {{"left_wrist", "Hand.L"}, {"head", ""}},
+                 NotAPerson::Use};
   take.method = {"paper", "paper", false, false, false, false, false, false, false, RootMode::InPlace};
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();
@@ -79,12 +83,13 @@ SavedDocument full_document(const std::string& folder) {
                            folder + "/walk.npz",
                            {1.5f, 0},
                            59.94,
-                           {"mm", "z", -90, 0.25f},
+                           {"mm", "z", -90, 0.25f, 1.75f},
                            /*follow=*/true,
                            /*as_scan=*/false,
                            "clip 2",
                            {{"head", "Head"}},
-                           /*quiet=*/false};
+                           /*quiet=*/false,
+                           /*edits=*/{}};
   saved.document.truth = folder + "/truth.npz";
   saved.document.scan_edits = scan_edits();
   saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},

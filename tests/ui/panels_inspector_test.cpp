@@ -40,6 +40,14 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_click("source.extractor.1", {"source.extractor paper"});
   expect_choice("target.units", 2, {"target.units 0 cm"});
   expect_choice("target.up", 3, {"target.up 0 z"});
+  EXPECT_FALSE(shown("target.height.reset"));
+  expect_typed("target.height", "1.2 m", {"target.height 0 1.2"});
+  expect_typed("target.height", "tall", {});
+  expect_typed("source.height", "1.8", {"source.height 1.8"});
+  session.document.takes[0].target.import.height = 1.2f;
+  frame(2);
+  expect_typed("target.height", "auto", {"target.height 0 auto"});
+  expect_click("target.height.reset", {"target.height 0 auto"});
   expect_typed("target.yaw", "-45", {"target.yaw 0 -45"});
   expect_typed("target.yaw", "north", {});
   session.document.takes[0].target.forward = false;

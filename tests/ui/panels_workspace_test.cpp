@@ -785,6 +785,19 @@ TEST_F(WorkspaceTest, ANoticeOfAFileShowsItsFolder) {
   EXPECT_EQ(take_log(), Lines{"file.show \"/d/a b.glb\""});
 }
 
+TEST_F(WorkspaceTest, ATargetThatMayBeNoPersonIsUsedOrTakenBack) {
+  for (const auto& [answer, line] : {std::pair<const char*, const char*>{"person.yes", "target.use_anyway 1"},
+                                     {"person.cancel", "question.answer cancel"}}) {
+    session.question =
+        app::Question{app::Question::Kind::NotAPerson, "horse: does not look like a person", "", {}, {}, 1};
+    frame(3);
+    click(answer);
+    EXPECT_EQ(take_log(), Lines{line});
+    session.question.reset();
+    frame(2);
+  }
+}
+
 TEST_F(WorkspaceTest, WordsOfFixedPlacesFit) {
   frame(3);
   const float padding = 6;

@@ -94,6 +94,17 @@ void draw_paint(const app::Session& session, PanelContext& context) {
   context.ask(project ? "edit.weights_reproject" : "edit.weights_clear", {std::to_string(k)});
 }
 
+/// The target is used, or taken back.
+void draw_not_a_person(const app::Session& session, PanelContext& context) {
+  QuestionWords question;
+  question.title = "This may not be a person";
+  question.sentence = session.question->text;
+  question.yes = "Use anyway";
+  const Answer answer = ask(context.ui, "person", question);
+  if (answer == Answer::Yes) context.ask("target.use_anyway", {std::to_string(session.question->take)});
+  if (answer == Answer::Cancel) context.ask("question.answer", {"cancel"});
+}
+
 void draw_method_rows(app::Method& method, Ui& ui) {
   method_row(ui, {"compare.engine", "Transfer"}, engines(), method.engine);
   method_row(ui, {"compare.extractor", "Extractor"}, extractors(), method.extractor);
@@ -180,6 +191,8 @@ void draw_question(const app::Session& session, PanelContext& context, FilesStat
       return draw_missing(session, context, files);
     case Kind::PaintMisfit:
       return draw_paint(session, context);
+    case Kind::NotAPerson:
+      return draw_not_a_person(session, context);
     default:
       return draw_unsaved(session, context, files);
   }

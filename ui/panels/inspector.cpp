@@ -1,7 +1,7 @@
 // What is open and how it is done: the source, the takes, their target and method.
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.units, source.up,
-// source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its row), take.name,
-// take.remove, take.add, take.replace; target.units, target.up, target.yaw, target.betas; method.engine,
+// source.height(.reset), source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its row), take.name,
+// take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.yaw, target.betas; method.engine,
 // method.extractor, method.offsets, method.root, method.swaps, method.smooth, method.lengths, method.compare,
 // work.pause, work.resume, work.restart.
 #include <algorithm>
@@ -28,12 +28,36 @@ void warn(Ui& ui, const std::string& sentence) {
   ImGui::PopTextWrapPos();
 }
 
-/// Units and axis, alike for scans and targets. `take`: the commands' first argument, where they have one.
+/// Metres, or by the file's units: then a button leads back there.
+void draw_height(PanelContext& context, const std::string& group, const ImportOptions& import,
+                 const std::string& take) {
+  Ui& ui = context.ui;
+  const Control control{
+      group + ".height", "Height",
+      "Metres that the body is made tall; auto: by the file's units, 1.7 m where those are nobody's",
+      group + ".height " + take};
+  row(ui, control.label, control.explanation);
+  const float button = import.height ? ImGui::GetFrameHeight() + ui.px(4) : 0;
+  ImGui::BeginChild((control.name + ".field").c_str(),
+                    {std::max(1.f, ImGui::GetContentRegionAvail().x - button), ImGui::GetFrameHeight()});
+  const auto text = committed_text(ui, control.name, import.height ? figure(*import.height, "m") : "auto");
+  ImGui::EndChild();
+  const auto metres = text ? parse_number(*text) : std::nullopt;
+  if (metres || (text && *text == "auto")) push(context, control, metres ? argument(*metres) : "auto");
+  if (!import.height) return;
+  ImGui::SameLine(0, ui.px(4));
+  if (icon_button(ui, control.name + ".reset", Icon::Reset,
+                  {"Back to the file's size", "", false, false, 26}))
+    push(context, control, "auto");
+}
+
+/// Size and axis, alike for scans and targets. `take`: the commands' first argument, where they have one.
 void draw_import(PanelContext& context, const std::string& group, const ImportOptions& import,
                  const std::string& take = {}) {
   const auto word = [](const std::string& value) { return value.empty() ? "auto" : value; };
   ask_choice(context, {group + ".units", "Units", "Of the file", group + ".units " + take}, kUnits, kUnits,
              word(import.units));
+  draw_height(context, group, import, take);
   ask_choice(context, {group + ".up", "Up", "The axis of the file that points up", group + ".up " + take},
              kAxes, kAxes, word(import.up));
 }
@@ -201,7 +225,7 @@ void draw_target_facts(const app::TakeState& state, Ui& ui) {
   row_text(ui, "Faces", grouped(mesh.faces.rows()));
   if (mesh.vertices.rows() > 0) {
     const auto y = mesh.vertices.col(1);
-    row_text(ui, "Height", figure(y.maxCoeff() - y.minCoeff(), "m"));
+    row_text(ui, "Height now", figure(y.maxCoeff() - y.minCoeff(), "m"));
   }
   if (!state.target) {
     if (state.problem.empty()) hint(ui, "Finding its joints and skin weights\u2026");

@@ -113,7 +113,8 @@ bool possible(const app::Session& session, const std::string& command) {
   if (command == "source.open" || command == "source.motion" || command == "target.add") return true;
   if (command == "tool" || command == "select.joint") return has_document(session);
   if (command == "document.save" || command == "document.save_as") return has_document(session);
-  for (const char* of_source : {"source.", "edit.crop", "edit.floor_removal", "edit.cluster"})
+  for (const char* of_source :
+       {"source.", "edit.crop", "edit.floor_removal", "edit.cluster", "edit.clean_up"})
     if (starts_with(command, of_source)) return source;
   for (const char* of_frames : {"playback.", "edit.drag", "edit.swap", "edit.skeleton_clear", "video."})
     if (starts_with(command, of_frames)) return frames;

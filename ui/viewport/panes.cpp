@@ -121,6 +121,7 @@ std::string pane_hint(const Session& session, const PaneContent& pane) {
     if (!take->ready) return "Preparing the target\u2026";
     if (shows_rest(session, pane)) return "";
   }
+  if (!session.source.problem.empty()) return session.source.problem;
   if (pane_frame(session, pane) < 0) return "Reading the first frame\u2026";
   return "";
 }

@@ -167,14 +167,28 @@ TEST(Import, SurvivesNanPointsAndTinyScans) {
 
 TEST(Import, MakesACharacterOfArbitrarySizeAsTallAsPeopleAre) {
   Warnings warnings;
-  for (const float scale : {1e-4f, 0.095f, 275.0f, 1e6f}) {
+  for (const float scale :
+       {1e-4f, 0.095f, 2.0f, 2.65f, 209.0f, 275.0f, 1e6f}) {  // 4.5 m and 355 units among them
     const Mesh file = as_file(person(true), "y", scale);
     const ImportDecision decision = decide_import(file, {});
     EXPECT_EQ(decision.units, "fit");
     EXPECT_NEAR(decision.apply(file.vertices).col(1).maxCoeff(), 1.7f, 0.05f);
   }
-  EXPECT_EQ(decide_import(as_file(person(true), "y", 2), {}).units, "m");
   EXPECT_TRUE(warnings.contain("fits no person in any unit"));
+}
+
+TEST(Import, AGivenHeightIsTheHeightWhateverTheUnits) {
+  ImportOptions tall;
+  tall.height = 1.2f;
+  for (const float scale : {0.001f, 1.0f, 100.0f, 209.0f}) {
+    const Mesh file = as_file(person(true), "y", scale);
+    const ImportDecision decision = decide_import(file, tall);
+    EXPECT_NEAR(decision.apply(file.vertices).col(1).maxCoeff(), 1.2f, 0.03f) << scale;
+    EXPECT_TRUE(contains(decision.sentence, "height: 1.2 m (given)")) << decision.sentence;
+  }
+  tall.height = 0.01f;
+  EXPECT_EQ(error_of([&] { decide_import(as_file(person(true), "y", 1), tall); }),
+            "a height is 0.05 to 100 m, not 0.01");
 }
 
 TEST(Import, TakesSomebodyWhoLiesAsMetresWhateverTheHeight) {

@@ -1,0 +1,118 @@
+// What was opened and could not be read is taken back; all else stays as it is. What is read but may be no person is
+// asked about, or offered to be cleaned up.
+#include <algorithm>
+
+#include "app/session/background.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/base/log.hpp"
+
+namespace understudy::app {
+namespace {
+
+bool same_file(const SourceOptions& a, const SourceOptions& b) {
+  return a.path == b.path && a.motion == b.motion;
+}
+
+/// Whatever belongs to the source, as it was before.
+void restore_source(Document& document, const Document& before) {
+  document.source = before.source;
+  document.truth = before.truth;
+  document.scan_edits = before.scan_edits;
+  document.skeleton_edits = before.skeleton_edits;
+  for (Take& take : document.takes)
+    for (const Take& old : before.takes)
+      if (old.name == take.name && same(old.target, take.target)) take.pose_edits = old.pose_edits;
+}
+
+}  // namespace
+
+/// Keeps what was there before targets and sources that a command has opened.
+void Studio::note_openings(const Document& before, const std::vector<int64_t>& ids_before,
+                           bool changed_before) {
+  Background& b = *background_;
+  const Background::Opening opening{before, session_.history.steps(), changed_before};
+  if (!same_file(before.source, session_.document.source)) b.opened_source = opening;
+  for (size_t k = 0; k < b.take_ids.size(); ++k) {
+    const auto found = std::find(ids_before.begin(), ids_before.end(), b.take_ids[k]);
+    const Take* const old = at_or_null(before.takes, found - ids_before.begin());
+    if (!old || old->target.path != session_.document.takes[k].target.path)
+      b.opened_targets[b.take_ids[k]] = opening;
+  }
+}
+
+/// Makes the change in the document and all that undo keeps.
+void Studio::roll_back(size_t steps, bool changed_before, const Change& change) {
+  const bool is_last = session_.history.steps() == steps;
+  change(session_.document);
+  session_.history.change_all(change, session_.document);
+  session_.changed = !is_last || changed_before;
+  follow_document();
+}
+
+bool Studio::take_back_target(size_t k) {
+  Background& b = *background_;
+  const auto opened = b.opened_targets.find(b.take_ids[k]);
+  if (opened == b.opened_targets.end()) return false;
+  const Background::Opening opening = opened->second;
+  b.opened_targets.erase(opened);
+  const Take* const old = at_or_null(opening.before.takes, static_cast<std::ptrdiff_t>(k));
+  const bool added = opening.before.takes.size() < session_.document.takes.size() || !old;
+  const TargetOptions failed = session_.document.takes[k].target;
+  const auto is_failed = [&](const Take& take) { return same(take.target, failed); };
+  roll_back(opening.steps, opening.changed, [&](Document& document) {
+    auto& takes = document.takes;
+    if (added)
+      return static_cast<void>(
+          takes.erase(std::remove_if(takes.begin(), takes.end(), is_failed), takes.end()));
+    std::replace_if(takes.begin(), takes.end(), is_failed, *old);
+  });
+  return true;
+}
+
+void Studio::roll_back_source() {
+  Background& b = *background_;
+  if (!b.opened_source) return;
+  const Background::Opening opening = *b.opened_source;
+  b.opened_source.reset();
+  const SourceOptions failed = session_.document.source;
+  roll_back(opening.steps, opening.changed, [&](Document& document) {
+    if (same_file(document.source, failed)) restore_source(document, opening.before);
+  });
+}
+
+/// Where nobody is recognised in the first frames, once for each way in which the scan is cleaned.
+void Studio::offer_clean_up(const std::string& doubt) {
+  constexpr std::ptrdiff_t kFewest = 3, kFirst = 60;  // frames
+  Background& b = *background_;
+  const SourceState& source = session_.source;
+  const ScanEdits& edits = session_.document.scan_edits;
+  if (b.advised == b.source_key || (!source.clips.empty() && !session_.document.source.as_scan)) return;
+  std::ptrdiff_t seen = 0, nobody = 0;
+  for (std::ptrdiff_t t = 0; t < std::min(kFirst, ssize(source.frames)); ++t) {
+    const KeptSource& frame = source.frames[t];
+    if (frame.points > 0) ++seen, nobody += frame.flagged ? 1 : 0;
+  }
+  const bool lost = seen >= kFewest && nobody * 5 >= seen * 4;
+  if (doubt.empty() && !lost) return;
+  b.advised = b.source_key;
+  const bool cleaned = edits.floor && edits.largest_cluster;
+  const std::string sentence =
+      std::string("No person recognised") +
+      (cleaned ? ". Crop the scan in Edit > Scan" : ": the scan may hold a floor or a second person");
+  log::warn(session_.document.source.path + ": " + (doubt.empty() ? sentence : doubt));
+  notify(sentence, true, cleaned ? Offer{} : Offer{"Clean up", "edit.clean_up"});
+}
+
+/// One after the other.
+void Studio::ask_about_persons() {
+  Background& b = *background_;
+  if (session_.question || b.doubted.empty()) return;
+  const int64_t id = *b.doubted.begin();
+  b.doubted.erase(b.doubted.begin());
+  const TakeState* const take = take_of(id);
+  if (!take || take->problem.empty()) return;
+  const int k = static_cast<int>(take - session_.takes.data());
+  session_.question = Question{Question::Kind::NotAPerson, take->problem + ". Use it anyway?", "", {}, {}, k};
+}
+
+}  // namespace understudy::app
