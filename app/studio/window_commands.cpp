@@ -178,7 +178,7 @@ void show_file(Call& c) {
 void add_window_commands(Commands& commands, ui::Workspace& workspace) {
   commands.add({"dialog.open", "Open dialog",
                 "open|open_source|open_target|replace_target|open_document|save_as|export|csv|picture|"
-                "video|compare|settings|about|keys|none"},
+                "video|compare|settings|about|keys|here|none"},
                [&workspace](Call& c) {
                  US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
                  workspace.open_dialog(c.session, c.arguments[0]);
@@ -188,6 +188,8 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
     workspace.show_panel(c.session.settings, c.arguments[0], c.switched(1, shown));
   });
   commands.add({"help.keys", "Help"}, [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
+  commands.add({"help.here", "Help for what the pointer is on"},
+               [&workspace](Call& c) { workspace.open_dialog(c.session, "here"); });
   commands.add({"file.show", "Show in folder", "PATH"}, show_file);
   commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]"},
                save_picture);

@@ -49,7 +49,7 @@ TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
   for (const auto& [size, scale] : kSizes)
     for (const char* name :
          {"open", "open_source", "open_target", "replace_target", "open_document", "save_as", "export", "csv",
-          "picture", "video", "compare", "settings", "about", "keys"}) {
+          "picture", "video", "compare", "settings", "about", "keys", "here"}) {
       input.size = size, input.scale = scale;
       workspace.open_dialog(session, name);
       frame(3);
@@ -66,7 +66,7 @@ TEST_F(WorkspaceTest, EveryDialogCanBeClosedInASmallWindow) {
   const std::pair<const char*, const char*> closers[] = {
       {"settings", "settings.close"}, {"export", "export.cancel"}, {"picture", "export.cancel"},
       {"compare", "compare.cancel"},  {"about", "about.close"},    {"keys", "keys.close"},
-      {"open", "browser.cancel"}};
+      {"here", "help.close"},         {"open", "browser.cancel"}};
   for (const auto& [name, closer] : closers) {
     workspace.open_dialog(session, name);
     frame(3);
@@ -283,7 +283,7 @@ void collect(const std::vector<MenuItem>& items, std::vector<MenuItem>& all) {
 }
 
 TEST_F(WorkspaceTest, EveryMenuEntryIsACommandThatExists) {
-  const std::set<std::string> of_the_window = {"dialog.open", "panel.show", "help.keys"};
+  const std::set<std::string> of_the_window = {"dialog.open", "panel.show", "help.keys", "help.here"};
   std::set<std::string> marks;
   for (const Menu& menu : menus(session)) {
     std::vector<MenuItem> items;
@@ -390,6 +390,40 @@ TEST_F(WorkspaceTest, ScriptsAreOnTheSecondPageAndCopied) {
   frame(2);
   EXPECT_FALSE(shown("scripts.search"));
   click("keys.close");
+}
+
+TEST_F(WorkspaceTest, F1ExplainsWhatThePointerIsOn) {
+  session.settings.panels = {{"edit", true}};
+  frame(3);
+  const auto explained = [&](const std::string& name) {
+    hover(name);
+    const Explanation* found = gui.ui().explanation_at(mark(name).visible.at(0.5f, 0.5f));
+    const Explanation seen = found == nullptr ? Explanation() : *found;
+    key(Key::F1);
+    frame(3);
+    EXPECT_EQ(workspace.dialog(), "here") << name;
+    EXPECT_TRUE(shown("help.here"));
+    key(Key::F1);  // again closes it
+    frame(3);
+    EXPECT_EQ(workspace.dialog(), "") << name;
+    return seen.title + ": " + seen.text;
+  };
+  EXPECT_EQ(explained("edit.crop"), "Crop: Uses only the points inside a box")
+      << "the whole row, its switch too";
+  EXPECT_EQ(explained("tools.bones"), ": Rotate bones of the result");
+  EXPECT_EQ(explained("edit.scan"), std::string("Edit: ") + panel_of("edit").help)
+      << "a heading is the panel's";
+  session.tool = app::Tool::Crop;
+  frame(2);
+  EXPECT_NE(explained("views").find("Drag a handle of the box"), std::string::npos);
+  take_log();
+  hover("timeline.play");
+  key(Key::F1);
+  frame(3);
+  click("help.commands");
+  frame(2);
+  EXPECT_EQ(take_log(), (Lines{"help.here", "help.keys"}));
+  EXPECT_EQ(workspace.dialog(), "keys");
 }
 
 TEST_F(WorkspaceTest, TheStatusBarTellsWhatClicksDoInTheCurrentTool) {

@@ -28,6 +28,22 @@ const Mark* Ui::find(const std::string& name) const {
   return found == finished_at_.end() ? nullptr : &finished_[found->second];
 }
 
+void Ui::explain(Explanation explanation) {
+  const ImGuiWindow& window = *ImGui::GetCurrentContext()->CurrentWindow;
+  explanation.place = intersection(explanation.place, {window.ClipRect.Min, window.ClipRect.Max});
+  const bool says = !explanation.text.empty() && !explanation.place.empty() && !window.Hidden;
+  if (says) explaining_.push_back(std::move(explanation));
+}
+
+const Explanation* Ui::explanation_at(const ImVec2& at) const {
+  const Explanation* smallest = nullptr;
+  const auto area = [](const Rect& rect) { return rect.width() * rect.height(); };
+  for (const Explanation& one : explained_)
+    if (one.place.contains(at) && (smallest == nullptr || area(one.place) <= area(smallest->place)))
+      smallest = &one;
+  return smallest;
+}
+
 bool Ui::claim_dialog(const std::string& name) {
   const int frame = ImGui::GetFrameCount();
   if (dialog_ != name && dialog_frame_ >= frame - 1) return false;
@@ -49,6 +65,8 @@ void Ui::add(const std::string& name, const Rect& rect, bool enabled) {
 void Ui::finish_frame() {
   std::swap(drawing_, finished_);
   std::swap(drawing_at_, finished_at_);
+  std::swap(explaining_, explained_);
+  explaining_.clear();
   drawing_.clear();
   drawing_at_.clear();
 }

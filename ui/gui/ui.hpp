@@ -41,6 +41,14 @@ struct Mark {
   bool enabled = true;  ///< false: greyed out, a click does nothing
 };
 
+/// What a part of the window is for.
+struct Explanation {
+  Rect place;
+  std::string title;  ///< "Falloff"; empty: the text says all
+  std::string text;
+  std::string keys{};  ///< "Ctrl+S"; empty: none
+};
+
 /// One per Gui. Widgets read its theme and fonts, name their items for scripts, tests and the manual
 /// ("timeline.play"), and keep here what must outlive a frame.
 class Ui {
@@ -59,6 +67,10 @@ class Ui {
   const std::vector<Mark>& marks() const { return finished_; }
   /// Null when no such item was drawn in the last finished frame.
   const Mark* find(const std::string& name) const;
+  /// Says what a place of the current window is for, as far as it is to be seen.
+  void explain(Explanation explanation);
+  /// The explanation of the smallest place there, of the last finished frame; null where nothing is explained.
+  const Explanation* explanation_at(const ImVec2& at) const;
   /// Scrolls to an item when it is next drawn.
   void reveal(const std::string& name) { reveal_ = name; }
 
@@ -83,6 +95,7 @@ class Ui {
   Fonts fonts_;
   float scale_ = 1;
   std::vector<Mark> drawing_, finished_;
+  std::vector<Explanation> explaining_, explained_;
   std::unordered_map<std::string, size_t> drawing_at_, finished_at_;
   std::unordered_map<ImGuiID, std::any> memory_;
   std::string reveal_, dialog_;

@@ -23,7 +23,8 @@ const std::vector<Binding> kBuiltIn = {{"Ctrl+O", "open", {}, "Open"},
                                        {"Shift+Right", "playback.step", {"10"}, "Ten frames forward"},
                                        {"H", "help.keys", {}, "Help"},
                                        {"?", "help.keys", {}, "Help"},
-                                       {"F3", "help.keys", {}, "Help"}};
+                                       {"F3", "help.keys", {}, "Help"},
+                                       {"F1", "help.here", {}, "What is this?"}};
 
 /// Whether keys with these arguments do, or undo, what `asked` does.
 bool same_or_toggles(const app::Arguments& keys, const app::Arguments& asked) {

@@ -4,7 +4,9 @@
 
 #include "ui/gui/gui.hpp"
 #include "ui/panels/bindings.hpp"
+#include "ui/panels/dialogs.hpp"
 #include "ui/panels/panels.hpp"
+#include "ui/panels/rows.hpp"
 #include "ui/widgets/controls.hpp"
 #include "ui/widgets/dialogs.hpp"
 #include "ui/widgets/lists.hpp"
@@ -110,6 +112,39 @@ std::vector<MouseUse> mouse_uses(app::Tool tool) {
   std::vector<MouseUse> uses = own_uses(tool);
   uses.insert(uses.end(), std::begin(kInViews), std::end(kInViews));
   return uses;
+}
+
+std::string views_help(app::Tool tool) {
+  std::string words;
+  for (const MouseUse& use : mouse_uses(tool)) {
+    std::string does = use.does;
+    does[0] = static_cast<char>(does[0] - 'A' + 'a');
+    words += (words.empty() ? "" : "   \u00b7   ") + std::string(use.buttons) + ": " + does;
+  }
+  return words;
+}
+
+bool draw_help_here(PanelContext& context, std::optional<Explanation>& here) {
+  Ui& ui = context.ui;
+  if (!here) {
+    const Explanation* found = ui.explanation_at(ImGui::GetIO().MousePos);
+    here = found != nullptr
+               ? *found
+               : Explanation{{}, "", "Rest the pointer on something and press F1 to read what it is for."};
+  }
+  if (!begin_dialog(ui, "help.here", here->title.empty() ? "Help" : here->title, 440)) return true;
+  ImGui::TextWrapped("%s", here->text.c_str());
+  ui.mark("help.here");
+  if (!here->keys.empty()) row_text(ui, "Keys", here->keys);
+  ImGui::Dummy({0, ui.px(4)});
+  ButtonRow buttons(2);
+  ButtonOptions close;
+  close.look = ButtonLook::Main;
+  bool stays = true;
+  if (buttons.add(ui, "help.commands", "All commands", {})) context.ask("help.keys"), stays = false;
+  if (buttons.add(ui, "help.close", "Close", close)) stays = false;
+  const bool key = key_pressed(render::Key::F1, false) || key_pressed(render::Key::Enter, false);
+  return finish_dialog(stays && !(key && !ImGui::IsWindowAppearing()));
 }
 
 std::vector<MenuItem> palette(const app::Session& session, const app::Commands& commands) {

@@ -13,13 +13,22 @@ DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_timeline, d
 const std::vector<Panel>& panels() {
   using Dock = Panel::Dock;
   static const std::vector<Panel> kPanels = {
-      {"inspector", "Inspector", "Alt+1", Dock::Side, false, draw_inspector},
-      {"layers", "Layers", "Alt+2", Dock::Side, false, draw_layers},
-      {"edit", "Edit", "Alt+3", Dock::Side, false, draw_edit},
-      {"metrics", "Metrics", "Alt+4", Dock::Side, false, draw_metrics},
-      {"timeline", "Timeline", "Alt+T", Dock::Timeline, true, draw_timeline},
-      {"log", "Log", "Alt+L", Dock::Below, false, draw_log},
-      {"bad_frames", "Bad frames", "Alt+B", Dock::Below, false, draw_bad_frames},
+      {"inspector", "Inspector", "Alt+1", Dock::Side, false,
+       "What is open: the source, the takes, and how the current take is made.", draw_inspector},
+      {"layers", "Layers", "Alt+2", Dock::Side, false,
+       "What the views draw and what colours it. Nothing here changes the result.", draw_layers},
+      {"edit", "Edit", "Alt+3", Dock::Side, false,
+       "Corrects the scan, the skeleton found in it, the result and the target. All of it can be undone.",
+       draw_edit},
+      {"metrics", "Metrics", "Alt+4", Dock::Side, false,
+       "How good the current take is, over time and as a whole, and how long each stage took.", draw_metrics},
+      {"timeline", "Timeline", "Alt+T", Dock::Timeline, true,
+       "The frames and the edits made at them. Red frames cannot be trusted: rest the pointer on one to read "
+       "why.",
+       draw_timeline},
+      {"log", "Log", "Alt+L", Dock::Below, false, "All messages since the start, the newest last.", draw_log},
+      {"bad_frames", "Bad frames", "Alt+B", Dock::Below, false,
+       "The frames that cannot be trusted, and why. A click goes there.", draw_bad_frames},
   };
   return kPanels;
 }

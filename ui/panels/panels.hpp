@@ -19,7 +19,8 @@ struct Panel {
   const char* title;
   const char* keys;  ///< that show or hide it
   Dock dock;
-  bool shown;  ///< by default
+  bool shown;        ///< by default
+  const char* help;  ///< what it is for, a sentence or two
   /// Fills the current window. Reads the session and asks for commands.
   void (*draw)(const app::Session&, PanelContext&);
 };

@@ -45,15 +45,9 @@ void draw_more_jobs(const app::Session& session, PanelContext& context) {
 /// What the mouse does in the views with the current tool.
 void draw_mouse_hint(const app::Session& session, Ui& ui, float width) {
   if (!has_document(session)) return;
-  std::string words;
-  for (const MouseUse& use : mouse_uses(session.tool)) {
-    std::string does = use.does;
-    does[0] = static_cast<char>(does[0] - 'A' + 'a');
-    words += (words.empty() ? "" : "   \u00b7   ") + std::string(use.buttons) + ": " + does;
-  }
   ImGui::SetCursorPosY((ui.px(kStatusHeight) - ImGui::GetTextLineHeight()) / 2);
   const ColorScope faint(ImGuiCol_Text, ui.theme().text_dim);
-  text_cut(ui, words, width - ui.px(20));
+  text_cut(ui, views_help(session.tool), width - ui.px(20));
   ui.mark("status.mouse");
 }
 

@@ -78,9 +78,10 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   draw_bottom(session, context, frame_rate);
   draw_side(session, context);
   close_menu_by_escape();
+  const bool asks = !session.errors.empty() || session.question || !dialog().empty();
   draw_dialog(session, context);
   draw_notices(session, context, notices_, places_.views);
-  ask_for_keys(session, context);
+  if (!asks) ask_for_keys(session, context);  // the key that closed a dialog does nothing else
 }
 
 /// The views, or the start screen.
@@ -92,6 +93,7 @@ void Workspace::draw_centre(const app::Session& session, PanelContext& context) 
                     !open);
   ImGui::BringWindowToDisplayBack(ImGui::GetCurrentWindow());  // the side panel may lie over it
   ui.mark("views", places_.views);
+  if (open) ui.explain({places_.views, "Views", views_help(session.tool)});
   if (!open)
     draw_start(session, context, services_.samples);
   else if (services_.draw_views)
@@ -108,6 +110,7 @@ void Workspace::draw_below(const app::Session& session, PanelContext& context) {
     };
     const Rect place{{edge(i), places_.below.min.y}, {edge(i + 1), places_.below.max.y}};
     const Frame frame(context.ui, shown[i]->name, place, {12, 6}, context.ui.theme().panel);
+    context.ui.explain({place, shown[i]->title, shown[i]->help, shown[i]->keys});
     shown[i]->draw(session, context);
   }
 }
@@ -122,6 +125,7 @@ void Workspace::draw_side(const app::Session& session, PanelContext& context) {
   const Frame frame(ui, "##side", places_.side, {12, 8}, ui.theme().panel);
   const auto tabs = panels_in(Panel::Dock::Side, session);
   const Panel& shown = shown_tab(session);
+  ui.explain({places_.side, shown.title, shown.help, shown.keys});
   std::vector<std::string> titles;
   for (const Panel* panel : tabs) titles.push_back(panel->title);
   int chosen = static_cast<int>(std::find(tabs.begin(), tabs.end(), &shown) - tabs.begin());
@@ -136,10 +140,15 @@ void Workspace::draw_bottom(const app::Session& session, PanelContext& context, 
   Ui& ui = context.ui;
   if (!places_.timeline.empty()) {
     const Frame frame(ui, "##timeline", places_.timeline, {12, 8}, ui.theme().panel);
-    for (const Panel* panel : panels_in(Panel::Dock::Timeline, session)) panel->draw(session, context);
+    for (const Panel* panel : panels_in(Panel::Dock::Timeline, session)) {
+      ui.explain({places_.timeline, panel->title, panel->help, panel->keys});
+      panel->draw(session, context);
+    }
   }
   if (places_.status.empty()) return;
   const Frame frame(ui, "##status", places_.status, {12, 3}, ui.theme().raised);
+  ui.explain({places_.status, "Status",
+              "What is being done now, the newest message, and what the mouse does in the views."});
   draw_status(session, context, frame_rate);
 }
 
@@ -160,10 +169,11 @@ void Workspace::open_dialog(const app::Session& session, const std::string& name
   if (const auto purpose = purpose_of(name)) return choose_file(session, files_, *purpose);
   const bool exports = begin_export(session, export_, name);
   if (name == "about" && services_.about) about_ = services_.about();
-  const auto known = {"compare", "settings", "about", "keys", "none"};
+  const auto known = {"compare", "settings", "about", "keys", "here", "none"};
   US_CHECK(exports || std::find(known.begin(), known.end(), name) != known.end(), "there is no dialog ",
            name);
   dialog_ = exports ? "export" : name == "none" ? "" : name;
+  here_.reset();
 }
 
 void Workspace::draw_dialog(const app::Session& session, PanelContext& context) {
@@ -182,6 +192,7 @@ void Workspace::draw_dialog(const app::Session& session, PanelContext& context) 
     if (dialog_ == "settings") stays = draw_settings(session, context);
     if (dialog_ == "about") stays = draw_about(context, about_);
     if (dialog_ == "keys") stays = draw_keys(session, context);
+    if (dialog_ == "here") stays = draw_help_here(context, here_);
     if (dialog_ == "compare") stays = draw_compare(session, context, compare_);
     if (!stays) dialog_.clear();
   }

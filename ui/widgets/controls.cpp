@@ -88,14 +88,35 @@ float width_left(float wanted) {
   return wanted > 0 ? wanted : std::max(1.f, left + wanted);
 }
 
+void show_tooltip(Ui& ui, const std::string& text, const std::string& shortcut) {
+  if (text.empty() || !rests(ui)) return;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(9), ui.px(6)});
+  ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.f);  // also on what is greyed out
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ui.px(360));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  if (!shortcut.empty()) {
+    ImGui::SameLine(0, ui.px(12));
+    ImGui::TextColored(ui.theme().text_dim, "%s", shortcut.c_str());
+  }
+  ui.mark("tooltip", {ImGui::GetWindowPos(),
+                      {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
+                       ImGui::GetWindowPos().y + ImGui::GetWindowHeight()}});
+  ImGui::EndTooltip();
+  ImGui::PopStyleVar(2);
+}
+
 /// The grey label of a row; what follows begins `width` pixels right of its start.
 void row_label(Ui& ui, const std::string& label, const std::string& explanation, float width) {
   const float start = ImGui::GetCursorPosX();
+  const ImVec2 at = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+  ui.explain({{at, {at.x + room.x, at.y + ImGui::GetFrameHeight()}}, label, explanation});
   {
     const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
     text_cut(ui, label, width - ui.px(8));
   }
-  tooltip(ui, explanation);
+  show_tooltip(ui, explanation, "");
   ImGui::SameLine(start + width);
 }
 
@@ -122,22 +143,8 @@ void draw_bar(Ui& ui, const Rect& rect, float fraction) {
 }  // namespace
 
 void tooltip(Ui& ui, const std::string& text, const std::string& shortcut) {
-  if (text.empty() || !rests(ui)) return;
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(9), ui.px(6)});
-  ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.f);  // also on what is greyed out
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ui.px(360));
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-  if (!shortcut.empty()) {
-    ImGui::SameLine(0, ui.px(12));
-    ImGui::TextColored(ui.theme().text_dim, "%s", shortcut.c_str());
-  }
-  ui.mark("tooltip", {ImGui::GetWindowPos(),
-                      {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
-                       ImGui::GetWindowPos().y + ImGui::GetWindowHeight()}});
-  ImGui::EndTooltip();
-  ImGui::PopStyleVar(2);
+  ui.explain({{ImGui::GetItemRectMin(), ImGui::GetItemRectMax()}, "", text, shortcut});
+  show_tooltip(ui, text, shortcut);
 }
 
 bool icon_button(Ui& ui, const std::string& name, Icon icon, const IconButtonOptions& options) {
@@ -312,7 +319,7 @@ std::string cut_to(const std::string& text, float width) {
 void text_cut(Ui& ui, const std::string& text, float width) {
   const std::string cut = cut_to(text, width_left(width));
   ImGui::TextUnformatted(cut.c_str());
-  if (cut != text) tooltip(ui, text);
+  if (cut != text) show_tooltip(ui, text, "");
 }
 
 void hint(Ui& ui, const std::string& text) {

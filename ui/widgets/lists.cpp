@@ -70,7 +70,9 @@ int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>
   if (typing && key_pressed(render::Key::Down)) state.cursor = std::min(state.cursor + 1, last);
   if (typing && key_pressed(render::Key::Up)) state.cursor = state.cursor - 1;
   state.cursor = std::clamp(state.cursor, 0, std::max(0, last));
-  int chosen = typing && last >= 0 && key_pressed(render::Key::Enter, false) ? shown[state.cursor] : -1;
+  const bool entered = typing && key_pressed(render::Key::Enter, false);
+  int chosen = entered && last >= 0 ? shown[state.cursor] : -1;
+  if (entered && (chosen < 0 || !items[chosen].enabled)) ImGui::SetKeyboardFocusHere(-1);
   if (ImGui::BeginChild((name + ".items").c_str(), {0, height})) {
     ImGuiListClipper clipper;
     clipper.Begin(shown.size(), ImGui::GetTextLineHeight() + ui.px(8) + ImGui::GetStyle().ItemSpacing.y);
