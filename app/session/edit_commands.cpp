@@ -78,12 +78,20 @@ void add_scan_edits(Commands& commands) {
                     [](Call& c) { c.document.scan_edits.largest_cluster = c.on(0); });
 }
 
+/// "left wrist"
+std::string joint_words(int joint) {
+  std::string words = kJointNames[joint];
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
 void add_skeleton_edits(Commands& commands) {
   commands.add_edit({"edit.drag", "Drag a joint", "FRAME JOINT X Y Z [FALLOFF] [children]: metres"},
                     [](Call& c) {
                       DragEdit edit;
                       edit.frame = frame_argument(c, 0);
                       edit.joint = c.joint(1);
+                      c.label = "Drag " + joint_words(edit.joint);
                       edit.offset = c.vector(2, "way");
                       edit.falloff = falloff_argument(c, 5);
                       edit.with_children = c.has("children", 5);
@@ -104,6 +112,7 @@ void add_pose_edits(Commands& commands) {
                       RotateEdit edit;
                       edit.frame = frame_argument(c, 1);
                       edit.joint = c.joint(2);
+                      c.label = "Rotate " + joint_words(edit.joint);
                       edit.axis_angle = c.vector(3, "rotation");
                       edit.falloff = falloff_argument(c, 6);
                       c.take().pose_edits.rotate.push_back(edit);
@@ -259,6 +268,7 @@ void add_target_edits(Commands& commands) {
                     [](Call& c) {
                       auto& moves = c.take().target_edits.joints;
                       const JointMove move{c.joint(1), c.vector(2, "place"), c.has("mirror", 5)};
+                      c.label = "Move " + joint_words(move.joint) + " of the target";
                       const auto replaced = [&](const JointMove& old) { return old.joint == move.joint; };
                       moves.erase(std::remove_if(moves.begin(), moves.end(), replaced), moves.end());
                       moves.push_back(move);

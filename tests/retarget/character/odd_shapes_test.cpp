@@ -246,6 +246,55 @@ TEST(OddShapes, ACatOnARigIsRefusedAndWarnedOfWhereItsBonesAreNamedAsAPersons) {
   EXPECT_TRUE(contains(c.target.warnings.back(), "may not be a person: it is ")) << c.target.warnings.back();
 }
 
+/// Sees nobody anywhere.
+class BlindExtractor final : public SkeletonExtractor {
+ public:
+  Extraction extract(const Mesh&) override {
+    Extraction out;
+    out.joints = made_joints({});
+    out.confidence.setZero();
+    return out;
+  }
+  std::string name() const override { return "blind"; }
+};
+
+/// Its head is up: neither as long nor its feet as far apart, for its height, as a cat's.
+Mesh horse() {
+  Mesh mesh;
+  add_box(mesh, {-0.25f, 0.95f, -0.65f}, {0.25f, 1.5f, 0.6f});
+  for (const float x : {-0.2f, 0.08f})
+    for (const float z : {-0.65f, 0.5f}) add_box(mesh, {x, 0, z}, {x + 0.12f, 1, z + 0.12f});
+  add_box(mesh, {-0.1f, 1.4f, 0.5f}, {0.1f, 2.1f, 0.8f});
+  add_box(mesh, {-0.1f, 1.85f, 0.7f}, {0.1f, 2.1f, 1.2f});
+  return mesh;
+}
+
+TEST(OddShapes, WhatIsNoPersonIsUsedOnlyWhereToldSo) {
+  Character hand = bare();
+  for (CharacterPart& part : hand.parts) part.vertices *= 0.13f;  // 22 cm
+  const std::pair<Character, std::string> strangers[] = {
+      {character_of_mesh(horse(), "horse"), "nobody is recognised in it, and its feet are "},
+      {hand, "nobody is recognised in it, and its size is no person's in any unit"},
+      {character_of_mesh(cat(), "cat"), "does not look like a person: it is "}};
+  BlindExtractor blind;
+  KnownExtractor known(made_joints({}));
+  for (const auto& [stranger, why] : strangers) {
+    CharacterOptions options;
+    options.not_a_person = NotAPerson::Refuse;
+    EXPECT_THROW(prepare_character(stranger, &blind, nullptr, options), NotAPersonError) << why;
+    const std::string complaint =
+        error_of([&, &who = stranger] { prepare_character(who, &blind, nullptr, options); });
+    EXPECT_TRUE(contains(complaint, why)) << complaint;
+    options.not_a_person = NotAPerson::Use;
+    EXPECT_NO_THROW(prepare_character(stranger, &blind, nullptr, options)) << why;
+  }
+  CharacterOptions strict;
+  strict.not_a_person = NotAPerson::Refuse;
+  EXPECT_NO_THROW(prepare_character(hand, &known, nullptr, strict)) << "a person who is small is recognised";
+  EXPECT_NO_THROW(prepare_character(bare(), &blind, nullptr, strict))
+      << "nothing but the network speaks against it";
+}
+
 TEST(OddShapes, WhatMayBeNoPersonIsWarnedOf) {
   EXPECT_TRUE(refusal(stance_of(ball())).empty());
   EXPECT_FALSE(implausibility(stance_of(ball())).empty());
