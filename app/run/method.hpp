@@ -32,6 +32,11 @@ FieldsOf<S, Method> fields(V& visit, S& method) {
   visit("root", method.root, kRootNames);
 }
 
+/// What the other settings do, on the screen.
+constexpr const char* kOffsetsExplanation =
+    "Corrects the skin by millimetres where joints bend, so that elbows and knees keep their shape";
+constexpr const char* kPathExplanation = "How far the target walks for each metre that the source walks";
+
 /// What follows the extractor and can be switched off.
 struct FilterSwitch {
   const char* name;  ///< in commands

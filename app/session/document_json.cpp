@@ -245,6 +245,7 @@ class Reader {
   void read(const Json& json, Enum& value, const std::string& where, const Names<N>& names) {
     std::string text, all = names[0];
     read(json, text, where);
+    if (text == "doubt") text = "uncertainty";  // what documents called it before
     const auto found = std::find(names.begin(), names.end(), text);
     for (size_t i = 1; i < N; ++i) all += std::string(i + 1 < N ? ", " : " or ") + names[i];
     US_CHECK(found != names.end(), where, " must be ", all);

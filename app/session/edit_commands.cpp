@@ -43,7 +43,7 @@ void crop(Call& c) {
   }
   const Box before = crop.value_or(Box::open());
   if (what == "on") {
-    c.session.tool = Tool::Crop;
+    c.studio.run("tool", {"crop"});
     crop = before;
     return;
   }
@@ -74,7 +74,7 @@ void add_scan_edits(Commands& commands) {
                       if (!edits.floor) edits.floor = FloorCut{};
                       edits.largest_cluster = true;
                     });
-  commands.add_edit({"edit.cluster", "Largest cluster only", "on|off"},
+  commands.add_edit({"edit.cluster", "Largest part only", "on|off"},
                     [](Call& c) { c.document.scan_edits.largest_cluster = c.on(0); });
 }
 
@@ -123,11 +123,11 @@ void add_pose_edits(Commands& commands) {
     const float strength = c.clamped(1, "strength", 0.f, 1.f);
     c.take().pose_edits.smooth = only_if(strength > 0, SmoothEdit{strength});
   });
-  commands.add_slider({"edit.floor_offset", "Move up or down", "TAKE METRES"}, [](Call& c) {
+  commands.add_slider({"edit.floor_offset", "Raise", "TAKE METRES"}, [](Call& c) {
     const float offset = c.number(1, "height");
     c.take().pose_edits.floor = only_if(offset != 0, FloorEdit{offset});
   });
-  commands.add_slider({"edit.heading", "Heading", "TAKE DEGREES"}, [](Call& c) {
+  commands.add_slider({"edit.heading", "Turn", "TAKE DEGREES"}, [](Call& c) {
     const float yaw = c.number(1, "angle");
     c.take().pose_edits.heading = only_if(yaw != 0, HeadingEdit{yaw});
   });

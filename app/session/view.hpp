@@ -25,10 +25,10 @@ enum class Colouring {
   Error,       ///< distance to the truth, mm
   Difference,  ///< distance to the same vertex of the first take, mm
   Confidence,  ///< extraction confidence of the nearest joint (the source's scan)
-  Uncertainty  ///< how far a vertex is bound by the shape alone, %; "doubt" in files and commands
+  Uncertainty  ///< how far a vertex is bound by the shape alone, %
 };
-constexpr Names<7> kColouringNames{"plain",      "weights",    "offsets", "error",
-                                   "difference", "confidence", "doubt"};
+constexpr Names<7> kColouringNames{"plain",      "weights",    "offsets",    "error",
+                                   "difference", "confidence", "uncertainty"};
 
 /// An orbit camera, as render's: yaw and pitch in radians, distance in metres.
 struct CameraState {

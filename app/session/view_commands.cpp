@@ -120,6 +120,10 @@ void add_pane(Extent& all, const Session& session, int pane, int frame) {
   if (take && (placing || !joints)) add_rest(all, *take);
   if (!joints) return;
   const Vec3 offset = follow_offset(session, pane, frame);
+  if (pane == 0 && session.tool == Tool::Crop) {
+    const Box box = shown_crop(session);
+    all.extend(Vec3(box.low - offset)).extend(Vec3(box.high - offset));
+  }
   if (take && take->deformer && frame < ssize(take->shown.poses))
     add_points(all, take->deformer->deform(take->shown.poses[frame]), offset);
   else
@@ -205,9 +209,9 @@ void add_layers(Commands& commands) {
     bool& shown = layer(c);
     shown = c.switched(2, shown);
   });
-  commands.add(
-      {"view.colour", "Colour by", "source|take plain|weights|offsets|error|difference|confidence|doubt"},
-      [](Call& c) { layers(c).colouring = c.choice<Colouring>(1, "colouring", kColouringNames); });
+  commands.add({"view.colour", "Colour by",
+                "source|take plain|weights|offsets|error|difference|confidence|uncertainty"},
+               [](Call& c) { layers(c).colouring = c.choice<Colouring>(1, "colouring", kColouringNames); });
   commands.add({"view.weights_joint", "Weights of", "JOINT|all"},
                [](Call& c) { c.session.view.weights_joint = c.word(0, "joint") == "all" ? -1 : c.joint(0); });
   commands.add({"view.trail_joint", "Trail of", "JOINT on|off"}, [](Call& c) {

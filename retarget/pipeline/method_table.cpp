@@ -22,17 +22,21 @@ const MethodChoice& named(const MethodChoices& choices, const std::string& name,
 
 const MethodChoices& engines() {
   static const MethodChoices all = {
-      {"copy", "Copy", "copied rotations", "copies rotations seen in scans or solved", nullptr, made<true>},
-      {"paper", "Paper", "paper's network", "predicts rotations with paper 1's network", "motion.weights"},
-      {"positions", "Joints", "rotations from positions", "copies rotations solved from positions alone",
-       nullptr, made<false>}};
+      {"copy", "Copy", "copied rotations", "turns each bone of the target as the source's turns", nullptr,
+       made<true>},
+      {"paper", "Paper", "paper's network", "a recurrent network (paper 1) predicts rotations from joints",
+       "motion.weights"},
+      {"positions", "Joints", "rotations from positions",
+       "solves rotations from the places of the joints alone", nullptr, made<false>}};
   return all;
 }
 
 const MethodChoices& extractors() {
   static const MethodChoices all = {
-      {"dense", "Dense", "dense extractor", "every point votes for the joints", "skeleton.weights"},
-      {"paper", "Paper", "paper's extractor", "paper 1's network", "skeleton_paper.weights"}};
+      {"dense", "Dense", "dense extractor", "every point of the scan votes for where the joints are",
+       "skeleton.weights"},
+      {"paper", "Paper", "paper's extractor",
+       "the network of paper 1 finds the joints in a few sampled points", "skeleton_paper.weights"}};
   return all;
 }
 

@@ -157,6 +157,14 @@ TEST(DocumentFile, MembersThatAreMissingAreDefaultsAndUnknownOnesPassedOver) {
   EXPECT_TRUE(same(from_json(full, "/a", "doc").document, full_document("/a").document));
 }
 
+TEST(DocumentFile, ColoursOfBindingUncertaintyOpenUnderTheirOldName) {
+  Json json = to_json(SavedDocument{}, "/a");
+  json["view"]["take"]["colouring"] = "doubt";
+  const SavedDocument saved = from_json(json, "/a", "doc");
+  EXPECT_EQ(saved.view.take.colouring, Colouring::Uncertainty);
+  EXPECT_EQ(to_json(saved, "/a")["view"]["take"]["colouring"], "uncertainty");
+}
+
 TEST(DocumentFile, WhatIsWrongIsNamed) {
   EXPECT_EQ(problem_with("/takes/0/method/offsets", 1), "takes[0].method.offsets must be true or false");
   EXPECT_EQ(problem_with("/takes", 7), "takes must be a list");

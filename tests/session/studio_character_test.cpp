@@ -114,7 +114,7 @@ TEST_F(StudioCharacter, OnlyWeightsOfNetworksAreDoubted) {
   studio.wait_idle(60);
   ASSERT_NE(take(studio).binding, nullptr);
   EXPECT_EQ(take(studio).binding->uncertainty.size(), take(studio).target->mesh.vertices.rows());
-  studio.run("view.colour", {"take", "doubt"});
+  studio.run("view.colour", {"take", "uncertainty"});
   EXPECT_EQ(studio.session().view.take.colouring, Colouring::Uncertainty);
 }
 

@@ -1,6 +1,4 @@
 // Inspector, layers and metrics: what each control asks for.
-#include <imgui_internal.h>
-
 #include <algorithm>
 
 #include "tests/ui/support/panels_test.hpp"
@@ -144,6 +142,29 @@ TEST_F(Inspector, WithNothingOpenOnlyOpeningIsOffered) {
   EXPECT_FALSE(mark("take.remove").enabled);
 }
 
+TEST_F(PanelsTest, WordsThatANewcomerCannotKnowAreExplainedWithAUnit) {
+  const auto told = [&](const char* name) {
+    hover(name);
+    std::string words = this->words();
+    std::replace(words.begin(), words.end(), '\n', ' ');
+    return words;
+  };
+  const auto contains = [](const std::string& text, const char* what) {
+    return text.find(what) != std::string::npos;
+  };
+  panel("inspector");
+  EXPECT_TRUE(contains(told("method.engine.0"), "Copy: turns each bone"));
+  EXPECT_TRUE(contains(told("method.engine.1"), "Paper: a recurrent network"));
+  EXPECT_TRUE(contains(told("method.extractor.0"), "Dense: every point"));
+  EXPECT_TRUE(contains(told("method.offsets"), "millimetres"));
+  EXPECT_TRUE(contains(told("method.root.0"), "metres"));
+  panel("edit");
+  session.document.takes[0].pose_edits = PoseEdits{};  // a number with a reset button explains that
+  frame(2);
+  EXPECT_TRUE(contains(told("edit.smooth"), "0.2 s"));
+  EXPECT_TRUE(contains(told("edit.floor_offset"), "metres"));
+}
+
 class LayersPanel : public PanelsTest {
  protected:
   LayersPanel() { panel("layers"); }
@@ -168,7 +189,7 @@ TEST_F(LayersPanel, EverySwitchOfBothPanesAsksForItsLayer) {
 
 TEST_F(LayersPanel, ColoursTrailsAndScales) {
   expect_choice("layers.source.colour", 1, {"view.colour source confidence"});
-  expect_choice("layers.take.colour", 2, {"view.colour take doubt"});
+  expect_choice("layers.take.colour", 2, {"view.colour take uncertainty"});
   expect_choice("layers.take.colour", 4, {"view.colour take error"});
   expect_choice("layers.weights_joint", 1, {"view.weights_joint pelvis"});
   expect_choice("layers.trail_joint", 5, {"view.trail_joint right_knee on"});
@@ -223,13 +244,8 @@ TEST_F(MetricsPanel, TheHistogramShowsTheStageChosen) {
 
 TEST_F(MetricsPanel, NamesAreWholeAndPlainAndWhatNeedsTruthIsNamed) {
   session.takes[0].metrics = {{"arm_buried_added", 0.01}, {"new_in_2_0", 3}};
-  std::string words;
-  panel([&] {
-    ImGui::LogToBuffer();
-    panel_of("metrics").draw(session, context);
-    words = ImGui::GetCurrentContext()->LogBuffer.c_str();
-    ImGui::LogFinish();
-  });
+  frame(2);
+  std::string words = this->words();
   std::replace(words.begin(), words.end(), '\n', ' ');
   const auto told = [&](const std::string& what) { return words.find(what) != std::string::npos; };
   EXPECT_GT(mark("metrics.figures.0.text").rect.height(),

@@ -108,9 +108,10 @@ void draw_not_a_person(const app::Session& session, PanelContext& context) {
 void draw_method_rows(app::Method& method, Ui& ui) {
   method_row(ui, {"compare.engine", "Transfer"}, engines(), method.engine);
   method_row(ui, {"compare.extractor", "Extractor"}, extractors(), method.extractor);
-  toggle_row(ui, {"compare.offsets", "Offsets"}, method.offsets);
+  toggle_row(ui, {"compare.offsets", "Offsets", app::kOffsetsExplanation}, method.offsets);
   int root = static_cast<int>(method.root);
-  if (choice_row(ui, {"compare.root", "Path"}, {"Scaled", "Original", "In place"}, root))
+  if (choice_row(ui, {"compare.root", "Path", app::kPathExplanation, "", path_tips()},
+                 {"Scaled", "Original", "In place"}, root))
     method.root = static_cast<RootMode>(root);
 }
 

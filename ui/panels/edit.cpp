@@ -94,7 +94,7 @@ void draw_scan(const app::Session& session, PanelContext& context) {
 
 void draw_falloff(const app::Session& session, PanelContext& context, const std::string& name) {
   float frames = static_cast<float>(session.falloff);
-  row(context.ui, "Falloff", "How many frames on each side follow, less and less");
+  row(context.ui, "Falloff", "How many frames before and after an edit follow it, less and less");
   if (number(context.ui, name, frames, {0, 120, 0.1f, "\u00b1 %.0f frames", 5, true}))
     context.ask("tool.falloff", {argument(std::round(frames))});
 }
@@ -182,15 +182,19 @@ void draw_amounts(const PoseEdits& edits, PanelContext& context, const std::stri
   ask_toggle(context,
              {"edit.pin", "Pin feet", "Keeps feet that stand on the floor in place", "edit.pin " + k},
              edits.pin.has_value());
-  ask_number(context, {"edit.smooth", "Smooth", "0: not at all, 1: strongly", "edit.smooth " + k},
-             edits.smooth ? edits.smooth->strength : 0, {0, 1, 0.005f, "%.2f", 0, true});
-  ask_number(context,
-             {"edit.floor_offset", "Raise by", "Moves the whole motion up or down", "edit.floor_offset " + k},
-             edits.floor ? edits.floor->offset_m : 0, {-1, 1, 0.001f, "%.3f m", 0, true});
   ask_number(
       context,
-      {"edit.heading", "Turn by", "Turns the whole motion about the vertical axis", "edit.heading " + k},
-      edits.heading ? edits.heading->yaw_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
+      {"edit.smooth", "Smooth",
+       "Evens out jitter: 0 changes nothing, 1 averages over about 0.2 s to each side", "edit.smooth " + k},
+      edits.smooth ? edits.smooth->strength : 0, {0, 1, 0.005f, "%.2f", 0, true});
+  ask_number(context,
+             {"edit.floor_offset", "Raise by", "Moves the whole motion up by so many metres, below 0 down",
+              "edit.floor_offset " + k},
+             edits.floor ? edits.floor->offset_m : 0, {-1, 1, 0.001f, "%.3f m", 0, true});
+  ask_number(context,
+             {"edit.heading", "Turn by", "Turns the whole motion about the vertical axis by so many degrees",
+              "edit.heading " + k},
+             edits.heading ? edits.heading->yaw_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
 }
 
 void draw_trim(const app::Session& session, PanelContext& context, const PoseEdits& edits,
@@ -267,7 +271,7 @@ void draw_brush(const app::Session& session, PanelContext& context) {
              session.brush.strength, {0.01f, 1, 0.005f, "%.2f"});
   const std::vector<std::string> modes = {"add", "subtract", "smooth"};
   ask_choice(context, {"edit.brush_mode", "Brush", "What a dab does", "tool.brush_mode"},
-             {"Add", "Take", "Smooth"}, modes, modes[static_cast<size_t>(session.brush.mode)]);
+             {"Add", "Subtract", "Smooth"}, modes, modes[static_cast<size_t>(session.brush.mode)]);
 }
 
 void draw_weights(const app::Session& session, PanelContext& context) {

@@ -288,14 +288,12 @@ void draw_method(const app::Session& session, PanelContext& context) {
        "The method that transfers the motion to the target; " + help_of(engines()), "method.engine " + k},
       engines(), method.engine);
   ask_method(context,
-             {"method.extractor", "Extractor", "The network that finds the joints", "method.extractor " + k},
+             {"method.extractor", "Extractor", "The network that finds the joints in a scan",
+              "method.extractor " + k},
              extractors(), method.extractor);
-  ask_toggle(context,
-             {"method.offsets", "Offsets", "Pose-corrective offsets of the skin", "method.offsets " + k},
+  ask_toggle(context, {"method.offsets", "Offsets", app::kOffsetsExplanation, "method.offsets " + k},
              method.offsets);
-  ask_choice(context,
-             {"method.root", "Path",
-              "The path over the floor: scaled by leg length, the source's own, or none", "method.root " + k},
+  ask_choice(context, {"method.root", "Path", app::kPathExplanation, "method.root " + k, path_tips()},
              {"Scaled", "Original", "In place"}, {kRootNames.begin(), kRootNames.end()},
              kRootNames[static_cast<int>(method.root)]);
   draw_filter(method, context, k);

@@ -21,6 +21,13 @@ float words_width(Ui& ui, const std::vector<std::string>& choices) {
   return (widest + ui.px(10)) * static_cast<float>(choices.size());
 }
 
+/// With a sentence for each choice: "Copy: turns the target's bones as the source's turn."
+Control explained(Control control, const MethodChoices& choices) {
+  for (const MethodChoice& choice : choices)
+    control.tips.push_back(std::string(choice.label) + ": " + choice.sentence + ".");
+  return control;
+}
+
 ButtonOptions options_of(const Control& control, bool enabled) {
   ButtonOptions options;
   options.tooltip = control.explanation, options.disabled = !enabled, options.width = -1;
@@ -28,6 +35,12 @@ ButtonOptions options_of(const Control& control, bool enabled) {
 }
 
 }  // namespace
+
+std::vector<std::string> path_tips() {
+  return {"The source's metres times the ratio of the leg lengths, so that steps fit the legs.",
+          "The source's own metres: feet may slide where the legs are of another length.",
+          "No path: the target stays in one place."};
+}
 
 void push(PanelContext& context, const Control& control, const std::string& value) {
   app::Arguments words = app::split_line(control.command.empty() ? control.name : control.command);
@@ -37,18 +50,20 @@ void push(PanelContext& context, const Control& control, const std::string& valu
 
 bool toggle_row(Ui& ui, const Control& control, bool& on) {
   row(ui, control.label, control.explanation);
-  return toggle(ui, control.name, "", on);
+  const bool changed = toggle(ui, control.name, "", on);
+  tooltip(ui, control.explanation);
+  return changed;
 }
 
 bool choice_row(Ui& ui, const Control& control, const std::vector<std::string>& choices, int& chosen) {
   row(ui, control.label, control.explanation);
   const bool fits = choices.size() <= 4 && words_width(ui, choices) <= ImGui::GetContentRegionAvail().x;
-  return (fits ? segmented : dropdown)(ui, control.name, choices, chosen);
+  return (fits ? segmented : dropdown)(ui, control.name, choices, chosen, control.tips);
 }
 
 bool method_row(Ui& ui, const Control& control, const MethodChoices& choices, std::string& chosen) {
   int i = index_of(choices, chosen);
-  const bool changed = choice_row(ui, control, labels_of(choices), i);
+  const bool changed = choice_row(ui, explained(control, choices), labels_of(choices), i);
   if (changed) chosen = choices[i].name;
   return changed;
 }
@@ -95,12 +110,14 @@ void ask_choice(PanelContext& context, const Control& control, const std::vector
 
 void ask_method(PanelContext& context, const Control& control, const MethodChoices& choices,
                 const std::string& chosen) {
-  ask_choice(context, control, labels_of(choices), names_of(choices), chosen);
+  ask_choice(context, explained(control, choices), labels_of(choices), names_of(choices), chosen);
 }
 
 void ask_number(PanelContext& context, const Control& control, float value, const NumberOptions& options) {
   row(context.ui, control.label, control.explanation);
+  const bool has_reset = options.resettable && value != options.initial;  // which explains itself
   if (number(context.ui, control.name, value, options)) push(context, control, argument(value));
+  if (!has_reset) tooltip(context.ui, control.explanation);
 }
 
 void ask_button(PanelContext& context, const Control& control, bool enabled) {

@@ -12,11 +12,15 @@
 namespace understudy::ui {
 
 struct Control {
-  std::string name;              ///< id and mark
-  std::string label;             ///< of a row: grey, on the left
-  std::string explanation = {};  ///< when the pointer rests on the label
-  std::string command = {};      ///< as a line of a script: "edit.pin 0"; empty: the name
+  std::string name;                    ///< id and mark
+  std::string label;                   ///< of a row: grey, on the left
+  std::string explanation = {};        ///< when the pointer rests on the label, a switch or a number
+  std::string command = {};            ///< as a line of a script: "edit.pin 0"; empty: the name
+  std::vector<std::string> tips = {};  ///< of choices, what each means
 };
+
+/// What each RootMode means, for the choices of "Path".
+std::vector<std::string> path_tips();
 
 /// Pushes its command, with the user's new value as its last argument where there is one.
 void push(PanelContext& context, const Control& control, const std::string& value = {});

@@ -195,7 +195,8 @@ bool toggle(Ui& ui, const std::string& name, const std::string& label, bool& on)
   return p.clicked;
 }
 
-bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen) {
+bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen,
+               const std::vector<std::string>& tips) {
   const Theme& t = ui.theme();
   const IdScope id(name);
   const float height = ImGui::GetFrameHeight(), width = width_left(0), inset = std::round(ui.px(2));
@@ -208,6 +209,7 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
     ImGui::SetCursorScreenPos({left, at.y});
     const Press p = press(ui, std::to_string(i), {each, height}, name + "." + std::to_string(i));
     if (p.clicked && chosen != i) chosen = i, changed = true;
+    if (i < ssize(tips)) tooltip(ui, tips[i]);
     const Rect inner{{std::round(left + inset), at.y + inset},
                      {std::round(left + each - inset), at.y + height - inset}};
     const bool on = chosen == i;
@@ -218,7 +220,8 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
   return changed;
 }
 
-bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen) {
+bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen,
+              const std::vector<std::string>& tips) {
   const Theme& t = ui.theme();
   const bool known = chosen >= 0 && chosen < ssize(choices);
   const float width = width_left(0), height = ImGui::GetFrameHeight(), arrow = ui.px(14);
@@ -242,6 +245,7 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
       const IdScope id(i);
       if (ImGui::Selectable(choices[i].c_str(), i == chosen)) changed = chosen != i, chosen = i;
       ui.mark(name + "." + std::to_string(i));
+      if (i < ssize(tips)) tooltip(ui, tips[i]);
     }
     ImGui::EndPopup();
   }

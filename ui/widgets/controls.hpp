@@ -41,12 +41,14 @@ bool button(Ui& ui, const std::string& name, const std::string& label, const But
 bool toggle(Ui& ui, const std::string& name, const std::string& label, bool& on);
 
 /// One of a few, beside each other, over the width that is left. True when the choice changed. Choice i is
-/// marked NAME.i too.
-bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen);
+/// marked NAME.i too. tips: what each choice means, when the pointer rests on it.
+bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen,
+               const std::vector<std::string>& tips = {});
 
 /// One of many, from a list that drops down; over the width that is left. True when the choice changed. While
-/// open, choice i is marked NAME.i.
-bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen);
+/// open, choice i is marked NAME.i. tips: as of segmented().
+bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& choices, int& chosen,
+              const std::vector<std::string>& tips = {});
 
 struct NumberOptions {
   float min = -FLT_MAX, max = FLT_MAX;

@@ -1,5 +1,7 @@
 #include "tests/ui/support/ui_test.hpp"
 
+#include <imgui_internal.h>
+
 #include <utility>
 
 namespace understudy::ui {
@@ -71,6 +73,16 @@ void UiTest::play(std::vector<InputEvent> events) {
   gui.end_frame();
   while (gui.pending()) frame();
   frame();
+}
+
+std::string UiTest::words() {
+  gui.begin_frame(input);
+  ImGui::LogToBuffer();
+  content(gui.ui());
+  std::string words = ImGui::GetCurrentContext()->LogBuffer.c_str();
+  ImGui::LogFinish();
+  gui.end_frame();
+  return words;
 }
 
 Mark UiTest::mark(const std::string& name) {
