@@ -56,6 +56,7 @@ struct Studio::Background {
   std::string advised;        // the source key for which a clean-up was offered
   std::set<int64_t> doubted;  // takes whose target may be no person: to be asked about
   std::string plan_key, source_key, truth_path;
+  std::string extent_of;         // the source that SourceState::extent is of
   std::string autosave_problem;  // the last one reported
   double since_autosave = 0;
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();

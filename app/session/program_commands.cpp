@@ -5,10 +5,10 @@
 namespace understudy::app {
 namespace {
 
-/// Goes as far back as the spread arms of a T-pose ask; never nearer.
+/// Goes as far back as the spread arms of a T-pose, or the crop box, ask; never nearer.
 void see_whole(Call& c) {
   View& view = c.session.view;
-  if (!view.linked) choose_take(c.session, c.session.selected_take);
+  if (!view.linked && c.session.tool == Tool::TargetJoints) choose_take(c.session, c.session.selected_take);
   const size_t i = view.linked ? 0 : view.active_pane;
   const View before = view;
   c.studio.run("view.fit");
@@ -27,7 +27,8 @@ void add_tools(Commands& commands) {
                  [name = kToolNames[i]](Call& c) { c.studio.run("tool", {name}); });
   commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop"}, [](Call& c) {
     const Tool before = std::exchange(c.session.tool, c.choice<Tool>(0, "tool", kToolNames));
-    if (before != Tool::TargetJoints && c.session.tool == Tool::TargetJoints) see_whole(c);
+    if (before != c.session.tool && (c.session.tool == Tool::TargetJoints || c.session.tool == Tool::Crop))
+      see_whole(c);
   });
   commands.add({"tool.falloff", "Falloff", "FRAMES"},
                [](Call& c) { c.session.falloff = c.clamped(0, "falloff", 0, 10000); });

@@ -48,10 +48,8 @@ Eigen::Array<float, kJointCount, 1> usual_lengths(const SharedFrames<KeptSource>
   return good > 0 ? Eigen::Array<float, kJointCount, 1>(sum / static_cast<float>(good)) : sum;
 }
 
-/// Around the points of a frame, or around a body with these joints where it has none.
+/// Around a body with the joints of a frame; none where it has no person.
 std::optional<Box> around(const KeptSource& frame) {
-  const Vec3 margin = Vec3::Constant(kAroundPoints);
-  if (frame.extent) return Box{frame.extent->low - margin, frame.extent->high + margin};
   if (frame.flagged || !frame.joints.allFinite()) return std::nullopt;
   return Box{frame.joints.colwise().minCoeff().transpose() - Vec3(kAroundJoints, kBelowJoints, kAroundJoints),
              frame.joints.colwise().maxCoeff().transpose() + Vec3::Constant(kAroundJoints)};
@@ -59,12 +57,11 @@ std::optional<Box> around(const KeptSource& frame) {
 
 /// Around all frames so far; none before the first.
 std::optional<Box> everything(const Session& session) {
+  const Vec3 margin = Vec3::Constant(kAroundPoints);
+  if (const std::optional<Box>& points = session.source.extent)
+    return Box{points->low - margin, points->high + margin};
   std::optional<Box> all;
-  for (const KeptSource& frame : session.source.frames) {
-    const std::optional<Box> box = around(frame);
-    if (!box) continue;
-    all = all ? Box{all->low.cwiseMin(box->low), all->high.cwiseMax(box->high)} : *box;
-  }
+  for (const KeptSource& frame : session.source.frames) all = united(all, around(frame));
   return all;
 }
 

@@ -45,8 +45,10 @@ struct SourceState {
   std::string decision;  ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
   /// from the frames' joints to the file's coordinates
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
-  std::vector<SourceClip> clips;    ///< animations in the file; none of scans
-  int clip = -1;                    ///< the one that is played
+  std::vector<SourceClip> clips;  ///< animations in the file; none of scans
+  int clip = -1;                  ///< the one that is played
+  /// of the points of all frames so far before any edit; stays while the same source is read again with other edits
+  std::optional<Box> extent;
   SharedFrames<KeptSource> frames;  ///< of the extractor of the first take
   bool has_faces = false;
   int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid

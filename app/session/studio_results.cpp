@@ -1,6 +1,7 @@
 // What the background has finished, taken into the session.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/session/background.hpp"
 #include "app/session/frame_figures.hpp"
@@ -80,7 +81,11 @@ TakeState* Studio::take_of(int64_t id) {
 template <>
 void Studio::take_in(SourceOpened& event) {
   const int64_t generation = session_.source.generation + 1;
+  const std::string source = key_of(session_.document.source);
+  const bool again = std::exchange(background_->extent_of, source) == source;
+  const std::optional<Box> extent = again ? session_.source.extent : std::nullopt;
   session_.source = SourceState{};
+  session_.source.extent = extent;
   session_.source.generation = generation;
   session_.source.name = event.name;
   session_.source.count = event.count;
@@ -118,6 +123,7 @@ void Studio::show_skeleton(int first) {
 template <>
 void Studio::take_in(SourceFrames& event) {
   SourceState& source = session_.source;
+  for (const KeptSource& frame : event.frames) source.extent = united(source.extent, frame.extent);
   if (put(source.frames, event.first, std::move(event.frames))) ++source.generation;
   show_skeleton(event.first);
   for (const KeptSource& frame : source.frames)

@@ -223,6 +223,11 @@ std::optional<Box> extent_of(const Points& points) {
   return box;
 }
 
+std::optional<Box> united(const std::optional<Box>& a, const std::optional<Box>& b) {
+  if (!a || !b) return a ? a : b;
+  return Box{a->low.cwiseMin(b->low), a->high.cwiseMax(b->high)};
+}
+
 ScanEdits in_effect(ScanEdits edits) {
   if (edits.crop && edits.crop->is_open()) edits.crop.reset();
   return edits;

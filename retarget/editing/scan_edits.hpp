@@ -32,6 +32,8 @@ FieldsOf<S, Box> fields(V& visit, S& box) {
 }
 /// Around the points that are finite; none without one.
 std::optional<Box> extent_of(const Points& points);
+/// Around both; the other where one is none.
+std::optional<Box> united(const std::optional<Box>& a, const std::optional<Box>& b);
 /// What commands call a box's sides.
 constexpr Names<6> kBoxSides{"low.x", "high.x", "low.y", "high.y", "low.z", "high.z"};
 

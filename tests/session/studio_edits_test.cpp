@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "retarget/base/error.hpp"
 #include "tests/session/studio_fixture.hpp"
 
@@ -69,8 +71,13 @@ TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
   };
   const std::vector<int> before = points();
   const int extracted = *extractions_;
+  const float near = session.view.cameras[0].distance;
   studio.run("edit.crop", {"on"});
   EXPECT_EQ(session.tool, Tool::Crop);
+  EXPECT_GE(session.view.cameras[0].distance, near);
+  studio.run("view.fit");
+  EXPECT_GT(session.view.cameras[0].distance * std::tan(0.5f * session.view.cameras[0].fov),
+            0.5f * (shown_crop(session).high - shown_crop(session).low).maxCoeff());  // its handles are seen
   EXPECT_EQ(points(), before);
   EXPECT_EQ(*extractions_, extracted);
   const Box box = shown_crop(session);
@@ -81,6 +88,7 @@ TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
   const float middle = 0.5f * (box.low.y() + box.high.y());
   studio.run("edit.crop", {"high.y", std::to_string(middle)});
   const std::vector<int> after = points();
+  EXPECT_EQ(shown_crop(session).low, box.low);  // what was cut is still outside it
   for (size_t i = 0; i < before.size(); ++i) EXPECT_LT(after.at(i), before[i]) << i;
   EXPECT_EQ(session.document.scan_edits.crop->low, Box::open().low);
   studio.run("edit.undo");
