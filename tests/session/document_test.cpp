@@ -57,6 +57,7 @@ const Changes& document_changes() {
       CHANGE(source.as_scan = true),
       CHANGE(source.clip += "x"),
       CHANGE(source.bones.clear()),
+      CHANGE(source.import.height.reset()),
       CHANGE(truth.clear()),
       CHANGE(scan_edits.crop.reset()),
       CHANGE(scan_edits.crop->low.x() -= 1),
@@ -86,7 +87,9 @@ const Changes& document_changes() {
       TAKE(target.path += "x"),
       TAKE(target.betas.clear()),
       TAKE(target.import.units = "m"),
+      TAKE(target.import.height.reset()),
       TAKE(target.forward = true),
+      TAKE(target.not_a_person = NotAPerson::Refuse),
       TAKE(target.rig = "theirs"),
       TAKE(target.bones.erase("head")),
       TAKE(target.bones["left_wrist"] = "hand.L"),
@@ -212,6 +215,7 @@ TEST(Document, SameAreThoseWithTheSameText) {
 TEST(Document, WhatBelongsToOneRunIsNoMatter) {
   Document a, b;
   b.source.quiet = b.source.follow = true;
+  b.source.edits.largest_cluster = true;
   EXPECT_TRUE(same(a, b));
 }
 
