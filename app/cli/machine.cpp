@@ -64,10 +64,9 @@ double gemm_gflops() {
   const auto sgemm = blas ? reinterpret_cast<Sgemm>(dlsym(blas, "sgemm_")) : nullptr;
   if (!sgemm) return 0;
   constexpr int n = 768;
-  constexpr size_t kEntries = size_t{n} * n;
   const float one = 1, zero = 0;
-  const std::vector<float> a(kEntries, 0.5f), b(kEntries, 0.25f);
-  std::vector<float> c(kEntries);
+  const std::vector<float> a(n * n, 0.5f), b(n * n, 0.25f);
+  std::vector<float> c(n * n);
   double best = 1e9;
   const auto began = std::chrono::steady_clock::now();
   const auto seconds = [](auto from) {
