@@ -5,7 +5,8 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 cmake --preset dev >/dev/null  # only for its compile_commands.json: it names every file
-with_torch=$(awk '/^[^#].*\+torch/ { print "^" $1 "/" }' tests/layers.txt | paste -sd '|')
+with_torch=$(awk '!/^#/ && / torch( |$)/ { print "^" $1 "/" }' tests/layers.txt | paste -sd '|')
+[ -n "$with_torch" ] || { echo "tidy.sh: tests/layers.txt names no folder with torch" >&2; exit 1; }
 if [ "${1:-}" = --all ]; then
   changed=$(git ls-files app render ui retarget)
 else

@@ -40,7 +40,7 @@ double seconds_since(Clock::time_point from) {
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
-  return values[q * static_cast<double>(values.size() - 1) + 0.5];
+  return values[static_cast<size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
 }
 
 // What is shown: the bundled samples, brought to the sizes asked for.

@@ -118,7 +118,7 @@ nn::NetworkOptions network_options(const MethodOptions& how) {
 }
 
 std::string samples_folder() {
-  const std::string folder = program_files("samples").string();
+  std::string folder = program_files("samples").string();
   US_CHECK(!folder.empty(),
            "the bundled samples are missing: no folder assets/samples beside the program or above it, "
            "nor ../share/understudy/samples");

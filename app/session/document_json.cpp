@@ -41,7 +41,7 @@ Json shortest(Number value) {
 
 template <class Number>
 std::string range_text(const Within<Number>& range) {
-  const std::string kind = std::is_integral_v<Number> ? "a whole number" : "a finite number";
+  std::string kind = std::is_integral_v<Number> ? "a whole number" : "a finite number";
   if (static_cast<double>(range.high) >= kFrameNumbers.high) return kind;
   return kind + " from " + detail::join(range.low) + " to " + detail::join(range.high);
 }

@@ -349,6 +349,7 @@ std::vector<Method> Engine::Impl::wanted_extractions() const {
   for (const TakeWork& take : takes)
     if (!take.failed) wanted.emplace(extraction_key(take.plan.method), take.plan.method);
   std::vector<Method> methods;
+  methods.reserve(wanted.size());
   for (const auto& [key, method] : wanted) methods.push_back(method);
   return methods;
 }

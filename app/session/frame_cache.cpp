@@ -56,7 +56,7 @@ struct Recipe {
   /// Generations tell takes apart only as long as no take is removed or exchanged: hence the rest.
   bool operator==(const Recipe& other) const {
     return version == other.version && deformer == other.deformer && target == other.target &&
-           std::memcmp(&pose, &other.pose, sizeof pose) == 0;  // nothing but floats; NaN equals itself
+           std::memcmp(&pose, &other.pose, sizeof pose) == 0;  // NOLINT: all floats; NaN equals itself
   }
 };
 

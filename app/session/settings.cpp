@@ -116,11 +116,10 @@ void write_settings(const std::string& path, const Settings& settings) {
   write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
-void remember(std::vector<std::string>& recent, const std::string& path) {
+void remember(std::vector<std::string>& recent, std::string path) {
   if (path.empty()) return;
-  const std::string kept = path;  // it may be in the list itself
-  recent.erase(std::remove(recent.begin(), recent.end(), kept), recent.end());
-  recent.insert(recent.begin(), kept);
+  recent.erase(std::remove(recent.begin(), recent.end(), path), recent.end());
+  recent.insert(recent.begin(), std::move(path));
   if (recent.size() > kMostRecent) recent.resize(kMostRecent);
 }
 

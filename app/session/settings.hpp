@@ -54,6 +54,6 @@ Settings read_settings(const std::string& path);
 /// Writes beside the file, then renames. Throws Error naming the path.
 void write_settings(const std::string& path, const Settings& settings);
 /// Puts `path` first in a recent list.
-void remember(std::vector<std::string>& recent, const std::string& path);
+void remember(std::vector<std::string>& recent, std::string path);
 
 }  // namespace understudy::app

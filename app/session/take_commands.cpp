@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMostTakes = 8;
 
 std::string target_file(const Call& c, size_t i) {
-  const std::string path = c.path(i);
+  std::string path = c.path(i);
   std::error_code failed;
   US_CHECK(fs::exists(path, failed), path, ": there is no such file");
   US_CHECK(!fs::is_directory(path, failed), path, ": is a folder; a target is one file");
@@ -153,7 +153,7 @@ void compare(Call& c) {
     US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", setting);
     const std::string key = setting.substr(0, equals), value = setting.substr(equals + 1);
     set_method(other.method, key, value);
-    other.name += (i == 1 ? " (" : ", ") + key + " " + value;
+    other.name.append(i == 1 ? " (" : ", ").append(key).append(" ").append(value);
   }
   other.name += c.arguments.size() > 1 ? ")" : " (2)";
   c.document.takes.push_back(std::move(other));

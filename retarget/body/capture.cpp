@@ -117,6 +117,7 @@ struct Hole {
 
 std::vector<Hole> holes(const Points& vertices, int count, Rng& rng) {
   std::vector<Hole> result;
+  result.reserve(count);
   for (int i = 0; i < count; ++i)
     result.push_back({vertices.row(rng.below(vertices.rows())).transpose(), rng.uniform(.03f, .07f)});
   return result;
