@@ -59,7 +59,10 @@ void add_work(Commands& commands) {
   commands.add({"error.dismiss", "Close"}, [](Call& c) {
     if (!c.session.errors.empty()) c.session.errors.pop_front();
   });
-  commands.add({"log.clear", "Clear the log"}, [](Call& c) { c.session.log.clear(); });
+  commands.add({"log.clear", "Clear the log"}, [](Call& c) {
+    c.session.log.clear();
+    c.session.failures.clear();
+  });
   commands.add({"notice", "Notice", "TEXT"}, [](Call& c) { c.studio.notify(c.word(0, "text")); });
   commands.add({"app.quit", "Quit", "", "Ctrl+Q"}, [](Call& c) {
     c.session.quit = !c.session.changed;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/dialogs.hpp"
@@ -23,6 +24,7 @@ constexpr MouseUse kInTimeline[] = {{"Click or drag", "Goes to the frame"},
                                     {"Wheel", "Zooms the timeline"},
                                     {"Middle drag or Shift+wheel", "Moves along the timeline"},
                                     {"Double click in the ruler", "Shows all frames"}};
+constexpr MouseUse kAnywhere[] = {{"F1", "Explains what the pointer is on"}};
 constexpr MouseUse kInNumbers[] = {{"Drag", "Changes the number"}, {"Double click", "Lets you type it"}};
 
 /// What a tool's own clicks do.
@@ -97,6 +99,7 @@ void draw_uses(Ui& ui, const std::string& where, const Uses& uses) {
 
 void draw_mouse(Ui& ui, float height) {
   if (ImGui::BeginChild("##mouse", {0, height})) {
+    draw_uses(ui, "Anywhere", kAnywhere);
     draw_uses(ui, "In the views", kInViews);
     for (const ToolChoice& tool : kTools)
       draw_uses(ui, std::string("With the tool \u201c") + tool.label + "\u201d", own_uses(tool.tool));
@@ -155,12 +158,12 @@ std::vector<MenuItem> palette(const app::Session& session, const app::Commands& 
     });
   };
   for (const Binding& binding : bindings(commands))
-    if (binding.command != "help.keys" && !is_there(binding.command, binding.arguments))
+    if (!starts_with(binding.command, "help.") && !is_there(binding.command, binding.arguments))
       all.push_back({binding.label, binding.command, binding.arguments});
   for (const Menu& menu : menus(session)) add_entries(menu.items, "", commands, all);
   for (const app::Command& command : commands.all()) {
     const bool runs = command.usage.empty() && possible(session, command.name);
-    if (runs && command.name != "help.keys" && !is_there(command.name, {}))
+    if (runs && !starts_with(command.name, "help.") && !is_there(command.name, {}))
       all.push_back({command.label, command.name});
   }
   return all;

@@ -162,7 +162,6 @@ std::vector<Menu> menus(const app::Session& session) {
           {"help",
            "Help",
            {{"Commands, scripts, mouse\u2026", "help.keys"},
-            {"What is this?", "help.here"},
             {"About Understudy", "dialog.open", {"about"}},
             {"Log", "panel.show", {"log", "on"}}}}};
 }
