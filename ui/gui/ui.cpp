@@ -3,6 +3,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace understudy::ui {
@@ -35,13 +36,18 @@ void Ui::explain(Explanation explanation) {
   if (says) explaining_.push_back(std::move(explanation));
 }
 
-const Explanation* Ui::explanation_at(const ImVec2& at) const {
-  const Explanation* smallest = nullptr;
+std::optional<Explanation> Ui::explanation_at(const ImVec2& at) const {
+  std::vector<Explanation> here;
+  std::copy_if(explained_.rbegin(), explained_.rend(), std::back_inserter(here),
+               [&](const Explanation& one) { return one.place.contains(at); });
   const auto area = [](const Rect& rect) { return rect.width() * rect.height(); };
-  for (const Explanation& one : explained_)
-    if (one.place.contains(at) && (smallest == nullptr || area(one.place) <= area(smallest->place)))
-      smallest = &one;
-  return smallest;
+  std::stable_sort(here.begin(), here.end(),
+                   [&](const Explanation& a, const Explanation& b) { return area(a.place) < area(b.place); });
+  if (here.empty()) return std::nullopt;
+  const auto named =
+      std::find_if(here.begin(), here.end(), [](const Explanation& one) { return !one.title.empty(); });
+  if (named != here.end()) here.front().title = named->title;
+  return here.front();
 }
 
 bool Ui::claim_dialog(const std::string& name) {

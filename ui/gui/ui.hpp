@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <any>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -69,8 +70,9 @@ class Ui {
   const Mark* find(const std::string& name) const;
   /// Says what a place of the current window is for, as far as it is to be seen.
   void explain(Explanation explanation);
-  /// The explanation of the smallest place there, of the last finished frame; null where nothing is explained.
-  const Explanation* explanation_at(const ImVec2& at) const;
+  /// The explanation of the smallest place there, of the last finished frame; without a title it has that of what
+  /// is around it. None where nothing is explained.
+  std::optional<Explanation> explanation_at(const ImVec2& at) const;
   /// Scrolls to an item when it is next drawn.
   void reveal(const std::string& name) { reveal_ = name; }
 

@@ -129,12 +129,8 @@ std::string views_help(app::Tool tool) {
 
 bool draw_help_here(PanelContext& context, std::optional<Explanation>& here) {
   Ui& ui = context.ui;
-  if (!here) {
-    const Explanation* found = ui.explanation_at(ImGui::GetIO().MousePos);
-    here = found != nullptr
-               ? *found
-               : Explanation{{}, "", "Rest the pointer on something and press F1 to read what it is for."};
-  }
+  if (!here) here = ui.explanation_at(ImGui::GetIO().MousePos);
+  if (!here) here = {{}, "", "Rest the pointer on something and press F1 to read what it is for."};
   if (!begin_dialog(ui, "help.here", here->title.empty() ? "Help" : here->title, 440)) return true;
   ImGui::TextWrapped("%s", here->text.c_str());
   ui.mark("help.here");
