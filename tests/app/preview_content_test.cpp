@@ -45,9 +45,15 @@ TEST_F(Preview, OfAMotionIsItsSkeletonWithClipsAndSeconds) {
 }
 
 TEST_F(Preview, OfALyingCharacterShowsItStanding) {
-  Character lying = tests::make_character();
-  lying.nodes[0].local.rotation =
-      Eigen::Quaternionf(rotation_from_axis_angle({-kPi / 2, 0, 0})) * lying.nodes[0].local.rotation;
+  tests::MadeCharacter bare;
+  bare.rigged = false;
+  Character lying = tests::make_character(bare);
+  const Mat3 onto_the_back = rotation_from_axis_angle({-kPi / 2, 0, 0});
+  for (auto& part : lying.parts) {
+    part.vertices = (part.vertices * onto_the_back.transpose()).eval();
+    part.normals = (part.normals * onto_the_back.transpose()).eval();
+  }
+  ASSERT_LT(size_of(merged_surface(lying, bind_pose(lying).vertices).mesh).y(), 0.8f);
   write_gltf_character(path("lying.glb"), lying);
   const PreviewContent content = preview_content(path("lying.glb"));
   EXPECT_GT(size_of(content.mesh).y(), 1.4f) << content.text;
