@@ -19,6 +19,7 @@ namespace {
 
 constexpr uintmax_t kLargestFile = 256u << 20;  // bytes of a file that is read only to be looked at
 constexpr size_t kClipsNamed = 4;
+constexpr int kSkipped = 10;  // frames that cannot be used, before one is shown
 
 std::string described(const Mesh& mesh) {
   return mesh.is_cloud()
@@ -115,9 +116,10 @@ PreviewContent of_source(const std::string& path) {
   const auto count = source->count();
   const bool moves = !source->clips().empty();
   if (moves && count && *count > 1) source->seek(*count / 2);
-  const auto frame = source->next();
-  if (!frame) return content;
-  const std::string frames = count ? grouped(*count) + " frames" : "";
+  auto frame = source->next();
+  for (int skipped = 0; frame && !frame->usable && skipped < kSkipped; ++skipped) frame = source->next();
+  US_CHECK(frame && frame->usable, frame ? frame->problem : path + ": has no frames");
+  const std::string frames = count ? grouped(*count) + (*count == 1 ? " frame" : " frames") : "";
   if (!moves || !frame->skeleton) {
     content.mesh = normalized(frame->mesh);
     content.text = frames + (frames.empty() ? "" : ", ") + described(frame->mesh);
