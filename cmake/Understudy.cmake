@@ -68,7 +68,7 @@ function(us_tests name folder)
     list(PREPEND T_LIBS ${name}_support)
   endif()
   if(NOT T_TIMEOUT)
-    set(T_TIMEOUT 300)
+    set(T_TIMEOUT 900)  # sanitizers on a busy machine included
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*_test.cpp)
   foreach(source ${sources})

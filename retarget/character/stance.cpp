@@ -50,7 +50,7 @@ Ends ends_of(const Eigen::VectorXf& column) {
 }
 
 Points evenly(const Mesh& mesh) {
-  const Points points = finite_points(mesh.vertices);
+  Points points = finite_points(mesh.vertices);
   US_CHECK(points.rows() > 0, "the body has no finite point");
   if (mesh.faces.rows() == 0 || points.rows() != mesh.vertices.rows()) return points;
   try {

@@ -82,6 +82,7 @@ std::vector<float> floats(const std::vector<double>& values, size_t count, const
   US_CHECK(values.empty() || values.size() == count, path, ": '", name, "' is not a list of ", count,
            " numbers");
   std::vector<float> out;
+  out.reserve(values.size());
   for (const double value : values) out.push_back(narrow(value));
   return out;
 }

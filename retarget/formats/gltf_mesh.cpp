@@ -114,7 +114,7 @@ Mesh parse_gltf(std::string_view bytes, const std::string& path) {
     }
     collector.add_mesh(file.item(model.meshes, node.mesh, "meshes"), transform);
   }
-  const Mesh mesh = collector.finish();
+  Mesh mesh = collector.finish();
   US_CHECK(mesh.vertices.rows() > 0, path, ": holds no mesh");
   return mesh;
 }

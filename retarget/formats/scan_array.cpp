@@ -224,7 +224,7 @@ zip_int64_t find_array(const Archive& archive, const std::string& path) {
     const std::string name = entry_name(archive.zip.get(), i);
     if (!ends_with(name, ".npy")) continue;
     ZipStream stream(archive, static_cast<zip_uint64_t>(i));
-    if (is_sequence(read_npy_header(stream, path + " (" + name + ")").shape)) return i;
+    if (is_sequence(read_npy_header(stream, detail::join(path, " (", name, ")")).shape)) return i;
   }
   return -1;
 }

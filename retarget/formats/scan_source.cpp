@@ -104,6 +104,7 @@ class FileFrames : public ScanSource::Frames {
 
 std::vector<std::string> under(const std::string& folder, const std::vector<std::string>& names) {
   std::vector<std::string> paths;
+  paths.reserve(names.size());
   for (const auto& name : names) paths.push_back((fs::path(folder) / name).string());
   return paths;
 }
