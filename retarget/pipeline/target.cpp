@@ -88,6 +88,7 @@ Target prepare_target(const Mesh& mesh, SkeletonExtractor& extractor) {
   constexpr int kRounds = 12;
   Rng rng(20231);
   std::vector<Joints> looks;
+  looks.reserve(kRounds);
   for (int round = 0; round < kRounds; ++round) looks.push_back(look(part, extractor, rng, round));
 
   Joints joints;  // the mean of the middle half: one bad look does not count
@@ -95,9 +96,10 @@ Target prepare_target(const Mesh& mesh, SkeletonExtractor& extractor) {
     std::array<float, kRounds> values;
     for (int round = 0; round < kRounds; ++round) values[round] = looks[round].data()[i];
     std::sort(values.begin(), values.end());
+    constexpr int kLeftOut = kRounds / 4;  // at each end
     float sum = 0;
-    for (int k = kRounds / 4; k < kRounds - kRounds / 4; ++k) sum += values[k];
-    joints.data()[i] = sum / (kRounds - 2 * (kRounds / 4));
+    for (int k = kLeftOut; k < kRounds - kLeftOut; ++k) sum += values[k];
+    joints.data()[i] = sum / (kRounds - 2 * kLeftOut);
   }
   Rng again(20232);
   const Symmetry s = symmetry(sample_points(part, 2000, again));

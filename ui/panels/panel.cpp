@@ -36,8 +36,8 @@ std::string joint_label(int joint) {
 }
 
 std::vector<std::string> joint_labels() {
-  std::vector<std::string> labels;
-  for (int j = 0; j < kJointCount; ++j) labels.push_back(joint_label(j));
+  std::vector<std::string> labels(kJointCount);
+  for (int j = 0; j < kJointCount; ++j) labels[j] = joint_label(j);
   return labels;
 }
 

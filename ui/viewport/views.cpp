@@ -28,8 +28,9 @@ std::vector<Rect> cells(const Rect& area, int count, float gap) {
       std::floor((area.height() - gap * static_cast<float>(rows - 1)) / static_cast<float>(rows));
   std::vector<Rect> all;
   for (int i = 0; i < count; ++i) {
-    const ImVec2 at(area.min.x + static_cast<float>(i % columns) * (width + gap),
-                    area.min.y + static_cast<float>(i / columns) * (height + gap));
+    const int column = i % columns, row = i / columns;
+    const ImVec2 at(area.min.x + static_cast<float>(column) * (width + gap),
+                    area.min.y + static_cast<float>(row) * (height + gap));
     all.push_back({at, {at.x + width, at.y + height}});
   }
   return all;
