@@ -61,7 +61,7 @@ TEST_F(StudioTest, ATargetThatCannotTakeAnothersPlaceLeavesItThere) {
   EXPECT_EQ(session.document.takes[0].target.path, path("target.obj"));
   EXPECT_TRUE(session.takes[0].ready);
   EXPECT_TRUE(session.document.takes[0].pose_edits.heading);
-  EXPECT_EQ(session.history.undo_label(), "Heading");
+  EXPECT_EQ(session.history.undo_label(), studio.commands().find("edit.heading")->label);
 }
 
 TEST_F(StudioTest, ASourceThatCannotBeReadLeavesTheOneBefore) {
@@ -80,7 +80,7 @@ TEST_F(StudioTest, ASourceThatCannotBeReadLeavesTheOneBefore) {
     EXPECT_TRUE(session.document.scan_edits.crop) << bad;
     EXPECT_EQ(session.source.problem, "") << bad;
     EXPECT_EQ(frame_count(session), kFrames) << bad;
-    EXPECT_EQ(session.history.undo_label(), "Crop the scan") << bad;
+    EXPECT_EQ(session.history.undo_label(), studio.commands().find("edit.crop")->label) << bad;
   }
 }
 
