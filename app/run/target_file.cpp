@@ -32,11 +32,10 @@ template <class Work>
 auto naming(const std::string& path, Work work) {
   try {
     return work();
-  } catch (const NotAPersonError&) {  // it names the character
-    throw;
   } catch (const Error& error) {
-    const std::string what = error.what();
-    throw Error(what.find(path) != what.npos ? what : path + ": " + what);
+    const std::string what = error.what(), named = what.find(path) != what.npos ? what : path + ": " + what;
+    if (dynamic_cast<const NotAPersonError*>(&error)) throw NotAPersonError(named);
+    throw Error(named);
   }
 }
 
@@ -89,7 +88,7 @@ std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& option
   try {
     return bind_target(load_target(options), options, networks);
   } catch (const NotAPersonError& error) {
-    throw NotAPersonError(options.path + ": " + error.what() + " (--use-anyway uses it all the same)");
+    throw NotAPersonError(std::string(error.what()) + " (--use-anyway uses it all the same)");
   }
 }
 

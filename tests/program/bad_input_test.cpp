@@ -165,14 +165,17 @@ TEST_F(BadInput, AnOutputFormatThatIsNotKnown) {
   expect_clean_failure(retarget(scans(), {"--out", out("a.mp3")}), "a.mp3");
 }
 
-TEST_F(BadInput, ATargetThatIsNoPersonIsWarnedOf) {
+TEST_F(BadInput, ATargetThatIsNoPersonIsUsedWhereToldSoWithAWarning) {
   std::string box;
   for (int i = 0; i < 1000; ++i)
     box += "v " + std::to_string(0.1 * (i % 10)) + ' ' + std::to_string(0.1 * (i / 10 % 10)) + ' ' +
            std::to_string(0.1 * (i / 100)) + '\n';
   write_text(scratch.path("box.obj"), box);
-  const Finished run = run_program(
-      {"retarget", "--source", scans(), "--target", scratch.path("box.obj"), "--out", out("a.glb")});
+  std::vector<std::string> arguments = {"retarget", "--source",  scans(), "--target", scratch.path("box.obj"),
+                                        "--out",    out("a.glb")};
+  expect_clean_failure(run_program(arguments), "--use-anyway");
+  arguments.push_back("--use-anyway");
+  const Finished run = run_program(arguments);
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_NE(run.err.find("warning"), std::string::npos) << run.err;
 }
