@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <deque>
-#include <limits>
 #include <list>
 #include <map>
 #include <new>
@@ -195,8 +194,7 @@ class ScanReader {
     US_CHECK(scan.usable, scan.problem);
     ScanEdits edits = edits_;
     if (edits.empty() && !scan.mesh.vertices.allFinite())  // what is not finite goes with any edit
-      edits.crop = Box{Vec3::Constant(std::numeric_limits<float>::lowest()),
-                       Vec3::Constant(std::numeric_limits<float>::max())};
+      edits.crop = Box{Vec3::Constant(-kOpenSide / 2), Vec3::Constant(kOpenSide / 2)};
     ScanPicture picture;
     if (edits_.crop) picture.cropped_away = outside(*edits_.crop, scan.mesh.vertices);
     picture.mesh = edits.empty() ? std::move(scan.mesh) : apply(edits, scan.mesh);

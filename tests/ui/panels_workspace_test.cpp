@@ -403,7 +403,6 @@ TEST_F(WorkspaceTest, F1ExplainsWhatThePointerIsOn) {
     frame(3);
     EXPECT_EQ(workspace.dialog(), "here") << name;
     EXPECT_TRUE(shown("help.here"));
-    EXPECT_NE(words().find(seen.text), std::string::npos) << words();
     key(Key::F1);  // again closes it
     frame(3);
     EXPECT_EQ(workspace.dialog(), "") << name;

@@ -1,6 +1,7 @@
 #include "ui/widgets/lists.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -30,9 +31,13 @@ std::vector<int> matching(const std::vector<ListItem>& items, const std::string&
   std::vector<int> found;
   for (int i = 0; i < ssize(items); ++i)
     if (matches(items[i].text + " " + items[i].note, search)) found.push_back(i);
-  const std::string words = lower_case(search);
-  std::stable_partition(found.begin(), found.end(),
-                        [&](int i) { return starts_with(lower_case(items[i].text), words); });
+  const auto begins_a_word = [&, words = lower_case(search)](int i) {
+    const std::string text = lower_case(items[i].text);
+    const size_t at = text.find(words);
+    return at == 0 ||
+           (at != std::string::npos && std::isalnum(static_cast<unsigned char>(text[at - 1])) == 0);
+  };
+  std::stable_partition(found.begin(), found.end(), begins_a_word);
   return found;
 }
 

@@ -38,7 +38,7 @@ TEST(MetricTable, EveryMetricHasAKeyOfItsOwnAndWords) {
     EXPECT_TRUE(labels.insert(metric.label).second) << metric.label;
     EXPECT_TRUE(metric.digits >= 0 && metric.digits <= 6) << metric.key;
     EXPECT_EQ(find_metric(metric.key), &metric);
-    EXPECT_EQ(metric.needs == 0, !metric.of && !metric.series) << metric.key;
+    EXPECT_TRUE(metric.needs != 0 || (!metric.of && !metric.series)) << metric.key;
   }
   EXPECT_EQ(find_metric("nothing"), nullptr);
 }

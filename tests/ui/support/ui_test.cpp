@@ -75,16 +75,6 @@ void UiTest::play(std::vector<InputEvent> events) {
   frame();
 }
 
-std::string UiTest::words() {
-  gui.begin_frame(input);
-  ImGui::LogToBuffer();
-  content(gui.ui());
-  std::string words = ImGui::GetCurrentContext()->LogBuffer.c_str();
-  ImGui::LogFinish();
-  gui.end_frame();
-  return words;
-}
-
 Mark UiTest::mark(const std::string& name) {
   if (gui.find(name) == nullptr) frame(2);  // windows appear after a frame
   const Mark* found = gui.find(name);

@@ -42,9 +42,6 @@ class UiTest : public testing::Test {
   void type(const std::string& text);
   void key(render::Key key, render::Modifiers modifiers = {});
 
-  /// What a frame writes with ImGui's own text: tooltips, hints, tables; not the words of buttons and fields.
-  std::string words();
-
   /// The mark; a failure and a place outside the display when there is none.
   Mark mark(const std::string& name);
   bool shown(const std::string& name);
