@@ -335,7 +335,7 @@ void Application::write_marks() {
   }
   for (const ui::Mark& mark : marks()) {
     if (mark.visible.empty()) continue;
-    text << "mark " << mark.name << ' ' << mark.visible.min.x << ' ' << mark.visible.min.y << ' '
+    text << join_line("mark", {mark.name}) << ' ' << mark.visible.min.x << ' ' << mark.visible.min.y << ' '
          << mark.visible.max.x << ' ' << mark.visible.max.y << (mark.enabled ? "" : " disabled") << '\n';
   }
   if (text.str() == marks_) return;

@@ -95,6 +95,8 @@ void StudioWindow::start(std::vector<std::string> more) {
                          "UNDERSTUDY_STATE=" + scratch.path("state"),
                          "LIBGL_ALWAYS_SOFTWARE=1"};
   program = std::make_unique<Program>(arguments, options);
+  ASSERT_TRUE(wait_until([&] { return !widgets_.empty(); })) << "nothing is drawn";
+  xdotool("mousemove 640 400 sleep 0.3");  // without a window manager keys go where the pointer is
 }
 
 void StudioWindow::look() {
