@@ -207,7 +207,8 @@ Pointer pointer_of_item() {
   pointer.held = active && ImGui::IsMouseDown(0);
   pointer.released = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(0);
   pointer.doubled = pointer.over && ImGui::IsMouseDoubleClicked(0);
-  const bool dragged = active && !ImGui::IsItemActivated();  // the way to where it was pressed is no part of it
+  const bool dragged =
+      active && !ImGui::IsItemActivated();  // the way to where it was pressed is no part of it
   pointer.turning = dragged && ImGui::IsMouseDown(1);
   pointer.panning = dragged && (ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift));
   return pointer;
