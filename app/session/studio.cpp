@@ -295,7 +295,7 @@ const Neighbours& Studio::neighbours(size_t take) {
   return applied.neighbours;
 }
 
-void Studio::tick(double seconds) {
+void Studio::tick(double seconds, double played) {
   session_.time += seconds;
   take_in_results();
   const bool takes = !session_.takes.empty();
@@ -306,7 +306,7 @@ void Studio::tick(double seconds) {
   Playback trimmed = session_.playback;
   if (edits.trim && trimmed.in < 0) trimmed.in = edits.trim->first;
   if (edits.trim && trimmed.out < 0) trimmed.out = edits.trim->last;
-  advance(trimmed, seconds, session_.source.fps, count, edits.skip);
+  advance(trimmed, played, session_.source.fps, count, edits.skip);
   // A new target, and a scan that is cropped, start without frames: the place is kept until it comes there.
   const auto& source = session_.source;
   const int64_t known =
@@ -316,7 +316,7 @@ void Studio::tick(double seconds) {
   session_.playback.playing = trimmed.playing;
   if (session_.view.turntable_deg_s != 0)
     for (CameraState& camera : session_.view.cameras)
-      camera.yaw += static_cast<float>(seconds) * session_.view.turntable_deg_s * kPi / 180;
+      camera.yaw += static_cast<float>(played) * session_.view.turntable_deg_s * kPi / 180;
   session_.jobs = jobs_.views();
   for (size_t k = 0; k < session_.takes.size(); ++k)
     if (session_.takes[k].as_loaded && session_.takes[k].problem.empty() && !session_.paused)

@@ -40,8 +40,10 @@ class Studio {
   void try_run(const std::string& name, const Arguments& arguments = {});
   void run_all(CommandQueue& queue);
 
-  /// Once per drawn frame: collects what the background has finished and moves the playhead by `seconds`.
-  void tick(double seconds);
+  /// Once per drawn frame: collects what the background has finished. Notices and copies of unsaved work go by the
+  /// `seconds` gone by, the playhead moves by those `played`.
+  void tick(double seconds, double played);
+  void tick(double seconds) { tick(seconds, seconds); }
   /// Ticks until all frames are made and nothing is left to do. Throws Error after `timeout_s`. For scripts
   /// and tests.
   void wait_idle(double timeout_s = 600);

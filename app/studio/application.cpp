@@ -36,7 +36,7 @@ constexpr double kLookingAround = 0.05;  // between frames in that time
 constexpr double kBlink = 0.25;          // while a text is being typed
 constexpr double kBarMoves = 0.1;        // progress that nothing is known of
 constexpr double kAsleep = 0.5;          // between looks at nothing, for autosave
-constexpr double kLongest = 0.25;        // time that one frame lets go by: after a sleep nothing jumps
+constexpr double kLongest = 0.25;        // time that one frame plays: after a sleep nothing jumps
 constexpr int kSettling = 3;             // frames that widgets take to come to rest
 constexpr size_t kLogLines = 2000;
 constexpr int kMostFailures = 10;  // frames on end
@@ -147,14 +147,15 @@ bool Application::attempt(const std::function<void()>& part) {
 
 /// Where frame after frame goes wrong nobody can read the dialog: the studio ends, and keeps what is unsaved.
 void Application::tick_and_draw(double tick_dt, const std::function<void()>& drawing) {
-  const bool ticked = attempt([&] { studio_->tick(tick_dt); }), drawn = attempt(drawing);
+  const bool ticked = attempt([&] { studio_->tick(tick_dt, std::min(tick_dt, kLongest)); }),
+             drawn = attempt(drawing);
   failures_ = ticked && drawn ? 0 : failures_ + 1;
 }
 
 void Application::step() {
   const std::vector<InputEvent> events = surface_->events(patience_s());
   const Clock::time_point now = Clock::now();
-  const double tick_dt = std::min(seconds_between(ticked_at_, now), kLongest);
+  const double tick_dt = seconds_between(ticked_at_, now);
   ticked_at_ = now;
   if (!events.empty()) input_at_ = now;
   tick_and_draw(tick_dt, [&] {

@@ -183,11 +183,21 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
     ASSERT_EQ(program->finish().code, 0);
     start_again();
   }
-  /// As a crash or a power cut ends it; then starts it again.
+  /// As a crash or a power cut ends it once all that was done is in a copy; then starts it again.
   void kill_it(const Words&) {
+    const auto now = fs::file_time_type::clock::now();
+    ASSERT_TRUE(wait_until([&] { return copied_since(now); })) << "no copy of unsaved work: " << seen();
     program->send(SIGKILL);
     program->finish();
     start_again();
+  }
+  /// Whether unsaved work was written for recovery after `moment`.
+  bool copied_since(fs::file_time_type moment) const {
+    const fs::path folder = scratch.path("state");
+    if (!fs::exists(folder)) return false;
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".understudy" && entry.last_write_time() > moment) return true;
+    return false;
   }
   void start_again() {
     fs::remove(marks());
