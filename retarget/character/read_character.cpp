@@ -38,24 +38,17 @@ struct WorkFolder {
   std::string path;
 };
 
-#ifndef __has_feature  // clang's
-#define __has_feature(name) 0
-#endif
-/// A sanitizer's shadow memory alone takes terabytes of address space.
-constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-
 void limit(int resource, rlim_t most) {
   const struct rlimit value = {most, most};
   ::setrlimit(static_cast<__rlimit_resource_t>(resource), &value);
 }
 
 /// Between fork and exec: only what may be called there.
-[[noreturn]] void become_worker(const char* const arguments[], int errors, rlim_t seconds, rlim_t bytes,
-                                rlim_t address_space) {
+[[noreturn]] void become_worker(const char* const arguments[], int errors, rlim_t seconds, rlim_t bytes) {
   ::dup2(errors, 2);
   ::close_range(3, ~0u, 0);  // windows, sockets and files of the program are none of a broken file's business
   limit(RLIMIT_CPU, seconds);
-  limit(RLIMIT_AS, address_space);
+  limit(RLIMIT_AS, bytes);
   limit(RLIMIT_FSIZE, bytes);
   limit(RLIMIT_CORE, 0);
   ::execv(arguments[0], const_cast<char* const*>(arguments));
@@ -100,9 +93,8 @@ Character read_in_process(const std::string& path, const ReadCharacterOptions& o
   US_CHECK(errors >= 0, messages, ": cannot be written (", std::strerror(errno), ")");
   const auto seconds = static_cast<rlim_t>(options.patience_s + 1);
   const auto bytes = static_cast<rlim_t>(options.memory_bytes);  // of memory, and of what it writes
-  const rlim_t address_space = kSanitized && options.worker.empty() ? RLIM_INFINITY : bytes;
   const pid_t pid = ::fork();
-  if (pid == 0) become_worker(arguments, errors, seconds, bytes, address_space);
+  if (pid == 0) become_worker(arguments, errors, seconds, bytes);
   ::close(errors);
   US_CHECK(pid > 0, path, ": no process could be started to read it (", std::strerror(errno), ")");
   int status = 0;

@@ -1,6 +1,7 @@
 // Characters from files of any known format.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -8,12 +9,21 @@
 
 namespace understudy {
 
+#ifndef __has_feature  // clang's
+#define __has_feature(name) 0
+#endif
+/// Bytes for the process that reads FBX and DAE; no bound under a sanitizer, whose shadow memory alone takes terabytes
+/// of address space.
+constexpr int64_t kImportMemory = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+                                      ? std::numeric_limits<int64_t>::max()
+                                      : 4ll << 30;
+
 struct ReadCharacterOptions {
   /// The program that reads FBX and DAE in a process of its own: called as `PROGRAM import-worker IN OUT`.
   /// Empty: this very program.
   std::string worker;
-  double patience_s = 30;            ///< of that process
-  int64_t memory_bytes = 4ll << 30;  ///< of that process
+  double patience_s = 30;                ///< of that process
+  int64_t memory_bytes = kImportMemory;  ///< of that process
 };
 
 /// glTF and GLB whole; OBJ with its materials; PLY, OFF, STL and clouds as one part; FBX and DAE by a process
