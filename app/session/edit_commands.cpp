@@ -3,6 +3,7 @@
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/editing/limb_move.hpp"
 
 namespace understudy::app {
 namespace {
@@ -106,6 +107,23 @@ void add_skeleton_edits(Commands& commands) {
                     [](Call& c) { c.document.skeleton_edits.clear(); });
 }
 
+void move_limb(Call& c) {
+  const TakeState& state = c.take_state();
+  LimbMove move;
+  move.frame = frame_argument(c, 1);
+  move.joint = c.joint(2);
+  US_CHECK(limb_end(move.joint) >= 0, "the ", joint_words(move.joint),
+           " ends no limb: a wrist, an ankle or a foot does");
+  const bool is_foot = limb_end(move.joint) == LeftAnkle || limb_end(move.joint) == RightAnkle;
+  c.label = std::string("Move ") + (kJointNames[move.joint][0] == 'l' ? "left " : "right ") +
+            (is_foot ? "foot" : "hand");
+  move.way = c.vector(3, "way");
+  move.falloff = falloff_argument(c, 6);
+  US_CHECK(state.target && move.frame < ssize(state.performed), "frame ", move.frame,
+           " is not performed yet");
+  add_limb_move(move, state.performed[move.frame].pose, state.target->joints, c.take().pose_edits);
+}
+
 void add_pose_edits(Commands& commands) {
   commands.add_edit({"edit.rotate", "Rotate a bone", "TAKE FRAME JOINT X Y Z [FALLOFF]: axis times radians"},
                     [](Call& c) {
@@ -117,6 +135,8 @@ void add_pose_edits(Commands& commands) {
                       edit.falloff = falloff_argument(c, 6);
                       c.take().pose_edits.rotate.push_back(edit);
                     });
+  commands.add_edit({"edit.move_limb", "Move a hand or a foot", "TAKE FRAME JOINT X Y Z [FALLOFF]: metres"},
+                    move_limb);
   commands.add_edit({"edit.pin", "Pin the feet", "TAKE on|off"},
                     [](Call& c) { c.take().pose_edits.pin = only_if(c.on(1), PinEdit{}); });
   commands.add_slider({"edit.smooth", "Smooth", "TAKE STRENGTH: 0 to 1"}, [](Call& c) {

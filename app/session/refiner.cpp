@@ -21,6 +21,7 @@ Motion motion_of(const SharedFrames<KeptFrame>& frames, float fps) {
   for (const KeptFrame& frame : frames) {
     motion.poses.push_back(frame.pose);
     motion.flags.push_back(frame.flagged);
+    motion.standing.push_back(frame.standing);
   }
   return motion;
 }

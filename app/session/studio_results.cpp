@@ -37,10 +37,12 @@ void append_shown(TakeState& take, int first, double fps) {
   if (first > ssize(take.shown.poses)) first = take.shown.poses.size();
   take.shown.poses.resize(count);
   take.shown.flags.resize(count);
+  take.shown.standing.resize(count);
   take.joints.resize(count);
   for (size_t t = first; t < count; ++t) {
     take.shown.poses[t] = take.performed[t].pose;
     take.shown.flags[t] = take.performed[t].flagged;
+    take.shown.standing[t] = take.performed[t].standing;
     take.joints[t] = forward_kinematics(take.target->joints, take.shown.poses[t]).joints;
   }
 }
@@ -219,6 +221,7 @@ void Studio::take_in_refined() {
                     refined.joints.begin());
     if (edited && count <= take->shown.poses.size()) {
       replace_first(take->shown.poses, std::move(refined.shown.poses));
+      replace_first(take->shown.standing, std::move(refined.shown.standing));
       replace_first(take->joints, std::move(refined.joints));
       ++take->generation;
     }

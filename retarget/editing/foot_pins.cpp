@@ -244,6 +244,10 @@ void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body) {
   if (edit.to_floor) settle(motion, feet, kOnFloor * leg_m);
   for (Foot& foot : feet)
     if (foot.leg.hip == LeftHip ? edit.left : edit.right) find_offsets(foot, edit, leg_m, motion.fps);
+  motion.standing.resize(motion.poses.size(), Standing{});
+  for (size_t side = 0; side < feet.size(); ++side)
+    for (size_t t = 0; (side == 0 ? edit.left : edit.right) && t < motion.poses.size(); ++t)
+      motion.standing[t][side] = feet[side].stands(t);
   // A foot that is not pinned stays where it is when the pelvis sinks.
   const auto drops = pelvis_drops(motion, body.rest, feet, edit.max_drop_m * leg_m / 0.8f);
   for (size_t t = 0; t < motion.poses.size(); ++t) {

@@ -72,17 +72,35 @@ void check(const Motion& motion) {
            " frames a second");
   US_CHECK(motion.flags.empty() || motion.flags.size() == motion.poses.size(), "a motion has ",
            motion.flags.size(), " flags for ", motion.poses.size(), " frames");
+  US_CHECK(motion.standing.empty() || motion.standing.size() == motion.poses.size(), "a motion has ",
+           motion.standing.size(), " frames' contacts for ", motion.poses.size(), " frames");
 }
 
-void rotate(const RotateEdit& edit, Motion& motion) {
+void check(const RotateEdit& edit) {
   US_CHECK(edit.joint >= 0 && edit.joint < kJointCount, "a rotated bone has number ", edit.joint,
            ", there are ", kJointCount);
   US_CHECK(edit.axis_angle.allFinite(), "a bone is rotated by an angle that is not finite");
-  for (size_t t = 0; t < motion.poses.size(); ++t) {
-    const float amount = falloff_weight(t, edit.frame, edit.falloff);
-    Mat3& R = motion.poses[t].local[edit.joint];
-    if (amount > 0) R = R * rotation_from_axis_angle(amount * edit.axis_angle);
+}
+
+/// A foot that its limb was turned away from where it stood stands no longer.
+void forget_contacts(const Motion& before, const Joints& rest, Motion& after) {
+  constexpr float kAway = 0.02f;  // metres, leg 0.8 m
+  const float away = kAway * leg_length(rest) / 0.8f;
+  for (size_t t = 0; t < after.standing.size(); ++t) {
+    if (before.poses[t].local == after.poses[t].local) continue;
+    const Joints was = forward_kinematics(rest, before.poses[t]).joints;
+    const Joints is = forward_kinematics(rest, after.poses[t]).joints;
+    for (int side = 0; side < 2; ++side)
+      if ((is.row(LeftFoot + side) - was.row(LeftFoot + side)).norm() > away) after.standing[t][side] = false;
   }
+}
+
+void rotate(const std::vector<RotateEdit>& edits, const Joints& rest, Motion& motion) {
+  if (edits.empty()) return;
+  const Motion before = motion;
+  for (size_t t = 0; t < motion.poses.size(); ++t)
+    motion.poses[t] = rotated(edits, t, std::move(motion.poses[t]));
+  forget_contacts(before, rest, motion);
 }
 
 void smooth(const SmoothEdit& edit, Motion& motion) {
@@ -118,10 +136,20 @@ EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_join
   return {rest_joints, SupportPoints::from(rest_vertices, rest_joints)};
 }
 
+Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose) {
+  for (const RotateEdit& edit : edits) {
+    check(edit);
+    const float amount = falloff_weight(frame, edit.frame, edit.falloff);
+    Mat3& R = pose.local[edit.joint];
+    if (amount > 0) R = R * rotation_from_axis_angle(amount * edit.axis_angle);
+  }
+  return pose;
+}
+
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
   check(motion);
   Motion result = motion;
-  for (const RotateEdit& edit : edits.rotate) rotate(edit, result);
+  rotate(edits.rotate, body.rest, result);
   if (edits.smooth) smooth(*edits.smooth, result);
   if (edits.floor)
     for (Pose& pose : result.poses) pose.root.y() += edits.floor->offset_m;

@@ -24,7 +24,7 @@ class FootLock {
   /// this frame, world, which decide what stands; dt seconds since the frame before.
   Pose push(const Pose& pose, const Joints& rest, float dt, const Joints& source);
   /// Which feet stand in the last frame: left, right.
-  std::array<bool, 2> standing() const { return standing_; }
+  Standing standing() const { return standing_; }
 
  private:
   void start(const Joints& source);
@@ -34,7 +34,8 @@ class FootLock {
   std::array<ContactSwitch, 4> switches_;  // of the source's left ankle, right ankle, left ball, right ball
   std::array<float, 4> levels_{};          // heights at which each of them stands
   std::array<Vec3, 2> offset_, last_heel_, last_ball_;  // a side: correction; pivots of the pose as it came
-  std::array<bool, 2> standing_{}, stood_on_ball_{};
+  Standing standing_{};
+  std::array<bool, 2> stood_on_ball_{};
   bool started_ = false;
 };
 

@@ -83,8 +83,9 @@ void Performer::run(PerformedFrame& frame) {
   };
   static constexpr Stage kFeet = [](Performer& p, PerformedFrame& f) {
     if (p.options_.lock_feet) f.pose = p.now_.root.plant(f.pose, p.waited_);
-    if (p.options_.lock_feet && p.options_.root.mode == RootMode::Scaled)
-      f.pose = p.now_.feet.push(f.pose, p.target_.joints, p.waited_, f.source.joints);
+    if (!p.options_.lock_feet || p.options_.root.mode != RootMode::Scaled) return;
+    f.pose = p.now_.feet.push(f.pose, p.target_.joints, p.waited_, f.source.joints);
+    f.standing = p.now_.feet.standing();
   };
   static constexpr Stage kHands = [](Performer& p, PerformedFrame& f) {
     if (p.options_.keep_contacts)
@@ -122,6 +123,7 @@ PerformedFrame Performer::repeat(PerformedFrame frame, std::string reason) {
   frame.reason = std::move(reason);
   frame.confidence.setZero();
   frame.pose = last_.pose;
+  frame.standing = last_.standing;
   frame.source.joints = last_.source;
   if (transfer_) finish(frame);
   return frame;
@@ -135,7 +137,7 @@ void Performer::finish(PerformedFrame& frame) const {
 }
 
 KeptFrame kept(const PerformedFrame& frame) {
-  return {frame.pose, frame.source.joints, frame.flagged};
+  return {frame.pose, frame.source.joints, frame.flagged, frame.standing};
 }
 
 }  // namespace understudy

@@ -33,6 +33,7 @@ struct PerformedFrame {
   Observation source;              ///< styled, repaired and smoothed: what was transferred; where
                                    ///< flagged that of the last good frame
   Confidence confidence = Confidence::Zero();  ///< of the observed joints; zero where flagged
+  Standing standing{};                         ///< the feet that are held on the floor
   bool flagged = false;                        ///< the frame could not be used; the pose is the last good one
   std::string reason;                          ///< why it is flagged, one sentence
   double transfer_ms = 0, deform_ms = 0;
@@ -43,6 +44,7 @@ struct KeptFrame {
   Pose pose;
   Joints source = Joints::Zero();  ///< joints of the source, repaired and smoothed
   bool flagged = false;
+  Standing standing{};  ///< the feet that are held on the floor
 };
 KeptFrame kept(const PerformedFrame& frame);
 

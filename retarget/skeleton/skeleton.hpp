@@ -60,11 +60,15 @@ struct Pose {
   Vec3 root = Vec3::Zero();  ///< metres
 };
 
+/// Whether the left and the right foot stand on the floor.
+using Standing = std::array<bool, 2>;
+
 /// A motion, one pose a frame.
 struct Motion {
   float fps = 30;
   std::vector<Pose> poses;
-  std::vector<uint8_t> flags;  ///< per frame, 0 = good; empty = all good
+  std::vector<uint8_t> flags;        ///< per frame, 0 = good; empty = all good
+  std::vector<Standing> standing{};  ///< per frame, the feet that are held on the floor; empty: not known
 };
 
 /// A pose in the world.

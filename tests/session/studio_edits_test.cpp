@@ -302,6 +302,42 @@ TEST_F(StudioTest, EditsOfTheResultComeAndGo) {
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
 }
 
+TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {
+  Studio studio(services());
+  open_both(studio);
+  const TakeState& take = studio.session().takes[0];
+  const std::vector<Joints> before = take.joints;
+  studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0.1", "0.05", "3"});
+  studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0", "-0.05", "3"});  // before it is shown
+  studio.wait_idle(60);
+  const auto moved = [&](size_t t, int joint) {
+    return Vec3((take.joints[t].row(joint) - before[t].row(joint)).transpose());
+  };
+  EXPECT_LT((moved(10, LeftWrist) - Vec3(0, 0.1f, 0)).norm(), 0.01f);
+  EXPECT_GT(moved(11, LeftWrist).norm(), 0.02f);
+  EXPECT_LT(moved(14, LeftWrist).norm(), 1e-5f);
+  EXPECT_LT(moved(10, Head).norm(), 1e-5f);
+  EXPECT_EQ(studio.session().history.undo_label(), "Move left hand");
+  studio.run("edit.undo");
+  studio.run("edit.undo");
+  studio.wait_idle(60);
+  EXPECT_LT(moved(10, LeftWrist).norm(), 1e-6f);
+  EXPECT_TRUE(studio.session().document.takes[0].pose_edits.rotate.empty());
+  EXPECT_THROW(studio.run("edit.move_limb", {"0", "10", "left_elbow", "0", "0.1", "0"}), Error);
+}
+
+TEST_F(StudioTest, ItIsKnownWhichFeetStandInEachFrame) {
+  Studio studio(services());
+  open_both(studio);
+  const TakeState& take = studio.session().takes[0];
+  ASSERT_EQ(take.shown.standing.size(), static_cast<size_t>(kFrames));
+  for (size_t t = 0; t < take.shown.standing.size(); ++t)
+    EXPECT_EQ(take.shown.standing[t], take.performed[t].standing) << t;
+  studio.run("edit.pin", {"0", "on"});
+  studio.wait_idle(60);
+  EXPECT_EQ(take.shown.standing.size(), static_cast<size_t>(kFrames));
+}
+
 TEST_F(StudioTest, UndoGoesBackThroughManySteps) {
   Studio studio(services());
   open_both(studio);

@@ -296,6 +296,69 @@ TEST_F(ViewsTest, ABoneIsSeenTurnedUntilTheEditShows) {
   EXPECT_EQ(hand.turned_picture(place), nullptr);
 }
 
+TEST_F(ViewsTest, AHandIsDraggedAndItsArmFollowsInView) {
+  stage.session.tool = app::Tool::Bones, stage.session.falloff = 4;
+  frame();
+  const Vec3 wrist = take_joint(RightWrist);
+  const ImVec2 from = seen(1, wrist), to{from.x - 20, from.y - 45};
+  const float metres = metres_a_pixel(pane(1), wrist);
+  drag(from, to);
+  EXPECT_EQ(count("edit.move_limb"), 1);
+  EXPECT_EQ(count("edit.rotate") + count("view.camera_state"), 0);
+  EXPECT_EQ(stage.session.selected_joint, RightWrist);
+  const app::Arguments words = asked("edit.move_limb");
+  EXPECT_EQ(app::Arguments(words.begin(), words.begin() + 3), (app::Arguments{"0", "10", "right_wrist"}));
+  EXPECT_NEAR(vector_at(words, 3).norm(), std::hypot(20, 45) * metres, 0.1f * 45 * metres);
+  EXPECT_EQ(words.at(6), "4");
+}
+
+TEST_F(ViewsTest, AClickOnAHandChoosesItAndItsRingsStillTurnIt) {
+  stage.session.tool = app::Tool::Bones;
+  stage.session.view.cameras[0].yaw = 0.f, stage.session.view.cameras[0].pitch = 0.f;
+  frame();
+  click(seen(1, take_joint(LeftWrist)));
+  EXPECT_EQ(stage.session.selected_joint, LeftWrist);
+  EXPECT_EQ(count("edit.move_limb"), 0);
+  frame();
+  const ImVec2 middle = seen(1, take_joint(LeftWrist));
+  const float reach = 0.13f * pane(1).rect.height();
+  drag({middle.x + reach * std::cos(0.6f), middle.y - reach * std::sin(0.6f)},
+       {middle.x + reach * std::cos(1.2f), middle.y - reach * std::sin(1.2f)});
+  EXPECT_EQ(asked("edit.rotate")[2], "left_wrist");
+}
+
+TEST_F(ViewsTest, TheArmIsSeenToFollowAHandThatIsDragged) {
+  stage.session.tool = app::Tool::Bones;
+  const PaneContent content = pane_of(1);
+  const PaneView view = pane(1);
+  const PanePictures pictures = pictures_of(stage.session, *stage.cache, content, 10).value();
+  const HandPlace place{stage.session, content, view, pictures};
+  Hand hand;
+  app::CommandQueue asked_of_hand;
+  const Vec3 wrist = take_joint(RightWrist);
+  Pointer pointer;
+  pointer.at = seen(1, wrist), pointer.over = pointer.pressed = pointer.held = true;
+  ASSERT_TRUE(hand.work(place, pointer, asked_of_hand));
+  ASSERT_TRUE(hand.busy());
+  pointer.pressed = false, pointer.at.y -= 40;
+  hand.work(place, pointer, asked_of_hand);
+  const Joints now = hand.preview(place).take_joints.value();
+  const Vec3 moved = now.row(RightWrist).transpose() - wrist;
+  EXPECT_NEAR(moved.norm(), 40 * metres_a_pixel(view, wrist), 0.02f);
+  EXPECT_GT((now.row(RightElbow).transpose() - take_joint(RightElbow)).norm(), 0.005f);
+  EXPECT_LT((now.row(RightShoulder).transpose() - take_joint(RightShoulder)).norm(), 1e-5f);
+  EXPECT_NEAR((now.row(RightWrist) - now.row(RightElbow)).norm(),
+              (take_joint(RightWrist) - take_joint(RightElbow)).norm(), 1e-4f);  // no bone is stretched
+  const auto picture = hand.turned_picture(place);
+  ASSERT_NE(picture, nullptr);
+  EXPECT_GT((picture->vertices - pictures.takes[0]->vertices).rowwise().norm().maxCoeff(), 0.05f);
+  pointer.at.y -= 4000;  // no arm reaches there
+  hand.work(place, pointer, asked_of_hand);
+  EXPECT_NE(hand.tip().find("as far as it reaches"), std::string::npos) << hand.tip();
+  hand.let_go();
+  EXPECT_TRUE(asked_of_hand.size() == 1 && asked_of_hand[0].first == "select.joint");
+}
+
 TEST_F(ViewsTest, ATPoseJointGoesWhereItIsDragged) {
   stage.session.tool = app::Tool::TargetJoints;
   frame(3);

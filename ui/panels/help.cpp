@@ -33,7 +33,9 @@ std::vector<MouseUse> own_uses(app::Tool tool) {
     case app::Tool::Joints:
       return {{"Drag a joint of the source", "Moves it in this frame and those around"}};
     case app::Tool::Bones:
-      return {{"Click a joint of the result", "Chooses its bone"}, {"Drag a ring", "Turns the bone"}};
+      return {{"Click a joint of the result", "Chooses its bone"},
+              {"Drag a ring", "Turns the bone"},
+              {"Drag a hand or a foot", "Moves it, the limb follows"}};
     case app::Tool::TargetJoints:
       return {{"Drag a joint of the target", "Moves it in the T-pose"}};
     case app::Tool::Paint:

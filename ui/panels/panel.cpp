@@ -13,7 +13,7 @@ namespace understudy::ui {
 const std::array<ToolChoice, 6> kTools = {
     {{app::Tool::Look, "look", "Look around", Icon::Camera},
      {app::Tool::Joints, "joints", "Drag extracted joints", Icon::Skeleton},
-     {app::Tool::Bones, "bones", "Rotate bones of the result", Icon::Move},
+     {app::Tool::Bones, "bones", "Pose the result", Icon::Move},
      {app::Tool::TargetJoints, "target-joints", "Place the target's joints", Icon::Person},
      {app::Tool::Paint, "paint", "Paint skin weights", Icon::Brush},
      {app::Tool::Crop, "crop", "Crop the scan", Icon::Select}}};

@@ -6,6 +6,7 @@
 #include "app/session/follow.hpp"
 #include "render/gizmo.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/editing/limb_move.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/skeleton/skinning.hpp"
 #include "ui/panels/panel.hpp"
@@ -34,6 +35,10 @@ const Pose* pose_of(const Session& session, int take, int frame) {
 app::Arguments& operator<<(app::Arguments& words, const Vec3& v) {
   for (int i = 0; i < 3; ++i) words.push_back(argument(static_cast<double>(v[i])));
   return words;
+}
+
+bool is_leg(int joint) {
+  return limb_end(joint) == LeftAnkle || limb_end(joint) == RightAnkle;
 }
 
 int axis_of(GizmoHandle handle) {
@@ -119,7 +124,11 @@ bool Hand::work_on_joints(const HandPlace& place, const Pointer& pointer, app::C
   if (selected >= 0)
     handle_ =
         render::handle_under(gizmo_of(*subject, selected), place.view.camera, place.view.ray(pointer.at));
+  const bool limb = subject->grip == Grip::Bone && limb_end(hovered_) >= 0;
+  if (limb)
+    handle_ = GizmoHandle::None;  // a hand or a foot is met before the rings around it or its neighbours
   if (handle_ != GizmoHandle::None) hovered_ = -1;
+  if (limb) tip_ = is_leg(hovered_) ? "Drag: the leg follows" : "Drag: the arm follows";
   const bool meant = handle_ != GizmoHandle::None || hovered_ >= 0;
   if (pointer.pressed && meant) grab(place, *subject, pointer, queue);
   return meant;
@@ -131,9 +140,10 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   joint_ = handle_ != GizmoHandle::None ? session.selected_joint : hovered_;
   if (joint_ != session.selected_joint) queue.push_back({"select.joint", {joint_name(joint_)}});
   if (session.playback.playing) queue.push_back({"playback.pause", {}});
-  if (subject.grip == Grip::Bone && handle_ == GizmoHandle::None) return;  // a bone turns by its rings alone
+  const bool limb = subject.grip == Grip::Bone && handle_ == GizmoHandle::None;
+  if (limb && limb_end(joint_) < 0) return;  // other bones turn by their rings alone
   if (handle_ == GizmoHandle::None) handle_ = GizmoHandle::Centre;
-  grip_ = subject.grip, settling_ = Grip::None;
+  grip_ = limb ? Grip::Limb : subject.grip, settling_ = Grip::None;
   frame_ = place.pictures.frame, take_ = subject.take;
   before_ = subject.joints;
   gizmo_ = gizmo_of(subject, joint_);
@@ -141,7 +151,7 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   offset_.setZero();
   corrections_.resize(0, 3);
   const app::TakeState* take = at_or_null(session.takes, take_);
-  const Pose* pose = grip_ == Grip::Bone ? pose_of(session, take_, frame_) : nullptr;
+  const Pose* pose = of_result(grip_) ? pose_of(session, take_, frame_) : nullptr;
   if (pose != nullptr && take->deformer != nullptr && take->target->mesh.vertices.rows() <= kMostPosed)
     corrections_ = take->deformer->offsets(*pose);
 }
@@ -157,6 +167,7 @@ void Hand::drag(const HandPlace& place, const Pointer& pointer) {
   } else {
     offset_ = render::dragged(gizmo_, handle_, camera, start_, now);
     tip_ = figure(static_cast<double>(offset_.norm() * 1000), "mm");
+    if (grip_ == Grip::Limb && beyond_reach(place.session)) tip_ += ", as far as it reaches";
   }
   last_ = now;
 }
@@ -175,11 +186,11 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
     words.push_back(std::to_string(session.falloff));
     if (session.drag_children) words.push_back("children");
     queue.push_back({"edit.drag", words});
-  } else if (grip == Grip::Bone) {
+  } else if (of_result(grip)) {
     words = {std::to_string(take_), std::to_string(frame_), joint_name(joint_)};
     words << offset_;
     words.push_back(std::to_string(session.falloff));
-    queue.push_back({"edit.rotate", words});
+    queue.push_back({grip == Grip::Limb ? "edit.move_limb" : "edit.rotate", words});
   } else {
     words = {std::to_string(take_), joint_name(joint_)};
     words << Vec3(before_.row(joint_).transpose() + offset_);
@@ -193,21 +204,33 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
 /// Whether the drag, or the edit just pushed, belongs to this pane and is not in its pictures yet.
 bool Hand::shown_in(const HandPlace& place) const {
   const Grip grip = current();
-  if (grip != Grip::Joint && grip != Grip::Bone && grip != Grip::RestJoint) return false;
+  if (grip != Grip::Joint && !of_result(grip) && grip != Grip::RestJoint) return false;
   if (!(place.pane == pane_)) return false;
   if (busy()) return true;
   const auto subject = subject_of(place);
-  return place.session.time < settle_until_ && subject && subject->grip == grip && subject->take == take_ &&
-         (grip == Grip::RestJoint || place.pictures.frame == frame_) && subject->joints == before_;
+  const Grip worked_on = grip == Grip::Limb ? Grip::Bone : grip;
+  return place.session.time < settle_until_ && subject && subject->grip == worked_on &&
+         subject->take == take_ && (grip == Grip::RestJoint || place.pictures.frame == frame_) &&
+         subject->joints == before_;
 }
 
-/// The take's skeleton with the bone turned in its own frame; none where the pose is not there.
+/// The take's skeleton with the bone turned in its own frame, or the limb moved; none where the pose is not there.
 std::optional<PosedSkeleton> Hand::turned_skeleton(const Session& session) const {
   const Pose* pose = pose_of(session, take_, frame_);
   if (pose == nullptr) return std::nullopt;
+  const Joints& rest = session.takes[take_].target->joints;
+  if (current() == Grip::Limb) return forward_kinematics(rest, moved_limb(rest, joint_, offset_, *pose));
   Pose turned = *pose;
   turned.local[joint_] = pose->local[joint_] * rotation_from_axis_angle(offset_);
-  return forward_kinematics(session.takes[take_].target->joints, turned);
+  return forward_kinematics(rest, turned);
+}
+
+/// Whether the hand or foot that is dragged stays behind the pointer.
+bool Hand::beyond_reach(const Session& session) const {
+  constexpr float kBehind = 0.01f;  // metres
+  const auto skeleton = turned_skeleton(session);
+  if (!skeleton) return false;
+  return (skeleton->joints.row(joint_) - before_.row(joint_) - offset_.transpose()).norm() > kBehind;
 }
 
 Joints Hand::moved_joints(const HandPlace& place) const {
@@ -219,7 +242,7 @@ Joints Hand::moved_joints(const HandPlace& place) const {
     move.mirror = session.mirror_joint;
     return understudy::apply({move}, before_);
   }
-  if (current() == Grip::Bone) {
+  if (of_result(current())) {
     const auto skeleton = turned_skeleton(session);
     return skeleton ? skeleton->joints : joints;
   }
@@ -255,7 +278,7 @@ EditPreview Hand::preview(const HandPlace& place) const {
 }
 
 std::shared_ptr<const app::PosedPicture> Hand::turned_picture(const HandPlace& place) const {
-  if (current() != Grip::Bone || !shown_in(place)) return nullptr;
+  if (!of_result(current()) || !shown_in(place)) return nullptr;
   const auto skeleton = turned_skeleton(place.session);
   if (!skeleton) return nullptr;
   const app::TakeState& take = place.session.takes[take_];

@@ -33,7 +33,7 @@ class Hand {
 
   /// The preview, in this pane, of the current drag or of the edit just pushed.
   EditPreview preview(const HandPlace& place) const;
-  /// The first take's picture with the bone turned; null without a turned bone.
+  /// The first take's picture with the bone turned or the limb moved; null without such a drag.
   std::shared_ptr<const app::PosedPicture> turned_picture(const HandPlace& place) const;
 
   /// The joint under the pointer in a pane, -1 for none.
@@ -49,7 +49,7 @@ class Hand {
   const std::string& tip() const { return tip_; }
 
  private:
-  enum class Grip { None, Joint, Bone, RestJoint, Face, Paint };
+  enum class Grip { None, Joint, Bone, Limb, RestJoint, Face, Paint };
   /// A skeleton that a tool works on: the extracted one, a take's, or a target's in T-pose.
   struct Subject {
     Grip grip = Grip::None;
@@ -69,7 +69,10 @@ class Hand {
   /// The drag, or else the edit just pushed.
   Grip current() const { return busy() ? grip_ : settling_; }
   Joints moved_joints(const HandPlace& place) const;
+  /// A turned bone, or a limb: what is shown of it is made the same way.
+  static bool of_result(Grip grip) { return grip == Grip::Bone || grip == Grip::Limb; }
   std::optional<PosedSkeleton> turned_skeleton(const app::Session& session) const;
+  bool beyond_reach(const app::Session& session) const;
   bool shown_in(const HandPlace& place) const;
 
   Grip grip_ = Grip::None;
@@ -84,7 +87,7 @@ class Hand {
   render::GizmoView gizmo_;
   render::Ray start_{}, last_{};
   Vec3 offset_ = Vec3::Zero();  ///< metres, world; of Bone: axis times angle, in the joint's frame
-  Points corrections_{0, 3};    ///< of a turned bone: pose-corrective offsets when it was gripped
+  Points corrections_{0, 3};    ///< of a turned bone or a limb: pose-corrective offsets when it was gripped
   double settle_until_ = -1;    ///< Session::time
   Grip settling_ = Grip::None;
   Box box_;

@@ -121,6 +121,25 @@ TEST(Performer, AFrameThatFailsHasNoConfidenceAndTheLastSkeleton) {
   }
 }
 
+TEST(Performer, TellsWhichFeetItHolds) {
+  PerformerStage stage;
+  RetargetOptions free_feet;
+  free_feet.lock_feet = false;
+  PerformerStage unlocked;
+  unlocked.performer = Performer(prepare_target(unlocked.target.mesh, unlocked.rest),
+                                 std::make_shared<CopyTransfer>(), unlocked.deformer, free_feet);
+  const auto any = [](const Standing& feet) { return feet[0] || feet[1]; };
+  bool held = false;
+  Standing last{};
+  for (int i = 0; i < 12; ++i) {  // someone who stands still
+    last = kept(stage.push(0)).standing;
+    held = held || any(last);
+    EXPECT_FALSE(any(unlocked.push(0).standing));
+  }
+  EXPECT_TRUE(held);
+  EXPECT_EQ(stage.performer.perform(without_skeleton("nobody there"), kStep).standing, last);
+}
+
 TEST(Performer, WithoutATargetItRepairsAndSmoothsAlone) {
   PerformerStage stage;
   Performer alone;
