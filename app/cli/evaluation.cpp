@@ -244,6 +244,8 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   for (const auto& [name, on] : switches)
     if (!on) report[name] = false;
   if (method.extractor != Method().extractor) report["extractor"] = method.extractor;
+  for (const Proportion& one : kProportions)
+    if (method.*one.value != Method().*one.value) report[one.name] = method.*one.value;
   if (method.root != Method().root) report["root"] = kRootNames[static_cast<size_t>(method.root)];
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();

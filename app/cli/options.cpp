@@ -1,6 +1,7 @@
 #include "app/cli/options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/program_files.hpp"
@@ -98,6 +99,12 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
   command.add_flag("!--no-hand-contacts", method.keep_contacts,
                    "hands that touch the source's body need not touch the target's");
   command.add_flag("!--no-offsets", method.offsets, "no pose-corrective offsets");
+  for (const Proportion& one : kProportions) {
+    std::string option = "--" + std::string(one.name);
+    std::replace(option.begin(), option.end(), '_', '-');
+    command.add_option(option, method.*one.value, one.explanation)
+        ->check(CLI::Range(one.range.low, one.range.high));
+  }
   command.add_option("--weights", how.weights, "folder of the weights (default: beside the program)");
   command.add_option("--engine-weights", how.engine_file,
                      "weights file of the engine in place of the folder's");

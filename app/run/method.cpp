@@ -10,11 +10,18 @@ RetargetOptions retarget_options(const Method& method) {
   options.root.mode = method.root;
   options.lock_feet = method.lock_feet;
   options.keep_contacts = method.keep_contacts;
+  options.root.stride = method.stride;
+  options.root.hip_height_m = method.hip_height;
+  options.arm_reach = method.arm_reach;
   return options;
 }
 
 std::string extraction_key(const Method& method) {
   return method.extractor + (method.near ? ", from near" : "");
+}
+
+std::string networks_key(const Method& method) {
+  return key_of(method.engine, method.extractor, method.near, method.offsets);
 }
 
 }  // namespace understudy::app

@@ -17,7 +17,38 @@ struct Method {
   bool lock_feet = true;                                               ///< standing feet do not slide
   bool keep_contacts = true;                                           ///< hand contacts are kept
   RootMode root = RootMode::Scaled;
+  float stride = 1, hip_height = 0, arm_reach = 0;  ///< of the target, see kProportions
 };
+
+/// A setting of the target's proportions, by the same name in documents, commands and options.
+struct Proportion {
+  const char* name;
+  float Method::*value;
+  Within<float> range;
+  const char *label, *explanation;  ///< on the screen and in help, without a full stop
+  const char* format;               ///< of the number on the screen
+};
+constexpr Proportion kProportions[] = {
+    {"stride",
+     &Method::stride,
+     {0.25f, 3},
+     "Stride",
+     "How long the steps and a scaled path are: 1 as the leg lengths give, 2 twice as long",
+     "\u00d7 %.2f"},
+    {"hip_height",
+     &Method::hip_height,
+     {-0.5f, 0.5f},
+     "Hip height",
+     "Metres by which the pelvis is raised, as far as the legs reach; below 0 lowered; the feet stay in "
+     "place",
+     "%.3f m"},
+    {"arm_reach",
+     &Method::arm_reach,
+     {0, 1},
+     "Arm reach",
+     "0: arms turn as the source's do; 1: hands reach where the source's do, in arm lengths from the chest",
+     "%.2f"}};
+
 template <class V, class S>
 FieldsOf<S, Method> fields(V& visit, S& method) {
   visit("engine", method.engine);
@@ -30,6 +61,7 @@ FieldsOf<S, Method> fields(V& visit, S& method) {
   visit("lock_feet", method.lock_feet);
   visit("keep_contacts", method.keep_contacts);
   visit("root", method.root, kRootNames);
+  for (const Proportion& one : kProportions) visit(one.name, method.*one.value, one.range);
 }
 
 /// What the other settings do, on the screen.
@@ -57,5 +89,7 @@ RetargetOptions retarget_options(const Method& method);
 
 /// The same text for methods that extract the same skeletons from a scan.
 std::string extraction_key(const Method& method);
+/// The same for methods of the same networks: what else differs needs none to be bound again.
+std::string networks_key(const Method& method);
 
 }  // namespace understudy::app

@@ -47,7 +47,7 @@ struct Stream {
 /// A take at work.
 struct TakeWork {
   Plan::TakePlan plan;
-  std::string target_is, method_is, joints_are;
+  std::string target_is, networks_are, method_is, joints_are;
   std::shared_ptr<PreparedCharacter> loaded;  // until it is the character
   std::shared_ptr<const PreparedCharacter> character;
   std::optional<Performer> performer;
@@ -220,17 +220,20 @@ void Engine::Impl::adopt(Plan wanted) {
 
 void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   const std::string target_wanted = key_of(wanted.target), method_wanted = key_of(wanted.method),
-                    joints_wanted = key_of(wanted.joints);
+                    networks_wanted = networks_key(wanted.method), joints_wanted = key_of(wanted.joints);
   if (target_wanted != take.target_is) take.character.reset(), take.loaded.reset();
   if (target_wanted != take.target_is || method_wanted != take.method_is) take.sent_times = 0;
-  if (target_wanted != take.target_is || method_wanted != take.method_is ||
-      joints_wanted != take.joints_are) {
-    take.performer.reset();
+  const bool bound = target_wanted == take.target_is && networks_wanted == take.networks_are &&
+                     joints_wanted == take.joints_are;
+  if (!bound || method_wanted != take.method_is) {
+    if (!bound) take.performer.reset();
+    if (take.performer) take.performer->restart(poses_only(wanted.method));
     take.failed = false;
     take.done = 0;
   }
   take.plan = wanted;
   take.target_is = target_wanted;
+  take.networks_are = networks_wanted;
   take.method_is = method_wanted;
   take.joints_are = joints_wanted;
 }

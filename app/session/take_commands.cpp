@@ -130,6 +130,7 @@ std::vector<std::string> filter_names() {
 void set_method(Method& method, const std::string& key, const std::string& value) {
   std::vector<std::string> settings = filter_names();
   settings.insert(settings.begin(), {"engine", "extractor", "offsets", "root"});
+  for (const Proportion& one : kProportions) settings.push_back(one.name);
   ArgumentReader({key}).one_of(0, "setting", settings);
   const ArgumentReader words({value});
   if (key == "engine")
@@ -142,6 +143,8 @@ void set_method(Method& method, const std::string& key, const std::string& value
     method.offsets = words.on(0);
   for (const FilterSwitch& filter : kFilterSwitches)
     if (key == filter.name) method.*filter.on = words.on(0);
+  for (const Proportion& one : kProportions)
+    if (key == one.name) method.*one.value = words.clamped(0, one.name, one.range.low, one.range.high);
 }
 
 void compare(Call& c) {
@@ -157,6 +160,14 @@ void compare(Call& c) {
   }
   other.name += c.arguments.size() > 1 ? ")" : " (2)";
   c.document.takes.push_back(std::move(other));
+}
+
+/// "target.stride TAKE NUMBER".
+void add_proportions(Commands& commands) {
+  for (const Proportion& one : kProportions)
+    commands.add_slider({std::string("target.") + one.name, one.label,
+                         detail::join("TAKE NUMBER: ", one.range.low, " to ", one.range.high)},
+                        [&one](Call& c) { set_method(c.take().method, one.name, c.word(1, "number")); });
 }
 
 void add_methods(Commands& commands) {
@@ -181,6 +192,7 @@ void add_methods(Commands& commands) {
 void add_take_commands(Commands& commands) {
   add_targets(commands);
   add_target_import(commands);
+  add_proportions(commands);
   add_rig(commands);
   add_methods(commands);
 }

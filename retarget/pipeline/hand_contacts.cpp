@@ -337,12 +337,13 @@ std::array<Vec3, 2> HandContacts::wanted(Scene& scene) const {
 }
 
 Pose HandContacts::push(const Pose& pose, const Joints& source, const std::optional<BodyGirth>& girth,
-                        float dt) {
+                        float dt, const Rotations* local_a) {
   US_CHECK(body_, "hand contacts need a target first");
   US_CHECK(source.allFinite(), "the source's joints are not finite");
   learn(source, girth);
   const Body& body = *body_;
   const PosedSkeleton posed = forward_kinematics(body.rest, pose);
+  const Rotations global_a = local_a ? global_rotations(*local_a) : posed.global;
   const Joints rest_a = rest_with_lengths(body.rest, lengths_);
   const Points points_a = source_rest(rest_a);
   const auto count = body.points.rows();
@@ -352,10 +353,10 @@ Pose HandContacts::push(const Pose& pose, const Joints& source, const std::optio
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();
     for (size_t k = 0; k < kInfluences && sample.weight[k] > 0.01f; ++k) {
       const int j = sample.joint[k];
-      const Mat3& R = posed.global[j];
-      a += sample.weight[k] * (R * (points_a.row(i) - rest_a.row(j)).transpose() + source.row(j).transpose());
-      b += sample.weight[k] *
-           (R * (body.points.row(i) - body.rest.row(j)).transpose() + posed.joints.row(j).transpose());
+      a += sample.weight[k] *
+           (global_a[j] * (points_a.row(i) - rest_a.row(j)).transpose() + source.row(j).transpose());
+      b += sample.weight[k] * (posed.global[j] * (body.points.row(i) - body.rest.row(j)).transpose() +
+                               posed.joints.row(j).transpose());
     }
     scene.a.col(i) = a;
     scene.b.col(i) = b;

@@ -9,12 +9,14 @@
 namespace understudy {
 
 Performer::Performer(const RetargetOptions& options)
-    : options_(options), now_{JointFilter(options.filter),
-                              RootPath(options.root),
-                              FootLock(options.feet),
-                              HandContacts(),
-                              {},
-                              {}} {}
+    : options_(options),
+      now_{JointFilter(options.filter),
+           RootPath(options.root),
+           FootLock(options.feet),
+           ArmReach(options.arm_reach),
+           HandContacts(),
+           {},
+           {}} {}
 
 Performer::Performer(Target target, std::shared_ptr<MotionTransfer> transfer,
                      std::shared_ptr<Deformer> deformer, const RetargetOptions& options)
@@ -38,6 +40,7 @@ void Performer::restart() {
   for (const auto& style : styles_) style->reset();
   now_.filter.reset();
   now_.feet.reset();
+  now_.arms.reset();
   now_.hands.reset();
   if (transfer_) {
     transfer_->reset(target_.joints);
@@ -45,6 +48,15 @@ void Performer::restart() {
   }
   last_ = {};
   waited_ = 0;
+}
+
+void Performer::restart(const RetargetOptions& options) {
+  options_ = options;
+  now_.filter = JointFilter(options.filter);
+  now_.root = RootPath(options.root);
+  now_.feet = FootLock(options.feet);
+  now_.arms = ArmReach(options.arm_reach);
+  restart();
 }
 
 PerformedFrame Performer::perform(const Observation& seen, float dt) {
@@ -81,15 +93,23 @@ void Performer::run(PerformedFrame& frame) {
   static constexpr Stage kRoot = [](Performer& p, PerformedFrame& f) {
     f.pose.root = p.now_.root.push(f.source, f.pose.local, p.waited_);
   };
+  static constexpr Stage kSteps = [](Performer& p, PerformedFrame& f) {
+    p.copied_ = f.pose.local;
+    f.pose = p.now_.root.step(f.pose);
+  };
   static constexpr Stage kFeet = [](Performer& p, PerformedFrame& f) {
     if (p.options_.lock_feet) f.pose = p.now_.root.plant(f.pose, p.waited_);
     if (!p.options_.lock_feet || p.options_.root.mode != RootMode::Scaled) return;
     f.pose = p.now_.feet.push(f.pose, p.target_.joints, p.waited_, f.source.joints);
     f.standing = p.now_.feet.standing();
   };
+  static constexpr Stage kArms = [](Performer& p, PerformedFrame& f) {
+    f.pose = p.now_.arms.push(f.pose, p.target_.joints, f.source.joints);
+  };
   static constexpr Stage kHands = [](Performer& p, PerformedFrame& f) {
     if (p.options_.keep_contacts)
-      f.pose = p.now_.hands.push(f.pose, f.source.joints, f.source.girth, p.waited_);
+      f.pose = p.now_.hands.push(f.pose, f.source.joints, f.source.girth, p.waited_,
+                                 p.options_.places_limbs() ? &p.copied_ : nullptr);
   };
   static constexpr Stage kSkin = [](Performer& p, PerformedFrame& f) {
     US_CHECK(finite(f.pose.local) && f.pose.root.allFinite(),
@@ -100,7 +120,7 @@ void Performer::run(PerformedFrame& frame) {
   const auto began = std::chrono::steady_clock::now();
   for (const Stage stage : {kStyle, kFilter}) stage(*this, frame);
   if (transfer_)
-    for (const Stage stage : {kTransfer, kRoot, kFeet, kHands, kSkin}) stage(*this, frame);
+    for (const Stage stage : {kTransfer, kRoot, kSteps, kFeet, kArms, kHands, kSkin}) stage(*this, frame);
   frame.transfer_ms = ms_since(began) - frame.deform_ms;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "retarget/pipeline/arm_reach.hpp"
 #include "retarget/pipeline/foot_lock.hpp"
 #include "retarget/pipeline/hand_contacts.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
@@ -20,8 +21,11 @@ struct RetargetOptions {
   RootPathOptions root;
   bool lock_feet = true;  ///< standing feet do not slide
   FootLockOptions feet;
+  float arm_reach = 0;        ///< 0..1, see ArmReach
   bool keep_contacts = true;  ///< hands that touch the body or each other do so on the target, too
   bool vertices = true;       ///< false: poses only, no deformation
+  /// Whether limbs are placed elsewhere than the transfer puts them, standing feet and hands' contacts apart.
+  bool places_limbs() const { return root.stride != 1 || root.hip_height_m != 0 || arm_reach > 0; }
 };
 
 /// The target in one frame.
@@ -61,6 +65,8 @@ class Performer {
   void add_style(std::unique_ptr<MotionStyle> style);
   /// Starts the source anew.
   void restart();
+  /// The same with other options; the target stays bound.
+  void restart(const RetargetOptions& options);
 
   /// The target's frame, dt seconds after the one before. One that is refused (refusal(), or a stage cannot
   /// work with it) repeats the last pose (before any good one: the T-pose at the origin), is flagged and
@@ -76,6 +82,7 @@ class Performer {
     JointFilter filter;
     RootPath root;
     FootLock feet;
+    ArmReach arms;
     HandContacts hands;
     std::any transfer;             // copies: the engine and
     std::vector<std::any> styles;  // the styles keep their own
@@ -93,6 +100,7 @@ class Performer {
   std::shared_ptr<Deformer> deformer_;
   std::vector<std::unique_ptr<MotionStyle>> styles_;
   Memory now_;
+  Rotations copied_;  // local, of this frame, before its limbs were placed
   KeptFrame last_;
   float waited_ = 0;  // seconds since the last good frame
 };

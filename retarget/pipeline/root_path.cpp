@@ -16,6 +16,8 @@ constexpr float kPlantEase = 0.15f;   // the same of a leg that reaches for the 
 constexpr float kPelvisEase = 0.2f;   // the same of a pelvis that was seen far from where the feet put it
 constexpr float kUsual = 0.035f;      // of the leg: what errors of the feet alone amount to
 constexpr float kSlack = 0.01f;       // of the leg: soles this near are left alone
+constexpr float kDeepest = 0.25f;     // of the leg: a pelvis comes down no further for long steps
+constexpr float kSpan = 0.988f;       // of the leg: as far as it reaches before it straightens softly
 
 /// At most some 2,000 points of the scan within `reach` of a foot's joint, the lowest first.
 std::vector<Vec3> points_near_feet(const Joints& source, const Points& scan, float reach) {
@@ -148,7 +150,7 @@ Vec3 RootPath::push(const Extraction& source, const Rotations& local_b, float dt
   if (!started_) {
     root_ = pelvis;
   } else if (options_.mode != RootMode::InPlace) {
-    const float s = options_.mode == RootMode::Scaled ? scale_ : 1.0f;
+    const float s = options_.mode == RootMode::Scaled ? scale_ * options_.stride : 1.0f;
     root_.x() += s * (pelvis.x() - last_source_.x());
     root_.z() += s * (pelvis.z() - last_source_.z());
   }
@@ -183,6 +185,37 @@ Vec3 RootPath::push(const Extraction& source, const Rotations& local_b, float dt
   return root_;
 }
 
+/// 1: a foot so far above the body's lowest point stands .. 0 it does not.
+float RootPath::standing(float above) const {
+  return std::clamp(1.5f - above / std::max(options_.contact_height_m, 1e-4f), 0.0f, 1.0f);
+}
+
+Pose RootPath::step(const Pose& pose) const {
+  if (options_.stride == 1 && options_.hip_height_m == 0) return pose;
+  const PosedSkeleton posed = forward_kinematics(rest_b_, pose);
+  const float lowest = support_.lowest(posed) + posed.joints(Pelvis, 1);
+  std::array<Vec3, 2> goal;
+  float raise = options_.hip_height_m;
+  for (const int side : {0, 1}) {
+    const Leg leg = Leg::of(side);
+    const Vec3 hip = posed.joints.row(leg.hip).transpose();
+    const Vec3 way = posed.joints.row(leg.ankle).transpose() - hip;
+    const Vec3 longer(options_.stride * way.x(), way.y(), options_.stride * way.z());
+    goal[side] = hip + longer;
+    // How far the hip may rise: |longer - (0, room, 0)| = longest.
+    const float longest = std::max(way.norm(), kSpan * leg_b_);
+    const float flat = longer.x() * longer.x() + longer.z() * longer.z();
+    const float room = longer.y() + std::sqrt(std::max(0.0f, longest * longest - flat));
+    const float most = std::max(room, std::min(0.0f, options_.hip_height_m) - kDeepest * leg_b_);
+    const float stands = standing(support_.lowest_of_foot(posed, side) - lowest);
+    raise = std::min(raise, options_.hip_height_m + stands * std::min(0.0f, most - options_.hip_height_m));
+  }
+  Pose result = pose;
+  result.root.y() += raise;
+  for (const int side : {0, 1}) place_ankle(rest_b_, side, goal[side], result);
+  return result;
+}
+
 Pose RootPath::plant(const Pose& pose, float dt) {
   const PosedSkeleton posed = forward_kinematics(rest_b_, pose);
   const float lowest = support_.lowest(posed) + posed.joints(Pelvis, 1);
@@ -190,7 +223,7 @@ Pose RootPath::plant(const Pose& pose, float dt) {
   float low = 1e9f;
   for (const int side : {0, 1}) {
     const float above = support_.lowest_of_foot(posed, side) - lowest;
-    const float reach = std::clamp(1.5f - above / std::max(options_.contact_height_m, 1e-4f), 0.0f, 1.0f);
+    const float reach = standing(above);
     if (reach <= 0) continue;
     const Vec3 move(0, reach * left_over_, 0);
     const Vec3 ankle = posed.joints.row(LeftAnkle + side).transpose();

@@ -22,6 +22,8 @@ struct RootPathOptions {
   float contact = 0.5f;
   float contact_height_m = 0.04f;  ///< a source's foot this low is in contact
   float settle_s = 1.0f;           ///< time in which the height's offset follows its estimate
+  float stride = 1;        ///< steps, and a scaled path, against what the leg lengths give; see step()
+  float hip_height_m = 0;  ///< the pelvis stands so much higher than the leg lengths give; see step()
 };
 
 /// Lowest points of a body in T-pose, each moved rigidly with one joint: what may touch the floor.
@@ -50,6 +52,11 @@ class RootPath {
   /// The target's pelvis in the world, metres. source: the source's joints and, where seen, the height of its
   /// soles; local_b: the target's local rotations; dt seconds since the last frame.
   Vec3 push(const Extraction& source, const Rotations& local_b, float dt);
+  /// The pose with its steps and its pelvis' height as the options want them. With h the hip and a the ankle of
+  /// a leg over the floor, and p the path of push(): a' = h + stride (a - h), as p' = stride p, so a foot that
+  /// stands still stands still. Feet keep their heights and rotations; the pelvis rises by hip_height_m, but no
+  /// further than the legs of standing feet reach, and comes down where steps are too long for them.
+  Pose step(const Pose& pose) const;
   /// The pose of the last push() with its legs bent or stretched so that soles in contact are as high as the
   /// source's: what the pelvis' height could not make good without shaking the body. Where a leg is too short
   /// the body comes down.
@@ -58,6 +65,7 @@ class RootPath {
 
  private:
   float clearance(const Extraction& source) const;
+  float standing(float above) const;
 
   RootPathOptions options_;
   Joints rest_b_ = Joints::Zero();

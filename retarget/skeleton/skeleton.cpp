@@ -48,6 +48,12 @@ float leg_length(const Joints& joints) {
                  bone(RightKnee, RightAnkle));
 }
 
+float arm_length(const Joints& joints) {
+  const auto bone = [&joints](int a, int b) { return (joints.row(a) - joints.row(b)).norm(); };
+  return 0.5f * (bone(LeftShoulder, LeftElbow) + bone(LeftElbow, LeftWrist) +
+                 bone(RightShoulder, RightElbow) + bone(RightElbow, RightWrist));
+}
+
 Pose mirrored(const Pose& pose) {
   const Eigen::DiagonalMatrix<float, 3> flip(-1.0f, 1.0f, 1.0f);
   Pose result;

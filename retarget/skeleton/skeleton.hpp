@@ -87,6 +87,8 @@ Rotations local_rotations(const Rotations& global);
 
 /// Thigh plus shin in metres, mean of both sides. Bone lengths do not change with pose: any pose will do.
 float leg_length(const Joints& joints);
+/// The same of upper arm plus forearm.
+float arm_length(const Joints& joints);
 
 /// The same pose seen in a mirror (x -> -x in the T-pose frame): sides exchanged, rotations reflected.
 Pose mirrored(const Pose& pose);

@@ -27,6 +27,18 @@ TEST(MethodOptions, EverySwitchOfAMethodIsAnOption) {
   EXPECT_TRUE(same(parsed("").method, Method{}));
 }
 
+TEST(MethodOptions, ProportionsOfTheTargetHaveTheNamesThatTheStudioHas) {
+  const Method method = parsed("--stride 1.5 --hip-height -0.1 --arm-reach 0.75").method;
+  const RetargetOptions options = retarget_options(method);
+  EXPECT_EQ(options.root.stride, 1.5f);
+  EXPECT_EQ(options.root.hip_height_m, -0.1f);
+  EXPECT_EQ(options.arm_reach, 0.75f);
+  EXPECT_TRUE(options.places_limbs());
+  EXPECT_FALSE(retarget_options(parsed("").method).places_limbs());
+  EXPECT_THROW(parsed("--stride 0"), CLI::ValidationError);
+  EXPECT_THROW(parsed("--arm-reach 2"), CLI::ValidationError);
+}
+
 TEST(MethodOptions, ReachThePipelineAndTheNetworks) {
   const RetargetOptions off =
       retarget_options(parsed("--root original --no-swap-repair --no-smoothing --no-fixed-lengths "

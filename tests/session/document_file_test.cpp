@@ -99,6 +99,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   wanted.source.import.height.reset();
   for (Take& take : wanted.takes) {
     take.method.near = take.method.keep_contacts = true;
+    for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
     take.target.import.height.reset();
     take.target.not_a_person = NotAPerson::RefuseClear;
   }
@@ -108,6 +109,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   auto written = to_json(read, "/a/documents");
   for (auto& take : written["takes"]) {
     take["method"].erase("near"), take["method"].erase("keep_contacts");
+    for (const Proportion& one : kProportions) take["method"].erase(one.name);
     take["target"].erase("not_a_person");
   }
   EXPECT_EQ(document_text(written), without);
@@ -167,6 +169,8 @@ TEST(DocumentFile, ColoursOfBindingUncertaintyOpenUnderTheirOldName) {
 
 TEST(DocumentFile, WhatIsWrongIsNamed) {
   EXPECT_EQ(problem_with("/takes/0/method/offsets", 1), "takes[0].method.offsets must be true or false");
+  EXPECT_EQ(problem_with("/takes/0/method/stride", 9),
+            "takes[0].method.stride must be a finite number from 0.25 to 3");
   EXPECT_EQ(problem_with("/takes", 7), "takes must be a list");
   EXPECT_EQ(problem_with("/takes/1", "x"), "takes[1] must be an object");
   EXPECT_EQ(problem_with("/source/path", nullptr), "source.path must be text");

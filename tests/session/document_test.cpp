@@ -103,6 +103,9 @@ const Changes& document_changes() {
       TAKE(method.keep_contacts = true),
       TAKE(method.near = true),
       TAKE(method.root = RootMode::Original),
+      TAKE(method.stride = 1),
+      TAKE(method.hip_height = 0),
+      TAKE(method.arm_reach = 0),
       TAKE(target_edits.joints.pop_back()),
       TAKE(target_edits.joints[0].joint = Head),
       TAKE(target_edits.joints[0].position.x() = 0),
@@ -168,7 +171,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
                                 target_bones, not_a_person] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,
-                                root] = Method();
+                                root, stride, hip_height, arm_reach] = Method();
   [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();

@@ -86,6 +86,42 @@ TEST_F(StudioTest, TwoMethodsOfOneTargetStandSideBySide) {
   EXPECT_FALSE(same_poses(studio.session().takes[0].shown, studio.session().takes[1].shown));
 }
 
+TEST_F(StudioTest, ProportionsOfATargetArePerformedWithoutBindingOrExtractingAgainAndUndone) {
+  Studio studio(services());
+  open_both(studio);
+  const TakeState& take = studio.session().takes[0];
+  const auto pelvis = [&take](size_t t) { return Vec3(take.joints[t].row(Pelvis).transpose()); };
+  const Motion before = take.shown;
+  const Vec3 first = pelvis(0), last = pelvis(kFrames - 1);
+  const auto deformer = take.deformer;
+  const int extracted = *extractions_;
+  for (const char* stride : {"1.2", "1.5"}) studio.run("target.stride", {"0", stride});  // as a slider does
+  studio.wait_idle(60);
+  EXPECT_NEAR(pelvis(kFrames - 1).x() - first.x(), 1.5f * (last.x() - first.x()), 1e-3f);
+  studio.run("edit.undo");
+  studio.run("target.hip_height", {"0", "-0.05"});
+  studio.wait_idle(60);
+  EXPECT_NEAR(pelvis(0).y(), first.y() - 0.05f, 0.01f);
+  studio.run("edit.undo");
+  studio.run("target.arm_reach", {"0", "7"});
+  EXPECT_EQ(studio.session().document.takes[0].method.arm_reach, 1);
+  studio.run("edit.undo");
+  studio.wait_idle(60);
+  EXPECT_TRUE(same_poses(take.shown, before));
+  EXPECT_EQ(take.deformer, deformer);
+  EXPECT_EQ(*extractions_, extracted);
+}
+
+TEST_F(StudioTest, AnotherMethodOfATakeIsComparedByItsProportions) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("compare.add", {"0", "stride=1.5", "arm_reach=0.5"});
+  studio.wait_idle(60);
+  EXPECT_EQ(studio.session().document.takes[1].method.stride, 1.5f);
+  EXPECT_EQ(studio.session().document.takes[1].name, "target (stride 1.5, arm_reach 0.5)");
+  EXPECT_FALSE(same_poses(studio.session().takes[0].shown, studio.session().takes[1].shown));
+}
+
 TEST_F(StudioTest, ABrokenTargetIsToldAndTheScanGoesOn) {
   std::ofstream(path("broken.obj")) << "v 1 2\n";
   Studio studio(services());

@@ -54,6 +54,21 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_typed("take.name", "the adult", {"take.rename 0 \"the adult\""});
 }
 
+TEST_F(Inspector, TheTargetsProportionsAreDraggedAndReset) {
+  const std::pair<const char*, float app::Method::*> numbers[] = {
+      {"target.stride", &app::Method::stride},
+      {"target.hip_height", &app::Method::hip_height},
+      {"target.arm_reach", &app::Method::arm_reach}};
+  for (const auto& [name, value] : numbers) {
+    const std::string number = name;
+    EXPECT_FALSE(shown(number + ".reset"));
+    expect_drag(name, number + " 0 ");
+    session.document.takes[0].method.*value = 0.5f;
+    frame(2);
+    expect_click(number + ".reset", {number + " 0 " + argument(app::Method().*value)});
+  }
+}
+
 TEST_F(Inspector, AFileThatMayMoveHasAnimationsToChoose) {
   session.document.source.path = "/scans/walk.FBX";
   frame(2);

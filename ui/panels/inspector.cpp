@@ -1,7 +1,8 @@
 // What is open and how it is done: the source, the takes, their target and method.
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.units, source.up,
 // source.height(.reset), source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its row), take.name,
-// take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.yaw, target.betas; method.engine,
+// take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.yaw, target.betas, target.stride, target.hip_height,
+// target.arm_reach; method.engine,
 // method.extractor, method.offsets, method.root, method.swaps, method.smooth, method.lengths, method.compare,
 // work.pause, work.resume, work.restart.
 #include <algorithm>
@@ -236,6 +237,15 @@ void draw_target_facts(const app::TakeState& state, Ui& ui) {
   for (const std::string& warning : state.target->warnings) warn(ui, warning);
 }
 
+void draw_proportions(const app::Method& method, PanelContext& context, const std::string& k) {
+  for (const app::Proportion& one : app::kProportions) {
+    const std::string name = std::string("target.") + one.name;
+    const float speed = (one.range.high - one.range.low) / 500;
+    ask_number(context, {name, one.label, one.explanation, name + " " + k}, method.*one.value,
+               {one.range.low, one.range.high, speed, one.format, app::Method().*one.value, true});
+  }
+}
+
 void draw_target_facts(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::Take* take = selected_take(session);
@@ -254,6 +264,7 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
           text_row(ui, {"target.betas", "Shape", "Shape parameters of an SMPL-format body: 1.2, -0.5"},
                    betas.str(), "only SMPL bodies"))
     context.ask("target.betas", {k, *text});
+  draw_proportions(take->method, context, k);
   ask_button(context, {"take.replace", "Replace\u2026", "", "dialog.open replace_target"});
 }
 
