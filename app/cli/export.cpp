@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <thread>
 
@@ -10,6 +11,7 @@
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/studio.hpp"
+#include "app/run/export_presets.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
@@ -34,13 +36,13 @@ struct ExportOptions {
   std::string document;            // empty: --source and --target
   std::vector<std::string> takes;  // by name, or number from 1; empty: the first
   std::vector<std::string> sources;
-  std::string format, out, preview, report;
+  std::string format, bones, out, preview, report;
   std::string not_of_documents;  // a given option that a document answers itself
   SourceOptions source;          // what all sources share
   TargetOptions target;
   CharacterExportOptions file;
   MethodOptions how;
-  bool print_map = false;
+  bool print_map = false, all_takes = false, chose_influences = false;
   int64_t frames = 0;
 };
 
@@ -91,10 +93,11 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   const auto character = open_target(options.target, networks);
   const bool theirs = on_their_rig(options.target, *character);
   CharacterExportOptions file = options.file;
-  file.their_rig = theirs;
+  US_CHECK(theirs || options.bones != "own", options.target.path, ": does not perform on bones of its own");
+  file.their_rig = options.bones.empty() ? theirs && format.is_character : options.bones == "own";
   check_export_options(options.out, format, file);
-  US_CHECK(!theirs || file.influences == 4, options.target.path,
-           ": keeps its own skin weights; --influences needs --rig ours");
+  US_CHECK(!file.their_rig || !options.chose_influences || file.influences == 4, options.target.path,
+           ": keeps its own skin weights; --influences needs --bones 22");
   RetargetOptions quick = retarget_options(options.how.method);
   quick.vertices = false;
   Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
@@ -104,14 +107,13 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   return out;
 }
 
-/// What goes wrong in a studio that nobody looks at.
-void check_session(const Session& session) {
+/// What a studio asks that nobody looks at.
+void check_questions(const Session& session) {
   US_CHECK(!session.question || session.question->kind != Question::Kind::MissingFiles,
            session.question->missing[0], ": is a file of the document, but does not exist");
   US_CHECK(!session.question || session.question->kind != Question::Kind::PaintMisfit,
            session.question->text);
   US_CHECK(!session.question || session.question->kind != Question::Kind::NotAPerson, session.question->text);
-  US_CHECK(session.errors.empty(), session.errors.front().text);
 }
 
 std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& document,
@@ -128,34 +130,69 @@ std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& d
   return takes;
 }
 
-/// The document's takes as the studio shows them: its edits, its corrections of joints and weights.
-Performance perform_document(const ExportOptions& options, const ExportFormat& format) {
+std::unique_ptr<Studio> open_document(const ExportOptions& options) {
   US_CHECK(options.not_of_documents.empty(), options.document, ": a document has its own source and target, ",
            options.not_of_documents, " cannot be combined with it");
   StudioServices services;
   services.networks = studio_services(options.how.weights).networks;
-  Studio studio(std::move(services));
-  studio.run("document.open", {options.document});
+  auto studio = std::make_unique<Studio>(std::move(services));
+  studio->run("document.open", {options.document});
+  const Document& document = studio->session().document;
+  US_CHECK(!document.source.path.empty() && !document.takes.empty(), options.document, ": has no ",
+           document.source.path.empty() ? "source" : "target");
+  return studio;
+}
+
+/// Performs all takes, and says how far this one is.
+void make_takes(const ExportOptions& options, Studio& studio, size_t take) {
   const Session& session = studio.session();
-  US_CHECK(!session.document.source.path.empty() && !session.document.takes.empty(), options.document,
-           ": has no ", session.document.source.path.empty() ? "source" : "target");
-  const std::vector<size_t> takes = chosen_takes(options, session.document, format);
-  const size_t take = takes[0];
-  const std::string name = session.document.takes[take].name;
-  Progress progress(clip_name(options.document) + " -> " + name, 0);
+  const auto look = [&] {
+    check_questions(session);
+    US_CHECK(options.all_takes || session.errors.empty(), session.errors.front().text);
+  };
+  Progress progress(clip_name(options.document) + " -> " + session.document.takes[take].name, 0);
   do {
     studio.tick(0);
-    check_session(session);
+    look();
     progress.step(static_cast<int64_t>(session.takes[take].performed.size()));
     check_interrupt("after " + std::to_string(session.takes[take].performed.size()) + " frames");
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   } while (!studio.made());
   studio.tick(0);
-  check_session(session);
+  look();
   progress.finish();
+}
+
+ExportChoice choice_of(const ExportOptions& options, const ExportFormat& format) {
   ExportChoice choice{&format, options.file, {}, {}};
-  if (options.target.rig != "auto") choice.theirs = options.target.rig == "theirs";
-  return {export_input(session, takes, choice), name};
+  if (options.target.rig != "auto" && format.is_character) choice.theirs = options.target.rig == "theirs";
+  if (!options.bones.empty()) choice.theirs = options.bones == "own";
+  return choice;
+}
+
+/// The document's takes as the studio shows them: its edits, its corrections of joints and weights.
+Performance perform_document(const ExportOptions& options, const ExportFormat& format) {
+  const auto studio = open_document(options);
+  const Session& session = studio->session();
+  const std::vector<size_t> takes = chosen_takes(options, session.document, format);
+  make_takes(options, *studio, takes[0]);
+  return {export_input(session, takes, choice_of(options, format)), session.document.takes[takes[0]].name};
+}
+
+/// A file of each take into the folder --out; what goes wrong with one keeps no other out. 1 where something did.
+int export_takes(const ExportOptions& options) {
+  US_CHECK(!options.document.empty(), "--all-takes: only a document has takes");
+  US_CHECK(options.takes.empty(), "--all-takes: --take cannot be combined with it");
+  US_CHECK(options.preview.empty() && options.report.empty(),
+           "--all-takes: --preview and --report are of one file");
+  const ExportFormat& format = export_format(options.format.empty() ? "glb" : options.format, options.out);
+  const auto studio = open_document(options);
+  make_takes(options, *studio, 0);
+  const auto files = take_files(studio->session(), options.out, choice_of(options, format));
+  const auto problems = write_takes(options.out, files, [](float) { check_interrupt("during the export"); });
+  for (const std::string& problem : problems) log::warn(problem);
+  std::printf("%s %zu of %zu takes\n", options.out.c_str(), files.size() - problems.size(), files.size());
+  return problems.empty() ? 0 : 1;
 }
 
 /// Six moments of the first clip as the file has them, and how it stands in the T-pose.
@@ -228,12 +265,13 @@ int print_map(const ExportOptions& options) {
 int run_export(const ExportOptions& options) {
   if (options.print_map) return print_map(options);
   US_CHECK(!options.out.empty(), "--out is missing: the file to write");
+  if (options.all_takes) return export_takes(options);
   const ExportFormat& format = export_format(options.format, options.out);
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
            ": --preview needs a GLB or glTF file");
   check_export(options.out, format);
   CharacterExportOptions on_any_rig = options.file;
-  on_any_rig.their_rig = options.target.rig != "ours";
+  on_any_rig.their_rig = options.target.rig != "ours" && options.bones != "22";
   check_export_options(options.out, format, on_any_rig);
   US_CHECK(options.takes.empty() || !options.document.empty(), "--take: only a document has takes");
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
@@ -254,6 +292,16 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
   for (const ExportFormat& info : export_formats()) append_item(formats, info.name);
   command.add_option("--format", options.format,
                      formats + " (default: by the suffix; ply and obj are folders)");
+  // Before the options that it sets: those that are given count.
+  command.add_option_function<std::string>(
+      "--preset", [&options](const std::string& name) { apply(export_preset(name), options.file); },
+      "options for a program: " + help_of_presets());
+  command
+      .add_option(
+          "--bones", options.bones,
+          "own: the file's bones are the character's own; 22: the 22 joints (default: own in GLB and glTF "
+          "where the character performs on them, else 22)")
+      ->check(CLI::IsMember({"own", "22"}));
   command.add_option("--influences", options.file.influences, "bones per vertex on our rig: 4 or 8")
       ->check(CLI::IsMember({4, 8}));
   command.add_option("--morphs", options.file.shapes, "morph targets for the pose-corrective offsets")
@@ -270,9 +318,9 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
 /// Empty: none was given.
 std::string first_not_of_documents(const CLI::App& command) {
   static const std::set<std::string> kOfDocuments = {
-      "DOCUMENT",      "--help",       "--take",    "--out",    "--format",
-      "--rig",         "--influences", "--morphs",  "--reduce", "--in-place",
-      "--t-pose-clip", "--keep-clips", "--preview", "--report", "--weights"};
+      "DOCUMENT",   "--help",        "--take",       "--out",        "--format", "--all-takes",
+      "--preset",   "--bones",       "--rig",        "--influences", "--morphs", "--reduce",
+      "--in-place", "--t-pose-clip", "--keep-clips", "--preview",    "--report", "--weights"};
   for (const CLI::Option* option : command.get_options())
     if (option->count() > 0 && kOfDocuments.count(option->get_single_name()) == 0 &&
         kOfDocuments.count("--" + option->get_single_name()) == 0)
@@ -288,6 +336,8 @@ Action declare_export(CLI::App& command) {
                      "a document of the studio: exports its take as the studio shows it");
   command.add_option("--take", options->takes,
                      "takes of the document, by name or number from 1; each becomes a clip");
+  command.add_flag("--all-takes", options->all_takes,
+                   "a file of each take of the document, called like it, in the folder --out (default: GLB)");
   command.add_option("--source", options->sources, "motions to perform; each becomes a clip");
   command.add_option("--target", options->target.path,
                      "a character or an SMPL-format body: " + format_names(kTarget));
@@ -301,6 +351,7 @@ Action declare_export(CLI::App& command) {
   add_method_options(command, options->how);
   return [options, &command] {
     options->not_of_documents = first_not_of_documents(command);
+    options->chose_influences = command.get_option("--influences")->count() > 0;
     return run_export(*options);
   };
 }

@@ -107,10 +107,10 @@ Running start(const JobOptions& options) {
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);
   if (!options.out.empty()) {
+    const ExportFormat& format = export_format("", options.out);
     ExportBody body{job.character, job.retargeter->performer().deformer(), {}};
-    body.file.their_rig = on_their_rig(options.target, *job.character);
-    job.output = open_export(options.out, export_format("", options.out), body,
-                             file_name(options.source.path), job.source->fps());
+    body.file.their_rig = format.is_character && on_their_rig(options.target, *job.character);
+    job.output = open_export(options.out, format, body, file_name(options.source.path), job.source->fps());
   }
   return job;
 }

@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/character/own_bones.hpp"
 #include "retarget/formats/motion_writers.hpp"
 #include "retarget/formats/surface_writer.hpp"
 
@@ -157,38 +158,41 @@ const std::vector<ExportFormat>& export_formats() {
     to.push(by.surface(frame), by.joints(frame), frame.pose.local, frame.source_joints);
   };
   static const std::vector<ExportFormat> formats = {
-      {"glb", ".glb", "GLB", "The animated character, for any engine.", true, true, character},
-      {"gltf", ".gltf", "glTF", "The same as text.", true, true, character},
-      {"bvh", ".bvh", "BVH", "The motion of 22 joints, in centimetres.", true, false,
+      {"glb", ".glb", "GLB", "The animated character, for any engine.", true, true, true, character},
+      {"gltf", ".gltf", "glTF", "The same as text.", true, true, true, character},
+      {"bvh", ".bvh", "BVH", "The motion of the bones, in centimetres.", true, false, true,
        [](P path, B body, P, double fps) -> Output {
+         if (body.file.their_rig)
+           return std::make_unique<FrameOutput<OwnBonesBvh, false>>(
+               path, body, pose, body.character, body.file.joints.value_or(body.character->pose.rest), fps);
          return std::make_unique<FrameOutput<BvhWriter, false>>(path, body, pose, joints_of(body), fps);
        }},
-      {"amass", ".npz", "AMASS", "The rotations of SMPL's joints, z up.", false, false,
+      {"amass", ".npz", "AMASS", "The rotations of SMPL's joints, z up.", false, false, false,
        [](P path, B body, P, double fps) -> Output {
          return std::make_unique<FrameOutput<AmassWriter, false>>(path, body, pose, fps);
        }},
-      {"npz", ".npz", "NPZ", "Vertices, joints and rotations as arrays.", true, false,
+      {"npz", ".npz", "NPZ", "Vertices, joints and rotations as arrays.", true, false, false,
        [](P path, B body, P, double) -> Output {
          const auto vertices = static_cast<int64_t>(body.character->surface.in_file.size());
          return std::make_unique<FrameOutput<ResultWriter, true>>(path, body, all, vertices);
        }},
-      {"ply", "", "PLY", "A folder with the surface of every frame.", false, false,
+      {"ply", "", "PLY", "A folder with the surface of every frame.", false, false, false,
        [](P path, B body, P, double) -> Output {
          return std::make_unique<FrameOutput<SequenceWriter, true>>(path, body, surface, SequenceFormat::Ply,
                                                                     topology_of(*body.character));
        }},
-      {"obj", "", "OBJ", "The same as text, with texture coordinates.", false, false,
+      {"obj", "", "OBJ", "The same as text, with texture coordinates.", false, false, false,
        [](P path, B body, P, double) -> Output {
          return std::make_unique<FrameOutput<SequenceWriter, true>>(path, body, surface, SequenceFormat::Obj,
                                                                     topology_of(*body.character));
        }},
-      {"pc2", ".pc2", "PC2", "A vertex cache, and the mesh that it moves.", true, false,
+      {"pc2", ".pc2", "PC2", "A vertex cache, and the mesh that it moves.", true, false, false,
        [](P path, B body, P, double) -> Output {
          const PreparedCharacter& of = *body.character;
          return std::make_unique<FrameOutput<PointCacheWriter, true>>(
              path, body, surface, topology_of(of), of.surface.in_file_order(of.target.mesh.vertices));
        }},
-      {"joints", ".csv", "CSV", "The positions of the 22 joints, as a table.", true, false,
+      {"joints", ".csv", "CSV", "The positions of the 22 joints, as a table.", true, false, false,
        [](P path, B body, P, double fps) -> Output {
          return std::make_unique<FrameOutput<JointTable, false>>(path, body, joints, fps);
        }}};

@@ -19,7 +19,8 @@ struct ExportFormat {
   const char* label;   ///< for menus
   const char* words;   ///< what it is good for, one sentence
   bool by_suffix;      ///< a path with the suffix means it; false: it is chosen by its name alone
-  bool is_character;   ///< a rigged character: rig, influences, morphs, key reduction and several clips
+  bool is_character;   ///< a rigged character: influences, morphs, key reduction and several clips
+  bool own_bones;  ///< can be on the character's own bones, a character's file is so unless asked otherwise
   /// Its writer; see open_export.
   std::unique_ptr<MotionOutput> (*open)(const std::string& path, const ExportBody& body,
                                         const std::string& name, double fps);
@@ -43,7 +44,8 @@ void check_export_options(const std::string& path, const ExportFormat& format,
 struct ExportBody {
   std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Deformer> screen;  ///< bound to the target, with painted weights
-  CharacterExportOptions file;             ///< of other formats than glTF only in_place, joints and progress
+  CharacterExportOptions
+      file;  ///< of other formats than glTF only in_place, joints, progress; their_rig: own_bones
 };
 
 /// One frame of a motion.

@@ -1,14 +1,19 @@
+#include <algorithm>
 #include <filesystem>
+#include <memory>
 
+#include "app/run/export_presets.hpp"
 #include "app/session/command_sets.hpp"
 #include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
+namespace fs = std::filesystem;
 namespace {
 
 std::string file_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
+  return fs::path(path).filename().string();
 }
 
 void run_export(Call& c) {
@@ -37,6 +42,50 @@ void run_export(Call& c) {
   c.session.settings.export_format = format.name;
 }
 
+std::string counted(size_t takes) {
+  return std::to_string(takes) + (takes == 1 ? " take" : " takes");
+}
+
+/// What became of an export of all takes: a notice, and where some could not be written an error with why.
+void tell_of_takes(Studio& studio, const std::vector<TakeFile>& files,
+                   const std::vector<std::string>& problems) {
+  const std::string& first = files.front().path;
+  const size_t written = files.size() - problems.size();
+  const std::string of_all = problems.empty() ? "" : std::to_string(written) + " of ";
+  const std::string folder = fs::path(first).parent_path().filename().string();
+  studio.notify("Exported " + of_all + counted(files.size()) + " to " + folder, !problems.empty(),
+                showing(first));
+  std::string all;
+  for (const std::string& problem : problems) append_item(all, problem, "; ");
+  US_CHECK(problems.empty(), counted(problems.size()), " could not be exported. ", all);
+}
+
+/// A file of each take. FOLDER [format=NAME|csv] and the options of export.run.
+void export_all(Call& c) {
+  const std::string folder = c.path(0, "folder");
+  Arguments words(c.arguments.begin() + 1, c.arguments.end());
+  const auto figures = std::find(words.begin(), words.end(), "format=csv");
+  const bool are_figures = figures != words.end();
+  if (are_figures) words.erase(figures);
+  words.insert(words.begin(), "format=glb");  // a later one counts
+  const ExportChoice choice = export_choice(folder, words);
+  US_CHECK(choice.takes.empty(), "take= has no meaning here: all takes are exported");
+  const auto files = std::make_shared<const std::vector<TakeFile>>(
+      are_figures ? figure_files(c.session, folder) : take_files(c.session, folder, choice));
+  US_CHECK(!files->empty(), "there is no take to export");
+  const auto problems = std::make_shared<std::vector<std::string>>();
+  c.studio.jobs().start(
+      "Exporting " + counted(files->size()) + " to " + file_name(folder),
+      [files, folder, problems](JobControl& control) {
+        *problems = write_takes(folder, *files, [&control](float done) {
+          control.check();
+          control.progress(done);
+        });
+      },
+      [&studio = c.studio, files, problems] { tell_of_takes(studio, *files, *problems); });
+  c.session.settings.export_format = are_figures ? "csv" : choice.format->name;
+}
+
 void export_figures(Call& c) {
   const TakeState& state = c.take_state();
   US_CHECK(!state.series.empty(), "there are no figures yet");
@@ -54,9 +103,13 @@ void export_figures(Call& c) {
 
 void add_export_commands(Commands& commands) {
   commands.add({"export.run", "Export animation",
-                "TAKE PATH [format=NAME] [rig=theirs|ours] [influences=4|8] [morphs=COUNT] [reduce=MM] "
-                "[in_place=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]"},
+                "TAKE PATH [format=NAME] [preset=" + names_of_presets() +
+                    "] [bones=own|22] [influences=4|8] [morphs=COUNT] [reduce=MM] "
+                    "[in_place=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]"},
                run_export);
+  commands.add({"export.all", "Export all takes, a file each",
+                "FOLDER [format=NAME|csv] and the options of export.run"},
+               export_all);
   commands.add({"export.csv", "Export figures as CSV", "TAKE PATH"}, export_figures);
 }
 

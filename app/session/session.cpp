@@ -19,7 +19,7 @@ const std::vector<std::vector<std::string>> kMendEachOther = {
     {"open", "target.add", "target.replace", "target.remove"},
     {"document.save", "document.save_as"},
     {"picture.save", "video.save"},
-    {"export.run", "export.csv"}};
+    {"export.run", "export.all", "export.csv"}};
 
 /// Why a frame of the source is not to be trusted; empty when it is.
 std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
+#include "app/run/export_presets.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
+namespace fs = std::filesystem;
 namespace {
 
 void set_option(ExportChoice& out, const std::string& key, const std::string& value) {
@@ -16,8 +20,8 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
     US_CHECK(number >= 0 && number <= high, key, " is between 0 and ", high, ", not ", value);
     return number;
   };
-  if (key == "rig")
-    out.theirs = words.choice(0, "rig", {"theirs", "ours"}) == 0;
+  if (key == "bones")
+    out.theirs = words.choice(0, "bones", {"own", "22"}) == 0;
   else if (key == "influences")
     out.file.influences = words.choice(0, "influences", {"4", "8"}) == 0 ? 4 : 8;
   else if (key == "morphs")
@@ -38,7 +42,7 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
 
 /// Of the clip: what the source is called.
 std::string clip_name(const Session& session, const Take& take) {
-  const std::string stem = std::filesystem::path(session.source.name).stem().string();
+  const std::string stem = fs::path(session.source.name).stem().string();
   return stem.empty() ? take.name : stem;
 }
 
@@ -55,16 +59,45 @@ void add_clip(ExportInput& out, const Session& session, size_t k, const std::str
   out.clips.push_back(std::move(clip));
 }
 
+/// Without what this take's character has not.
+ExportChoice choice_for(const Session& session, size_t k, ExportChoice choice) {
+  const auto& character = session.takes[k].character;
+  const bool own = character && on_their_rig(session.document.takes[k].target, *character);
+  if (!own) choice.theirs.reset();
+  if (!own || !choice.theirs.value_or(true)) choice.file.keep_clips = false;
+  return choice;
+}
+
+using WriteTake = decltype(TakeFile::write);
+/// A file of each take. `writing` gives what writes the take k to a path, or throws.
+std::vector<TakeFile> files_of(const Session& session, const std::string& folder, const std::string& suffix,
+                               const std::function<WriteTake(size_t k, const std::string& path)>& writing) {
+  std::vector<TakeFile> files;
+  for (const std::string& name : take_file_names(session.document, suffix)) {
+    TakeFile file{(fs::path(folder) / name).string(), "", {}};
+    file.problem = failure_of([&] { file.write = writing(files.size(), file.path); });
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
 }  // namespace
 
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words) {
   ExportChoice out;
   std::string format;
+  const bool is_character =
+      std::any_of(export_formats().begin(), export_formats().end(),
+                  [&](const auto& one) { return one.is_character && file_suffix(path) == one.suffix; });
   for (const std::string& text : words) {
     const size_t equals = text.find('=');
     US_CHECK(equals != std::string::npos, "an option of an export is key=value, not '", text, "'");
     const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
-    if (key == "format")
+    if (key == "preset") {
+      const ExportPreset& preset = export_preset(value);
+      apply(preset, out.file);
+      if (!is_character) format = preset.format;
+    } else if (key == "format")
       format = value;
     else
       set_option(out, key, value);
@@ -114,15 +147,83 @@ ExportInput export_input(const Session& session, const std::vector<size_t>& take
              ", with the same joints, weights and offsets: it cannot be a clip ", "of the same file");
     US_CHECK(session.takes[k].problem.empty(), name, ": ", session.takes[k].problem);
     US_CHECK(session.takes[k].ready && session.takes[k].character && !session.takes[k].shown.poses.empty(),
-             "there is nothing to export yet");
+             name, ": has no frames to export yet");
     add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
   }
   out.body = {state.character, state.deformer, choice.file};
   const bool own = on_their_rig(take.target, *state.character);
   US_CHECK(own || !choice.theirs.value_or(false), take.name, ": does not perform on bones of its own");
-  out.body.file.their_rig = choice.theirs.value_or(own);
+  out.body.file.their_rig = choice.theirs.value_or(own && choice.format->is_character);
   out.body.file.joints = state.target->joints;
   return out;
+}
+
+std::string safe_file_name(const std::string& name) {
+  std::string safe = name;
+  for (char& c : safe)
+    if (static_cast<unsigned char>(c) < 32 || std::string("/\\:*?\"<>|").find(c) != std::string::npos)
+      c = '_';
+  return safe.empty() || safe == "." || safe == ".." ? "take" : safe;
+}
+
+std::vector<std::string> take_file_names(const Document& document, const std::string& suffix) {
+  std::vector<std::string> names;
+  const auto is_taken = [&](const std::string& name) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& one) { return lower_case(one) == lower_case(name); });
+  };
+  for (const Take& take : document.takes) {
+    const std::string stem = safe_file_name(take.name);
+    std::string name = stem + suffix;
+    for (int i = 2; is_taken(name); ++i) name = stem + " " + std::to_string(i) + suffix;
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<TakeFile> take_files(const Session& session, const std::string& folder,
+                                 const ExportChoice& choice) {
+  const ExportFormat& format = *choice.format;
+  return files_of(session, folder, format.suffix, [&](size_t k, const std::string& path) -> WriteTake {
+    const auto input =
+        std::make_shared<ExportInput>(export_input(session, {k}, choice_for(session, k, choice)));
+    return [input, path, &format](const std::function<void(float)>& progress) {
+      check_export(path, format);
+      input->body.file.progress = progress;
+      export_motion(path, format, *input);
+    };
+  });
+}
+
+std::vector<TakeFile> figure_files(const Session& session, const std::string& folder) {
+  return files_of(session, folder, ".csv", [&](size_t k, const std::string& path) -> WriteTake {
+    US_CHECK(!session.takes[k].series.empty(), session.document.takes[k].name, ": there are no figures yet");
+    return [path, series = session.takes[k].series, fps = session.source.fps](const auto&) {
+      write_csv(path, series, fps);
+    };
+  });
+}
+
+std::vector<std::string> write_takes(const std::string& folder, const std::vector<TakeFile>& files,
+                                     const std::function<void(float)>& progress) {
+  std::error_code failed;
+  const bool made = fs::create_directories(folder, failed);
+  std::vector<std::string> problems;
+  for (size_t i = 0; i < files.size(); ++i) {
+    const auto of_all = [&](float done) {
+      if (progress) progress((static_cast<float>(i) + done) / static_cast<float>(files.size()));
+    };
+    of_all(0);
+    const std::string problem =
+        files[i].write ? failure_of([&] { files[i].write(of_all); }) : files[i].problem;
+    if (!problem.empty()) problems.push_back(problem);
+  }
+  if (progress) progress(1);  // whoever stopped the last one is heard here
+  if (problems.size() < files.size()) return problems;
+  if (made) fs::remove(folder, failed);
+  std::string all;
+  for (const std::string& problem : problems) append_item(all, problem, "; ");
+  throw Error(all.empty() ? "there is no take to export" : all);
 }
 
 }  // namespace understudy::app

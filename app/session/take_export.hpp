@@ -1,6 +1,7 @@
 // What an export needs from a take: shared by the studio and the command line.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,13 +15,14 @@ namespace understudy::app {
 struct ExportChoice {
   const ExportFormat* format = &export_formats().front();
   CharacterExportOptions file;
-  std::optional<bool> theirs;      ///< drive the character's own bones; none: where the take performs on them
+  /// the character's own bones; none: those of an animated character, where the take performs on them
+  std::optional<bool> theirs;
   std::vector<std::string> takes;  ///< more takes, by name or number from 0, each a clip of its own
 };
 
-/// key=value words: format=NAME, rig=theirs|ours, influences=4|8, morphs=COUNT, reduce=MM, in_place=on|off,
-/// t_pose=on|off, keep_clips=on|off, and any number of take=NAME for more clips; without a format the path's
-/// suffix decides. Throws Error for any other.
+/// key=value words, of which a later one counts: format=NAME, preset=NAME, bones=own|22, influences=4|8, morphs=COUNT,
+/// reduce=MM, in_place=on|off, t_pose=on|off, keep_clips=on|off, and any number of take=NAME for more clips; without a
+/// format the path's suffix decides. Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 
 /// The take with that name, or else with that number, counted from `first`. Throws Error, listing the takes,
@@ -36,5 +38,27 @@ std::vector<size_t> takes_of_one_body(const Document& document, size_t take);
 /// own. Throws Error when nothing has been performed yet, or the takes are not of one body.
 ExportInput export_input(const Session& session, const std::vector<size_t>& takes,
                          const ExportChoice& choice);
+
+/// The name of a file or folder for something of this name, such that any file system takes it.
+std::string safe_file_name(const std::string& name);
+/// Of each take the name of its file among those of all: "adult.glb"; of the second that is called alike "adult 2.glb".
+std::vector<std::string> take_file_names(const Document& document, const std::string& suffix);
+
+/// One take's file among those of all takes.
+struct TakeFile {
+  std::string path;
+  std::string problem;  ///< why it cannot be made, one sentence that names the take; empty: `write` makes it
+  /// On any thread; throws Error. What `progress` (0..1) throws ends it, and what was at the path stays.
+  std::function<void(const std::function<void(float)>& progress)> write;
+};
+/// A file of each take in this folder. Options that a take's character cannot have are left out of its file.
+std::vector<TakeFile> take_files(const Session& session, const std::string& folder,
+                                 const ExportChoice& choice);
+/// The same with the figures of every frame, as CSV.
+std::vector<TakeFile> figure_files(const Session& session, const std::string& folder);
+/// Makes the folder and writes one file after the other; what goes wrong with one keeps no other out. Returns why some
+/// could not be made, a sentence each. Throws Error where none could; a folder that it has made is gone then.
+std::vector<std::string> write_takes(const std::string& folder, const std::vector<TakeFile>& files,
+                                     const std::function<void(float)>& progress);
 
 }  // namespace understudy::app

@@ -8,6 +8,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/character/own_bones.hpp"
 
 namespace understudy {
 namespace {
@@ -157,8 +158,7 @@ class TheirRig final : public Animator {
   }
 
  private:
-  std::vector<Mat4> bind_;   // in the world: metres
-  std::vector<int> driver_;  // of the nodes of the file that is written
+  std::vector<Mat4> bind_;  // of the nodes of the file that is written, in the world: metres
   std::vector<int> parent_;
 };
 
@@ -201,7 +201,6 @@ Character TheirRig::still() {
   const Mat4 world = affine(to_world.scale * to_world.R, to_world.t);
   bind_.clear();
   for (const Mat4& node : source_.bind.nodes) bind_.push_back(world * node);
-  driver_ = source_.driver;
   // The bind pose becomes the pose that the file is opened in.
   for (size_t n = 0; n < out.nodes.size(); ++n) {
     const int p = out.nodes[n].parent;
@@ -212,7 +211,6 @@ Character TheirRig::still() {
   if (!world.isApprox(Mat4::Identity(), 1e-6f)) {
     add_root(out, to_world);
     bind_.insert(bind_.begin(), world);
-    driver_.insert(driver_.begin(), -1);
   } else {
     bind_ = source_.bind.nodes;
   }
@@ -221,31 +219,24 @@ Character TheirRig::still() {
   for (const auto& node : out.nodes) parent_.push_back(node.parent);
   // Later frames depend on what the file really holds, not on matrices that it can only come near to.
   bind_ = out.world();
-  for (size_t n = 0; n < driver_.size(); ++n)
-    if (driver_[n] >= 0)
+  const size_t added = bind_.size() - source_.driver.size();  // the root
+  for (size_t n = added; n < bind_.size(); ++n)
+    if (source_.driver[n - added] >= 0)
       moved_.push_back(
           {static_cast<int>(n), parent_[n] < 0 ? 1 : uniform_scale(bind_[parent_[n]].topLeftCorner<3, 3>())});
   return out;
 }
 
 std::vector<Transform> TheirRig::frame(const Pose& pose) const {
-  const Joints rest = joints_.value_or(source_.pose.rest);
-  const Joints about = moved_bind_joints(source_.pose, rest);
-  const PosedSkeleton posed = forward_kinematics(rest, pose);
-  std::vector<Mat4> world(bind_.size());
+  const std::vector<Mat4> of_source = node_motions(source_, joints_.value_or(source_.pose.rest), pose);
+  const size_t added = bind_.size() - of_source.size();  // the root
   std::vector<Transform> out;
-  for (size_t n = 0; n < bind_.size(); ++n) {
-    const int p = parent_[n], j = driver_[n];
-    const Mat4 above = p < 0 ? Mat4(Mat4::Identity()) : world[p];
-    const Mat4 above_bind = p < 0 ? Mat4(Mat4::Identity()) : bind_[p];
-    if (j < 0) {
-      world[n] = above * above_bind.inverse() * bind_[n];
-      continue;
-    }
-    const Mat3 R = posed.global[j] * source_.pose.to_rest[j];
-    const Vec3 t = posed.joints.row(j).transpose() - R * about.row(j).transpose();
-    world[n] = affine(R, t) * bind_[n];
-    out.push_back(Transform::from(above.inverse() * world[n]));
+  for (const auto& [n, metres] : moved_) {
+    const auto world = [&](size_t node) {
+      return Mat4(node < added ? bind_[node] : Mat4(of_source[node - added] * bind_[node]));
+    };
+    const Mat4 above = parent_[n] < 0 ? Mat4(Mat4::Identity()) : world(parent_[n]);
+    out.push_back(Transform::from(above.inverse() * world(n)));
   }
   return out;
 }

@@ -61,20 +61,20 @@ void append_offset(std::string& out, const std::string& indent, const Vec3& metr
 }
 
 /// A joint and those below it; `order` gets their numbers as the file names them: depth first.
-void append_joint(std::string& out, const Joints& rest, int joint, int depth, std::vector<size_t>& order) {
-  order.push_back(static_cast<size_t>(joint));
-  const std::string indent(static_cast<size_t>(2 * depth), ' '), inside = indent + "  ";
-  const int parent = kParents[joint];
-  out += indent + (parent < 0 ? "ROOT " : "JOINT ") + kJointNames[joint] + '\n' + indent + "{\n";
-  const Vec3 offset =
-      parent < 0 ? Vec3(Vec3::Zero()) : Vec3((rest.row(joint) - rest.row(parent)).transpose());
+void append_joint(std::string& out, const std::vector<BvhJoint>& joints, size_t joint, size_t depth,
+                  std::vector<size_t>& order) {
+  order.push_back(joint);
+  const std::string indent(2 * depth, ' '), inside = indent + "  ";
+  const BvhJoint& one = joints[joint];
+  out += indent + (one.parent < 0 ? "ROOT " : "JOINT ") + one.name + '\n' + indent + "{\n";
+  const Vec3 offset = one.parent < 0 ? Vec3(Vec3::Zero()) : Vec3(one.rest - joints[one.parent].rest);
   append_offset(out, inside, offset);
-  out += inside + (parent < 0 ? "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
-                              : "CHANNELS 3 Zrotation Xrotation Yrotation\n");
+  out += inside + (one.moves ? "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+                             : "CHANNELS 3 Zrotation Xrotation Yrotation\n");
   bool has_child = false;
-  for (int child = joint + 1; child < kJointCount; ++child)
-    if (kParents[child] == joint) {
-      append_joint(out, rest, child, depth + 1, order);
+  for (size_t child = joint + 1; child < joints.size(); ++child)
+    if (joints[child].parent == static_cast<int>(joint)) {
+      append_joint(out, joints, child, depth + 1, order);
       has_child = true;
     }
   if (!has_child) {  // half as long as the bone before
@@ -83,6 +83,14 @@ void append_joint(std::string& out, const Joints& rest, int joint, int depth, st
     out += inside + "}\n";
   }
   out += indent + "}\n";
+}
+
+std::vector<BvhJoint> joints_of(const Joints& rest, const std::string& path) {
+  US_CHECK(rest.allFinite(), path, ": a joint of the target is not finite");
+  std::vector<BvhJoint> joints;
+  for (int j = 0; j < kJointCount; ++j)
+    joints.push_back({kJointNames[j], kParents[j], rest.row(j).transpose(), false});
+  return joints;
 }
 
 std::string count_text(int64_t frames) {
@@ -105,11 +113,17 @@ enum ResultArray : size_t { Vertices, JointsArray, RotationsArray, SourceJoints 
 
 }  // namespace
 
-BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps) : file_(path) {
-  US_CHECK(rest.allFinite(), path, ": a joint of the target is not finite");
+BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps)
+    : BvhWriter(path, joints_of(rest, path), fps) {}
+
+BvhWriter::BvhWriter(const std::string& path, std::vector<BvhJoint> joints, double fps)
+    : file_(path), joints_(std::move(joints)), before_(joints_.size(), {0, 0, 0}) {
+  US_CHECK(!joints_.empty(), path, ": there is no bone to write");
   check_rate(fps, path);
   std::string head = "HIERARCHY\n";
-  append_joint(head, rest, Pelvis, 0, order_);
+  for (BvhJoint& joint : joints_) joint.moves = joint.moves || joint.parent < 0;
+  for (size_t j = 0; j < joints_.size(); ++j)
+    if (joints_[j].parent < 0) append_joint(head, joints_, j, 0, order_);
   head += "MOTION\nFrames: ";
   count_at_ = head.size();
   head += count_text(0) + "\nFrame Time: ";
@@ -119,11 +133,23 @@ BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps) : 
 
 void BvhWriter::push(const Pose& pose) {
   check_pose(pose, frames_, file_.path());
+  Points places = Points::Zero(kJointCount, 3);
+  places.row(Pelvis) = pose.root.transpose();
+  push({pose.local.begin(), pose.local.end()}, places);
+}
+
+void BvhWriter::push(const std::vector<Mat3>& local, const Points& places) {
+  const bool finite = places.allFinite() &&
+                      std::all_of(local.begin(), local.end(), [](const Mat3& R) { return R.allFinite(); });
+  US_CHECK(finite, file_.path(), ": the pose of frame ", frames_, " is not finite");
+  US_CHECK(local.size() == joints_.size() && places.rows() == static_cast<Eigen::Index>(local.size()),
+           file_.path(), ": frame ", frames_, " has ", local.size(), " bones, not ", joints_.size());
   std::string line;
-  for (int axis = 0; axis < 3; ++axis)
-    append_fixed(line += ' ', kCentimetres * static_cast<double>(pose.root[axis]), 5);
   for (const size_t j : order_) {
-    before_[j] = nearest_angles(pose.local[j].cast<double>(), before_[j]);
+    for (int axis = 0; joints_[j].moves && axis < 3; ++axis)
+      append_fixed(line += ' ',
+                   kCentimetres * static_cast<double>(places(static_cast<Eigen::Index>(j), axis)), 5);
+    before_[j] = nearest_angles(local[j].cast<double>(), before_[j]);
     for (const double angle : before_[j]) append_fixed(line += ' ', angle, 5);
   }
   file_.write(line.substr(1) + '\n');

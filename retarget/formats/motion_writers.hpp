@@ -14,21 +14,36 @@ namespace understudy {
 // All of them throw Error when the file cannot be written or the disk is full, those of poses and joints also
 // when a number is not finite. Frames go to files as they come; without finish() nothing is left behind.
 
-/// BVH: centimetres, y up, the T-pose where all angles are zero; the pelvis has position and rotation, the
-/// others rotation, Z X Y in degrees, unwound so that curves have no jumps.
+/// A joint of a BVH file.
+struct BvhJoint {
+  std::string name;          ///< without blanks
+  int parent = -1;           ///< comes before; below 0: a root
+  Vec3 rest = Vec3::Zero();  ///< in the world where all angles are zero, metres
+  bool moves = false;        ///< has a position in each frame, as roots have; else it stays on its parent
+};
+
+/// BVH: centimetres, y up; positions X Y Z of roots and of what moves, in place of the offset, and rotations, Z X Y in
+/// degrees, unwound so that curves have no jumps.
 class BvhWriter {
  public:
-  /// rest: T-pose joints, metres.
+  /// The 22 joints, in the T-pose where all angles are zero; the pelvis has position and rotation, the others
+  /// rotation. rest: T-pose joints, metres.
   BvhWriter(const std::string& path, const Joints& rest, double fps);
-  void push(const Pose& pose);
+  /// Others. Throws Error where there is none.
+  BvhWriter(const std::string& path, std::vector<BvhJoint> joints, double fps);
+  void push(const Pose& pose);  ///< of the 22
+  /// local [J]: turned from the rest about the parent's axes; places [J, 3] on the parent, in its axes, of roots in
+  /// the world, metres, used of what moves.
+  void push(const std::vector<Mat3>& local, const Points& places);
   void finish();
 
  private:
   PartFile file_;
   size_t count_at_ = 0;  // where the number of frames is
   int64_t frames_ = 0;
-  std::vector<size_t> order_;                                // joints as the file names them
-  std::array<std::array<double, 3>, kJointCount> before_{};  // degrees
+  std::vector<BvhJoint> joints_;
+  std::vector<size_t> order_;                  // joints as the file names them
+  std::vector<std::array<double, 3>> before_;  // degrees
 };
 
 /// A .npz as the AMASS data set has them: poses [T, 156] axis-angle (22 body joints, hands at rest), trans

@@ -1,5 +1,6 @@
 // One motion in every format, what an export leaves behind when it ends badly, and what it says it costs.
 #include "app/run/exports.hpp"
+#include "app/run/export_presets.hpp"
 #include "app/run/file_figures.hpp"
 
 #include <gtest/gtest.h>
@@ -202,6 +203,22 @@ TEST(Exports, FormatsThatHoldOneMotionSaySo) {
       error_of([&] { export_motion(folder.path("a.bvh"), export_format("bvh", ""), input); }), "one motion"));
   export_motion(folder.path("a.glb"), export_format("glb", ""), input);
   EXPECT_EQ(read_character(folder.path("a.glb")).animations.size(), 2u);
+}
+
+TEST(ExportPresets, EachIsKnownByItsOptionsAndCanBeWritten) {
+  CharacterExportOptions own;
+  EXPECT_EQ(preset_of(export_format("glb", ""), own), nullptr);
+  for (const ExportPreset& preset : export_presets()) {
+    CharacterExportOptions file;
+    file.in_place = true;
+    apply(preset, file);
+    EXPECT_TRUE(file.in_place) << "no matter of the program's";
+    const ExportFormat& format = export_format(preset.format, "");
+    EXPECT_NO_THROW(check_export_options("a", format, file)) << preset.name;
+    EXPECT_EQ(preset_of(format, file), &export_preset(preset.name));
+    EXPECT_EQ(preset_of(export_format("bvh", ""), file), nullptr);
+  }
+  EXPECT_TRUE(contains(error_of([] { export_preset("maya"); }), "three|unity|unreal|blender"));
 }
 
 TEST(Exports, UnknownFormatsAreNamed) {

@@ -151,6 +151,76 @@ TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {
   EXPECT_NE(refused("take=1").find("offsets"), std::string::npos);
 }
 
+TEST_F(StudioCharacter, AllTakesAreExportedAFileEachAndWhatFailsKeepsNoOtherOut) {
+  Studio studio(services());
+  open(studio);
+  studio.run("compare.add", {"0", "engine=paper"});
+  studio.run("take.rename", {"1", "Made"});  // one file on many systems
+  studio.run("target.add", {path("target.obj")});
+  studio.run("take.rename", {"2", "a/b"});
+  studio.wait_idle(60);
+  fs::create_directories(path("all/a_b.glb/in the way"));
+  studio.try_run("export.all", {path("all"), "preset=unreal", "keep_clips=on"});
+  EXPECT_LE(studio.jobs().views().size(), 1u) << "one progress";
+  studio.wait_idle(60);
+  EXPECT_EQ(read_character(path("all/made.glb")).animations.at(0).name, "scan");
+  EXPECT_GT(fs::file_size(path("all/Made 2.glb")), 1000u);
+  ASSERT_EQ(studio.session().notices.size(), 1u) << "one notice";
+  EXPECT_EQ(studio.session().notices[0].text, "Exported 2 of 3 takes to all");
+  EXPECT_EQ(studio.session().notices[0].offer.label, "Show in folder");
+  ASSERT_EQ(studio.session().errors.size(), 1u);
+  const Notice error = studio.session().errors.front();
+  EXPECT_NE(error.text.find("a_b.glb"), std::string::npos) << error.text;
+  EXPECT_EQ(error.details.substr(0, 11), "export.all ") << "so that the dialog comes back";
+
+  fs::remove_all(path("all/a_b.glb"));
+  studio.run("error.dismiss");
+  studio.run("export.all", {path("all"), "format=glb"});
+  studio.run("export.all", {path("figures"), "format=csv"});
+  studio.wait_idle(60);
+  EXPECT_TRUE(studio.session().errors.empty());
+  EXPECT_EQ(studio.session().notices[1].text, "Exported 3 takes to all");
+  EXPECT_GT(fs::file_size(path("all/a_b.glb")), 1000u);
+  EXPECT_GT(fs::file_size(path("figures/a_b.csv")), 100u);
+  EXPECT_NE(refusal(studio, "export.all", {path("all"), "take=made"}).find("all takes"), std::string::npos);
+}
+
+TEST_F(StudioCharacter, AnExportOfTakesThatAllFailIsAnErrorAndLeavesNoFolder) {
+  Studio studio(services());
+  open(studio);
+  studio.run("export.all", {path("all"), "format=bvh", "morphs=4"});
+  studio.wait_idle(60);
+  ASSERT_EQ(studio.session().errors.size(), 1u);
+  EXPECT_NE(studio.session().errors.front().text.find("morph"), std::string::npos);
+  EXPECT_FALSE(fs::exists(path("all")));
+  EXPECT_TRUE(studio.session().notices.empty());
+}
+
+TEST_F(StudioCharacter, ABvhIsOnThe22JointsOrOnItsOwnBones) {
+  Studio studio(services());
+  open(studio);
+  studio.run("target.add", {path("target.obj")});
+  studio.wait_idle(60);
+  studio.run("export.run", {"0", path("joints.bvh")});
+  studio.run("export.run", {"0", path("own.bvh"), "bones=own"});
+  studio.run("export.all", {path("all"), "format=bvh", "bones=own"});
+  studio.wait_idle(60);
+  ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
+  const auto has_bone = [&](const std::string& file, const std::string& bone) {
+    std::ifstream text(path(file));
+    const std::string all((std::istreambuf_iterator<char>(text)), {});
+    return all.find(" " + bone + "\n") != std::string::npos;
+  };
+  const std::string hips = tests::made_name(tests::Naming::Mixamo, Pelvis);
+  EXPECT_TRUE(has_bone("joints.bvh", "pelvis"));
+  EXPECT_FALSE(has_bone("joints.bvh", hips));
+  EXPECT_TRUE(has_bone("own.bvh", hips));
+  EXPECT_TRUE(has_bone("all/made.bvh", hips));
+  EXPECT_TRUE(has_bone("all/target.bvh", "pelvis")) << "what has no bones of its own is on the 22";
+  EXPECT_NE(refusal(studio, "export.run", {"1", path("x.bvh"), "bones=own"}).find("bones of its own"),
+            std::string::npos);
+}
+
 /// Only the JSON of the file is left: whoever reads more than that fails.
 TEST_F(StudioCharacter, ADropOfAMotionReturnsBeforeItsNumbersAreRead) {
   write_gltf_character(path("made.glb"), tests::make_character({}));

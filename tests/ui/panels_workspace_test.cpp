@@ -592,7 +592,7 @@ TEST_F(Exporting, SaysWhatTheAnimationIsToBe) {
 
 TEST_F(Exporting, TakesOfOneTargetBecomeClips) {
   open("export");
-  EXPECT_FALSE(shown("export.all_takes"));  // the other take is of another target
+  EXPECT_FALSE(shown("export.takes.2"));  // the other take is of another target
   click("export.cancel");
   const app::Take adult = session.document.takes[0];
   for (const char* name : {"slow", "fast", "fast"}) {
@@ -601,7 +601,7 @@ TEST_F(Exporting, TakesOfOneTargetBecomeClips) {
     session.takes.push_back(session.takes[0]);
   }
   open("export");
-  click("export.all_takes");
+  click("export.takes.2");
   frame(2);
   EXPECT_FALSE(shown("export.clip.1"));
   click("export.save");
@@ -619,9 +619,97 @@ TEST_F(Exporting, TakesOfOneTargetBecomeClips) {
   frame(2);
   click("export.format.2");  // BVH holds one motion
   frame(2);
-  EXPECT_FALSE(shown("export.all_takes"));
+  EXPECT_FALSE(shown("export.takes.2"));
   click("export.save");
   EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.bvh").string() + " format=bvh"});
+}
+
+TEST_F(Exporting, AllTakesGoIntoAFolderAFileEach) {
+  open("export");
+  click("export.takes.1");
+  frame(2);
+  EXPECT_FALSE(shown("export.take")) << "there is none to choose";
+  click("export.save");
+  EXPECT_EQ(take_log(),
+            Lines{app::join_line("export.all", {(folder / "dance takes").string(), "format=glb"})});
+  std::filesystem::create_directories(folder / "mine");
+  std::ofstream(folder / "mine/child.bvh") << "old";
+  open("export");
+  click("export.format");
+  frame(2);
+  click("export.format.2");
+  write_into("export.path", "mine");
+  click("export.save");
+  frame(3);
+  EXPECT_EQ(take_log(), Lines()) << "a file is there already";
+  click("export.overwrite.yes");
+  EXPECT_EQ(take_log(), Lines{app::join_line("export.all", {(folder / "mine").string(), "format=bvh"})});
+  open("csv");
+  write_into("export.path", (folder / "mine").string() + "/");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{app::join_line("export.all", {(folder / "mine").string(), "format=csv"})});
+  open("export");
+  click("export.takes.0");
+  frame(2);
+  EXPECT_TRUE(shown("export.take"));
+}
+
+TEST_F(Exporting, APresetSetsTheOptionsAndAChangeMakesThemOnesOwn) {
+  open("export");
+  EXPECT_FALSE(shown("export.preset.words"));
+  click("export.format");
+  frame(2);
+  click("export.format.2");
+  const auto choose = [&](const char* preset) {
+    frame(2);
+    click("export.preset");
+    frame(2);
+    click(preset);
+    frame(2);
+  };
+  choose("export.preset.3");
+  EXPECT_TRUE(shown("export.preset.words"));
+  click("export.save");
+  EXPECT_EQ(take_log(),
+            Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb influences=8 morphs=8"})
+      << "no BVH: that has no vertices";
+  open("export");
+  choose("export.preset.1");
+  click("export.morphs.1");
+  frame(2);
+  EXPECT_FALSE(shown("export.preset.words")) << "no preset has these";
+  click("export.save");
+  EXPECT_EQ(take_log(),
+            Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb morphs=4 reduce=0.5"});
+}
+
+TEST_F(Exporting, ABvhOfACharacterIsOnItsOwnBonesWhereThatIsChosen) {
+  auto character = std::make_shared<PreparedCharacter>();
+  character->rigged = true;
+  session.takes[0].character = character;
+  open("export");
+  EXPECT_TRUE(shown("export.bones.0"));
+  click("export.bones.1");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb bones=22"});
+  open("export");
+  click("export.format");
+  frame(2);
+  click("export.format.2");
+  frame(2);
+  click("export.bones.0");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.bvh").string() + " format=bvh bones=own"});
+  open("export");
+  session.selected_take = 1;  // has no bones of its own
+  frame(2);
+  click("export.format");
+  frame(2);
+  click("export.format.2");
+  frame(2);
+  EXPECT_FALSE(shown("export.bones.0"));
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 1 " + (folder / "child.bvh").string() + " format=bvh"});
 }
 
 TEST_F(Exporting, AFileThatIsThereIsAskedAbout) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/run/export_presets.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
@@ -34,21 +35,24 @@ const app::ExportFormat* format_of(const ExportState& state) {
   return is_motion ? &formats[state.format] : nullptr;
 }
 
-/// A name that any file system takes.
-std::string safe_name(std::string name) {
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) < 32 || std::string("/\\:*?\"<>|").find(c) != std::string::npos)
-      c = '_';
-  return name.empty() ? "take" : name;
+/// Whether each of several takes gets a file of its own.
+bool has_many_files(const app::Session& session, const ExportState& state) {
+  return state.kind == ExportKind::Animation && state.takes == ExportTakes::Files &&
+         session.document.takes.size() > 1;
 }
 
-/// Of the file; "" for a folder.
-std::string suffix_of(const ExportState& state) {
+/// Of each file; "" for a folder.
+std::string file_suffix_of(const ExportState& state) {
   if (state.kind == ExportKind::Animation) {
     const app::ExportFormat* const format = format_of(state);
     return format != nullptr ? format->suffix : ".csv";
   }
   return state.kind == ExportKind::Picture ? ".png" : state.as_pictures ? "" : ".mp4";
+}
+
+/// Of the path; "" for a folder.
+std::string suffix_of(const app::Session& session, const ExportState& state) {
+  return has_many_files(session, state) ? "" : file_suffix_of(state);
 }
 
 /// Of a name without one: the document's, or the one used last.
@@ -61,17 +65,19 @@ fs::path usual_folder(const app::Session& session) {
 /// "dance.glb" in the usual folder.
 std::string proposed_path(const app::Session& session, const ExportState& state) {
   const app::Take* take = selected_take(session);
-  std::string name = take != nullptr ? take->name : session.source.name;
-  if (state.kind != ExportKind::Animation && !session.path.empty())
-    name = fs::path(session.path).stem().string();
-  return (usual_folder(session) / (safe_name(name) + suffix_of(state))).string();
+  const bool many = has_many_files(session, state), is_of_take = state.kind == ExportKind::Animation && !many;
+  std::string name = take != nullptr && !many ? take->name : fs::path(session.source.name).stem().string();
+  if (!is_of_take && !session.path.empty()) name = fs::path(session.path).stem().string();
+  if (many) name += name.empty() ? "takes" : " takes";  // nothing else is called so
+  return (usual_folder(session) / (app::safe_file_name(name) + suffix_of(session, state))).string();
 }
 
 /// What was typed as a whole path: in the usual folder where it names none, with the suffix where that is missing; in
 /// a folder that is there, the name proposed.
 std::string whole_path(const app::Session& session, const ExportState& state, const std::string& typed) {
-  const std::string suffix = suffix_of(state);
+  const std::string suffix = suffix_of(session, state);
   fs::path path = (usual_folder(session) / typed).lexically_normal();
+  if (has_many_files(session, state)) return (path.has_filename() ? path : path.parent_path()).string();
   std::error_code ignored;
   if (!path.has_filename() || (!suffix.empty() && fs::is_directory(path, ignored)))
     path /= fs::path(proposed_path(session, state)).filename();
@@ -79,31 +85,80 @@ std::string whole_path(const app::Session& session, const ExportState& state, co
   return path.string();
 }
 
-/// After a choice that changes the suffix of the file.
-void follow_suffix(ExportState& state, const std::string& before) {
-  if (!state.typed) return;
+/// After a choice that changes the suffix of the path, which was `before`.
+void follow_suffix(const app::Session& session, ExportState& state, const std::string& before) {
+  const std::string suffix = suffix_of(session, state);
+  if (!state.typed || suffix == before) return;
   fs::path path = state.path;
   if (!before.empty() && file_suffix(state.path) == before) path.replace_extension();
-  state.path = path.string() + suffix_of(state);
+  state.path = path.string() + suffix;
 }
 
-void draw_format(Ui& ui, ExportState& state) {
+/// Options that a program reads whole; what is chosen otherwise is one's own.
+void draw_preset(const app::Session& session, Ui& ui, ExportState& state) {
+  const auto& presets = app::export_presets();
+  std::vector<std::string> labels = {"Own"}, tips = {"The options as they are chosen below"};
+  for (const app::ExportPreset& preset : presets)
+    labels.push_back(preset.label), tips.push_back(preset.words);
+  const app::ExportFormat* const format = format_of(state);
+  const app::ExportPreset* const now =
+      format != nullptr ? app::preset_of(*format, state.choice.file) : nullptr;
+  int chosen = now != nullptr ? 1 + static_cast<int>(now - presets.data()) : 0;
+  const std::string before = suffix_of(session, state);
+  if (choice_row(ui, {"export.preset", "Preset", "What another program reads", "", tips}, labels, chosen) &&
+      chosen > 0) {
+    const app::ExportPreset& preset = presets[chosen - 1];
+    app::apply(preset, state.choice.file);
+    const app::ExportFormat& wanted = app::export_format(preset.format, "");
+    if (format == nullptr || !format->is_character)
+      state.format = static_cast<int>(&wanted - app::export_formats().data());
+    follow_suffix(session, state, before);
+  }
+  if (now == nullptr) return;
+  hint(ui, now->words);
+  ui.mark("export.preset.words");
+}
+
+void draw_format(const app::Session& session, Ui& ui, ExportState& state) {
   std::vector<std::string> labels;
   for (const app::ExportFormat& info : app::export_formats()) labels.push_back(info.label);
   labels.push_back("Figures");
-  const std::string before = suffix_of(state);
-  if (choice_row(ui, {"export.format", "Format"}, labels, state.format)) follow_suffix(state, before);
+  const std::string before = suffix_of(session, state);
+  if (choice_row(ui, {"export.format", "Format"}, labels, state.format))
+    follow_suffix(session, state, before);
+}
+
+/// Whether the file's bones are the character's own, where it has any.
+bool on_own_bones(const app::ExportFormat& format, const ExportState& state) {
+  return state.choice.theirs.value_or(format.is_character);
+}
+
+/// Whether a take that is exported performs on bones of its own.
+bool has_own_bones(const app::Session& session, const ExportState& state) {
+  for (size_t k = 0; k < session.takes.size(); ++k) {
+    const bool counts = has_many_files(session, state) || static_cast<int>(k) == session.selected_take;
+    const auto& character = session.takes[k].character;
+    if (counts && character && on_their_rig(session.document.takes[k].target, *character)) return true;
+  }
+  return false;
+}
+
+void draw_bone_choice(Ui& ui, const app::ExportFormat& format, ExportState& state) {
+  int bones = on_own_bones(format, state) ? 0 : 1;
+  const Control control{"export.bones",
+                        "Bones",
+                        "Which bones the file animates",
+                        "",
+                        {"The character's own, with their names, from its own rest pose",
+                         "The 22 joints of this program, from the T-pose"}};
+  if (choice_row(ui, control, {"Its own", "22 joints"}, bones)) state.choice.theirs = bones == 0;
 }
 
 /// What only an animated character has.
-void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, ExportState& state) {
+void draw_character_rows(Ui& ui, const app::TakeState& take, bool own_bones, ExportState& state) {
   CharacterExportOptions& file = state.choice.file;
-  int rig = state.choice.theirs.value_or(true) ? 0 : 1, many = file.influences == 8 ? 1 : 0;
-  if (on_own_bones)
-    if (choice_row(ui, {"export.rig", "Skeleton", "Which bones the file animates"}, {"Its own", "22 joints"},
-                   rig))
-      state.choice.theirs = rig == 0;
-  if (choice_row(ui, {"export.influences", "Bones a vertex", "Older engines read only four"}, {"4", "8"},
+  int many = file.influences == 8 ? 1 : 0;
+  if (choice_row(ui, {"export.influences", "Bones per vertex", "Older engines read only four"}, {"4", "8"},
                  many))
     file.influences = many == 1 ? 8 : 4;
   constexpr std::array<int, 4> kShapes = {0, 4, 8, 16};
@@ -113,23 +168,32 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool on_own_bones, 
           {"None", "4", "8", "16"}, shapes))
     file.shapes = kShapes[shapes];
   if (const auto mm = typed_number_row(ui,
-                                       {"export.reduce", "Leave out keys, mm",
+                                       {"export.reduce", "Key reduction, mm",
                                         "Removes keys that move no vertex further than this; 0 keeps all"},
                                        static_cast<double>(file.reduce_mm), 1))
     file.reduce_mm = static_cast<float>(std::clamp(*mm, 0.0, 1000.0));
   toggle_row(ui, {"export.t_pose", "T-pose first", "Adds the T-pose as its own clip"}, file.t_pose_clip);
-  if (!on_own_bones || !take.character || take.character->character.animations.empty()) return;
-  toggle_row(ui, {"export.keep_clips", "Its own clips", "Keeps the file's own clips, after ours"},
+  if (!own_bones || !take.character || take.character->character.animations.empty()) return;
+  toggle_row(ui, {"export.keep_clips", "Keep original clips", "Keeps the file's own clips, after ours"},
              file.keep_clips);
+}
+
+/// How many takes can be clips of one file with the current one.
+size_t count_of_clips(const app::Session& session) {
+  const size_t selected = session.selected_take;
+  return selected < session.document.takes.size() ? takes_of_one_body(session.document, selected).size() : 0;
+}
+
+bool are_clips(const app::Session& session, const ExportState& state) {
+  const app::ExportFormat* const format = format_of(state);
+  return state.takes == ExportTakes::Clips && format != nullptr && format->is_character &&
+         count_of_clips(session) > 1;
 }
 
 /// The takes that go into the file, one clip each.
 std::vector<size_t> clips_of(const app::Session& session, const ExportState& state) {
   const size_t selected = session.selected_take;
-  const app::ExportFormat* const format = format_of(state);
-  if (!state.all_takes || format == nullptr || !format->is_character ||
-      selected >= session.document.takes.size())
-    return {selected};
+  if (!are_clips(session, state)) return {selected};
   std::vector<size_t> takes;
   for (const size_t k : takes_of_one_body(session.document, selected))
     if (state.left_out.count(k) == 0) takes.push_back(k);
@@ -151,14 +215,9 @@ std::string frames_words(const app::Session& session, size_t k) {
   return grouped(static_cast<int64_t>(frames)) + " frames";
 }
 
+/// Which of the takes that can be clips of the file are.
 void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
-  const auto takes = takes_of_one_body(session.document, session.selected_take);
-  if (takes.size() < 2) return;
-  toggle_row(
-      ui, {"export.all_takes", "All takes as clips", "All takes of this target in one file, one clip each"},
-      state.all_takes);
-  if (!state.all_takes) return;
-  for (const size_t k : takes) {
+  for (const size_t k : takes_of_one_body(session.document, session.selected_take)) {
     bool in_file = state.left_out.count(k) == 0;
     const std::string words = session.document.takes[k].name + "  \u00b7  " + frames_words(session, k);
     ImGui::Indent(ui.px(16));
@@ -174,36 +233,66 @@ void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
   }
 }
 
-void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
+/// Of several takes, which ones.
+void draw_take_rows(const app::Session& session, PanelContext& context, ExportState& state) {
   Ui& ui = context.ui;
-  draw_format(ui, state);
   std::vector<std::string> takes;
   for (const app::Take& take : session.document.takes) takes.push_back(take.name);
+  const app::ExportFormat* const format = format_of(state);
+  const bool can_be_clips = format != nullptr && format->is_character && count_of_clips(session) > 1;
+  if (takes.size() > 1) {
+    std::vector<std::string> choices = {"This one", "A file each"};
+    if (can_be_clips) choices.push_back("One file");
+    int which = state.takes == ExportTakes::Clips && !can_be_clips ? 0 : static_cast<int>(state.takes);
+    const std::string before = suffix_of(session, state);
+    const Control control{"export.takes",
+                          "Takes",
+                          "Which takes are exported",
+                          "",
+                          {"The take below alone", "All takes, each in a file that is called like it",
+                           "All takes of this target, as clips of one file"}};
+    if (choice_row(ui, control, choices, which)) state.takes = static_cast<ExportTakes>(which);
+    follow_suffix(session, state, before);
+  }
+  if (has_many_files(session, state)) return;
   int chosen = session.selected_take;
   row(ui, "Take");
   if (dropdown(ui, "export.take", takes, chosen)) context.ask("target.select", {std::to_string(chosen)});
+  if (are_clips(session, state)) draw_clip_rows(session, ui, state);
+}
+
+void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
+  Ui& ui = context.ui;
+  draw_preset(session, ui, state);
+  draw_format(session, ui, state);
+  draw_take_rows(session, context, state);
   const app::ExportFormat* const format = format_of(state);
-  const app::Take* const take = selected_take(session);
   const app::TakeState* const made = selected_state(session);
-  if (format != nullptr && take != nullptr && made != nullptr) {
-    const bool own_bones = made->character && on_their_rig(take->target, *made->character);
-    if (format->is_character) draw_clip_rows(session, ui, state);
-    if (format->is_character) draw_character_rows(ui, *made, own_bones, state);
+  if (format != nullptr && made != nullptr) {
+    const bool own_bones = has_own_bones(session, state);
+    if (own_bones && format->own_bones) draw_bone_choice(ui, *format, state);
+    if (format->is_character)
+      draw_character_rows(ui, *made, own_bones && on_own_bones(*format, state), state);
     toggle_row(ui, {"export.in_place", "In place", "Leaves out the path over the floor"},
                state.choice.file.in_place);
-    hint(ui, frames_words(session, session.selected_take) + ", " +
-                 figure(frames_per_second(session), "frames/s"));
+    const std::string frames = has_many_files(session, state)
+                                   ? std::to_string(session.takes.size()) + " takes"
+                                   : frames_words(session, session.selected_take);
+    hint(ui, frames + ", " + figure(frames_per_second(session), "frames/s"));
   }
   hint(ui, format != nullptr ? format->words : "Every figure of every frame, as a table.");
 }
 
-/// What is not as it would be anyway.
-app::Arguments export_words(const app::ExportFormat& format, const app::ExportChoice& choice) {
+/// What is not as it would be anyway. own_bones: whether the character has any.
+app::Arguments export_words(const app::ExportFormat& format, const app::ExportChoice& choice,
+                            bool own_bones) {
   app::Arguments words = {std::string("format=") + format.name};
   const CharacterExportOptions& file = choice.file;
   if (file.in_place) words.push_back("in_place=on");
+  const bool own = choice.theirs.value_or(format.is_character);
+  if (format.own_bones && own_bones && own != format.is_character)
+    words.push_back(own ? "bones=own" : "bones=22");
   if (!format.is_character) return words;
-  if (!choice.theirs.value_or(true)) words.push_back("rig=ours");
   if (file.influences == 8) words.push_back("influences=8");
   if (file.shapes > 0) words.push_back("morphs=" + std::to_string(file.shapes));
   if (file.reduce_mm > 0)
@@ -220,19 +309,27 @@ void ask_noted(PanelContext& context, ExportState& state, const std::string& com
   context.ask(command, std::move(arguments));
 }
 
+/// Pushes the command that writes an animation.
+void ask_for_animation(const app::Session& session, PanelContext& context, ExportState& state) {
+  const app::ExportFormat* const format = format_of(state);
+  app::Arguments words;
+  if (format != nullptr) words = export_words(*format, state.choice, has_own_bones(session, state));
+  if (has_many_files(session, state)) {
+    if (format == nullptr) words = {"format=csv"};
+    words.insert(words.begin(), state.path);
+    return ask_noted(context, state, "export.all", words);
+  }
+  const std::vector<size_t> takes = clips_of(session, state);
+  if (takes.empty()) return;
+  words.insert(words.begin(), {std::to_string(takes[0]), state.path});
+  for (size_t i = 1; i < takes.size(); ++i)
+    words.push_back("take=" + word_for_take(session.document, takes[i]));
+  ask_noted(context, state, format != nullptr ? "export.run" : "export.csv", words);
+}
+
 /// Pushes the command that writes it.
 void ask_for_export(const app::Session& session, PanelContext& context, ExportState& state) {
-  if (state.kind == ExportKind::Animation) {
-    const std::vector<size_t> takes = clips_of(session, state);
-    if (takes.empty()) return;
-    app::Arguments asked = {std::to_string(takes[0]), state.path};
-    const app::ExportFormat* const format = format_of(state);
-    if (format == nullptr) return ask_noted(context, state, "export.csv", asked);
-    for (std::string& word : export_words(*format, state.choice)) asked.push_back(std::move(word));
-    for (size_t i = 1; i < takes.size(); ++i)
-      asked.push_back("take=" + word_for_take(session.document, takes[i]));
-    return ask_noted(context, state, "export.run", asked);
-  }
+  if (state.kind == ExportKind::Animation) return ask_for_animation(session, context, state);
   app::Arguments arguments = {state.path, std::to_string(state.width), std::to_string(state.height)};
   if (state.kind == ExportKind::Picture && state.transparent) arguments.push_back("transparent");
   arguments.push_back(state.all ? "all" : "view");
@@ -258,23 +355,23 @@ void draw_size_rows(Ui& ui, ExportState& state) {
 }
 
 /// A film or a folder of pictures.
-void draw_film_row(Ui& ui, ExportState& state) {
-  const std::string before = suffix_of(state);
+void draw_film_row(const app::Session& session, Ui& ui, ExportState& state) {
+  const std::string before = suffix_of(session, state);
   int how = state.as_pictures ? 1 : 0;
   const Control control{"export.as", "As", "One MP4 file, or a folder of PNG pictures"};
   if (!choice_row(ui, control, {"Film", "Pictures"}, how)) return;
   state.as_pictures = how == 1;
-  follow_suffix(state, before);
+  follow_suffix(session, state, before);
 }
 
-void draw_picture_rows(Ui& ui, ExportState& state) {
+void draw_picture_rows(const app::Session& session, Ui& ui, ExportState& state) {
   draw_size_rows(ui, state);
   int what = state.all ? 0 : 1;
   if (choice_row(ui, {"export.all", "What"}, {"All views", "Active view"}, what)) state.all = what == 0;
   if (state.kind == ExportKind::Picture)
     toggle_row(ui, {"export.transparent", "Transparent", "Leaves out the background"}, state.transparent);
   else
-    draw_film_row(ui, state);
+    draw_film_row(session, ui, state);
 }
 
 bool enter_pressed() {
@@ -289,7 +386,7 @@ struct PathAnswer {
 PathAnswer draw_path(const app::Session& session, Ui& ui, ExportState& state) {
   PathAnswer answer;
   if (!state.typed) state.path = proposed_path(session, state);
-  row(ui, suffix_of(state).empty() ? "Folder" : "File");
+  row(ui, suffix_of(session, state).empty() ? "Folder" : "File");
   const float side = ImGui::GetFrameHeight();
   ImGui::BeginChild("##path", {std::max(1.f, ImGui::GetContentRegionAvail().x - side - ui.px(6)), side});
   const auto path = committed_text(ui, "export.path", state.path);
@@ -305,11 +402,32 @@ PathAnswer draw_path(const app::Session& session, Ui& ui, ExportState& state) {
   return answer;
 }
 
+bool file_is_there(const std::string& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) || (fs::is_directory(path, error) && !fs::is_empty(path, error));
+}
+
+/// Names of the files that would be replaced.
+std::vector<std::string> files_in_the_way(const app::Session& session, const ExportState& state) {
+  if (!has_many_files(session, state))
+    return file_is_there(state.path) ? std::vector<std::string>{file_name(state.path)}
+                                     : std::vector<std::string>{};
+  std::vector<std::string> there;
+  for (const std::string& name : app::take_file_names(session.document, file_suffix_of(state)))
+    if (file_is_there((fs::path(state.path) / name).string())) there.push_back(name);
+  return there;
+}
+
 /// Whether the dialog stays.
 bool draw_overwrite(const app::Session& session, PanelContext& context, ExportState& state) {
+  const std::vector<std::string> there = files_in_the_way(session, state);
   QuestionWords question;
-  question.title = "Replace the file?";
-  question.sentence = file_name(state.path) + " is already there.";
+  question.title = there.size() > 1 ? "Replace the files?" : "Replace the file?";
+  question.sentence =
+      (there.empty() ? file_name(state.path) : there[0]) +
+      (there.size() == 2  ? " and another are already there."
+       : there.size() > 2 ? " and " + std::to_string(there.size() - 1) + " others are already there."
+                          : " is already there.");
   question.yes = "Replace", question.dangerous = true;
   const Answer answer = ask(context.ui, "export.overwrite", question);
   if (answer == Answer::None) return true;
@@ -322,11 +440,6 @@ const char* title_of(ExportKind kind) {
   return kind == ExportKind::Animation ? "Export"
          : kind == ExportKind::Picture ? "Save picture"
                                        : "Save video";
-}
-
-bool file_is_there(const std::string& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error) || (fs::is_directory(path, error) && !fs::is_empty(path, error));
 }
 
 }  // namespace
@@ -368,7 +481,7 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
   if (state.kind == ExportKind::Animation)
     draw_animation_rows(session, context, state);
   else
-    draw_picture_rows(ui, state);
+    draw_picture_rows(session, ui, state);
   const PathAnswer path = draw_path(session, ui, state);
   if (path.browse) choose_file(session, files, FilePurpose::Export, state.path);
   ImGui::Dummy({0, ui.px(4)});
@@ -380,7 +493,8 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
   const bool entered = path.entered || (enter_pressed() && !ImGui::GetIO().WantTextInput);
   if (buttons.add(ui, "export.save", "Save", save) ||
       (entered && !save.disabled && !ImGui::IsWindowAppearing())) {
-    state.asking = state.path != state.agreed && file_is_there(state.path);
+    const bool agreed = state.path == state.agreed && !has_many_files(session, state);
+    state.asking = !agreed && !files_in_the_way(session, state).empty();
     if (!state.asking) ask_for_export(session, context, state), stays = false;
   }
   return finish_dialog(stays);
