@@ -236,17 +236,13 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   if (options.edits.crop) report["crop"] = true;
   if (!options.baseline.empty()) report["baseline"] = options.baseline;
   const Method& method = options.how.method;
-  const std::pair<const char*, bool> switches[] = {
-      {"offsets", method.offsets},          {"near", method.near},
-      {"foot_lock", method.lock_feet},      {"hand_contacts", method.keep_contacts},
-      {"swap_repair", method.repair_swaps}, {"smoothing", method.smooth_joints},
-      {"length_repair", method.fix_lengths}};
-  for (const auto& [name, on] : switches)
-    if (!on) report[name] = false;
+  if (!method.offsets) report["offsets"] = false;
+  for (const MethodSwitch& one : kSwitches)
+    if (!(method.*one.on)) report[one.name] = false;
   if (method.extractor != Method().extractor) report["extractor"] = method.extractor;
   for (const Proportion& one : kProportions)
     if (method.*one.value != Method().*one.value) report[one.name] = method.*one.value;
-  if (method.root != Method().root) report["root"] = kRootNames[static_cast<size_t>(method.root)];
+  if (method.path != Method().path) report["path"] = kRootNames[static_cast<size_t>(method.path)];
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
   for (const CaseResult& result : evaluation.results) report["cases"].push_back(case_json(result));

@@ -9,6 +9,15 @@
 #include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
+namespace {
+
+/// "--hip-height" is what documents call hip_height.
+std::string dashed(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+}  // namespace
 
 void add_scan_options(CLI::App& command, ScanEdits& edits) {
   command.add_flag_callback(
@@ -89,22 +98,18 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
       ->check(CLI::IsMember(names_of(extractors())));
   std::map<std::string, RootMode> roots;
   for (const char* name : kRootNames) roots.emplace(name, static_cast<RootMode>(roots.size()));
-  command.add_option("--root", method.root, "path: scaled by leg length, original, in-place")
+  command
+      .add_option("--path,--root", method.path, "over the floor: scaled by leg length, original, in-place")
       ->transform(CLI::CheckedTransformer(roots, CLI::ignore_case));
-  command.add_flag("!--no-near", method.near, "skips the part refiner for limbs and head");
-  command.add_flag("!--no-swap-repair", method.repair_swaps, "does not repair left-right swaps");
-  command.add_flag("!--no-smoothing", method.smooth_joints, "does not smooth extracted joints");
-  command.add_flag("!--no-fixed-lengths", method.fix_lengths, "bones may change their length");
-  command.add_flag("!--no-foot-lock", method.lock_feet, "standing feet may slide");
-  command.add_flag("!--no-hand-contacts", method.keep_contacts,
-                   "hands that touch the source's body need not touch the target's");
-  command.add_flag("!--no-offsets", method.offsets, "no pose-corrective offsets");
-  for (const Proportion& one : kProportions) {
-    std::string option = "--" + std::string(one.name);
-    std::replace(option.begin(), option.end(), '_', '-');
-    command.add_option(option, method.*one.value, one.explanation)
-        ->check(CLI::Range(one.range.low, one.range.high));
+  for (const MethodSwitch& one : kSwitches) {
+    std::string names = "!--no-" + dashed(one.name);
+    if (std::string(one.name) != one.old_name) names += ",!--no-" + dashed(one.old_name);
+    command.add_flag(names, method.*one.on, std::string("switches off: ") + one.explanation);
   }
+  command.add_flag("!--no-offsets", method.offsets, "no pose-corrective offsets");
+  for (const Proportion& one : kProportions)
+    command.add_option("--" + dashed(one.name), method.*one.value, one.explanation)
+        ->check(CLI::Range(one.range.low, one.range.high));
   command.add_option("--weights", how.weights, "folder of the weights (default: beside the program)");
   command.add_option("--engine-weights", how.engine_file,
                      "weights file of the engine in place of the folder's");
@@ -117,7 +122,7 @@ nn::NetworkOptions network_options(const MethodOptions& how) {
   options.weights = how.weights;
   options.engine = how.method.engine;
   options.offsets = how.method.offsets;
-  options.near = how.method.near;
+  options.near = how.method.part_refiner;
   options.extractor = how.method.extractor;
   options.engine_file = how.engine_file;
   options.extractor_file = how.extractor_file;

@@ -30,7 +30,7 @@ void each_result_key(Row& row, Visit visit) {
   visit("breakdown", row.breakdown);
   visit("engine", method.engine);
   visit("extractor", method.extractor);
-  visit("near", method.near);
+  visit("near", method.part_refiner);
   visit("offsets", method.offsets);
   visit("foot_lock", method.lock_feet);
   visit("oracle", row.eval.oracle);

@@ -11,13 +11,13 @@ namespace understudy::app {
 struct Method {
   std::string engine = "copy";      ///< motion transfer, see engines()
   std::string extractor = "dense";  ///< skeleton extraction, see extractors()
-  bool near = true;                 ///< with "dense": limbs and head are refined on part crops
+  bool part_refiner = true;         ///< with "dense": limbs and head are refined on part crops
   bool offsets = true;              ///< pose-corrective offsets
   bool repair_swaps = true, smooth_joints = true, fix_lengths = true;  ///< of JointFilterOptions
   bool lock_feet = true;                                               ///< standing feet do not slide
-  bool keep_contacts = true;                                           ///< hand contacts are kept
-  RootMode root = RootMode::Scaled;
-  float stride = 1, hip_height = 0, arm_reach = 0;  ///< of the target, see kProportions
+  bool hand_contacts = true;                                           ///< hand contacts are kept
+  RootMode path = RootMode::Scaled;                                    ///< over the floor
+  float stride = 1, hip_height = 0, arm_reach = 0;                     ///< of the target, see kProportions
 };
 
 /// A setting of the target's proportions, by the same name in documents, commands and options.
@@ -53,14 +53,14 @@ template <class V, class S>
 FieldsOf<S, Method> fields(V& visit, S& method) {
   visit("engine", method.engine);
   visit("extractor", method.extractor);
-  visit("near", method.near);
+  visit("part_refiner", method.part_refiner);
   visit("offsets", method.offsets);
   visit("repair_swaps", method.repair_swaps);
   visit("smooth_joints", method.smooth_joints);
   visit("fix_lengths", method.fix_lengths);
   visit("lock_feet", method.lock_feet);
-  visit("keep_contacts", method.keep_contacts);
-  visit("root", method.root, kRootNames);
+  visit("hand_contacts", method.hand_contacts);
+  visit("path", method.path, kRootNames);
   for (const Proportion& one : kProportions) visit(one.name, method.*one.value, one.range);
 }
 
@@ -69,20 +69,25 @@ constexpr const char* kOffsetsExplanation =
     "Corrects the skin by millimetres where joints bend, so that elbows and knees keep their shape";
 constexpr const char* kPathExplanation = "How far the target walks for each metre that the source walks";
 
-/// What follows the extractor and can be switched off.
-struct FilterSwitch {
-  const char* name;  ///< in commands
+/// What can be switched off, by the same name in documents, commands and options ("--no-repair-swaps").
+struct MethodSwitch {
+  const char* name;
   bool Method::*on;
   const char *label, *explanation;  ///< on the screen
+  const char *old_word, *old_name;  ///< what older commands and older options called it
 };
-constexpr FilterSwitch kFilterSwitches[] = {
-    {"swaps", &Method::repair_swaps, "Repair swaps", "Corrects limbs whose left and right were swapped"},
-    {"smooth", &Method::smooth_joints, "Smooth joints", "Smooths noise in the extracted joints"},
-    {"lengths", &Method::fix_lengths, "Fix lengths", "Keeps bones at one length"},
-    {"feet", &Method::lock_feet, "Lock feet", "Keeps standing feet from sliding"},
-    {"contacts", &Method::keep_contacts, "Hand contacts",
-     "Hands that touch the body do so on the target, too"},
-    {"near", &Method::near, "Part refiner", "Refines limbs and head from close crops of the scan"}};
+constexpr MethodSwitch kSwitches[] = {
+    {"repair_swaps", &Method::repair_swaps, "Repair swaps",
+     "Corrects limbs whose left and right were swapped", "swaps", "swap_repair"},
+    {"smooth_joints", &Method::smooth_joints, "Smooth joints", "Smooths noise in the extracted joints",
+     "smooth", "smoothing"},
+    {"fix_lengths", &Method::fix_lengths, "Fix lengths", "Keeps bones at one length", "lengths",
+     "fixed_lengths"},
+    {"lock_feet", &Method::lock_feet, "Lock feet", "Keeps standing feet from sliding", "feet", "foot_lock"},
+    {"hand_contacts", &Method::hand_contacts, "Hand contacts",
+     "Hands that touch the body do so on the target, too", "contacts", "hand_contacts"},
+    {"part_refiner", &Method::part_refiner, "Part refiner",
+     "Refines limbs and head from close crops of the scan", "near", "near"}};
 
 /// The options of the pipeline, networks apart.
 RetargetOptions retarget_options(const Method& method);

@@ -37,7 +37,7 @@ class Commands {
   void add(CommandText text, std::function<void(Call&)> run);
   void add_edit(CommandText text, std::function<void(Call&)> run);
   void add_slider(CommandText text, std::function<void(Call&)> run);
-  /// Null when there is none.
+  /// By its name, or the one that it had in older versions. Null when there is none.
   const Command* find(const std::string& name) const;
   const std::vector<Command>& all() const { return commands_; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -188,6 +189,17 @@ Json Writer::json_of(const SkeletonEdit& edit, const std::string& where) {
   return json;
 }
 
+/// What older documents call a member.
+std::string name_before(const std::string& name) {
+  static const std::map<std::string, std::string> kBefore = {{"part_refiner", "near"},
+                                                             {"hand_contacts", "keep_contacts"},
+                                                             {"path", "root"},
+                                                             {"raise", "floor"},
+                                                             {"turn", "heading"}};
+  const auto found = kBefore.find(name);
+  return found == kBefore.end() ? name : found->second;
+}
+
 /// Values in. What is missing stays as it is, what is not known is passed over.
 class Reader {
  public:
@@ -198,7 +210,8 @@ class Reader {
 
   template <class T, class... Rule>
   void operator()(const char* name, T& value, const Rule&... rule) {
-    const auto found = json_.find(name);
+    auto found = json_.find(name);
+    if (found == json_.end()) found = json_.find(name_before(name));
     if (found == json_.end()) return;
     if constexpr (detail::kIs<std::optional, T>) {
       if (!found->is_null()) read(*found, value.emplace(), where_ + name, rule...);

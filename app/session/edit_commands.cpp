@@ -143,13 +143,13 @@ void add_pose_edits(Commands& commands) {
     const float strength = c.clamped(1, "strength", 0.f, 1.f);
     c.take().pose_edits.smooth = only_if(strength > 0, SmoothEdit{strength});
   });
-  commands.add_slider({"edit.floor_offset", "Raise", "TAKE METRES"}, [](Call& c) {
+  commands.add_slider({"edit.raise", "Raise", "TAKE METRES"}, [](Call& c) {
     const float offset = c.number(1, "height");
-    c.take().pose_edits.floor = only_if(offset != 0, FloorEdit{offset});
+    c.take().pose_edits.raise = only_if(offset != 0, RaiseEdit{offset});
   });
-  commands.add_slider({"edit.heading", "Turn", "TAKE DEGREES"}, [](Call& c) {
+  commands.add_slider({"edit.turn", "Turn", "TAKE DEGREES"}, [](Call& c) {
     const float yaw = c.number(1, "angle");
-    c.take().pose_edits.heading = only_if(yaw != 0, HeadingEdit{yaw});
+    c.take().pose_edits.turn = only_if(yaw != 0, TurnEdit{yaw});
   });
 }
 

@@ -120,16 +120,23 @@ void add_rig(Commands& commands) {
                     [](Call& c) { c.take().target.bones.clear(); });
 }
 
-std::vector<std::string> filter_names() {
+std::vector<std::string> switch_names() {
   std::vector<std::string> names;
-  for (const FilterSwitch& filter : kFilterSwitches) names.push_back(filter.name);
+  for (const MethodSwitch& one : kSwitches) names.push_back(one.name);
   return names;
+}
+
+/// What older scripts call otherwise.
+std::string present_name(const std::string& setting) {
+  for (const MethodSwitch& one : kSwitches)
+    if (setting == one.old_word) return one.name;
+  return setting == "root" ? "path" : setting;
 }
 
 /// One setting of a method, "engine=paper".
 void set_method(Method& method, const std::string& key, const std::string& value) {
-  std::vector<std::string> settings = filter_names();
-  settings.insert(settings.begin(), {"engine", "extractor", "offsets", "root"});
+  std::vector<std::string> settings = switch_names();
+  settings.insert(settings.begin(), {"engine", "extractor", "offsets", "path"});
   for (const Proportion& one : kProportions) settings.push_back(one.name);
   ArgumentReader({key}).one_of(0, "setting", settings);
   const ArgumentReader words({value});
@@ -137,12 +144,12 @@ void set_method(Method& method, const std::string& key, const std::string& value
     method.engine = words.one_of(0, "engine", names_of(engines()));
   else if (key == "extractor")
     method.extractor = words.one_of(0, "extractor", names_of(extractors()));
-  else if (key == "root")
-    method.root = words.choice<RootMode>(0, "path", kRootNames);
+  else if (key == "path")
+    method.path = words.choice<RootMode>(0, "path", kRootNames);
   else if (key == "offsets")
     method.offsets = words.on(0);
-  for (const FilterSwitch& filter : kFilterSwitches)
-    if (key == filter.name) method.*filter.on = words.on(0);
+  for (const MethodSwitch& one : kSwitches)
+    if (key == one.name) method.*one.on = words.on(0);
   for (const Proportion& one : kProportions)
     if (key == one.name) method.*one.value = words.clamped(0, one.name, one.range.low, one.range.high);
 }
@@ -154,7 +161,7 @@ void compare(Call& c) {
     const std::string& setting = c.arguments[i];
     const size_t equals = setting.find('=');
     US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", setting);
-    const std::string key = setting.substr(0, equals), value = setting.substr(equals + 1);
+    const std::string key = present_name(setting.substr(0, equals)), value = setting.substr(equals + 1);
     set_method(other.method, key, value);
     other.name.append(i == 1 ? " (" : ", ").append(key).append(" ").append(value);
   }
@@ -178,11 +185,12 @@ void add_methods(Commands& commands) {
   setting("engine", "Motion transfer", "TAKE " + names_of(engines(), "|"));
   setting("extractor", "Skeleton extraction", "TAKE " + names_of(extractors(), "|"));
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
-  setting("root", "Path", "TAKE scaled|original|in-place");
+  setting("path", "Path", "TAKE scaled|original|in-place");
   std::string filters;
-  for (const std::string& name : filter_names()) append_item(filters, name, "|");
+  for (const std::string& name : switch_names()) append_item(filters, name, "|");
   commands.add_edit({"method.filter", "Filter", "TAKE " + filters + " on|off"}, [](Call& c) {
-    set_method(c.take().method, c.one_of(1, "filter", filter_names()), c.word(2, "switch"));
+    const ArgumentReader setting({present_name(c.word(1, "filter"))});
+    set_method(c.take().method, setting.one_of(0, "filter", switch_names()), c.word(2, "switch"));
   });
   commands.add_edit({"compare.add", "Compare with another method", "TAKE [SETTING=VALUE ...]"}, compare);
 }

@@ -115,9 +115,9 @@ void smooth(const SmoothEdit& edit, Motion& motion) {
   for (size_t t = 0; t < roots.size(); ++t) motion.poses[t].root = mean[t];
 }
 
-void turn(const HeadingEdit& edit, Motion& motion) {
+void turn(const TurnEdit& edit, Motion& motion) {
   if (motion.poses.empty() || edit.yaw_deg == 0) return;
-  US_CHECK(std::isfinite(edit.yaw_deg), "the heading is not finite");
+  US_CHECK(std::isfinite(edit.yaw_deg), "the turn is not finite");
   const Mat3 R = rotation_about_y(edit.yaw_deg * kPi / 180);
   const Vec3 centre = motion.poses.front().root;
   for (Pose& pose : motion.poses) {
@@ -129,7 +129,7 @@ void turn(const HeadingEdit& edit, Motion& motion) {
 }  // namespace
 
 bool PoseEdits::empty() const {
-  return rotate.empty() && !smooth && !floor && !pin && !heading && !trim && skip.empty();
+  return rotate.empty() && !smooth && !raise && !pin && !turn && !trim && skip.empty();
 }
 
 EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_joints) {
@@ -151,10 +151,10 @@ Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBod
   Motion result = motion;
   rotate(edits.rotate, body.rest, result);
   if (edits.smooth) smooth(*edits.smooth, result);
-  if (edits.floor)
-    for (Pose& pose : result.poses) pose.root.y() += edits.floor->offset_m;
+  if (edits.raise)
+    for (Pose& pose : result.poses) pose.root.y() += edits.raise->offset_m;
   if (edits.pin) pin_feet(*edits.pin, result, body);
-  if (edits.heading) turn(*edits.heading, result);
+  if (edits.turn) turn(*edits.turn, result);
   return result;
 }
 

@@ -1,4 +1,4 @@
-// Edits of the result: rotated bones, smoothing, floor, pinned feet, heading, trim.
+// Edits of the result: rotated bones, smoothing, raise, pinned feet, turn, trim.
 #pragma once
 
 #include <optional>
@@ -38,11 +38,11 @@ FieldsOf<S, SmoothEdit> fields(V& visit, S& edit) {
 constexpr float kSmoothestSeconds = 0.2f;
 
 /// The whole motion moved up or down.
-struct FloorEdit {
+struct RaiseEdit {
   float offset_m = 0;
 };
 template <class V, class S>
-FieldsOf<S, FloorEdit> fields(V& visit, S& edit) {
+FieldsOf<S, RaiseEdit> fields(V& visit, S& edit) {
   visit("offset_m", edit.offset_m);
 }
 
@@ -69,11 +69,11 @@ FieldsOf<S, PinEdit> fields(V& visit, S& edit) {
 }
 
 /// The motion turned about the vertical through its first pelvis.
-struct HeadingEdit {
+struct TurnEdit {
   float yaw_deg = 0;  ///< takes +z towards +x
 };
 template <class V, class S>
-FieldsOf<S, HeadingEdit> fields(V& visit, S& edit) {
+FieldsOf<S, TurnEdit> fields(V& visit, S& edit) {
   visit("yaw_deg", edit.yaw_deg);
 }
 
@@ -90,9 +90,9 @@ FieldsOf<S, Trim> fields(V& visit, S& trim) {
 struct PoseEdits {
   std::vector<RotateEdit> rotate;
   std::optional<SmoothEdit> smooth;
-  std::optional<FloorEdit> floor;
+  std::optional<RaiseEdit> raise;
   std::optional<PinEdit> pin;
-  std::optional<HeadingEdit> heading;
+  std::optional<TurnEdit> turn;
   std::optional<Trim> trim;
   std::set<int> skip;  ///< frames left out, original numbers
   bool empty() const;
@@ -101,9 +101,9 @@ template <class V, class S>
 FieldsOf<S, PoseEdits> fields(V& visit, S& edits) {
   visit("rotate", edits.rotate);
   visit("smooth", edits.smooth);
-  visit("floor", edits.floor);
+  visit("raise", edits.raise);
   visit("pin", edits.pin);
-  visit("heading", edits.heading);
+  visit("turn", edits.turn);
   visit("trim", edits.trim);
   visit("skip", edits.skip, kFrameNumbers);
 }
@@ -115,7 +115,7 @@ struct EditedBody {
   static EditedBody from(const Points& rest_vertices, const Joints& rest_joints);
 };
 
-/// All edits in this order, whatever order they were made in: rotate (as listed), smooth, floor, pin, heading.
+/// All edits in this order, whatever order they were made in: rotate (as listed), smooth, raise, pin, turn.
 /// So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are always the
 /// original ones: frames that trim and skip leave out stay, for a timeline that still shows them. Deterministic.
 /// Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where it is held; a foot

@@ -26,7 +26,7 @@ const MethodChoices& engines() {
        made<true>},
       {"paper", "Paper", "paper's network", "a recurrent network (paper 1) predicts rotations from joints",
        "motion.weights"},
-      {"positions", "Joints", "rotations from positions",
+      {"positions", "Positions", "rotations from positions",
        "solves rotations from the places of the joints alone", nullptr, made<false>}};
   return all;
 }

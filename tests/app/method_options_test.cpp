@@ -18,13 +18,20 @@ MethodOptions parsed(const std::string& line) {
 }
 
 TEST(MethodOptions, EverySwitchOfAMethodIsAnOption) {
-  const Method off = parsed(
-                         "--engine paper --extractor paper --root in-place --no-near --no-swap-repair "
-                         "--no-smoothing --no-fixed-lengths --no-foot-lock --no-hand-contacts --no-offsets")
-                         .method;
+  const Method off =
+      parsed(
+          "--engine paper --extractor paper --path in-place --no-part-refiner --no-repair-swaps "
+          "--no-smooth-joints --no-fix-lengths --no-lock-feet --no-hand-contacts --no-offsets")
+          .method;
   const Method all = {"paper", "paper", false, false, false, false, false, false, false, RootMode::InPlace};
   EXPECT_TRUE(same(off, all));
   EXPECT_TRUE(same(parsed("").method, Method{}));
+  const Method by_old_names =
+      parsed(
+          "--engine paper --extractor paper --root in-place --no-near --no-swap-repair --no-smoothing "
+          "--no-fixed-lengths --no-foot-lock --no-hand-contacts --no-offsets")
+          .method;
+  EXPECT_TRUE(same(by_old_names, all));
 }
 
 TEST(MethodOptions, ProportionsOfTheTargetHaveTheNamesThatTheStudioHas) {
@@ -65,7 +72,7 @@ std::string reported(const std::string& line) {
   for (const auto& [key, value] : report.items())
     if (value == false)
       append_item(all, "no " + key);
-    else if (key == "extractor" || key == "root" || key == "engine")
+    else if (key == "extractor" || key == "path" || key == "engine")
       append_item(all, key + " " + value.get<std::string>());
   return all;
 }
@@ -73,11 +80,10 @@ std::string reported(const std::string& line) {
 TEST(EvaluationReport, NamesWhatOfTheMethodIsSwitched) {
   EXPECT_EQ(reported(""), "engine " + Method().engine);
   EXPECT_EQ(reported("--no-hand-contacts"), "engine " + Method().engine + ", no hand_contacts");
-  EXPECT_EQ(
-      reported("--engine paper --extractor paper --root in-place --no-near --no-swap-repair --no-smoothing "
-               "--no-fixed-lengths --no-foot-lock --no-hand-contacts --no-offsets"),
-      "engine paper, no offsets, no near, no foot_lock, no hand_contacts, no swap_repair, no smoothing, "
-      "no length_repair, extractor paper, root in-place");
+  EXPECT_EQ(reported("--engine paper --extractor paper --path in-place --no-part-refiner --no-repair-swaps "
+                     "--no-smooth-joints --no-fix-lengths --no-lock-feet --no-hand-contacts --no-offsets"),
+            "engine paper, no offsets, no repair_swaps, no smooth_joints, no fix_lengths, no lock_feet, "
+            "no hand_contacts, no part_refiner, extractor paper, path in-place");
 }
 
 }  // namespace

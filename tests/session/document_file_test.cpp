@@ -90,6 +90,12 @@ TEST(DocumentFile, GivesBackAllThatWasSaved) {
   EXPECT_EQ(scratch.files().size(), 1u);
 }
 
+std::string replaced(std::string text, const std::string& before, const std::string& now, size_t from = 0) {
+  for (size_t at = text.find(before, from); at != text.npos; at = text.find(before, at + now.size()))
+    text.replace(at, before.size(), now);
+  return text;
+}
+
 /// Saved when documents still held whether the source's folder was being written, and no switches of a second
 /// look and of hand contacts: those were on. Targets were not asked whether they are persons.
 TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
@@ -98,7 +104,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   Document wanted = full_document("/a").document;
   wanted.source.import.height.reset();
   for (Take& take : wanted.takes) {
-    take.method.near = take.method.keep_contacts = true;
+    take.method.part_refiner = take.method.hand_contacts = true;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
     take.target.import.height.reset();
     take.target.not_a_person = NotAPerson::RefuseClear;
@@ -106,9 +112,12 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   EXPECT_TRUE(same(read.document, wanted));
   std::string without = text;
   without.erase(without.find("  \"follow\": true,\n", without.find("floor_m")), 18);
+  without = replaced(without, "\"root\":", "\"path\":");  // names of then
+  without = replaced(without, "\"heading\":", "\"turn\":");
+  without = replaced(without, "\"floor\":", "\"raise\":", without.find("\"smooth\":"));
   auto written = to_json(read, "/a/documents");
   for (auto& take : written["takes"]) {
-    take["method"].erase("near"), take["method"].erase("keep_contacts");
+    take["method"].erase("part_refiner"), take["method"].erase("hand_contacts");
     for (const Proportion& one : kProportions) take["method"].erase(one.name);
     take["target"].erase("not_a_person");
   }
@@ -165,6 +174,18 @@ TEST(DocumentFile, ColoursOfBindingUncertaintyOpenUnderTheirOldName) {
   const SavedDocument saved = from_json(json, "/a", "doc");
   EXPECT_EQ(saved.view.take.colouring, Colouring::Uncertainty);
   EXPECT_EQ(to_json(saved, "/a")["view"]["take"]["colouring"], "uncertainty");
+}
+
+TEST(DocumentFile, SettingsOfTheMethodOpenUnderTheirOldNames) {
+  Json json = to_json(full_document("/a"), "/a");
+  Json& method = json["takes"][0]["method"];
+  const std::pair<const char*, const char*> names[] = {
+      {"part_refiner", "near"}, {"hand_contacts", "keep_contacts"}, {"path", "root"}};
+  for (const auto& [now, before] : names) {
+    method[before] = method[now];
+    method.erase(now);
+  }
+  EXPECT_TRUE(same(from_json(json, "/a", "doc").document, full_document("/a").document));
 }
 
 TEST(DocumentFile, WhatIsWrongIsNamed) {
@@ -230,7 +251,7 @@ TEST(DocumentFile, WhatCouldNotBeReadAgainIsNotWritten) {
   };
   const SavedDocument full = full_document(scratch.path(""));
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  refuses(full, [&](SavedDocument& s) { s.document.takes[0].pose_edits.floor->offset_m = nan; });
+  refuses(full, [&](SavedDocument& s) { s.document.takes[0].pose_edits.raise->offset_m = nan; });
   refuses(full, [&](SavedDocument& s) { s.document.scan_edits.crop->low.x() = nan; });
   refuses(full, [&](SavedDocument& s) { s.document.takes[0].target_edits.joints[0].joint = -1; });
   refuses(full, [&](SavedDocument& s) { s.document.truth = "/a/caf\xe9.npz"; });

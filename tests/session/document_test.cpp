@@ -100,9 +100,9 @@ const Changes& document_changes() {
       TAKE(method.smooth_joints = true),
       TAKE(method.fix_lengths = true),
       TAKE(method.lock_feet = true),
-      TAKE(method.keep_contacts = true),
-      TAKE(method.near = true),
-      TAKE(method.root = RootMode::Original),
+      TAKE(method.hand_contacts = true),
+      TAKE(method.part_refiner = true),
+      TAKE(method.path = RootMode::Original),
       TAKE(method.stride = 1),
       TAKE(method.hip_height = 0),
       TAKE(method.arm_reach = 0),
@@ -132,8 +132,8 @@ const Changes& document_changes() {
       POSES(rotate[0].falloff = 1),
       POSES(smooth.reset()),
       POSES(smooth->strength = 0.5f),
-      POSES(floor.reset()),
-      POSES(floor->offset_m = 0),
+      POSES(raise.reset()),
+      POSES(raise->offset_m = 0),
       POSES(pin.reset()),
       POSES(pin->left = true),
       POSES(pin->right = true),
@@ -145,8 +145,8 @@ const Changes& document_changes() {
       POSES(pin->keep_soles_up = true),
       POSES(pin->to_floor = true),
       POSES(pin->max_drop_m += 1),
-      POSES(heading.reset()),
-      POSES(heading->yaw_deg += 1),
+      POSES(turn.reset()),
+      POSES(turn->yaw_deg += 1),
       POSES(trim.reset()),
       POSES(trim->first = 0),
       POSES(trim->last = 9),
@@ -180,8 +180,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();
   [[maybe_unused]] const auto& [begin_height, end_height, begin_speed, end_speed] = FootContactOptions();
   [[maybe_unused]] const auto& [strength] = SmoothEdit();
-  [[maybe_unused]] const auto& [offset_m] = FloorEdit();
-  [[maybe_unused]] const auto& [yaw_deg] = HeadingEdit();
+  [[maybe_unused]] const auto& [offset_m] = RaiseEdit();
+  [[maybe_unused]] const auto& [yaw_deg] = TurnEdit();
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
                                 weights_joint, trails, ghosts, step, scale, wipe, metric] = View();

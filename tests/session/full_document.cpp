@@ -30,9 +30,9 @@ PoseEdits pose_edits() {
   PoseEdits edits;
   edits.rotate = {{12, LeftElbow, Vec3(0.1f, -0.2f, 1 / 3.0f), 7}, {0, Head, Vec3(1e-7f, 0, 0), 0}};
   edits.smooth = SmoothEdit{0.7f};
-  edits.floor = FloorEdit{-0.012f};
+  edits.raise = RaiseEdit{-0.012f};
   edits.pin = PinEdit{false, false, {0.02f, 0.06f, 0.5f, 1.1f}, 0.3f, false, false, 0.05f};
-  edits.heading = HeadingEdit{-91.5f};
+  edits.turn = TurnEdit{-91.5f};
   edits.trim = Trim{3, 95};
   edits.skip = {4, 50, 51};
   return edits;

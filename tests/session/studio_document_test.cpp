@@ -73,7 +73,7 @@ TEST_F(StudioTest, TheCurrentTakeStaysWhenAnotherGoesAndComesBackFromTheNotice) 
     fs::copy_file(path("target.obj"), path(name));
     studio.run("open", {path(name)});
   }
-  studio.run("edit.heading", {"0", "30"});
+  studio.run("edit.turn", {"0", "30"});
   studio.run("target.select", {"1"});
   studio.run("target.remove", {"0"});
   expect_current(session, 0, "another removed");
@@ -86,7 +86,7 @@ TEST_F(StudioTest, TheCurrentTakeStaysWhenAnotherGoesAndComesBackFromTheNotice) 
   const Arguments words = split_line(notice.offer.command);
   studio.run(words[0], {words.begin() + 1, words.end()});
   ASSERT_EQ(session.document.takes.size(), 3u);
-  EXPECT_TRUE(session.document.takes[0].pose_edits.heading);
+  EXPECT_TRUE(session.document.takes[0].pose_edits.turn);
   expect_current(session, 0, "undone");
   studio.run("take.rename", {"2", "d"});
   EXPECT_THROW(studio.run(words[0], {words.begin() + 1, words.end()}), Error)

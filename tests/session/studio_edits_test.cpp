@@ -293,7 +293,9 @@ TEST_F(StudioTest, EditsOfTheResultComeAndGo) {
   open_both(studio);
   const Motion before = studio.session().takes[0].shown;
   studio.run("edit.smooth", {"0", "0.8"});
-  studio.run("edit.floor_offset", {"0", "0.25"});
+  EXPECT_EQ(studio.commands().find("edit.floor_offset"),
+            studio.commands().find("edit.raise"));  // its old name
+  studio.run("edit.raise", {"0", "0.25"});
   studio.wait_idle(60);
   EXPECT_NEAR(studio.session().takes[0].shown.poses[5].root.y(), before.poses[5].root.y() + 0.25f, 0.03f);
   EXPECT_GT(studio.session().takes[0].cost.mean_displacement_m, 0);

@@ -52,7 +52,7 @@ TEST_F(StudioTest, ATargetThatCannotTakeAnothersPlaceLeavesItThere) {
   std::ofstream(path("broken.obj")) << "v 1 2\n";
   Studio studio(services());
   open_both(studio);
-  studio.run("edit.heading", {"0", "20"});
+  studio.run("edit.turn", {"0", "20"});
   studio.run("target.replace", {"0", path("broken.obj")});
   studio.wait_idle(60);
   const Session& session = studio.session();
@@ -60,8 +60,8 @@ TEST_F(StudioTest, ATargetThatCannotTakeAnothersPlaceLeavesItThere) {
   ASSERT_EQ(session.document.takes.size(), 1u);
   EXPECT_EQ(session.document.takes[0].target.path, path("target.obj"));
   EXPECT_TRUE(session.takes[0].ready);
-  EXPECT_TRUE(session.document.takes[0].pose_edits.heading);
-  EXPECT_EQ(session.history.undo_label(), studio.commands().find("edit.heading")->label);
+  EXPECT_TRUE(session.document.takes[0].pose_edits.turn);
+  EXPECT_EQ(session.history.undo_label(), studio.commands().find("edit.turn")->label);
 }
 
 TEST_F(StudioTest, ASourceThatCannotBeReadLeavesTheOneBefore) {

@@ -56,8 +56,8 @@ TEST_F(EditPanel, OfTheResult) {
   expect_drag("edit.bone_falloff", "tool.falloff ");
   expect_click("edit.pin", {"edit.pin 0 on"});
   expect_drag("edit.smooth", "edit.smooth 0 ");
-  expect_drag("edit.floor_offset", "edit.floor_offset 0 ");
-  expect_drag("edit.heading", "edit.heading 0 ");
+  expect_drag("edit.raise", "edit.raise 0 ");
+  expect_drag("edit.turn", "edit.turn 0 ");
   expect_click("edit.trim", {"edit.trim 0 5 30"});
   expect_click("edit.trim_off", {"edit.trim 0 off"});
   expect_click("edit.skip", {"edit.skip 0 20 on"});

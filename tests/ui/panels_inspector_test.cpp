@@ -135,10 +135,10 @@ TEST_F(Inspector, MethodSwitchesNameTheSelectedTake) {
   expect_click("method.engine.0", {"method.engine 1 copy"});
   expect_click("method.extractor.1", {"method.extractor 1 paper"});
   expect_click("method.offsets", {"method.offsets 1 off"});
-  expect_click("method.root.2", {"method.root 1 in-place"});
-  expect_click("method.swaps", {"method.filter 1 swaps off"});
-  expect_click("method.smooth", {"method.filter 1 smooth off"});
-  expect_click("method.lengths", {"method.filter 1 lengths off"});
+  expect_click("method.path.2", {"method.path 1 in-place"});
+  expect_click("method.repair_swaps", {"method.filter 1 repair_swaps off"});
+  expect_click("method.smooth_joints", {"method.filter 1 smooth_joints off"});
+  expect_click("method.fix_lengths", {"method.filter 1 fix_lengths off"});
 }
 
 TEST_F(Inspector, AnEngineThatIsNotThereIsNotShownAsAnother) {
@@ -169,12 +169,12 @@ TEST_F(PanelsTest, WordsThatANewcomerCannotKnowAreExplainedWithAUnit) {
   EXPECT_TRUE(contains(told("method.engine.1"), "Paper: a recurrent network"));
   EXPECT_TRUE(contains(told("method.extractor.0"), "Dense: every point"));
   EXPECT_TRUE(contains(told("method.offsets"), "millimetres"));
-  EXPECT_TRUE(contains(told("method.root.0"), "metres"));
+  EXPECT_TRUE(contains(told("method.path.0"), "metres"));
   panel("edit");
   session.document.takes[0].pose_edits = PoseEdits{};  // a number with a reset button explains that
   frame(2);
   EXPECT_TRUE(contains(told("edit.smooth"), "0.2 s"));
-  EXPECT_TRUE(contains(told("edit.floor_offset"), "metres"));
+  EXPECT_TRUE(contains(told("edit.raise"), "metres"));
 }
 
 class LayersPanel : public PanelsTest {

@@ -109,10 +109,10 @@ void draw_method_rows(app::Method& method, Ui& ui) {
   method_row(ui, {"compare.engine", "Transfer"}, engines(), method.engine);
   method_row(ui, {"compare.extractor", "Extractor"}, extractors(), method.extractor);
   toggle_row(ui, {"compare.offsets", "Offsets", app::kOffsetsExplanation}, method.offsets);
-  int root = static_cast<int>(method.root);
-  if (choice_row(ui, {"compare.root", "Path", app::kPathExplanation, "", path_tips()},
-                 {"Scaled", "Original", "In place"}, root))
-    method.root = static_cast<RootMode>(root);
+  int path = static_cast<int>(method.path);
+  if (choice_row(ui, {"compare.path", "Path", app::kPathExplanation, "", path_tips()},
+                 {"Scaled", "Original", "In place"}, path))
+    method.path = static_cast<RootMode>(path);
 }
 
 /// The settings in which `other` differs from `base`, as arguments of compare.add.
@@ -121,8 +121,8 @@ app::Arguments differences(const app::Method& base, const app::Method& other) {
   if (base.engine != other.engine) settings.push_back("engine=" + other.engine);
   if (base.extractor != other.extractor) settings.push_back("extractor=" + other.extractor);
   if (base.offsets != other.offsets) settings.push_back("offsets=" + on_off(other.offsets));
-  if (base.root != other.root)
-    settings.push_back(std::string("root=") + kRootNames[static_cast<int>(other.root)]);
+  if (base.path != other.path)
+    settings.push_back(std::string("path=") + kRootNames[static_cast<int>(other.path)]);
   return settings;
 }
 

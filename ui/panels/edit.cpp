@@ -3,7 +3,7 @@
 // edit.crop_tool, edit.crop.LOW|HIGH.AXIS (edit.crop.low.x), edit.floor_removal, edit.floor_height,
 // edit.cluster; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
 // edit.skeleton.K (one made before), edit.skeleton_clear; edit.bones_tool, edit.bone_falloff, edit.pin,
-// edit.smooth, edit.floor_offset, edit.heading, edit.trim, edit.trim_off, edit.skip, edit.rotation.K,
+// edit.smooth, edit.raise, edit.turn, edit.trim, edit.trim_off, edit.skip, edit.rotation.K,
 // edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
 // edit.brush_radius, edit.brush_strength, edit.brush_mode, edit.weights_mirror.left, .right,
 // edit.weights_smooth, edit.weights_clear.
@@ -188,13 +188,13 @@ void draw_amounts(const PoseEdits& edits, PanelContext& context, const std::stri
        "Evens out jitter: 0 changes nothing, 1 averages over about 0.2 s to each side", "edit.smooth " + k},
       edits.smooth ? edits.smooth->strength : 0, {0, 1, 0.005f, "%.2f", 0, true});
   ask_number(context,
-             {"edit.floor_offset", "Raise by", "Moves the whole motion up by so many metres, below 0 down",
-              "edit.floor_offset " + k},
-             edits.floor ? edits.floor->offset_m : 0, {-1, 1, 0.001f, "%.3f m", 0, true});
+             {"edit.raise", "Raise by", "Moves the whole motion up by so many metres, below 0 down",
+              "edit.raise " + k},
+             edits.raise ? edits.raise->offset_m : 0, {-1, 1, 0.001f, "%.3f m", 0, true});
   ask_number(context,
-             {"edit.heading", "Turn by", "Turns the whole motion about the vertical axis by so many degrees",
-              "edit.heading " + k},
-             edits.heading ? edits.heading->yaw_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
+             {"edit.turn", "Turn by", "Turns the whole motion about the vertical axis by so many degrees",
+              "edit.turn " + k},
+             edits.turn ? edits.turn->yaw_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
 }
 
 void draw_trim(const app::Session& session, PanelContext& context, const PoseEdits& edits,

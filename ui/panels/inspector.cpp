@@ -3,7 +3,8 @@
 // source.height(.reset), source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its row), take.name,
 // take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.yaw, target.betas, target.stride, target.hip_height,
 // target.arm_reach; method.engine,
-// method.extractor, method.offsets, method.root, method.swaps, method.smooth, method.lengths, method.compare,
+// method.extractor, method.offsets, method.path, method.repair_swaps, method.smooth_joints, method.fix_lengths,
+// method.compare,
 // work.pause, work.resume, work.restart.
 #include <algorithm>
 #include <sstream>
@@ -269,7 +270,7 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
 }
 
 void draw_filter(const app::Method& method, PanelContext& context, const std::string& k) {
-  for (const app::FilterSwitch& s : app::kFilterSwitches) {
+  for (const app::MethodSwitch& s : app::kSwitches) {
     const std::string name = s.name;
     ask_toggle(context, {"method." + name, s.label, s.explanation, "method.filter " + k + " " + name},
                method.*s.on);
@@ -304,9 +305,9 @@ void draw_method(const app::Session& session, PanelContext& context) {
              extractors(), method.extractor);
   ask_toggle(context, {"method.offsets", "Offsets", app::kOffsetsExplanation, "method.offsets " + k},
              method.offsets);
-  ask_choice(context, {"method.root", "Path", app::kPathExplanation, "method.root " + k, path_tips()},
+  ask_choice(context, {"method.path", "Path", app::kPathExplanation, "method.path " + k, path_tips()},
              {"Scaled", "Original", "In place"}, {kRootNames.begin(), kRootNames.end()},
-             kRootNames[static_cast<int>(method.root)]);
+             kRootNames[static_cast<int>(method.path)]);
   draw_filter(method, context, k);
   ask_button(context, {"method.compare", "Compare with\u2026",
                        "Adds a second take of this target, made with another method", "dialog.open compare"});

@@ -68,7 +68,7 @@ TEST(LimbMove, GoesNoFurtherThanTheArmReaches) {
 
 TEST(LimbMove, IsOfTheResultAsItIsTurnedAndEditedBefore) {
   LimbStage stage;
-  stage.edits.heading = HeadingEdit{70};
+  stage.edits.turn = TurnEdit{70};
   stage.edits.rotate = {{28, LeftShoulder, Vec3(0, 0.3f, 0), 6}};
   const Joints before = stage.after(30).joints;
   const Vec3 way(0.1f, 0.05f, 0);

@@ -120,9 +120,9 @@ TEST(SmoothEdit, LeavesEvenMotionAndHalfTurnsOfTheSign) {
   EXPECT_THROW(smooth(even, 1.5f), Error);
 }
 
-TEST(HeadingEdit, TurnsAboutTheFirstPelvis) {
+TEST(TurnEdit, TurnsAboutTheFirstPelvis) {
   PoseEdits edits;
-  edits.heading = HeadingEdit{90};
+  edits.turn = TurnEdit{90};
   const Motion turned = apply_poses(edits, walker().walk, walker().body);
   const Vec3 way = walker().walk.poses.back().root - walker().walk.poses.front().root;
   const Vec3 after = turned.poses.back().root - turned.poses.front().root;
@@ -159,7 +159,7 @@ TEST(PoseEdits, NoneLeaveTheMotion) {
 
 TEST(PoseEdits, FloorMovesTheBodyUp) {
   PoseEdits edits;
-  edits.floor = FloorEdit{0.07f};
+  edits.raise = RaiseEdit{0.07f};
   const Motion up = apply_poses(edits, walker().walk, EditedBody{walker().body.rest, {}});
   EXPECT_NEAR(up.poses[9].root.y() - walker().walk.poses[9].root.y(), 0.07f, 1e-6f);
 }
@@ -272,9 +272,9 @@ TEST(PoseEdits, AreTheSameEveryTime) {
   PoseEdits edits;
   edits.rotate = {{50, Head, Vec3(0.2f, 0, 0), 10}};
   edits.smooth = SmoothEdit{0.5f};
-  edits.floor = FloorEdit{0.01f};
+  edits.raise = RaiseEdit{0.01f};
   edits.pin = PinEdit{};
-  edits.heading = HeadingEdit{30};
+  edits.turn = TurnEdit{30};
   const Motion once = apply_poses(edits, motion, walker().body);
   EXPECT_EQ(largest_difference(once, apply_poses(edits, motion, walker().body)), 0);
 }
