@@ -46,8 +46,8 @@ struct StudioOptions {
   bool software = false, gl_debug = false;
 };
 
-/// Folders for what is remembered; without them nothing is.
-void add_memory(StudioServices& services) {
+/// Folders for what is remembered; without them nothing is. greets: a newcomer.
+void add_memory(StudioServices& services, bool greets) {
   const std::string problem = failure_of([&] {
     fs::create_directories(config_folder());
     fs::create_directories(state_folder());
@@ -55,6 +55,7 @@ void add_memory(StudioServices& services) {
   if (!problem.empty()) return log::warn("settings cannot be saved: " + problem);
   services.settings_file = config_folder() + "/settings.json";
   services.autosave_folder = state_folder();
+  services.greets_newcomers = greets;
 }
 
 render::WindowOptions window_options(const StudioOptions& options, const StudioServices& services) {
@@ -73,7 +74,7 @@ render::WindowOptions window_options(const StudioOptions& options, const StudioS
 
 int studio(const StudioOptions& options) {
   StudioServices services = studio_services(options.weights);
-  add_memory(services);
+  add_memory(services, options.record.empty());  // what is recorded is played without the cards
   auto surface = std::make_unique<WindowSurface>(window_options(options, services));
   ApplicationOptions how;
   how.marks_file = options.marks;

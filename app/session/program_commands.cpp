@@ -72,6 +72,16 @@ void add_work(Commands& commands) {
   });
 }
 
+/// Which card of Getting started is shown.
+void add_cards(Commands& commands) {
+  commands.add({"help.getting_started", "Getting started", "[CARD: 1 to 5|off]"}, [](Call& c) {
+    int& card = c.session.settings.getting_started;
+    const bool is_off = !c.arguments.empty() && c.arguments[0] == "off";
+    card = is_off ? 0 : c.arguments.empty() ? 1 : c.clamped(0, "card", 1, kGettingStartedCards);
+    c.studio.save_settings();
+  });
+}
+
 void add_settings(Commands& commands) {
   const auto setting = [&commands](CommandText text, auto set) {
     commands.add(std::move(text), [set](Call& c) {
@@ -106,6 +116,7 @@ void add_program_commands(Commands& commands) {
   add_tools(commands);
   add_brush(commands);
   add_work(commands);
+  add_cards(commands);
   add_settings(commands);
 }
 

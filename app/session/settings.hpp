@@ -9,6 +9,9 @@
 
 namespace understudy::app {
 
+/// Cards of Getting started: open, look, fix, compare, export.
+constexpr int kGettingStartedCards = 5;
+
 struct Settings {
   bool dark = true;
   float scale = 0;                  ///< of the interface; 0: the screen's own; 0.75 .. 3
@@ -22,6 +25,7 @@ struct Settings {
   std::map<std::string, bool> panels;  ///< shown or not, by name; missing: as the window has it
   std::string last_folder;             ///< of the file browser
   std::string export_format;           ///< the last one used, by name; "csv": figures; empty: none yet
+  int getting_started = 0;             ///< the card that is shown, from 1; 0: none
   int window_width = 1280, window_height = 800;
 };
 template <class V, class S>
@@ -41,6 +45,7 @@ FieldsOf<S, Settings> fields(V& visit, S& settings) {
   visit("panels", settings.panels);
   visit("last_folder", settings.last_folder);
   visit("export_format", settings.export_format);
+  visit("getting_started", settings.getting_started, Clamped<int>{0, kGettingStartedCards});
 }
 
 /// $XDG_CONFIG_HOME/understudy or ~/.config/understudy; UNDERSTUDY_CONFIG overrides it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "app/session/background.hpp"
@@ -41,6 +42,10 @@ Studio::Studio(StudioServices services)
       cache_(512),
       background_(std::make_unique<Background>(services_.networks)) {
   if (!services_.settings_file.empty()) session_.settings = read_settings(services_.settings_file);
+  std::error_code ignored;
+  const bool is_first =
+      !services_.settings_file.empty() && !std::filesystem::exists(services_.settings_file, ignored);
+  if (services_.greets_newcomers && is_first) session_.settings.getting_started = 1;
   session_.history = History(session_.settings.undo_depth);
   cache_.set_limit(session_.settings.cache_mb);
   add_all_commands(commands_);

@@ -58,6 +58,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"joint", session.selected_joint < 0 ? "none" : kJointNames[session.selected_joint]},
       {"selected_take", std::to_string(session.selected_take)},
       {"theme", session.settings.dark ? "dark" : "light"},
+      {"card", std::to_string(session.settings.getting_started)},  // of Getting started; 0: none
       {"errors", count(session.errors.size())},
       {"error", session.errors.empty() ? "" : session.errors.front().text},
       {"question", question_name(session)},

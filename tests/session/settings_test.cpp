@@ -49,6 +49,7 @@ TEST_F(SettingsTest, AreRemembered) {
   settings.panels = {{"Metrics", false}, {"Log", true}};
   settings.last_folder = "/last";
   settings.export_format = "bvh";
+  settings.getting_started = 3;
   settings.window_width = 1920;
   settings.window_height = 1000;
   const std::string path = scratch_.path("not/there yet/settings.json");
@@ -67,6 +68,7 @@ TEST_F(SettingsTest, AreRemembered) {
   EXPECT_EQ(again.panels, settings.panels);
   EXPECT_EQ(again.last_folder, settings.last_folder);
   EXPECT_EQ(again.export_format, settings.export_format);
+  EXPECT_EQ(again.getting_started, settings.getting_started);
   EXPECT_EQ(again.window_width, settings.window_width);
   EXPECT_EQ(again.window_height, settings.window_height);
 }

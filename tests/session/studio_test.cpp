@@ -71,6 +71,26 @@ TEST_F(StudioTest, AnExportSaysWhatItCostsAndWhatItCannotDo) {
   EXPECT_NE(refused({"7", path("out.glb")}).find("no take 7"), std::string::npos);
 }
 
+TEST_F(StudioTest, GettingStartedComesAtTheFirstStartAloneAndStaysAway) {
+  const auto card_at_start = [&](bool greets, bool skip) {
+    StudioServices with_settings = services();
+    with_settings.settings_file = path("config/settings.json");
+    with_settings.greets_newcomers = greets;
+    Studio studio(std::move(with_settings));
+    const int card = studio.session().settings.getting_started;
+    if (skip) studio.run("help.getting_started", {"off"});
+    return card;
+  };
+  EXPECT_EQ(Studio(services()).session().settings.getting_started, 0) << "as scripts do";
+  EXPECT_EQ(card_at_start(false, false), 0);
+  fs::remove_all(path("config"));
+  EXPECT_EQ(card_at_start(true, false), 1);
+  EXPECT_EQ(card_at_start(true, true), 1) << "it was not ended";
+  EXPECT_EQ(card_at_start(true, false), 0) << "skipped for good";
+  std::ofstream(path("config/settings.json")) << "{}";  // of a version before
+  EXPECT_EQ(card_at_start(true, false), 0) << "somebody who was here before";
+}
+
 TEST_F(StudioTest, AFailureIsSaidUntilTheCommandSucceedsOrTheDocumentIsNew) {
   Studio studio(services());
   const auto said = [&] {

@@ -86,6 +86,9 @@ void StudioWindow::SetUp() {
 void StudioWindow::start(std::vector<std::string> more) {
   std::vector<std::string> arguments = {"studio", "--software", "--size", "1280x800", "--marks", marks()};
   arguments.insert(arguments.end(), more.begin(), more.end());
+  const std::filesystem::path settings = scratch.path("config/settings.json");
+  std::filesystem::create_directories(settings.parent_path());
+  if (!newcomer && !std::filesystem::exists(settings)) std::ofstream(settings) << "{}";
   ProgramOptions options;
   options.patience_s = 5 * kPatience;
   options.environment = {"DISPLAY=" + display.name(),

@@ -52,7 +52,8 @@ class StudioWindow : public testing::Test {
   static constexpr double kPatience = 120;  ///< seconds: software OpenGL on a busy machine
 
   void SetUp() override;
-  /// Starts the studio in a window of 1280 x 800 pixels, with nothing remembered from before.
+  /// Starts the studio in a window of 1280 x 800 pixels, with nothing remembered from before but that there was a before:
+  /// unless `newcomer` no cards of Getting started.
   void start(std::vector<std::string> more = {});
 
   /// The file that the studio writes them to.
@@ -76,6 +77,7 @@ class StudioWindow : public testing::Test {
   void key(const std::string& keys);
   void type(const std::string& text);
 
+  bool newcomer = false;
   Display display;
   ScratchFolder scratch;
   std::unique_ptr<Program> program;

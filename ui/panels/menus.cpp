@@ -161,7 +161,8 @@ std::vector<Menu> menus(const app::Session& session) {
           {"window", "Window", window_menu(session)},
           {"help",
            "Help",
-           {{"Commands, scripts, mouse\u2026", "help.keys"},
+           {{"Getting started", "help.getting_started"},
+            {"Commands, scripts, mouse\u2026", "help.keys"},
             {"About Understudy", "dialog.open", {"about"}},
             {"Log", "panel.show", {"log", "on"}}}}};
 }

@@ -81,6 +81,7 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   const bool asks = !session.errors.empty() || session.question || !dialog().empty();
   draw_dialog(session, context);
   draw_notices(session, context, notices_, places_.views);
+  draw_getting_started(session, context, getting_started_, asks);
   if (!asks) ask_for_keys(session, context);  // the key that closed a dialog does nothing else
 }
 

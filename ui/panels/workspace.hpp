@@ -11,6 +11,7 @@
 #include "ui/panels/dialogs.hpp"
 #include "ui/panels/export.hpp"
 #include "ui/panels/files.hpp"
+#include "ui/panels/getting_started.hpp"
 #include "ui/panels/start.hpp"
 
 namespace understudy::ui {
@@ -59,6 +60,7 @@ class Workspace {
   CompareState compare_;
   FilesState files_;
   NoticesState notices_;
+  GettingStartedState getting_started_;
   std::optional<Explanation> here_;  ///< what help shows
 };
 

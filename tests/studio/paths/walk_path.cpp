@@ -95,6 +95,7 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
         {"screenshot", &Path::screenshot},
         {"restart", &Path::restart},
         {"kill", &Path::kill_it},
+        {"first_start", &Path::first_start},
     };
     const auto row = rows.find(words[0]);
     ASSERT_NE(row, rows.end()) << words[0] << " is nothing that a person does";
@@ -189,6 +190,14 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
     ASSERT_TRUE(wait_until([&] { return copied_since(now); })) << "no copy of unsaved work: " << seen();
     program->send(SIGKILL);
     program->finish();
+    start_again();
+  }
+  /// Somebody else's first start: nothing is remembered.
+  void first_start(const Words&) {
+    program->send(SIGKILL);
+    program->finish();
+    for (const char* folder : {"config", "state"}) fs::remove_all(scratch.path(folder));
+    newcomer = true;
     start_again();
   }
   /// Whether unsaved work was written for recovery after `moment`.

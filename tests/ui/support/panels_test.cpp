@@ -188,6 +188,10 @@ void WorkspaceTest::obey() {
     if (name == "help.here") workspace.open_dialog(session, "here");
     if (name == "question.answer") session.question.reset();
     if (name == "error.dismiss") session.errors.pop_front();
+    if (name == "help.getting_started")
+      session.settings.getting_started = arguments.empty()       ? 1
+                                         : arguments[0] == "off" ? 0
+                                                                 : std::stoi(arguments[0]);
   }
 }
 

@@ -1,0 +1,238 @@
+#include "ui/panels/getting_started.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "retarget/base/fields.hpp"
+#include "retarget/base/text.hpp"
+#include "ui/panels/rows.hpp"
+
+namespace understudy::ui {
+namespace {
+
+constexpr float kCardWidth = 300, kAway = 34, kRingAway = 4;  // at scale 1
+using Before = GettingStartedState::Before;
+using MarkNames = std::vector<std::string>;
+
+bool has_opened(const app::Session& session, const Before& before) {
+  const app::Document& now = session.document;
+  return now.source.path != before.document.source.path || now.takes.size() > before.document.takes.size();
+}
+
+bool has_turned(const app::Session& session, const Before& before) {
+  const auto& now = session.view.cameras;
+  for (size_t i = 0; i < std::min(now.size(), before.cameras.size()); ++i)
+    if (now[i].yaw != before.cameras[i].yaw || now[i].pitch != before.cameras[i].pitch) return true;
+  return false;
+}
+
+bool has_fixed(const app::Session& session, const Before& before) {
+  const app::Document &now = session.document, &then = before.document;
+  if (!same(now.skeleton_edits, then.skeleton_edits)) return true;
+  for (size_t k = 0; k < std::min(now.takes.size(), then.takes.size()); ++k)
+    if (!same(now.takes[k].pose_edits, then.takes[k].pose_edits)) return true;
+  return false;
+}
+
+bool has_compared(const app::Session& session, const Before& before) {
+  return session.document.takes.size() > before.document.takes.size();
+}
+
+bool has_exported(const app::Session& session, const Before& before) {
+  return std::any_of(session.notices.begin(), session.notices.end(), [&](const app::Notice& notice) {
+    return notice.until > before.newest_notice && starts_with(notice.offer.command, "file.show");
+  });
+}
+
+MarkNames fix_widgets(const app::Session& session) {
+  const bool chosen = session.tool == app::Tool::Joints || session.tool == app::Tool::Bones;
+  return chosen ? MarkNames{"view.0", "views"} : MarkNames{"tools.joints", "menu.tools", "menu"};
+}
+
+struct Card {
+  const char *title, *text;
+  MarkNames (*widgets)(const app::Session&);  ///< marks; it points at the first that is to be seen
+  bool (*done)(const app::Session&, const Before&);
+};
+constexpr std::array<Card, app::kGettingStartedCards> kCards = {{
+    {"Open",
+     "Click a sample, or open a scan or motion and a character to perform it. You can also drop files on "
+     "this "
+     "window.",
+     [](const app::Session&) {
+       return MarkNames{"start.sample.0", "start.open_source", "menu.file", "menu"};
+     },
+     has_opened},
+    {"Look",
+     "Drag in a view to turn it; the wheel zooms, the middle button moves. Space plays the motion. F1 "
+     "explains "
+     "whatever the pointer is on.",
+     [](const app::Session&) {
+       return MarkNames{"view.0", "views"};
+     },
+     has_turned},
+    {"Fix",
+     "Where a joint was found in the wrong place, choose this tool (W) and drag the joint in the source's "
+     "view. The "
+     "frames around follow, and the result with them.",
+     fix_widgets, has_fixed},
+    {"Compare",
+     "Compare with\u2026 adds a second take, made with another method. Add target\u2026 lets another body "
+     "perform the "
+     "same motion. Both stand side by side.",
+     [](const app::Session&) {
+       return MarkNames{"method.compare", "menu.compare.add", "menu.target", "menu"};
+     },
+     has_compared},
+    {"Export",
+     "Export\u2026 (Ctrl+E) writes an animated character that any engine opens, or BVH and other formats. "
+     "Pictures and "
+     "videos are there, too.",
+     [](const app::Session&) {
+       return MarkNames{"menu.dialog.open.export", "menu.file", "menu"};
+     },
+     has_exported},
+}};
+
+Before before_of(const app::Session& session) {
+  Before before{session.document, session.view.cameras, 0};
+  for (const app::Notice& notice : session.notices)
+    before.newest_notice = std::max(before.newest_notice, notice.until);
+  return before;
+}
+
+/// What the card points at.
+std::optional<Rect> pointed_at(const Ui& ui, const MarkNames& names) {
+  for (const std::string& name : names) {
+    const Mark* const mark = ui.find(name);
+    if (mark != nullptr && !mark->visible.empty()) return mark->visible;
+  }
+  return std::nullopt;
+}
+
+/// Beside the place where there is room, else over its right edge: between two figures.
+Rect place_card(const ImVec2& display, const ImVec2& size, const Rect& at, float away) {
+  const auto kept_in = [](float value, float room) { return std::max(0.f, std::min(value, room)); };
+  const float x = kept_in(at.at(0.5f, 0).x - size.x / 2, display.x - size.x - away / 2);
+  const float y = kept_in(at.at(0, 0.5f).y - size.y / 2, display.y - size.y - away / 2);
+  ImVec2 from{kept_in(at.max.x - size.x / 2, display.x - size.x - away / 2),
+              std::max(0.f, at.max.y - size.y - away / 2)};
+  if (at.max.y + away + size.y < display.y)
+    from = {x, at.max.y + away};
+  else if (at.min.y - away - size.y > 0)
+    from = {x, at.min.y - away - size.y};
+  else if (at.max.x + away + size.x < display.x)
+    from = {at.max.x + away, y};
+  else if (at.min.x - away - size.x > 0)
+    from = {at.min.x - away - size.x, y};
+  return {from, {from.x + size.x, from.y + size.y}};
+}
+
+/// A window that takes no input, over everything: the ring, and an arrow from the card to it.
+void draw_ring(Ui& ui, const Rect& at, const Rect& card) {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(display);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::Begin("##guide_ring", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar(2);
+  const float away = ui.px(kRingAway);
+  const Rect ring = intersection({{at.min.x - away, at.min.y - away}, {at.max.x + away, at.max.y + away}},
+                                 {{1, 1}, {display.x - 1, display.y - 1}});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 ink = color(ui.theme().accent);
+  list.AddRect(ring.min, ring.max, ink, ui.px(6), 0, ui.px(2));
+  const auto nearest = [](const Rect& rect, const ImVec2& to) {
+    return ImVec2(std::clamp(to.x, rect.min.x, rect.max.x), std::clamp(to.y, rect.min.y, rect.max.y));
+  };
+  const ImVec2 from = nearest(card, ring.at(0.5f, 0.5f)), to = nearest(ring, from);
+  const float length = std::hypot(to.x - from.x, to.y - from.y);
+  if (length > ui.px(8)) {
+    const ImVec2 d((to.x - from.x) / length, (to.y - from.y) / length);
+    const float head = ui.px(9);
+    const ImVec2 neck(to.x - head * d.x, to.y - head * d.y);
+    list.AddLine(from, neck, ink, ui.px(2));
+    list.AddTriangleFilled(to, {neck.x - 0.5f * head * d.y, neck.y + 0.5f * head * d.x},
+                           {neck.x + 0.5f * head * d.y, neck.y - 0.5f * head * d.x}, ink);
+  }
+  ui.mark("guide.ring", ring);
+  ImGui::End();
+}
+
+void ask_for_card(PanelContext& context, int card) {
+  if (card <= app::kGettingStartedCards) return context.ask("help.getting_started", {std::to_string(card)});
+  context.ask("help.getting_started", {"off"});
+  context.ask("notice", {"That was all. Help > Getting started shows the cards again."});
+}
+
+void draw_words(PanelContext& context, const Card& card, int number) {
+  Ui& ui = context.ui;
+  {
+    const FontScope strong(ui.fonts().strong);
+    ImGui::TextUnformatted(card.title);
+  }
+  ImGui::SameLine();
+  hint(ui, std::to_string(number) + " of " + std::to_string(app::kGettingStartedCards));
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(card.text);
+  ImGui::PopTextWrapPos();
+  ImGui::Dummy({0, ui.px(2)});
+  const bool is_last = number == app::kGettingStartedCards;
+  ButtonRow buttons(2);
+  ButtonOptions skip, next;
+  skip.look = ButtonLook::Quiet, skip.tooltip = "Ends this for good; it is in the menu Help";
+  next.look = ButtonLook::Main;
+  if (buttons.add(ui, "guide.skip", "Skip", skip)) context.ask("help.getting_started", {"off"});
+  if (buttons.add(ui, "guide.next", is_last ? "Done" : "Next", next)) ask_for_card(context, number + 1);
+}
+
+void draw_guide_card(const app::Session& session, PanelContext& context, GettingStartedState& state) {
+  Ui& ui = context.ui;
+  const Card& card = kCards[state.card - 1];
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const ImVec2 size(std::min(ui.px(kCardWidth), display.x), state.height);
+  const std::optional<Rect> at = pointed_at(ui, card.widgets(session));
+  const Rect middle{{0, display.y / 2}, {display.x, display.y / 2 + 1}};
+  const Rect place = place_card(display, size, at.value_or(middle), ui.px(kAway));
+  if (at && state.height > 0) draw_ring(ui, *at, place);
+  ImGui::SetNextWindowPos(place.min);
+  ImGui::SetNextWindowSize({size.x, 0});
+  const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised),
+      border(ImGuiCol_Border, ui.theme().accent);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, ui.px(1)));
+  ImGui::Begin("##guide_card", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar();
+  draw_words(context, card, state.card);
+  state.height = ImGui::GetWindowSize().y;
+  const ImVec2 from = ImGui::GetWindowPos(), whole = ImGui::GetWindowSize();
+  const Rect window{from, {from.x + whole.x, from.y + whole.y}};
+  ui.mark("guide.card", window);
+  ui.explain({window, "Getting started", card.text});
+  ImGui::End();
+}
+
+}  // namespace
+
+void draw_getting_started(const app::Session& session, PanelContext& context, GettingStartedState& state,
+                          bool hidden) {
+  const int card = std::clamp(session.settings.getting_started, 0, app::kGettingStartedCards);
+  if (card != state.card) {
+    // What the program was started with was opened, too.
+    state.before = before_of(state.card < 0 && card == 1 ? app::Session{} : session);
+    state.card = card;
+  }
+  if (card == 0) return;
+  if (kCards[card - 1].done(session, state.before)) return ask_for_card(context, card + 1);
+  if (!hidden) draw_guide_card(session, context, state);
+}
+
+}  // namespace understudy::ui
