@@ -22,11 +22,13 @@ struct TargetEdits {
   std::vector<JointMove> joints;
   /// null: none; shared, so that a copy of a document costs nothing
   std::shared_ptr<const WeightRows> weights;
+  std::vector<BoneTurn> rest_pose;  ///< how it stands where the source is in T-pose
 };
 template <class V, class S>
 FieldsOf<S, TargetEdits> fields(V& visit, S& edits) {
   visit("joints", edits.joints);
   visit("weights", edits.weights);
+  visit("rest_pose", edits.rest_pose);
 }
 
 /// One target that performs the source, in one way. Two takes of one target compare two methods.

@@ -293,6 +293,16 @@ void add_target_edits(Commands& commands) {
                       moves.erase(std::remove_if(moves.begin(), moves.end(), replaced), moves.end());
                       moves.push_back(move);
                     });
+  commands.add_edit({"edit.rest_bone", "Turn a bone of the rest pose",
+                     "TAKE JOINT X Y Z [mirror]: axis times radians, in the bone's own frame"},
+                    [](Call& c) {
+                      auto& pose = c.take().target_edits.rest_pose;
+                      const BoneTurn turn{c.joint(1), c.vector(2, "rotation")};
+                      c.label = "Turn " + joint_words(turn.joint) + " of the rest pose";
+                      pose = turned(pose, turn, c.has("mirror", 5));
+                    });
+  commands.add_edit({"edit.rest_pose_clear", "Reset the rest pose", "TAKE"},
+                    [](Call& c) { c.take().target_edits.rest_pose.clear(); });
   commands.add_edit({"edit.target_joints_clear", "Reset the target's joints", "TAKE"},
                     [](Call& c) { c.take().target_edits.joints.clear(); });
   commands.add_slider({"edit.paint", "Paint weights", "TAKE X Y Z: a place on the T-pose's surface"}, paint);

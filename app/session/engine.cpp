@@ -24,6 +24,12 @@ RetargetOptions poses_only(const Method& method) {
   return options;
 }
 
+RetargetOptions options_of(const Plan::TakePlan& take) {
+  RetargetOptions options = poses_only(take.method);
+  if (!take.rest_pose.empty()) options.rest_pose = rest_rotations(take.rest_pose);
+  return options;
+}
+
 /// Where the networks' weights are uncertain; null where no network binds.
 std::shared_ptr<const SafeBinding> binding_of(const std::shared_ptr<const Deformer>& deformer) {
   const auto careful = std::dynamic_pointer_cast<const CarefulDeformer>(deformer);
@@ -47,7 +53,7 @@ struct Stream {
 /// A take at work.
 struct TakeWork {
   Plan::TakePlan plan;
-  std::string target_is, networks_are, method_is, joints_are;
+  std::string target_is, networks_are, method_is, joints_are, rest_is;
   std::shared_ptr<PreparedCharacter> loaded;  // until it is the character
   std::shared_ptr<const PreparedCharacter> character;
   std::optional<Performer> performer;
@@ -65,7 +71,8 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
   plan.skeleton_edits = document.skeleton_edits;
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const Take& take = document.takes[k];
-    plan.takes.push_back({take_ids[k], take.target, take.method, take.target_edits.joints});
+    plan.takes.push_back(
+        {take_ids[k], take.target, take.method, take.target_edits.joints, take.target_edits.rest_pose});
   }
   if (!plan.takes.empty()) plan.shown = plan.takes[0].method;
   return plan;
@@ -220,14 +227,15 @@ void Engine::Impl::adopt(Plan wanted) {
 
 void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   const std::string target_wanted = key_of(wanted.target), method_wanted = key_of(wanted.method),
-                    networks_wanted = networks_key(wanted.method), joints_wanted = key_of(wanted.joints);
+                    networks_wanted = networks_key(wanted.method), joints_wanted = key_of(wanted.joints),
+                    rest_wanted = key_of(wanted.rest_pose);
   if (target_wanted != take.target_is) take.character.reset(), take.loaded.reset();
   if (target_wanted != take.target_is || method_wanted != take.method_is) take.sent_times = 0;
   const bool bound = target_wanted == take.target_is && networks_wanted == take.networks_are &&
                      joints_wanted == take.joints_are;
-  if (!bound || method_wanted != take.method_is) {
+  if (!bound || method_wanted != take.method_is || rest_wanted != take.rest_is) {
     if (!bound) take.performer.reset();
-    if (take.performer) take.performer->restart(poses_only(wanted.method));
+    if (take.performer) take.performer->restart(options_of(wanted));
     take.failed = false;
     take.done = 0;
   }
@@ -236,6 +244,7 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   take.networks_are = networks_wanted;
   take.method_is = method_wanted;
   take.joints_are = joints_wanted;
+  take.rest_is = rest_wanted;
 }
 
 void Engine::Impl::close_source() {
@@ -329,7 +338,7 @@ void Engine::Impl::prepare(TakeWork& take) {
       networks_for(std::move(networks), *take.character, on_their_rig(take.plan.target, *take.character));
   Target target = take.character->target;
   target.joints = understudy::apply(take.plan.joints, target.joints);
-  take.performer.emplace(target, networks.transfer, networks.deformer, poses_only(method));
+  take.performer.emplace(target, networks.transfer, networks.deformer, options_of(take.plan));
   take.done = 0;
   emit(TakeReady{take.plan.id, take.character, std::make_shared<const Target>(std::move(target)),
                  networks.deformer, binding_of(networks.deformer)});

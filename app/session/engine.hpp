@@ -20,6 +20,7 @@ struct Plan {
     TargetOptions target;
     Method method;
     std::vector<JointMove> joints;
+    std::vector<BoneTurn> rest_pose;
   };
   SourceOptions source;
   Method shown;  ///< its extractor is of the skeletons shown
@@ -34,6 +35,7 @@ FieldsOf<S, Plan::TakePlan> fields(V& visit, S& take) {
   visit("target", take.target);
   visit("method", take.method);
   visit("joints", take.joints);
+  visit("rest_pose", take.rest_pose);
 }
 template <class V, class S>
 FieldsOf<S, Plan> fields(V& visit, S& plan) {

@@ -8,7 +8,7 @@ namespace {
 /// Goes as far back as the spread arms of a T-pose, or the crop box, ask; never nearer.
 void see_whole(Call& c) {
   View& view = c.session.view;
-  if (!view.linked && c.session.tool == Tool::TargetJoints) choose_take(c.session, c.session.selected_take);
+  if (!view.linked && is_of_rest(c.session.tool)) choose_take(c.session, c.session.selected_take);
   const size_t i = view.linked ? 0 : view.active_pane;
   const View before = view;
   c.studio.run("view.fit");
@@ -21,13 +21,14 @@ void add_tools(Commands& commands) {
     const char *label, *key;
   };
   static constexpr Row kTools[] = {{"Look", "Q"},          {"Extracted joints", "W"}, {"Bones", "E"},
-                                   {"Target joints", "R"}, {"Paint weights", "P"},    {"Crop", "C"}};
+                                   {"Target joints", "R"}, {"Paint weights", "P"},    {"Crop", "C"},
+                                   {"Rest pose", ""}};
   for (size_t i = 0; i < kToolNames.size(); ++i)
     commands.add({std::string("tool.") + kToolNames[i], kTools[i].label, "", kTools[i].key},
                  [name = kToolNames[i]](Call& c) { c.studio.run("tool", {name}); });
-  commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop"}, [](Call& c) {
+  commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop|rest-pose"}, [](Call& c) {
     const Tool before = std::exchange(c.session.tool, c.choice<Tool>(0, "tool", kToolNames));
-    if (before != c.session.tool && (c.session.tool == Tool::TargetJoints || c.session.tool == Tool::Crop))
+    if (before != c.session.tool && (is_of_rest(c.session.tool) || c.session.tool == Tool::Crop))
       see_whole(c);
   });
   commands.add({"tool.falloff", "Falloff", "FRAMES"},

@@ -128,8 +128,12 @@ struct Question {
 };
 
 /// What the mouse does in the views.
-enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop };
-constexpr Names<6> kToolNames{"look", "joints", "bones", "target-joints", "paint", "crop"};
+enum class Tool { Look, Joints, Bones, TargetJoints, Paint, Crop, RestPose };
+constexpr Names<7> kToolNames{"look", "joints", "bones", "target-joints", "paint", "crop", "rest-pose"};
+/// Whether a tool works on the target before it performs, which is then seen instead of a frame.
+constexpr bool is_of_rest(Tool tool) {
+  return tool == Tool::TargetJoints || tool == Tool::RestPose;
+}
 
 struct Session {
   Document document;

@@ -26,7 +26,8 @@ void check_room(const Document& document) {
 }
 
 bool is_edited(const Take& take) {
-  return !take.pose_edits.empty() || !take.target_edits.joints.empty() || take.target_edits.weights;
+  return !take.pose_edits.empty() || !take.target_edits.joints.empty() || take.target_edits.weights ||
+         !take.target_edits.rest_pose.empty();
 }
 
 /// Says which take went, and offers it back.

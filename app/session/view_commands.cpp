@@ -115,7 +115,7 @@ Extent scan_extent(const Session& session, int pane, int frame, const Joints& jo
 /// What a pane draws: the surface; the joints where there is none.
 void add_pane(Extent& all, const Session& session, int pane, int frame) {
   const TakeState* const take = at_or_null(session.takes, pane - 1);
-  const bool placing = session.tool == Tool::TargetJoints && pane == session.selected_take + 1;
+  const bool placing = is_of_rest(session.tool) && pane == session.selected_take + 1;
   const Joints* const joints = pane_joints(session, pane, frame);
   if (take && (placing || !joints)) add_rest(all, *take);
   if (!joints) return;

@@ -306,7 +306,11 @@ std::vector<ui::Mark> Application::marks() const {
   std::vector<ui::Mark> all = gui_->marks();
   for (const ui::PaneContent& pane : ui::panes_of(session())) {
     const ui::Mark* view = gui_->find("view." + std::to_string(pane.number));
-    const auto joints = pane_joints(session(), pane.number, ui::pane_frame(session(), pane));
+    std::optional<Joints> joints;
+    if (ui::shows_rest(session(), pane))
+      joints = ui::rest_joints(session(), pane.takes[0]);
+    else if (const Joints* now = pane_joints(session(), pane.number, ui::pane_frame(session(), pane)))
+      joints = *now;
     if (!view || view->rect.empty() || !joints) continue;
     const ui::PaneView seen{view->rect, ui::pane_camera(session(), pane)};
     for (int j = 0; j < kJointCount; ++j) {

@@ -11,6 +11,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/editing/point_grid.hpp"
+#include "retarget/math/rotation.hpp"
 
 namespace understudy {
 namespace {
@@ -188,6 +189,31 @@ float symmetry_centre(const Joints& rest) {
   float sum = 0;
   for (int j = 0; j < kJointCount; ++j) sum += rest(j, 0);
   return sum / kJointCount;  // of a pair: twice the middle between both
+}
+
+Rotations rest_rotations(const std::vector<BoneTurn>& turns) {
+  Rotations local = identity_rotations();
+  for (const BoneTurn& turn : turns) {
+    US_CHECK(turn.joint >= 0 && turn.joint < kJointCount, "a turned bone has number ", turn.joint,
+             ", there are ", kJointCount);
+    US_CHECK(turn.axis_angle.allFinite(), "a bone of the rest pose is turned by an angle that is not finite");
+    local[turn.joint] = local[turn.joint] * rotation_from_axis_angle(turn.axis_angle);
+  }
+  return local;
+}
+
+std::vector<BoneTurn> turned(const std::vector<BoneTurn>& turns, const BoneTurn& more, bool mirror) {
+  std::vector<BoneTurn> all = turns;
+  all.push_back(more);
+  const int other = kMirror[more.joint];
+  // Seen in a mirror along x an axis keeps its x and the angle its amount.
+  if (mirror && other != more.joint)
+    all.push_back({other, Vec3(more.axis_angle.x(), -more.axis_angle.y(), -more.axis_angle.z())});
+  const Rotations local = rest_rotations(all);
+  std::vector<BoneTurn> result;
+  for (int j = 0; j < kJointCount; ++j)
+    if (const Vec3 turn = rotation_to_axis_angle(local[j]); turn.norm() > 1e-6f) result.push_back({j, turn});
+  return result;
 }
 
 Joints apply(const std::vector<JointMove>& moves, const Joints& rest) {

@@ -28,6 +28,24 @@ float symmetry_centre(const Joints& rest);
 /// that is none or a position that is not finite.
 Joints apply(const std::vector<JointMove>& moves, const Joints& rest);
 
+/// A bone of the rest pose turned by the hand; the bones after it come along.
+struct BoneTurn {
+  int joint = 0;
+  Vec3 axis_angle = Vec3::Zero();  ///< radians, in the joint's own frame
+};
+template <class V, class S>
+FieldsOf<S, BoneTurn> fields(V& visit, S& turn) {
+  visit("joint", turn.joint, Within<int>{0, kJointCount - 1});
+  visit("axis_angle", turn.axis_angle);
+}
+
+/// Local rotations of a rest pose against the T-pose. Throws Error for a joint that is none or an angle that is not
+/// finite.
+Rotations rest_rotations(const std::vector<BoneTurn>& turns);
+/// A rest pose in which one more bone is turned, after what turned it before: one turn a joint. mirror: the bone on
+/// the other side is turned as seen in a mirror.
+std::vector<BoneTurn> turned(const std::vector<BoneTurn>& turns, const BoneTurn& more, bool mirror);
+
 /// Rows of a [V, 22] weight matrix that replace those there: what documents keep.
 struct WeightRows {
   std::vector<int> vertex;         ///< ascending, each once

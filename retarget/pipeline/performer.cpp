@@ -89,6 +89,7 @@ void Performer::run(PerformedFrame& frame) {
   };
   static constexpr Stage kTransfer = [](Performer& p, PerformedFrame& f) {
     f.pose.local = p.transfer_->push(f.source, p.waited_);
+    if (p.options_.rest_pose) f.pose.local = from_rest_pose(f.pose.local, *p.options_.rest_pose);
   };
   static constexpr Stage kRoot = [](Performer& p, PerformedFrame& f) {
     f.pose.root = p.now_.root.push(f.source, f.pose.local, p.waited_);

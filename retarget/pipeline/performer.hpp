@@ -3,6 +3,7 @@
 
 #include <any>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 namespace understudy {
 
 struct RetargetOptions {
+  std::optional<Rotations> rest_pose;  ///< of the target, see from_rest_pose(); none: the T-pose
   JointFilterOptions filter;
   RootPathOptions root;
   bool lock_feet = true;  ///< standing feet do not slide

@@ -42,6 +42,13 @@ Rotations local_rotations(const Rotations& global) {
   return local;
 }
 
+Rotations from_rest_pose(const Rotations& local, const Rotations& rest) {
+  Rotations global = global_rotations(local);
+  const Rotations turned = global_rotations(rest);
+  for (int j = 0; j < kJointCount; ++j) global[j] = global[j] * turned[j];
+  return local_rotations(global);
+}
+
 float leg_length(const Joints& joints) {
   const auto bone = [&joints](int a, int b) { return (joints.row(a) - joints.row(b)).norm(); };
   return 0.5f * (bone(LeftHip, LeftKnee) + bone(LeftKnee, LeftAnkle) + bone(RightHip, RightKnee) +

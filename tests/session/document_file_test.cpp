@@ -106,6 +106,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   for (Take& take : wanted.takes) {
     take.method.part_refiner = take.method.hand_contacts = true;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
+    take.target_edits.rest_pose.clear();
     take.target.import.height.reset();
     take.target.not_a_person = NotAPerson::RefuseClear;
   }
@@ -120,6 +121,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take["method"].erase("part_refiner"), take["method"].erase("hand_contacts");
     for (const Proportion& one : kProportions) take["method"].erase(one.name);
     take["target"].erase("not_a_person");
+    take["target_edits"].erase("rest_pose");
   }
   EXPECT_EQ(document_text(written), without);
 }

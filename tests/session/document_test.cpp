@@ -111,6 +111,9 @@ const Changes& document_changes() {
       TAKE(target_edits.joints[0].position.x() = 0),
       TAKE(target_edits.joints[0].mirror = true),
       TAKE(target_edits.weights.reset()),
+      TAKE(target_edits.rest_pose.pop_back()),
+      TAKE(target_edits.rest_pose[0].joint = RightCollar),
+      TAKE(target_edits.rest_pose[0].axis_angle.z() = 0),
       {"weights.vertex",
        [](SavedDocument& s) { change_weights(s, [](WeightRows& rows) { --rows.vertex[0]; }); }},
       {"weights.rows",
@@ -172,7 +175,8 @@ const Changes& document_changes() {
                                 target_bones, not_a_person] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,
                                 root, stride, hip_height, arm_reach] = Method();
-  [[maybe_unused]] const auto& [moves, weights] = TargetEdits();
+  [[maybe_unused]] const auto& [moves, weights, rest_pose] = TargetEdits();
+  [[maybe_unused]] const auto& [turned_joint, axis_angle] = BoneTurn();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
   [[maybe_unused]] const auto& [rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();

@@ -52,6 +52,7 @@ Take take(const std::string& folder) {
                  false,   RootMode::InPlace, 1.25f, -0.05f, 0.5f};
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();
+  take.target_edits.rest_pose = {{LeftShoulder, Vec3(0, 0.1f, -0.75f)}};
   take.pose_edits = pose_edits();
   return take;
 }

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/rotation.hpp"
 #include "tests/session/studio_fixture.hpp"
 
 namespace understudy::app {
@@ -302,6 +303,30 @@ TEST_F(StudioTest, EditsOfTheResultComeAndGo) {
   studio.run("edit.poses_clear", {"0"});
   studio.wait_idle(60);
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
+}
+
+TEST_F(StudioTest, TheRestPoseOfATargetIsPerformedSavedAndUndone) {
+  Studio studio(services());
+  open_both(studio);
+  const TakeState& take = studio.session().takes[0];
+  const Motion before = take.shown;
+  const auto deformer = take.deformer;
+  studio.run("edit.rest_bone", {"0", "left_shoulder", "0", "0", "-0.5", "mirror"});
+  studio.wait_idle(60);
+  EXPECT_EQ(studio.session().history.undo_label(), "Turn left shoulder of the rest pose");
+  EXPECT_EQ(take.deformer, deformer);  // nothing was bound again
+  const auto turn = [&](size_t t, size_t j) {
+    return rotation_to_axis_angle(before.poses[t].local[j].transpose() * take.shown.poses[t].local[j]);
+  };
+  EXPECT_NEAR(turn(5, LeftShoulder).z(), -0.5f, 0.02f);
+  EXPECT_NEAR(turn(5, RightShoulder).z(), 0.5f, 0.02f);
+  studio.run("document.save_as", {path("rest.understudy")});
+  EXPECT_EQ(read_document(path("rest.understudy")).document.takes[0].target_edits.rest_pose.size(), 2u);
+  studio.run("edit.rest_pose_clear", {"0"});
+  studio.wait_idle(60);
+  EXPECT_TRUE(same_poses(take.shown, before));
+  studio.run("edit.undo");
+  EXPECT_EQ(studio.session().document.takes[0].target_edits.rest_pose.size(), 2u);
 }
 
 TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {

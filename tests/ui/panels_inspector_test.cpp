@@ -69,6 +69,17 @@ TEST_F(Inspector, TheTargetsProportionsAreDraggedAndReset) {
   }
 }
 
+TEST_F(Inspector, TheRestPoseIsEditedInTheViewUntilDone) {
+  EXPECT_FALSE(mark("edit.rest_pose_clear").enabled);
+  expect_click("target.rest_pose", {"tool rest-pose"});
+  session.tool = app::Tool::RestPose;
+  session.document.takes[0].target_edits.rest_pose = {{LeftShoulder, Vec3(0, 0, -0.5f)}};
+  frame(3);
+  expect_click("target.rest_mirror", {"tool.mirror off"});
+  expect_click("edit.rest_pose_clear", {"edit.rest_pose_clear 0"});
+  expect_click("target.rest_pose", {"tool look"});
+}
+
 TEST_F(Inspector, AFileThatMayMoveHasAnimationsToChoose) {
   session.document.source.path = "/scans/walk.FBX";
   frame(2);

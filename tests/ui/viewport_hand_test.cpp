@@ -8,6 +8,7 @@
 #include "tests/ui/support/ui_test.hpp"
 #include "tests/ui/support/viewport_stage.hpp"
 #include "ui/panels/help.hpp"
+#include "ui/viewport/pane.hpp"
 #include "ui/viewport/views.hpp"
 
 namespace understudy::ui {
@@ -369,6 +370,45 @@ TEST_F(ViewsTest, ATPoseJointGoesWhereItIsDragged) {
   EXPECT_EQ(words[1], "left_knee");
   EXPECT_NEAR(vector_at(words, 2).y(), knee.y() + 20 * metres_a_pixel(pane(1), knee), 0.01f);
   EXPECT_EQ(words[5], "mirror");
+}
+
+TEST_F(ViewsTest, ABoneOfTheRestPoseIsTurnedByARingAndSeenSo) {
+  stage.session.tool = app::Tool::RestPose, stage.session.selected_joint = LeftShoulder;
+  stage.session.view.cameras[0].yaw = 0.f, stage.session.view.cameras[0].pitch = 0.f;
+  frame(3);
+  const ImVec2 middle = seen(1, stage.target->joints.row(LeftShoulder));
+  const float reach = 0.13f * pane(1).rect.height();  // the ring that faces the camera
+  drag({middle.x + reach * std::cos(0.6f), middle.y - reach * std::sin(0.6f)},
+       {middle.x + reach * std::cos(1.2f), middle.y - reach * std::sin(1.2f)});
+  const app::Arguments words = asked("edit.rest_bone");
+  EXPECT_EQ(words[0], "0");
+  EXPECT_EQ(words[1], "left_shoulder");
+  EXPECT_NEAR(std::abs(vector_at(words, 2).z()), 0.6f, 0.1f);
+  EXPECT_EQ(words[5], "mirror");
+  EXPECT_EQ(count("view.camera_state"), 0);
+
+  auto& turns = stage.session.document.takes[0].target_edits.rest_pose;
+  turns = turned(turns, {LeftShoulder, vector_at(words, 2)}, true);
+  TargetLooks looks;
+  looks.of(stage.target);
+  looks.wait();
+  const auto look = looks.of(stage.target);
+  const auto posed = rest_picture(stage.session, pane_of(1), *look);
+  const Pose pose{rest_rotations(turns), stage.target->joints.row(Pelvis).transpose()};
+  const Points wanted = linear_blend_skinning(stage.mesh.vertices, *stage.weights, stage.target->joints,
+                                              forward_kinematics(stage.target->joints, pose));
+  EXPECT_LT((posed->vertices - wanted).cwiseAbs().maxCoeff(), 1e-4f);
+  EXPECT_GT((posed->vertices - look->rest->vertices).cwiseAbs().maxCoeff(), 0.1f);
+  stage.session.tool = app::Tool::TargetJoints;  // is about the T-pose
+  EXPECT_EQ(rest_picture(stage.session, pane_of(1), *look), look->rest);
+}
+
+TEST_F(ViewsTest, AClickOnAJointOfTheRestPoseChoosesItsBone) {
+  stage.session.tool = app::Tool::RestPose;
+  frame(3);
+  click(seen(1, stage.target->joints.row(LeftElbow)));
+  EXPECT_EQ(stage.session.selected_joint, LeftElbow);
+  EXPECT_EQ(count("edit.rest_bone"), 0);
 }
 
 TEST_F(ViewsTest, PaintingAsksForDabsOnTheTPose) {

@@ -38,6 +38,9 @@ std::vector<MouseUse> own_uses(app::Tool tool) {
               {"Drag a hand or a foot", "Moves it, the limb follows"}};
     case app::Tool::TargetJoints:
       return {{"Drag a joint of the target", "Moves it in the T-pose"}};
+    case app::Tool::RestPose:
+      return {{"Click a joint of the target", "Chooses its bone"},
+              {"Drag a ring", "Turns it in the rest pose"}};
     case app::Tool::Paint:
       return {{"Click a joint", "Chooses whose weights are painted"}, {"Drag on the target", "Paints them"}};
     case app::Tool::Crop:

@@ -2,7 +2,7 @@
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.units, source.up,
 // source.height(.reset), source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its row), take.name,
 // take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.yaw, target.betas, target.stride, target.hip_height,
-// target.arm_reach; method.engine,
+// target.arm_reach, target.rest_pose, target.rest_mirror, edit.rest_pose_clear; method.engine,
 // method.extractor, method.offsets, method.path, method.repair_swaps, method.smooth_joints, method.fix_lengths,
 // method.compare,
 // work.pause, work.resume, work.restart.
@@ -247,6 +247,30 @@ void draw_proportions(const app::Method& method, PanelContext& context, const st
   }
 }
 
+/// How the target stands where the source is in T-pose: turned in the view, back to the T-pose by a reset.
+void draw_rest_pose(const app::Session& session, const app::Take& take, PanelContext& context,
+                    const std::string& k) {
+  const bool edited = session.tool == app::Tool::RestPose;
+  const app::TakeState* state = selected_state(session);
+  ButtonRow buttons(2);
+  buttons.ask(
+      context,
+      {"target.rest_pose", edited ? "Done" : "Edit rest pose",
+       edited ? "Back to the result"
+              : "Turn bones so that the target stands as the source does in T-pose, say where its arms droop",
+       edited ? "tool look" : "tool rest-pose"},
+      edited || (state != nullptr && state->target != nullptr));
+  buttons.ask(context,
+              {"edit.rest_pose_clear", "Reset rest pose", "Back to the T-pose; can be undone",
+               "edit.rest_pose_clear " + k},
+              !take.target_edits.rest_pose.empty());
+  if (!edited) return;
+  ask_toggle(context,
+             {"target.rest_mirror", "Both sides", "The bone on the other side follows", "tool.mirror"},
+             session.mirror_joint);
+  hint(context.ui, "Click a joint of the target and drag its rings; the result follows.");
+}
+
 void draw_target_facts(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::Take* take = selected_take(session);
@@ -266,6 +290,7 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
                    betas.str(), "only SMPL bodies"))
     context.ask("target.betas", {k, *text});
   draw_proportions(take->method, context, k);
+  draw_rest_pose(session, *take, context, k);
   ask_button(context, {"take.replace", "Replace\u2026", "", "dialog.open replace_target"});
 }
 

@@ -108,6 +108,7 @@ Items target_menu(const app::Session& session) {
   Items items = {{"Add target\u2026", "target.add"},
                  {"Replace\u2026", "target.replace"},
                  {"Compare with\u2026", "compare.add"},
+                 {"Edit rest pose", "tool", {"rest-pose"}, session.tool == app::Tool::RestPose},
                  {take == nullptr ? "Remove" : "Remove " + take->name, "target.remove", {k}}};
   if (!session.document.takes.empty()) items.push_back(kLine);
   for (size_t i = 0; i < session.document.takes.size(); ++i)

@@ -24,6 +24,7 @@ constexpr float kLeastMove = 5e-4f;         // metres or radians: less was a cli
 constexpr float kThinnest = 0.05f;          // metres, of a crop box
 constexpr float kDabStep = 0.35f;           // of the brush's radius, between dabs
 constexpr double kSettleSeconds = 1.5;      // an edit shows within this time, or never
+constexpr double kNextFrame = 1e-6;         // seconds: one of the rest pose shows in the next frame
 constexpr Eigen::Index kMostPosed = 60000;  // vertices posed for a preview on the thread that draws
 
 /// Null where the take has no such frame, or no target to pose.
@@ -58,6 +59,13 @@ std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
     subject.joints = take->target->joints;
     return subject;
   }
+  if (session.tool == Tool::RestPose && rest) {
+    const PosedSkeleton posed = forward_kinematics(take->target->joints, rest_pose(session, subject.take));
+    subject.grip = Grip::RestBone;
+    subject.joints = posed.joints;
+    if (session.selected_joint >= 0) subject.axes = posed.global[session.selected_joint];
+    return subject;
+  }
   if (session.tool == Tool::Joints && place.pane.source)
     subject.grip = Grip::Joint, subject.take = -1;
   else if (session.tool == Tool::Bones && take != nullptr)
@@ -74,7 +82,7 @@ std::optional<Hand::Subject> Hand::subject_of(const HandPlace& place) {
 
 render::GizmoView Hand::gizmo_of(const Subject& subject, int joint) {
   render::GizmoView gizmo;
-  gizmo.kind = subject.grip == Grip::Bone ? render::GizmoView::Kind::Turn : render::GizmoView::Kind::Move;
+  gizmo.kind = turns(subject.grip) ? render::GizmoView::Kind::Turn : render::GizmoView::Kind::Move;
   gizmo.position = subject.joints.row(joint);
   gizmo.axes = subject.axes;
   return gizmo;
@@ -141,7 +149,8 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   if (joint_ != session.selected_joint) queue.push_back({"select.joint", {joint_name(joint_)}});
   if (session.playback.playing) queue.push_back({"playback.pause", {}});
   const bool limb = subject.grip == Grip::Bone && handle_ == GizmoHandle::None;
-  if (limb && limb_end(joint_) < 0) return;  // other bones turn by their rings alone
+  const bool by_rings = subject.grip == Grip::RestBone && handle_ == GizmoHandle::None;
+  if (by_rings || (limb && limb_end(joint_) < 0)) return;  // other bones turn by their rings alone
   if (handle_ == GizmoHandle::None) handle_ = GizmoHandle::Centre;
   grip_ = limb ? Grip::Limb : subject.grip, settling_ = Grip::None;
   frame_ = place.pictures.frame, take_ = subject.take;
@@ -151,15 +160,16 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   offset_.setZero();
   corrections_.resize(0, 3);
   const app::TakeState* take = at_or_null(session.takes, take_);
-  const Pose* pose = of_result(grip_) ? pose_of(session, take_, frame_) : nullptr;
-  if (pose != nullptr && take->deformer != nullptr && take->target->mesh.vertices.rows() <= kMostPosed)
-    corrections_ = take->deformer->offsets(*pose);
+  const std::optional<Pose> pose = grasped_pose(session);
+  if (pose && take->deformer != nullptr && take->target->mesh.vertices.rows() <= kMostPosed)
+    corrections_ = grip_ == Grip::RestBone ? Points(Points::Zero(take->target->mesh.vertices.rows(), 3))
+                                           : take->deformer->offsets(*pose);
 }
 
 void Hand::drag(const HandPlace& place, const Pointer& pointer) {
   const render::Ray now = place.view.ray(pointer.at);
   const render::Camera& camera = place.view.camera;
-  if (grip_ == Grip::Bone) {  // step by step, so that more than half a turn is one, too
+  if (turns(grip_)) {  // step by step, so that more than half a turn is one, too
     Vec3 axis = Vec3::Zero();
     axis[axis_of(handle_)] = 1;
     offset_ += render::turned(gizmo_, handle_, camera, last_, now) * axis;
@@ -191,6 +201,11 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
     words << offset_;
     words.push_back(std::to_string(session.falloff));
     queue.push_back({grip == Grip::Limb ? "edit.move_limb" : "edit.rotate", words});
+  } else if (grip == Grip::RestBone) {
+    words = {std::to_string(take_), joint_name(joint_)};
+    words << offset_;
+    if (session.mirror_joint) words.push_back("mirror");
+    queue.push_back({"edit.rest_bone", words});
   } else {
     words = {std::to_string(take_), joint_name(joint_)};
     words << Vec3(before_.row(joint_).transpose() + offset_);
@@ -198,27 +213,41 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
     queue.push_back({"edit.target_joint", words});
   }
   settling_ = grip;
-  settle_until_ = session.time + kSettleSeconds;
+  settle_until_ = session.time + (grip == Grip::RestBone ? kNextFrame : kSettleSeconds);
 }
 
 /// Whether the drag, or the edit just pushed, belongs to this pane and is not in its pictures yet.
 bool Hand::shown_in(const HandPlace& place) const {
   const Grip grip = current();
-  if (grip != Grip::Joint && !of_result(grip) && grip != Grip::RestJoint) return false;
+  const bool of_rest = grip == Grip::RestJoint || grip == Grip::RestBone;
+  if (grip != Grip::Joint && !of_result(grip) && !of_rest) return false;
   if (!(place.pane == pane_)) return false;
   if (busy()) return true;
   const auto subject = subject_of(place);
   const Grip worked_on = grip == Grip::Limb ? Grip::Bone : grip;
   return place.session.time < settle_until_ && subject && subject->grip == worked_on &&
-         subject->take == take_ && (grip == Grip::RestJoint || place.pictures.frame == frame_) &&
-         subject->joints == before_;
+         subject->take == take_ && (of_rest || place.pictures.frame == frame_) && subject->joints == before_;
+}
+
+/// The pose that is gripped: of the take's result, or its target's rest pose.
+std::optional<Pose> Hand::grasped_pose(const Session& session) const {
+  const app::TakeState* take = at_or_null(session.takes, take_);
+  if (current() == Grip::RestBone && take != nullptr && take->target != nullptr)
+    return rest_pose(session, take_);
+  const Pose* pose = of_result(current()) ? pose_of(session, take_, frame_) : nullptr;
+  return pose == nullptr ? std::nullopt : std::optional<Pose>(*pose);
 }
 
 /// The take's skeleton with the bone turned in its own frame, or the limb moved; none where the pose is not there.
 std::optional<PosedSkeleton> Hand::turned_skeleton(const Session& session) const {
-  const Pose* pose = pose_of(session, take_, frame_);
-  if (pose == nullptr) return std::nullopt;
+  const std::optional<Pose> pose = grasped_pose(session);
+  if (!pose) return std::nullopt;
   const Joints& rest = session.takes[take_].target->joints;
+  if (current() == Grip::RestBone) {
+    const auto& turns_before = session.document.takes[take_].target_edits.rest_pose;
+    const auto turns_now = understudy::turned(turns_before, {joint_, offset_}, session.mirror_joint);
+    return forward_kinematics(rest, Pose{rest_rotations(turns_now), pose->root});
+  }
   if (current() == Grip::Limb) return forward_kinematics(rest, moved_limb(rest, joint_, offset_, *pose));
   Pose turned = *pose;
   turned.local[joint_] = pose->local[joint_] * rotation_from_axis_angle(offset_);
@@ -242,7 +271,7 @@ Joints Hand::moved_joints(const HandPlace& place) const {
     move.mirror = session.mirror_joint;
     return understudy::apply({move}, before_);
   }
-  if (of_result(current())) {
+  if (of_result(current()) || current() == Grip::RestBone) {
     const auto skeleton = turned_skeleton(session);
     return skeleton ? skeleton->joints : joints;
   }
@@ -278,7 +307,7 @@ EditPreview Hand::preview(const HandPlace& place) const {
 }
 
 std::shared_ptr<const app::PosedPicture> Hand::turned_picture(const HandPlace& place) const {
-  if (!of_result(current()) || !shown_in(place)) return nullptr;
+  if (!(of_result(current()) || current() == Grip::RestBone) || !shown_in(place)) return nullptr;
   const auto skeleton = turned_skeleton(place.session);
   if (!skeleton) return nullptr;
   const app::TakeState& take = place.session.takes[take_];

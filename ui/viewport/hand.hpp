@@ -49,7 +49,7 @@ class Hand {
   const std::string& tip() const { return tip_; }
 
  private:
-  enum class Grip { None, Joint, Bone, Limb, RestJoint, Face, Paint };
+  enum class Grip { None, Joint, Bone, Limb, RestJoint, RestBone, Face, Paint };
   /// A skeleton that a tool works on: the extracted one, a take's, or a target's in T-pose.
   struct Subject {
     Grip grip = Grip::None;
@@ -71,6 +71,9 @@ class Hand {
   Joints moved_joints(const HandPlace& place) const;
   /// A turned bone, or a limb: what is shown of it is made the same way.
   static bool of_result(Grip grip) { return grip == Grip::Bone || grip == Grip::Limb; }
+  /// Turned by the rings of a gizmo.
+  static bool turns(Grip grip) { return grip == Grip::Bone || grip == Grip::RestBone; }
+  std::optional<Pose> grasped_pose(const app::Session& session) const;
   std::optional<PosedSkeleton> turned_skeleton(const app::Session& session) const;
   bool beyond_reach(const app::Session& session) const;
   bool shown_in(const HandPlace& place) const;

@@ -4,6 +4,7 @@
 
 #include "render/gl/program.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/skeleton/skinning.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -130,6 +131,21 @@ std::optional<std::shared_ptr<const TargetLook>> unposed_look(const Session& ses
   return std::nullopt;
 }
 
+std::shared_ptr<const app::PosedPicture> rest_picture(const Session& session, const PaneContent& pane,
+                                                      const TargetLook& look) {
+  const app::TakeState& take = *first_take(session, pane);
+  const bool turned = session.tool == app::Tool::RestPose && shows_rest(session, pane) &&
+                      !session.document.takes[pane.takes[0]].target_edits.rest_pose.empty();
+  if (!turned || take.weights == nullptr) return look.rest;
+  const Target& target = *take.target;
+  app::PosedPicture picture;
+  picture.vertices =
+      linear_blend_skinning(target.mesh.vertices, *take.weights, target.joints,
+                            forward_kinematics(target.joints, rest_pose(session, pane.takes[0])));
+  if (!target.mesh.is_cloud()) picture.normals = vertex_normals(picture.vertices, target.mesh.faces);
+  return std::make_shared<const app::PosedPicture>(std::move(picture));
+}
+
 const PanePictures& PictureKeeper::update(const Session& session, app::FrameCache& cache, TargetLooks& looks,
                                           const PaneContent& pane) {
   forget_others(session, pane);
@@ -158,7 +174,14 @@ bool PictureKeeper::show_unposed(const Session& session, TargetLooks& looks, con
   waiting_ = *look == nullptr || (!(*look)->shaded && shows_rest(session, pane));
   if (*look == nullptr && pictures_.frame < 0) return true;
   pictures_ = {};
-  if (*look != nullptr && session.view.take.surface) pictures_.takes = {(*look)->rest};
+  if (*look == nullptr || !session.view.take.surface) return true;
+  const app::TakeState& take = *first_take(session, pane);
+  const std::vector<BoneTurn>& turns = session.document.takes[pane.takes[0]].target_edits.rest_pose;
+  const std::vector<std::shared_ptr<const void>> from = {*look, take.target, take.weights};
+  const std::string key = key_of(turns, session.tool == app::Tool::RestPose);
+  if (rest_ == nullptr || from != rest_from_ || key != rest_key_)
+    rest_ = rest_picture(session, pane, **look), rest_from_ = from, rest_key_ = key;
+  pictures_.takes = {rest_};
   return true;
 }
 

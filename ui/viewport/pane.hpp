@@ -28,6 +28,10 @@ std::vector<std::shared_ptr<const TargetLook>> looks_of(const app::Session& sess
 std::optional<std::shared_ptr<const TargetLook>> unposed_look(const app::Session& session, TargetLooks& looks,
                                                               const PaneContent& pane);
 
+/// How that target is seen: the look's own picture, or in its rest pose while that is edited.
+std::shared_ptr<const app::PosedPicture> rest_picture(const app::Session& session, const PaneContent& pane,
+                                                      const TargetLook& look);
+
 /// Keeps the last frames until the next are ready.
 class PictureKeeper {
  public:
@@ -45,6 +49,9 @@ class PictureKeeper {
   std::deque<int> asked_;  // frames, the newest first
   std::vector<std::shared_ptr<const Target>> targets_;
   std::string source_;
+  std::shared_ptr<const app::PosedPicture> rest_;  // the last one, and what it was made from
+  std::vector<std::shared_ptr<const void>> rest_from_;
+  std::string rest_key_;
   bool waiting_ = false;
 };
 

@@ -146,8 +146,22 @@ int pane_frame(const Session& session, const PaneContent& pane) {
 bool shows_rest(const Session& session, const PaneContent& pane) {
   const app::TakeState* take = first_take(session, pane);
   if (take == nullptr || take->target == nullptr) return false;
-  const bool edited = session.tool == app::Tool::TargetJoints && pane.takes[0] == session.selected_take;
+  const bool edited = is_of_rest(session.tool) && pane.takes[0] == session.selected_take;
   return edited || (take->joints.empty() && !pane.source);
+}
+
+Pose rest_pose(const Session& session, int take) {
+  Pose pose;
+  pose.root = session.takes[take].target->joints.row(Pelvis).transpose();
+  if (session.tool == app::Tool::RestPose)
+    pose.local = rest_rotations(session.document.takes[take].target_edits.rest_pose);
+  return pose;
+}
+
+Joints rest_joints(const Session& session, int take) {
+  const Joints& joints = session.takes[take].target->joints;
+  if (session.tool != app::Tool::RestPose) return joints;
+  return forward_kinematics(joints, rest_pose(session, take)).joints;
 }
 
 bool shows_as_loaded(const Session& session, const PaneContent& pane) {

@@ -43,6 +43,9 @@ int pane_frame(const app::Session& session, const PaneContent& pane);
 /// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited, and before
 /// there is a frame.
 bool shows_rest(const app::Session& session, const PaneContent& pane);
+/// How a take's target is seen there: in T-pose, or, while that is edited, in its rest pose. It must be ready.
+Pose rest_pose(const app::Session& session, int take);
+Joints rest_joints(const app::Session& session, int take);
 /// Whether a pane shows its take's character as loaded, until it is bound.
 bool shows_as_loaded(const app::Session& session, const PaneContent& pane);
 /// The mesh drawn for a take: its target, or before that the character as loaded; null before both.

@@ -114,7 +114,7 @@ Image PictureMaker::one(const Session& session, app::FrameCache& cache, const Pa
   if (!unposed)
     pictures = awaited(session, cache, pane);
   else if (session.view.take.surface)
-    pictures.takes = {(*unposed)->rest};
+    pictures.takes = {rest_picture(session, pane, **unposed)};
   const ThemeKind theme = session.settings.dark ? ThemeKind::Dark : ThemeKind::Light;
   PaneScene made =
       build_scene({session, pane, pictures, looks_of(session, looks_, pane), {}, theme}, colours_);

@@ -115,7 +115,7 @@ void Builder::add_unposed() {
   const auto& takes = in_.pictures.takes;
   if (!takes.empty() && takes[0] != nullptr) add_target_surface(0, takes[0], 1);
   if (!shows_rest(session_, in_.pane)) return;
-  const Joints& joints = first_take(session_, in_.pane)->target->joints;
+  const Joints joints = rest_joints(session_, in_.pane.takes[0]);
   out_.scene.skeletons.push_back(render::skeleton_view(in_.preview.take_joints.value_or(joints)));
 }
 

@@ -261,16 +261,19 @@ void Views::describe(const Session& session, const Pane& pane, Overlay& overlay)
   overlay.hint = pane_hint(session, pane.content);
   if (overlay.hint.empty()) {
     overlay.subtitle = shows_as_loaded(session, pane.content) ? "as loaded \u00b7 binding\u2026"
-                       : rest                                 ? "T-pose"
-                       : frame >= 0                           ? "frame " + std::to_string(frame)
-                                                              : "";
+                       : rest && session.tool == app::Tool::RestPose
+                           ? "rest pose \u00b7 turn a bone by its rings"
+                       : rest       ? "T-pose"
+                       : frame >= 0 ? "frame " + std::to_string(frame)
+                                    : "";
     if (!legend_beside_ || pane.made.legend.categories.empty()) overlay.legend = pane.made.legend;
   }
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
   if (seen != nullptr && seen->flagged) overlay.warning = seen->reason;
   const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
   const Joints* joints = app::pane_joints(session, pane.content.number, frame);
-  if (rest) joints = &first_take(session, pane.content)->target->joints;
+  std::optional<Joints> at_rest;
+  if (rest) joints = &at_rest.emplace(rest_joints(session, pane.content.takes[0]));
   const auto& moved = pane.content.source ? pane.preview.source_joints : pane.preview.take_joints;
   if (moved) joints = &*moved;
   const int selected = pane.preview.gizmo ? session.selected_joint : -1;

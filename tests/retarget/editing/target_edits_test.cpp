@@ -4,6 +4,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/body/builtin_person.hpp"
+#include "retarget/math/rotation.hpp"
 
 namespace understudy {
 namespace {
@@ -59,6 +60,24 @@ TEST(JointMove, MirrorsAboutTheBodysOwnMiddle) {
   const Joints both = apply({JointMove{RightKnee, Vec3(1.9f, -0.4f, 0), true}}, rest);
   EXPECT_NEAR(both(LeftKnee, 0), 2.1f, 1e-5f);
   EXPECT_THROW(apply({JointMove{22, Vec3::Zero(), true}}, rest), Error);
+}
+
+TEST(RestPose, HasOneTurnABoneAndThatOfTheOtherSideInTheMirror) {
+  std::vector<BoneTurn> pose = turned({}, {LeftShoulder, Vec3(0, 0, -0.5f)}, true);
+  pose = turned(pose, {LeftShoulder, Vec3(0, 0.3f, 0)}, true);
+  pose = turned(pose, {Spine2, Vec3(0.2f, 0, 0)}, true);
+  ASSERT_EQ(pose.size(), 3u);
+  Pose posed;
+  posed.local = rest_rotations(pose);
+  const Mat3 wanted =
+      rotation_from_axis_angle(Vec3(0, 0, -0.5f)) * rotation_from_axis_angle(Vec3(0, 0.3f, 0));
+  EXPECT_LT(geodesic_angle(posed.local[LeftShoulder], wanted), 1e-3f);
+  const Pose mirror = mirrored(posed);
+  for (const size_t j : {LeftShoulder, RightShoulder, Spine2})
+    EXPECT_LT(geodesic_angle(posed.local[j], mirror.local[j]), 1e-3f);
+  EXPECT_TRUE(turned({{Head, Vec3(0, 1, 0)}}, {Head, Vec3(0, -1, 0)}, false).empty());  // back to the T-pose
+  EXPECT_THROW(rest_rotations({{22, Vec3::Zero()}}), Error);
+  EXPECT_THROW(rest_rotations({{Head, Vec3(0, NAN, 0)}}), Error);
 }
 
 TEST(Neighbours, JoinSeamsAndKnowTheRing) {

@@ -177,6 +177,35 @@ TEST(Proportions, AReachingHandKeepsItsRotation) {
   }
 }
 
+TEST(RestPose, IsWhereTheTargetStandsWhereTheSourceIsInTPose) {
+  const Shaped shaped;
+  RetargetOptions options = bare();
+  Rotations rest = identity_rotations();
+  rest[LeftShoulder] = rotation_from_axis_angle(Vec3(0, 0, -0.6f));
+  rest[LeftElbow] = rotation_from_axis_angle(Vec3(0, -0.4f, 0));
+  options.rest_pose = rest;
+  for (const float turn : {0.0f, 1.2f}) {  // and it turns with the body
+    Pose t_pose{identity_rotations(), Vec3(0, 1, 0)};
+    t_pose.local[Pelvis] = rotation_about_y(turn);
+    const PerformedFrame frame = shaped.performed({t_pose}, options)[0];
+    const Pose wanted{rest, frame.pose.root};
+    Joints joints = forward_kinematics(shaped.rest_b, wanted).joints;
+    const Eigen::RowVector3f root = frame.pose.root.transpose();
+    joints = ((joints.rowwise() - root) * rotation_about_y(turn).transpose()).rowwise() + root;
+    EXPECT_LT((joints - frame.joints).cwiseAbs().maxCoeff(), 1e-4f) << turn;
+  }
+}
+
+TEST(RestPose, OfNoTurnChangesNextToNothing) {
+  const Shaped shaped;
+  RetargetOptions options = bare();
+  const auto plain = shaped.performed(Shaped::dancing(), options);
+  options.rest_pose = identity_rotations();
+  const auto same = shaped.performed(Shaped::dancing(), options);
+  for (size_t t = 0; t < plain.size(); ++t)
+    EXPECT_LT((plain[t].joints - same[t].joints).cwiseAbs().maxCoeff(), 1e-4f) << t;
+}
+
 bool same_bytes(const Pose& a, const Pose& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;  // NOLINT: all floats
 }
