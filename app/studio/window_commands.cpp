@@ -187,6 +187,9 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
     const bool shown = ui::panel_shown(c.session, c.word(0, "panel"));
     workspace.show_panel(c.session.settings, c.arguments[0], c.switched(1, shown));
   });
+  commands.add({"menu.open", "Menus", "[file|edit|view|target|tools|window|help]"}, [&workspace](Call& c) {
+    workspace.open_menu(c.session, c.arguments.empty() ? "" : c.arguments[0]);
+  });
   commands.add({"help.keys", "Help"}, [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
   commands.add({"help.here", "Help for what the pointer is on"},
                [&workspace](Call& c) { workspace.open_dialog(c.session, "here"); });

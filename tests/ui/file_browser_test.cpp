@@ -161,6 +161,32 @@ TEST_F(Browser, ThePathIsEditedAndItsPartsAreClicked) {
   EXPECT_EQ(browser.folder(), root.parent_path().string());
 }
 
+TEST_F(Browser, ASlashBeginsAPathThatIsTypedOn) {
+  open({filter_of(FileKind::Target)});
+  type(path("body.obj"));  // as quickly as a machine types
+  key(Key::Enter);
+  frame(3);
+  EXPECT_EQ(chosen, path("body.obj"));
+}
+
+TEST_F(Browser, APathWithoutASlashIsOneFromHere) {
+  open({filter_of(FileKind::Target)});
+  key(Key::L, {false, true});
+  type("single/body.obj");
+  key(Key::Enter);
+  frame(3);
+  EXPECT_EQ(chosen, path("single/body.obj"));
+}
+
+TEST_F(Browser, TabReachesTheButtonsAndArrowsGiveEnterBackToTheList) {
+  open({filter_of(FileKind::Target)});
+  for (int i = 0; i < 30 && gui.ui().focus().name() != "browser.cancel"; ++i) key(Key::Tab);
+  ASSERT_EQ(gui.ui().focus().name(), "browser.cancel");
+  key(Key::End);
+  key(Key::Enter);
+  EXPECT_EQ(chosen, path("body.obj"));
+}
+
 TEST_F(Browser, AWrongPathIsASentence) {
   open({filter_of(FileKind::Target)});
   key(Key::L, {false, true});

@@ -179,14 +179,18 @@ void Gui::begin_frame(const FrameInput& input, const std::vector<InputEvent>& ev
   queue_.insert(queue_.end(), events.begin(), events.end());
   io().DeltaTime = std::max(input.dt, 1e-6f);
   Changes changes;
-  while (!queue_.empty() && fits(queue_.front(), changes)) {
+  Focus& focus = ui_.focus_;
+  while (!queue_.empty() && !focus.moving() && fits(queue_.front(), changes)) {
     apply(queue_.front(), changes);
     queue_.pop_front();
   }
+  io().ConfigFlags = Focus::in_menu() ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
   ImGui::NewFrame();
+  focus.begin_frame();
 }
 
 const ImDrawData& Gui::end_frame() {
+  ui_.focus_.finish_frame(ui_);
   ImGui::Render();
   ui_.finish_frame();
   return *ImGui::GetDrawData();
@@ -249,6 +253,10 @@ void Gui::apply(const InputEvent& event, Changes& changes) {
     to.KeyAlt = event.modifiers.alt, to.KeySuper = event.modifiers.super;
     changes.pressed |= event.kind == Kind::MouseButton || event.key < Key::LeftShift;
     changes.modifiers = event.modifiers;
+  }
+  if (ui_.focus_.take(event)) {
+    changes.commanded = true;
+    return;
   }
   switch (event.kind) {
     case Kind::MouseMove:

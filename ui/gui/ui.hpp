@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ui/gui/focus.hpp"
 #include "ui/gui/theme.hpp"
 
 namespace understudy::ui {
@@ -73,6 +74,11 @@ class Ui {
   /// The explanation of the smallest place there, of the last finished frame; without a title it has that of what
   /// is around it. None where nothing is explained.
   std::optional<Explanation> explanation_at(const ImVec2& at) const;
+  /// The item just made can be reached by Tab; typed: typing begins as soon as it is.
+  void stop(const std::string& name, bool typed = false) { focus_.add(name, typed); }
+  /// Which of them keys are about, and whether the menus are wanted.
+  Focus& focus() { return focus_; }
+  const Focus& focus() const { return focus_; }
   /// Scrolls to an item when it is next drawn.
   void reveal(const std::string& name) { reveal_ = name; }
 
@@ -100,6 +106,7 @@ class Ui {
   std::vector<Explanation> explaining_, explained_;
   std::unordered_map<std::string, size_t> drawing_at_, finished_at_;
   std::unordered_map<ImGuiID, std::any> memory_;
+  Focus focus_;
   std::string reveal_, dialog_;
   int dialog_frame_ = -2;
 };

@@ -12,8 +12,14 @@ namespace understudy::ui {
 
 constexpr float kTopBarHeight = 42, kStatusHeight = 36;  ///< at scale 1
 
-/// In the area given, as one window.
-void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area);
+/// Which menu keys open.
+struct MenuKeys {
+  std::string wanted;  ///< by its name; empty: none
+  std::string next;    ///< the one that Left or Right leads to
+};
+
+/// In the area given, as one window. Where the keys' menu, or any other, is open already, it closes.
+void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area, MenuKeys& keys);
 
 /// Fills the current window. `frame_rate`: of the window, frames per second; 0: not known.
 void draw_status(const app::Session& session, PanelContext& context, float frame_rate);

@@ -24,7 +24,15 @@ const std::vector<Binding> kBuiltIn = {{"Ctrl+O", "open", {}, "Open"},
                                        {"H", "help.keys", {}, "Help"},
                                        {"?", "help.keys", {}, "Help"},
                                        {"F3", "help.keys", {}, "Help"},
-                                       {"F1", "help.here", {}, "What is this?"}};
+                                       {"F1", "help.here", {}, "What is this?"},
+                                       {"F10", "menu.open", {}, "Menus"},
+                                       {"Alt+F", "menu.open", {"file"}, "Menu: File"},
+                                       {"Alt+E", "menu.open", {"edit"}, "Menu: Edit"},
+                                       {"Alt+V", "menu.open", {"view"}, "Menu: View"},
+                                       {"Alt+A", "menu.open", {"target"}, "Menu: Target"},
+                                       {"Alt+O", "menu.open", {"tools"}, "Menu: Tools"},
+                                       {"Alt+W", "menu.open", {"window"}, "Menu: Window"},
+                                       {"Alt+H", "menu.open", {"help"}, "Menu: Help"}};
 
 /// Whether keys with these arguments do, or undo, what `asked` does.
 bool same_or_toggles(const app::Arguments& keys, const app::Arguments& asked) {
@@ -96,7 +104,7 @@ void ask_or_open(const app::Session& session, PanelContext& context, const std::
 void ask_for_keys(const app::Session& session, PanelContext& context) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool any = std::find(std::begin(io.KeysDown), std::end(io.KeysDown), true) != std::end(io.KeysDown);
-  if (!any || io.WantTextInput || ImGui::GetTopMostPopupModal() != nullptr) return;
+  if (!any || io.WantTextInput || !ImGui::GetCurrentContext()->OpenPopupStack.empty()) return;
   for (const Binding& binding : bindings(context.commands))
     if (pressed(binding.keys)) return ask_or_open(session, context, binding.command, binding.arguments);
 }

@@ -24,7 +24,9 @@ constexpr MouseUse kInTimeline[] = {{"Click or drag", "Goes to the frame"},
                                     {"Wheel", "Zooms the timeline"},
                                     {"Middle drag or Shift+wheel", "Moves along the timeline"},
                                     {"Double click in the ruler", "Shows all frames"}};
-constexpr MouseUse kAnywhere[] = {{"F1", "Explains what the pointer is on"}};
+constexpr MouseUse kAnywhere[] = {{"F1", "Explains what the pointer, or the ring, is on"},
+                                  {"Tab, Shift+Tab", "Goes to the next control; Enter or Space uses it"},
+                                  {"Alt", "Opens the menus; with a letter one of them"}};
 constexpr MouseUse kInNumbers[] = {{"Drag", "Changes the number"}, {"Double click", "Lets you type it"}};
 
 /// What a tool's own clicks do.
@@ -134,7 +136,10 @@ std::string views_help(app::Tool tool) {
 
 bool draw_help_here(PanelContext& context, std::optional<Explanation>& here) {
   Ui& ui = context.ui;
-  if (!here) here = ui.explanation_at(ImGui::GetIO().MousePos);
+  const ImVec4* const ring = ui.focus().place();
+  const ImVec2 at =
+      ring != nullptr ? ImVec2((ring->x + ring->z) / 2, (ring->y + ring->w) / 2) : ImGui::GetIO().MousePos;
+  if (!here) here = ui.explanation_at(at);
   if (!here) here = {{}, "", "Rest the pointer on something and press F1 to read what it is for."};
   if (!begin_dialog(ui, "help.here", here->title.empty() ? "Help" : here->title, 440)) return true;
   ImGui::TextWrapped("%s", here->text.c_str());
@@ -159,12 +164,14 @@ std::vector<MenuItem> palette(const app::Session& session, const app::Commands& 
     });
   };
   for (const Binding& binding : bindings(commands))
-    if (!starts_with(binding.command, "help.") && !is_there(binding.command, binding.arguments))
+    if (!starts_with(binding.command, "help.") && binding.command != "menu.open" &&
+        !is_there(binding.command, binding.arguments))
       all.push_back({binding.label, binding.command, binding.arguments});
   for (const Menu& menu : menus(session)) add_entries(menu.items, "", commands, all);
   for (const app::Command& command : commands.all()) {
     const bool runs = command.usage.empty() && possible(session, command.name);
-    if (runs && !starts_with(command.name, "help.") && !is_there(command.name, {}))
+    if (runs && !starts_with(command.name, "help.") && command.name != "menu.open" &&
+        !is_there(command.name, {}))
       all.push_back({command.label, command.name});
   }
   return all;

@@ -190,6 +190,7 @@ void draw_takes(const app::Session& session, PanelContext& context) {
     if (ImGui::Selectable("##take", selected, 0, {0, ImGui::GetTextLineHeight() + ui.px(6)}))
       context.ask("target.select", {k});
     ui.mark(name);
+    ui.stop(name);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float y = at.y + ui.px(3);
     list.AddText({at.x + ui.px(6), y}, color(ui.theme().text),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 
 namespace understudy::ui {
@@ -154,14 +155,15 @@ Items window_menu(const app::Session& session) {
 const std::vector<std::string> kLayoutLabels = {"Side by side", "Single", "Overlay", "Wipe"};
 
 std::vector<Menu> menus(const app::Session& session) {
-  return {{"file", "File", file_menu(session)},
-          {"edit", "Edit", edit_menu(session)},
-          {"view", "View", view_menu(session)},
-          {"target", "Target", target_menu(session)},
-          {"tools", "Tools", tools_menu(session)},
-          {"window", "Window", window_menu(session)},
+  return {{"file", "File", 'F', file_menu(session)},
+          {"edit", "Edit", 'E', edit_menu(session)},
+          {"view", "View", 'V', view_menu(session)},
+          {"target", "Target", 'a', target_menu(session)},
+          {"tools", "Tools", 'o', tools_menu(session)},
+          {"window", "Window", 'W', window_menu(session)},
           {"help",
            "Help",
+           'H',
            {{"Getting started", "help.getting_started"},
             {"Commands, scripts, mouse\u2026", "help.keys"},
             {"About Understudy", "dialog.open", {"about"}},
@@ -172,6 +174,30 @@ std::string mark_of(const MenuItem& item) {
   std::string name = "menu." + (item.command.empty() ? item.label : item.command);
   for (const std::string& argument : item.arguments) name += "." + argument;
   return name;
+}
+
+void draw_menu_items(const app::Session& session, PanelContext& context, const Items& items) {
+  for (const MenuItem& item : items) {
+    if (item.label.empty()) {
+      ImGui::Separator();
+      continue;
+    }
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (!item.inside.empty()) {
+      const float width =
+          std::max(ImGui::GetContentRegionAvail().x, ImGui::CalcTextSize(item.label.c_str()).x);
+      context.ui.mark("menu." + item.label, {at, {at.x + width, at.y + ImGui::GetTextLineHeight()}});
+      if (!ImGui::BeginMenu(item.label.c_str())) continue;
+      draw_menu_items(session, context, item.inside);
+      ImGui::EndMenu();
+      continue;
+    }
+    const std::string keys = keys_of(context.commands, item.command, item.arguments);
+    const IdScope id(mark_of(item));
+    if (ImGui::MenuItem(item.label.c_str(), keys.c_str(), item.checked, possible(session, item)))
+      ask_or_open(session, context, item.command, item.arguments);
+    context.ui.mark(mark_of(item));
+  }
 }
 
 bool possible(const app::Session& session, const MenuItem& item) {

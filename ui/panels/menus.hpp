@@ -19,6 +19,7 @@ struct MenuItem {
 struct Menu {
   std::string name;  ///< "file"; marked menu.file
   std::string label;
+  char letter;  ///< of the label: with Alt it opens the menu
   std::vector<MenuItem> items;
 };
 
@@ -29,6 +30,8 @@ std::vector<Menu> menus(const app::Session& session);
 
 /// The mark of an entry: "menu.view.layout.single".
 std::string mark_of(const MenuItem& item);
+/// Draws entries into the current menu or popup; what is chosen is asked for.
+void draw_menu_items(const app::Session& session, PanelContext& context, const std::vector<MenuItem>& items);
 /// Whether the entry can be chosen now.
 bool possible(const app::Session& session, const MenuItem& item);
 

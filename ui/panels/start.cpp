@@ -28,6 +28,7 @@ void draw_picture(Ui& ui, const SampleCard& card, const Rect& rect) {
 bool draw_card(Ui& ui, const std::string& name, const SampleCard& card, float width) {
   const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, ui.px(kCardHeight)});
   ui.mark(name);
+  ui.stop(name);
   const Rect rect{ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
   const bool hovered = ImGui::IsItemHovered();
   ImDrawList& list = *ImGui::GetWindowDrawList();

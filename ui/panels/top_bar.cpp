@@ -1,8 +1,13 @@
 #include "ui/panels/bars.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "retarget/base/index.hpp"
+#include "ui/gui/gui.hpp"
 #include "ui/panels/arrangement.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/menus.hpp"
@@ -11,49 +16,57 @@
 namespace understudy::ui {
 namespace {
 
-void draw_items(const app::Session& session, PanelContext& context, const std::vector<MenuItem>& items) {
-  for (const MenuItem& item : items) {
-    if (item.label.empty()) {
-      ImGui::Separator();
-      continue;
-    }
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (!item.inside.empty()) {
-      const float width =
-          std::max(ImGui::GetContentRegionAvail().x, ImGui::CalcTextSize(item.label.c_str()).x);
-      context.ui.mark("menu." + item.label, {at, {at.x + width, at.y + ImGui::GetTextLineHeight()}});
-      if (!ImGui::BeginMenu(item.label.c_str())) continue;
-      draw_items(session, context, item.inside);
-      ImGui::EndMenu();
-      continue;
-    }
-    const std::string keys = keys_of(context.commands, item.command, item.arguments);
-    const IdScope id(mark_of(item));
-    if (ImGui::MenuItem(item.label.c_str(), keys.c_str(), item.checked, possible(session, item)))
-      ask_or_open(session, context, item.command, item.arguments);
-    context.ui.mark(mark_of(item));
-  }
+/// While Alt is held: a line below the letter that opens the menu with it.
+void underline_letter(Ui& ui, const Menu& menu, const ImVec2& at, float height) {
+  const size_t letter = menu.label.find(menu.letter);
+  if (!ImGui::GetIO().KeyAlt || letter == std::string::npos) return;
+  const char* const text = menu.label.c_str();
+  const float from = ImGui::CalcTextSize(text, text + letter).x,
+              to = ImGui::CalcTextSize(text, text + letter + 1).x;
+  const float y = std::round(at.y + (height + ImGui::GetTextLineHeight()) / 2 - ui.px(1));
+  ImGui::GetWindowDrawList()->AddLine({at.x + from, y}, {at.x + to, y}, color(ui.theme().text), ui.px(1));
 }
 
-void draw_menu(const app::Session& session, PanelContext& context, const Menu& menu) {
+/// Whether it is open.
+bool draw_menu(const app::Session& session, PanelContext& context, const Menu& menu, MenuKeys& keys) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 size(ImGui::CalcTextSize(menu.label.c_str()).x, ImGui::GetFrameHeight());
   context.ui.mark("menu." + menu.name, {at, {at.x + size.x, at.y + size.y}});
-  if (!ImGui::BeginMenu(menu.label.c_str())) return;
-  draw_items(session, context, menu.items);
+  if (keys.wanted == menu.name) {
+    keys.wanted.clear();
+    ImGui::OpenPopup(menu.label.c_str());
+  }
+  const bool open = ImGui::BeginMenu(menu.label.c_str());
+  underline_letter(context.ui, menu, {at.x + ImGui::GetStyle().ItemSpacing.x / 2, at.y}, size.y);
+  if (!open) return false;
+  draw_menu_items(session, context, menu.items);
   ImGui::EndMenu();
+  return true;
 }
 
 /// One menu that holds the others, where the bar is narrow.
-void draw_one_menu(const app::Session& session, PanelContext& context, float height) {
+void draw_one_menu(const app::Session& session, PanelContext& context, float height, MenuKeys& keys) {
   const float side = context.ui.px(28);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::SetCursorScreenPos({at.x, at.y + (height - side) / 2});
-  if (icon_button(context.ui, "menu", Icon::Menu, {"Menu", "", false, false, 28})) ImGui::OpenPopup("menus");
+  const bool clicked = icon_button(context.ui, "menu", Icon::Menu, {"Menu", "", false, false, 28});
+  if (clicked || !keys.wanted.empty()) ImGui::OpenPopup("menus");
   ImGui::SetNextWindowPos({at.x, at.y + height});
   if (!ImGui::BeginPopup("menus")) return;
-  for (const Menu& menu : menus(session)) draw_menu(session, context, menu);
+  for (const Menu& menu : menus(session)) draw_menu(session, context, menu, keys);
   ImGui::EndPopup();
+}
+
+/// Beside each other. Left and Right lead from one that is open to the next.
+void draw_menus(const app::Session& session, PanelContext& context, MenuKeys& keys) {
+  const std::vector<Menu> all = menus(session);
+  int open = -1;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (draw_menu(session, context, all[i], keys)) open = static_cast<int>(i);
+  if (open < 0) return;
+  const int count = ssize(all);
+  if (key_pressed(render::Key::Right)) keys.next = all[(open + 1) % count].name;
+  if (key_pressed(render::Key::Left)) keys.next = all[(open + count - 1) % count].name;
 }
 
 /// Whether the icon was clicked; in the middle of the bar's height.
@@ -105,17 +118,19 @@ void draw_layouts(const app::Session& session, PanelContext& context, const Rect
   if (changed) context.ask("view.layout", {app::kLayoutNames[chosen]});
 }
 
-void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_one) {
+void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_one, MenuKeys& keys) {
   const float height = context.ui.px(kTopBarHeight);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                       {context.ui.px(8), std::floor((height - ImGui::GetFontSize()) / 2)});
   if (ImGui::BeginMenuBar()) {
     ImGui::PopStyleVar();
     if (as_one)
-      draw_one_menu(session, context, height);
+      draw_one_menu(session, context, height, keys);
     else
-      for (const Menu& menu : menus(session)) draw_menu(session, context, menu);
-    ImGui::EndMenuBar();
+      draw_menus(session, context, keys);
+    ImGui::EndMenuBar();  // closes the menu where an arrow leads out of it
+    const std::string next = std::exchange(keys.next, "");
+    if (!Focus::in_menu()) keys.wanted = next.empty() ? keys.wanted : next;
   } else {
     ImGui::PopStyleVar();
   }
@@ -123,7 +138,11 @@ void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_o
 
 }  // namespace
 
-void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area) {
+void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area, MenuKeys& keys) {
+  if (!keys.wanted.empty() && Focus::in_menu()) {
+    keys.wanted.clear();
+    ImGui::ClosePopupToLevel(0, true);
+  }
   Ui& ui = context.ui;
   const float wide = area.width() / ui.scale();  // in pixels of the design
   const bool as_one = wide < 1120;
@@ -140,7 +159,7 @@ void draw_top_bar(const app::Session& session, PanelContext& context, const Rect
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(4);
   ImGui::PushClipRect(area.min, area.max, false);
-  draw_menu_bar(session, context, as_one);
+  draw_menu_bar(session, context, as_one, keys);
   const float tools = ui.px(8 * 31 + 10), layouts = ui.px(wide >= 740 ? 392 : 130);
   const float right = area.max.x - ui.px(44);
   const float left = as_one ? area.min.x + ui.px(42) : std::round(area.at(0.5f, 0).x - tools / 2);

@@ -10,6 +10,7 @@
 #include "ui/panels/bars.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/help.hpp"
+#include "ui/panels/menus.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/widgets/controls.hpp"
 
@@ -49,15 +50,6 @@ class Frame {
   Frame& operator=(const Frame&) = delete;
 };
 
-/// Menus and lists close by Escape; dialogs do so themselves.
-void close_menu_by_escape() {
-  const ImGuiContext& context = *ImGui::GetCurrentContext();
-  if (context.OpenPopupStack.empty() || !key_pressed(render::Key::Escape, false)) return;
-  const ImGuiWindow* top = context.OpenPopupStack.back().Window;
-  if (top == nullptr || (top->Flags & ImGuiWindowFlags_Modal) != 0) return;
-  ImGui::ClosePopupToLevel(context.OpenPopupStack.Size - 1, true);
-}
-
 /// A dialog that vanished without closing must not keep the rest from being used.
 void close_forgotten_dialog(bool any_drawn) {
   if (!any_drawn && ImGui::GetTopMostPopupModal() != nullptr) ImGui::ClosePopupToLevel(0, true);
@@ -72,17 +64,26 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   parts_.timeline = open && panel_shown(session, "timeline");
   parts_.below = !panels_in(Panel::Dock::Below, session).empty();
   places_ = arrange(display, context.ui.scale(), parts_);
-  if (!places_.top.empty()) draw_top_bar(session, context, places_.top);
+  if (!places_.top.empty()) draw_top_bar(session, context, places_.top, menu_keys_);
   draw_centre(session, context);
   draw_below(session, context);
   draw_bottom(session, context, frame_rate);
   draw_side(session, context);
-  close_menu_by_escape();
   const bool asks = !session.errors.empty() || session.question || !dialog().empty();
   draw_dialog(session, context);
   draw_notices(session, context, notices_, places_.views);
   draw_getting_started(session, context, getting_started_, asks);
-  if (!asks) ask_for_keys(session, context);  // the key that closed a dialog does nothing else
+  // The key that closed a dialog, or led from one menu to the next, does nothing else.
+  if (asks || !menu_keys_.wanted.empty()) return;
+  if (context.ui.focus().alt_tapped()) context.ask("menu.open");
+  ask_for_keys(session, context);
+}
+
+void Workspace::open_menu(const app::Session& session, const std::string& name) {
+  const std::vector<Menu> all = menus(session);
+  const auto known = [&](const Menu& menu) { return menu.name == name; };
+  US_CHECK(name.empty() || std::any_of(all.begin(), all.end(), known), "there is no menu ", name);
+  menu_keys_.wanted = name.empty() ? all.front().name : name;
 }
 
 /// The views, or the start screen.

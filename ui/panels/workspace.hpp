@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ui/panels/arrangement.hpp"
+#include "ui/panels/bars.hpp"
 #include "ui/panels/dialogs.hpp"
 #include "ui/panels/export.hpp"
 #include "ui/panels/files.hpp"
@@ -35,6 +36,8 @@ class Workspace {
   /// open, open_source, open_target, replace_target, open_document, save_as, export, csv, picture,
   /// video, compare, settings, about, keys, here (help for what the pointer is on); "none" closes. Throws Error for another name.
   void open_dialog(const app::Session& session, const std::string& name);
+  /// Opens a menu of the bar by its name, "" the first, or closes the one that is open. Throws Error for another name.
+  void open_menu(const app::Session& session, const std::string& name);
   /// Shows or hides a panel, "side" or "side_over". A tab of the side panel replaces the one that was on, and
   /// the side panel comes with it. Throws Error for another name.
   void show_panel(app::Settings& settings, const std::string& name, bool on) const;
@@ -61,6 +64,7 @@ class Workspace {
   FilesState files_;
   NoticesState notices_;
   GettingStartedState getting_started_;
+  MenuKeys menu_keys_;
   std::optional<Explanation> here_;  ///< what help shows
 };
 

@@ -24,6 +24,7 @@ Press press(Ui& ui, const std::string& name, ImVec2 size, const std::string& mar
   press.hovered = ImGui::IsItemHovered(), press.held = ImGui::IsItemActive();
   press.rect = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
   ui.mark(mark);
+  ui.stop(mark);
   return press;
 }
 
@@ -244,6 +245,7 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
     for (int i = 0; i < ssize(choices); ++i) {
       const IdScope id(i);
       if (ImGui::Selectable(choices[i].c_str(), i == chosen)) changed = chosen != i, chosen = i;
+      if (i == chosen && ImGui::IsWindowAppearing()) ImGui::SetItemDefaultFocus();
       ui.mark(name + "." + std::to_string(i));
       if (i < ssize(tips)) tooltip(ui, tips[i]);
     }
@@ -260,6 +262,7 @@ bool number(Ui& ui, const std::string& name, float& value, const NumberOptions& 
   bool changed = ImGui::DragFloat("##value", &value, options.speed, options.min, options.max, options.format,
                                   ImGuiSliderFlags_AlwaysClamp);
   ui.mark(name);
+  ui.stop(name, true);
   if (!reset) return changed;
   ImGui::SameLine(0, gap);
   char words[64];
@@ -274,6 +277,7 @@ bool text_field(Ui& ui, const std::string& name, std::string& text, const std::s
   ImGui::SetNextItemWidth(-FLT_MIN);
   const bool changed = ImGui::InputTextWithHint(("##" + name).c_str(), hint.c_str(), &text);
   ui.mark(name);
+  ui.stop(name, true);
   return changed;
 }
 
@@ -352,13 +356,16 @@ bool progress(Ui& ui, const std::string& name, const ProgressOptions& options) {
 }
 
 void splitter(Ui& ui, const std::string& name, float& size, float min, float max) {
-  const Press p = press(ui, name, {std::round(ui.px(6)), ImGui::GetContentRegionAvail().y}, name);
-  const bool lit = p.hovered || p.held;
+  ImGui::InvisibleButton(name.c_str(),
+                         {std::round(ui.px(6)), std::max(1.f, ImGui::GetContentRegionAvail().y)});
+  ui.mark(name);
+  const bool held = ImGui::IsItemActive(), lit = held || ImGui::IsItemHovered();
+  const Rect rect{ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-  const float middle = p.rect.at(0.5f, 0).x, half = ui.px(lit ? 1 : 0.5f);
-  fill({{middle - half, p.rect.min.y}, {middle + half, p.rect.max.y}},
+  const float middle = rect.at(0.5f, 0).x, half = ui.px(lit ? 1 : 0.5f);
+  fill({{middle - half, rect.min.y}, {middle + half, rect.max.y}},
        lit ? ui.theme().accent_hover : ui.theme().line, 0);
-  if (p.held) size = std::clamp(size - ImGui::GetIO().MouseDelta.x / ui.scale(), min, max);
+  if (held) size = std::clamp(size - ImGui::GetIO().MouseDelta.x / ui.scale(), min, max);
 }
 
 }  // namespace understudy::ui

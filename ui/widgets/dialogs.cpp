@@ -62,9 +62,8 @@ std::string Notices::draw(Ui& ui, const Rect& over) {
     const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
     ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::clamp(notice.seconds_left / 0.3f, 0.05f, 1.f));
     ImGui::Begin(("##" + name).c_str(), nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
-                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoSavedSettings);
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
     const bool good = notice.kind == NoticeKind::Good;
     icon_label(ui, good ? Icon::Check : Icon::Warning, good ? ui.theme().good : ui.theme().warning);
     ImGui::SameLine();

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
@@ -63,6 +64,14 @@ bool pressed(Key key) {
   return key_pressed(key, false);
 }
 
+/// Puts the cursor behind what a text field holds as typing begins, instead of selecting all of it.
+int go_on_behind(ImGuiInputTextCallbackData* field) {
+  if (!std::exchange(*static_cast<bool*>(field->UserData), false)) return 0;
+  field->CursorPos = field->BufTextLen;
+  field->ClearSelection();
+  return 0;
+}
+
 }  // namespace
 
 bool FileFilter::passes(const std::string& name) const {
@@ -99,7 +108,7 @@ void FileBrowser::go_to(const std::string& folder) {
   selected_name_ = up ? fs::path(folder_).filename().string() : "";  // coming out of a folder, it is selected
   scroll_to_selected_ = up;
   folder_ = path;
-  editing_path_ = naming_folder_ = false;
+  editing_path_ = path_begun_ = naming_folder_ = false;
   problem_.clear(), found_.clear();
   refresh();
 }
@@ -177,7 +186,7 @@ std::optional<std::string> FileBrowser::draw(Ui& ui) {
     ImGui::EndChild();
   }
   draw_footer(ui);
-  if (overwrite_.empty()) take_keys();
+  if (overwrite_.empty() && !Focus::in_menu()) take_keys(ui.focus());
   draw_overwrite(ui);
   if (!open_) ImGui::CloseCurrentPopup();
   end_dialog();
@@ -198,18 +207,24 @@ void FileBrowser::draw_header(Ui& ui) {
 void FileBrowser::draw_path(Ui& ui) {
   const float buttons = request_.save ? ImGui::CalcTextSize("New folder").x + ui.px(36) : 0;
   const float width = ImGui::GetContentRegionAvail().x - buttons;
+  path_id_ = ImGui::GetID("##path");
   if (editing_path_) {
     ImGui::SetNextItemWidth(width);
     if (std::exchange(focus_path_, false)) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText(
-        "##path", &typed_path_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    const bool entered =
+        ImGui::InputText("##path", &typed_path_,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll |
+                             ImGuiInputTextFlags_CallbackAlways,
+                         go_on_behind, &path_begun_);
     const bool left = ImGui::IsItemDeactivated();
     ui.mark("browser.path");
+    ui.stop("browser.path", true);
+    const std::string path = typed_path();
     std::error_code error;
-    if (entered && !request_.save && fs::is_regular_file(typed_path_, error))
-      finish(typed_path_);
+    if (entered && !request_.save && fs::is_regular_file(path, error))
+      finish(path);
     else if (entered)
-      wanted_ = typed_path_;
+      wanted_ = path;
     if (left) editing_path_ = false;
   } else {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
@@ -260,7 +275,8 @@ void FileBrowser::draw_crumbs(Ui& ui) {
   bool edit = ImGui::InvisibleButton("edit", {rest, ImGui::GetFrameHeight()});
   if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_TextInput);
   ui.mark("browser.path");
-  tooltip(ui, "Type a path", "Ctrl+L");
+  ui.stop("browser.path");
+  tooltip(ui, "Type a path", "/ or Ctrl+L");
   edit |= ImGui::GetIO().KeyCtrl && pressed(Key::L);
   if (edit) editing_path_ = focus_path_ = true, typed_path_ = folder_;
 }
@@ -276,6 +292,7 @@ void FileBrowser::draw_places(Ui& ui) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##place", folder_ == place.path, 0, {0, height})) wanted_ = place.path;
     ui.mark("browser.place." + place.label);
+    ui.stop("browser.place." + place.label);
     const float width = ImGui::GetItemRectSize().x;
     tooltip(ui, place.path);
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -292,6 +309,7 @@ void FileBrowser::draw_new_folder(Ui& ui) {
   const bool entered =
       ImGui::InputTextWithHint("##folder_name", "Name", &new_folder_, ImGuiInputTextFlags_EnterReturnsTrue);
   ui.mark("browser.folder_name");
+  ui.stop("browser.folder_name", true);
   ImGui::SameLine();
   const bool clicked =
       button(ui, "browser.create", "Create", {ButtonLook::Main, "", "", new_folder_.empty(), -1});
@@ -359,9 +377,11 @@ void FileBrowser::draw_entry(Ui& ui, int row_number) {
   if (when > 0) list.AddText({dates + ui.px(6), y}, color(t.text_dim), date(entry.changed_s).c_str());
   if (entry.is_folder && can_choose(entry)) {
     ImGui::SetCursorScreenPos({at.x + width - look, at.y + (height - look) / 2});
+    ImGui::PushAllowKeyboardFocus(false);  // the key Right does it
     if (icon_button(ui, "browser.look." + entry.name, Icon::ChevronRight,
                     {"Look inside", "Right", false, false, 24}))
       wanted_ = path_of(entry);
+    ImGui::PopAllowKeyboardFocus();
     ImGui::SetCursorScreenPos({at.x, at.y + height});
   }
   if (!clicked) return;
@@ -425,10 +445,12 @@ void FileBrowser::draw_overwrite(Ui& ui) {
   if (answer != Answer::None) overwrite_.clear();
 }
 
-void FileBrowser::take_keys() {
+void FileBrowser::take_keys(Focus& focus) {
   if (ImGui::GetIO().WantTextInput || ImGui::IsWindowAppearing()) return;
   if (pressed(Key::Escape)) open_ = false;
   const int row_number = selected_row();
+  for (const Key key : {Key::Down, Key::Up, Key::PageDown, Key::PageUp, Key::Home, Key::End})
+    if (key_pressed(key)) focus.leave();  // Enter is for the list now
   if (key_pressed(Key::Down)) select(row_number + 1);
   if (key_pressed(Key::Up)) select(std::max(0, row_number - 1));
   if (key_pressed(Key::PageDown)) select(row_number + 12);
@@ -439,7 +461,29 @@ void FileBrowser::take_keys() {
   const FolderEntry* entry = selected();
   if (entry != nullptr && entry->is_folder && pressed(Key::Right)) wanted_ = path_of(*entry);
   if (entry != nullptr && (pressed(Key::Enter) || pressed(Key::KeypadEnter))) activate(*entry);
-  find_typed();
+  begin_typed_path(focus);
+  if (!path_begun_) find_typed();
+}
+
+/// A path begins with / or ~: what follows is typed into its field.
+void FileBrowser::begin_typed_path(Focus& focus) {
+  if (ImGui::GetTime() - found_at_ <= 1 && !found_.empty()) return;
+  const auto& typed = ImGui::GetIO().InputQueueCharacters;
+  if (request_.save || typed.empty() || (typed[0] != '/' && typed[0] != '~')) return;
+  typed_path_.clear();
+  for (const ImWchar c : typed) {
+    char letter[5];
+    typed_path_ += ImTextCharToUtf8(letter, c);
+  }
+  editing_path_ = path_begun_ = true;
+  focus.type_into(path_id_);
+}
+
+/// From the folder shown, or from the home folder after a ~.
+std::string FileBrowser::typed_path() const {
+  const bool from_home = typed_path_ == "~" || starts_with(typed_path_, "~/");
+  const fs::path path = from_home ? fs::path(home() + typed_path_.substr(1)) : fs::path(typed_path_);
+  return (fs::path(folder_) / path).lexically_normal().string();
 }
 
 /// Letters typed within a second of each other select the first entry that begins with them.

@@ -46,7 +46,7 @@ struct BrowseRequest {
 };
 
 /// One at a time. Keys: arrows, PageUp and PageDown, Home and End; Enter opens; Backspace goes up; Right
-/// looks into a folder that Enter would choose; letters find; Ctrl+L edits the path; Escape closes. Marks:
+/// looks into a folder that Enter would choose; letters find; / and ~ begin a path, Ctrl+L edits the one shown; Escape closes. Marks:
 /// browser.path, .up, .crumb.N, .place.LABEL, .entry.NAME, .look.NAME, .name, .filter, .new_folder,
 /// .folder_name, .create, .accept, .cancel, .overwrite.yes.
 class FileBrowser {
@@ -80,7 +80,9 @@ class FileBrowser {
   void draw_preview(Ui& ui);
   void draw_footer(Ui& ui);
   void draw_overwrite(Ui& ui);
-  void take_keys();
+  void take_keys(Focus& focus);
+  void begin_typed_path(Focus& focus);
+  std::string typed_path() const;
   void find_typed();
   void activate(const FolderEntry& entry);
   void accept();
@@ -89,6 +91,8 @@ class FileBrowser {
   BrowseRequest request_;
   bool open_ = false, editing_path_ = false, focus_path_ = false, naming_folder_ = false,
        scroll_to_selected_ = false;
+  bool path_begun_ = false;  ///< by a key: what is typed goes behind it
+  ImGuiID path_id_ = 0;
   int filter_ = 0;
   std::string folder_, typed_path_, name_, new_folder_, problem_, overwrite_, wanted_;
   std::unique_ptr<FolderListing> listing_;

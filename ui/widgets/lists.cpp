@@ -128,6 +128,7 @@ bool Table::row(bool selected, bool selectable) {
   const bool clicked = ImGui::Selectable(("##row" + std::to_string(row_)).c_str(), selected,
                                          ImGuiSelectableFlags_SpanAllColumns);
   ui_.mark(name_ + "." + std::to_string(row_));
+  ui_.stop(name_ + "." + std::to_string(row_));
   ImGui::SameLine(0, 0);
   return clicked;
 }

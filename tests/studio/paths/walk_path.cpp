@@ -83,6 +83,7 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
         {"scroll", &Path::scroll},
         {"type", &Path::type_text},
         {"key", &Path::press_key},
+        {"tab_to", &Path::tab_to},
         {"resize", &Path::resize},
         {"wait", &Path::wait},
         {"frames", &Path::frames},
@@ -173,6 +174,16 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
     for (const ui::Modifier& modifier : ui::kModifiers)
       if (chord->modifiers.*modifier.held) keys += std::string(modifier.name) + "+";
     key(keys + x_key(chord->key));
+  }
+
+  void tab_to(const Words& words) {
+    look();
+    for (int i = 0; i < 100 && facts_["focus"] != words.at(1); ++i) {
+      key("Tab");
+      frames({"frames", "12"});
+      look();
+    }
+    ASSERT_EQ(facts_["focus"], words.at(1)) << seen();
   }
 
   void resize(const Words& words) {

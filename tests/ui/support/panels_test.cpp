@@ -114,8 +114,9 @@ void PanelsTest::panel(const std::string& name) {
 }
 
 void PanelsTest::expect_known(const std::string& command) const {
-  static const std::set<std::string> kOfTheWindow = {"dialog.open",  "panel.show", "help.keys", "help.here",
-                                                     "picture.save", "video.save", "file.show"};
+  static const std::set<std::string> kOfTheWindow = {"dialog.open", "panel.show", "help.keys",
+                                                     "help.here",   "menu.open",  "picture.save",
+                                                     "video.save",  "file.show"};
   EXPECT_TRUE(kOfTheWindow.count(command) > 0 || studio.commands().find(command) != nullptr)
       << "there is no command " << command;
 }
@@ -184,6 +185,7 @@ void WorkspaceTest::obey() {
     log.push_back(app::join_line(name, arguments));
     if (name == "panel.show") workspace.show_panel(session.settings, arguments[0], arguments[1] == "on");
     if (name == "dialog.open") workspace.open_dialog(session, arguments[0]);
+    if (name == "menu.open") workspace.open_menu(session, arguments.empty() ? "" : arguments[0]);
     if (name == "help.keys") workspace.open_dialog(session, "keys");
     if (name == "help.here") workspace.open_dialog(session, "here");
     if (name == "question.answer") session.question.reset();
