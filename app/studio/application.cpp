@@ -334,7 +334,7 @@ std::optional<ui::Mark> Application::find(const std::string& name) const {
 void Application::write_marks() {
   std::ostringstream text;
   for (const auto& [key, value] : facts(session())) text << join_line("fact", {key, value}) << '\n';
-  text << join_line("fact", {"focus", gui_->ui().focus().name()}) << '\n';
+  text << join_line("fact", {"focus", focus()}) << '\n';
   for (std::string& shown : shown_texts(session())) {
     std::replace(shown.begin(), shown.end(), '\n', ' ');
     text << join_line("text", {shown}) << '\n';

@@ -52,6 +52,8 @@ class Application {
   /// Places that the pointer may go to: named widgets, and joints in the views (joint.PANE.NAME).
   std::vector<ui::Mark> marks() const;
   std::optional<ui::Mark> find(const std::string& name) const;
+  /// The widget that keys are about, "" for none.
+  std::string focus() const { return gui_->ui().focus().name(); }
   /// Whether something on the screen is still being made.
   bool waiting() const;
   void observe(InputListener* observer) { observer_ = observer; }

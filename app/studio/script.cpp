@@ -126,6 +126,7 @@ struct Script::Player {
         {"scroll", 2, 6, &Player::scroll},
         {"type", 1, 1, &Player::type},
         {"key", 1, 1, &Player::key},
+        {"tab_to", 1, 1, &Player::tab_to},
         {"drop", 1, 99, &Player::drop},
         {"close", 0, 0, &Player::close},
         {"expect", 1, 1, &Player::expect},
@@ -347,6 +348,12 @@ struct Script::Player {
     const auto chord = ui::chord_of(words[1]);
     US_CHECK(chord, words[1], " is not a key");
     send(key_events(*chord));
+  }
+
+  void tab_to(const Words& words) {
+    constexpr int kMost = 200;  // controls in a window
+    for (int i = 0; i < kMost && application.focus() != words[1]; ++i) key({"key", "Tab"});
+    US_CHECK(application.focus() == words[1], "Tab does not lead to ", words[1]);
   }
 
   void drop(const Words& words) {

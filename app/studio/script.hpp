@@ -8,7 +8,7 @@
 //   screenshot FILE.png [WxH]             the whole window
 //   click NAME | X Y                      also double_click, right_click, hover; options: ctrl shift alt
 //   drag NAME DX DY | X Y X2 Y2   drag_to NAME NAME2   scroll NAME | X Y  NOTCHES     the same options
-//   resize W H   log TEXT   type "text"   key Ctrl+Z   drop PATH...   close
+//   resize W H   log TEXT   type "text"   key Ctrl+Z   tab_to NAME   drop PATH...   close
 //   expect NAME   expect_no NAME   expect_text TEXT   expect_value KEY [= != >= <=] VALUE   expect_error TEXT
 //   event ...                             one recorded input event
 // Places are pixels from the top left. A NAME is a widget's mark and stands for its middle; NAME@0.2,0.9 is

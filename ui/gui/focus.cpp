@@ -159,6 +159,9 @@ void Focus::finish_frame(const Ui& ui) {
   if (wanted_text_ != 0) use(wanted_text_, true), settling_ = true;
   wanted_text_ = 0, step_ = 0, alt_tapped_ = false;
   std::swap(drawing_, finished_);
+  // Where the widget is gone the ring goes too, and does not come back with it.
+  const auto is_it = [&](const Stop& stop) { return stop.id == id_; };
+  shown_ = shown_ && std::any_of(finished_.begin(), finished_.end(), is_it);
   ImGuiContext& context = *ImGui::GetCurrentContext();
   const int popups = context.OpenPopupStack.Size;
   if (by_keys_ && in_menu()) {
