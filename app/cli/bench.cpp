@@ -86,7 +86,7 @@ int bench(const BenchOptions& options) {
   const auto character = open_target(onto, networks);
   Repeated source(from, options.frames);
   networks = networks_for(std::move(networks), *character, on_their_rig(onto, *character));
-  Retargeter retargeter(std::move(networks), retarget_options(options.how.method));
+  Retargeter retargeter(std::move(networks), retarget_options(options.how));
   retargeter.set_target(character->target);
   RetargetedSource retargeted(source, retargeter, from.path);
   Latency latency;

@@ -74,7 +74,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
       options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
   US_CHECK(options.oracle.empty() || (oracle && !oracle->empty()), c.truth,
            ": --oracle skeleton needs source_joints");
-  Retargeter retargeter(std::move(networks), retarget_options(options.how.method));
+  Retargeter retargeter(std::move(networks), retarget_options(options.how));
   if (character) retargeter.set_target(character->target);
   RetargetedSource retargeted(*source, retargeter, c.source, options.edits);
   for (size_t t = 0;; ++t) {

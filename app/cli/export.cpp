@@ -98,7 +98,7 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   check_export_options(options.out, format, file);
   US_CHECK(!file.their_rig || !options.chose_influences || file.influences == 4, options.target.path,
            ": keeps its own skin weights; --influences needs --bones 22");
-  RetargetOptions quick = retarget_options(options.how.method);
+  RetargetOptions quick = retarget_options(options.how);
   quick.vertices = false;
   Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
   retargeter.set_target(character->target);

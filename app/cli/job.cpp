@@ -99,7 +99,7 @@ Running start(const JobOptions& options) {
   networks = networks_for(std::move(networks), *job.character, on_their_rig(options.target, *job.character));
   job.source = open_source(options.source);
   log::info("inference threads: " + nn::runtime_report().threads_why);
-  job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how.method));
+  job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how));
   job.retargeter->set_target(job.character->target);
   job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source.path,
                                                       options.source.edits);

@@ -41,7 +41,7 @@ Measured measured(const MeasureOptions& options) {
   NetworkParts seeing;
   seeing.extractor = true;
   Retargeter retargeter(nn::load_networks(network_options(options.how), seeing),
-                        retarget_options(options.how.method));
+                        retarget_options(options.how));
   RetargetedSource retargeted(*source, retargeter, options.source.path, options.source.edits);
   Measured result(source->fps(), options.every);
   log::Tally problems;

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/program_files.hpp"
@@ -15,6 +16,22 @@ namespace {
 std::string dashed(std::string name) {
   std::replace(name.begin(), name.end(), '_', '-');
   return name;
+}
+
+/// "left_shoulder=0,0,-30": degrees about the joint's own axes.
+BoneTurn parse_turn(const std::string& text) {
+  const size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  const auto joint = std::find(kJointNames.begin(), kJointNames.end(), name);
+  US_CHECK(joint != kJointNames.end(), "--rest-pose: there is no joint '", name, "'");
+  Vec3 degrees;
+  char more = 0;
+  const std::string angles = equals == std::string::npos ? "" : text.substr(equals + 1);
+  const int count =
+      std::sscanf(angles.c_str(), "%f,%f,%f%c", &degrees.x(), &degrees.y(), &degrees.z(), &more);
+  US_CHECK(count == 3 && degrees.allFinite(), "--rest-pose ", text,
+           ": must be a joint and three angles in degrees: left_shoulder=0,0,-30");
+  return {static_cast<int>(joint - kJointNames.begin()), kPi / 180 * degrees};
 }
 
 }  // namespace
@@ -110,6 +127,16 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
   for (const Proportion& one : kProportions)
     command.add_option("--" + dashed(one.name), method.*one.value, one.explanation)
         ->check(CLI::Range(one.range.low, one.range.high));
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--rest-pose",
+          [&how](const std::vector<std::string>& turns) {
+            for (const std::string& turn : turns) how.rest_pose.push_back(parse_turn(turn));
+          },
+          "how the target stands where the source is in T-pose: a joint and degrees about its axes, "
+          "left_shoulder=0,0,-30; may be given several times")
+      ->take_all()
+      ->allow_extra_args(false);
   command.add_option("--weights", how.weights, "folder of the weights (default: beside the program)");
   command.add_option("--engine-weights", how.engine_file,
                      "weights file of the engine in place of the folder's");
@@ -126,6 +153,12 @@ nn::NetworkOptions network_options(const MethodOptions& how) {
   options.extractor = how.method.extractor;
   options.engine_file = how.engine_file;
   options.extractor_file = how.extractor_file;
+  return options;
+}
+
+RetargetOptions retarget_options(const MethodOptions& how) {
+  RetargetOptions options = retarget_options(how.method);
+  if (!how.rest_pose.empty()) options.rest_pose = rest_rotations(how.rest_pose);
   return options;
 }
 

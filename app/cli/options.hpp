@@ -4,6 +4,7 @@
 #include "app/run/method.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
+#include "retarget/editing/target_edits.hpp"
 #include "retarget/networks/networks.hpp"
 
 namespace CLI {
@@ -26,9 +27,12 @@ struct MethodOptions {
   Method method;
   std::string weights;                      ///< folder; empty: beside the program
   std::string engine_file, extractor_file;  ///< in place of the folder's; empty: the folder's
+  std::vector<BoneTurn> rest_pose;          ///< of the target
 };
 void add_method_options(CLI::App& command, MethodOptions& how);
 nn::NetworkOptions network_options(const MethodOptions& how);
+/// The options of the pipeline, networks apart.
+RetargetOptions retarget_options(const MethodOptions& how);
 
 /// The folder of the bundled samples (see program_files). Throws Error when there is none.
 std::string samples_folder();

@@ -4,6 +4,7 @@
 
 #include "app/cli/evaluation.hpp"
 #include "app/cli/options.hpp"
+#include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
@@ -44,6 +45,19 @@ TEST(MethodOptions, ProportionsOfTheTargetHaveTheNamesThatTheStudioHas) {
   EXPECT_FALSE(retarget_options(parsed("").method).places_limbs());
   EXPECT_THROW(parsed("--stride 0"), CLI::ValidationError);
   EXPECT_THROW(parsed("--arm-reach 2"), CLI::ValidationError);
+}
+
+TEST(MethodOptions, TurnBonesOfTheRestPose) {
+  const MethodOptions how =
+      parsed("--rest-pose left_shoulder=0,0,-30 --rest-pose right_shoulder=0,0,30.5 --stride 1");
+  ASSERT_EQ(how.rest_pose.size(), 2u);
+  EXPECT_NEAR(how.rest_pose[1].axis_angle.z(), 30.5f * kPi / 180, 1e-6f);
+  const RetargetOptions options = retarget_options(how);
+  ASSERT_TRUE(options.rest_pose);
+  EXPECT_NEAR((*options.rest_pose)[LeftShoulder](0, 1), 0.5f, 1e-6f);
+  EXPECT_FALSE(retarget_options(parsed("")).rest_pose);
+  for (const char* wrong : {"left_ear=0,0,1", "head=1,2", "head", "head=1,2,3,4", "head=a,b,c"})
+    EXPECT_THROW(parsed(std::string("--rest-pose ") + wrong), Error) << wrong;
 }
 
 TEST(MethodOptions, ReachThePipelineAndTheNetworks) {
