@@ -308,6 +308,8 @@ TEST_F(StudioTest, EditsOfTheResultComeAndGo) {
 TEST_F(StudioTest, TheRestPoseOfATargetIsPerformedSavedAndUndone) {
   Studio studio(services());
   open_both(studio);
+  studio.run("method.filter", {"0", "hand_contacts", "off"});
+  studio.wait_idle(60);
   const TakeState& take = studio.session().takes[0];
   const Motion before = take.shown;
   const auto deformer = take.deformer;
