@@ -75,6 +75,9 @@ class Call : public ArgumentReader {
   std::string label;  ///< of this run, for undo: "Remove adult"; empty: the command's
 };
 
+/// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
+void remember_folder(Studio& studio, const std::string& path);
+
 /// The offer of a notice about a file that was written.
 inline Offer showing(const std::string& path) {
   return {"Show in folder", join_line("file.show", {path})};

@@ -41,6 +41,7 @@ void open_document(Studio& studio, const std::string& path) {
   const SavedDocument saved = read_document(whole);
   studio.replace_document(saved, whole);
   remember(studio.session().settings.recent, whole);
+  remember_folder(studio, whole);
   if (!saved.weights.empty() && !studio.session().weights.empty() &&
       saved.weights != studio.session().weights)
     studio.notify("This document was made with other network weights: its result may differ.", true);
@@ -53,6 +54,7 @@ void save_document(Studio& studio, const std::string& path) {
   session.path = whole;
   session.changed = false;
   remember(session.settings.recent, whole);
+  remember_folder(studio, whole);
   studio.end_autosave();
   studio.notify("Saved " + fs::path(whole).filename().string());
 }

@@ -40,6 +40,7 @@ void run_export(Call& c) {
         studio.notify("Exported " + file_name(path) + ": " + sentence(*cost), false, showing(path));
       });
   c.session.settings.export_format = format.name;
+  remember_folder(c.studio, path);
 }
 
 std::string counted(size_t takes) {
@@ -83,6 +84,7 @@ void export_all(Call& c) {
         });
       },
       [&studio = c.studio, files, problems] { tell_of_takes(studio, *files, *problems); });
+  remember_folder(c.studio, folder);
   c.session.settings.export_format = are_figures ? "csv" : choice.format->name;
 }
 
@@ -97,6 +99,7 @@ void export_figures(Call& c) {
       },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   c.session.settings.export_format = "csv";
+  remember_folder(c.studio, path);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ void Studio::offer_clean_up(const std::string& doubt) {
       std::string("No person recognised") +
       (cleaned ? ". Crop the scan in Edit > Scan" : ": the scan may hold a floor or a second person");
   log::warn(session_.document.source.path + ": " + (doubt.empty() ? sentence : doubt));
-  notify(sentence, true, cleaned ? Offer{} : Offer{"Clean up", "edit.clean_up"});
+  notify(sentence, true, cleaned ? Offer{} : Offer{"Clean up", "edit.clean_up", true});
 }
 
 /// One after the other.

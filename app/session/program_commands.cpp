@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "app/session/command_sets.hpp"
@@ -65,6 +66,13 @@ void add_work(Commands& commands) {
     c.session.failures.clear();
   });
   commands.add({"notice", "Notice", "TEXT"}, [](Call& c) { c.studio.notify(c.word(0, "text")); });
+  commands.add({"notice.dismiss", "Dismiss notices", "[NUMBER]"}, [](Call& c) {
+    auto& notices = c.session.notices;
+    const int number = c.arguments.empty() ? 0 : c.number<int>(0, "notice");
+    notices.erase(std::remove_if(notices.begin(), notices.end(),
+                                 [&](const Notice& notice) { return number == 0 || notice.id == number; }),
+                  notices.end());
+  });
   commands.add({"app.quit", "Quit", "", "Ctrl+Q"}, [](Call& c) {
     c.session.quit = !c.session.changed;
     if (c.session.quit) return;

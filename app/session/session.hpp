@@ -91,6 +91,7 @@ struct JobView {
 struct Offer {
   std::string label{};    ///< "Undo"; empty: nothing is offered
   std::string command{};  ///< as a line of a script
+  bool waits = false;     ///< the notice stays until it is answered or the source is another
 };
 
 /// A message. Dialogs wait for the user; notices disappear after a while.
@@ -99,8 +100,9 @@ struct Notice {
   Kind kind = Kind::Info;
   std::string text;     ///< one sentence
   std::string details;  ///< for "copy details": the command and the versions
-  double until = 0;     ///< Session::time at which a notice disappears
+  double until = 0;     ///< Session::time at which a notice disappears; infinite: it waits
   Offer offer{};
+  int64_t id = 0;  ///< of a notice: its number since the start, from 1
 };
 
 struct LogLine {
@@ -156,6 +158,7 @@ struct Session {
   double said_before = -1;        ///< Session::time up to which messages belong to another document
   std::vector<Failure> failures;  ///< not mended yet, the newest last
   std::vector<Notice> notices;
+  int64_t notices_made = 0;   ///< since the start
   std::deque<Notice> errors;  ///< shown one after the other in a dialog
   std::optional<Question> question;
   double time = 0;  ///< seconds since the studio started

@@ -116,6 +116,16 @@ void write_settings(const std::string& path, const Settings& settings) {
   write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
+std::string recent_pair(const std::string& body, const std::string& motion) {
+  return body + '\n' + motion;
+}
+
+std::vector<std::string> paths_of_recent(const std::string& entry) {
+  const size_t end = entry.find('\n');
+  if (end == std::string::npos) return {entry};
+  return {entry.substr(0, end), entry.substr(end + 1)};
+}
+
 void remember(std::vector<std::string>& recent, std::string path) {
   if (path.empty()) return;
   recent.erase(std::remove(recent.begin(), recent.end(), path), recent.end());

@@ -21,11 +21,11 @@ struct Settings {
   int cache_mb = 512;               ///< memory for frames shown, 64 .. 8192
   int undo_depth = 200;             ///< 10 .. 1000
   std::vector<std::string> recent;  ///< documents, the newest first, 12 at most
-  std::vector<std::string> recent_sources, recent_targets;
+  std::vector<std::string> recent_sources, recent_targets;  ///< of sources see recent_pair
   std::map<std::string, bool> panels;  ///< shown or not, by name; missing: as the window has it
-  std::string last_folder;             ///< of the file browser
-  std::string export_format;           ///< the last one used, by name; "csv": figures; empty: none yet
-  int getting_started = 0;             ///< the card that is shown, from 1; 0: none
+  std::string last_folder;    ///< that something was opened from or saved in: where the browser starts
+  std::string export_format;  ///< the last one used, by name; "csv": figures; empty: none yet
+  int getting_started = 0;    ///< the card that is shown, from 1; 0: none
   int window_width = 1280, window_height = 800;
 };
 template <class V, class S>
@@ -58,6 +58,9 @@ std::string state_folder();
 Settings read_settings(const std::string& path);
 /// Writes beside the file, then renames. Throws Error naming the path.
 void write_settings(const std::string& path, const Settings& settings);
+/// A body and the motion that it performs as one entry of recent sources, and an entry's paths.
+std::string recent_pair(const std::string& body, const std::string& motion);
+std::vector<std::string> paths_of_recent(const std::string& entry);
 /// Puts `path` first in a recent list.
 void remember(std::vector<std::string>& recent, std::string path);
 

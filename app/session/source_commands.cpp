@@ -14,7 +14,8 @@ namespace {
 /// For another source: drops the edits and settings of the old one's frames.
 void set_source(Call& c, SourceOptions source) {
   Document& document = c.document;
-  const std::string path = source.motion.empty() ? source.path : source.motion;
+  const std::string path = source.motion.empty() ? source.path : recent_pair(source.path, source.motion);
+  remember_folder(c.studio, source.motion.empty() ? source.path : source.motion);
   document.source = std::move(source);
   document.truth.clear();
   document.scan_edits = {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <thread>
 
 #include "app/session/background.hpp"
@@ -137,7 +138,8 @@ void Studio::fail(const std::string& sentence, const std::string& details) {
 
 void Studio::notify(const std::string& sentence, bool warning, const Offer& offer) {
   const auto kind = warning ? Notice::Kind::Warning : Notice::Kind::Info;
-  session_.notices.push_back({kind, sentence, "", session_.time + kNoticeSeconds, offer});
+  const double until = offer.waits ? std::numeric_limits<double>::infinity() : session_.time + kNoticeSeconds;
+  session_.notices.push_back({kind, sentence, "", until, offer, ++session_.notices_made});
 }
 
 /// Gives the background the plan, and drops what no longer belongs to anything. Where it throws nothing has
@@ -223,6 +225,10 @@ void Studio::follow_source(bool other_path) {
   const std::string key = key_of(document.source, edits);
   if (key != b.source_key) {
     cache_.set_source(document.source, edits);
+    auto& notices = session_.notices;
+    notices.erase(std::remove_if(notices.begin(), notices.end(),
+                                 [](const Notice& notice) { return notice.offer.waits; }),
+                  notices.end());
     b.source_key = key;
     session_.source.problem.clear();
     if (other_path) session_.source.clips.clear();

@@ -47,6 +47,7 @@ void add_targets(Commands& commands) {
     take.target.not_a_person = NotAPerson::Refuse;
     take.name = fs::path(take.target.path).stem().string();
     remember(c.session.settings.recent_targets, take.target.path);
+    remember_folder(c.studio, take.target.path);
     c.document.takes.push_back(std::move(take));
     choose_take(c.session, static_cast<int>(c.document.takes.size()) - 1);
   });
@@ -56,6 +57,8 @@ void add_targets(Commands& commands) {
     take.target.path = target_file(c, 1);
     take.target.not_a_person = NotAPerson::Refuse;
     take.target_edits = {};
+    remember(c.session.settings.recent_targets, take.target.path);
+    remember_folder(c.studio, take.target.path);
     take.name = fs::path(take.target.path).stem().string();
   });
   commands.add_edit({"target.remove", "Remove take", "TAKE"}, remove_take);

@@ -199,9 +199,10 @@ double Application::patience_s() const {
 /// Changes with all that a frame shows and that no command changed.
 std::string Application::fingerprint() const {
   const Session& s = session();
-  std::string key = key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(),
-                           s.errors.size(), s.question.has_value(), s.working, s.log.size(), s.changed,
-                           s.truth != nullptr, studio_->cache().bytes(), views_->arrived(), s.view);
+  std::string key =
+      key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(), s.notices_made,
+             s.errors.size(), s.question.has_value(), s.working, s.log.size(), s.changed, s.truth != nullptr,
+             studio_->cache().bytes(), views_->arrived(), s.view);
   for (const TakeState& take : s.takes)
     key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
                   take.performed.size(), take.series.size(), take.as_loaded != nullptr);

@@ -109,6 +109,7 @@ void save_picture(Call& c) {
   const Saving saving = saving_of(c);
   const int frame = shown_frame(c.session);
   US_CHECK(frame >= 0, "there is nothing to show yet");
+  remember_folder(c.studio, saving.path);
   c.studio.jobs().start(
       "Saving " + file_name(saving.path),
       [saving, frame, session = copied(c.session)](JobControl&) {
@@ -138,6 +139,7 @@ void save_video(Call& c) {
   const std::string suffix = file_suffix(saving.path);
   US_CHECK(suffix.empty() || suffix == ".mp4", suffix, " is not a video: .mp4, or a folder for pictures");
   const double fps = c.session.source.fps;
+  remember_folder(c.studio, saving.path);
   c.studio.jobs().start(
       "Saving " + file_name(saving.path),
       [saving, frames, fps, session = copied(c.session)](JobControl& control) {

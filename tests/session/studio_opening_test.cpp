@@ -135,6 +135,43 @@ TEST_F(StudioTest, WhatIsNoPersonIsUsedOnlyWhereTheUserSaysSo) {
   EXPECT_EQ(frame_count(session), kFrames);
 }
 
+TEST_F(StudioTest, TheFolderUsedLastIsRememberedButNotThatOfTheSamples) {
+  fs::create_directories(path("targets")), fs::create_directories(path("samples"));
+  fs::copy_file(path("target.obj"), path("targets/a.obj"));
+  fs::copy_file(path("target.obj"), path("samples/b.obj"));
+  StudioServices own = services();
+  own.samples = path("samples");
+  own.settings_file = path("settings.json");
+  {
+    Studio studio(own);
+    const std::string& last = studio.session().settings.last_folder;
+    EXPECT_EQ(last, "");
+    studio.run("open", {path("scan.npz")});
+    EXPECT_EQ(last, fs::path(path("scan.npz")).parent_path());
+    studio.run("target.add", {path("targets/a.obj")});
+    EXPECT_EQ(last, path("targets"));
+    studio.run("target.add", {path("samples/b.obj")});
+    EXPECT_EQ(last, path("targets"));
+    fs::create_directories(path("work"));
+    studio.run("document.save_as", {path("work/dance")});
+    EXPECT_EQ(last, path("work"));
+    studio.wait_idle(60);
+    studio.run("export.run", {"0", path("out.bvh")});
+    studio.wait_idle(60);
+    EXPECT_EQ(last, fs::path(path("out.bvh")).parent_path());
+  }
+  EXPECT_EQ(Studio(own).session().settings.last_folder, fs::path(path("out.bvh")).parent_path());
+}
+
+TEST_F(StudioTest, ABodyAndItsMotionAreOneRecentSource) {
+  Studio studio(services());
+  studio.try_run("source.motion", {path("body.npz"), path("walk.npz")});
+  const auto& recent = studio.session().settings.recent_sources;
+  ASSERT_EQ(recent.size(), 1u);
+  EXPECT_EQ(paths_of_recent(recent[0]), (std::vector<std::string>{path("body.npz"), path("walk.npz")}));
+  EXPECT_EQ(paths_of_recent("/a b"), std::vector<std::string>{"/a b"});
+}
+
 TEST_F(StudioTest, ATargetsHeightIsSetAndReset) {
   Studio studio(services());
   open_both(studio);
@@ -196,13 +233,26 @@ TEST_F(StudioTest, AScanInWhichNobodyIsRecognisedIsCleanedUpFromTheNotice) {
   ASSERT_EQ(session.notices.size(), 1u);
   EXPECT_EQ(session.notices[0].text, "No person recognised: the scan may hold a floor or a second person");
   EXPECT_EQ(session.notices[0].offer.label, "Clean up");
+  studio.tick(600);
+  ASSERT_EQ(session.notices.size(), 1u) << "it waits for an answer";
   studio.run(session.notices[0].offer.command);
   EXPECT_TRUE(session.document.scan_edits.floor);
   EXPECT_TRUE(session.document.scan_edits.largest_cluster);
   EXPECT_EQ(session.history.undo_label(), "Clean up the scan");
   studio.wait_idle(60);
-  ASSERT_EQ(session.notices.size(), 2u) << "once for each way in which it is cleaned";
-  EXPECT_EQ(session.notices[1].offer.label, "") << "it is cleaned up already";
+  ASSERT_EQ(session.notices.size(), 1u) << "the offer went with the scan that it was about";
+  EXPECT_EQ(session.notices[0].offer.label, "") << "it is cleaned up already";
+  studio.tick(600);
+  EXPECT_TRUE(session.notices.empty()) << "nothing to answer";
+  studio.run("edit.undo");
+  studio.wait_idle(60);
+  ASSERT_EQ(session.notices.size(), 1u);
+  studio.run("notice", {"Another"});
+  studio.run("notice.dismiss", {std::to_string(session.notices[0].id)});
+  ASSERT_EQ(session.notices.size(), 1u);
+  EXPECT_EQ(session.notices[0].text, "Another");
+  studio.run("notice.dismiss");
+  EXPECT_TRUE(session.notices.empty());
 }
 
 TEST_F(StudioTest, AScanWithAPersonIsNotOfferedACleanUp) {

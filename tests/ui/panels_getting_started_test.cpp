@@ -67,10 +67,10 @@ TEST_F(GettingStarted, DoingWhatACardSaysGoesOn) {
   session.document.takes.push_back(session.document.takes[0]);
   session.takes.push_back(session.takes[0]);
   EXPECT_EQ(done(), Lines{"help.getting_started 5"});
-  session.notices.push_back({app::Notice::Kind::Info, "Saved a.understudy", "", 5, {}});
+  session.notices.push_back({app::Notice::Kind::Info, "Saved a.understudy", "", 5, {}, 1});
   EXPECT_EQ(done(), Lines());
   session.notices.push_back(
-      {app::Notice::Kind::Info, "Exported a.glb", "", 6, {"Show in folder", "file.show /a.glb"}});
+      {app::Notice::Kind::Info, "Exported a.glb", "", 6, {"Show in folder", "file.show /a.glb"}, 2});
   const Lines last = done();
   ASSERT_EQ(last.size(), 2u);
   EXPECT_EQ(last[0], "help.getting_started off");

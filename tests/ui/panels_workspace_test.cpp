@@ -868,15 +868,26 @@ TEST_F(WorkspaceTest, SettingsAreAskedFor) {
   EXPECT_EQ(workspace.dialog(), "");
 }
 
-TEST_F(WorkspaceTest, NoticesComeOnce) {
+TEST_F(WorkspaceTest, NoticesLieBelowTheFiguresAndStayUnderThePointer) {
   session.time = 10;
-  session.notices.push_back({app::Notice::Kind::Info, "Saved dance.understudy", "", 12});
+  session.notices.push_back({app::Notice::Kind::Info, "Saved dance.understudy", "", 12, {}, 1});
   frame(3);
   EXPECT_TRUE(shown("notice.0"));
   const Rect views = mark("views").rect, notice = mark("notice.0").rect;
-  EXPECT_GT(notice.min.y, views.at(0, 0.75f).y);  // below the figures, not over their heads
+  EXPECT_GT(notice.min.y, views.max.y - 48);
   EXPECT_LE(notice.max.y, views.max.y);
-  frame(240);
+  hover("notice.0");
+  session.time = 13, session.notices.clear();
+  frame(3);
+  EXPECT_TRUE(shown("notice.0"));
+  hover("views");
+  frame(3);
+  EXPECT_FALSE(shown("notice.0"));
+  session.notices.push_back({app::Notice::Kind::Info, "Saved dance.understudy", "", 21, {}, 2});
+  frame(3);
+  hover("notice.0");
+  session.notices.clear();  // dismissed before its time
+  frame(3);
   EXPECT_FALSE(shown("notice.0"));
 }
 
@@ -886,25 +897,32 @@ TEST_F(WorkspaceTest, ANoticesButtonAsksForWhatItOffersAndANoticeMadeLaterStillC
                              "Removed adult with its edits",
                              "",
                              18,
-                             {"Undo", "edit.undo \"Remove adult\""}});
+                             {"Undo", "edit.undo \"Remove adult\""},
+                             1});
   frame(3);
   click("notice.0.offer");
-  EXPECT_EQ(take_log(), Lines{"edit.undo \"Remove adult\""});
+  EXPECT_EQ(take_log(), (Lines{"notice.dismiss 1", "edit.undo \"Remove adult\""}));
   frame(2);
   EXPECT_FALSE(shown("notice.0"));
   session.time = 11;
-  session.notices.push_back({app::Notice::Kind::Info, "Undone: Remove adult", "", 19});
+  session.notices.push_back({app::Notice::Kind::Info, "Undone: Remove adult", "", 19, {}, 2});
   frame(3);
   EXPECT_TRUE(shown("notice.0"));
   EXPECT_FALSE(shown("notice.0.offer"));
+  click("notice.0");
+  EXPECT_EQ(take_log(), Lines{"notice.dismiss 2"});
 }
 
 TEST_F(WorkspaceTest, ANoticeOfAFileShowsItsFolder) {
-  session.notices.push_back(
-      {app::Notice::Kind::Info, "Exported a b.glb", "", 8, {"Show in folder", "file.show \"/d/a b.glb\""}});
+  session.notices.push_back({app::Notice::Kind::Info,
+                             "Exported a b.glb",
+                             "",
+                             8,
+                             {"Show in folder", "file.show \"/d/a b.glb\""},
+                             3});
   frame(3);
   click("notice.0.offer");
-  EXPECT_EQ(take_log(), Lines{"file.show \"/d/a b.glb\""});
+  EXPECT_EQ(take_log(), (Lines{"notice.dismiss 3", "file.show \"/d/a b.glb\""}));
 }
 
 TEST_F(WorkspaceTest, ATargetThatMayBeNoPersonIsUsedOrTakenBack) {

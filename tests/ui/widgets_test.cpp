@@ -185,18 +185,39 @@ TEST_F(Widgets, TableRowsAreClicked) {
   EXPECT_EQ(clicked, 2);
 }
 
-TEST_F(Widgets, NoticesGoAwayAndStayUnderThePointer) {
-  Notices notices;
-  content = [&](Ui& ui) { notices.draw(ui); };
-  notices.add({"Saved walk.understudy", NoticeKind::Good, 1});
+TEST_F(Widgets, ToastsAreLinesAtTheBottomBesideWhatIsToBeSeen) {
+  std::vector<Toast> toasts = {{"Saved walk.understudy"}, {"Removed adult", NoticeKind::Good, "Undo"}};
+  Rect over{{0, 100}, {700, 500}}, avoid;
+  ToastUse used;
+  content = [&](Ui& ui) {
+    const ToastUse use = draw_toasts(ui, toasts, over, avoid);
+    used.clicked = std::max(used.clicked, use.clicked), used.offered = std::max(used.offered, use.offered);
+    used.hovered = use.hovered;
+  };
   frame(3);
-  EXPECT_TRUE(shown("notice.0"));
-  hover("notice.0");
-  frame(60);
-  EXPECT_FALSE(notices.empty());
-  click("notice.0");
+  EXPECT_GT(mark("notice.0").rect.max.x, 680) << "the newest at the bottom right";
+  EXPECT_GT(mark("notice.0").rect.min.y, 455) << "one line: below the figures";
+  EXPECT_LT(mark("notice.1").rect.max.y, mark("notice.0").rect.min.y);
+  hover("notice.1");
+  EXPECT_EQ(used.hovered, 0);
+  click("notice.1");
+  EXPECT_EQ(used.clicked, 0);
+  click("notice.0.offer");
+  EXPECT_EQ(used.offered, 1);
+  for (const Rect& legend :
+       {Rect{{560, 100}, {700, 500}}, Rect{{480, 430}, {690, 490}}, Rect{{20, 430}, {690, 490}}}) {
+    avoid = legend;
+    frame(2);
+    for (const char* name : {"notice.0", "notice.1"}) {
+      const Rect at = mark(name).rect;
+      EXPECT_TRUE(intersection(at, legend).empty()) << name;
+      EXPECT_TRUE(at.min.x >= 0 && at.min.y >= 100 && at.max.x <= 700 && at.max.y <= 500) << name;
+    }
+  }
+  avoid = {}, toasts = {{std::string(400, 'w'), NoticeKind::Warning, "Clean up"}};
   frame(2);
-  EXPECT_TRUE(notices.empty());
+  EXPECT_GE(mark("notice.0").rect.min.x, 0);
+  EXPECT_LE(mark("notice.0.offer").rect.max.x, 700);
 }
 
 TEST_F(Widgets, QuestionsAreAnsweredByButtonsAndKeys) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/index.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/rows.hpp"
 
@@ -200,18 +201,24 @@ void draw_question(const app::Session& session, PanelContext& context, FilesStat
 }
 
 void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state, const Rect& over) {
-  double newest = state.newest;
-  for (const app::Notice& notice : session.notices) {
-    if (notice.until <= state.newest) continue;
-    const bool info = notice.kind == app::Notice::Kind::Info;
-    state.shown.add({notice.text, info ? NoticeKind::Good : NoticeKind::Warning,
-                     static_cast<float>(std::max(1.0, notice.until - session.time)), notice.offer.label,
-                     notice.offer.command});
-    newest = std::max(newest, notice.until);
-  }
-  state.newest = newest;
-  const std::string chosen = state.shown.draw(context.ui, over);
-  if (!chosen.empty()) push(context, {chosen, ""});
+  constexpr std::ptrdiff_t kMost = 3;
+  const auto& all = session.notices;
+  std::vector<app::Notice> shown(all.end() - std::min(kMost, ssize(all)), all.end());
+  const auto is_held = [&](const app::Notice& notice) { return state.held && notice.id == state.held->id; };
+  const bool is_over = state.held && session.time > state.held->until;
+  if (is_over && std::none_of(shown.begin(), shown.end(), is_held)) shown.insert(shown.begin(), *state.held);
+  std::vector<Toast> toasts;
+  for (const app::Notice& notice : shown)
+    toasts.push_back({notice.text,
+                      notice.kind == app::Notice::Kind::Info ? NoticeKind::Good : NoticeKind::Warning,
+                      notice.offer.label});
+  const Mark* const legend = context.ui.find("view.legend");
+  const ToastUse use = draw_toasts(context.ui, toasts, over, legend != nullptr ? legend->rect : Rect());
+  state.held.reset();
+  const int answered = std::max(use.clicked, use.offered);
+  if (answered >= 0) context.ask("notice.dismiss", {std::to_string(shown[answered].id)});
+  if (use.offered >= 0) push(context, {shown[use.offered].offer.command, ""});
+  if (answered < 0 && use.hovered >= 0) state.held = shown[use.hovered];
 }
 
 bool draw_about(PanelContext& context, const std::string& about) {

@@ -23,10 +23,9 @@ bool draw_error(const app::Session& session, PanelContext& context);
 void draw_question(const app::Session& session, PanelContext& context, FilesState& files);
 
 struct NoticesState {
-  Notices shown;
-  double newest = 0;  ///< Notice::until of the newest that was taken over
+  std::optional<app::Notice> held;  ///< the pointer is on it: it stays although its time is over
 };
-/// Call outside any window, last.
+/// The newest notices, three at most. Call outside any window, last.
 void draw_notices(const app::Session& session, PanelContext& context, NoticesState& state, const Rect& over);
 
 // Dialogs to be drawn every frame while they are open. False once closed.

@@ -43,7 +43,7 @@ bool has_compared(const app::Session& session, const Before& before) {
 
 bool has_exported(const app::Session& session, const Before& before) {
   return std::any_of(session.notices.begin(), session.notices.end(), [&](const app::Notice& notice) {
-    return notice.until > before.newest_notice && starts_with(notice.offer.command, "file.show");
+    return notice.id > before.notices_made && starts_with(notice.offer.command, "file.show");
   });
 }
 
@@ -98,10 +98,7 @@ constexpr std::array<Card, app::kGettingStartedCards> kCards = {{
 }};
 
 Before before_of(const app::Session& session) {
-  Before before{session.document, session.view.cameras, 0};
-  for (const app::Notice& notice : session.notices)
-    before.newest_notice = std::max(before.newest_notice, notice.until);
-  return before;
+  return {session.document, session.view.cameras, session.notices_made};
 }
 
 /// What the card points at.
@@ -207,9 +204,8 @@ void draw_guide_card(const app::Session& session, PanelContext& context, Getting
       border(ImGuiCol_Border, ui.theme().accent);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, ui.px(1)));
   ImGui::Begin("##guide_card", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
-                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
   draw_words(context, card, state.card);
   state.height = ImGui::GetWindowSize().y;
@@ -227,7 +223,8 @@ void draw_getting_started(const app::Session& session, PanelContext& context, Ge
   const int card = std::clamp(session.settings.getting_started, 0, app::kGettingStartedCards);
   if (card != state.card) {
     // What the program was started with was opened, too.
-    state.before = before_of(state.card < 0 && card == 1 ? app::Session{} : session);
+    const bool at_start = state.card < 0 && card == 1;
+    state.before = at_start ? Before() : before_of(session);
     state.card = card;
   }
   if (card == 0) return;

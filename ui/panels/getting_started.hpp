@@ -15,7 +15,7 @@ struct GettingStartedState {
   struct Before {
     app::Document document;
     std::vector<app::CameraState> cameras;
-    double newest_notice = 0;
+    int64_t notices_made = 0;
   } before;
   float height = 0;  ///< of the card's window, pixels
 };

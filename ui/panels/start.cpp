@@ -89,20 +89,23 @@ void draw_openers(PanelContext& context) {
 
 struct RecentList {
   const char *title, *name, *command;
-  const std::vector<std::string>& paths;
+  const std::vector<std::string>& entries;
 };
 
 void draw_recent(const RecentList& recent, PanelContext& context) {
-  if (recent.paths.empty()) return;
+  if (recent.entries.empty()) return;
   heading(context.ui, recent.title);
   const IdScope list(recent.name);
-  for (size_t i = 0; i < recent.paths.size(); ++i) {
-    const std::string& path = recent.paths[i];
+  for (size_t i = 0; i < recent.entries.size(); ++i) {
+    const std::vector<std::string> paths = app::paths_of_recent(recent.entries[i]);
+    const bool is_pair = paths.size() > 1;
     ButtonOptions options;
-    options.look = ButtonLook::Quiet, options.tooltip = path;
-    const std::string label = cut_to(file_name(path), ImGui::GetContentRegionAvail().x - context.ui.px(16));
+    options.look = ButtonLook::Quiet, options.tooltip = recent.entries[i];
+    const std::string name =
+        is_pair ? file_name(paths[1]) + " (" + file_name(paths[0]) + ")" : file_name(paths[0]);
+    const std::string label = cut_to(name, ImGui::GetContentRegionAvail().x - context.ui.px(16));
     if (button(context.ui, recent.name + ("." + std::to_string(i)), label, options))
-      context.ask(recent.command, {path});
+      context.ask(is_pair ? "source.motion" : recent.command, paths);
   }
 }
 

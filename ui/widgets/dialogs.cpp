@@ -3,6 +3,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ui/gui/gui.hpp"
 #include "ui/widgets/controls.hpp"
@@ -41,53 +42,88 @@ Answer draw_choices(Ui& ui, const std::vector<Choice>& choices) {
   return answer;
 }
 
-}  // namespace
+constexpr float kToastHeight = 34, kToastPad = 8;  // at scale 1
 
-void Notices::add(Toast notice) {
-  notices_.push_back(std::move(notice));
-  if (notices_.size() > 3) notices_.erase(notices_.begin());
+/// What fits on the one line of a toast.
+struct ToastLine {
+  std::string words;
+  float width = 0, button = 0;  ///< pixels, of the whole and of the button
+};
+ToastLine toast_line(Ui& ui, const Toast& toast, const Rect& area) {
+  ToastLine line;
+  if (!toast.button.empty()) line.button = ImGui::CalcTextSize(toast.button.c_str()).x + ui.px(28);
+  const float gap = ui.px(8), around = 2 * ui.px(kToastPad) + ImGui::GetTextLineHeight() + gap +
+                                       (line.button > 0 ? line.button + gap : 0);
+  line.words = cut_to(toast.sentence, std::max(ui.px(40), area.width() - ui.px(20) - around));
+  line.width = std::ceil(ImGui::CalcTextSize(line.words.c_str()).x + around);
+  return line;
 }
 
-std::string Notices::draw(Ui& ui, const Rect& over) {
-  std::string chosen;
-  const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const Rect area = over.empty() ? Rect{{0, 0}, display} : over;
-  const float room = std::max(ui.px(120), std::min(ui.px(420), area.width() - ui.px(20)));
-  float bottom = area.max.y - ui.px(10);
-  for (size_t k = notices_.size(); k-- > 0;) {
-    Toast& notice = notices_[k];
-    const std::string name = "notice." + std::to_string(notices_.size() - 1 - k);
-    ImGui::SetNextWindowPos({area.max.x - ui.px(10), bottom}, ImGuiCond_Always, {1, 1});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {room, FLT_MAX});
-    const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
-    ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::clamp(notice.seconds_left / 0.3f, 0.05f, 1.f));
-    ImGui::Begin(("##" + name).c_str(), nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
-    const bool good = notice.kind == NoticeKind::Good;
-    icon_label(ui, good ? Icon::Check : Icon::Warning, good ? ui.theme().good : ui.theme().warning);
-    ImGui::SameLine();
-    ImGui::PushTextWrapPos(room - ui.px(20));
-    ImGui::TextUnformatted(notice.sentence.c_str());
-    ImGui::PopTextWrapPos();
-    bool offered = false;
-    if (!notice.button.empty()) {
-      offered = button(ui, name + ".offer", notice.button);
-      if (offered) chosen = notice.command, notice.seconds_left = 0;
-    }
-    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    ui.mark(name, {at, {at.x + size.x, at.y + size.y}});
-    const bool hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
-    if (!hovered) notice.seconds_left -= ImGui::GetIO().DeltaTime;
-    if (hovered && ImGui::IsMouseClicked(0) && !ImGui::IsAnyItemHovered()) notice.seconds_left = 0;
-    bottom -= size.y + ui.px(8);
-    ImGui::End();
-    ImGui::PopStyleVar();
+/// At the bottom right of the area; where that lies on `avoid`, left of it, else above it.
+Rect place_toast(const ImVec2& size, const Rect& area, const Rect& avoid, float gap) {
+  Rect place{{area.max.x - gap - size.x, area.max.y - size.y}, {area.max.x - gap, area.max.y}};
+  if (intersection(place, avoid).empty()) return place;
+  const float left = avoid.min.x - gap - size.x, top = avoid.min.y - gap - size.y;
+  if (left >= area.min.x)
+    place = {{left, place.min.y}, {left + size.x, place.max.y}};
+  else if (top >= area.min.y)
+    place = {{place.min.x, top}, {place.max.x, top + size.y}};
+  return place;
+}
+
+struct ToastToDraw {
+  const std::string& name;
+  const Toast& toast;
+  const ToastLine& line;
+  const Rect& place;
+  int number;
+};
+void draw_toast(Ui& ui, const ToastToDraw& one, ToastUse& use) {
+  ImGui::SetNextWindowPos(one.place.min);
+  ImGui::SetNextWindowSize({one.place.width(), one.place.height()});
+  const ColorScope background(ImGuiCol_WindowBg, ui.theme().raised);
+  const float middle = (one.place.height() - ImGui::GetTextLineHeight()) / 2;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(kToastPad), 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin(("##" + one.name).c_str(), nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar(2);
+  const bool good = one.toast.kind == NoticeKind::Good;
+  ImGui::SetCursorPosY(middle);
+  icon_label(ui, good ? Icon::Check : Icon::Warning, good ? ui.theme().good : ui.theme().warning);
+  ImGui::SameLine(0, ui.px(8));
+  ImGui::TextUnformatted(one.line.words.c_str());
+  if (one.line.words != one.toast.sentence) tooltip(ui, one.toast.sentence);
+  if (one.line.button > 0) {
+    ImGui::SameLine(one.place.width() - ui.px(kToastPad) - one.line.button);
+    ImGui::SetCursorPosY((one.place.height() - ImGui::GetFrameHeight()) / 2);
+    ButtonOptions options;
+    options.width = one.line.button;
+    if (button(ui, one.name + ".offer", one.toast.button, options)) use.offered = one.number;
   }
-  notices_.erase(
-      std::remove_if(notices_.begin(), notices_.end(), [](const Toast& n) { return n.seconds_left <= 0; }),
-      notices_.end());
-  return chosen;
+  ui.mark(one.name, one.place);
+  const bool hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
+  if (hovered) use.hovered = one.number;
+  if (hovered && ImGui::IsMouseClicked(0) && !ImGui::IsAnyItemHovered()) use.clicked = one.number;
+  ImGui::End();
+}
+
+}  // namespace
+
+ToastUse draw_toasts(Ui& ui, const std::vector<Toast>& toasts, const Rect& over, const Rect& avoid) {
+  const Rect area = over.empty() ? Rect{{0, 0}, ImGui::GetIO().DisplaySize} : over;
+  ToastUse use;
+  float bottom = area.max.y - ui.px(6);
+  for (size_t k = toasts.size(); k-- > 0;) {
+    const std::string name = "notice." + std::to_string(toasts.size() - 1 - k);
+    const ToastLine line = toast_line(ui, toasts[k], area);
+    const Rect place =
+        place_toast({line.width, ui.px(kToastHeight)}, {area.min, {area.max.x, bottom}}, avoid, ui.px(8));
+    draw_toast(ui, {name, toasts[k], line, place, static_cast<int>(k)}, use);
+    bottom = place.min.y - ui.px(6);
+  }
+  return use;
 }
 
 bool begin_dialog(Ui& ui, const std::string& name, const std::string& title, float width, float height) {

@@ -10,26 +10,21 @@ namespace understudy::ui {
 
 enum class NoticeKind { Good, Warning };
 
-/// Sentences shown for some seconds, three at most: "Saved walk.understudy". Plain data; the
-/// application keeps one and draws it last.
-class Notices {
- public:
-  struct Toast {
-    std::string sentence;
-    NoticeKind kind = NoticeKind::Good;
-    float seconds_left = 0;
-    std::string button{}, command{};  ///< what it offers, and what draw() then returns; empty: nothing
-  };
-  void add(Toast notice);
-  /// Call once a frame, outside any window. A notice stays while the pointer is on it; a click removes it.
-  /// The newest is on top, at the top right of `over` (empty: of the window), and marked notice.0, its button
-  /// notice.0.offer. Returns the command of a button that was clicked, else "".
-  std::string draw(Ui& ui, const Rect& over = {});
-  bool empty() const { return notices_.empty(); }
-
- private:
-  std::vector<Toast> notices_;
+/// A sentence with what can be done about it: "Saved walk.understudy".
+struct Toast {
+  std::string sentence;
+  NoticeKind kind = NoticeKind::Good;
+  std::string button{};  ///< empty: nothing
 };
+/// Of which toast, by its number; below 0: of none.
+struct ToastUse {
+  int hovered = -1;
+  int clicked = -1;  ///< away
+  int offered = -1;  ///< its button was clicked
+};
+/// Call once a frame, outside any window. A line each at the bottom right of `over` (empty: of the window), beside
+/// `avoid` where there is room, the last at the bottom. The last is marked notice.0, its button notice.0.offer.
+ToastUse draw_toasts(Ui& ui, const std::vector<Toast>& toasts, const Rect& over = {}, const Rect& avoid = {});
 
 enum class Answer { None, Yes, No, Cancel };
 

@@ -111,8 +111,6 @@ TEST_P(Gallery, CutsNoWordOfTheBrowserOrADialog) {
   request.title = "Open a scan", request.folder = US_SOURCE_DIR "/assets/samples";
   request.filters = {filter_of(FileKind::Source), filter_of(FileKind::Any)};
   browser.open(request);
-  Notices notices;
-  notices.add({"Saved walk_female_03.understudy", NoticeKind::Good, 4});
   bool asking = false;
   const auto draw = [&]() -> const ImDrawData& {
     gui.begin_frame(input);
@@ -121,7 +119,7 @@ TEST_P(Gallery, CutsNoWordOfTheBrowserOrADialog) {
     if (asking)
       ask(gui.ui(), "unsaved",
           {"Unsaved changes", "Save walk_female_03 before closing it?", "Save", "Don't save"});
-    notices.draw(gui.ui());
+    draw_toasts(gui.ui(), {{"Saved walk_female_03.understudy"}});
     return gui.end_frame();
   };
   for (int i = 0; i < 40; ++i) {

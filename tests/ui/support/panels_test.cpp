@@ -1,5 +1,6 @@
 #include "tests/ui/support/panels_test.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -190,6 +191,13 @@ void WorkspaceTest::obey() {
     if (name == "help.here") workspace.open_dialog(session, "here");
     if (name == "question.answer") session.question.reset();
     if (name == "error.dismiss") session.errors.pop_front();
+    if (name == "notice.dismiss") {
+      auto& all = session.notices;
+      all.erase(
+          std::remove_if(all.begin(), all.end(),
+                         [&, id = std::stoll(arguments[0])](const app::Notice& one) { return one.id == id; }),
+          all.end());
+    }
     if (name == "help.getting_started")
       session.settings.getting_started = arguments.empty()       ? 1
                                          : arguments[0] == "off" ? 0
