@@ -100,6 +100,51 @@ TEST_F(ExportCommand, ADocumentGivesWhatTheStudioExports) {
   EXPECT_EQ(read_character(out("cli.glb")).animations[0].tracks[0].times.size(), 3u);
 }
 
+TEST_F(ExportCommand, APresetSetsWhatIsNotGiven) {
+  expect_clean_failure(run(target(), {"--preset", "maya", "--out", out("c.glb")}),
+                       "there is no preset 'maya'");
+  const Finished done = run(target(), {"--morphs", "2", "--preset", "unreal", "--out", out("a.glb")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const Character file = read_character(out("a.glb"));
+  EXPECT_EQ(file.parts[0].joints.cols(), 8);
+  EXPECT_EQ(file.parts[0].shapes.size(), 2u);
+  EXPECT_EQ(run(character(), {"--preset", "blender", "--out", out("b.glb")}).code, 0) << "its own skin stays";
+  EXPECT_EQ(read_character(out("b.glb")).animations.size(), 2u) << "the T-pose, too";
+}
+
+TEST_F(ExportCommand, ABvhIsOnTheBonesThatAreAskedFor) {
+  expect_clean_failure(run(target(), {"--bones", "own", "--out", out("b.bvh")}), "bones of its own");
+  const std::string path = character();
+  for (const auto& [bones, hips] : {std::pair{"own", "ROOT mixamorig:Hips"}, {"22", "ROOT pelvis"}}) {
+    const Finished done = run(path, {"--bones", bones, "--frames", "2", "--out", out("a.bvh")});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(read_bytes(out("a.bvh")).find(hips), std::string::npos) << bones;
+  }
+}
+
+TEST_F(ExportCommand, AllTakesOfADocumentAreAFileEach) {
+  expect_clean_failure(run(target(), {"--all-takes", "--out", out("all")}), "only a document has takes");
+  const std::string document = scratch.path("dance.understudy");
+  write_text(scratch.path("make.us"), "open " + scans() + "\nopen " + character() + "\ntarget.add " +
+                                          target() + "\ntake.rename 0 one\n" +
+                                          "take.rename 1 two\nwait\ndocument.save_as " + document + "\n");
+  const Finished made = run_program({"play", scratch.path("make.us"), "--context", "null"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Finished done = run_program(
+      {"export", document, "--all-takes", "--format", "bvh", "--bones", "own", "--out", out("all")});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.out.find("2 of 2 takes"), std::string::npos) << done.out;
+  EXPECT_NE(read_bytes(out("all/one.bvh")).find("mixamorig:Hips"), std::string::npos);
+  EXPECT_NE(read_bytes(out("all/two.bvh")).find("pelvis"), std::string::npos);
+  std::filesystem::remove(out("all/one.bvh"));
+  std::filesystem::create_directories(out("all/one.bvh/in the way"));
+  const Finished part =
+      run_program({"export", document, "--all-takes", "--format", "bvh", "--out", out("all")});
+  EXPECT_EQ(part.code, 1);
+  EXPECT_NE(part.out.find("1 of 2 takes"), std::string::npos) << part.out;
+  EXPECT_NE(part.err.find("one.bvh"), std::string::npos) << part.err;
+}
+
 TEST_F(ExportCommand, ADocumentThatCannotBeExportedIsASentence) {
   const std::string document = scratch.path("dance.understudy");
   write_text(scratch.path("make.us"),
