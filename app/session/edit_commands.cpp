@@ -39,7 +39,7 @@ void crop(Call& c) {
   auto& crop = c.document.scan_edits.crop;
   const std::string& what = c.word(0, "box");
   if (what == "off") {
-    if (c.session.tool == Tool::Crop) c.session.tool = Tool::Look;
+    if (c.session.tool == Tool::Crop) c.studio.run("tool", {"look"});
     return crop.reset();
   }
   const Box before = crop.value_or(Box::open());
@@ -169,6 +169,15 @@ int* frame_of(RotateEdit& edit) {
   return &edit.frame;
 }
 
+/// -1 of an exchanged range.
+int joint_of(const SkeletonEdit& edit) {
+  const auto* const drag = std::get_if<DragEdit>(&edit);
+  return drag != nullptr ? drag->joint : -1;
+}
+int joint_of(const RotateEdit& edit) {
+  return edit.joint;
+}
+
 template <class Edit>
 void check_any_at(std::vector<Edit>& edits, int frame) {
   US_CHECK(std::any_of(edits.begin(), edits.end(),
@@ -190,8 +199,22 @@ void move_all_at(std::vector<Edit>& edits, int frame, int to) {
     if (int* const at = frame_of(edit); at != nullptr && *at == frame) *at = to;
 }
 
+/// All edits by hand of one joint, at whatever frame.
+template <class Edit>
+void remove_all_of(std::vector<Edit>& edits, Call& c, size_t i) {
+  const int joint = c.joint(i);
+  const size_t before = edits.size();
+  const auto of_it = [&](const Edit& edit) { return joint_of(edit) == joint; };
+  edits.erase(std::remove_if(edits.begin(), edits.end(), of_it), edits.end());
+  US_CHECK(edits.size() < before, "the joint has no edits");
+  c.label = "Reset " + joint_words(joint);
+}
+
 void remove_edit(Call& c) {
-  const size_t kind = c.choice(0, "kind", {"skeleton", "drags", "rotation", "rotations", "joint"});
+  const size_t kind = c.choice(
+      0, "kind", {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of", "rotations_of"});
+  if (kind == 5) return remove_all_of(c.document.skeleton_edits, c, 1);
+  if (kind == 6) return remove_all_of(c.take(1).pose_edits.rotate, c, 2);
   if (kind == 0) return remove_at(c.document.skeleton_edits, c, 1);
   if (kind == 1) return remove_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"));
   Take& take = c.take(1);
@@ -232,7 +255,8 @@ void move_edit(Call& c) {
 void add_rearrangement(Commands& commands) {
   commands.add_edit(
       {"edit.remove", "Remove an edit",
-       "skeleton INDEX | drags FRAME | rotation TAKE INDEX | rotations TAKE FRAME | joint TAKE INDEX"},
+       "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
+       "rotations_of TAKE JOINT | joint TAKE INDEX"},
       remove_edit);
   commands.add_edit({"edit.move", "Move an edit in time",
                      "drags FRAME TO | swap INDEX TO | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO"},
@@ -352,8 +376,9 @@ void add_history(Commands& commands) {
     const std::vector<Take> before = c.document.takes;
     const bool cropped = c.document.scan_edits.crop.has_value();
     c.document = back ? history.undo(c.document) : history.redo(c.document);
-    if (cropped && !c.document.scan_edits.crop && c.session.tool == Tool::Crop) c.session.tool = Tool::Look;
     choose_returned(c.session, before);
+    if (cropped && !c.document.scan_edits.crop && c.session.tool == Tool::Crop)
+      c.studio.run("tool", {"look"});
     c.session.changed = true;
     c.studio.notify((back ? "Undone: " : "Redone: ") + label);
   };

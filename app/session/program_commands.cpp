@@ -2,19 +2,43 @@
 #include <utility>
 
 #include "app/session/command_sets.hpp"
+#include "app/session/follow.hpp"
 
 namespace understudy::app {
 namespace {
 
-/// Goes as far back as the spread arms of a T-pose, or the crop box, ask; never nearer.
-void see_whole(Call& c) {
+/// Goes as far back as the spread arms of a T-pose ask; never nearer.
+void see_rest(Call& c) {
   View& view = c.session.view;
-  if (!view.linked && is_of_rest(c.session.tool)) choose_take(c.session, c.session.selected_take);
+  if (!view.linked) choose_take(c.session, c.session.selected_take);
   const size_t i = view.linked ? 0 : view.active_pane;
   const View before = view;
   c.studio.run("view.fit");
   if (i < before.cameras.size() && view.cameras[i].distance <= before.cameras[i].distance)
     view.cameras = before.cameras;
+}
+
+/// Goes as far back as the crop box asks and turns nowhere else; never nearer.
+void see_crop_box(Call& c) {
+  View& view = c.session.view;
+  if (view.cameras.empty()) view.cameras.resize(1);
+  const Box box = shown_crop(c.session);
+  const Vec3 offset = follow_offset(c.session, 0, shown_frame(c.session));
+  CameraState& camera = view.cameras[0];  // the source's, linked or not
+  camera.distance =
+      std::max(camera.distance, distance_to_see(c.session, camera, box.low - offset, box.high - offset));
+}
+
+/// What a tool needs to see it sees; when it is left the cameras are as before, unless they were moved meanwhile.
+void adjust_cameras(Call& c) {
+  Session& session = c.session;
+  auto& cameras = session.view.cameras;
+  const auto stepped = std::exchange(session.stepped_back, std::nullopt);
+  if (stepped && same(cameras, stepped->after)) cameras = stepped->before;
+  const std::vector<CameraState> before = cameras;
+  if (is_of_rest(session.tool)) see_rest(c);
+  if (session.tool == Tool::Crop) see_crop_box(c);
+  if (!same(cameras, before)) session.stepped_back = {before, cameras};
 }
 
 void add_tools(Commands& commands) {
@@ -29,8 +53,7 @@ void add_tools(Commands& commands) {
                  [name = kToolNames[i]](Call& c) { c.studio.run("tool", {name}); });
   commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop|rest-pose"}, [](Call& c) {
     const Tool before = std::exchange(c.session.tool, c.choice<Tool>(0, "tool", kToolNames));
-    if (before != c.session.tool && (is_of_rest(c.session.tool) || c.session.tool == Tool::Crop))
-      see_whole(c);
+    if (before != c.session.tool) adjust_cameras(c);
   });
   commands.add({"tool.falloff", "Falloff", "FRAMES"},
                [](Call& c) { c.session.falloff = c.clamped(0, "falloff", 0, 10000); });

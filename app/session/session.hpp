@@ -167,6 +167,11 @@ struct Session {
   Tool tool = Tool::Look;
   int selected_joint = -1;  ///< of the active pane
   int selected_take = 0;    ///< the current one: that of the active view, else the last that was
+  /// What the cameras were before a tool stepped back, and as it left them; none: it did not.
+  struct SteppedBack {
+    std::vector<CameraState> before, after;
+  };
+  std::optional<SteppedBack> stepped_back;
   Brush brush;
   int falloff = 5;  ///< frames, of edits by hand
   bool drag_children = false, mirror_joint = true;

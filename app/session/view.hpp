@@ -84,6 +84,7 @@ struct View {
   int ghost_count = 3, ghost_step = 8;    ///< to each side; frames between two
   float error_scale_mm = 50;              ///< upper end of the scales of errors, offsets and differences
   float wipe = 0.5f;                      ///< the wipe's line, share of the width
+  bool cube = true;                       ///< a cube in each view that shows where it looks from
   std::string metric = "confidence";      ///< plotted in the timeline
 };
 template <class V, class S>
@@ -102,6 +103,7 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("ghost_step", view.ghost_step, Clamped<int>{1, kFrameNumbers.high});
   visit("error_scale_mm", view.error_scale_mm, Clamped<float>{1e-3f, 1e6f});
   visit("wipe", view.wipe, Clamped<float>{0, 1});
+  visit("cube", view.cube);
   visit("metric", view.metric);
 }
 

@@ -11,6 +11,7 @@ namespace understudy::app {
 namespace {
 
 constexpr float kDegree = kPi / 180;
+constexpr float kViewsAspect = 1.55f;  // of all views together in a usual window
 
 /// The camera of the active pane, made where there is none yet.
 CameraState& camera(Session& session, int pane) {
@@ -35,10 +36,13 @@ struct Preset {
   const char* key;
   float yaw, pitch;  // degrees
 };
-constexpr Preset kPresets[] = {
-    {"front", "Front view", "1", 0, 0},      {"right", "Right view", "3", 90, 0},
-    {"top", "Top view", "7", 0, 89},         {"back", "Back view", "Ctrl+1", 180, 0},
-    {"left", "Left view", "Ctrl+3", -90, 0}, {"three-quarter", "Three-quarter view", "0", 32, 10}};
+constexpr Preset kPresets[] = {{"front", "Front view", "1", 0, 0},
+                               {"right", "Right view", "3", 90, 0},
+                               {"top", "Top view", "7", 0, 89},
+                               {"back", "Back view", "Ctrl+1", 180, 0},
+                               {"left", "Left view", "Ctrl+3", -90, 0},
+                               {"three-quarter", "Three-quarter view", "0", 32, 10},
+                               {"bottom", "Bottom view", "Ctrl+7", 0, -89}};
 
 void add_cameras(Commands& commands) {
   std::vector<std::string> names;
@@ -47,11 +51,12 @@ void add_cameras(Commands& commands) {
     commands.add({std::string("view.preset_") + preset.name, preset.label, "", preset.key},
                  [&preset](Call& c) { c.studio.run("view.preset", {preset.name}); });
   }
-  commands.add({"view.preset", "Camera preset", "front|right|top|back|left|three-quarter"}, [names](Call& c) {
-    const Preset& preset = kPresets[c.choice(0, "preset", names)];
-    active_camera(c.session).yaw = preset.yaw * kDegree;
-    active_camera(c.session).pitch = preset.pitch * kDegree;
-  });
+  commands.add({"view.preset", "Camera preset", "front|right|top|back|left|three-quarter|bottom"},
+               [names](Call& c) {
+                 const Preset& preset = kPresets[c.choice(0, "preset", names)];
+                 active_camera(c.session).yaw = preset.yaw * kDegree;
+                 active_camera(c.session).pitch = preset.pitch * kDegree;
+               });
   commands.add({"view.camera", "Camera", "YAW_DEG PITCH_DEG [DISTANCE]"}, [](Call& c) {
     CameraState& camera = active_camera(c.session);
     camera.yaw = c.number(0, "yaw") * kDegree;
@@ -141,11 +146,15 @@ Extent shown_extent(const Session& session) {
   return all;
 }
 
+float aspect_of_a_view(const Session& session) {
+  const size_t views = session.view.layout == Layout::SideBySide ? 1 + session.takes.size() : 1;
+  return kViewsAspect / static_cast<float>(views);
+}
+
 /// Turns the camera to the middle of all that is drawn and moves it back until it fits the view's narrow side.
 void fit(Call& call) {
-  constexpr float kAir = 0.06f;          // of the height, around
-  constexpr float kTitle = 0.08f;        // of the height stays free above the heads, for words
-  constexpr float kViewsAspect = 1.55f;  // of all views together in a usual window
+  constexpr float kAir = 0.06f;    // of the height, around
+  constexpr float kTitle = 0.08f;  // of the height stays free above the heads, for words
   const Session& session = call.session;
   CameraState& c = active_camera(call.session);
   Extent shown = shown_extent(session);
@@ -157,8 +166,7 @@ void fit(Call& call) {
   const Vec3 air = Vec3::Constant(kAir * shown.sizes().y());
   shown = Extent(shown.min() - air, shown.max() + air + Vec3(0, kTitle * shown.sizes().y(), 0));
   c.target = shown.center();
-  const size_t panes = session.view.layout == Layout::SideBySide ? 1 + session.takes.size() : 1;
-  const float aspect = kViewsAspect / static_cast<float>(panes);
+  const float aspect = aspect_of_a_view(session);
   const Vec3 half = 0.5f * shown.sizes();
   const float wide = std::hypot(half.x(), half.z());
   set_distance(c, std::max(half.y(), wide / aspect) / std::tan(0.5f * c.fov) + 0.5f * wide);
@@ -166,6 +174,10 @@ void fit(Call& call) {
 
 void add_camera_motion(Commands& commands) {
   commands.add({"view.fit", "Fit", "all that is shown", "F"}, fit);
+  commands.add({"view.reset", "Reset camera", "as at first, around all that is shown"}, [](Call& c) {
+    active_camera(c.session) = CameraState{};
+    fit(c);
+  });
   commands.add({"view.orbit", "Orbit", "YAW_DEG PITCH_DEG"}, [](Call& c) {
     CameraState& camera = active_camera(c.session);
     camera.yaw += c.number(0, "yaw") * kDegree;
@@ -186,6 +198,8 @@ void add_camera_motion(Commands& commands) {
   });
   commands.add({"view.follow", "Follow the person", "on|off|toggle"},
                [](Call& c) { c.session.view.follow = c.switched(0, c.session.view.follow); });
+  commands.add({"view.cube", "View cube", "on|off|toggle"},
+               [](Call& c) { c.session.view.cube = c.switched(0, c.session.view.cube); });
   commands.add({"view.link", "Link the cameras", "on|off|toggle"},
                [](Call& c) { c.session.view.linked = c.switched(0, c.session.view.linked); });
 }
@@ -243,6 +257,24 @@ void add_panes(Commands& commands) {
 }
 
 }  // namespace
+
+float distance_to_see(const Session& session, const CameraState& camera, const Vec3& low, const Vec3& high) {
+  constexpr float kAir = 1.08f;
+  const Vec3 right(std::cos(camera.yaw), 0, -std::sin(camera.yaw));
+  const Vec3 back(std::sin(camera.yaw) * std::cos(camera.pitch), std::sin(camera.pitch),
+                  std::cos(camera.yaw) * std::cos(camera.pitch));
+  const Vec3 up = back.cross(right);
+  const float rise = std::tan(0.5f * camera.fov), run = rise * aspect_of_a_view(session);
+  float least = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 at = -camera.target;  // of the corner, from the target
+    for (int k = 0; k < 3; ++k) at[k] += (corner >> k & 1) != 0 ? high[k] : low[k];
+    const float nearer = camera.orthographic ? 0 : at.dot(back);
+    const float high_up = std::abs(at.dot(up)) / rise, far_out = std::abs(at.dot(right)) / run;
+    least = std::max(least, nearer + kAir * std::max(high_up, far_out));
+  }
+  return least;
+}
 
 void add_view_commands(Commands& commands) {
   add_panes(commands);

@@ -102,7 +102,10 @@ Application::Application(StudioServices services, std::unique_ptr<Surface> surfa
 
 std::unique_ptr<ui::Workspace> Application::make_workspace() {
   ui::WorkspaceServices services;
-  services.draw_views = [this] { views_->draw(session(), studio_->cache(), queue_, gui_->ui()); };
+  services.draw_views = [this] {
+    ui::PanelContext context{gui_->ui(), queue_, studio_->commands()};
+    views_->draw(session(), studio_->cache(), context);
+  };
   services.samples = sample_cards(studio_->services().samples);
   samples_ = services.samples.size();
   services.about = [this] {

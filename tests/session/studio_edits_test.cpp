@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include "app/session/command_sets.hpp"
+#include "app/session/follow.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -98,6 +100,37 @@ TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
   studio.run("edit.undo");
   EXPECT_FALSE(session.document.scan_edits.crop);
   EXPECT_EQ(session.tool, Tool::Look);
+}
+
+TEST_F(StudioTest, TheCropToolStepsBackNoFurtherThanItsBoxAsksAndReturns) {
+  Studio studio(services());
+  open_both(studio);
+  studio.wait_idle(60);
+  studio.run("view.fit");
+  const Session& session = studio.session();
+  CameraState before = session.view.cameras[0];
+  studio.run("tool", {"crop"});
+  const CameraState& now = session.view.cameras[0];
+  EXPECT_EQ(now.target, before.target);
+  EXPECT_EQ(now.yaw, before.yaw);
+  const Box box = shown_crop(session);
+  const Vec3 offset = follow_offset(session, 0, shown_frame(session));
+  const float needed = distance_to_see(session, before, box.low - offset, box.high - offset);
+  EXPECT_FLOAT_EQ(now.distance, std::max(before.distance, needed));
+  studio.run("tool", {"look"});
+  EXPECT_TRUE(same(session.view.cameras[0], before)) << "as it was";
+
+  studio.run("view.zoom", {"0.2"});
+  before = session.view.cameras[0];
+  studio.run("edit.crop", {"on"});
+  EXPECT_GT(session.view.cameras[0].distance, before.distance);
+  studio.run("edit.crop", {"off"});
+  EXPECT_TRUE(same(session.view.cameras[0], before));
+  studio.run("tool", {"crop"});
+  studio.run("view.orbit", {"20", "0"});
+  const CameraState moved = session.view.cameras[0];
+  studio.run("tool", {"look"});
+  EXPECT_TRUE(same(session.view.cameras[0], moved)) << "the user's own view stays";
 }
 
 TEST_F(StudioTest, ASideOfTheCropThatIsDraggedIsOneStepBack) {

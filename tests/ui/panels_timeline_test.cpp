@@ -273,6 +273,21 @@ TEST(PanelWords, AreShortAndPlain) {
   EXPECT_FALSE(parse_number("inf"));
 }
 
+TEST_F(WorkspaceTest, ASmallWindowWithLargeTextHasTheTrack) {
+  input.size = {900, 600}, input.scale = 1.5f;
+  frame(3);
+  ASSERT_TRUE(shown("timeline.track"));
+  const Mark track = mark("timeline.track");
+  EXPECT_FLOAT_EQ(track.visible.max.y, track.rect.max.y) << "all of it";
+  EXPECT_LE(track.rect.max.y, mark("status.document").rect.min.y);
+  EXPECT_GT(mark("views").rect.height(), 200);
+  take_log();
+  click(track.rect.at(0.5f, 0.5f));
+  const std::vector<std::string> asked = take_log();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].rfind("playback.frame 2", 0), 0u) << asked[0] << ", of 48";
+}
+
 TEST_F(PanelsTest, EveryKeyDoesOneThing) {
   std::vector<std::string> seen;
   for (const Binding& binding : bindings(studio.commands())) {

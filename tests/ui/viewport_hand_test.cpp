@@ -1,7 +1,9 @@
 // What the mouse does in the views: real input, a null context, and the commands that come out.
+#include <functional>
 #include <sstream>
 #include <tuple>
 
+#include "app/session/studio.hpp"
 #include "render/context/context.hpp"
 #include "render/gizmo.hpp"
 #include "retarget/base/text.hpp"
@@ -22,7 +24,8 @@ class ViewsTest : public UiTest {
     input.size = {1000, 500};
     in_window([this](Ui& ui) {
       const size_t before = queue.size();
-      views.draw(stage.session, *stage.cache, queue, ui);
+      PanelContext panels{ui, queue, commands};
+      views.draw(stage.session, *stage.cache, panels);
       for (size_t i = before; i < queue.size(); ++i) obey(queue[i].first, queue[i].second);
     });
     frame(2);
@@ -74,6 +77,7 @@ class ViewsTest : public UiTest {
 
   std::unique_ptr<render::Context> context = render::make_offscreen_context({render::ContextKind::Null});
   Stage stage;
+  app::Commands commands;
   app::CommandQueue queue;
   Views views;
 };
@@ -111,12 +115,13 @@ TEST_F(ViewsTest, TheMouseDoesInTheViewsWhatTheHelpSays) {
       {"left", render::MouseButton::Left, false},
       {"right", render::MouseButton::Right, false},
       {"middle", render::MouseButton::Middle, false},
-      {"shift+left", render::MouseButton::Left, true}};
+      {"shift+left", render::MouseButton::Left, true},
+      {"shift+middle", render::MouseButton::Middle, true}};
   const auto said_of = [](const std::string& way) -> std::string {
     for (const MouseUse& use : mouse_uses(app::Tool::Look)) {
       std::istringstream words(lower_case(use.buttons));
       for (std::string word; words >> word;)
-        if (word == way) return use.does;
+        if (word == way || word == way + ",") return use.does;
     }
     return "";
   };
@@ -131,6 +136,80 @@ TEST_F(ViewsTest, TheMouseDoesInTheViewsWhatTheHelpSays) {
     EXPECT_EQ(after.target != before.target, said_of(way) == "Moves the view") << way;
     EXPECT_FALSE(said_of(way).empty()) << way;
   }
+}
+
+TEST_F(ViewsTest, ARightClickOffersWhatCanBeDoneInThatView) {
+  click(mark("view.1").rect.at(0.1f, 0.8f), render::MouseButton::Right);
+  frame(3);
+  EXPECT_EQ(asked("view.pane"), app::Arguments{"1"});
+  ASSERT_TRUE(shown("menu.view.fit"));
+  EXPECT_FALSE(shown("menu.edit.remove.drags_of.left_wrist"));
+  click("menu.view.fit");
+  EXPECT_EQ(asked("view.fit"), app::Arguments{});
+  EXPECT_EQ(count("view.camera_state"), 0) << "the click turned nothing";
+  frame(2);
+  EXPECT_FALSE(shown("menu.view.fit"));
+}
+
+TEST_F(ViewsTest, ARightDragTurnsAndOpensNoMenu) {
+  const ImVec2 from = mark("view.0").rect.at(0.1f, 0.8f);
+  drag(from, {from.x + 40, from.y}, {}, render::MouseButton::Right);
+  frame(3);
+  EXPECT_GT(count("view.camera_state"), 0);
+  EXPECT_FALSE(shown("menu.view.fit"));
+}
+
+TEST_F(ViewsTest, ARightClickAtAJointOffersToTakeItsEditsBack) {
+  stage.session.document.skeleton_edits = {DragEdit{10, LeftWrist, Vec3(0, 0.1f, 0), 5, false}};
+  click(seen(0, source_joint(LeftWrist)), render::MouseButton::Right);
+  frame(3);
+  click("menu.edit.remove.drags_of.left_wrist");
+  EXPECT_EQ(asked("edit.remove"), (app::Arguments{"drags_of", "left_wrist"}));
+  click(seen(0, source_joint(RightAnkle)), render::MouseButton::Right);
+  frame(3);
+  EXPECT_TRUE(shown("menu.select.joint.right_ankle"));
+  EXPECT_FALSE(shown("menu.edit.remove.drags_of.right_ankle")) << "it has none";
+}
+
+TEST_F(ViewsTest, EveryEntryOfTheMenuIsACommand) {
+  const app::Studio studio{app::StudioServices{}};
+  const std::function<void(const std::vector<MenuItem>&)> look = [&](const std::vector<MenuItem>& items) {
+    for (const MenuItem& item : items) {
+      look(item.inside);
+      if (!item.command.empty() && item.command != "dialog.open")
+        EXPECT_NE(studio.commands().find(item.command), nullptr) << item.command;
+    }
+  };
+  for (const int number : {0, 1}) look(view_menu_items(stage.session, {pane_of(number), LeftWrist, {"0"}}));
+}
+
+TEST_F(ViewsTest, AClickAtAFaceOfTheCubeLooksFromThere) {
+  click("view.1.cube.top");
+  EXPECT_EQ(asked("view.preset"), app::Arguments{"top"});
+  EXPECT_EQ(asked("view.pane"), app::Arguments{"1"});
+  EXPECT_EQ(count("view.camera_state"), 0);
+  stage.session.view.cameras[0].yaw = 0, stage.session.view.cameras[0].pitch = 0;
+  frame(2);
+  EXPECT_TRUE(shown("view.0.cube.front"));
+  EXPECT_FALSE(shown("view.0.cube.back")) << "it is behind";
+}
+
+TEST_F(ViewsTest, DraggingTheCubeTurnsTheView) {
+  const app::CameraState before = stage.session.view.cameras[0];
+  const ImVec2 from = mark("view.0.cube.front").rect.at(0.5f, 0.5f);
+  drag(from, {from.x - 200, from.y});
+  EXPECT_GT(stage.session.view.cameras[0].yaw, before.yaw + 0.2f);
+  EXPECT_EQ(count("view.preset"), 0);
+}
+
+TEST_F(ViewsTest, TheCubeCanBeHiddenAndLeavesTheCornerToTheView) {
+  stage.session.view.cube = false;
+  frame(2);
+  EXPECT_FALSE(shown("view.0.cube"));
+  const float yaw = stage.session.view.cameras[0].yaw;
+  const ImVec2 from = mark("view.0").rect.at(0.9f, 0.1f);
+  drag(from, {from.x - 60, from.y});
+  EXPECT_GT(stage.session.view.cameras[0].yaw, yaw + 0.2f);
 }
 
 TEST_F(ViewsTest, ShiftDraggingMovesTheTargetWithThePointer) {

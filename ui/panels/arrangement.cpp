@@ -47,7 +47,9 @@ Arrangement arrange(const ImVec2& display, float scale, const Parts& parts) {
   }
   if (high >= 250) places.status = cut_bottom(rest, kStatusHeight * scale);
   places.views = rest;
-  const float timeline = high >= 430 ? kTimelineHeight : kTransportHeight;
+  const float timeline = high >= 430   ? kTimelineHeight
+                         : high >= 360 ? kShortTimelineHeight
+                                       : kTransportHeight;
   if (parts.timeline && high >= 190) places.timeline = cut_bottom(places.views, timeline * scale);
   if (parts.side) place_side(places, scale, parts);
   const float below = std::min(parts.below_height * scale, 0.5f * places.views.height());

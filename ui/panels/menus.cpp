@@ -94,10 +94,13 @@ Items view_menu(const app::Session& session) {
           {"Right", "view.preset", {"right"}},
           {"Left", "view.preset", {"left"}},
           {"Top", "view.preset", {"top"}},
+          {"Bottom", "view.preset", {"bottom"}},
           {"Three-quarter", "view.preset", {"three-quarter"}},
           {"Fit", "view.fit"},
+          {"Reset camera", "view.reset"},
           kLine,
           flag("Orthographic", "view.ortho", ortho),
+          flag("View cube", "view.cube", session.view.cube),
           flag("Linked cameras", "view.link", session.view.linked),
           flag("Follow the person", "view.follow", session.view.follow),
           turntable(session)};

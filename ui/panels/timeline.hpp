@@ -56,6 +56,6 @@ struct EditMark {
 std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills);
 
 /// Heights at scale 1: with the track, and the transport alone.
-constexpr float kTimelineHeight = 152, kTransportHeight = 44;
+constexpr float kTimelineHeight = 152, kShortTimelineHeight = 102, kTransportHeight = 44;
 
 }  // namespace understudy::ui

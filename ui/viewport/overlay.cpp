@@ -82,7 +82,7 @@ void Writer::draw() {
 }
 
 void Writer::draw_title() {
-  const float pad = px(8), room = in_.rect.width() - px(20) - 2 * pad;
+  const float pad = px(8), room = in_.rect.width() - in_.right_taken - px(20) - 2 * pad;
   if (room < px(30)) return;
   std::string title;
   ImVec2 title_size, subtitle_size(0, 0);
@@ -96,7 +96,8 @@ void Writer::draw_title() {
   if (!subtitle.empty()) subtitle_size = ImGui::CalcTextSize(subtitle.c_str());
   const float width = std::max(title_size.x, subtitle_size.x) + 2 * pad;
   const float height = title_size.y + subtitle_size.y + px(8);
-  const float left = in_.title_right ? in_.rect.max.x - px(10) - width : in_.rect.min.x + px(10);
+  const float left =
+      in_.title_right ? in_.rect.max.x - in_.right_taken - px(10) - width : in_.rect.min.x + px(10);
   const ImVec2 at(left, in_.rect.min.y + px(10));
   if (!title.empty() || !subtitle.empty()) {
     box({at, {at.x + width, at.y + height}}, ui_.theme().panel);
@@ -110,9 +111,10 @@ void Writer::draw_title() {
 void Writer::draw_warning(float top) {
   if (in_.warning.empty()) return;
   const float icon = line(), pad = px(6);
-  const std::string words = cut_to(in_.warning, in_.rect.width() - px(20) - icon - 3 * pad);
+  const std::string words = cut_to(in_.warning, in_.rect.width() - in_.right_taken - px(20) - icon - 3 * pad);
   const float width = ImGui::CalcTextSize(words.c_str()).x + icon + 3 * pad;
-  const float left = in_.title_right ? in_.rect.max.x - px(10) - width : in_.rect.min.x + px(10);
+  const float left =
+      in_.title_right ? in_.rect.max.x - in_.right_taken - px(10) - width : in_.rect.min.x + px(10);
   const Rect rect{{left, top}, {left + width, top + line() + px(6)}};
   box(rect, mix(ui_.theme().panel, ui_.theme().warning, 0.18f), 0.92f);
   draw_icon(list_, Icon::Warning, {left + pad, top + px(3)}, icon, color(ui_.theme().warning));

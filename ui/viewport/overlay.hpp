@@ -13,6 +13,7 @@ struct Overlay {
   Rect rect;  ///< of the pane; all is kept inside
   std::string title, subtitle;
   bool title_right = false;  ///< at the top right: the right half of a wipe
+  float right_taken = 0;     ///< pixels at the top right where something else is
   std::string hint;          ///< in the middle of an empty pane
   std::string warning;       ///< why the frame is flagged; empty: it is good
   Legend legend;

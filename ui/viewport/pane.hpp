@@ -85,6 +85,9 @@ struct Pane {
   PaneScene made;
   EditPreview preview;
   PaneCanvas canvas;
+  std::optional<Rect> cube;  ///< of the view cube
+  int cube_face = -1;        ///< under the pointer
+  bool cube_held = false;
 };
 
 /// Where a ray meets the mesh of a pane's first take, as its pictures show it.

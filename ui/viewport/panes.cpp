@@ -224,6 +224,8 @@ Pointer pointer_of_item() {
   const bool dragged =
       active && !ImGui::IsItemActivated();  // the way to where it was pressed is no part of it
   pointer.turning = dragged && ImGui::IsMouseDown(1);
+  const bool still = io.MouseDragMaxDistanceSqr[1] < io.MouseDragThreshold * io.MouseDragThreshold;
+  pointer.asks = pointer.over && ImGui::IsMouseReleased(1) && still;
   pointer.panning = dragged && (ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift));
   return pointer;
 }

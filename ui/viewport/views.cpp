@@ -3,12 +3,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/session/follow.hpp"
 #include "retarget/base/index.hpp"
 #include "ui/gui/draw_pass.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/viewport/view_cube.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -44,6 +46,12 @@ void picture_button(const char* name, const Rect& rect) {
                              ImGuiButtonFlags_MouseButtonMiddle);
 }
 
+void draw_cube_of(Ui& ui, const Pane& pane) {
+  if (!pane.cube) return;
+  draw_cube(ui, "view." + std::to_string(pane.content.number) + ".cube", *pane.cube, pane.view.camera,
+            pane.cube_face);
+}
+
 }  // namespace
 
 void Views::forget() {
@@ -68,8 +76,8 @@ bool Views::shows_take(int k) const {
   });
 }
 
-void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui) {
-  const Frame f{session, cache, queue, ui};
+void Views::draw(const Session& session, app::FrameCache& cache, PanelContext& context) {
+  const Frame f{session, cache, context, context.queue, context.ui};
   constexpr int kFlags = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
   if (ImGui::BeginChild("##views", {0, 0}, false, kFlags)) {
@@ -85,6 +93,7 @@ void Views::draw(const Session& session, app::FrameCache& cache, app::CommandQue
       else
         draw_row(f, contents, area);
     }
+    draw_menu(f);
   }
   ImGui::EndChild();
 }
@@ -124,12 +133,14 @@ void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, c
     if (rects[i].width() < kLeastSide || rects[i].height() < kLeastSide) continue;
     Pane& pane = *panes_[i];
     set_up(f, pane, contents[i], {rects[i], pane_camera(f.session, contents[i])});
+    use_cube(f, pane, rects[i]);
     const std::string name = "view." + std::to_string(contents[i].number);
     picture_button(name.c_str(), rects[i]);
     f.ui.mark(name);
     interact(f, pane);
     make_picture(f, pane);
     show(f, pane, rects[i], false);
+    draw_cube_of(f.ui, pane);
   }
 }
 
@@ -137,9 +148,11 @@ void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, c
 void Views::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
   const float line = wipe_line(f, area);
   const render::Camera camera = pane_camera(f.session, contents[0]);
+  for (size_t i = 0; i < 2; ++i) set_up(f, *panes_[i], contents[i], {area, camera});
+  panes_[1]->cube.reset();
+  use_cube(f, *panes_[0], area);
   picture_button("view.both", area);
   const size_t mouse_in = ImGui::GetIO().MousePos.x < line ? 0 : 1;
-  for (size_t i = 0; i < 2; ++i) set_up(f, *panes_[i], contents[i], {area, camera});
   const size_t gripped = hand_.pane() == contents[0] ? 0 : 1;
   interact(f, *panes_[hand_.busy() ? gripped : mouse_in]);
   for (size_t i = 0; i < 2; ++i) {
@@ -152,6 +165,7 @@ void Views::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, 
   const float middle = area.min.y + 0.5f * area.height();
   list.AddLine({line, area.min.y}, {line, area.max.y}, color(f.ui.theme().text, 0.85f), f.ui.px(1.5f));
   list.AddCircleFilled({line, middle}, f.ui.px(7), color(f.ui.theme().text), 24);
+  draw_cube_of(f.ui, *panes_[0]);
 }
 
 /// The handle comes before the picture's item, so that it is met first.
@@ -188,10 +202,62 @@ void Views::interact(const Frame& f, Pane& pane) {
   if (now.over || now.held) {
     pointer_ = now, under_ = &pane;
     const bool steering = now.turning || now.panning || now.wheel != 0;
-    if ((now.pressed || steering) && pane.content.number != f.session.view.active_pane)
-      f.queue.push_back({"view.pane", {std::to_string(pane.content.number)}});
+    if (now.pressed || steering || now.asks) activate(f, pane);
   }
+  if (now.asks && !hand_.busy()) ask_what_to_do(f, pane, now);
   steer(f, pane, now, !taken);
+}
+
+/// Commands are about it from now on.
+void Views::activate(const Frame& f, const Pane& pane) {
+  if (pane.content.number != f.session.view.active_pane)
+    f.queue.push_back({"view.pane", {std::to_string(pane.content.number)}});
+}
+
+void Views::point_camera(const Frame& f, const Pane& pane, const render::Camera& camera) {
+  f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, camera)});
+}
+
+void Views::ask_what_to_do(const Frame& f, const Pane& pane, const Pointer& now) {
+  menu_ = {pane.content, hand_.hovered_joint(pane.content), {}};
+  if (const auto place = surface_place(f.session, pane, now.at)) {
+    render::Camera camera = pane.view.camera;
+    camera.target = *place;
+    menu_.centred = camera_arguments(f.session, pane.content, camera);
+  }
+  ImGui::OpenPopup("view.menu");
+}
+
+void Views::draw_menu(const Frame& f) {
+  if (!ImGui::BeginPopup("view.menu")) return;
+  draw_menu_items(f.session, f.context, view_menu_items(f.session, menu_));
+  ImGui::EndPopup();
+}
+
+/// Comes before the picture's item, so that it is met first. Beside its faces the picture is met.
+void Views::use_cube(const Frame& f, Pane& pane, const Rect& part) {
+  pane.cube = f.session.view.cube ? cube_place(f.ui, part) : std::nullopt;
+  const bool held = std::exchange(pane.cube_held, false);
+  pane.cube_face = -1;
+  if (!pane.cube || hand_.busy()) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  const int face = cube_face_at(*pane.cube, pane.view.camera, io.MousePos);
+  if (face < 0 && !held) return;
+  ImGui::SetCursorScreenPos(pane.cube->min);
+  const std::string name = "view." + std::to_string(pane.content.number) + ".cube";
+  const bool clicked = ImGui::InvisibleButton(name.c_str(), {pane.cube->width(), pane.cube->height()});
+  pane.cube_held = ImGui::IsItemActive();
+  const bool dragged = io.MouseDragMaxDistanceSqr[0] >= io.MouseDragThreshold * io.MouseDragThreshold;
+  if (ImGui::IsItemHovered() && !(pane.cube_held && dragged)) pane.cube_face = face;
+  if (pane.cube_held && dragged) {
+    const float turned = kTurn * f.session.settings.mouse_sensitivity / f.ui.scale();
+    activate(f, pane);
+    point_camera(f, pane,
+                 render::orbited(pane.view.camera, -turned * io.MouseDelta.x, turned * io.MouseDelta.y));
+  } else if (clicked && !dragged && face >= 0) {
+    activate(f, pane);
+    f.queue.push_back({"view.preset", {cube_faces()[face].preset}});
+  }
 }
 
 void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left) {
@@ -204,8 +270,7 @@ void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left
       camera->target = *place;
     }
   }
-  if (!camera) return;
-  f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, *camera)});
+  if (camera) point_camera(f, pane, *camera);
 }
 
 void Views::make_picture(const Frame& f, Pane& pane) {
@@ -234,7 +299,9 @@ void Views::draw_picture(const Frame& f, Pane& pane) {
 bool Views::moving(const Session& session) const {
   const bool live =
       session.working && !session.paused && session.playback.live && app::shown_frame(session) >= 0;
-  const bool steering = under_ != nullptr && (pointer_.held || pointer_.turning || pointer_.panning);
+  const bool steering =
+      (under_ != nullptr && (pointer_.held || pointer_.turning || pointer_.panning)) ||
+      std::any_of(panes_.begin(), panes_.end(), [](const auto& pane) { return pane->cube_held; });
   return session.playback.playing || live || steering || hand_.busy() || session.view.turntable_deg_s != 0;
 }
 
@@ -246,6 +313,8 @@ void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
                                        {to, 0});
   Overlay overlay;
   overlay.rect = part, overlay.title_right = right;
+  const auto& cube = pane.cube ? pane.cube : panes_.front()->cube;  // a wipe has one
+  if (cube && cube->max.x <= part.max.x) overlay.right_taken = cube->width();
   describe(f.session, pane, overlay);
   overlay.active = panes_.size() > 1 && f.session.view.layout == app::Layout::SideBySide &&
                    pane.content.number == f.session.view.active_pane;

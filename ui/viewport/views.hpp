@@ -8,6 +8,7 @@
 #include "ui/viewport/hand.hpp"
 #include "ui/viewport/overlay.hpp"
 #include "ui/viewport/pane.hpp"
+#include "ui/viewport/view_menu.hpp"
 
 namespace understudy::ui {
 
@@ -16,9 +17,9 @@ class Views {
  public:
   /// Fills what is left of the current window with the panes of the layout. Redraws a pane only when
   /// its content, camera or size has changed. Marks: "view.0" the source, "view.1" the first take
-  /// ..., "view.wipe" the line of a wipe, "view.legend", "view.warning", "view.tip". Throws Error where the
-  /// context's messages are fatal.
-  void draw(const app::Session& session, app::FrameCache& cache, app::CommandQueue& queue, Ui& ui);
+  /// ..., with "view.0.cube" (.front ... .bottom), "view.wipe" the line of a wipe, "view.legend", "view.warning",
+  /// "view.tip". Throws Error where the context's messages are fatal.
+  void draw(const app::Session& session, app::FrameCache& cache, PanelContext& context);
 
   /// Drops everything shown: the document was closed.
   void forget();
@@ -35,6 +36,7 @@ class Views {
   struct Frame {
     const app::Session& session;
     app::FrameCache& cache;
+    PanelContext& context;
     app::CommandQueue& queue;
     Ui& ui;
   };
@@ -45,6 +47,11 @@ class Views {
   static float wipe_line(const Frame& f, const Rect& area);
   void set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view);
   void interact(const Frame& f, Pane& pane);
+  void use_cube(const Frame& f, Pane& pane, const Rect& part);
+  void activate(const Frame& f, const Pane& pane);
+  void ask_what_to_do(const Frame& f, const Pane& pane, const Pointer& now);
+  void draw_menu(const Frame& f);
+  void point_camera(const Frame& f, const Pane& pane, const render::Camera& camera);
   void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
   void make_picture(const Frame& f, Pane& pane);
   void draw_picture(const Frame& f, Pane& pane);
@@ -63,6 +70,7 @@ class Views {
   Pointer pointer_;        ///< of the pane that it is in
   Pane* under_ = nullptr;  ///< which
   app::Tool tool_ = app::Tool::Look;
+  ViewMenuPlace menu_;  ///< of the menu that is open
   std::optional<bool> followed_;
   bool legend_beside_ = false;  ///< the joints' colours stand beside the views, not in each
   bool hold_ = false;           ///< cameras stay for this frame as they were

@@ -1,0 +1,101 @@
+#include "ui/viewport/view_cube.hpp"
+
+#include <cmath>
+
+#include "retarget/base/index.hpp"
+
+namespace understudy::ui {
+namespace {
+
+constexpr float kCubeSide = 84, kCubeAway = 8;                  // points, of the corner it takes
+constexpr float kLeastViewWidth = 240, kLeastViewHeight = 190;  // points
+constexpr float kHalfEdge = 0.285f;                             // of the corner's side
+constexpr float kLeastSeen = 0.02f, kReadable = 0.45f;          // of a face turned to the viewer
+
+/// A face as it is seen: flat, from afar.
+struct SeenFace {
+  std::array<ImVec2, 4> corners;
+  ImVec2 middle;
+  float towards = 0;  ///< cosine to the viewer
+};
+
+SeenFace seen_face(const CubeFace& face, const Rect& place, const render::Camera& camera) {
+  const Mat3 axes = render::axes(camera);
+  const float half = kHalfEdge * place.width();
+  const Vec3 u = std::abs(face.out.y()) > 0.5f ? Vec3(1, 0, 0) : Vec3(0, 1, 0), v = face.out.cross(u);
+  const auto project = [&](const Vec3& point) {
+    const Vec3 seen = half * (axes.transpose() * point);
+    const ImVec2 centre = place.at(0.5f, 0.5f);
+    return ImVec2(centre.x + seen.x(), centre.y - seen.y());
+  };
+  SeenFace seen;
+  seen.corners = {project(face.out + u + v), project(face.out + u - v), project(face.out - u - v),
+                  project(face.out - u + v)};
+  seen.middle = project(face.out);
+  seen.towards = face.out.dot(axes.col(2));
+  return seen;
+}
+
+bool contains(const SeenFace& face, const ImVec2& at) {
+  bool left = false, right = false;
+  for (size_t i = 0; i < 4; ++i) {
+    const ImVec2 &a = face.corners[i], &b = face.corners[(i + 1) % 4];
+    const float side = (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x);
+    left |= side<0, right |= side> 0;
+  }
+  return left != right;
+}
+
+}  // namespace
+
+const std::array<CubeFace, 6>& cube_faces() {
+  static const std::array<CubeFace, 6> kFaces = {{{"front", "Front", Vec3(0, 0, 1)},
+                                                  {"back", "Back", Vec3(0, 0, -1)},
+                                                  {"right", "Right", Vec3(1, 0, 0)},
+                                                  {"left", "Left", Vec3(-1, 0, 0)},
+                                                  {"top", "Top", Vec3(0, 1, 0)},
+                                                  {"bottom", "Bottom", Vec3(0, -1, 0)}}};
+  return kFaces;
+}
+
+std::optional<Rect> cube_place(const Ui& ui, const Rect& view) {
+  if (view.width() < ui.px(kLeastViewWidth) || view.height() < ui.px(kLeastViewHeight)) return std::nullopt;
+  const float side = std::round(ui.px(kCubeSide)), away = std::round(ui.px(kCubeAway));
+  const ImVec2 corner(view.max.x - away, view.min.y + away);
+  return Rect{{corner.x - side, corner.y}, {corner.x, corner.y + side}};
+}
+
+int cube_face_at(const Rect& place, const render::Camera& camera, const ImVec2& at) {
+  const auto& faces = cube_faces();
+  for (int i = 0; i < ssize(faces); ++i) {
+    const SeenFace seen = seen_face(faces[i], place, camera);
+    if (seen.towards > kLeastSeen && contains(seen, at)) return i;
+  }
+  return -1;
+}
+
+void draw_cube(Ui& ui, const std::string& name, const Rect& place, const render::Camera& camera,
+               int hovered) {
+  const Theme& t = ui.theme();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const FontScope small(ui.fonts().small);
+  ui.mark(name, place);
+  const auto& faces = cube_faces();
+  for (int i = 0; i < ssize(faces); ++i) {
+    const SeenFace seen = seen_face(faces[i], place, camera);
+    if (seen.towards <= kLeastSeen) continue;
+    const bool lit = i == hovered;
+    const ImVec4 fill = lit ? t.accent : mix(t.field_hover, t.raised, 1 - seen.towards);
+    list.AddConvexPolyFilled(seen.corners.data(), 4, color(fill, lit ? 0.95f : 0.85f));
+    list.AddPolyline(seen.corners.data(), 4, color(t.text_dim, 0.8f), ImDrawFlags_Closed, ui.px(1));
+    const float reach = ui.px(4);
+    ui.mark(name + "." + faces[i].preset,
+            {{seen.middle.x - reach, seen.middle.y - reach}, {seen.middle.x + reach, seen.middle.y + reach}});
+    if (seen.towards < kReadable) continue;
+    const ImVec2 size = ImGui::CalcTextSize(faces[i].label);
+    list.AddText({std::round(seen.middle.x - size.x / 2), std::round(seen.middle.y - size.y / 2)},
+                 color(lit ? t.on_accent : t.text), faces[i].label);
+  }
+}
+
+}  // namespace understudy::ui
