@@ -309,6 +309,8 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
   command.add_option("--reduce", options.file.reduce_mm, "removes keys up to this error, mm")
       ->check(CLI::Range(0.0, 1000.0));
   command.add_flag("--in-place", options.file.in_place, "leaves out the path over the floor");
+  command.add_flag("--root-motion", options.file.root_motion,
+                   "a bone above all others carries the path, as engines take root motion from");
   command.add_flag("--t-pose-clip", options.file.t_pose_clip, "the first clip is the T-pose");
   command.add_flag("--keep-clips", options.file.keep_clips, "keeps the file's own animations");
   command.add_option("--frames", options.frames, "at most this many frames of each source")
@@ -318,9 +320,9 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
 /// Empty: none was given.
 std::string first_not_of_documents(const CLI::App& command) {
   static const std::set<std::string> kOfDocuments = {
-      "DOCUMENT",   "--help",        "--take",       "--out",        "--format", "--all-takes",
-      "--preset",   "--bones",       "--rig",        "--influences", "--morphs", "--reduce",
-      "--in-place", "--t-pose-clip", "--keep-clips", "--preview",    "--report", "--weights"};
+      "DOCUMENT",      "--help",       "--take",       "--out",    "--format", "--all-takes",   "--preset",
+      "--bones",       "--rig",        "--influences", "--morphs", "--reduce", "--root-motion", "--in-place",
+      "--t-pose-clip", "--keep-clips", "--preview",    "--report", "--weights"};
   for (const CLI::Option* option : command.get_options())
     if (option->count() > 0 && kOfDocuments.count(option->get_single_name()) == 0 &&
         kOfDocuments.count("--" + option->get_single_name()) == 0)

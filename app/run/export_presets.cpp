@@ -9,23 +9,18 @@ namespace understudy::app {
 
 const std::vector<ExportPreset>& export_presets() {
   static const std::vector<ExportPreset> presets = {
-      {"three", "three.js",
-       "GLTFLoader reads 4 bones per vertex; keys that move nothing by 0.5 mm are left out for a small "
-       "download.",
-       "glb", 4, 0, 0.5f, false},
+      {"three", "three.js", "GLTFLoader reads 4 bones per vertex; fewer keys make a small download.", "glb",
+       4, 0, 0.5f, false, false},
       {"unity", "Unity",
-       "Unity's glTF importers read 4 bones per vertex; morph targets become blend shapes; every frame is a "
-       "key.",
-       "glb", 4, 8, 0, false},
+       "Its glTF importers read 4 bones per vertex, morph targets are blend shapes, a root bone has the "
+       "path.",
+       "glb", 4, 8, 0, false, true},
       {"unreal", "Unreal",
-       "Reads 8 bones per vertex and morph targets; every frame is a key, because Unreal compresses clips "
-       "itself.",
-       "glb", 8, 8, 0, false},
+       "Reads 8 bones per vertex and morph targets, takes root motion from a root bone, reduces keys itself.",
+       "glb", 8, 8, 0, false, true},
       {"blender", "Blender",
-       "Reads any number of bones per vertex; each clip becomes an action, the T-pose too; morph targets "
-       "become "
-       "shape keys.",
-       "glb", 8, 16, 0, true}};
+       "Reads any number of bones per vertex; clips, the T-pose too, are actions, morph targets shape keys.",
+       "glb", 8, 16, 0, true, false}};
   return presets;
 }
 
@@ -49,6 +44,7 @@ std::string help_of_presets() {
     if (preset.reduce_mm > 0)
       options += printed(", keys reduced by %.1f mm", static_cast<double>(preset.reduce_mm));
     if (preset.t_pose_clip) options += ", T-pose clip";
+    if (preset.root_motion) options += ", root motion";
     append_item(help, std::string(preset.name) + ": " + options, "; ");
   }
   return help;
@@ -59,6 +55,7 @@ void apply(const ExportPreset& preset, CharacterExportOptions& file) {
   file.shapes = preset.shapes;
   file.reduce_mm = preset.reduce_mm;
   file.t_pose_clip = preset.t_pose_clip;
+  file.root_motion = preset.root_motion;
 }
 
 const ExportPreset* preset_of(const ExportFormat& format, const CharacterExportOptions& file) {
@@ -66,7 +63,8 @@ const ExportPreset* preset_of(const ExportFormat& format, const CharacterExportO
   const auto& presets = export_presets();
   const auto found = std::find_if(presets.begin(), presets.end(), [&](const ExportPreset& preset) {
     return preset.influences == file.influences && preset.shapes == file.shapes &&
-           preset.reduce_mm == file.reduce_mm && preset.t_pose_clip == file.t_pose_clip;
+           preset.reduce_mm == file.reduce_mm && preset.t_pose_clip == file.t_pose_clip &&
+           preset.root_motion == file.root_motion;
   });
   return found == presets.end() ? nullptr : &*found;
 }

@@ -16,7 +16,7 @@ struct ExportPreset {
   const char* format;  ///< name of an ExportFormat that is a character
   int influences, shapes;
   float reduce_mm;
-  bool t_pose_clip;
+  bool t_pose_clip, root_motion;
 };
 
 /// All of them, in the order of menus.

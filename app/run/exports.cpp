@@ -233,6 +233,7 @@ void check_export_options(const std::string& path, const ExportFormat& format,
   US_CHECK(!file.t_pose_clip, path, ": ", format.label, " holds one motion, no T-pose besides");
   US_CHECK(!file.keep_clips, path, ": ", format.label,
            " holds one motion, so the file's own clips cannot be kept");
+  US_CHECK(!file.root_motion, path, ": ", format.label, " has no root bone that could carry the path");
   US_CHECK(file.shapes == 0, path, ": ", format.label, " holds no morph targets");
   US_CHECK(file.influences == 4, path, ": ", format.label, " holds no skin weights, so no ", file.influences,
            " bones per vertex");

@@ -108,7 +108,7 @@ void add_export_commands(Commands& commands) {
   commands.add({"export.run", "Export animation",
                 "TAKE PATH [format=NAME] [preset=" + names_of_presets() +
                     "] [bones=own|22] [influences=4|8] [morphs=COUNT] [reduce=MM] "
-                    "[in_place=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]"},
+                    "[in_place=on] [root_motion=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]"},
                run_export);
   commands.add({"export.all", "Export all takes, a file each",
                 "FOLDER [format=NAME|csv] and the options of export.run"},

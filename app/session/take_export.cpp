@@ -30,6 +30,8 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
     out.file.reduce_mm = static_cast<float>(in_range(1000));
   else if (key == "in_place")
     out.file.in_place = words.on(0);
+  else if (key == "root_motion")
+    out.file.root_motion = words.on(0);
   else if (key == "t_pose")
     out.file.t_pose_clip = words.on(0);
   else if (key == "keep_clips")

@@ -162,13 +162,8 @@ class TheirRig final : public Animator {
   std::vector<int> parent_;
 };
 
-/// One node above all: the file's world brought to metres, y up, facing +z.
-void add_root(Character& character, const Similarity& to_world) {
-  CharacterNode root;
-  root.name = "Understudy";
-  root.local.scale.setConstant(to_world.scale);
-  root.local.rotation = Eigen::Quaternionf(to_world.R).normalized();
-  root.local.translation = to_world.t;
+/// One node above all, number 0.
+void add_root(Character& character, const CharacterNode& root) {
   for (auto& node : character.nodes) ++node.parent;  // -1 becomes the root, number 0
   character.nodes.insert(character.nodes.begin(), root);
   for (auto& part : character.parts) ++part.node;
@@ -176,6 +171,16 @@ void add_root(Character& character, const Similarity& to_world) {
     for (int& joint : skin.joints) ++joint;
   for (auto& animation : character.animations)
     for (auto& track : animation.tracks) ++track.node;
+}
+
+/// The file's world brought to metres, y up, facing +z.
+CharacterNode world_root(const Similarity& to_world) {
+  CharacterNode root;
+  root.name = "Understudy";
+  root.local.scale.setConstant(to_world.scale);
+  root.local.rotation = Eigen::Quaternionf(to_world.R).normalized();
+  root.local.translation = to_world.t;
+  return root;
 }
 
 /// A skinned mesh goes where its bones are, whatever its node has: at the top, plain, no program is misled.
@@ -209,7 +214,7 @@ Character TheirRig::still() {
     if (!local.isApprox(out.nodes[n].local.matrix(), 1e-6f)) out.nodes[n].local = Transform::from(local);
   }
   if (!world.isApprox(Mat4::Identity(), 1e-6f)) {
-    add_root(out, to_world);
+    add_root(out, world_root(to_world));
     bind_.insert(bind_.begin(), world);
   } else {
     bind_ = source_.bind.nodes;
@@ -348,6 +353,12 @@ std::vector<Transform> OurRig::frame(const Pose& pose) const {
   return out;
 }
 
+/// On the spot where the T-pose stands.
+Pose on_the_spot(Pose pose, const Vec3& rest) {
+  pose.root = Vec3(rest.x(), pose.root.y(), rest.z());
+  return pose;
+}
+
 std::vector<CharacterClip> wanted_clips(const PreparedCharacter& character, std::vector<CharacterClip> clips,
                                         const CharacterExportOptions& options) {
   US_CHECK(!clips.empty(), character.character.called(), ": there is no motion to export");
@@ -358,7 +369,7 @@ std::vector<CharacterClip> wanted_clips(const PreparedCharacter& character, std:
       bool finite = pose.root.allFinite();
       for (const Mat3& R : pose.local) finite = finite && R.allFinite();
       US_CHECK(finite, "a pose of the clip '", clip.name, "' is not finite");
-      if (options.in_place) pose.root = Vec3(joints(Pelvis, 0), pose.root.y(), joints(Pelvis, 2));
+      if (options.in_place) pose = on_the_spot(pose, joints.row(Pelvis).transpose());
     }
   }
   if (!options.t_pose_clip) return clips;
@@ -366,6 +377,66 @@ std::vector<CharacterClip> wanted_clips(const PreparedCharacter& character, std:
   rest.poses[0].root = joints.row(Pelvis).transpose();
   clips.insert(clips.begin(), rest);
   return clips;
+}
+
+/// The topmost bone that poses do not move, but all that they move is below it; -1: there is none.
+int root_bone(const Character& character, const std::vector<MovedNode>& moved) {
+  std::vector<bool> is_still(character.nodes.size(), false);
+  for (const auto& skin : character.skins)
+    for (const int joint : skin.joints) is_still[joint] = true;
+  for (const MovedNode& one : moved) is_still[one.node] = false;
+  const auto is_below = [&](const MovedNode& one, int above) {
+    int n = one.node;
+    while (n >= 0 && n != above) n = character.nodes[n].parent;
+    return n >= 0;
+  };
+  int found = -1;
+  for (int n = character.nodes[moved.at(0).node].parent; n >= 0; n = character.nodes[n].parent)
+    if (is_still[n] &&
+        std::all_of(moved.begin(), moved.end(), [&](const auto& one) { return is_below(one, n); }))
+      found = n;
+  return found;
+}
+
+/// A bone of all skins above everything, number 0.
+void add_root_bone(Character& out, std::vector<CharacterAnimation>& own) {
+  CharacterNode root;
+  root.name = "Root";
+  add_root(out, root);
+  lift_skinned_nodes(out);
+  for (CharacterSkin& skin : out.skins) {
+    skin.joints.push_back(0);
+    skin.inverse_bind.push_back(Mat4::Identity());
+  }
+  for (CharacterAnimation& animation : own)
+    for (CharacterTrack& track : animation.tracks) ++track.node;
+}
+
+/// Lets a root bone go the way over the floor that the clips go from `rest`; the animations are on the spot. own: the
+/// file's animations, which are added later.
+void carry_path(const std::vector<CharacterClip>& clips, const Vec3& rest,
+                const std::vector<MovedNode>& moved, Character& out, std::vector<CharacterAnimation>& own) {
+  int root = root_bone(out, moved);
+  if (root < 0) add_root_bone(out, own), root = 0;
+  const std::vector<Mat4> world = out.world();
+  const int p = out.nodes[root].parent;
+  const Mat4 above = p < 0 ? Mat4(Mat4::Identity()) : Mat4(world[p].inverse());
+  for (size_t a = 0; a < clips.size(); ++a) {
+    CharacterTrack track;
+    track.node = root;
+    track.path = TrackPath::Translation;
+    float furthest = 0;
+    for (size_t i = 0; i < clips[a].poses.size(); ++i) {
+      const Pose& pose = clips[a].poses[i];
+      const Vec3 way = pose.root - on_the_spot(pose, rest).root;
+      const Mat4 placed = above * affine(Mat3::Identity(), way) * world[root];
+      const Vec3 t = placed.topRightCorner<3, 1>();
+      track.times.push_back(clips[a].seconds(i));
+      track.values.insert(track.values.end(), t.data(), t.data() + 3);
+      furthest = std::max(furthest, way.norm());
+    }
+    if (furthest > kStill) out.animations[a].tracks.push_back(std::move(track));
+  }
 }
 
 std::unique_ptr<Animator> animator_for(const PreparedCharacter& character, const Deformer& screen,
@@ -495,21 +566,24 @@ Character animated_character(const PreparedCharacter& character, const Deformer&
   const std::vector<CharacterClip> clips = wanted_clips(character, asked, options);
   const auto animator = animator_for(character, screen, options);
   Character out = animator->still();
-  const std::vector<CharacterAnimation> own = std::move(out.animations);
+  std::vector<CharacterAnimation> own = std::move(out.animations);
   out.animations.clear();
   const CorrectiveShapes shapes = shapes_for(screen, clips, options);
   if (!shapes.shapes.empty()) add_shapes(shapes, *animator, character, out);
+  const Vec3 rest = options.joints.value_or(character.target.joints).row(Pelvis).transpose();
   size_t at = 0;
   for (const auto& clip : clips) {
     Sampled sampled;
     for (size_t i = 0; i < clip.poses.size(); ++i) {
-      sampled.local.push_back(animator->frame(clip.poses[i]));
+      const Pose& pose = clip.poses[i];
+      sampled.local.push_back(animator->frame(options.root_motion ? on_the_spot(pose, rest) : pose));
       sampled.times.push_back(clip.seconds(i));
       if (!shapes.shapes.empty()) sampled.shapes.push_back(shapes.weights[at++]);
     }
     out.animations.push_back(
         animation_of(fresh_name(clip.name, out.animations), sampled, animator->moved(), out));
   }
+  if (options.root_motion) carry_path(clips, rest, animator->moved(), out, own);
   if (options.reduce_mm > 0) reduce_keys(character, options.reduce_mm, out);
   if (options.keep_clips && options.their_rig)
     for (CharacterAnimation animation : own) {

@@ -19,11 +19,13 @@ struct CharacterClip {
 };
 
 struct CharacterExportOptions {
-  bool their_rig = true;     ///< drive the character's own bones; needs a rigged character
-  int influences = 4;        ///< 4 or 8 bones a vertex; their own skin stays as it is where nobody painted it
-  int shapes = 0;            ///< morph targets for the pose-corrective offsets, 0: none
-  float reduce_mm = 0;       ///< removes keys while no vertex moves further than this; 0: all keys stay
-  bool in_place = false;     ///< the path over the floor is taken out
+  bool their_rig = true;  ///< drive the character's own bones; needs a rigged character
+  int influences = 4;     ///< 4 or 8 bones a vertex; their own skin stays as it is where nobody painted it
+  int shapes = 0;         ///< morph targets for the pose-corrective offsets, 0: none
+  float reduce_mm = 0;    ///< removes keys while no vertex moves further than this; 0: all keys stay
+  bool in_place = false;  ///< the path over the floor is taken out
+  bool root_motion =
+      false;  ///< a bone above all others carries it: the character's own, else one named "Root"
   bool t_pose_clip = false;  ///< the first clip is the T-pose
   bool keep_clips = false;   ///< the file's own animations stay, after ours
   /// T-pose joints that the screen was bound to, where they are others than the character's.

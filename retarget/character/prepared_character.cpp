@@ -107,7 +107,7 @@ Joints complete_joints(const BoneMap& map, const Joints& known) {
 /// A file of ours: bound in the very T-pose that it was performed from.
 bool on_our_joints(const Character& character) {
   return character.skins.size() == 1 && character.skins[0].name == kOurSkin &&
-         character.skins[0].joints.size() == kJointCount;
+         character.skins[0].joints.size() >= kJointCount;  // a root bone may come after
 }
 
 /// Rigs keep the bone that they call pelvis anywhere from the floor of the hips to the navel, or in front of

@@ -670,8 +670,8 @@ TEST_F(Exporting, APresetSetsTheOptionsAndAChangeMakesThemOnesOwn) {
   choose("export.preset.3");
   EXPECT_TRUE(shown("export.preset.words"));
   click("export.save");
-  EXPECT_EQ(take_log(),
-            Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb influences=8 morphs=8"})
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() +
+                              " format=glb root_motion=on influences=8 morphs=8"})
       << "no BVH: that has no vertices";
   open("export");
   choose("export.preset.1");

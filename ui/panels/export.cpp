@@ -241,7 +241,7 @@ void draw_take_rows(const app::Session& session, PanelContext& context, ExportSt
   const app::ExportFormat* const format = format_of(state);
   const bool can_be_clips = format != nullptr && format->is_character && count_of_clips(session) > 1;
   if (takes.size() > 1) {
-    std::vector<std::string> choices = {"This one", "A file each"};
+    std::vector<std::string> choices = {"This one", "File each"};
     if (can_be_clips) choices.push_back("One file");
     int which = state.takes == ExportTakes::Clips && !can_be_clips ? 0 : static_cast<int>(state.takes);
     const std::string before = suffix_of(session, state);
@@ -275,6 +275,11 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
       draw_character_rows(ui, *made, own_bones && on_own_bones(*format, state), state);
     toggle_row(ui, {"export.in_place", "In place", "Leaves out the path over the floor"},
                state.choice.file.in_place);
+    if (format->is_character)
+      toggle_row(ui,
+                 {"export.root_motion", "Root motion",
+                  "A bone above all others carries the path over the floor, as game engines want it"},
+                 state.choice.file.root_motion);
     const std::string frames = has_many_files(session, state)
                                    ? std::to_string(session.takes.size()) + " takes"
                                    : frames_words(session, session.selected_take);
@@ -293,6 +298,7 @@ app::Arguments export_words(const app::ExportFormat& format, const app::ExportCh
   if (format.own_bones && own_bones && own != format.is_character)
     words.push_back(own ? "bones=own" : "bones=22");
   if (!format.is_character) return words;
+  if (file.root_motion) words.push_back("root_motion=on");
   if (file.influences == 8) words.push_back("influences=8");
   if (file.shapes > 0) words.push_back("morphs=" + std::to_string(file.shapes));
   if (file.reduce_mm > 0)

@@ -1,6 +1,6 @@
 // The export dialog: animations, figures, pictures, video.
 // Marks: export.preset, export.preset.words, export.format, export.takes (.0 the current one, .1 a file each, .2 clips of one file),
-// export.take, export.bones, export.influences, export.morphs, export.reduce, export.in_place, export.t_pose,
+// export.take, export.bones, export.influences, export.morphs, export.reduce, export.in_place, export.root_motion, export.t_pose,
 // export.keep_clips, export.clip.TAKE, export.path,
 // export.browse, export.size, export.width, export.height, export.all, export.transparent, export.as, export.save,
 // export.cancel; export.overwrite.yes and .cancel.

@@ -341,6 +341,93 @@ TEST(CharacterExport, InPlaceStaysAndTheTPoseComesFirst) {
   EXPECT_GT(rest.col(0).maxCoeff() - rest.col(0).minCoeff(), 1.3f);
 }
 
+/// Poses that walk two metres forward and one aside.
+std::vector<Pose> walking_away(const Joints& rest) {
+  std::vector<Pose> poses = made_motion(20, rest);
+  for (size_t i = 0; i < poses.size(); ++i) poses[i].root += Vec3(0.05f, 0, 0.1f) * static_cast<float>(i);
+  return poses;
+}
+
+int node_called(const Character& file, const std::string& name) {
+  for (size_t n = 0; n < file.nodes.size(); ++n)
+    if (file.nodes[n].name == name) return static_cast<int>(n);
+  return -1;
+}
+
+/// Metres over the floor between two nodes of the file when it plays: the greatest.
+float farthest_over_floor(const Exported& out, int a, int b) {
+  float farthest = 0;
+  for (int i = 0; i < 20; ++i) {
+    const PosedNodes posed = nodes_at(out.file, 0, static_cast<float>(i) / 25);
+    Vec3 between =
+        (posed.world[static_cast<size_t>(a)] - posed.world[static_cast<size_t>(b)]).topRightCorner<3, 1>();
+    between.y() = 0;
+    farthest = std::max(farthest, between.norm());
+  }
+  return farthest;
+}
+
+TEST_P(EveryRig, ARootBoneCarriesThePath) {
+  const TempFolder folder;
+  const PreparedCharacter character = prepared(GetParam());
+  const RigDeformer screen(character, nullptr);
+  const auto poses = walking_away(character.target.joints);
+  CharacterExportOptions options;
+  options.root_motion = true;
+  const Exported out = exported(folder, character, screen, poses, options);
+  EXPECT_LT(largest_mm(out, character, screen, poses), 0.1f) << "it plays as without";
+  const auto pelvis = std::find(character.driver.begin(), character.driver.end(), static_cast<int>(Pelvis));
+  ASSERT_NE(pelvis, character.driver.end());
+  const int hips = node_called(
+      out.file, character.character.nodes[static_cast<size_t>(pelvis - character.driver.begin())].name);
+  const int root = node_called(out.file, "Root");
+  ASSERT_GE(root, 0);
+  EXPECT_LT(farthest_over_floor(out, hips, root), 0.4f) << "the root is below the hips all the way";
+  for (const CharacterSkin& skin : out.file.skins)
+    EXPECT_NE(std::find(skin.joints.begin(), skin.joints.end(), root), skin.joints.end()) << "a bone";
+}
+
+TEST(CharacterExport, ARootBoneThatTheRigHasCarriesThePath) {
+  const TempFolder folder;
+  Character made = make_character();
+  made.skins[0].joints.push_back(0);
+  made.skins[0].inverse_bind.push_back(Mat4::Identity());
+  const std::string name = made.nodes[0].name;
+  const PreparedCharacter character = prepare_character(std::move(made), nullptr, nullptr);
+  ASSERT_EQ(character.driver[0], -1);
+  const RigDeformer screen(character, nullptr);
+  const auto poses = walking_away(character.target.joints);
+  CharacterExportOptions options;
+  options.root_motion = true;
+  const Exported out = exported(folder, character, screen, poses, options);
+  EXPECT_LT(largest_mm(out, character, screen, poses), 0.1f);
+  EXPECT_EQ(node_called(out.file, "Root"), -1);
+  const int root = node_called(out.file, name);
+  const auto& tracks = out.file.animations.at(0).tracks;
+  EXPECT_TRUE(std::any_of(tracks.begin(), tracks.end(), [&](const CharacterTrack& track) {
+    return track.node == root && track.path == TrackPath::Translation;
+  }));
+}
+
+TEST(CharacterExport, The22JointsWithARootBoneOpenAgainAsTheSameShape) {
+  const TempFolder folder;
+  const PreparedCharacter character = prepared({});
+  BulgingDeformer screen;
+  screen.bind(character.target.mesh.vertices, character.target.joints);
+  const auto poses = walking_away(character.target.joints);
+  CharacterExportOptions options;
+  options.their_rig = false, options.root_motion = true, options.influences = 8;
+  const Exported out = exported(folder, character, screen, poses, options);
+  const Exported plain = [&] {
+    options.root_motion = false;
+    return exported(folder, character, screen, poses, options);
+  }();
+  EXPECT_NEAR(out.cost.largest_mm, plain.cost.largest_mm, 0.01);
+  EXPECT_LT(farthest_over_floor(out, node_called(out.file, "pelvis"), node_called(out.file, "Root")), 0.4f);
+  const PreparedCharacter again = prepare_character(out.file, nullptr, nullptr);
+  EXPECT_LT((again.target.joints - character.target.joints).rowwise().norm().maxCoeff(), 1e-3f);
+}
+
 TEST(CharacterExport, RotationsTurnTheShortWay) {
   const PreparedCharacter character = prepared({});
   const RigDeformer screen(character, nullptr);
