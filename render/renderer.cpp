@@ -173,6 +173,7 @@ struct Renderer::Parts {
   void draw_still(const Scene& scene, const Camera& camera, PixelSize size);
   void show(const Scene& scene, const Camera& camera, const RenderTarget& target);
   void draw_meshes(const Scene& scene, bool opaque);
+  void draw_clouds(const Scene& scene, bool opaque);
   void draw_skeletons(const Scene& scene, bool x_ray);
   void draw_lines(const Scene& scene, bool x_ray);
 
@@ -210,6 +211,11 @@ void Renderer::Parts::draw_meshes(const Scene& scene, bool opaque) {
     if ((mesh.opacity >= 1) == opaque) meshes.draw(mesh, ambient_strength(scene));
 }
 
+void Renderer::Parts::draw_clouds(const Scene& scene, bool opaque) {
+  for (const auto& cloud : scene.clouds)
+    if ((cloud.opacity >= 1) == opaque) points.draw(cloud, canvas.samples() > 1);
+}
+
 void Renderer::Parts::draw_skeletons(const Scene& scene, bool x_ray) {
   for (const auto& skeleton : scene.skeletons)
     if (skeleton.x_ray == x_ray) meshes.draw(skeleton_solids(skeleton), 0);
@@ -234,8 +240,17 @@ const Renderer::Parts::Pass Renderer::Parts::kPasses[] = {
       p.canvas.resolve_depth();
       p.occlusion.draw(p.canvas.depth_texture(), p.frame.size(), s.occlusion);
     },
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_clouds(s, true); },
+    // Clouds to be seen through hide nothing that is drawn later: their depth goes again.
     [](Parts& p, const Scene& s, const Camera&) {
-      for (const auto& cloud : s.clouds) p.points.draw(cloud, p.canvas.samples() > 1);
+      const auto opaque = [](const auto& cloud) { return cloud.opacity >= 1; };
+      if (std::all_of(s.clouds.begin(), s.clouds.end(), opaque)) return;
+      p.draw_clouds(s, false);
+      gl::api().Clear(GL_DEPTH_BUFFER_BIT);
+      const gl::ColorMaskScope colors(false);
+      p.draw_meshes(s, true);
+      p.draw_skeletons(s, false);
+      p.draw_clouds(s, true);
     },
     // What lies over it.
     [](Parts& p, const Scene& s, const Camera&) { p.draw_lines(s, false); },

@@ -27,10 +27,12 @@ struct MeshView {
   float opacity = 1;  ///< below 1 only the front layer is seen, and what is behind it
   /// show the inside, lit like the outside (scans have holes); a closed one draws faster without
   bool two_sided = true;
+  bool wireframe = false;  ///< with the edges of its faces over it, those in front
 };
 template <class V, class S>
 FieldsOf<S, MeshView> fields(V& visit, S& m) {
-  unnamed(visit, m.vertices, m.faces, m.normals, m.colors, m.ambient, m.color, m.opacity, m.two_sided);
+  unnamed(visit, m.vertices, m.faces, m.normals, m.colors, m.ambient, m.color, m.opacity, m.two_sided,
+          m.wireframe);
 }
 
 /// Points as lit round discs.
@@ -40,10 +42,11 @@ struct PointsView {
   SharedPoints colors;     ///< [N, 3]; empty: `color` everywhere
   Vec3 color = Vec3(0.60f, 0.66f, 0.72f);
   float radius = 0.008f;  ///< metres
+  float opacity = 1;      ///< below 1 only the front layer is seen, and all that is behind it
 };
 template <class V, class S>
 FieldsOf<S, PointsView> fields(V& visit, S& p) {
-  unnamed(visit, p.positions, p.normals, p.colors, p.color, p.radius);
+  unnamed(visit, p.positions, p.normals, p.colors, p.color, p.radius, p.opacity);
 }
 
 enum class Side : int { Middle, Left, Right };
@@ -57,10 +60,11 @@ struct SkeletonView {
   float tint_share = 0;      ///< by so much
   float thickness = 1;       ///< of bones and balls, 1 fits an adult
   bool x_ray = true;         ///< seen through everything else
+  float opacity = 1;
 };
 template <class V, class S>
 FieldsOf<S, SkeletonView> fields(V& visit, S& s) {
-  unnamed(visit, s.joints, s.parents, s.sides, s.tint, s.tint_share, s.thickness, s.x_ray);
+  unnamed(visit, s.joints, s.parents, s.sides, s.tint, s.tint_share, s.thickness, s.x_ray, s.opacity);
 }
 
 /// Lines in space: trails, boxes.

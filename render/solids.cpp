@@ -166,7 +166,9 @@ MeshView skeleton_solids(const SkeletonView& view) {
     const Vec3 parent = view.joints.row(view.parents[j]);
     if (parent.allFinite()) add_bone(solids, parent, here, view.thickness, color);
   }
-  return solids.mesh();
+  MeshView mesh = solids.mesh();
+  mesh.opacity = view.opacity;
+  return mesh;
 }
 
 }  // namespace understudy::render

@@ -18,6 +18,12 @@ const Joints* pane_joints(const Session& session, int pane, int frame) {
                                                                         : nullptr;
 }
 
+Vec3 spread_offset(const Session& session, int pane) {
+  if (session.view.layout != Layout::Overlay) return Vec3::Zero();
+  const float from_middle = static_cast<float>(pane) - 0.5f * static_cast<float>(session.takes.size());
+  return {session.view.overlay.spread_m * from_middle, 0, 0};
+}
+
 Vec3 follow_offset(const Session& session, int pane, int frame) {
   if (!session.view.follow) return Vec3::Zero();
   const double sigma = std::max(1.0, kSmoothing * session.source.fps);

@@ -46,6 +46,35 @@ FieldsOf<S, CameraState> fields(V& visit, S& camera) {
   visit("orthographic", camera.orthographic);
 }
 
+/// Opacities of what lies over each other, and how far apart the people stand, in Layout::Overlay.
+struct OverlayLook {
+  float scan = 1, skeletons = 1, results = 0.62f;
+  float spread_m = 0;  ///< between two of them along x; 0: on each other
+};
+template <class V, class S>
+FieldsOf<S, OverlayLook> fields(V& visit, S& look) {
+  visit("scan", look.scan, Clamped<float>{0, 1});
+  visit("skeletons", look.skeletons, Clamped<float>{0, 1});
+  visit("results", look.results, Clamped<float>{0, 1});
+  visit("spread_m", look.spread_m, Clamped<float>{0, 10});
+}
+
+/// Where the main light comes from, beside where it usually does, and how bright all light is.
+struct LightLook {
+  float turn_deg = 0, height_deg = 0;  ///< to the right; upwards
+  float brightness = 1;
+};
+template <class V, class S>
+FieldsOf<S, LightLook> fields(V& visit, S& light) {
+  visit("turn_deg", light.turn_deg, Clamped<float>{-180, 180});
+  visit("height_deg", light.height_deg, Clamped<float>{-90, 90});
+  visit("brightness", light.brightness, Clamped<float>{0, 3});
+}
+
+/// What is behind everything.
+enum class Backdrop { Theme, White, Black, Own };
+constexpr Names<4> kBackdropNames{"theme", "white", "black", "own"};
+
 /// What a pane draws.
 struct Layers {
   bool surface = true;       ///< the scan, or the target's mesh
@@ -54,8 +83,9 @@ struct Layers {
   bool x_ray = true;         ///< the skeleton shines through; off: depth-tested
   bool joint_names = false;  ///< all names; the hovered joint's is always shown
   bool ground = true;
-  bool trails = false;  ///< paths of View::trail_joints
-  bool ghosts = false;  ///< past and coming frames, faint
+  bool trails = false;     ///< paths of View::trail_joints
+  bool ghosts = false;     ///< past and coming frames, faint
+  bool wireframe = false;  ///< edges of the surface's faces over it
   Colouring colouring = Colouring::Plain;
 };
 template <class V, class S>
@@ -68,6 +98,7 @@ FieldsOf<S, Layers> fields(V& visit, S& layers) {
   visit("ground", layers.ground);
   visit("trails", layers.trails);
   visit("ghosts", layers.ghosts);
+  visit("wireframe", layers.wireframe);
   visit("colouring", layers.colouring, kColouringNames);
 }
 
@@ -85,7 +116,11 @@ struct View {
   float error_scale_mm = 50;              ///< upper end of the scales of errors, offsets and differences
   float wipe = 0.5f;                      ///< the wipe's line, share of the width
   bool cube = true;                       ///< a cube in each view that shows where it looks from
-  std::string metric = "confidence";      ///< plotted in the timeline
+  OverlayLook overlay;
+  LightLook light;
+  Backdrop backdrop = Backdrop::Theme;
+  Vec3 backdrop_color = Vec3(0.16f, 0.24f, 0.34f);  ///< of Backdrop::Own, sRGB
+  std::string metric = "confidence";                ///< plotted in the timeline
 };
 template <class V, class S>
 FieldsOf<S, View> fields(V& visit, S& view) {
@@ -104,6 +139,10 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("error_scale_mm", view.error_scale_mm, Clamped<float>{1e-3f, 1e6f});
   visit("wipe", view.wipe, Clamped<float>{0, 1});
   visit("cube", view.cube);
+  visit("overlay", view.overlay);
+  visit("light", view.light);
+  visit("backdrop", view.backdrop, kBackdropNames);
+  visit("backdrop_color", view.backdrop_color);
   visit("metric", view.metric);
 }
 

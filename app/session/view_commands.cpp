@@ -124,7 +124,7 @@ void add_pane(Extent& all, const Session& session, int pane, int frame) {
   const Joints* const joints = pane_joints(session, pane, frame);
   if (take && (placing || !joints)) add_rest(all, *take);
   if (!joints) return;
-  const Vec3 offset = follow_offset(session, pane, frame);
+  const Vec3 offset = follow_offset(session, pane, frame) - spread_offset(session, pane);
   if (pane == 0 && session.tool == Tool::Crop) {
     const Box box = shown_crop(session);
     all.extend(Vec3(box.low - offset)).extend(Vec3(box.high - offset));
@@ -244,6 +244,32 @@ void add_layers(Commands& commands) {
                [](Call& c) { c.session.view.metric = c.word(0, "figure"); });
 }
 
+void add_overlay(Commands& commands) {
+  commands.add(
+      {"view.opacity", "Opacity in the overlay", "scan|skeletons|results SHARE: 0 to 1"}, [](Call& c) {
+        OverlayLook& look = c.session.view.overlay;
+        float* const shares[] = {&look.scan, &look.skeletons, &look.results};
+        *shares[c.choice(0, "layer", {"scan", "skeletons", "results"})] = c.clamped(1, "opacity", 0.f, 1.f);
+      });
+  commands.add({"view.spread", "Spread of the overlay", "METRES: between two people, 0 on each other"},
+               [](Call& c) { c.session.view.overlay.spread_m = c.clamped(0, "distance", 0.f, 10.f); });
+}
+
+void add_light(Commands& commands) {
+  commands.add({"view.light", "Light", "turn DEGREES | height DEGREES | brightness FACTOR"}, [](Call& c) {
+    LightLook& light = c.session.view.light;
+    const size_t which = c.choice(0, "what", {"turn", "height", "brightness"});
+    if (which == 0) light.turn_deg = c.clamped(1, "angle", -180.f, 180.f);
+    if (which == 1) light.height_deg = c.clamped(1, "angle", -90.f, 90.f);
+    if (which == 2) light.brightness = c.clamped(1, "brightness", 0.f, 3.f);
+  });
+  commands.add({"view.background", "Background", "theme|white|black|own [R G B]: 0 to 1"}, [](Call& c) {
+    View& view = c.session.view;
+    view.backdrop = c.choice<Backdrop>(0, "background", kBackdropNames);
+    if (c.arguments.size() > 1) view.backdrop_color = c.vector(1, "colour").cwiseMax(0.f).cwiseMin(1.f);
+  });
+}
+
 void add_panes(Commands& commands) {
   commands.add({"view.layout", "Layout", "side-by-side|single|overlay|wipe"},
                [](Call& c) { c.session.view.layout = c.choice<Layout>(0, "layout", kLayoutNames); });
@@ -281,6 +307,8 @@ void add_view_commands(Commands& commands) {
   add_cameras(commands);
   add_camera_motion(commands);
   add_layers(commands);
+  add_overlay(commands);
+  add_light(commands);
 }
 
 }  // namespace understudy::app

@@ -316,7 +316,8 @@ std::vector<ui::Mark> Application::marks() const {
     else if (const Joints* now = pane_joints(session(), pane.number, ui::pane_frame(session(), pane)))
       joints = *now;
     if (!view || view->rect.empty() || !joints) continue;
-    const ui::PaneView seen{view->rect, ui::pane_camera(session(), pane)};
+    const ui::PaneView whole{view->rect, ui::pane_camera(session(), pane)};
+    const ui::PaneView seen = whole.shifted(ui::aside(session(), pane, pane.number));
     for (int j = 0; j < kJointCount; ++j) {
       const auto at = seen.project(joints->row(j));
       if (!at || !view->rect.contains(*at)) continue;

@@ -20,7 +20,7 @@
   X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) \
   X(GenTextures) X(GenVertexArrays) X(GetBooleanv) X(GetError) X(GetIntegerv) X(GetProgramInfoLog) \
   X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetStringi) X(GetUniformBlockIndex) \
-  X(GetUniformLocation) X(IsEnabled) X(LinkProgram) X(PixelStorei) X(PolygonOffset) X(ReadBuffer) \
+  X(GetUniformLocation) X(IsEnabled) X(LinkProgram) X(PixelStorei) X(PolygonMode) X(PolygonOffset) X(ReadBuffer) \
   X(ReadPixels) X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) \
   X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform3f) X(Uniform4f) X(UniformBlockBinding) \
   X(UniformMatrix4fv) X(UseProgram) X(VertexAttrib3f) X(VertexAttribPointer) X(Viewport)

@@ -26,11 +26,15 @@ void main() {
 
 const std::string kMeshFragment = std::string(kFrameGlsl) + kShadeGlsl + R"(
 uniform float u_opacity, u_occlusion;
-uniform int u_two_sided;
+uniform int u_two_sided, u_edges;
 in vec3 v_position, v_normal, v_color;
 in float v_ambient;
 out vec4 o_color;
 void main() {
+  if (u_edges != 0) {
+    o_color = vec4(0.04, 0.045, 0.05, 1.0) * (0.36 * u_opacity);
+    return;
+  }
   vec3 n = u_two_sided != 0 && !gl_FrontFacing ? -v_normal : v_normal;
   o_color = vec4(shade(v_color, n, v_position, 1.0 - u_occlusion * (1.0 - v_ambient)), u_opacity);
   if (u_opacity < 1.0) {  // a see-through body is clearer where it is seen face on and denser at its outline
@@ -72,7 +76,17 @@ class MeshPass {
       gl::api().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(view.faces->size()), GL_UNSIGNED_INT,
                              nullptr);
     };
-    if (view.opacity >= 1) return draw();
+    edges_.set(0);
+    if (view.opacity >= 1)
+      draw();
+    else
+      draw_see_through(draw);
+    if (view.wireframe) draw_edges(draw);
+  }
+
+ private:
+  template <class Draw>
+  static void draw_see_through(const Draw& draw) {
     {  // the depth of the front layer first, so that inner surfaces do not shine through one another
       const gl::ColorMaskScope colors(false);
       draw();
@@ -82,7 +96,21 @@ class MeshPass {
     draw();
   }
 
- private:
+  /// A little nearer than the faces, which hide those behind.
+  template <class Draw>
+  void draw_edges(const Draw& draw) {
+    const gl::BlendScope blend(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    const gl::DepthFuncScope depth(GL_LEQUAL);
+    const gl::DepthMaskScope keeps(false);
+    const gl::CapabilityScope nearer(GL_POLYGON_OFFSET_LINE, true);
+    edges_.set(1);
+    gl::api().PolygonOffset(-1, -4);
+    gl::api().PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    draw();
+    gl::api().PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    gl::api().PolygonOffset(0, 0);
+  }
+
   void bind(const MeshView& view) {
     gl::use_attribute(0, arrays_.of(view.vertices), 3);
     gl::use_attribute(
@@ -104,7 +132,7 @@ class MeshPass {
   gl::ArrayCache& arrays_;
   gl::Program program_{"mesh", kMeshVertex, kMeshFragment};
   gl::Uniform<float> opacity_{program_, "u_opacity"}, occlusion_{program_, "u_occlusion"};
-  gl::Uniform<int> two_sided_{program_, "u_two_sided"};
+  gl::Uniform<int> two_sided_{program_, "u_two_sided"}, edges_{program_, "u_edges"};
   gl::VertexArray array_;
 };
 

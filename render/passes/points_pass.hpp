@@ -30,6 +30,7 @@ void main() {
 )";
 const std::string kDiscFragment = R"(
 uniform float u_smooth;  // 1: the rim's alpha becomes coverage
+uniform float u_opacity;
 flat in vec3 v_color;
 flat in vec3 v_tilt;
 out vec4 o_color;
@@ -38,6 +39,7 @@ void main() {
   float height = dot(v_tilt.xy, d), r2 = dot(d, d) + height * height;
   if (r2 > 1.0) discard;
   o_color = vec4(v_color, u_smooth > 0.5 ? clamp((1.0 - r2) * 0.25 * v_tilt.z + 0.5, 0.0, 1.0) : 1.0);
+  if (u_opacity < 1.0) o_color *= u_opacity;
 }
 )";
 
@@ -57,7 +59,7 @@ void main() {
 }
 )";
 const std::string kBallFragment = std::string(kFrameGlsl) + kShadeGlsl + R"(
-uniform float u_smooth;
+uniform float u_smooth, u_opacity;
 flat in vec3 v_color, v_position;
 flat in float v_pixels;
 out vec4 o_color;
@@ -68,6 +70,7 @@ void main() {
   vec3 n = vec3(d, sqrt(1.0 - r2)) * mat3(u_view);  // transposed: to the world
   o_color = vec4(shade(v_color, n, v_position, 1.0),
                  u_smooth > 0.5 ? clamp((1.0 - r2) * 0.25 * v_pixels + 0.5, 0.0, 1.0) : 1.0);
+  if (u_opacity < 1.0) o_color *= u_opacity;
 }
 )";
 
@@ -87,8 +90,9 @@ class PointsPass {
     const Kind& kind = flat ? discs_ : balls_;
     const gl::ProgramScope program(kind.program.id());
     const gl::VertexArrayScope array(kind.array.name());
+    const bool opaque = view.opacity >= 1, covers = multisampled && opaque;
     const gl::CapabilityScope size(GL_PROGRAM_POINT_SIZE, true),
-        coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, multisampled), whole(GL_SAMPLE_ALPHA_TO_ONE, multisampled);
+        coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, covers), whole(GL_SAMPLE_ALPHA_TO_ONE, covers);
     gl::use_attribute(0, arrays_.of(view.positions), 3);
     if (flat) gl::use_attribute(1, arrays_.of(view.normals), 3);
     if (view.colors->rows() > 0)
@@ -96,14 +100,24 @@ class PointsPass {
     else
       gl::use_constant_attribute(2, view.color);
     kind.radius.set(view.radius);
-    kind.smooth.set(multisampled ? 1.f : 0.f);
-    gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
+    kind.smooth.set(covers ? 1.f : 0.f);
+    kind.opacity.set(view.opacity);
+    const auto draw = [&] { gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count)); };
+    if (opaque) return draw();
+    {  // the depth of the front layer first: discs that overlap would add up
+      const gl::ColorMaskScope colors(false);
+      draw();
+    }
+    const gl::BlendScope blend(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    const gl::DepthFuncScope depth(GL_LEQUAL);
+    draw();
   }
 
  private:
   struct Kind {
     gl::Program program;
-    gl::Uniform<float> radius{program, "u_radius"}, smooth{program, "u_smooth"};
+    gl::Uniform<float> radius{program, "u_radius"}, smooth{program, "u_smooth"},
+        opacity{program, "u_opacity"};
     gl::VertexArray array{};
   };
 

@@ -64,8 +64,8 @@ View view() {
   view.cameras = {{Vec3(1, 2, 3), -0.5f, 0.25f, 3.3f, 0.6f, true}, {}};
   view.follow = false;
   view.turntable_deg_s = 12;
-  view.source = {false, true, false, false, true, false, true, true, Colouring::Confidence};
-  view.take = {false, true, false, false, true, false, true, true, Colouring::Difference};
+  view.source = {false, true, false, false, true, false, true, true, true, Colouring::Confidence};
+  view.take = {false, true, false, false, true, false, true, true, true, Colouring::Difference};
   view.active_pane = 2;
   view.weights_joint = LeftKnee;
   view.trail_joints = {LeftFoot, Head, Pelvis};
@@ -73,6 +73,11 @@ View view() {
   view.ghost_step = 3;
   view.error_scale_mm = 25;
   view.wipe = 0.3f;
+  view.cube = false;
+  view.overlay = {0.5f, 0.25f, 0.75f, 1.5f};
+  view.light = {-30, 12, 1.25f};
+  view.backdrop = Backdrop::Own;
+  view.backdrop_color = Vec3(0.25f, 0.5f, 0.75f);
   view.metric = "foot_skate";
   return view;
 }

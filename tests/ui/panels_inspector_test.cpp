@@ -196,10 +196,9 @@ class LayersPanel : public PanelsTest {
 TEST_F(LayersPanel, EverySwitchOfBothPanesAsksForItsLayer) {
   const app::Layers& layers = session.view.source;
   const std::pair<const char*, bool> rows[] = {
-      {"surface", layers.surface}, {"skeleton", layers.skeleton},
-      {"x_ray", layers.x_ray},     {"joint_names", layers.joint_names},
-      {"ground", layers.ground},   {"trails", layers.trails},
-      {"ghosts", layers.ghosts}};
+      {"surface", layers.surface},         {"skeleton", layers.skeleton},  {"x_ray", layers.x_ray},
+      {"joint_names", layers.joint_names}, {"ground", layers.ground},      {"trails", layers.trails},
+      {"ghosts", layers.ghosts},           {"wireframe", layers.wireframe}};
   for (const std::string pane : {"source", "take"})
     for (const auto& [name, on] : rows)
       expect_click("layers." + pane + "." + name,
@@ -208,6 +207,32 @@ TEST_F(LayersPanel, EverySwitchOfBothPanesAsksForItsLayer) {
   session.source.has_faces = false;
   frame(2);
   EXPECT_FALSE(shown("layers.source.as_points"));
+  EXPECT_FALSE(shown("layers.source.wireframe")) << "points have no edges";
+  EXPECT_TRUE(shown("layers.take.wireframe"));
+}
+
+TEST_F(LayersPanel, TheOverlaysOpacitiesAndSpreadAreThereInThatLayout) {
+  EXPECT_FALSE(shown("layers.spread"));
+  session.view.layout = app::Layout::Overlay;
+  frame(2);
+  for (const std::string layer : {"scan", "skeletons", "results"})
+    expect_drag("layers.opacity." + layer, "view.opacity " + layer + " ");
+  expect_drag("layers.spread", "view.spread ");
+  session.view.overlay.results = 0.3f;
+  frame(2);
+  expect_click("layers.opacity.results.reset", {"view.opacity results 0.62"});
+}
+
+TEST_F(LayersPanel, LightAndBackground) {
+  click("layers.light_and_background");
+  frame(2);
+  for (const std::string what : {"turn", "height", "brightness"})
+    expect_drag("layers.light." + what, "view.light " + what + " ");
+  expect_choice("layers.background", 1, {"view.background white"});
+  EXPECT_FALSE(shown("layers.background_colour"));
+  session.view.backdrop = app::Backdrop::Own;
+  frame(2);
+  EXPECT_TRUE(shown("layers.background_colour"));
 }
 
 TEST_F(LayersPanel, ColoursTrailsAndScales) {

@@ -284,6 +284,20 @@ TEST_F(ViewsTest, DraggingAJointAsksForTheEditOnce) {
   EXPECT_EQ(words[6], "children");
 }
 
+TEST_F(ViewsTest, APersonThatStandsAsideIsDraggedWhereItIsSeen) {
+  stage.session.view.layout = app::Layout::Overlay, stage.session.view.overlay.spread_m = 0.8f;
+  stage.session.tool = app::Tool::Joints;
+  frame(3);
+  const Vec3 elbow = source_joint(LeftElbow);
+  const ImVec2 from =
+      seen(0, elbow - Vec3(0.4f, 0, 0));  // the source is left of the middle, the take right of it
+  drag(from, {from.x, from.y - 40});
+  const app::Arguments words = asked("edit.drag");
+  EXPECT_EQ(words[1], "left_elbow");
+  EXPECT_NEAR(vector_at(words, 2).x(), 0, 0.05f);
+  EXPECT_GT(vector_at(words, 2).y(), 0.05f);
+}
+
 TEST_F(ViewsTest, AClickOnAJointChangesNothing) {
   stage.session.tool = app::Tool::Joints;
   click(seen(0, source_joint(LeftElbow)));

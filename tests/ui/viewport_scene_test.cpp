@@ -54,6 +54,75 @@ TEST_F(SceneTest, EachLayerIsThereOnlyWhenItIsOn) {
   EXPECT_FALSE(scene(1).scene.ground.visible);
 }
 
+/// Where a picture's points are in the middle.
+Vec3 middle_of(const Points& points) {
+  return points.colwise().mean().transpose();
+}
+
+class OverlayScene : public SceneTest {
+ protected:
+  OverlayScene() { session.view.layout = app::Layout::Overlay; }
+  render::Scene overlaid() {
+    const PaneContent pane = panes_of(session)[0];
+    pictures_of(session, *stage.cache, pane, pane_frame(session, pane));
+    stage.cache->wait();
+    last = pictures_of(session, *stage.cache, pane, pane_frame(session, pane)).value();
+    return build_scene({session, pane, last, {nullptr}, {}, ThemeKind::Dark}, memory).scene;
+  }
+};
+
+TEST_F(OverlayScene, EachLayerHasItsOpacity) {
+  app::OverlayLook& look = session.view.overlay;
+  look.scan = 0.4f, look.skeletons = 0.7f, look.results = 0.2f;
+  const render::Scene scene = overlaid();
+  EXPECT_EQ(scene.clouds.at(0).opacity, 0.4f);
+  EXPECT_EQ(scene.meshes.at(0).opacity, 0.2f);
+  for (const auto& skeleton : scene.skeletons) EXPECT_EQ(skeleton.opacity, 0.7f);
+  look.scan = look.skeletons = look.results = 0;
+  const render::Scene nothing = overlaid();
+  EXPECT_TRUE(nothing.clouds.empty() && nothing.meshes.empty() && nothing.skeletons.empty());
+}
+
+TEST_F(OverlayScene, SpreadPutsThePeopleSideBySideAndZeroOnEachOther) {
+  const render::Scene together = overlaid();
+  session.view.overlay.spread_m = 1.2f;
+  const render::Scene apart = overlaid();
+  const auto moved = [](const auto& a, const auto& b) { return Vec3(middle_of(b) - middle_of(a)); };
+  EXPECT_TRUE(
+      moved(*together.clouds[0].positions, *apart.clouds[0].positions).isApprox(Vec3(-0.6f, 0, 0), 1e-3f));
+  EXPECT_TRUE(
+      moved(*together.meshes[0].vertices, *apart.meshes[0].vertices).isApprox(Vec3(0.6f, 0, 0), 1e-3f));
+  for (size_t i = 0; i < 2; ++i) {
+    const Vec3 by = moved(together.skeletons[i].joints, apart.skeletons[i].joints);
+    EXPECT_TRUE(by.isApprox(Vec3(i == 0 ? -0.6f : 0.6f, 0, 0), 1e-3f)) << i;
+  }
+  const render::Scene again = overlaid();
+  EXPECT_TRUE(same(apart, again)) << "nothing is to be drawn anew";
+}
+
+TEST_F(SceneTest, SpreadAndOpacityAreOfTheOverlayAlone) {
+  const render::Scene before = scene(1).scene;
+  session.view.overlay = {0.1f, 0.1f, 0.1f, 2};
+  EXPECT_TRUE(same(before, scene(1).scene));
+}
+
+TEST_F(SceneTest, WireframeLightAndBackgroundAreTheViews) {
+  const render::Scene before = scene(1).scene;
+  EXPECT_FALSE(before.meshes[0].wireframe);
+  EXPECT_TRUE(same(before.light, render::LightView()));
+  session.view.take.wireframe = true;
+  session.view.light = {90, 0, 0.5f};
+  session.view.backdrop = app::Backdrop::White;
+  const render::Scene now = scene(1).scene;
+  EXPECT_TRUE(now.meshes[0].wireframe);
+  EXPECT_TRUE(now.light.key.isApprox(0.5f * before.light.key));
+  EXPECT_NEAR(now.light.key_direction.y(), before.light.key_direction.normalized().y(), 1e-5f);
+  EXPECT_GT(now.light.key_direction.x(), 0.3f) << "it came from the left";
+  EXPECT_EQ(now.background.top, Vec3(1, 1, 1));
+  session.view.backdrop = app::Backdrop::Own, session.view.backdrop_color = Vec3(0.1f, 0.2f, 0.3f);
+  EXPECT_EQ(scene(1).scene.background.bottom, Vec3(0.1f, 0.2f, 0.3f));
+}
+
 TEST_F(SceneTest, GhostsArePosesOfOtherFrames) {
   session.view.take.ghosts = true, session.view.ghost_count = 2, session.view.ghost_step = 4;
   pictures(1);

@@ -1,9 +1,10 @@
 // What the views show: layers and colours of the source and the takes, cameras.
 // Marks, P being source or take: layers.P.surface, .as_points, .skeleton, .x_ray, .joint_names, .ground,
-// .trails, .ghosts, .colour; layers.weights_joint, layers.trail_joint, layers.trail.JOINT,
+// .trails, .ghosts, .wireframe, .colour; layers.opacity.scan, .skeletons, .results, layers.spread; layers.light.turn,
+// .height, .brightness, layers.background, layers.background_colour; layers.weights_joint, layers.trail_joint, layers.trail.JOINT,
 // layers.ghost_count, layers.ghost_step, layers.error_scale; layers.preset.NAME, layers.fit, layers.ortho,
-// layers.linked, layers.follow, layers.turntable. Sections: layers.source, layers.take, layers.colours,
-// layers.camera.
+// layers.linked, layers.follow, layers.turntable. Sections: layers.source, layers.take, layers.overlay
+// (in that layout), layers.colours, layers.camera, layers.light_and_background.
 #include <algorithm>
 #include <cmath>
 
@@ -85,8 +86,30 @@ void draw_pane(const app::Session& session, PanelContext& context, bool source) 
       layers.surface);
   if (source && session.source.has_faces)
     add("as_points", "As points", "Shows the scan's points without its faces", layers.as_points);
+  if (!source || session.source.has_faces)
+    add("wireframe", "Wireframe", "The edges of the surface's faces, over it", layers.wireframe);
   for (const Layer& layer : kLayers) add(layer.name, layer.label, layer.explanation, layers.*layer.on);
   draw_colour(context, pane, source ? kSourceColours : kTakeColours, layers.colouring);
+}
+
+void draw_overlay_rows(const app::Session& session, PanelContext& context) {
+  if (session.view.layout != app::Layout::Overlay) return;
+  if (!section(context.ui, "layers.overlay", "Overlay")) return;
+  const app::OverlayLook& look = session.view.overlay;
+  const app::OverlayLook usual;
+  const auto opacity = [&](const char* layer, const char* label, float now, float at_first) {
+    const std::string name = layer;
+    ask_number(context,
+               {"layers.opacity." + name, label, "How solid it is: 0 leaves it out", "view.opacity " + name},
+               now, {0, 1, 0.005f, "%.2f", at_first, true});
+  };
+  opacity("scan", "Scan", look.scan, usual.scan);
+  opacity("skeletons", "Skeletons", look.skeletons, usual.skeletons);
+  opacity("results", "Results", look.results, usual.results);
+  ask_number(
+      context,
+      {"layers.spread", "Spread", "How far apart the people stand; 0 puts them on each other", "view.spread"},
+      look.spread_m, {0, 10, 0.01f, "%.2f m", 0, true});
 }
 
 void draw_trails(const app::Session& session, PanelContext& context) {
@@ -159,14 +182,48 @@ void draw_camera(const app::Session& session, PanelContext& context) {
              session.view.turntable_deg_s, {-180, 180, 0.5f, "%.0f\u00b0/s", 0, true});
 }
 
+void draw_background(const app::View& view, PanelContext& context) {
+  Ui& ui = context.ui;
+  int chosen = static_cast<int>(view.backdrop);
+  row(ui, "Background", "What is behind everything; pictures can leave it out");
+  if (dropdown(ui, "layers.background", {"Theme", "White", "Black", "Own colour"}, chosen))
+    context.ask("view.background", {app::kBackdropNames[static_cast<size_t>(chosen)]});
+  if (view.backdrop != app::Backdrop::Own) return;
+  row(ui, "Colour", "Of the background");
+  Vec3 color = view.backdrop_color;
+  ImGui::SetNextItemWidth(-FLT_MIN);
+  const bool changed = ImGui::ColorEdit3("##background", color.data(), ImGuiColorEditFlags_NoOptions);
+  ui.mark("layers.background_colour");
+  if (!changed) return;
+  app::Arguments words = {"own"};
+  for (int i = 0; i < 3; ++i) words.push_back(argument(static_cast<double>(color[i])));
+  context.ask("view.background", words);
+}
+
+void draw_light(const app::Session& session, PanelContext& context) {
+  if (!section(context.ui, "layers.light_and_background", "Light and background", false)) return;
+  const app::LightLook& light = session.view.light;
+  ask_number(context,
+             {"layers.light.turn", "From the side", "Turns the main light about the view", "view.light turn"},
+             light.turn_deg, {-180, 180, 0.5f, "%.0f\u00b0", 0, true});
+  ask_number(context,
+             {"layers.light.height", "From above", "Raises or lowers the main light", "view.light height"},
+             light.height_deg, {-90, 90, 0.5f, "%.0f\u00b0", 0, true});
+  ask_number(context, {"layers.light.brightness", "Brightness", "Of all light", "view.light brightness"},
+             light.brightness, {0, 3, 0.005f, "%.2f", 1, true});
+  draw_background(session.view, context);
+}
+
 }  // namespace
 
 void draw_layers(const app::Session& session, PanelContext& context) {
   const DisabledScope disabled(!has_document(session));
   draw_pane(session, context, true);
   draw_pane(session, context, false);
+  draw_overlay_rows(session, context);
   draw_colours(session, context);
   draw_camera(session, context);
+  draw_light(session, context);
 }
 
 }  // namespace understudy::ui

@@ -229,7 +229,8 @@ std::string value_under(const Session& session, const Pane& pane, const ImVec2& 
   const Legend& legend = pane.made.legend;
   const auto& values = pane.made.values;
   if (legend.title.empty() || (values == nullptr && legend.categories.empty())) return "";
-  const render::Ray ray = pane.view.ray(at);
+  const int person = pane.made.values_take + 1;
+  const render::Ray ray = pane.view.shifted(aside(session, pane.content, person)).ray(at);
   const auto hit = pane.made.values_take < 0 ? scan_under(session, pane, ray)
                                              : take_under(session, pane.content, pane.keeper.pictures(), ray);
   if (!hit) return "";
@@ -238,10 +239,14 @@ std::string value_under(const Session& session, const Pane& pane, const ImVec2& 
 }
 
 std::optional<Vec3> surface_place(const Session& session, const Pane& pane, const ImVec2& at) {
-  const render::Ray ray = pane.view.ray(at);
-  auto hit = take_under(session, pane.content, pane.keeper.pictures(), ray);
-  if (!hit) hit = scan_under(session, pane, ray);
-  return hit ? std::optional<Vec3>(hit->position) : std::nullopt;
+  const auto& takes = pane.content.takes;
+  const Vec3 of_take = aside(session, pane.content, takes.empty() ? 0 : takes[0] + 1),
+             of_scan = aside(session, pane.content, 0);
+  const auto hit =
+      take_under(session, pane.content, pane.keeper.pictures(), pane.view.shifted(of_take).ray(at));
+  if (hit) return hit->position + of_take;
+  const auto point = scan_under(session, pane, pane.view.shifted(of_scan).ray(at));
+  return point ? std::optional<Vec3>(point->position + of_scan) : std::nullopt;
 }
 
 }  // namespace understudy::ui

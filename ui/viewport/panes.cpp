@@ -186,6 +186,17 @@ render::Camera pane_camera(const Session& session, const PaneContent& pane) {
   return {s.target + follow_offset(session, pane), s.yaw, s.pitch, s.distance, s.fov, s.orthographic};
 }
 
+Vec3 aside(const Session& session, const PaneContent& pane, int person) {
+  const bool overlaid = pane.source && !pane.takes.empty() && !shows_rest(session, pane);
+  return overlaid ? app::spread_offset(session, person) : Vec3(Vec3::Zero());
+}
+
+int person_of_tool(const Session& session, const PaneContent& pane) {
+  const bool of_source =
+      session.tool == app::Tool::Look || session.tool == app::Tool::Joints || session.tool == app::Tool::Crop;
+  return of_source || pane.takes.empty() ? pane.number : pane.takes[0] + 1;
+}
+
 std::vector<std::string> camera_arguments(const Session& session, const PaneContent& pane,
                                           const render::Camera& camera) {
   const Vec3 target = camera.target - follow_offset(session, pane);
@@ -203,6 +214,12 @@ std::optional<ImVec2> PaneView::project(const Vec3& point) const {
   const Vec3 seen = render::on_screen(camera, size(), point);
   if (!camera.orthographic && !(seen.z() > 0)) return std::nullopt;
   return ImVec2(rect.min.x + seen.x(), rect.min.y + seen.y());
+}
+
+PaneView PaneView::shifted(const Vec3& offset) const {
+  PaneView view = *this;
+  view.camera.target -= offset;
+  return view;
 }
 
 int point_at(const PaneView& view, const Points& points, const ImVec2& at, float reach) {

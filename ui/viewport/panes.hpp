@@ -55,6 +55,10 @@ std::shared_ptr<const Target> shown_target(const app::TakeState& take);
 Vec3 follow_offset(const app::Session& session, const PaneContent& pane);
 /// The camera that a pane is drawn with.
 render::Camera pane_camera(const app::Session& session, const PaneContent& pane);
+/// How far a person stands from its place in a pane whose people stand side by side, metres; zero in others.
+Vec3 aside(const app::Session& session, const PaneContent& pane, int person);
+/// Whom the tool in use and the joints' names are about, as app::pane_joints() numbers people.
+int person_of_tool(const app::Session& session, const PaneContent& pane);
 /// The arguments of view.camera_state: the number of the camera, then target, yaw, pitch (radians) and
 /// distance of a camera that a pane is to be drawn with.
 std::vector<std::string> camera_arguments(const app::Session& session, const PaneContent& pane,
@@ -69,6 +73,8 @@ struct PaneView {
   render::Ray ray(const ImVec2& at) const;
   /// Where a point of the world is seen; none behind the eye.
   std::optional<ImVec2> project(const Vec3& point) const;
+  /// The view in which what stands `offset` metres from its place is seen where it is drawn.
+  PaneView shifted(const Vec3& offset) const;
 };
 
 /// The point (joint) seen nearest to a pixel, at most `reach` pixels away; -1 for none.

@@ -16,7 +16,9 @@ using app::Colouring;
 using app::Session;
 using render::SharedPoints;
 
-constexpr float kGhostOpacity = 0.16f, kOverlaidOpacity = 0.62f, kTrailSeconds = 1.2f;
+constexpr float kGhostOpacity = 0.16f, kTrailSeconds = 1.2f;
+constexpr float kUnseen = 0.004f;                    // an opacity that leaves nothing
+constexpr int kCroppedAway = -2, kFirstGhost = -10;  // keys of ColourMemory
 constexpr float kDisc = 1.15f;  // a scan's discs against its spacing: few holes, edges still sharp
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
@@ -72,7 +74,7 @@ class Builder {
   void add_scan();
   void add_take(size_t i);
   void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, float opacity,
-                          bool coloured = true);
+                          int ghost = 0);
   void add_surface(render::MeshView view, bool as_points, float radius);
   void add_skeleton(const Joints& joints, const app::Layers& layers, int person);
   void add_trails();
@@ -81,6 +83,10 @@ class Builder {
   void add_crop_box();
   void add_cropped_away();
   void set_ground();
+  void set_background();
+  Vec3 aside_of(int person) const { return aside(session_, in_.pane, person); }
+  /// The points where the person stands; `key` of the memory.
+  SharedPoints standing(SharedPoints points, int person, int key);
   /// The colour behind everything, for what is drawn faintly.
   Vec3 air() const { return (out_.scene.background.top + out_.scene.background.bottom) / 2; }
   const SurfaceColours& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
@@ -90,12 +96,14 @@ class Builder {
   const SceneInput& in_;
   const Session& session_;
   const bool unposed_;  ///< in T-pose or as loaded instead of in a frame
+  const bool overlaid_ = in_.pane.takes.size() + (in_.pane.source ? 1 : 0) > 1;
   ColourMemory& memory_;
   PaneScene out_;
 };
 
 PaneScene Builder::build() {
-  out_.scene.background = background_of(in_.theme);
+  set_background();
+  out_.scene.light = light_of(session_.view.light);
   out_.values_take = in_.pane.takes.empty() ? -1 : in_.pane.takes[0];
   if (unposed_) {
     add_unposed();
@@ -106,7 +114,10 @@ PaneScene Builder::build() {
     add_trails();
     add_crop_box();
   }
-  if (in_.preview.gizmo) out_.scene.gizmos.push_back(*in_.preview.gizmo);
+  if (in_.preview.gizmo) {
+    out_.scene.gizmos.push_back(*in_.preview.gizmo);
+    out_.scene.gizmos.back().position += aside_of(person_of_tool(session_, in_.pane));
+  }
   set_ground();
   return std::move(out_);
 }
@@ -119,12 +130,24 @@ void Builder::add_unposed() {
   out_.scene.skeletons.push_back(render::skeleton_view(in_.preview.take_joints.value_or(joints)));
 }
 
+SharedPoints Builder::standing(SharedPoints points, int person, int key) {
+  const Vec3 offset = aside_of(person);
+  if (offset.isZero()) return points;
+  SurfaceColours& kept = memory_[key];
+  if (!(kept.in_place.pointer() == points.pointer() && kept.aside == offset)) {
+    kept.in_place = points, kept.aside = offset;
+    kept.moved = Points(points->rowwise() + offset.transpose());
+  }
+  return kept.moved;
+}
+
 /// As a lit mesh, or as discs of a radius in metres (0: of the usual one).
 void Builder::add_surface(render::MeshView view, bool as_points, float radius) {
+  if (view.opacity <= kUnseen) return;
   if (!as_points) return out_.scene.meshes.push_back(std::move(view));
   render::PointsView points;
   points.positions = view.vertices, points.normals = view.normals;
-  points.colors = view.colors, points.color = view.color;
+  points.colors = view.colors, points.color = view.color, points.opacity = view.opacity;
   if (radius > 0) points.radius = radius;
   out_.scene.clouds.push_back(std::move(points));
 }
@@ -135,10 +158,12 @@ void Builder::add_scan() {
     const auto& scan = in_.pictures.scan;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;
-    view.vertices = part_of(scan, scan->mesh.vertices), view.faces = part_of(scan, scan->mesh.faces);
+    view.vertices = standing(part_of(scan, scan->mesh.vertices), 0, -1);
+    view.faces = part_of(scan, scan->mesh.faces);
     view.normals = part_of(scan, scan->normals);
     view.colors = made.colors->rows() > 0 ? made.colors : SharedPoints(part_of(scan, scan->mesh.colors));
-    view.color = kScanColor;
+    view.color = kScanColor, view.wireframe = layers.wireframe;
+    if (overlaid_) view.opacity = session_.view.overlay.scan;
     add_surface(std::move(view), scan->mesh.is_cloud() || layers.as_points, kDisc * scan->spacing);
     explain(made, -1);
   }
@@ -151,16 +176,15 @@ void Builder::add_scan() {
 void Builder::add_take(size_t i) {
   const app::Layers& layers = session_.view.take;
   const int k = in_.pane.takes[i];
-  const bool over = in_.pane.source || in_.pane.takes.size() > 1;
   if (layers.surface && i < in_.pictures.takes.size() && in_.pictures.takes[i] != nullptr)
-    add_target_surface(i, in_.pictures.takes[i], over ? kOverlaidOpacity : 1);
+    add_target_surface(i, in_.pictures.takes[i], overlaid_ ? session_.view.overlay.results : 1);
   const Joints* joints = app::pane_joints(session_, k + 1, in_.pictures.frame);
   if (i == 0 && in_.preview.take_joints) joints = &*in_.preview.take_joints;
   if (joints != nullptr) add_skeleton(*joints, layers, k + 1);
 }
 
 void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed,
-                                 float opacity, bool coloured) {
+                                 float opacity, int ghost) {
   const int k = in_.pane.takes[i];
   const app::TakeState* take = at_or_null(session_.takes, k);
   const auto target = take != nullptr ? shown_target(*take) : nullptr;
@@ -169,10 +193,11 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
     return;
   const Mesh& mesh = target->mesh;
   render::MeshView view;
-  view.vertices = part_of(posed, posed->vertices), view.faces = part_of(target, mesh.faces);
-  view.normals = part_of(posed, posed->normals);
+  view.vertices = standing(part_of(posed, posed->vertices), k + 1, ghost < 0 ? ghost : k);
+  view.faces = part_of(target, mesh.faces), view.normals = part_of(posed, posed->normals);
   view.color = take_color(k), view.opacity = opacity;
-  if (coloured) {
+  view.wireframe = session_.view.take.wireframe && ghost == 0;
+  if (ghost == 0) {
     const SurfaceColours& made = take_colors(k, posed);
     view.colors = made.colors;
     if (made.colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
@@ -188,7 +213,10 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
 void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int person) {
   if (!layers.skeleton) return;
   render::SkeletonView view = render::skeleton_view(joints);
-  if (in_.pane.takes.size() + (in_.pane.source ? 1 : 0) > 1) {
+  view.joints.rowwise() += aside_of(person).transpose();
+  if (overlaid_) {
+    view.opacity = session_.view.overlay.skeletons;
+    if (view.opacity <= kUnseen) return;
     static const std::array<std::pair<Vec3, float>, 4> kShades = {{{Vec3(1, 1, 1), 0.55f},
                                                                    {Vec3(1, 1, 1), 0},
                                                                    {Vec3(0, 0, 0), 0.45f},
@@ -201,13 +229,15 @@ void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int 
 
 /// Poses before and after, fainter than the one shown.
 void Builder::add_ghosts() {
+  int key = kFirstGhost;
   for (const PanePictures::Ghost& ghost : in_.pictures.ghosts) {
+    key -= 2;  // one of a take, one of a scan
     if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts)
-      add_target_surface(0, ghost.take, kGhostOpacity, false);
+      add_target_surface(0, ghost.take, kGhostOpacity, key);
     if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
       const float spacing = ghost.scan->spacing > 0 ? ghost.scan->spacing : render::PointsView().radius;
       render::MeshView view;
-      view.vertices = part_of(ghost.scan, ghost.scan->mesh.vertices);
+      view.vertices = standing(part_of(ghost.scan, ghost.scan->mesh.vertices), 0, key - 1);
       view.normals = part_of(ghost.scan, ghost.scan->normals);
       view.color = 0.75f * air() + 0.25f * kScanColor;
       add_surface(std::move(view), true, 0.6f * spacing);
@@ -228,12 +258,13 @@ void Builder::add_trails() {
 void Builder::add_trail(int person, int joint) {
   const int now = in_.pictures.frame,
             reach = static_cast<int>(std::lround(kTrailSeconds * session_.source.fps));
-  const Vec3 color = trail_color(joint, in_.theme);
+  const Vec3 color = trail_color(joint, in_.theme), offset = aside_of(person);
   // The past runs up to now, the future back to it: both fade outwards.
   for (const int step : {1, -1}) {
     std::vector<Vec3> path;
     for (int f = now - step * reach; f != now + step; f += step)
-      if (const Joints* joints = app::pane_joints(session_, person, f)) path.push_back(joints->row(joint));
+      if (const Joints* joints = app::pane_joints(session_, person, f))
+        path.push_back(joints->row(joint).transpose() + offset);
     if (path.size() < 2) continue;
     const Points points = Eigen::Map<const Points>(path.front().data(), path.size(), 3);
     render::LinesView line = render::trail(points, color, step == 1 ? 3.f : 1.5f);
@@ -247,7 +278,7 @@ void Builder::add_cropped_away() {
   const auto& scan = in_.pictures.scan;
   if (session_.tool != app::Tool::Crop || scan == nullptr || scan->cropped_away.rows() == 0) return;
   render::MeshView view;
-  view.vertices = part_of(scan, scan->cropped_away);
+  view.vertices = standing(part_of(scan, scan->cropped_away), 0, kCroppedAway);
   view.color = 0.72f * air() + 0.28f * kScanColor;
   add_surface(std::move(view), true, 0.6f * scan->spacing);
 }
@@ -255,10 +286,20 @@ void Builder::add_cropped_away() {
 void Builder::add_crop_box() {
   if (session_.tool != app::Tool::Crop || !in_.pane.source) return;
   const Box box = in_.preview.crop.value_or(app::shown_crop(session_));
-  const Vec3 color = Vec3::Constant(in_.theme == ThemeKind::Dark ? 0.96f : 0.12f);
-  render::LinesView lines = render::box(box.low, box.high, color, 2);
+  const Vec3 color = Vec3::Constant(air().mean() < 0.5f ? 0.96f : 0.12f), offset = aside_of(0);
+  render::LinesView lines = render::box(box.low + offset, box.high + offset, color, 2);
   lines.x_ray = true, lines.opacity = 0.9f;
   out_.scene.lines.push_back(std::move(lines));
+}
+
+void Builder::set_background() {
+  const app::View& view = session_.view;
+  render::BackgroundView& background = out_.scene.background;
+  background = background_of(in_.theme);
+  if (view.backdrop == app::Backdrop::Theme) return;
+  background.top = background.bottom = view.backdrop == app::Backdrop::White   ? Vec3(1, 1, 1)
+                                       : view.backdrop == app::Backdrop::Black ? Vec3(0, 0, 0)
+                                                                               : view.backdrop_color;
 }
 
 void Builder::set_ground() {
@@ -329,6 +370,19 @@ Points face_centres(const Box& box) {
   Points centres = ((box.low + box.high) / 2).transpose().replicate(6, 1);
   for (int face = 0; face < 6; ++face) centres(face, face / 2) = box.side(face);
   return centres;
+}
+
+render::LightView light_of(const app::LightLook& look) {
+  render::LightView light;
+  for (Vec3* const part : {&light.key, &light.fill, &light.sky, &light.floor}) *part *= look.brightness;
+  if (look.turn_deg == 0 && look.height_deg == 0) return light;
+  const Vec3& from = light.key_direction;
+  const float degree = kPi / 180, most = 89 * degree;
+  const float turn = std::atan2(from.x(), from.z()) + look.turn_deg * degree;
+  const float height = std::asin(from.y() / from.norm()) + look.height_deg * degree;
+  const float up = std::clamp(height, -most, most);
+  light.key_direction = {std::sin(turn) * std::cos(up), std::sin(up), std::cos(turn) * std::cos(up)};
+  return light;
 }
 
 render::BackgroundView background_of(ThemeKind theme) {

@@ -22,14 +22,16 @@ struct EditPreview {
   std::optional<render::GizmoView> gizmo;
 };
 
-/// A surface's colours, kept while their inputs stay the same.
+/// A surface's colours, and its points where they stand aside, kept while their inputs stay the same.
 struct SurfaceColours {
   std::vector<float> settings;
   std::vector<std::shared_ptr<const void>> kept;  ///< the inputs: one and the same has not changed
   SurfaceValues values;
   render::SharedPoints colors;
+  render::SharedPoints in_place, moved;  ///< points, and the same moved by `aside`
+  Vec3 aside = Vec3::Zero();
 };
-/// One for each pane, by take, -1 the scan.
+/// One for each pane, by take, -1 the scan, -2 what is cropped away, -10 and below ghosts.
 using ColourMemory = std::map<int, SurfaceColours>;
 
 struct SceneInput {
@@ -55,7 +57,9 @@ PaneScene build_scene(const SceneInput& input, ColourMemory& memory);
 
 /// The middles of a box's faces, [6, 3], in the order of kBoxSides.
 Points face_centres(const Box& box);
-/// What is behind everything.
+/// What is behind everything in that theme.
 render::BackgroundView background_of(ThemeKind theme);
+/// The light of a view: the usual one, turned and dimmed.
+render::LightView light_of(const app::LightLook& look);
 
 }  // namespace understudy::ui

@@ -32,7 +32,8 @@ Items view_from(const app::Session& session) {
 }
 
 /// What is shown of the source, or of the takes, each to be hidden or shown.
-Items shown_layers(const app::Layers& layers, bool source) {
+Items shown_layers(const app::Session& session, bool source) {
+  const app::Layers& layers = source ? session.view.source : session.view.take;
   const std::string pane = source ? "source" : "take";
   Items items;
   const auto add = [&](const char* label, const char* layer, bool on) {
@@ -45,6 +46,7 @@ Items shown_layers(const app::Layers& layers, bool source) {
   add("Ground", "ground", layers.ground);
   add("Trails", "trails", layers.trails);
   add("Ghosts", "ghosts", layers.ghosts);
+  if (!source || session.source.has_faces) add("Wireframe", "wireframe", layers.wireframe);
   return items;
 }
 
@@ -90,11 +92,9 @@ std::vector<MenuItem> view_menu_items(const app::Session& session, const ViewMen
   add_line(items);
   const bool both = pane.source && !pane.takes.empty();
   if (pane.source)
-    items.push_back(
-        {both ? "Show of the source" : "Show", "", {}, false, shown_layers(session.view.source, true)});
+    items.push_back({both ? "Show of the source" : "Show", "", {}, false, shown_layers(session, true)});
   if (!pane.takes.empty())
-    items.push_back(
-        {both ? "Show of the takes" : "Show", "", {}, false, shown_layers(session.view.take, false)});
+    items.push_back({both ? "Show of the takes" : "Show", "", {}, false, shown_layers(session, false)});
   if (session.view.layout != app::Layout::Single && !both)
     items.push_back({"This view alone", "view.layout", {"single"}});
   if (session.view.layout != app::Layout::SideBySide)

@@ -197,7 +197,8 @@ void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const
 /// The item just made is the pane's.
 void Views::interact(const Frame& f, Pane& pane) {
   const Pointer now = pointer_of_item();
-  const HandPlace place{f.session, pane.content, pane.view, pane.keeper.pictures(), f.ui.scale()};
+  const PaneView seen = tool_view(f.session, pane);
+  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.ui.scale()};
   const bool taken = hand_.work(place, now, f.queue);
   if (now.over || now.held) {
     pointer_ = now, under_ = &pane;
@@ -206,6 +207,10 @@ void Views::interact(const Frame& f, Pane& pane) {
   }
   if (now.asks && !hand_.busy()) ask_what_to_do(f, pane, now);
   steer(f, pane, now, !taken);
+}
+
+PaneView Views::tool_view(const Session& session, const Pane& pane) {
+  return pane.view.shifted(aside(session, pane.content, person_of_tool(session, pane.content)));
 }
 
 /// Commands are about it from now on.
@@ -274,7 +279,8 @@ void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left
 }
 
 void Views::make_picture(const Frame& f, Pane& pane) {
-  const HandPlace place{f.session, pane.content, pane.view, pane.keeper.pictures(), f.ui.scale()};
+  const PaneView seen = tool_view(f.session, pane);
+  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.ui.scale()};
   PanePictures pictures = pane.keeper.pictures();
   pane.preview = hand_.preview(place);
   if (const auto turned = hand_.turned_picture(place); turned != nullptr && !pictures.takes.empty())
@@ -340,19 +346,21 @@ void Views::describe(const Session& session, const Pane& pane, Overlay& overlay)
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
   if (seen != nullptr && seen->flagged) overlay.warning = seen->reason;
   const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
-  const Joints* joints = app::pane_joints(session, pane.content.number, frame);
+  const int person = person_of_tool(session, pane.content);
+  const PaneView view = tool_view(session, pane);
+  const Joints* joints = app::pane_joints(session, person, frame);
   std::optional<Joints> at_rest;
   if (rest) joints = &at_rest.emplace(rest_joints(session, pane.content.takes[0]));
-  const auto& moved = pane.content.source ? pane.preview.source_joints : pane.preview.take_joints;
+  const auto& moved = person == 0 ? pane.preview.source_joints : pane.preview.take_joints;
   if (moved) joints = &*moved;
   const int selected = pane.preview.gizmo ? session.selected_joint : -1;
   if (joints != nullptr)
-    overlay.labels = joint_labels(pane.view, *joints, layers.joint_names && layers.skeleton,
+    overlay.labels = joint_labels(view, *joints, layers.joint_names && layers.skeleton,
                                   hand_.hovered_joint(pane.content), selected);
   if (session.tool == app::Tool::Crop && pane.content.source) {
     const Points centres = face_centres(pane.preview.crop.value_or(app::shown_crop(session)));
     for (int face = 0; face < 6; ++face)
-      if (const auto at = pane.view.project(centres.row(face)))
+      if (const auto at = view.project(centres.row(face)))
         overlay.handles.push_back(
             {*at, std::string("view.crop.") + kBoxSides[face], face == pane.preview.crop_face});
   }
@@ -371,7 +379,7 @@ void Views::draw_brush(const Frame& f, const Pane& pane) {
   for (int i = 0; i < 48; ++i) {
     const float angle = 2 * kPi * static_cast<float>(i) / 48;
     const Vec3 at = brush->position + f.session.brush.radius_m * (std::cos(angle) * u + std::sin(angle) * v);
-    if (const auto seen = pane.view.project(at)) circle.push_back(*seen);
+    if (const auto seen = tool_view(f.session, pane).project(at)) circle.push_back(*seen);
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddPolyline(circle.data(), circle.size(), color(ImVec4(0, 0, 0, 0.5f)), ImDrawFlags_Closed,

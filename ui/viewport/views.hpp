@@ -51,6 +51,8 @@ class Views {
   void activate(const Frame& f, const Pane& pane);
   void ask_what_to_do(const Frame& f, const Pane& pane, const Pointer& now);
   void draw_menu(const Frame& f);
+  /// A pane as the person that the tool is about is seen in it.
+  static PaneView tool_view(const app::Session& session, const Pane& pane);
   void point_camera(const Frame& f, const Pane& pane, const render::Camera& camera);
   void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
   void make_picture(const Frame& f, Pane& pane);

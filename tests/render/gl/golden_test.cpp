@@ -204,6 +204,20 @@ TEST(GoldenGhost, NoticesAnOpaqueBody) {
   expect_noticed("ghost", ghost(), broken);
 }
 
+Scene wired() {
+  Scene scene = pear();
+  scene.meshes[0].wireframe = true;
+  return scene;
+}
+
+TEST(GoldenWireframe, IsAsItWas) {
+  expect_golden("wireframe", wired());
+}
+
+TEST(GoldenWireframe, NoticesTheMissingEdges) {
+  expect_noticed("wireframe", wired(), pear());
+}
+
 Scene floating() {  // high enough that grid and shadow are seen
   Scene scene = pear();
   scene.ground.spacing = 0.2f;
