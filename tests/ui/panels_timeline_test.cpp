@@ -137,6 +137,42 @@ TEST_F(Timeline, TheEditedJointsChannelIsDrawnWithItsKeys) {
   EXPECT_FALSE(shown("timeline.track.key.0"));
 }
 
+TEST_F(Timeline, EachFootOnTheFloorIsABarOfItsFrames) {
+  EXPECT_FALSE(shown("timeline.track.left_foot.0"));
+  std::vector<Standing>& standing = session.takes[0].shown.standing;
+  standing.resize(48);
+  for (size_t t = 5; t <= 14; ++t) standing[t][0] = true;
+  for (size_t t = 20; t <= 29; ++t) standing[t][0] = standing[t][1] = true;
+  frame();
+  const Rect track = mark("timeline.track").rect;
+  const auto x = [&](float at) { return track.at(at / 59, 0).x; };
+  const Rect first = mark("timeline.track.left_foot.0").rect,
+             right = mark("timeline.track.right_foot.0").rect;
+  EXPECT_NEAR(first.min.x, x(4.5f), 1);
+  EXPECT_NEAR(first.max.x, x(14.5f), 1);
+  EXPECT_NEAR(mark("timeline.track.left_foot.1").rect.min.x, x(19.5f), 1);
+  EXPECT_NEAR(right.min.x, x(19.5f), 1);
+  EXPECT_LT(first.max.y, right.max.y);  // a row a foot
+  EXPECT_FALSE(shown("timeline.track.right_foot.1"));
+  for (const char* edit : {"drags.4", "swap.1", "rotations.12"})
+    EXPECT_TRUE(intersection(mark(std::string("timeline.track.") + edit).rect, first).empty()) << edit;
+}
+
+TEST_F(Timeline, AFootsBarIsNoEditAndItsTooltipTellsWhatHolds) {
+  session.takes[0].shown.standing.assign(48, Standing{true, false});
+  frame();
+  EXPECT_EQ(contact_bands(session)[0].words, "Left foot on the floor");
+  const Rect bar = mark("timeline.track.left_foot.0").rect, track = mark("timeline.track").rect;
+  queue.clear();
+  click(ImVec2(track.at(30.f / 59, 0).x, bar.at(0, 0.5f).y));
+  key(render::Key::Delete);
+  const Lines lines = asked();
+  ASSERT_FALSE(lines.empty());
+  for (const std::string& line : lines) EXPECT_EQ(line, "playback.frame 30");  // as anywhere in the track
+  session.document.takes[0].pose_edits.pin = PinEdit{};
+  EXPECT_EQ(contact_bands(session)[0].words, "Left foot pinned to the floor");
+}
+
 TEST_F(Timeline, KnowsTheBadFramesAndWhy) {
   EXPECT_EQ(state.why(20), "no points");
   EXPECT_EQ(state.why(31), "low confidence");

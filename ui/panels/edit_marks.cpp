@@ -1,4 +1,4 @@
-// What the timeline shows of edits: their marks, and the channel that the hand edits.
+// What the timeline shows of edits: their marks, the feet that are held, and the channel that the hand edits.
 #include <algorithm>
 #include <map>
 
@@ -77,6 +77,18 @@ void add_skips(std::vector<EditMark>& all, const std::set<int>& skip, const std:
   }
 }
 
+/// The runs of frames in which a foot is held.
+std::vector<LoopRange> standing_frames(const std::vector<Standing>& standing, int side) {
+  std::vector<LoopRange> runs;
+  const int count = standing.size();
+  for (int t = 0; t < count; ++t) {
+    if (!standing[t][side]) continue;
+    if (runs.empty() || runs.back().last + 1 < t) runs.push_back({t, t});
+    runs.back().last = t;
+  }
+  return runs;
+}
+
 /// The joint whose channel is shown, and whether it is the result's; -1 without a tool for it.
 std::pair<int, bool> channel_joint(const app::Session& session) {
   const bool bones = session.tool == app::Tool::Bones;
@@ -120,6 +132,23 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
   for (const RotateEdit& edit : take->pose_edits.rotate) add(rotations, edit, "Rotated");
   add_diamonds(all, rotations, {"rotations", k}, 1);
   return all;
+}
+
+std::vector<TrackBand> contact_bands(const app::Session& session) {
+  const app::TakeState* state = selected_state(session);
+  const app::Take* take = selected_take(session);
+  if (state == nullptr || take == nullptr) return {};
+  const auto& pin = take->pose_edits.pin;
+  const bool pinned[] = {pin && pin->left, pin && pin->right};
+  std::vector<TrackBand> bands;
+  for (const int side : {0, 1}) {
+    const std::string foot = side == 0 ? "Left foot " : "Right foot ";
+    bands.push_back({side == 0 ? "left_foot" : "right_foot",
+                     foot + (pinned[side] ? "pinned to the floor" : "on the floor"),
+                     standing_frames(state->shown.standing, side), side == 0 ? kBlue : kOrange});
+  }
+  if (bands[0].bars.empty() && bands[1].bars.empty()) return {};
+  return bands;
 }
 
 void Channel::follow(const app::Session& session) {

@@ -163,6 +163,7 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   }
   const std::vector<EditMark> edits = edit_marks(session, state.fills);
   for (const EditMark& edit : edits) data.marks.push_back(edit.mark);
+  data.bands = contact_bands(session);
   const app::Take* take = selected_take(session);
   if (take != nullptr && take->pose_edits.trim)
     data.kept = LoopRange{take->pose_edits.trim->first, take->pose_edits.trim->last};

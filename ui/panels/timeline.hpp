@@ -1,6 +1,6 @@
 // The timeline: transport, and a track with what has been made, bad frames, loop marks and a metric.
 // Marks: timeline.first, .back, .play, .forward, .last, .loop, .in, .out, .clear_marks, .live, .rate,
-// .metric, .frame, .time; timeline.track and what timeline_track() marks in it.
+// .metric, .frame, .time; timeline.track and what timeline_track() marks in it (bands left_foot, right_foot).
 #pragma once
 
 #include <cstdint>
@@ -54,6 +54,10 @@ struct EditMark {
 /// All edits over time of the source and of the selected take: dragged joints, exchanged ranges and fills in
 /// row 0, rotated bones and skips in row 1.
 std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills);
+
+/// In which frames of the selected take each foot is held on the floor: two bands, left and right; none where no foot
+/// ever is.
+std::vector<TrackBand> contact_bands(const app::Session& session);
 
 /// Heights at scale 1: with the track, and the transport alone.
 constexpr float kTimelineHeight = 152, kShortTimelineHeight = 102, kTransportHeight = 44;

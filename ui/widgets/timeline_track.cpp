@@ -13,7 +13,7 @@ namespace {
 
 enum class Grip { None, Playhead, LoopFirst, LoopLast, Pan, Mark };
 
-constexpr float kRowHeight = 12, kBadHeight = 5, kNearlyStill = 4;  // points
+constexpr float kRowHeight = 12, kBandHeight = 7, kBadHeight = 5, kNearlyStill = 4;  // points
 
 /// Remembered between frames: the part of the sequence that is shown, and what is being dragged.
 struct TrackState {
@@ -78,8 +78,17 @@ bool runs_high(const Track& t, const Range& range, float x) {
   return high > low;
 }
 
+/// Of the rows of marks and bands over the bad frames.
 float rows_height(const Track& t) {
-  return t.data.marks.empty() ? 0 : 2 * t.ui.px(kRowHeight);
+  const float marks = t.data.marks.empty() ? 0 : 2 * t.ui.px(kRowHeight);
+  return marks + t.ui.px(kBandHeight) * static_cast<float>(t.data.bands.size());
+}
+
+/// The row of a band.
+Rect band_row(const Track& t, size_t band) {
+  const float height = t.ui.px(kBandHeight);
+  const float top = t.body.max.y - t.ui.px(kBadHeight) - rows_height(t) + height * static_cast<float>(band);
+  return {{t.body.min.x, top}, {t.body.max.x, top + height}};
 }
 
 /// The channel or the curve, with their keys; the range of their values.
@@ -167,6 +176,20 @@ void draw_marks(Track& t, const std::string& name) {
   }
 }
 
+void draw_bands(Track& t, const std::string& name) {
+  for (size_t b = 0; b < t.data.bands.size(); ++b) {
+    const TrackBand& band = t.data.bands[b];
+    const Rect row = band_row(t, b);
+    for (size_t k = 0; k < band.bars.size(); ++k) {
+      const float from = t.axis.x(band.bars[k].first - 0.5), to = t.axis.x(band.bars[k].last + 0.5);
+      if (to < row.min.x || from > row.max.x) continue;
+      const Rect bar{{from, row.min.y + t.ui.px(1)}, {to, row.max.y - t.ui.px(1)}};
+      t.list.AddRectFilled(bar.min, bar.max, color(t.ui.theme().series[band.color], 0.6f), t.ui.px(1.5f));
+      t.ui.mark(name + "." + band.name + "." + std::to_string(k), bar);
+    }
+  }
+}
+
 /// Greys the ends that were trimmed.
 void draw_trimmed(Track& t, const std::string& name) {
   if (!t.data.kept) return;
@@ -199,6 +222,7 @@ void draw_body(Track& t, const std::string& name) {
       t.list.AddRectFilled({x - half, t.body.max.y - t.ui.px(kBadHeight)}, {x + half, t.body.max.y},
                            color(theme.danger));
   }
+  draw_bands(t, name);
   draw_trimmed(t, name);
   draw_marks(t, name);
   t.list.PopClipRect();
@@ -252,6 +276,19 @@ void draw_playhead(Track& t, const std::string& name) {
   t.ui.mark(name + ".playhead", flag);
 }
 
+/// What holds in a frame while the pointer is on the bands: "Left foot on the floor, frames 3 to 17".
+std::vector<std::string> bands_at(const Track& t, int frame) {
+  std::vector<std::string> words;
+  const float y = ImGui::GetIO().MousePos.y;
+  if (t.data.bands.empty() || y < band_row(t, 0).min.y || y > band_row(t, t.data.bands.size() - 1).max.y)
+    return words;
+  for (const TrackBand& band : t.data.bands)
+    for (const LoopRange& bar : band.bars)
+      if (frame >= bar.first && frame <= bar.last)
+        words.push_back(band.words + printed(", frames %d to %d", bar.first, bar.last));
+  return words;
+}
+
 void draw_hover(Track& t, int frame) {
   const float x = std::round(t.axis.x(frame));
   t.list.AddLine({x, t.body.min.y}, {x, t.body.max.y}, color(t.ui.theme().text_dim, 0.6f));
@@ -266,6 +303,7 @@ void draw_hover(Track& t, int frame) {
     ImGui::TextUnformatted(t.data.marks[i].words.c_str());
     if (!t.data.marks[i].fixed) ImGui::TextUnformatted("Drag: move. Click, then Delete: remove");
   }
+  for (const std::string& words : bands_at(t, frame)) ImGui::TextUnformatted(words.c_str());
   if (t.data.channel.empty() && std::isfinite(t.data.curve.at(frame)))
     ImGui::Text("%s  %s", t.data.curve_label.c_str(), short_number(t.data.curve.at(frame)).c_str());
   if (!t.data.channel.empty()) {

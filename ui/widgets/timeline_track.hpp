@@ -1,5 +1,5 @@
-// The timeline's track: processed frames, the playhead, bad frames, loop marks, edits, and a curve or the
-// channel being edited.
+// The timeline's track: processed frames, the playhead, bad frames, loop marks, edits, bars of what holds, and a curve
+// or the channel being edited.
 #pragma once
 
 #include <functional>
@@ -29,6 +29,14 @@ struct TrackMark {
   bool fixed = false;  ///< nobody's edit: can be clicked, not moved or deleted
 };
 
+/// A thin row of bars over the frames in which something holds: nobody's edit, not to be clicked.
+struct TrackBand {
+  std::string name;             ///< names its marks in the track: BAND.K, the K-th bar
+  std::string words;            ///< what holds, for the tooltip
+  std::vector<LoopRange> bars;  ///< in order of time
+  int color = 0;                ///< of Theme::series
+};
+
 struct TrackData {
   int total = 0;      ///< frames of the sequence; may grow while it is followed
   int processed = 0;  ///< frames 0..processed-1 are finished
@@ -41,6 +49,7 @@ struct TrackData {
   std::vector<Values> channel;  ///< drawn in place of the curve, in the curve's label: x, y and z
   std::vector<int> keys;        ///< frames in which the channel was edited: diamonds on its curves
   std::vector<TrackMark> marks;
+  std::vector<TrackBand> bands;              ///< above the marks, the first on top
   std::optional<LoopRange> kept;             ///< the ends outside it are greyed: they were trimmed
   std::function<std::string(int)> describe;  ///< extra text for the frame under the pointer
   bool follow = false;                       ///< keep the playhead in view while it plays
@@ -60,8 +69,8 @@ struct TrackAnswer {
 
 /// Over the width that is left. Wheel zooms about the pointer, Shift+wheel or the middle button pans, a
 /// double click in the ruler shows everything. A click at a mark chooses it and goes there. Marks: NAME (the
-/// part under the ruler), NAME.ruler, NAME.loop_first, NAME.loop_last, NAME.playhead, NAME.MARK, NAME.trimmed
-/// (.before, .after), NAME.key.K (the K-th key), NAME.chosen (the mark chosen).
+/// part under the ruler), NAME.ruler, NAME.loop_first, NAME.loop_last, NAME.playhead, NAME.MARK, NAME.BAND.K,
+/// NAME.trimmed (.before, .after), NAME.key.K (the K-th key), NAME.chosen (the mark chosen).
 TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& data);
 
 /// "0:03.27": minutes, seconds, hundredths.
