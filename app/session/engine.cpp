@@ -465,6 +465,8 @@ bool Engine::Impl::send_source() {
     const Observation seen = edited(frames[sent], sent);
     KeptSource kept;
     kept.raw = frames[sent].observation.joints;
+    kept.raw_confidence = frames[sent].observation.confidence;
+    kept.exact = frames[sent].observation.exact;
     kept.points = static_cast<int>(seen.points);
     kept.extent = frames[sent].extent;
     kept.reason = refusal(seen);

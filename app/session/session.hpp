@@ -26,6 +26,8 @@ namespace understudy::app {
 /// The data kept of each frame of the source: under 1 kB.
 struct KeptSource {
   Joints raw = Joints::Zero();  ///< as extracted, before the user's edits
+  Confidence raw_confidence = Confidence::Zero();
+  bool exact = false;  ///< a skeleton's own, not to be repaired
   /// 0..1 a joint
   Eigen::Array<float, kJointCount, 1> confidence_of = Eigen::Array<float, kJointCount, 1>::Zero();
   Joints joints = Joints::Zero();  ///< edited, repaired and smoothed; of the last good frame where flagged

@@ -2,6 +2,7 @@
 
 #include "app/session/command_sets.hpp"
 #include "app/session/follow.hpp"
+#include "app/session/source_drag.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -398,6 +399,30 @@ TEST_F(StudioTest, ItIsKnownWhichFeetStandInEachFrame) {
   studio.run("edit.pin", {"0", "on"});
   studio.wait_idle(60);
   EXPECT_EQ(take.shown.standing.size(), static_cast<size_t>(kFrames));
+}
+
+TEST_F(StudioTest, WhileAJointIsDraggedTheSkeletonIsAsItWillBeAfterwards) {
+  Studio studio(services());
+  open_both(studio);
+  const Session& session = studio.session();
+  const auto now = [&](size_t t) { return session.source.frames[t].joints; };
+  studio.run("edit.swap", {"3", "4", "legs"});
+  studio.run("edit.drag", {"11", "head", "0", "0.05", "0", "3"});
+  studio.wait_idle(60);
+  for (const bool with_children : {false, true}) {
+    const Joints before = now(12);
+    const SourceDrag drag(session, 12, 4);
+    EXPECT_LT((drag.joints({12, LeftElbow, Vec3::Zero(), 4, false}).value() - before).norm(), 1e-5f);
+    const Joints promised = drag.joints({12, LeftElbow, Vec3(0, 0.15f, 0.02f), 4, with_children}).value();
+    EXPECT_GT((promised.row(LeftElbow) - before.row(LeftElbow)).norm(), 0.05f);
+    EXPECT_GT((promised.row(LeftShoulder) - before.row(LeftShoulder)).norm(),
+              1e-3f);  // bones keep their lengths
+    Arguments words{"12", "left_elbow", "0", "0.15", "0.02", "4"};
+    if (with_children) words.push_back("children");
+    studio.run("edit.drag", words);
+    studio.wait_idle(60);
+    EXPECT_LT((now(12) - promised).norm(), 1e-4f);
+  }
 }
 
 TEST_F(StudioTest, UndoGoesBackThroughManySteps) {

@@ -298,6 +298,31 @@ TEST_F(ViewsTest, APersonThatStandsAsideIsDraggedWhereItIsSeen) {
   EXPECT_GT(vector_at(words, 2).y(), 0.05f);
 }
 
+TEST_F(ViewsTest, ADraggedJointOfTheSourceTakesItsLimbAlongInView) {
+  stage.session.tool = app::Tool::Joints;
+  const PaneContent content = pane_of(0);
+  const PaneView view = pane(0);
+  const PanePictures pictures = pictures_of(stage.session, *stage.cache, content, 10).value();
+  const HandPlace place{stage.session, content, view, pictures};
+  Hand hand;
+  app::CommandQueue asked_of_hand;
+  Pointer pointer;
+  pointer.at = seen(0, source_joint(LeftWrist)), pointer.over = pointer.pressed = pointer.held = true;
+  ASSERT_TRUE(hand.work(place, pointer, asked_of_hand));
+  pointer.pressed = false, pointer.at.x += 60;
+  hand.work(place, pointer, asked_of_hand);
+  const Joints now = hand.preview(place).source_joints.value();
+  const app::SourceDrag drag(stage.session, 10, stage.session.falloff);
+  pointer.released = true, pointer.held = false;
+  hand.work(place, pointer, asked_of_hand);
+  const app::Arguments words = asked_of_hand.back().second;
+  const Joints after =
+      drag.joints({10, LeftWrist, vector_at(words, 2), std::stoi(words.at(5)), false}).value();
+  EXPECT_LT((now - after).norm(), 1e-3f);  // what is released is what was seen
+  EXPECT_GT((now.row(LeftWrist).transpose() - source_joint(LeftWrist)).norm(), 0.03f);
+  EXPECT_GT((now.row(LeftElbow).transpose() - source_joint(LeftElbow)).norm(), 2e-3f);
+}
+
 TEST_F(ViewsTest, AClickOnAJointChangesNothing) {
   stage.session.tool = app::Tool::Joints;
   click(seen(0, source_joint(LeftElbow)));

@@ -159,6 +159,8 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   start_ = last_ = place.view.ray(pointer.at);
   offset_.setZero();
   corrections_.resize(0, 3);
+  source_drag_.reset();
+  if (grip_ == Grip::Joint) source_drag_.emplace(session, frame_, session.falloff);
   const app::TakeState* take = at_or_null(session.takes, take_);
   const std::optional<Pose> pose = grasped_pose(session);
   if (pose && take->deformer != nullptr && take->target->mesh.vertices.rows() <= kMostPosed)
@@ -275,12 +277,8 @@ Joints Hand::moved_joints(const HandPlace& place) const {
     const auto skeleton = turned_skeleton(session);
     return skeleton ? skeleton->joints : joints;
   }
-  std::array<bool, kJointCount> moves{};
-  for (int j = 0; j < kJointCount; ++j) {  // parents come first
-    moves[j] = j == joint_ || (session.drag_children && kParents[j] >= 0 && moves[kParents[j]]);
-    if (moves[j]) joints.row(j) += offset_.transpose();
-  }
-  return joints;
+  const DragEdit drag{frame_, joint_, offset_, session.falloff, session.drag_children};
+  return source_drag_ ? source_drag_->joints(drag).value_or(joints) : joints;
 }
 
 EditPreview Hand::preview(const HandPlace& place) const {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/session/commands.hpp"
+#include "app/session/source_drag.hpp"
 #include "ui/viewport/scene_builder.hpp"
 
 namespace understudy::ui {
@@ -90,8 +91,9 @@ class Hand {
   render::GizmoView gizmo_;
   render::Ray start_{}, last_{};
   Vec3 offset_ = Vec3::Zero();  ///< metres, world; of Bone: axis times angle, in the joint's frame
-  Points corrections_{0, 3};    ///< of a turned bone or a limb: pose-corrective offsets when it was gripped
-  double settle_until_ = -1;    ///< Session::time
+  std::optional<app::SourceDrag> source_drag_;  ///< of Joint
+  Points corrections_{0, 3};  ///< of a turned bone or a limb: pose-corrective offsets when it was gripped
+  double settle_until_ = -1;  ///< Session::time
   Grip settling_ = Grip::None;
   Box box_;
   int face_ = -1;

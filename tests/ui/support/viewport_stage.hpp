@@ -113,6 +113,7 @@ struct Stage {
     frame.joints = frame.raw = forward_kinematics(target->joints, stage_pose(f)).joints;
     frame.confidence = 0.9f;
     frame.confidence_of.setConstant(0.9f);
+    frame.raw_confidence = frame.confidence_of;
     session.source.frames.push_back(frame);
   }
 
