@@ -188,10 +188,13 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [yaw_deg] = TurnEdit();
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
-                                weights_joint, trails, ghosts, step, scale, wipe, metric] = View();
+                                weights_joint, trails, ghosts, step, scale, wipe, cube, overlay, light,
+                                backdrop, backdrop_color, metric] = View();
+  [[maybe_unused]] const auto& [of_scan, of_skeletons, of_results, spread] = OverlayLook();
+  [[maybe_unused]] const auto& [light_turn, light_height, brightness] = LightLook();
   [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();
-  [[maybe_unused]] const auto& [surface, points, bones, x_ray, names, ground, trail, ghost, colouring] =
-      Layers();
+  [[maybe_unused]] const auto& [surface, points, bones, x_ray, names, ground, trail, ghost, wireframe,
+                                colouring] = Layers();
   [[maybe_unused]] const auto& [playing, loop, live, rate, now, in, out] = Playback();
 }
 

@@ -214,6 +214,7 @@ TEST_F(LayersPanel, EverySwitchOfBothPanesAsksForItsLayer) {
 TEST_F(LayersPanel, TheOverlaysOpacitiesAndSpreadAreThereInThatLayout) {
   EXPECT_FALSE(shown("layers.spread"));
   session.view.layout = app::Layout::Overlay;
+  session.view.overlay = {0.5f, 0.5f, 0.5f, 0};
   frame(2);
   for (const std::string layer : {"scan", "skeletons", "results"})
     expect_drag("layers.opacity." + layer, "view.opacity " + layer + " ");

@@ -17,8 +17,9 @@ using app::Session;
 using render::SharedPoints;
 
 constexpr float kGhostOpacity = 0.16f, kTrailSeconds = 1.2f;
-constexpr float kUnseen = 0.004f;                    // an opacity that leaves nothing
-constexpr int kCroppedAway = -2, kFirstGhost = -10;  // keys of ColourMemory
+constexpr float kUnseen = 0.004f;  // an opacity that leaves nothing
+// Keys of ColourMemory for points alone; colours that change must not take them along.
+constexpr int kScanAside = -2, kCroppedAway = -3, kFirstTakeAside = -100, kFirstGhost = -10000;
 constexpr float kDisc = 1.15f;  // a scan's discs against its spacing: few holes, edges still sharp
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
@@ -158,7 +159,7 @@ void Builder::add_scan() {
     const auto& scan = in_.pictures.scan;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;
-    view.vertices = standing(part_of(scan, scan->mesh.vertices), 0, -1);
+    view.vertices = standing(part_of(scan, scan->mesh.vertices), 0, kScanAside);
     view.faces = part_of(scan, scan->mesh.faces);
     view.normals = part_of(scan, scan->normals);
     view.colors = made.colors->rows() > 0 ? made.colors : SharedPoints(part_of(scan, scan->mesh.colors));
@@ -193,7 +194,7 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
     return;
   const Mesh& mesh = target->mesh;
   render::MeshView view;
-  view.vertices = standing(part_of(posed, posed->vertices), k + 1, ghost < 0 ? ghost : k);
+  view.vertices = standing(part_of(posed, posed->vertices), k + 1, ghost < 0 ? ghost : kFirstTakeAside - k);
   view.faces = part_of(target, mesh.faces), view.normals = part_of(posed, posed->normals);
   view.color = take_color(k), view.opacity = opacity;
   view.wireframe = session_.view.take.wireframe && ghost == 0;

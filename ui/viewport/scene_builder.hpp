@@ -31,7 +31,7 @@ struct SurfaceColours {
   render::SharedPoints in_place, moved;  ///< points, and the same moved by `aside`
   Vec3 aside = Vec3::Zero();
 };
-/// One for each pane, by take, -1 the scan, -2 what is cropped away, -10 and below ghosts.
+/// One for each pane, by take, -1 the scan; below that what only stands aside.
 using ColourMemory = std::map<int, SurfaceColours>;
 
 struct SceneInput {

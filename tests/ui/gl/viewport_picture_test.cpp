@@ -134,7 +134,8 @@ class ViewsPicture : public UiTest {
     input.size = {1000, 600};
     in_window([&](Ui& ui) {
       stage.session.settings.dark = input.theme == ThemeKind::Dark;
-      views->draw(stage.session, *stage.cache, queue, ui);
+      PanelContext panels{ui, queue, commands};
+      views->draw(stage.session, *stage.cache, panels);
     });
     frame(2);
     stage.cache->wait();
@@ -148,6 +149,7 @@ class ViewsPicture : public UiTest {
       render::make_offscreen_context({render::ContextKind::Any, render::gl::DebugMode::Fatal});
   DrawPass pass;
   std::unique_ptr<Views> views = std::make_unique<Views>();
+  app::Commands commands;
   app::CommandQueue queue;
   Image last;
 };
@@ -182,6 +184,29 @@ TEST_F(ViewsPicture, ShowEveryLayout) {
     keep(stage, "layout_" + std::to_string(static_cast<int>(layout)));
     EXPECT_GT(bright_share(last, false), 0.01);
   }
+}
+
+TEST_F(ViewsPicture, ShowTheOverlaySpreadAndSeeThrough) {
+  Stage stage;
+  stage.add_take("adult");
+  stage.show_frame(6);
+  stage.session.view.layout = app::Layout::Overlay;
+  stage.session.view.overlay = {1, 1, 1, 0};
+  keep(stage, "overlay_together");
+  const Image together = last;
+  stage.session.view.overlay.spread_m = 1.3f;
+  keep(stage, "overlay_spread");
+  const double left = bright_share(last, false), right = bright_share(last, true);
+  EXPECT_GT(left, 0.01);
+  EXPECT_GT(right, 0.01);
+  EXPECT_GT(render::difference(last, together), 0.01);
+  stage.session.view.overlay.results = 0.1f;
+  keep(stage, "overlay_see_through");
+  EXPECT_LT(bright_share(last, true), right);
+  stage.session.view.overlay.results = 0;
+  stage.session.view.overlay.skeletons = 0;
+  keep(stage, "overlay_scan_alone");
+  EXPECT_LT(bright_share(last, true), 0.5 * right);
 }
 
 TEST_F(ViewsPicture, ShowToolsAndWordsInLightAndDark) {
