@@ -78,10 +78,16 @@ bool runs_high(const Track& t, const Range& range, float x) {
   return high > low;
 }
 
+/// The bands that there is room for.
+size_t band_count(const Track& t) {
+  constexpr float kLeast = 48;  // points of the part under the ruler: less is left to the edits
+  return t.body.height() < t.ui.px(kLeast) ? 0 : t.data.bands.size();
+}
+
 /// Of the rows of marks and bands over the bad frames.
 float rows_height(const Track& t) {
   const float marks = t.data.marks.empty() ? 0 : 2 * t.ui.px(kRowHeight);
-  return marks + t.ui.px(kBandHeight) * static_cast<float>(t.data.bands.size());
+  return marks + t.ui.px(kBandHeight) * static_cast<float>(band_count(t));
 }
 
 /// The row of a band.
@@ -177,7 +183,7 @@ void draw_marks(Track& t, const std::string& name) {
 }
 
 void draw_bands(Track& t, const std::string& name) {
-  for (size_t b = 0; b < t.data.bands.size(); ++b) {
+  for (size_t b = 0; b < band_count(t); ++b) {
     const TrackBand& band = t.data.bands[b];
     const Rect row = band_row(t, b);
     for (size_t k = 0; k < band.bars.size(); ++k) {
@@ -280,8 +286,8 @@ void draw_playhead(Track& t, const std::string& name) {
 std::vector<std::string> bands_at(const Track& t, int frame) {
   std::vector<std::string> words;
   const float y = ImGui::GetIO().MousePos.y;
-  if (t.data.bands.empty() || y < band_row(t, 0).min.y || y > band_row(t, t.data.bands.size() - 1).max.y)
-    return words;
+  const size_t count = band_count(t);
+  if (count == 0 || y < band_row(t, 0).min.y || y > band_row(t, count - 1).max.y) return words;
   for (const TrackBand& band : t.data.bands)
     for (const LoopRange& bar : band.bars)
       if (frame >= bar.first && frame <= bar.last)

@@ -49,7 +49,7 @@ struct TrackData {
   std::vector<Values> channel;  ///< drawn in place of the curve, in the curve's label: x, y and z
   std::vector<int> keys;        ///< frames in which the channel was edited: diamonds on its curves
   std::vector<TrackMark> marks;
-  std::vector<TrackBand> bands;              ///< above the marks, the first on top
+  std::vector<TrackBand> bands;              ///< above the marks, the first on top; where there is room
   std::optional<LoopRange> kept;             ///< the ends outside it are greyed: they were trimmed
   std::function<std::string(int)> describe;  ///< extra text for the frame under the pointer
   bool follow = false;                       ///< keep the playhead in view while it plays
