@@ -80,6 +80,8 @@ void draw_cube(Ui& ui, const std::string& name, const Rect& place, const render:
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const FontScope small(ui.fonts().small);
   ui.mark(name, place);
+  ui.explain({place, "View cube",
+              "Shows where the view looks from. Click a face to look from there, drag to turn."});
   const auto& faces = cube_faces();
   for (int i = 0; i < ssize(faces); ++i) {
     const SeenFace seen = seen_face(faces[i], place, camera);
