@@ -85,8 +85,8 @@ void perform(const ExportOptions& options, const std::string& path, Retargeter& 
 }
 
 Performance perform_sources(const ExportOptions& options, const ExportFormat& format) {
-  US_CHECK(!options.sources.empty(), "--source is missing: the motion to perform");
-  US_CHECK(!options.target.path.empty(), "--target is missing: the character that performs it");
+  US_CHECK(!options.sources.empty(), "--source is required: the motion to perform");
+  US_CHECK(!options.target.path.empty(), "--target is required: the character that performs it");
   US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
            " holds one motion, not ", options.sources.size());
   Networks networks = nn::load_networks(network_options(options.how));
@@ -234,7 +234,8 @@ void report_cost(const ExportOptions& options, const Performance& done, const Ex
   const PreparedCharacter& prepared = *done.input.body.character;
   if (cost.measured)
     std::printf(
-        "%s %lld bytes, against the screen: mean %.3f mm, largest %.3f mm over %lld frames, %lld keys\n",
+        "%s %lld bytes, differs from the viewport by %.3f mm on average, %.3f mm at most over %lld frames, "
+        "%lld keys\n",
         options.out.c_str(), static_cast<long long>(cost.bytes), cost.mean_mm, cost.largest_mm,
         static_cast<long long>(cost.frames), static_cast<long long>(cost.keys));
   else
@@ -264,7 +265,7 @@ int print_map(const ExportOptions& options) {
 
 int run_export(const ExportOptions& options) {
   if (options.print_map) return print_map(options);
-  US_CHECK(!options.out.empty(), "--out is missing: the file to write");
+  US_CHECK(!options.out.empty(), "--out is required: the file to write");
   if (options.all_takes) return export_takes(options);
   const ExportFormat& format = export_format(options.format, options.out);
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
@@ -308,7 +309,7 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
       ->check(CLI::Range(0, 64));
   command.add_option("--reduce", options.file.reduce_mm, "removes keys up to this error, mm")
       ->check(CLI::Range(0.0, 1000.0));
-  command.add_flag("--in-place", options.file.in_place, "leaves out the path over the floor");
+  command.add_flag("--in-place", options.file.in_place, "leaves out the path across the floor");
   command.add_flag("--root-motion", options.file.root_motion,
                    "a bone above all others carries the path, as engines take root motion from");
   command.add_flag("--t-pose-clip", options.file.t_pose_clip, "the first clip is the T-pose");

@@ -75,7 +75,7 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
   command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
   command.add_option("--height", source.import.height,
-                     "metres that the person in the source is made tall (default: by its units, else 1.7)");
+                     "height of the person in the source, metres (default: by its units, else 1.7)");
   command.add_option("--yaw", source.import.yaw_deg, "turns the source about y, degrees");
   command.add_option("--floor", source.import.floor,
                      "height of the source's floor, metres (default: the lowest points)");
@@ -92,7 +92,7 @@ void add_target_options(CLI::App& command, TargetOptions& target) {
   command.add_option("--betas", target.betas, "shape parameters of an SMPL-format target")->delimiter(',');
   command.add_option("--target-units", target.import.units, "the target's units: auto, m, dm, cm, mm, in");
   command.add_option("--target-height", target.import.height,
-                     "metres that the target is made tall (default: by its units, else 1.7)");
+                     "height of the target, metres (default: by its units, else 1.7)");
   target.not_a_person = NotAPerson::Refuse;
   command.add_flag_callback(
       "--use-anyway", [&target] { target.not_a_person = NotAPerson::Use; },

@@ -271,8 +271,8 @@ ExportCost export_motion(const std::string& path, const ExportFormat& format, co
 std::string sentence(const ExportCost& cost) {
   const double megabytes = static_cast<double>(cost.bytes) / 1e6;
   if (!cost.measured) return printed("%s frames, %.1f MB", grouped(cost.frames).c_str(), megabytes);
-  return printed("difference from the screen: mean %.2f mm, largest %.2f mm, %.1f MB", cost.mean_mm,
-                 cost.largest_mm, megabytes);
+  return printed("differs from the viewport by %s mm on average, %s mm at most; %.1f MB",
+                 short_number(cost.mean_mm).c_str(), short_number(cost.largest_mm).c_str(), megabytes);
 }
 
 }  // namespace understudy::app

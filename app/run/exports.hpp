@@ -86,7 +86,7 @@ struct ExportInput {
 /// All of it. body.file.progress gets 0..1; what it throws ends the export, and what was there stays.
 ExportCost export_motion(const std::string& path, const ExportFormat& format, const ExportInput& input);
 
-/// "difference from the screen: mean 0.41 mm, largest 2.13 mm, 1.2 MB", for people.
+/// "differs from the viewport by 0.41 mm on average, 2.13 mm at most; 1.2 MB", for people.
 std::string sentence(const ExportCost& cost);
 
 }  // namespace understudy::app

@@ -90,7 +90,7 @@ void export_all(Call& c) {
 
 void export_figures(Call& c) {
   const TakeState& state = c.take_state();
-  US_CHECK(!state.series.empty(), "there are no figures yet");
+  US_CHECK(!state.series.empty(), "there are no metrics yet");
   const std::string path = c.path(1);
   c.studio.jobs().start(
       "Exporting " + file_name(path),
@@ -113,7 +113,7 @@ void add_export_commands(Commands& commands) {
   commands.add({"export.all", "Export all takes, a file each",
                 "FOLDER [format=NAME|csv] and the options of export.run"},
                export_all);
-  commands.add({"export.csv", "Export figures as CSV", "TAKE PATH"}, export_figures);
+  commands.add({"export.csv", "Export metrics as CSV", "TAKE PATH"}, export_figures);
 }
 
 }  // namespace understudy::app

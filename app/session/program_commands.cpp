@@ -76,9 +76,10 @@ void add_brush(Commands& commands) {
 }
 
 void add_work(Commands& commands) {
-  commands.add({"work.pause", "Pause retargeting"}, [](Call& c) { c.studio.pause_work(true); });
-  commands.add({"work.resume", "Continue retargeting"}, [](Call& c) { c.studio.pause_work(false); });
-  commands.add({"work.restart", "Retarget again", "", "Ctrl+R"}, [](Call& c) { c.studio.restart_work(); });
+  commands.add({"work.pause", "Pause processing"}, [](Call& c) { c.studio.pause_work(true); });
+  commands.add({"work.resume", "Resume processing"}, [](Call& c) { c.studio.pause_work(false); });
+  commands.add({"work.restart", "Recompute all frames", "", "Ctrl+R"},
+               [](Call& c) { c.studio.restart_work(); });
   commands.add({"job.cancel", "Cancel", "ID"},
                [](Call& c) { c.studio.jobs().cancel(c.number<int>(0, "job")); });
   commands.add({"error.dismiss", "Close"}, [](Call& c) {

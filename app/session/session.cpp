@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/text.hpp"
+
 namespace understudy::app {
 namespace {
 
@@ -24,13 +26,13 @@ const std::vector<std::vector<std::string>> kMendEachOther = {
 /// Why a frame of the source is not to be trusted; empty when it is.
 std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {
   if (frame.flagged) return frame.reason;
-  if (frame.confidence < kLowConfidence) return "low confidence";
+  if (frame.confidence < kLowConfidence) return "Low confidence";
   for (int j = 1; j < kJointCount; ++j)
-    if (frame.confidence_of[j] < kWeakLimb) return std::string("low confidence in ") + kJointNames[j];
+    if (frame.confidence_of[j] < kWeakLimb) return "Low confidence: " + joint_label(j);
   for (int j = 1; j < kJointCount; ++j) {
     const float length = (frame.raw.row(j) - frame.raw.row(kParents[j])).norm();
     if (usual[j] > 0.05f && std::abs(length - usual[j]) > std::max(kLengthOff * usual[j], kLengthOffM))
-      return std::string("the bone to ") + kJointNames[j] + " changed its length";
+      return bone_label(j) + printed(" changed length (%+.0f %%)", 100 * (length / usual[j] - 1));
   }
   return "";
 }

@@ -239,7 +239,7 @@ void Studio::follow_source(bool other_path) {
   const std::string path = document.truth;
   if (!path.empty())
     jobs_.start(
-        "Reading the truth", [truth, path](JobControl&) { *truth = read_truth(path); },
+        "Reading the ground truth", [truth, path](JobControl&) { *truth = read_truth(path); },
         [this, truth, path] {
           if (path != background_->truth_path) return;
           session_.truth = truth;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <limits>
@@ -90,6 +91,12 @@ std::string printed(const char* format, ...) {
   va_end(again);
   text.pop_back();
   return text;
+}
+
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return "\u2013";
+  const double size = std::abs(value);
+  return printed("%.*f", size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3, value);
 }
 
 std::string grouped(int64_t count) {

@@ -35,6 +35,8 @@ std::string excerpt(std::string_view text);
 std::string printed(const char* format, ...) __attribute__((format(printf, 1, 2)));
 /// 12345 as "12,345".
 std::string grouped(int64_t count);
+/// A value for reading: three significant digits or so, "–" for NaN.
+std::string short_number(double value);
 /// Appends a value with this many digits after the point.
 void append_fixed(std::string& out, double value, int digits);
 /// Appends the shortest text that reads back as the same float.

@@ -1,5 +1,7 @@
 #include "retarget/skeleton/skeleton.hpp"
 
+#include <algorithm>
+
 namespace understudy {
 
 const std::array<const char*, kJointCount> kJointNames = {
@@ -7,6 +9,23 @@ const std::array<const char*, kJointCount> kJointNames = {
     "spine2",     "left_ankle",  "right_ankle",  "spine3",     "left_foot",     "right_foot",
     "neck",       "left_collar", "right_collar", "head",       "left_shoulder", "right_shoulder",
     "left_elbow", "right_elbow", "left_wrist",   "right_wrist"};
+
+std::string joint_label(int joint) {
+  if (joint < 0 || joint >= kJointCount) return "all joints";
+  std::string label = kJointNames[joint];
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+std::string bone_label(int joint) {
+  static const std::array<const char*, kJointCount> kBones = {
+      "Pelvis",       "Left hip bone",   "Right hip bone",   "Lower spine",    "Left thigh",
+      "Right thigh",  "Middle spine",    "Left shin",        "Right shin",     "Upper spine",
+      "Left foot",    "Right foot",      "Upper chest",      "Left chest",     "Right chest",
+      "Neck",         "Left collarbone", "Right collarbone", "Left upper arm", "Right upper arm",
+      "Left forearm", "Right forearm"};
+  return kBones.at(joint);
+}
 
 Rotations identity_rotations() {
   Rotations rotations;

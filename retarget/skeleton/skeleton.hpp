@@ -46,6 +46,11 @@ constexpr std::array<int, kJointCount> kMirror = {0,  2,  1,  3,  5,  4,  6,  8,
                                                   10, 12, 14, 13, 15, 17, 16, 19, 18, 21, 20};
 extern const std::array<const char*, kJointCount> kJointNames;
 
+/// For people: "left wrist" for 20; "all joints" below 0.
+std::string joint_label(int joint);
+/// Of the bone from the joint's parent to it: "Left forearm" for 20.
+std::string bone_label(int joint);
+
 /// Positions of the 22 joints, [22, 3] metres.
 using Joints = Eigen::Matrix<float, kJointCount, 3, Eigen::RowMajor>;
 using Rotations = std::array<Mat3, kJointCount>;

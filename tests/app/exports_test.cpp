@@ -272,7 +272,7 @@ TEST(Exports, SayWhatTheyCost) {
   cost.measured = true;
   cost.mean_mm = 0.412;
   cost.largest_mm = 2.1;
-  EXPECT_EQ(sentence(cost), "difference from the screen: mean 0.41 mm, largest 2.10 mm, 1.2 MB");
+  EXPECT_EQ(sentence(cost), "differs from the viewport by 0.412 mm on average, 2.10 mm at most; 1.2 MB");
 }
 
 }  // namespace

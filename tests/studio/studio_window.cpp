@@ -41,7 +41,7 @@ Display::Display() {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     const std::string to = std::to_string(ends[1]);
     execlp("Xvfb", "Xvfb", "-displayfd", to.c_str(), "-screen", "0", "1300x820x24", "-fbdir", folder.c_str(),
-           "-nolisten", "tcp", static_cast<char*>(nullptr));
+           "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
     _exit(127);
   }
   close(ends[1]);

@@ -142,6 +142,21 @@ TEST_F(Widgets, CutTextFitsAndKeepsLettersWhole) {
   frame();
 }
 
+TEST_F(Widgets, LinesAreBrokenAtSpacesAlone) {
+  in_window([](Ui&) {
+    const std::string text = "differs by 0.39 mm on average, 22.5 mm at most";
+    for (float room = 60; room < 400; room += 7) {
+      std::string lines = in_lines(text, room);
+      std::istringstream in(lines);
+      for (std::string line; std::getline(in, line);)
+        EXPECT_TRUE(ImGui::CalcTextSize(line.c_str()).x <= room || line.find(' ') == line.npos) << line;
+      std::replace(lines.begin(), lines.end(), '\n', ' ');
+      EXPECT_EQ(lines, text);
+    }
+  });
+  frame();
+}
+
 TEST_F(Widgets, SearchableListFindsAndChooses) {
   int chosen = -1;
   in_window([&](Ui& ui) {

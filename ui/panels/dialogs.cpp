@@ -10,12 +10,6 @@
 namespace understudy::ui {
 namespace {
 
-void sentence(const std::string& words) {
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(words.c_str());
-  ImGui::PopTextWrapPos();
-}
-
 void draw_unsaved(const app::Session& session, PanelContext& context, FilesState& files) {
   QuestionWords question;
   question.title = "Unsaved changes";
@@ -32,7 +26,7 @@ void draw_unsaved(const app::Session& session, PanelContext& context, FilesState
 void draw_recover(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!begin_dialog(ui, "recover", "Unsaved work", 480)) return;
-  sentence(session.question->text);
+  paragraph(session.question->text);
   for (size_t i = 0; i < session.question->autosaves.size(); ++i) {
     const app::Autosave& copy = session.question->autosaves[i];
     const std::string what = copy.document_path.empty() ? "Never saved" : file_name(copy.document_path);
@@ -43,7 +37,7 @@ void draw_recover(const app::Session& session, PanelContext& context) {
     if (buttons.add(ui, "recover." + std::to_string(i), "Recover", recover))
       context.ask("document.recover", {copy.file});
     ButtonOptions discard;
-    discard.tooltip = "Deletes this work for good";
+    discard.tooltip = "Deletes this work permanently";
     if (buttons.add(ui, "discard." + std::to_string(i), "Discard", discard))
       context.ask("document.discard_recovery", {copy.file});
   }
@@ -57,7 +51,7 @@ void draw_recover(const app::Session& session, PanelContext& context) {
 void draw_missing(const app::Session& session, PanelContext& context, FilesState& files) {
   Ui& ui = context.ui;
   if (!begin_dialog(ui, "missing", "Files are missing", 520)) return;
-  sentence(session.question->text);
+  paragraph(session.question->text);
   for (size_t i = 0; i < session.question->missing.size(); ++i) {
     const std::string& path = session.question->missing[i];
     const IdScope id(i);
@@ -153,7 +147,8 @@ void draw_settings_rows(const app::Settings& settings, PanelContext& context) {
   ask_number(context, {"settings.mouse", "Mouse", "How fast the views turn when you drag"},
              settings.mouse_sensitivity, {0.2f, 4, 0.01f, "%.2f \u00d7", 1, true});
   if (const auto mb = typed_number_row(
-          ui, {"settings.cache", "Frames kept, MB", "Memory for frames already shown"}, settings.cache_mb, 0))
+          ui, {"settings.cache", "Frame cache, MB", "Memory for frames that were already shown"},
+          settings.cache_mb, 0))
     context.ask("settings.cache_mb", {argument(std::round(*mb))});
   if (const auto s = typed_number_row(
           ui, {"settings.autosave", "Autosave, s", "How often unsaved work is saved for recovery"},
@@ -225,7 +220,7 @@ bool draw_about(PanelContext& context, const std::string& about) {
   Ui& ui = context.ui;
   if (!begin_dialog(ui, "about", "Understudy", 520)) return true;
   ImGui::BeginChild("##about", {0, std::min(ui.px(280), ImGui::GetIO().DisplaySize.y * 0.5f)});
-  sentence(about);
+  paragraph(about);
   ImGui::EndChild();
   ButtonRow buttons(2);
   ButtonOptions close;

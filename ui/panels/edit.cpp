@@ -185,14 +185,15 @@ void draw_amounts(const PoseEdits& edits, PanelContext& context, const std::stri
   ask_number(
       context,
       {"edit.smooth", "Smooth",
-       "Evens out jitter: 0 changes nothing, 1 averages over about 0.2 s to each side", "edit.smooth " + k},
+       "Smooths out jitter: 0 changes nothing, 1 averages over about 0.2 s to each side", "edit.smooth " + k},
       edits.smooth ? edits.smooth->strength : 0, {0, 1, 0.005f, "%.2f", 0, true});
+  ask_number(
+      context,
+      {"edit.raise", "Raise by",
+       "Moves the whole motion up by this many metres; negative values move it down", "edit.raise " + k},
+      edits.raise ? edits.raise->offset_m : 0, {-1, 1, 0.001f, "%.3f m", 0, true});
   ask_number(context,
-             {"edit.raise", "Raise by", "Moves the whole motion up by so many metres, below 0 down",
-              "edit.raise " + k},
-             edits.raise ? edits.raise->offset_m : 0, {-1, 1, 0.001f, "%.3f m", 0, true});
-  ask_number(context,
-             {"edit.turn", "Turn by", "Turns the whole motion about the vertical axis by so many degrees",
+             {"edit.turn", "Turn by", "Turns the whole motion about the vertical axis by this many degrees",
               "edit.turn " + k},
              edits.turn ? edits.turn->yaw_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
 }
@@ -267,10 +268,10 @@ void draw_brush(const app::Session& session, PanelContext& context) {
              {"edit.brush_radius", "Radius", "Radius of the brush on the surface", "tool.brush_radius"},
              session.brush.radius_m, {0.005f, 0.5f, 0.0005f, "%.3f m"});
   ask_number(context,
-             {"edit.brush_strength", "Strength", "Strength of one dab at its centre", "tool.brush_strength"},
+             {"edit.brush_strength", "Strength", "Strength of a stroke at its centre", "tool.brush_strength"},
              session.brush.strength, {0.01f, 1, 0.005f, "%.2f"});
   const std::vector<std::string> modes = {"add", "subtract", "smooth"};
-  ask_choice(context, {"edit.brush_mode", "Brush", "What a dab does", "tool.brush_mode"},
+  ask_choice(context, {"edit.brush_mode", "Brush", "What a stroke does", "tool.brush_mode"},
              {"Add", "Subtract", "Smooth"}, modes, modes[static_cast<size_t>(session.brush.mode)]);
 }
 

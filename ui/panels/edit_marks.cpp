@@ -55,8 +55,8 @@ void add_source_edits(std::vector<EditMark>& all, const app::Session& session) {
     }
     const SwapEdit& swap = std::get<SwapEdit>(edits[i]);
     const std::string number = std::to_string(i);
-    const std::string words = std::string("Left and right swapped: ") + limbs[static_cast<int>(swap.limbs)] +
-                              ", " + frames_text(swap.first, swap.last);
+    const std::string words = std::string("Left and right are swapped in: ") +
+                              limbs[static_cast<int>(swap.limbs)] + ", " + frames_text(swap.first, swap.last);
     all.push_back({{"swap." + number, words, swap.first, swap.last, false, 0, 0, kOrange},
                    {"swap", number},
                    "edit.remove skeleton " + number});

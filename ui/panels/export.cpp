@@ -147,7 +147,7 @@ void draw_bone_choice(Ui& ui, const app::ExportFormat& format, ExportState& stat
   int bones = on_own_bones(format, state) ? 0 : 1;
   const Control control{"export.bones",
                         "Bones",
-                        "Which bones the file animates",
+                        "The bones that the file animates",
                         "",
                         {"The character's own, with their names, from its own rest pose",
                          "The 22 joints of this program, from the T-pose"}};
@@ -167,10 +167,11 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool own_bones, Exp
           ui, {"export.morphs", "Morph targets", "Deformations that bones alone cannot make; the file grows"},
           {"None", "4", "8", "16"}, shapes))
     file.shapes = kShapes[shapes];
-  if (const auto mm = typed_number_row(ui,
-                                       {"export.reduce", "Key reduction, mm",
-                                        "Removes keys that move no vertex further than this; 0 keeps all"},
-                                       static_cast<double>(file.reduce_mm), 1))
+  if (const auto mm =
+          typed_number_row(ui,
+                           {"export.reduce", "Key reduction, mm",
+                            "Removes keys as long as no vertex moves further than this; 0 keeps all"},
+                           static_cast<double>(file.reduce_mm), 1))
     file.reduce_mm = static_cast<float>(std::clamp(*mm, 0.0, 1000.0));
   toggle_row(ui, {"export.t_pose", "T-pose first", "Adds the T-pose as its own clip"}, file.t_pose_clip);
   if (!own_bones || !take.character || take.character->character.animations.empty()) return;
@@ -273,7 +274,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     if (own_bones && format->own_bones) draw_bone_choice(ui, *format, state);
     if (format->is_character)
       draw_character_rows(ui, *made, own_bones && on_own_bones(*format, state), state);
-    toggle_row(ui, {"export.in_place", "In place", "Leaves out the path over the floor"},
+    toggle_row(ui, {"export.in_place", "In place", "Leaves out the path across the floor"},
                state.choice.file.in_place);
     if (format->is_character)
       toggle_row(ui,
@@ -285,7 +286,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
                                    : frames_words(session, session.selected_take);
     hint(ui, frames + ", " + figure(frames_per_second(session), "frames/s"));
   }
-  hint(ui, format != nullptr ? format->words : "Every figure of every frame, as a table.");
+  hint(ui, format != nullptr ? format->words : "Every metric of every frame, as a table.");
 }
 
 /// What is not as it would be anyway. own_bones: whether the character has any.

@@ -80,12 +80,10 @@ const MenuItem* draw_palette(PanelContext& context, const app::Session& session,
 }
 
 void draw_scripts(PanelContext& context, float height) {
-  ImGui::PushTextWrapPos(0);
   hint(context.ui,
        "A script is a text file, a command a line; \"words in quotes\" are one argument, # begins a comment. "
        "understudy play FILE.us runs it, understudy studio --record FILE.us writes one. Choose a line to "
        "copy it.");
-  ImGui::PopTextWrapPos();
   std::vector<ListItem> items;
   for (const app::Command& command : context.commands.all())
     items.push_back({command.name + (command.usage.empty() ? "" : " " + command.usage), command.label});
@@ -143,7 +141,7 @@ bool draw_help_here(PanelContext& context, std::optional<Explanation>& here) {
   if (!here) here = ui.explanation_at(at);
   if (!here) here = {{}, "", "Rest the pointer on something and press F1 to read what it is for."};
   if (!begin_dialog(ui, "help.here", here->title.empty() ? "Help" : here->title, 440)) return true;
-  ImGui::TextWrapped("%s", here->text.c_str());
+  paragraph(here->text);
   ui.mark("help.here");
   if (!here->keys.empty()) row_text(ui, "Keys", here->keys);
   ImGui::Dummy({0, ui.px(4)});

@@ -25,19 +25,16 @@ const std::vector<std::string> kAxes = {"auto", "x", "y", "z", "-x", "-y", "-z"}
 void warn(Ui& ui, const std::string& sentence) {
   icon_label(ui, Icon::Warning, ui.theme().warning);
   ImGui::SameLine();
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(sentence.c_str());
-  ImGui::PopTextWrapPos();
+  paragraph(sentence);
 }
 
 /// Metres, or by the file's units: then a button leads back there.
 void draw_height(PanelContext& context, const std::string& group, const ImportOptions& import,
                  const std::string& take) {
   Ui& ui = context.ui;
-  const Control control{
-      group + ".height", "Height",
-      "Metres that the body is made tall; auto: by the file's units, 1.7 m where those are nobody's",
-      group + ".height " + take};
+  const Control control{group + ".height", "Height",
+                        "Height in metres; auto: from the file's units, or 1.7 m where those make no person",
+                        group + ".height " + take};
   row(ui, control.label, control.explanation);
   const float button = import.height ? ImGui::GetFrameHeight() + ui.px(4) : 0;
   ImGui::BeginChild((control.name + ".field").c_str(),
@@ -306,11 +303,11 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
 void draw_work(const app::Session& session, PanelContext& context) {
   ButtonRow buttons(2);
   if (session.paused)
-    buttons.ask(context, {"work.resume", "Continue", "Continues with the remaining frames"});
+    buttons.ask(context, {"work.resume", "Continue", "Processes the remaining frames"});
   else
-    buttons.ask(context, {"work.pause", "Pause", "Stops making frames until you continue"},
+    buttons.ask(context, {"work.pause", "Pause", "Stops processing frames until you resume"},
                 possible(session, "work.pause"));
-  buttons.ask(context, {"work.restart", "Again", "Computes all frames again"},
+  buttons.ask(context, {"work.restart", "Again", "Computes every frame again"},
               possible(session, "work.restart"));
 }
 

@@ -24,11 +24,12 @@ struct Layer {
 constexpr Layer kLayers[] = {
     {"skeleton", "Skeleton", "The extracted joints, or those of the target", &app::Layers::skeleton},
     {"x_ray", "X-ray", "Shows the skeleton through the surface", &app::Layers::x_ray},
-    {"joint_names", "Names", "Names all joints; the joint under the mouse always shows its name",
+    {"joint_names", "Names",
+     "Shows the names of all joints; the joint under the pointer always shows its own",
      &app::Layers::joint_names},
     {"ground", "Ground", "The grid on the floor, with a soft shadow", &app::Layers::ground},
     {"trails", "Trails", "The paths of the joints chosen below", &app::Layers::trails},
-    {"ghosts", "Ghosts", "Past and coming frames, faint", &app::Layers::ghosts}};
+    {"ghosts", "Ghosts", "Past and future frames, faint", &app::Layers::ghosts}};
 
 struct Colour {
   Colouring colouring;
@@ -41,7 +42,7 @@ const std::vector<Colour> kTakeColours = {{Colouring::Plain, "Plain"},
                                           {Colouring::Uncertainty, "Binding uncertainty, %"},
                                           {Colouring::Offsets, "Corrective offsets, mm"},
                                           {Colouring::Error, "Error against ground truth, mm"},
-                                          {Colouring::Difference, "Difference to take 1, mm"}};
+                                          {Colouring::Difference, "Difference from take 1, mm"}};
 
 void draw_colour(PanelContext& context, const std::string& pane, const std::vector<Colour>& colours,
                  Colouring now) {

@@ -60,9 +60,9 @@ Items edit_menu(const app::Session& session) {
           {"Clear moved joints", "edit.target_joints_clear", {k}},
           {"Clear painted weights", "edit.weights_clear", {k}},
           kLine,
-          {"Pause working", "work.pause"},
-          {"Continue working", "work.resume"},
-          {"Redo all frames", "work.restart"}};
+          {"Pause processing", "work.pause"},
+          {"Resume processing", "work.resume"},
+          {"Recompute all frames", "work.restart"}};
 }
 
 MenuItem layouts(const app::Session& session) {

@@ -107,7 +107,7 @@ void draw_needing_truth(const app::Session& session, Ui& ui) {
 void draw_figures(const app::Session& session, Ui& ui) {
   const std::vector<std::string> keys = figure_keys(session);
   if (keys.empty()) {
-    hint(ui, session.working ? "Shown once all frames are made." : "Nothing to compare yet.");
+    hint(ui, session.working ? "Shown when all frames are processed." : "Nothing to compare yet.");
     return;
   }
   std::vector<Column> columns = {{"Metric", 0, false}};
@@ -172,7 +172,7 @@ void draw_metrics(const app::Session& session, PanelContext& context) {
   const app::TakeState* take = selected_state(session);
   if (section(ui, "metrics.curves", "Over time")) {
     const bool any = take != nullptr && !take->series.empty();
-    if (!any) hint(ui, "Metrics appear as frames are made.");
+    if (!any) hint(ui, "Metrics appear as frames are processed.");
     if (any)
       for (const app::Series& series : take->series) draw_curve_of(session, context, timeline, series);
     ask_button(context,

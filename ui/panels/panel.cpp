@@ -28,13 +28,6 @@ std::string on_off(bool on) {
   return on ? "on" : "off";
 }
 
-std::string joint_label(int joint) {
-  if (joint < 0 || joint >= kJointCount) return "all joints";
-  std::string label = kJointNames[joint];
-  std::replace(label.begin(), label.end(), '_', ' ');
-  return label;
-}
-
 std::vector<std::string> joint_labels() {
   std::vector<std::string> labels(kJointCount);
   for (int j = 0; j < kJointCount; ++j) labels[j] = joint_label(j);

@@ -27,8 +27,6 @@ struct PanelContext {
 std::string argument(double value);
 std::string on_off(bool on);
 
-/// "left wrist" for 20; "all joints" below 0.
-std::string joint_label(int joint);
 std::vector<std::string> joint_labels();
 /// As commands name it: "left_wrist"; "all" below 0.
 std::string joint_name(int joint);

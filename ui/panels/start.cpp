@@ -121,9 +121,10 @@ void draw_start(const app::Session& session, PanelContext& context, const std::v
     const FontScope title(ui.fonts().title);
     text_cut(ui, "Any body, any motion");
   }
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextColored(ui.theme().text_dim, "%s", "Drop a scan or motion and a character here.");
-  ImGui::PopTextWrapPos();
+  {
+    const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
+    paragraph("Drop a scan or motion and a character here.");
+  }
   ImGui::Dummy({0, ui.px(6)});
   draw_openers(context);
   if (!samples.empty()) {

@@ -75,7 +75,7 @@ void draw_marks(const app::Session& session, PanelContext& context) {
     context.ask("playback.clear_marks");
   ImGui::SameLine(0, ui.px(3));
   if (icon_button(ui, "timeline.live", Icon::Clock,
-                  {"Shows the newest frame while frames are made", "", playback.live, disabled, 28}))
+                  {"Shows the newest frame while frames are processed", "", playback.live, disabled, 28}))
     context.ask("playback.follow_live");
 }
 

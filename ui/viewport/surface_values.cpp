@@ -54,9 +54,9 @@ SurfaceValues error(const Session& session, const Points& vertices, int frame) {
   const char* const title = "Error";
   if (session.truth == nullptr) return missing(title, "needs ground truth");
   const app::Truth& truth = *session.truth;
-  if (truth.vertices.empty()) return missing(title, "the truth has no vertices");
-  if (truth.vertex_count != vertices.rows()) return missing(title, "the truth is of another mesh");
-  if (frame < 0 || frame >= truth.frames) return missing(title, "the truth is shorter");
+  if (truth.vertices.empty()) return missing(title, "the ground truth has no vertices");
+  if (truth.vertex_count != vertices.rows()) return missing(title, "the ground truth is of another mesh");
+  if (frame < 0 || frame >= truth.frames) return missing(title, "the ground truth has fewer frames");
   return distances(session, title, vertices, truth.frame_vertices(frame));
 }
 

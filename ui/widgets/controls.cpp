@@ -94,9 +94,7 @@ void show_tooltip(Ui& ui, const std::string& text, const std::string& shortcut) 
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ui.px(9), ui.px(6)});
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.f);  // also on what is greyed out
   ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ui.px(360));
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
+  paragraph(text, ui.px(360));
   if (!shortcut.empty()) {
     ImGui::SameLine(0, ui.px(12));
     ImGui::TextColored(ui.theme().text_dim, "%s", shortcut.c_str());
@@ -330,10 +328,32 @@ void text_cut(Ui& ui, const std::string& text, float width) {
   if (cut != text) show_tooltip(ui, text, "");
 }
 
+std::string in_lines(const std::string& text, float room) {
+  std::string lines = text;
+  const float space = ImGui::CalcTextSize(" ").x;
+  float used = 0;
+  for (size_t begin = 0; begin < lines.size();) {
+    const size_t end = std::min(lines.find_first_of(" \n", begin), lines.size());
+    const float word = ImGui::CalcTextSize(lines.c_str() + begin, lines.c_str() + end).x;
+    const bool follows = begin > 0 && lines[begin - 1] == ' ', fits = used + space + word <= room;
+    if (follows && !fits) lines[begin - 1] = '\n';
+    used = follows && fits ? used + space + word : word;
+    begin = end + 1;
+  }
+  return lines;
+}
+
+void paragraph(const std::string& text, float width) {
+  const float room = width_left(width);
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room + 1);  // for a word that is longer than a line
+  ImGui::TextUnformatted(in_lines(text, room).c_str());
+  ImGui::PopTextWrapPos();
+}
+
 void hint(Ui& ui, const std::string& text) {
   const FontScope small(ui.fonts().small);
   const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
-  ImGui::TextWrapped("%s", text.c_str());
+  paragraph(text);
 }
 
 bool progress(Ui& ui, const std::string& name, const ProgressOptions& options) {

@@ -153,7 +153,7 @@ void end_dialog() {
 
 Answer ask(Ui& ui, const std::string& name, const QuestionWords& question) {
   if (!begin_dialog(ui, name, question.title, 420)) return Answer::None;
-  ImGui::TextWrapped("%s", question.sentence.c_str());
+  paragraph(question.sentence);
   std::vector<Choice> choices;
   if (!question.cancel.empty())
     choices.push_back({Answer::Cancel, name + ".cancel", question.cancel, ButtonLook::Plain});
@@ -174,7 +174,7 @@ bool show_error(Ui& ui, const std::string& name, const std::string& sentence, co
   if (!begin_dialog(ui, name, "That did not work", 480)) return false;
   icon_label(ui, Icon::Warning, ui.theme().danger);
   ImGui::SameLine();
-  ImGui::TextWrapped("%s", sentence.c_str());
+  paragraph(sentence);
   const Answer answer = draw_choices(ui, {{Answer::No, name + ".copy", "Copy details", ButtonLook::Plain},
                                           {Answer::Yes, name + ".close", "Close", ButtonLook::Main}});
   if (answer == Answer::No) ImGui::SetClipboardText((sentence + "\n" + details).c_str());

@@ -328,7 +328,7 @@ void FileBrowser::draw_list(Ui& ui) {
   if (!problem.empty()) {
     icon_label(ui, Icon::Warning, ui.theme().warning);
     ImGui::SameLine();
-    ImGui::TextWrapped("%s", problem.c_str());
+    paragraph(problem);
     ui.mark("browser.problem");
   }
   const float height = ImGui::GetTextLineHeight() + ui.px(8);

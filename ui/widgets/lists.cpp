@@ -141,7 +141,7 @@ void Table::cell(const std::string& text) {
 void Table::whole_cell(const std::string& text) {
   if (column_ != ImGui::TableGetColumnIndex()) ImGui::TableSetColumnIndex(column_);
   ++column_;
-  ImGui::TextWrapped("%s", text.c_str());
+  paragraph(text);
   ui_.mark(name_ + "." + std::to_string(row_) + ".text");
 }
 

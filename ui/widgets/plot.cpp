@@ -169,12 +169,6 @@ std::string tick_label(double value, double step) {
   return printed("%.*f", decimals, value);
 }
 
-std::string short_number(double value) {
-  if (!std::isfinite(value)) return "\u2013";
-  const double size = std::abs(value);
-  return printed("%.*f", size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3, value);
-}
-
 void draw_curve(ImDrawList& list, const FrameAxis& axis, const Values& values, const Range& range,
                 ImU32 color, float thickness) {
   const double frames = axis.last - axis.first;

@@ -39,8 +39,6 @@ std::vector<Range> reduce(const Values& values, double first, double last, int c
 std::vector<double> round_ticks(double low, double high, int most);
 /// A tick's label, as short as the step allows: "0.25", "40", "1.5k".
 std::string tick_label(double value, double step);
-/// A value for reading: three significant digits or so, "–" for NaN.
-std::string short_number(double value);
 
 /// Maps frames to pixels: `first` to the left edge of `area`, `last` to the right.
 struct FrameAxis {

@@ -29,7 +29,7 @@ class Display : public testing::Environment {
       prctl(PR_SET_PDEATHSIG, SIGTERM);
       const std::string to = std::to_string(ends[1]);
       execlp("Xvfb", "Xvfb", "-displayfd", to.c_str(), "-screen", "0", "1400x900x24", "-nolisten", "tcp",
-             static_cast<char*>(nullptr));
+             "-noreset", static_cast<char*>(nullptr));
       _exit(127);
     }
     close(ends[1]);
