@@ -18,7 +18,7 @@ namespace understudy::app {
 StudioServices studio_services(const std::string& weights) {
   StudioServices services;
   services.networks = [weights](const Method& method, const NetworkParts& parts) {
-    return nn::load_networks(network_options({method, weights, {}, {}}), parts);
+    return nn::load_networks(network_options({method, weights, {}, {}, {}}), parts);
   };
   services.weights = [weights] {
     nn::NetworkOptions options;
