@@ -321,7 +321,7 @@ TEST_F(WorkspaceTest, ASmallWindowWithLargeTextHasTheTrack) {
   click(track.rect.at(0.5f, 0.5f));
   const std::vector<std::string> asked = take_log();
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].rfind("playback.frame 2", 0), 0u) << asked[0] << ", of 48";
+  EXPECT_TRUE(asked[0] == "playback.frame 29" || asked[0] == "playback.frame 30") << asked[0] << ", of 60";
 }
 
 TEST_F(PanelsTest, EveryKeyDoesOneThing) {
