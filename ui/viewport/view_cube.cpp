@@ -1,5 +1,6 @@
 #include "ui/viewport/view_cube.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "retarget/base/index.hpp"
@@ -34,6 +35,16 @@ SeenFace seen_face(const CubeFace& face, const Rect& place, const render::Camera
   seen.middle = project(face.out);
   seen.towards = face.out.dot(axes.col(2));
   return seen;
+}
+
+/// In pixels, of what lies level in it.
+float width_of(const SeenFace& face) {
+  const auto between = [&](size_t a, size_t b) {  // the middles of two opposite edges
+    return std::abs(face.corners[a].x + face.corners[a + 1].x - face.corners[b].x -
+                    face.corners[(b + 1) % 4].x) /
+           2;
+  };
+  return std::max(between(0, 2), between(1, 3));
 }
 
 bool contains(const SeenFace& face, const ImVec2& at) {
@@ -93,8 +104,8 @@ void draw_cube(Ui& ui, const std::string& name, const Rect& place, const render:
     const float reach = ui.px(4);
     ui.mark(name + "." + faces[i].preset,
             {{seen.middle.x - reach, seen.middle.y - reach}, {seen.middle.x + reach, seen.middle.y + reach}});
-    if (seen.towards < kReadable) continue;
     const ImVec2 size = ImGui::CalcTextSize(faces[i].label);
+    if (seen.towards < kReadable || size.x > width_of(seen)) continue;
     list.AddText({std::round(seen.middle.x - size.x / 2), std::round(seen.middle.y - size.y / 2)},
                  color(lit ? t.on_accent : t.text), faces[i].label);
   }
