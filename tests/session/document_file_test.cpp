@@ -123,6 +123,9 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take["target"].erase("not_a_person");
     take["target_edits"].erase("rest_pose");
   }
+  auto& view = written["view"];
+  for (const char* added : {"cube", "overlay", "light", "backdrop", "backdrop_color"}) view.erase(added);
+  for (const char* layers : {"source", "take"}) view[layers].erase("wireframe");
   EXPECT_EQ(document_text(written), without);
 }
 
