@@ -169,7 +169,7 @@ TEST(Proportions, HandsThatMeetMeetOnBroadShouldersWhereArmsReach) {
     return (joints.row(LeftWrist) - joints.row(RightWrist)).norm();
   };
   const float turned = apart(0), half = apart(0.5f), met = apart(1);
-  EXPECT_GT(turned, 0.03f);
+  EXPECT_GT(turned, 0.02f);
   EXPECT_NEAR(half, 0.5f * turned, 0.25f * turned);
   EXPECT_LT(met, 0.005f);
 }
