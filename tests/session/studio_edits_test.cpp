@@ -368,13 +368,13 @@ TEST_F(StudioTest, TheRestPoseOfATargetIsPerformedSavedAndUndone) {
 TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {
   Studio studio(services());
   open_both(studio);
-  const TakeState& take = studio.session().takes[0];
-  const std::vector<Joints> before = take.joints;
+  const auto take = [&studio]() -> const TakeState& { return studio.session().takes[0]; };
+  const std::vector<Joints> before = take().joints;
   studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0.1", "0.05", "3"});
   studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0", "-0.05", "3"});  // before it is shown
   studio.wait_idle(60);
   const auto moved = [&](size_t t, int joint) {
-    return Vec3((take.joints[t].row(joint) - before[t].row(joint)).transpose());
+    return Vec3((take().joints[t].row(joint) - before[t].row(joint)).transpose());
   };
   EXPECT_LT((moved(10, LeftWrist) - Vec3(0, 0.1f, 0)).norm(), 0.01f);
   EXPECT_GT(moved(11, LeftWrist).norm(), 0.02f);
@@ -392,13 +392,13 @@ TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {
 TEST_F(StudioTest, ItIsKnownWhichFeetStandInEachFrame) {
   Studio studio(services());
   open_both(studio);
-  const TakeState& take = studio.session().takes[0];
-  ASSERT_EQ(take.shown.standing.size(), static_cast<size_t>(kFrames));
-  for (size_t t = 0; t < take.shown.standing.size(); ++t)
-    EXPECT_EQ(take.shown.standing[t], take.performed[t].standing) << t;
+  const auto take = [&studio]() -> const TakeState& { return studio.session().takes[0]; };
+  ASSERT_EQ(take().shown.standing.size(), static_cast<size_t>(kFrames));
+  for (size_t t = 0; t < take().shown.standing.size(); ++t)
+    EXPECT_EQ(take().shown.standing[t], take().performed[t].standing) << t;
   studio.run("edit.pin", {"0", "on"});
   studio.wait_idle(60);
-  EXPECT_EQ(take.shown.standing.size(), static_cast<size_t>(kFrames));
+  EXPECT_EQ(take().shown.standing.size(), static_cast<size_t>(kFrames));
 }
 
 TEST_F(StudioTest, WhileAJointIsDraggedTheSkeletonIsAsItWillBeAfterwards) {
