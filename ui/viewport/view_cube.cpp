@@ -10,8 +10,9 @@ namespace {
 
 constexpr float kCubeSide = 84, kCubeAway = 8;                  // points, of the corner it takes
 constexpr float kLeastViewWidth = 240, kLeastViewHeight = 190;  // points
-constexpr float kHalfEdge = 0.285f;                             // of the corner's side
-constexpr float kLeastSeen = 0.02f, kReadable = 0.45f;          // of a face turned to the viewer
+constexpr float kLargestShare = 0.28f;                  // of a view, where text is large in a small window
+constexpr float kHalfEdge = 0.285f;                     // of the corner's side
+constexpr float kLeastSeen = 0.02f, kReadable = 0.45f;  // of a face turned to the viewer
 
 /// A face as it is seen: flat, from afar.
 struct SeenFace {
@@ -71,7 +72,8 @@ const std::array<CubeFace, 6>& cube_faces() {
 
 std::optional<Rect> cube_place(const Ui& ui, const Rect& view) {
   if (view.width() < ui.px(kLeastViewWidth) || view.height() < ui.px(kLeastViewHeight)) return std::nullopt;
-  const float side = std::round(ui.px(kCubeSide)), away = std::round(ui.px(kCubeAway));
+  const float most = kLargestShare * std::min(view.width(), view.height());
+  const float side = std::round(std::min(ui.px(kCubeSide), most)), away = std::round(ui.px(kCubeAway));
   const ImVec2 corner(view.max.x - away, view.min.y + away);
   return Rect{{corner.x - side, corner.y}, {corner.x, corner.y + side}};
 }
