@@ -89,11 +89,11 @@ TEST_F(StudioTest, TwoMethodsOfOneTargetStandSideBySide) {
 TEST_F(StudioTest, ProportionsOfATargetArePerformedWithoutBindingOrExtractingAgainAndUndone) {
   Studio studio(services());
   open_both(studio);
-  const TakeState& take = studio.session().takes[0];
-  const auto pelvis = [&take](size_t t) { return Vec3(take.joints[t].row(Pelvis).transpose()); };
-  const Motion before = take.shown;
+  const auto take = [&]() -> const TakeState& { return studio.session().takes[0]; };  // undo makes it anew
+  const auto pelvis = [&](size_t t) { return Vec3(take().joints[t].row(Pelvis).transpose()); };
+  const Motion before = take().shown;
   const Vec3 first = pelvis(0), last = pelvis(kFrames - 1);
-  const auto deformer = take.deformer;
+  const auto deformer = take().deformer;
   const int extracted = *extractions_;
   for (const char* stride : {"1.2", "1.5"}) studio.run("target.stride", {"0", stride});  // as a slider does
   studio.wait_idle(60);
@@ -107,8 +107,8 @@ TEST_F(StudioTest, ProportionsOfATargetArePerformedWithoutBindingOrExtractingAga
   EXPECT_EQ(studio.session().document.takes[0].method.arm_reach, 1);
   studio.run("edit.undo");
   studio.wait_idle(60);
-  EXPECT_TRUE(same_poses(take.shown, before));
-  EXPECT_EQ(take.deformer, deformer);
+  EXPECT_TRUE(same_poses(take().shown, before));
+  EXPECT_EQ(take().deformer, deformer);
   EXPECT_EQ(*extractions_, extracted);
 }
 

@@ -344,15 +344,15 @@ TEST_F(StudioTest, TheRestPoseOfATargetIsPerformedSavedAndUndone) {
   open_both(studio);
   studio.run("method.filter", {"0", "hand_contacts", "off"});
   studio.wait_idle(60);
-  const TakeState& take = studio.session().takes[0];
-  const Motion before = take.shown;
-  const auto deformer = take.deformer;
+  const auto take = [&]() -> const TakeState& { return studio.session().takes[0]; };  // undo makes it anew
+  const Motion before = take().shown;
+  const auto deformer = take().deformer;
   studio.run("edit.rest_bone", {"0", "left_shoulder", "0", "0", "-0.5", "mirror"});
   studio.wait_idle(60);
   EXPECT_EQ(studio.session().history.undo_label(), "Turn left shoulder of the rest pose");
-  EXPECT_EQ(take.deformer, deformer);  // nothing was bound again
+  EXPECT_EQ(take().deformer, deformer);  // nothing was bound again
   const auto turn = [&](size_t t, size_t j) {
-    return rotation_to_axis_angle(before.poses[t].local[j].transpose() * take.shown.poses[t].local[j]);
+    return rotation_to_axis_angle(before.poses[t].local[j].transpose() * take().shown.poses[t].local[j]);
   };
   EXPECT_NEAR(turn(5, LeftShoulder).z(), -0.5f, 0.02f);
   EXPECT_NEAR(turn(5, RightShoulder).z(), 0.5f, 0.02f);
@@ -360,7 +360,7 @@ TEST_F(StudioTest, TheRestPoseOfATargetIsPerformedSavedAndUndone) {
   EXPECT_EQ(read_document(path("rest.understudy")).document.takes[0].target_edits.rest_pose.size(), 2u);
   studio.run("edit.rest_pose_clear", {"0"});
   studio.wait_idle(60);
-  EXPECT_TRUE(same_poses(take.shown, before));
+  EXPECT_TRUE(same_poses(take().shown, before));
   studio.run("edit.undo");
   EXPECT_EQ(studio.session().document.takes[0].target_edits.rest_pose.size(), 2u);
 }

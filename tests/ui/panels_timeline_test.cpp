@@ -175,7 +175,7 @@ TEST_F(Timeline, AFootsBarIsNoEditAndItsTooltipTellsWhatHolds) {
 
 TEST_F(Timeline, KnowsTheBadFramesAndWhy) {
   EXPECT_EQ(state.why(20), "no points");
-  EXPECT_EQ(state.why(31), "low confidence");
+  EXPECT_EQ(state.why(31), "Low confidence");
   EXPECT_EQ(state.why(21), "");
   flag_frame(21, "too few points");
   ++session.source.generation;
