@@ -324,6 +324,19 @@ TEST_F(WorkspaceTest, ASmallWindowWithLargeTextHasTheTrack) {
   EXPECT_TRUE(asked[0] == "playback.frame 29" || asked[0] == "playback.frame 30") << asked[0] << ", of 60";
 }
 
+TEST_F(WorkspaceTest, ALowWindowKeepsThePathAndTheButtonsOfTheExport) {
+  input.size = {900, 600}, input.scale = 1.5f;
+  workspace.open_dialog(session, "export");
+  frame(5);
+  for (const std::string name : {"export.path", "export.cancel", "export.save"})
+    EXPECT_FLOAT_EQ(mark(name).visible.height(), mark(name).rect.height()) << name;
+  EXPECT_FALSE(mark("export.format").visible.empty());
+  gui.ui().reveal("export.in_place");
+  frame(5);
+  EXPECT_TRUE(shown("export.in_place")) << "by scrolling";
+  EXPECT_TRUE(shown("export.save"));
+}
+
 TEST_F(PanelsTest, EveryKeyDoesOneThing) {
   std::vector<std::string> seen;
   for (const Binding& binding : bindings(studio.commands())) {

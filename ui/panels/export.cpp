@@ -449,6 +449,23 @@ const char* title_of(ExportKind kind) {
                                        : "Save video";
 }
 
+/// The rows above the path and the buttons: where the window is too low for all of them they scroll, and path and
+/// buttons stay.
+template <class Draw>
+void draw_choices_above(Ui& ui, const Draw& draw_rows) {
+  float& height = ui.state<float>(ImGui::GetID("##choices.height"));  // as drawn last
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float line = ImGui::GetFrameHeight() + style.ItemSpacing.y;
+  const float below = 2 * line + ui.px(4) + style.ItemSpacing.y + ui.px(16);
+  const float room = ImGui::GetIO().DisplaySize.y - ui.px(16) - ImGui::GetCursorPosY() - below;
+  const bool scrolls = height > room;
+  if (scrolls) ImGui::BeginChild("##choices", {0, std::max(ui.px(60), room)});
+  const float top = ImGui::GetCursorPosY();
+  draw_rows();
+  height = ImGui::GetCursorPosY() - top;
+  if (scrolls) ImGui::EndChild();
+}
+
 }  // namespace
 
 bool begin_export(const app::Session& session, ExportState& state, const std::string& dialog) {
@@ -485,10 +502,12 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
   Ui& ui = context.ui;
   if (state.asking) return draw_overwrite(session, context, state);
   if (!begin_dialog(ui, "export", title_of(state.kind), 460)) return true;
-  if (state.kind == ExportKind::Animation)
-    draw_animation_rows(session, context, state);
-  else
-    draw_picture_rows(session, ui, state);
+  draw_choices_above(ui, [&] {
+    if (state.kind == ExportKind::Animation)
+      draw_animation_rows(session, context, state);
+    else
+      draw_picture_rows(session, ui, state);
+  });
   const PathAnswer path = draw_path(session, ui, state);
   if (path.browse) choose_file(session, files, FilePurpose::Export, state.path);
   ImGui::Dummy({0, ui.px(4)});
