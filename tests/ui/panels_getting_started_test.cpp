@@ -20,7 +20,7 @@ class GettingStarted : public WorkspaceTest {
   void expect_ring_around(const std::string& name) {
     frame(4);
     const Rect widget = mark(name).visible, ring = mark("guide.ring").rect, card = mark("guide.card").rect;
-    for (const ImVec2& corner : {widget.at(0.02f, 0.02f), widget.at(0.98f, 0.98f)})
+    for (const ImVec2& corner : {widget.at(0.1f, 0.1f), widget.at(0.9f, 0.9f)})
       EXPECT_TRUE(ring.contains(corner)) << name;
     EXPECT_LT(ring.width(), widget.width() + 20) << name;
     EXPECT_TRUE(card.min.x >= 0 && card.min.y >= 0 && card.max.x <= 1280 && card.max.y <= 800) << name;
