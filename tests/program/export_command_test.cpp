@@ -39,7 +39,7 @@ TEST_F(ExportCommand, WritesTheCharacterOnItsOwnSkeleton) {
   const Finished done = run(character(made), {"--out", out("a.glb"), "--preview", out("a.png"), "--report",
                                               out("a.json"), "--t-pose-clip", "--in-place"});
   ASSERT_EQ(done.code, 0) << done.err;
-  EXPECT_NE(done.out.find("mean"), std::string::npos);
+  EXPECT_NE(done.out.find("on average"), std::string::npos) << done.out;
   const Character file = read_character(out("a.glb"));
   EXPECT_EQ(file.animations.size(), 2u);
   EXPECT_EQ(file.animations[1].name, "scans");
@@ -155,7 +155,7 @@ TEST_F(ExportCommand, ADocumentThatCannotBeExportedIsASentence) {
   expect_clean_failure(run_program({"export", document, "--rig", "theirs", "--out", out("a.glb")}),
                        "bones of its own");
   for (const std::vector<std::string>& more :
-       {std::vector<std::string>{"--target", target()}, {"--root", "original"}, {"--no-foot-lock"}}) {
+       {std::vector<std::string>{"--target", target()}, {"--path", "original"}, {"--no-lock-feet"}}) {
     std::vector<std::string> arguments = {"export", document, "--out", out("a.glb")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     expect_clean_failure(run_program(arguments),
