@@ -176,6 +176,7 @@ TEST_F(StudioCharacter, AllTakesAreExportedAFileEachAndWhatFailsKeepsNoOtherOut)
   fs::remove_all(path("all/a_b.glb"));
   studio.run("error.dismiss");
   studio.run("export.all", {path("all"), "format=glb"});
+  studio.wait_idle(60);
   studio.run("export.all", {path("figures"), "format=csv"});
   studio.wait_idle(60);
   EXPECT_TRUE(studio.session().errors.empty());
