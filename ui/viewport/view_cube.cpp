@@ -1,5 +1,6 @@
 #include "ui/viewport/view_cube.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
