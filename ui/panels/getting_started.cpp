@@ -84,7 +84,7 @@ constexpr std::array<Card, app::kGettingStartedCards> kCards = {{
      "perform the "
      "same motion. Both stand side by side.",
      [](const app::Session&) {
-       return MarkNames{"method.compare", "menu.compare.add", "menu.target", "menu"};
+       return MarkNames{"menu.compare.add", "method.compare", "take.add", "menu.target", "menu"};
      },
      has_compared},
     {"Export",

@@ -31,7 +31,11 @@ void underline_letter(Ui& ui, const Menu& menu, const ImVec2& at, float height) 
 bool draw_menu(const app::Session& session, PanelContext& context, const Menu& menu, MenuKeys& keys) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 size(ImGui::CalcTextSize(menu.label.c_str()).x, ImGui::GetFrameHeight());
-  context.ui.mark("menu." + menu.name, {at, {at.x + size.x, at.y + size.y}});
+  const ImGuiWindow& window = *ImGui::GetCurrentWindow();
+  const bool in_bar = window.DC.LayoutType == ImGuiLayoutType_Horizontal;
+  const ImVec2 word(at.x + (in_bar ? ImGui::GetStyle().ItemSpacing.x / 2 : 0),
+                    at.y + window.DC.CurrLineTextBaseOffset);
+  context.ui.mark("menu." + menu.name, {word, {word.x + size.x, word.y + ImGui::GetTextLineHeight()}});
   if (keys.wanted == menu.name) {
     keys.wanted.clear();
     ImGui::OpenPopup(menu.label.c_str());
