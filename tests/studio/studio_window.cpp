@@ -143,7 +143,14 @@ void StudioWindow::expect_fact(const std::string& key, const std::string& value)
 Place StudioWindow::place(const std::string& name) {
   EXPECT_TRUE(wait_until([&] { return widgets_.count(name) > 0 && widgets_[name].enabled; }))
       << name << " is not there, or disabled: " << seen();
-  return widgets_[name].at();
+  Place before, now = widgets_[name].at();
+  do {  // a click may have moved it
+    before = now;
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    look();
+    if (widgets_.count(name) > 0) now = widgets_[name].at();
+  } while (now.x != before.x || now.y != before.y);
+  return now;
 }
 
 void StudioWindow::xdotool(const std::string& words) {
