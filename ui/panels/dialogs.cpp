@@ -203,6 +203,7 @@ void draw_notices(const app::Session& session, PanelContext& context, NoticesSta
   const bool is_over = state.held && session.time > state.held->until;
   if (is_over && std::none_of(shown.begin(), shown.end(), is_held)) shown.insert(shown.begin(), *state.held);
   std::vector<Toast> toasts;
+  toasts.reserve(shown.size());
   for (const app::Notice& notice : shown)
     toasts.push_back({notice.text,
                       notice.kind == app::Notice::Kind::Info ? NoticeKind::Good : NoticeKind::Warning,

@@ -116,6 +116,7 @@ std::vector<int> edited_frames(const app::Session& session, int joint, bool bone
 
 std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills) {
   std::vector<EditMark> all;
+  all.reserve(fills.size());
   for (const TimelineState::Fill& fill : fills)
     all.push_back(
         {{"fill." + std::to_string(fill.first),
