@@ -223,24 +223,38 @@ void remove_edit(Call& c) {
   remove_at(take.target_edits.joints, c, 2);
 }
 
+/// The frames that an edit of some frames is moved to: argument `i` is the first, the next the last; without it there
+/// are as many as before.
+Trim frames_to(Call& c, size_t i, int length) {
+  Trim to;
+  to.first = frame_argument(c, i);
+  if (i + 1 >= c.arguments.size()) {
+    to.last = checked_frame(c, to.first + length);
+    return to;
+  }
+  c.label = "Change the frames of an edit";
+  return frame_range<Trim>(c, i);
+}
+
 void move_swap(Call& c) {
   auto& edits = c.document.skeleton_edits;
   const int index = c.number<int>(1, "edit");
   auto* const swap = index >= 0 && index < ssize(edits) ? std::get_if<SwapEdit>(&edits[index]) : nullptr;
   US_CHECK(swap, "edit ", index, " does not exchange left and right");
-  const int length = swap->last - swap->first;
-  swap->first = frame_argument(c, 2);
-  swap->last = checked_frame(c, swap->first + length);
+  const Trim to = frames_to(c, 2, swap->last - swap->first);
+  swap->first = to.first, swap->last = to.last;
 }
 
 void move_skips(Call& c) {
   auto& skip = c.take(1).pose_edits.skip;
-  const int first = c.number<int>(2, "frame"), last = c.number<int>(3, "frame"), to = frame_argument(c, 4);
-  checked_frame(c, to + last - first);
-  std::set<int> moved;
+  const int first = c.number<int>(2, "frame"), last = c.number<int>(3, "frame");
+  const Trim to = frames_to(c, 4, last - first);
+  const bool moves = to.last - to.first == last - first;
+  std::set<int> frames;
   for (auto at = skip.lower_bound(first); at != skip.end() && *at <= last; at = skip.erase(at))
-    moved.insert(*at - first + to);
-  skip.insert(moved.begin(), moved.end());
+    if (moves) frames.insert(*at - first + to.first);
+  for (int frame = to.first; !moves && frame <= to.last; ++frame) frames.insert(frame);
+  skip.insert(frames.begin(), frames.end());
 }
 
 void move_edit(Call& c) {
@@ -258,13 +272,14 @@ void add_rearrangement(Commands& commands) {
        "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
        "rotations_of TAKE JOINT | joint TAKE INDEX"},
       remove_edit);
-  commands.add_edit({"edit.move", "Move an edit in time",
-                     "drags FRAME TO | swap INDEX TO | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO"},
-                    move_edit);
+  commands.add_edit(
+      {"edit.move", "Move an edit in time",
+       "drags FRAME TO | swap INDEX TO [LAST] | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO [LAST]"},
+      move_edit);
 }
 
 void add_pose_ranges(Commands& commands) {
-  commands.add_slider({"edit.trim", "Trim", "TAKE FIRST LAST | TAKE off"}, [](Call& c) {
+  commands.add_edit({"edit.trim", "Trim", "TAKE FIRST LAST | TAKE off"}, [](Call& c) {
     auto& trim = c.take().pose_edits.trim;
     trim.reset();
     if (c.word(1, "frame") != "off") trim = frame_range<Trim>(c, 1);

@@ -63,6 +63,28 @@ TEST_F(StudioTest, EditsOfAFrameAreMovedInTimeAndRemovedTogether) {
   EXPECT_EQ(edits.skip, (std::set<int>{6}));
 }
 
+TEST_F(StudioTest, EditsOfARangeGetOtherFramesInOneStep) {
+  Studio studio(services());
+  open_both(studio);
+  const Document& document = studio.session().document;
+  const PoseEdits& edits = document.takes[0].pose_edits;
+  studio.run("edit.swap", {"2", "4", "legs"});
+  studio.run("edit.move", {"swap", "0", "1", "8"});
+  EXPECT_EQ(std::get<SwapEdit>(document.skeleton_edits[0]).first, 1);
+  EXPECT_EQ(std::get<SwapEdit>(document.skeleton_edits[0]).last, 8);
+  EXPECT_EQ(studio.session().history.undo_label(), "Change the frames of an edit");
+  EXPECT_THROW(studio.run("edit.move", {"swap", "0", "8", "1"}), Error);
+  studio.run("edit.skip", {"0", "3", "5", "on"});
+  studio.run("edit.move", {"skips", "0", "3", "5", "3", "7"});
+  EXPECT_EQ(edits.skip, (std::set<int>{3, 4, 5, 6, 7}));
+  studio.run("edit.move", {"skips", "0", "3", "7", "6", "7"});
+  EXPECT_EQ(edits.skip, (std::set<int>{6, 7}));
+  studio.run("edit.trim", {"0", "2", "9"});
+  studio.run("edit.trim", {"0", "4", "9"});  // at once: a drag is a step of its own
+  studio.run("edit.undo");
+  EXPECT_EQ(edits.trim->first, 2);
+}
+
 TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
   Studio studio(services());
   open_both(studio);

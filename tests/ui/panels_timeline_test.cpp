@@ -17,6 +17,24 @@ class Timeline : public PanelsTest {
     input.size = {1280, 140};
     panel("timeline");
   }
+  /// What dragging asks for besides frames to show. `share`: of the mark's width, where it is gripped.
+  Lines dragged(const std::string& name, float share, float by) {
+    queue.clear();
+    const Rect rect = mark("timeline.track." + name).rect;
+    const ImVec2 from(rect.min.x + std::clamp(share * rect.width(), 1.f, rect.width() - 1),
+                      rect.at(0, 0.5f).y);
+    drag(from, {from.x + by, from.y});
+    return besides_frames();
+  }
+  Lines besides_frames() {
+    Lines lines = asked();
+    const auto shows = [](const std::string& line) { return starts_with(line, "playback.frame "); };
+    lines.erase(std::remove_if(lines.begin(), lines.end(), shows), lines.end());
+    return lines;
+  }
+  float frames_wide(int frames) {
+    return mark("timeline.track").rect.width() * static_cast<float>(frames) / 59;
+  }
   TimelineState& state = panel_state<TimelineState>(context);
 };
 
@@ -80,24 +98,87 @@ TEST_F(Timeline, AClickAtAnEditGoesThere) {
 TEST_F(Timeline, ADraggedEditIsMovedOnceWhereItIsLetGo) {
   session.document.takes[0].pose_edits.skip = {22, 23, 24};
   frame();
-  const Rect track = mark("timeline.track").rect;
-  const float ten = track.width() * 10 / 59;
-  const auto moved = [&](const std::string& name, float by) {
-    queue.clear();
-    const ImVec2 from = mark("timeline.track." + name).rect.at(0.5f, 0.5f);
-    drag(from, {from.x + by, from.y});
-    Lines lines = asked();
-    lines.erase(std::remove_if(lines.begin(), lines.end(),
-                               [](const std::string& line) { return starts_with(line, "playback.frame "); }),
-                lines.end());
-    return lines;
-  };
+  const float ten = frames_wide(10);
+  const auto moved = [&](const std::string& name, float by) { return dragged(name, 0.5f, by); };
   EXPECT_EQ(moved("drags.4", ten), Lines{"edit.move drags 4 14"});
   EXPECT_EQ(moved("swap.1", ten), Lines{"edit.move swap 1 20"});
   EXPECT_EQ(moved("rotations.12", -ten), Lines{"edit.move rotations 0 12 2"});
   EXPECT_EQ(moved("skip.22", ten), Lines{"edit.move skips 0 22 24 32"});
   EXPECT_EQ(moved("skip.22", 100 * ten), Lines{"edit.move skips 0 22 24 45"});  // inside what is made
   EXPECT_EQ(moved("fill.20", ten), Lines{});
+}
+
+TEST_F(Timeline, AnEndOfABarIsDraggedAndTheOtherStays) {
+  session.document.takes[0].pose_edits.skip = {22, 23, 24};
+  frame();
+  const float ten = frames_wide(10);
+  EXPECT_EQ(dragged("swap.1", 1, ten), Lines{"edit.move swap 1 10 24"});
+  EXPECT_EQ(dragged("swap.1", 0, -ten / 2), Lines{"edit.move swap 1 5 14"});
+  EXPECT_EQ(dragged("swap.1", 0, -9 * ten), Lines{"edit.move swap 1 0 14"});
+  EXPECT_EQ(dragged("skip.22", 1, ten), Lines{"edit.move skips 0 22 24 22 34"});
+  EXPECT_EQ(dragged("skip.22", 0, 9 * ten), Lines{"edit.move skips 0 22 24 24 24"}) << "one frame is left";
+  EXPECT_EQ(dragged("skip.22", 1, 9 * ten), Lines{"edit.move skips 0 22 24 22 47"}) << "inside what is made";
+  EXPECT_EQ(dragged("fill.20", 1, ten), Lines{}) << "nobody's edit";
+}
+
+TEST_F(Timeline, ATrimmedEndIsDraggedByItsGrip) {
+  const float ten = frames_wide(10);
+  EXPECT_EQ(dragged("trim_first", 0.5f, ten), Lines{"edit.trim 0 12 40"});
+  EXPECT_EQ(dragged("trim_last", 0.5f, -ten), Lines{"edit.trim 0 2 30"});
+  EXPECT_EQ(dragged("trim_last", 0.5f, 9 * ten), Lines{"edit.trim 0 2 47"}) << "inside what is made";
+  EXPECT_EQ(dragged("trim_first", 0.5f, -ten), Lines{"edit.trim 0 0 40"});
+  session.source.count = 48;
+  session.document.takes[0].pose_edits.trim->first = 0;
+  frame();
+  EXPECT_EQ(dragged("trim_last", 0.5f, 9 * ten), Lines{"edit.trim 0 off"}) << "nothing is left out";
+  EXPECT_EQ(dragged("trim_last", 0.5f, 0), Lines{});
+  session.document.takes[0].pose_edits.trim.reset();
+  frame();
+  EXPECT_FALSE(shown("timeline.track.trim_last"));
+}
+
+TEST_F(Timeline, WhileAnEndIsDraggedItsFrameIsShown) {
+  queue.clear();
+  const ImVec2 from = mark("timeline.track.trim_last").rect.at(0.5f, 0.5f);
+  drag(from, {from.x - frames_wide(10), from.y});
+  const Lines lines = asked();
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), "playback.frame 30"), 1);
+}
+
+TEST_F(Timeline, EscapeCancelsADragAndTheFrameShownComesBack) {
+  for (const std::string name : {"trim_first", "trim_last", "swap.1", "drags.4", "loop_first"}) {
+    const ImVec2 from = mark("timeline.track." + name).rect.at(0.5f, 0.5f);
+    render::InputEvent button;
+    button.kind = render::InputEvent::Kind::MouseButton, button.pressed = true;
+    button.x = from.x, button.y = from.y;
+    render::InputEvent move;
+    move.x = from.x + 60, move.y = from.y;
+    play({button}), play({move});
+    session.playback.frame = 3, session.playback.in = 7;  // as it was asked for
+    queue.clear();
+    key(render::Key::Escape);
+    Lines lines = asked();
+    EXPECT_EQ(std::count(lines.begin(), lines.end(), "playback.frame 20"), 1) << name;
+    EXPECT_EQ(std::count(lines.begin(), lines.end(), "playback.in 5"), name == "loop_first" ? 1 : 0) << name;
+    session.playback.frame = 20, session.playback.in = 5;
+    button.pressed = false, button.x = move.x;
+    play({button});
+    EXPECT_EQ(asked(), Lines{}) << name;
+  }
+}
+
+TEST_F(Timeline, ThePointerShowsWhatIsDraggedSideways) {
+  const auto shape = [&](const std::string& name, float x) {
+    hover("timeline.track." + name, x);
+    return gui.cursor();
+  };
+  const auto sideways = render::CursorShape::ResizeHorizontal;
+  EXPECT_EQ(shape("trim_first", 0.5f), sideways);
+  EXPECT_EQ(shape("swap.1", 0.01f), sideways);
+  EXPECT_EQ(shape("swap.1", 0.99f), sideways);
+  EXPECT_EQ(shape("loop_last", 0.5f), sideways);
+  EXPECT_NE(shape("swap.1", 0.5f), sideways);
+  EXPECT_NE(shape("fill.20", 0.99f), sideways);
 }
 
 TEST_F(Timeline, DeleteRemovesTheEditThatWasClickedAndNothingElse) {

@@ -22,6 +22,9 @@ constexpr MouseUse kInViews[] = {{"Left or right drag", "Turns the view"},
                                  {"Right click", "Opens a menu of what can be done there"}};
 constexpr MouseUse kInTimeline[] = {{"Click or drag", "Goes to the frame"},
                                     {"Drag a diamond or a bar", "Moves the edit"},
+                                    {"Drag an end of a bar", "Lengthens or shortens it"},
+                                    {"Drag the grip of a trimmed end", "Trims more or less"},
+                                    {"Escape", "Cancels a drag"},
                                     {"Wheel", "Zooms the timeline"},
                                     {"Middle drag or Shift+wheel", "Moves along the timeline"},
                                     {"Double click in the ruler", "Shows all frames"}};

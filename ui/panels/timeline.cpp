@@ -134,13 +134,26 @@ void draw_readout(const app::Session& session, PanelContext& context) {
 /// Asks for what was done with a mark of an edit.
 void answer_marks(PanelContext& context, const std::vector<EditMark>& edits, const TrackAnswer& answer) {
   if (answer.move) {
-    app::Arguments words = edits[answer.move->mark].move;
-    words.push_back(std::to_string(answer.move->first));
+    const EditMark& edit = edits[answer.move->mark];
+    const LoopRange& now = answer.move->frames;
+    app::Arguments words = edit.move;
+    words.push_back(std::to_string(now.first));
+    const bool as_long = now.last - now.first == edit.mark.last - edit.mark.first;
+    if (!as_long) words.push_back(std::to_string(now.last));
     context.ask("edit.move", words);
   }
   if (!answer.remove) return;
   const app::Arguments words = app::split_line(edits[*answer.remove].remove);
   context.ask(words[0], {words.begin() + 1, words.end()});
+}
+
+/// Asks to keep these frames, or all.
+void answer_trim(const app::Session& session, PanelContext& context, const LoopRange& kept) {
+  const std::string k = std::to_string(session.selected_take);
+  if (kept.first == 0 && kept.last + 1 >= known_frames(session))
+    context.ask("edit.trim", {k, "off"});
+  else
+    context.ask("edit.trim", {k, std::to_string(kept.first), std::to_string(kept.last)});
 }
 
 void draw_track(const app::Session& session, PanelContext& context, const TimelineState& state,
@@ -174,6 +187,7 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   if (answer.seek && *answer.seek != data.current)
     context.ask("playback.frame", {std::to_string(*answer.seek)});
   answer_marks(context, edits, answer);
+  if (answer.kept) answer_trim(session, context, *answer.kept);
   if (!answer.loop) return;
   if (answer.loop->first != range.first) context.ask("playback.in", {std::to_string(answer.loop->first)});
   if (answer.loop->last != range.last) context.ask("playback.out", {std::to_string(answer.loop->last)});

@@ -48,7 +48,7 @@ struct Channel {
 /// An edit as the timeline shows it, and the commands that move and remove it.
 struct EditMark {
   TrackMark mark;
-  app::Arguments move;  ///< of edit.move, without the frame
+  app::Arguments move;  ///< of edit.move, without the frames that it is to have
   std::string remove;   ///< a command with its arguments, as a line of a script
 };
 /// All edits over time of the source and of the selected take: dragged joints, exchanged ranges and fills in

@@ -11,17 +11,20 @@
 namespace understudy::ui {
 namespace {
 
-enum class Grip { None, Playhead, LoopFirst, LoopLast, Pan, Mark };
+enum class Grip { None, Playhead, LoopFirst, LoopLast, Pan, Mark, MarkFirst, MarkLast, TrimFirst, TrimLast };
 
 constexpr float kRowHeight = 12, kBandHeight = 7, kBadHeight = 5, kNearlyStill = 4;  // points
+constexpr float kEdge = 5, kTrimGrip = 7;                                            // points
 
 /// Remembered between frames: the part of the sequence that is shown, and what is being dragged.
 struct TrackState {
   double first = 0, count = 0;  ///< count 0: everything
   Grip grip = Grip::None;
-  std::string chosen;       // the mark that Delete removes; empty: none
-  ImVec2 pressed_at{0, 0};  // of the mark that is gripped
-  bool moving = false;      // it has left its place
+  std::string chosen;               // the mark that Delete removes; empty: none
+  ImVec2 pressed_at{0, 0};          // where what is gripped was
+  bool moving = false;              // it has left its place
+  int came_from = 0;                // the frame shown when it was gripped
+  std::optional<LoopRange> loop{};  // the marks then
 };
 
 struct Track {
@@ -125,21 +128,38 @@ Range draw_curves(Track& t, const std::string& name) {
   return range;
 }
 
-/// Where a mark is, `by` frames from its place.
-Rect place_of(const Track& t, const TrackMark& mark, int by = 0) {
+/// Where a mark is that has these frames.
+Rect place_of(const Track& t, const TrackMark& mark, const LoopRange& frames) {
   const float height = t.ui.px(kRowHeight);
   const float top = t.body.max.y - t.ui.px(kBadHeight) - static_cast<float>(2 - mark.row) * height;
-  if (mark.diamond) return around({t.axis.x(mark.first + by), top + height / 2}, height / 2);
-  const float least = t.ui.px(3), middle = t.axis.x(0.5 * (mark.first + mark.last) + by);
-  return {{std::min(t.axis.x(mark.first + by - 0.5), middle - least), top + t.ui.px(2)},
-          {std::max(t.axis.x(mark.last + by + 0.5), middle + least), top + height - t.ui.px(2)}};
+  if (mark.diamond) return around({t.axis.x(frames.first), top + height / 2}, height / 2);
+  const float least = t.ui.px(3), middle = t.axis.x(0.5 * (frames.first + frames.last));
+  return {{std::min(t.axis.x(frames.first - 0.5), middle - least), top + t.ui.px(2)},
+          {std::max(t.axis.x(frames.last + 0.5), middle + least), top + height - t.ui.px(2)}};
 }
 
-/// The mark under a pixel, the one drawn last first; -1 for none.
-int mark_at(const Track& t, const ImVec2& at) {
-  for (int i = static_cast<int>(t.data.marks.size()) - 1; i >= 0; --i)
-    if (place_of(t, t.data.marks[i]).contains(at)) return i;
-  return -1;
+/// A mark, or an end of it, that may be gripped.
+struct MarkGrip {
+  int mark = -1;  ///< below 0: none
+  Grip grip = Grip::Mark;
+};
+
+/// What is gripped at a pixel, the mark drawn last first. A bar's end reaches a little out of the bar, where
+/// nothing else is.
+MarkGrip mark_at(const Track& t, const ImVec2& at) {
+  for (const float out : {0.f, t.ui.px(kEdge - 2)})
+    for (int i = static_cast<int>(t.data.marks.size()) - 1; i >= 0; --i) {
+      const TrackMark& mark = t.data.marks[i];
+      const bool whole = mark.diamond || mark.fixed;
+      const Rect bar = place_of(t, mark, {mark.first, mark.last});
+      const float reach = whole ? 0 : out, in = std::min(t.ui.px(kEdge), bar.width() / 4);
+      if (!Rect{{bar.min.x - reach, bar.min.y}, {bar.max.x + reach, bar.max.y}}.contains(at)) continue;
+      if (whole) return {i, Grip::Mark};
+      return {i, at.x < bar.min.x + in    ? Grip::MarkFirst
+                 : at.x >= bar.max.x - in ? Grip::MarkLast
+                                          : Grip::Mark};
+    }
+  return {};
 }
 
 int chosen_mark(const Track& t) {
@@ -148,12 +168,44 @@ int chosen_mark(const Track& t) {
   return -1;
 }
 
-/// How many frames the pointer has carried the gripped mark, which stays inside the sequence.
-int carried(const Track& t, const TrackMark& mark) {
-  if (!t.state.moving || mark.fixed) return 0;
+/// The range as the pointer has carried it, or the end that is gripped. It stays inside what is made.
+LoopRange carried(const Track& t, const LoopRange& range) {
+  if (!t.state.moving) return range;
   const double frames = t.axis.frame(ImGui::GetIO().MousePos.x) - t.axis.frame(t.state.pressed_at.x);
-  const int most = std::max(0, t.data.processed - 1 - mark.last);
-  return std::clamp(static_cast<int>(std::lround(frames)), -mark.first, most);
+  const int by = static_cast<int>(std::lround(frames)), end = std::max(range.last, t.data.processed - 1);
+  switch (t.state.grip) {
+    case Grip::Mark: {
+      const int all = std::clamp(by, -range.first, end - range.last);
+      return {range.first + all, range.last + all};
+    }
+    case Grip::MarkFirst:
+    case Grip::TrimFirst:
+      return {std::clamp(range.first + by, 0, range.last), range.last};
+    case Grip::MarkLast:
+    case Grip::TrimLast:
+      return {range.first, std::clamp(range.last + by, range.first, end)};
+    default:
+      return range;
+  }
+}
+
+bool is_of_mark(Grip grip) {
+  return grip == Grip::Mark || grip == Grip::MarkFirst || grip == Grip::MarkLast;
+}
+
+bool is_of_trim(Grip grip) {
+  return grip == Grip::TrimFirst || grip == Grip::TrimLast;
+}
+
+/// The frames of a mark as it is shown now; `chosen`: it may be gripped.
+LoopRange frames_of(const Track& t, const TrackMark& mark, bool chosen) {
+  const LoopRange own{mark.first, mark.last};
+  return chosen && !mark.fixed && is_of_mark(t.state.grip) ? carried(t, own) : own;
+}
+
+/// The part that is kept as it is shown now; only where there is one.
+LoopRange kept_now(const Track& t) {
+  return is_of_trim(t.state.grip) ? carried(t, *t.data.kept) : *t.data.kept;
 }
 
 void draw_marks(Track& t, const std::string& name) {
@@ -161,15 +213,15 @@ void draw_marks(Track& t, const std::string& name) {
   for (size_t i = 0; i < t.data.marks.size(); ++i) {
     const TrackMark& mark = t.data.marks[i];
     const bool lit = static_cast<int>(i) == chosen;
-    const int by = lit && t.state.grip == Grip::Mark ? carried(t, mark) : 0;
-    const Rect place = place_of(t, mark, by);
+    const LoopRange frames = frames_of(t, mark, lit);
+    const Rect place = place_of(t, mark, frames);
     const ImVec2 middle = place.at(0.5f, 0.5f);
     const ImU32 ink = color(t.ui.theme().series[mark.color], mark.fixed ? 0.5f : 1.f);
     const ImU32 rim = color(lit ? t.ui.theme().text : t.ui.theme().backdrop);
     if (mark.diamond) {
       if (mark.reach > 0)
-        t.list.AddLine({t.axis.x(mark.first + by - mark.reach), middle.y},
-                       {t.axis.x(mark.first + by + mark.reach), middle.y},
+        t.list.AddLine({t.axis.x(frames.first - mark.reach), middle.y},
+                       {t.axis.x(frames.first + mark.reach), middle.y},
                        color(t.ui.theme().series[mark.color], 0.5f), t.ui.px(1));
       draw_diamond(t, middle, t.ui.px(lit ? 7 : 6), rim);
       draw_diamond(t, middle, t.ui.px(4.5f), ink);
@@ -196,17 +248,50 @@ void draw_bands(Track& t, const std::string& name) {
   }
 }
 
-/// Greys the ends that were trimmed.
+/// Where an end of the part that is kept is gripped; empty where it is not to be seen.
+Rect trim_grip(const Track& t, bool first) {
+  if (!t.data.kept) return {};
+  const LoopRange kept = kept_now(t);
+  const int frame = first ? kept.first : kept.last;
+  const float inside = t.axis.x(frame), half = t.ui.px(kTrimGrip) / 2;
+  if (frame >= t.data.processed || inside < t.body.min.x || inside > t.body.max.x) return {};
+  const float x =
+      std::clamp(t.axis.x(first ? frame - 0.5 : frame + 0.5), t.body.min.x + half, t.body.max.x - half);
+  const float bottom = t.body.max.y - t.ui.px(kBadHeight) - rows_height(t);
+  const float middle = (t.body.min.y + bottom) / 2, tall = std::min(t.ui.px(24), bottom - t.body.min.y);
+  return {{x - half, middle - tall / 2}, {x + half, middle + tall / 2}};
+}
+
+/// Whether the pointer is on it, or nearly.
+bool is_on_trim(const Track& t, bool first, const ImVec2& at) {
+  const Rect grip = trim_grip(t, first);
+  const float reach = t.ui.px(2);
+  return !grip.empty() &&
+         Rect{{grip.min.x - reach, grip.min.y}, {grip.max.x + reach, grip.max.y}}.contains(at);
+}
+
+/// Greys the ends that were trimmed, with a grip at each.
 void draw_trimmed(Track& t, const std::string& name) {
   if (!t.data.kept) return;
+  const LoopRange kept = kept_now(t);
   const auto grey = [&](const char* end, float from, float to) {
     const Rect rect{{from, t.body.min.y}, {to, t.body.max.y}};
     if (rect.empty()) return;
     t.list.AddRectFilled(rect.min, rect.max, color(t.ui.theme().backdrop, 0.72f));
     t.ui.mark(name + ".trimmed." + end, rect);
   };
-  grey("before", t.axis.x(-0.5), t.axis.x(t.data.kept->first - 0.5));
-  grey("after", t.axis.x(t.data.kept->last + 0.5), t.axis.x(t.data.processed - 0.5));
+  grey("before", t.axis.x(-0.5), t.axis.x(kept.first - 0.5));
+  grey("after", t.axis.x(kept.last + 0.5), t.axis.x(t.data.processed - 0.5));
+  for (const bool first : {true, false}) {
+    const Rect grip = trim_grip(t, first);
+    if (grip.empty()) continue;
+    const bool held = t.state.grip == (first ? Grip::TrimFirst : Grip::TrimLast);
+    const ImVec4& ink = held ? t.ui.theme().text : t.ui.theme().text_dim;
+    const float x = std::round(grip.at(0.5f, 0).x);
+    t.list.AddLine({x, t.body.min.y}, {x, t.body.max.y}, color(ink, 0.6f), t.ui.px(1));
+    t.list.AddRectFilled(grip.min, grip.max, color(ink), t.ui.px(2));
+    t.ui.mark(name + (first ? ".trim_first" : ".trim_last"), grip);
+  }
 }
 
 void draw_body(Track& t, const std::string& name) {
@@ -305,10 +390,16 @@ void draw_hover(Track& t, int frame) {
   if (frame >= t.data.processed) ImGui::TextUnformatted("not processed yet");
   if (t.data.kept && (frame < t.data.kept->first || frame > t.data.kept->last))
     ImGui::TextUnformatted("trimmed: left out of playback and export");
-  if (const int i = mark_at(t, ImGui::GetIO().MousePos); i >= 0) {
-    ImGui::TextUnformatted(t.data.marks[i].words.c_str());
-    if (!t.data.marks[i].fixed) ImGui::TextUnformatted("Drag: move. Click, then Delete: remove");
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  if (const MarkGrip at = mark_at(t, mouse); at.mark >= 0) {
+    ImGui::TextUnformatted(t.data.marks[at.mark].words.c_str());
+    if (at.grip != Grip::Mark)
+      ImGui::TextUnformatted("Drag this end: lengthen or shorten");
+    else if (!t.data.marks[at.mark].fixed)
+      ImGui::TextUnformatted("Drag: move. Click, then Delete: remove");
   }
+  if (is_on_trim(t, true, mouse) || is_on_trim(t, false, mouse))
+    ImGui::TextUnformatted("Drag: trim more or less");
   for (const std::string& words : bands_at(t, frame)) ImGui::TextUnformatted(words.c_str());
   if (t.data.channel.empty() && std::isfinite(t.data.curve.at(frame)))
     ImGui::Text("%s  %s", t.data.curve_label.c_str(), short_number(t.data.curve.at(frame)).c_str());
@@ -347,38 +438,72 @@ void move_view(Track& t, bool hovered) {
 }
 
 Grip grip_at(const Track& t, const ImVec2& mouse) {
-  if (mark_at(t, mouse) >= 0) return Grip::Mark;
+  if (const MarkGrip at = mark_at(t, mouse); at.mark >= 0) return at.grip;
+  if (is_on_trim(t, true, mouse)) return Grip::TrimFirst;
+  if (is_on_trim(t, false, mouse)) return Grip::TrimLast;
   if (!t.ruler.contains(mouse) || !t.data.loop) return Grip::Playhead;
   if (loop_grip(t, t.data.loop->first, true).contains(mouse)) return Grip::LoopFirst;
   if (loop_grip(t, t.data.loop->last, false).contains(mouse)) return Grip::LoopLast;
   return Grip::Playhead;
 }
 
-/// The mark that is gripped: chosen where it is pressed, shown where it is clicked, moved where it is let go.
+bool is_an_end(Grip grip) {
+  return grip != Grip::None && grip != Grip::Playhead && grip != Grip::Pan && grip != Grip::Mark;
+}
+
+/// What is under the pointer is gripped; a mark is chosen by it.
+void begin_drag(Track& t) {
+  TrackState& s = t.state;
+  s.pressed_at = ImGui::GetIO().MousePos, s.moving = false;
+  s.grip = ImGui::IsMouseDown(2) ? Grip::Pan : grip_at(t, s.pressed_at);
+  const int mark = is_of_mark(s.grip) ? mark_at(t, s.pressed_at).mark : -1;
+  s.chosen = mark < 0 ? "" : t.data.marks[mark].name;
+  s.came_from = t.data.current, s.loop = t.data.loop;
+}
+
+/// Leaves everything as it was before the drag.
+void cancel_drag(Track& t, TrackAnswer& answer) {
+  if (t.state.grip != Grip::Pan) answer.seek = t.state.came_from;
+  if (t.state.grip == Grip::LoopFirst || t.state.grip == Grip::LoopLast) answer.loop = t.state.loop;
+  t.state.grip = Grip::None;
+  ImGui::ClearActiveID();
+}
+
+/// The frame that is shown while a range is gripped: its end's, so that one sees where it is let go.
+std::optional<int> frame_to_show(const Track& t, const LoopRange& range, bool began) {
+  if (t.state.grip == Grip::Mark) return began ? std::optional<int>(range.first) : std::nullopt;
+  const bool last = t.state.grip == Grip::MarkLast || t.state.grip == Grip::TrimLast;
+  return last ? range.last : range.first;
+}
+
+/// The mark that is gripped: shown where it is clicked, changed where it is let go.
 void work_on_mark(Track& t, bool began, bool held, TrackAnswer& answer) {
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  if (began) {
-    const int i = t.state.grip == Grip::Mark ? mark_at(t, mouse) : -1;
-    t.state.chosen = i < 0 ? "" : t.data.marks[i].name;
-    t.state.pressed_at = mouse, t.state.moving = false;
-    if (i >= 0) answer.seek = t.data.marks[i].first;
-  }
-  if (ImGui::IsMouseClicked(0) && !began) t.state.chosen.clear();  // elsewhere
   const int chosen = chosen_mark(t);
-  if (chosen < 0 || t.state.grip != Grip::Mark) return;
+  if (chosen < 0 || !is_of_mark(t.state.grip)) return;
+  const TrackMark& mark = t.data.marks[chosen];
+  const LoopRange to = frames_of(t, mark, true);
   if (held) {
-    t.state.moving |= std::abs(mouse.x - t.state.pressed_at.x) > t.ui.px(kNearlyStill);
-    return;
+    answer.seek = frame_to_show(t, to, began);
+  } else if (to.first != mark.first || to.last != mark.last) {
+    answer.move = TrackAnswer::Move{static_cast<size_t>(chosen), to};
+    t.state.chosen.clear();
   }
-  const int by = carried(t, t.data.marks[chosen]);
-  if (by != 0) answer.move = TrackAnswer::Move{static_cast<size_t>(chosen), t.data.marks[chosen].first + by};
-  if (by != 0) t.state.chosen.clear();
+}
+
+/// The trimmed end that is gripped.
+void work_on_trim(Track& t, bool began, bool held, TrackAnswer& answer) {
+  if (!t.data.kept || !is_of_trim(t.state.grip)) return;
+  const LoopRange to = kept_now(t);
+  if (held)
+    answer.seek = frame_to_show(t, to, began);
+  else if (to.first != t.data.kept->first || to.last != t.data.kept->last)
+    answer.kept = to;
 }
 
 /// Delete removes the mark that is chosen.
 void remove_chosen(Track& t, TrackAnswer& answer) {
   const int chosen = chosen_mark(t);
-  if (chosen < 0 || t.data.marks[chosen].fixed || t.state.grip == Grip::Mark) return;
+  if (chosen < 0 || t.data.marks[chosen].fixed || is_of_mark(t.state.grip)) return;
   if (ImGui::GetIO().WantTextInput || ImGui::GetTopMostPopupModal() != nullptr) return;
   if (!key_pressed(render::Key::Delete, false)) return;
   answer.remove = static_cast<size_t>(chosen);
@@ -416,7 +541,8 @@ TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& dat
           {}};
   ImGui::InvisibleButton(name.c_str(), size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
-  const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive(), began = ImGui::IsItemActivated();
+  const bool hovered = ImGui::IsItemHovered(), began = ImGui::IsItemActivated();
+  bool held = ImGui::IsItemActive();
   if (hovered) ImGui::SetItemUsingMouseWheel();
   const auto set_axis = [&] {
     const double count = state.count > 0 ? state.count : std::max(1, data.total - 1);
@@ -426,10 +552,16 @@ TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& dat
   };
   set_axis();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  if (began) state.grip = ImGui::IsMouseDown(2) ? Grip::Pan : grip_at(t, mouse);
   TrackAnswer answer;
+  if (began) begin_drag(t);
+  if (!began && ImGui::IsMouseClicked(0)) state.chosen.clear();  // elsewhere
+  if (held) state.moving |= std::abs(mouse.x - state.pressed_at.x) > ui.px(kNearlyStill);
+  if (held && key_pressed(render::Key::Escape, false)) held = false, cancel_drag(t, answer);
   work_on_mark(t, began, held, answer);
+  work_on_trim(t, began, held, answer);
   if (!held) state.grip = Grip::None;
+  if (is_an_end(held ? state.grip : hovered ? grip_at(t, mouse) : Grip::None))
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   remove_chosen(t, answer);
   move_view(t, hovered);
   if (hovered && t.ruler.contains(mouse) && ImGui::IsMouseDoubleClicked(0)) state = TrackState();

@@ -59,18 +59,21 @@ struct TrackData {
 struct TrackAnswer {
   std::optional<int> seek;  ///< clicked or dragged there
   struct Move {
-    size_t mark = 0;  ///< among TrackData::marks
-    int first = 0;    ///< the frame that it is to begin at
+    size_t mark = 0;   ///< among TrackData::marks
+    LoopRange frames;  ///< that it is to have
   };
-  std::optional<Move> move;       ///< a mark was dragged and let go
+  std::optional<Move> move;       ///< a mark, or an end of a bar, was dragged and let go
+  std::optional<LoopRange> kept;  ///< an end of the part that is kept was dragged and let go
   std::optional<size_t> remove;   ///< Delete was pressed while this mark was chosen
   std::optional<LoopRange> loop;  ///< a loop mark was dragged
 };
 
 /// Over the width that is left. Wheel zooms about the pointer, Shift+wheel or the middle button pans, a
-/// double click in the ruler shows everything. A click at a mark chooses it and goes there. Marks: NAME (the
-/// part under the ruler), NAME.ruler, NAME.loop_first, NAME.loop_last, NAME.playhead, NAME.MARK, NAME.BAND.K,
-/// NAME.trimmed (.before, .after), NAME.key.K (the K-th key), NAME.chosen (the mark chosen).
+/// double click in the ruler shows everything. A click at a mark chooses it and goes there; dragged it moves,
+/// by an end of a bar it gets longer or shorter, as the part does that is kept. Escape cancels a drag. Marks:
+/// NAME (the part under the ruler), NAME.ruler, NAME.loop_first, NAME.loop_last, NAME.playhead, NAME.MARK,
+/// NAME.BAND.K, NAME.trimmed (.before, .after), NAME.trim_first, NAME.trim_last (the grips), NAME.key.K (the K-th
+/// key), NAME.chosen (the mark chosen).
 TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& data);
 
 /// "0:03.27": minutes, seconds, hundredths.
