@@ -53,8 +53,7 @@ struct Performance {
 };
 
 std::string clip_name(const std::string& source) {
-  const std::filesystem::path normal = std::filesystem::path(source).lexically_normal();
-  const std::string stem = (normal.has_filename() ? normal : normal.parent_path()).stem().string();
+  const std::string stem = std::filesystem::path(file_name(source)).stem().string();
   return stem.empty() ? "motion" : stem;
 }
 

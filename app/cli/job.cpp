@@ -1,7 +1,6 @@
 #include "app/cli/job.hpp"
 
 #include <cstdio>
-#include <filesystem>
 
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
@@ -12,14 +11,10 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
-
-std::string file_name(const std::string& path) {
-  const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
-  return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
-}
 
 /// All that a job keeps between frames.
 struct Running {

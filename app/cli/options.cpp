@@ -22,8 +22,8 @@ std::string dashed(std::string name) {
 BoneTurn parse_turn(const std::string& text) {
   const size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
-  const auto joint = std::find(kJointNames.begin(), kJointNames.end(), name);
-  US_CHECK(joint != kJointNames.end(), "--rest-pose: there is no joint '", name, "'");
+  const int joint = joint_named(name);
+  US_CHECK(joint >= 0, "--rest-pose: there is no joint '", name, "'");
   Vec3 degrees;
   char more = 0;
   const std::string angles = equals == std::string::npos ? "" : text.substr(equals + 1);
@@ -31,7 +31,7 @@ BoneTurn parse_turn(const std::string& text) {
       std::sscanf(angles.c_str(), "%f,%f,%f%c", &degrees.x(), &degrees.y(), &degrees.z(), &more);
   US_CHECK(count == 3 && degrees.allFinite(), "--rest-pose ", text,
            ": must be a joint and three angles in degrees: left_shoulder=0,0,-30");
-  return {static_cast<int>(joint - kJointNames.begin()), kPi / 180 * degrees};
+  return {joint, kPi / 180 * degrees};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/npz.hpp"
 
 namespace understudy::app {
@@ -75,9 +76,7 @@ Case read_case(const std::string& folder) {
     return (root / json[key].get<std::string>()).string();
   };
   Case result;
-  result.name = fs::absolute(root).lexically_normal().filename().string();
-  if (result.name.empty())
-    result.name = fs::absolute(root).lexically_normal().parent_path().filename().string();
+  result.name = file_name(fs::absolute(root).lexically_normal().string());
   result.source = text("source");
   US_CHECK(!result.source.empty(), path, ": has no \"source\"");
   result.target = text("target");

@@ -71,8 +71,7 @@ std::optional<float> ArgumentReader::body_height(size_t i) const {
 
 int ArgumentReader::joint(size_t i) const {
   const std::string& text = word(i, "joint");
-  for (int j = 0; j < kJointCount; ++j)
-    if (text == kJointNames[j]) return j;
+  if (const int j = joint_named(text); j >= 0) return j;
   const int j = number<int>(i, "joint");
   US_CHECK(j >= 0 && j < kJointCount, "there is no joint ", j);
   return j;

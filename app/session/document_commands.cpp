@@ -9,6 +9,7 @@
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/motion/read_motion.hpp"
@@ -21,8 +22,7 @@ namespace {
 bool nothing_unsaved(Studio& studio, const std::string& then) {
   Session& session = studio.session();
   if (!session.changed) return true;
-  const std::string name =
-      session.path.empty() ? "this document" : fs::path(session.path).filename().string();
+  const std::string name = session.path.empty() ? "this document" : file_name(session.path);
   session.question = Question{Question::Kind::UnsavedChanges, "Save the changes to " + name + "?", then};
   return false;
 }
@@ -56,7 +56,7 @@ void save_document(Studio& studio, const std::string& path) {
   remember(session.settings.recent, whole);
   remember_folder(studio, whole);
   studio.end_autosave();
-  studio.notify("Saved " + fs::path(whole).filename().string());
+  studio.notify("Saved " + file_name(whole));
 }
 
 void answer(Call& c) {
@@ -189,7 +189,7 @@ Kind kind_of(const Document& document, const std::string& path) {
 void open_large_gltf(Studio& studio, const std::string& path) {
   const auto animated = std::make_shared<bool>();
   studio.jobs().start(
-      "Reading " + fs::path(path).filename().string(),
+      "Reading " + file_name(path),
       [animated, path](JobControl&) {
         *animated = is_animated_gltf(path, std::numeric_limits<uint64_t>::max()).value_or(false);
       },

@@ -79,20 +79,13 @@ void add_scan_edits(Commands& commands) {
                     [](Call& c) { c.document.scan_edits.largest_cluster = c.on(0); });
 }
 
-/// "left wrist"
-std::string joint_words(int joint) {
-  std::string words = kJointNames[joint];
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
-}
-
 void add_skeleton_edits(Commands& commands) {
   commands.add_edit({"edit.drag", "Drag a joint", "FRAME JOINT X Y Z [FALLOFF] [children]: metres"},
                     [](Call& c) {
                       DragEdit edit;
                       edit.frame = frame_argument(c, 0);
                       edit.joint = c.joint(1);
-                      c.label = "Drag " + joint_words(edit.joint);
+                      c.label = "Drag " + joint_label(edit.joint);
                       edit.offset = c.vector(2, "way");
                       edit.falloff = falloff_argument(c, 5);
                       edit.with_children = c.has("children", 5);
@@ -112,7 +105,7 @@ void move_limb(Call& c) {
   LimbMove move;
   move.frame = frame_argument(c, 1);
   move.joint = c.joint(2);
-  US_CHECK(limb_end(move.joint) >= 0, "the ", joint_words(move.joint),
+  US_CHECK(limb_end(move.joint) >= 0, "the ", joint_label(move.joint),
            " ends no limb: a wrist, an ankle or a foot does");
   const bool is_foot = limb_end(move.joint) == LeftAnkle || limb_end(move.joint) == RightAnkle;
   c.label = std::string("Move ") + (kJointNames[move.joint][0] == 'l' ? "left " : "right ") +
@@ -130,7 +123,7 @@ void add_pose_edits(Commands& commands) {
                       RotateEdit edit;
                       edit.frame = frame_argument(c, 1);
                       edit.joint = c.joint(2);
-                      c.label = "Rotate " + joint_words(edit.joint);
+                      c.label = "Rotate " + joint_label(edit.joint);
                       edit.axis_angle = c.vector(3, "rotation");
                       edit.falloff = falloff_argument(c, 6);
                       c.take().pose_edits.rotate.push_back(edit);
@@ -207,7 +200,7 @@ void remove_all_of(std::vector<Edit>& edits, Call& c, size_t i) {
   const auto of_it = [&](const Edit& edit) { return joint_of(edit) == joint; };
   edits.erase(std::remove_if(edits.begin(), edits.end(), of_it), edits.end());
   US_CHECK(edits.size() < before, "the joint has no edits");
-  c.label = "Reset " + joint_words(joint);
+  c.label = "Reset " + joint_label(joint);
 }
 
 void remove_edit(Call& c) {
@@ -327,7 +320,7 @@ void add_target_edits(Commands& commands) {
                     [](Call& c) {
                       auto& moves = c.take().target_edits.joints;
                       const JointMove move{c.joint(1), c.vector(2, "place"), c.has("mirror", 5)};
-                      c.label = "Move " + joint_words(move.joint) + " of the target";
+                      c.label = "Move " + joint_label(move.joint) + " of the target";
                       const auto replaced = [&](const JointMove& old) { return old.joint == move.joint; };
                       moves.erase(std::remove_if(moves.begin(), moves.end(), replaced), moves.end());
                       moves.push_back(move);
@@ -337,7 +330,7 @@ void add_target_edits(Commands& commands) {
                     [](Call& c) {
                       auto& pose = c.take().target_edits.rest_pose;
                       const BoneTurn turn{c.joint(1), c.vector(2, "rotation")};
-                      c.label = "Turn " + joint_words(turn.joint) + " of the rest pose";
+                      c.label = "Turn " + joint_label(turn.joint) + " of the rest pose";
                       pose = turned(pose, turn, c.has("mirror", 5));
                     });
   commands.add_edit({"edit.rest_pose_clear", "Reset the rest pose", "TAKE"},

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/base/worker.hpp"
 
 namespace understudy::app {
@@ -300,11 +300,8 @@ void Engine::Impl::open() {
   opened = true;
   try {
     source = open_source(plan.source);
-    namespace fs = std::filesystem;
-    const fs::path path =
-        fs::path(plan.source.motion.empty() ? plan.source.path : plan.source.motion).lexically_normal();
     SourceOpened event;
-    event.name = (path.has_filename() ? path : path.parent_path()).filename().string();
+    event.name = file_name(plan.source.motion.empty() ? plan.source.path : plan.source.motion);
     event.count = source->count();
     event.fps = source->fps();
     event.clips = source->clips();

@@ -12,10 +12,6 @@ namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
 
-std::string file_name(const std::string& path) {
-  return fs::path(path).filename().string();
-}
-
 void run_export(Call& c) {
   std::vector<size_t> takes = {c.take_number()};
   const std::string path = c.path(1);

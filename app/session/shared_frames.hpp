@@ -9,8 +9,8 @@
 
 namespace understudy::app {
 
-/// Frames in chunks of kChunk that are never changed: a write replaces the chunks that it touches, and copies of the list
-/// keep the old ones. Copies may be read on other threads; each object belongs to one thread.
+/// Frames in chunks of kChunk that are never changed: a write replaces the chunks that it touches, and copies of
+/// the list keep the old ones. Copies may be read on other threads; each object belongs to one thread.
 template <class Frame>
 class SharedFrames {
  public:

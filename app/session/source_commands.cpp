@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/body/body.hpp"
@@ -114,8 +112,7 @@ void add_skeletal(Commands& commands) {
       [](Call& c) {
         SourceOptions source = c.document.source;
         const std::string joint = c.word(0, "joint"), bone = c.word(1, "bone");
-        US_CHECK(std::find(kJointNames.begin(), kJointNames.end(), joint) != kJointNames.end(),
-                 "there is no joint '", joint, "'");
+        US_CHECK(joint_named(joint) >= 0, "there is no joint '", joint, "'");
         source.bones[joint] = bone == "none" ? "" : bone;
         if (bone == "auto") source.bones.erase(joint);
         set_options(c, std::move(source));

@@ -20,9 +20,9 @@ struct ExportChoice {
   std::vector<std::string> takes;  ///< more takes, by name or number from 0, each a clip of its own
 };
 
-/// key=value words, of which a later one counts: format=NAME, preset=NAME, bones=own|22, influences=4|8, morphs=COUNT,
-/// reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, and any number of take=NAME for more clips; without a
-/// format the path's suffix decides. Throws Error for any other.
+/// key=value words, of which a later one counts: format=NAME, preset=NAME, bones=own|22, influences=4|8,
+/// morphs=COUNT, reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, and any number
+/// of take=NAME for more clips; without a format the path's suffix decides. Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 
 /// The take with that name, or else with that number, counted from `first`. Throws Error, listing the takes,

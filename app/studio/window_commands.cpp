@@ -93,10 +93,6 @@ Saving saving_of(const Call& c) {
   return saving;
 }
 
-std::string file_name(const std::string& path) {
-  return fs::path(path).filename().string();
-}
-
 /// What the job's thread may look at.
 std::shared_ptr<Session> copied(const Session& of) {
   auto session = std::make_shared<Session>(of);

@@ -41,6 +41,14 @@ std::string file_suffix(std::string_view path) {
   return dot == name.npos || dot == 0 || name == ".." ? "" : lower_case(name.substr(dot));
 }
 
+std::string file_name(const std::string& path) {
+  const size_t last = path.find_last_not_of('/');
+  if (last == std::string::npos) return path;
+  const size_t slash = path.find_last_of('/', last);
+  const size_t first = slash == std::string::npos ? 0 : slash + 1;
+  return path.substr(first, last - first + 1);
+}
+
 std::string_view trim_end(std::string_view text) {
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;

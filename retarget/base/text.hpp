@@ -13,6 +13,8 @@ std::string lower_case(std::string_view text);
 /// The last ".part" of a path's file name in lower case: ".glb" of "Walk.GLB"; empty where there is none.
 /// Every comparison of a file's suffix uses this.
 std::string file_suffix(std::string_view path);
+/// The last part of a path, also of one that ends in a slash.
+std::string file_name(const std::string& path);
 
 inline bool starts_with(std::string_view text, std::string_view start) {
   return text.substr(0, start.size()) == start;

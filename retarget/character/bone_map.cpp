@@ -291,10 +291,9 @@ std::string family_of(const Character& character) {
 
 void apply_choices(const Rig& rig, const BoneChoices& choices, BoneMap& map) {
   for (const auto& [joint, bone] : choices) {
-    const auto at = std::find(kJointNames.begin(), kJointNames.end(), joint);
-    US_CHECK(at != kJointNames.end(), rig.character.called(), ": the map names a joint '", excerpt(joint),
+    const int j = joint_named(joint);
+    US_CHECK(j >= 0, rig.character.called(), ": the map names a joint '", excerpt(joint),
              "', which does not exist");
-    const size_t j = at - kJointNames.begin();
     map.node[j] = -1;
     map.confidence[j] = 0;
     if (bone.empty()) continue;

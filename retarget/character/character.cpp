@@ -206,6 +206,11 @@ std::vector<Mat4> Character::world() const {
   return out;
 }
 
+bool Character::is_at_or_below(int node, int other) const {
+  while (node >= 0 && node != other) node = nodes[node].parent;
+  return node >= 0;
+}
+
 void check_character(const Character& character, const std::string& path) {
   std::vector<int> depth;
   for (size_t n = 0; n < character.nodes.size(); ++n) {

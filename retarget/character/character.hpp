@@ -104,6 +104,8 @@ struct Character {
   Eigen::Index vertex_count() const;
   /// Transforms of the nodes to the world, from their own to the parents'.
   std::vector<Mat4> world() const;
+  /// Whether a node is that other one or hangs on it.
+  bool is_at_or_below(int node, int other) const;
 };
 
 /// Throws Error naming `path`: indices out of range, sizes that disagree, neither a vertex nor an animation,

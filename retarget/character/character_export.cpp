@@ -385,15 +385,10 @@ int root_bone(const Character& character, const std::vector<MovedNode>& moved) {
   for (const auto& skin : character.skins)
     for (const int joint : skin.joints) is_still[joint] = true;
   for (const MovedNode& one : moved) is_still[one.node] = false;
-  const auto is_below = [&](const MovedNode& one, int above) {
-    int n = one.node;
-    while (n >= 0 && n != above) n = character.nodes[n].parent;
-    return n >= 0;
-  };
   int found = -1;
   for (int n = character.nodes[moved.at(0).node].parent; n >= 0; n = character.nodes[n].parent)
-    if (is_still[n] &&
-        std::all_of(moved.begin(), moved.end(), [&](const auto& one) { return is_below(one, n); }))
+    if (is_still[n] && std::all_of(moved.begin(), moved.end(),
+                                   [&](const auto& one) { return character.is_at_or_below(one.node, n); }))
       found = n;
   return found;
 }

@@ -26,12 +26,8 @@ std::vector<bool> bone_nodes(const PreparedCharacter& c) {
   for (size_t n = 0; n < nodes.size(); ++n)
     if (is_bone[n] && bone_above(static_cast<int>(n)) < 0) tops.push_back(static_cast<int>(n));
   if (tops.size() < 2) return is_bone;
-  const auto is_above = [&](int above, int n) {
-    while (n >= 0 && n != above) n = nodes[n].parent;
-    return n >= 0;
-  };
   for (int n = nodes[tops[0]].parent; n >= 0; n = nodes[n].parent)
-    if (std::all_of(tops.begin(), tops.end(), [&](int top) { return is_above(n, top); })) {
+    if (std::all_of(tops.begin(), tops.end(), [&](int top) { return c.character.is_at_or_below(top, n); })) {
       is_bone[n] = true;
       break;
     }

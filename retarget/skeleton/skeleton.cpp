@@ -3,12 +3,28 @@
 #include <algorithm>
 
 namespace understudy {
+namespace {
+
+/// The two bones above a limb's end, mean of both sides.
+float limb_length(const Joints& joints, int left_end) {
+  float sum = 0;
+  for (const int end : {left_end, kMirror[left_end]})
+    for (const int j : {kParents[end], end}) sum += (joints.row(j) - joints.row(kParents[j])).norm();
+  return 0.5f * sum;
+}
+
+}  // namespace
 
 const std::array<const char*, kJointCount> kJointNames = {
     "pelvis",     "left_hip",    "right_hip",    "spine1",     "left_knee",     "right_knee",
     "spine2",     "left_ankle",  "right_ankle",  "spine3",     "left_foot",     "right_foot",
     "neck",       "left_collar", "right_collar", "head",       "left_shoulder", "right_shoulder",
     "left_elbow", "right_elbow", "left_wrist",   "right_wrist"};
+
+int joint_named(std::string_view name) {
+  const auto at = std::find(kJointNames.begin(), kJointNames.end(), name);
+  return at == kJointNames.end() ? -1 : static_cast<int>(at - kJointNames.begin());
+}
 
 std::string joint_label(int joint) {
   if (joint < 0 || joint >= kJointCount) return "all joints";
@@ -69,15 +85,11 @@ Rotations from_rest_pose(const Rotations& local, const Rotations& rest) {
 }
 
 float leg_length(const Joints& joints) {
-  const auto bone = [&joints](int a, int b) { return (joints.row(a) - joints.row(b)).norm(); };
-  return 0.5f * (bone(LeftHip, LeftKnee) + bone(LeftKnee, LeftAnkle) + bone(RightHip, RightKnee) +
-                 bone(RightKnee, RightAnkle));
+  return limb_length(joints, LeftAnkle);
 }
 
 float arm_length(const Joints& joints) {
-  const auto bone = [&joints](int a, int b) { return (joints.row(a) - joints.row(b)).norm(); };
-  return 0.5f * (bone(LeftShoulder, LeftElbow) + bone(LeftElbow, LeftWrist) +
-                 bone(RightShoulder, RightElbow) + bone(RightElbow, RightWrist));
+  return limb_length(joints, LeftWrist);
 }
 
 Pose mirrored(const Pose& pose) {

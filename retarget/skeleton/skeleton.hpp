@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "retarget/math/types.hpp"
@@ -45,6 +46,8 @@ constexpr std::array<int, kJointCount> kParents = {-1, 0, 0, 0, 1,  2,  3,  4,  
 constexpr std::array<int, kJointCount> kMirror = {0,  2,  1,  3,  5,  4,  6,  8,  7,  9,  11,
                                                   10, 12, 14, 13, 15, 17, 16, 19, 18, 21, 20};
 extern const std::array<const char*, kJointCount> kJointNames;
+/// The number of a joint named as in kJointNames, -1 for another name.
+int joint_named(std::string_view name);
 
 /// For people: "left wrist" for 20; "all joints" below 0.
 std::string joint_label(int joint);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/rows.hpp"
 

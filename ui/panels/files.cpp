@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
 
 namespace understudy::ui {

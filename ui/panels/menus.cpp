@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "retarget/base/text.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 

@@ -45,14 +45,6 @@ std::string time_left(double seconds) {
   return printed("about %.1f h left", seconds / 3600);
 }
 
-std::string file_name(const std::string& path) {
-  const size_t last = path.find_last_not_of('/');
-  if (last == std::string::npos) return path;
-  const size_t slash = path.find_last_of('/', last);
-  const size_t first = slash == std::string::npos ? 0 : slash + 1;
-  return path.substr(first, last - first + 1);
-}
-
 std::string figure(double value, const std::string& unit) {
   return short_number(value) + (unit.empty() ? "" : " " + unit);
 }

@@ -33,8 +33,6 @@ std::string joint_name(int joint);
 
 /// "about 40 s left", "about 3 min left"; empty where it is not known.
 std::string time_left(double seconds);
-/// The last part of a path, also of one that ends in a slash.
-std::string file_name(const std::string& path);
 /// With few digits and its unit: "12.4 mm".
 std::string figure(double value, const std::string& unit);
 

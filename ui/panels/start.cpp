@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/text.hpp"
 #include "ui/panels/rows.hpp"
 
 namespace understudy::ui {
