@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <deque>
 #include <filesystem>
 #include <mutex>
@@ -31,7 +32,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kScanPoints = 8000, kVertices = 13000, kManyVertices = 200000, kImported = 100000, kImports = 3;
+constexpr int kFrames = 132, kScanPoints = 8000, kVertices = 13000, kManyVertices = 200000,
+              kImported = 100000, kTries = 3;
+constexpr double kReading = 3, kSettling = 2;  // seconds
 
 double seconds_since(Clock::time_point from) {
   return std::chrono::duration<double>(Clock::now() - from).count();
@@ -43,7 +46,7 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
 }
 
-// What is shown: the bundled samples, brought to the sizes asked for.
+// What is shown: the bundled samples, brought to the sizes asked for, the scan from its start again at its end.
 
 /// Exactly `count` vertices: faces are cut into three, one after the other, then those made so.
 Mesh with_vertices(Mesh mesh, int count) {
@@ -84,10 +87,13 @@ class BenchFiles {
     SourceOptions from;
     from.path = samples + "/scan";
     from.quiet = true;
-    const auto source = open_source(from);
-    for (int i = 0; const auto frame = source->next(); ++i)
+    auto source = open_source(from);
+    for (int i = 0; i < kFrames; ++i) {
+      auto frame = source->next();
+      if (!frame) source = open_source(from), frame = source->next();
       write_file(scan() + printed("/frame_%05d.ply", i),
                  ply_bytes({}, dense_scan(frame->mesh.vertices), "scan"));
+    }
     fs::create_directory_symlink(scan(), scan_again());
     const Character character = read_target(samples + "/target_adult.glb", {});
     const Mesh adult = merged_surface(character, bind_pose(character).vertices).mesh;
@@ -98,7 +104,7 @@ class BenchFiles {
       write_file(target(vertices), obj_text(topology, mesh.vertices, "a target"));
     }
     Mesh person = with_vertices(adult, kImported);
-    for (int i = 0; i < kImports; ++i) {  // not one like another: nothing is known of it yet
+    for (int i = 0; i < kTries; ++i) {  // not one like another: nothing is known of it yet
       write_gltf_character(imported(i), character_of_mesh(person, "imported"));
       person.vertices *= 1.01f;
     }
@@ -112,9 +118,11 @@ class BenchFiles {
   std::string scan() const { return folder_ + "/scan"; }
   /// The same under another name: nothing is known of it yet.
   std::string scan_again() const { return folder_ + "/scan_again"; }
-  /// A GLB without bones, the i-th of kImports.
+  /// A GLB without bones, the i-th of kTries.
   std::string imported(int i) const { return folder_ + "/imported_" + std::to_string(i) + ".glb"; }
   std::string target(int vertices) const { return folder_ + "/target_" + std::to_string(vertices) + ".obj"; }
+  std::string document() const { return folder_ + "/two.understudy"; }
+  std::string video() const { return folder_ + "/video.mp4"; }
 
  private:
   std::string folder_;
@@ -185,10 +193,14 @@ class UiBench {
 
   void run() {
     start();
+    sample_card();
     const BenchFiles files(application_->studio().services().samples);
+    reopen(files);
     open(files, kVertices);
+    turn();
     idle();
     play("playing kept frames", kVertices);
+    video(files);
     live(files);
     scrub();
     memory();
@@ -221,15 +233,71 @@ class UiBench {
                    1 / quantile(times, 0.5), 1e3 * quantile(times, 0.95));
   }
 
-  /// The start of the program, and the bundled sample performed by a bundled target.
   void start() {
     application_->frame(0);
     line("start to the first frame", printed("%.2f s", seconds_since_start()));
-    const std::string& samples = application_->studio().services().samples;
-    command("open", {samples + "/scan", samples + "/target_adult.glb"});
-    while (frame_count(application_->session()) < 1 || !shown_whole()) step();
+  }
+
+  /// From the command until the first performed frame of every take has been presented.
+  double until_performed(const std::string& name, const Arguments& arguments, size_t takes) {
+    const auto began = Clock::now();
+    command(name, arguments);
+    while (application_->session().takes.size() < takes || frame_count(application_->session()) < 1 ||
+           !shown_whole() || !all_performed())
+      step();
     application_->frame(0);
-    line("start to the sample performed", printed("%.2f s", seconds_since_start()));
+    return seconds_since(began);
+  }
+  bool all_performed() {
+    const auto& takes = application_->session().takes;
+    return std::all_of(takes.begin(), takes.end(),
+                       [](const TakeState& take) { return take.ready && !take.performed.empty(); });
+  }
+
+  /// The start page stands for as long as somebody takes to read it; then a sample is chosen.
+  void sample_card() {
+    for (const auto began = Clock::now(); seconds_since(began) < kReading;) step();
+    const std::string& samples = application_->studio().services().samples;
+    line("sample card to its first performed frame",
+         printed("%.2f s", until_performed("open", {samples + "/scan", samples + "/target_adult.glb"}, 1)));
+  }
+
+  /// A document of two takes, opened again.
+  void reopen(const BenchFiles& files) {
+    const std::string& samples = application_->studio().services().samples;
+    command("target.add", {samples + "/target_child.glb"});
+    settle();
+    command("document.save", {files.document()});
+    std::vector<double> times;
+    for (int i = 0; i < kTries; ++i) {
+      clear();
+      times.push_back(until_performed("document.open", {files.document()}, 2));
+      settle();
+    }
+    line("document of two takes to its first performed frame",
+         printed("%.2f s median of %d, %.2f s at most", quantile(times, 0.5), kTries, quantile(times, 1)));
+  }
+
+  /// Nothing is asked of it and nothing moves.
+  void idle() {
+    settle();
+    for (const auto began = Clock::now(); seconds_since(began) < kSettling;) step();
+    const std::clock_t used = std::clock();  // of all threads
+    const int64_t drawn = application_->drawn();
+    const auto began = Clock::now();
+    while (seconds_since(began) < seconds_) step();
+    const double busy = static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
+    line("idle", printed("%.1f %% of a core, %lld frames drawn in %.0f s", 100 * busy / seconds_since(began),
+                         static_cast<long long>(application_->drawn() - drawn), seconds_since(began)));
+  }
+
+  /// All frames, as the dialog proposes them.
+  void video(const BenchFiles& files) {
+    const auto began = Clock::now();
+    command("video.save", {files.video(), "1280", "720"});
+    while (!application_->session().jobs.empty()) step();
+    line("video of 1280 x 720",
+         printed("%.1f s for %d frames", seconds_since(began), frame_count(application_->session())));
   }
 
   /// Whether scan and target of the shown frame have been made.
@@ -255,7 +323,7 @@ class UiBench {
   /// From the command until a frame with the character in it has been presented, and until it is bound.
   void import(const BenchFiles& files) {
     std::vector<double> seen, bound;
-    for (int i = 0; i < kImports; ++i) {
+    for (int i = 0; i < kTries; ++i) {
       clear();
       const auto began = Clock::now();
       command("target.add", {files.imported(i)});
@@ -265,7 +333,7 @@ class UiBench {
       bound.push_back(seconds_since(began));
     }
     line("import of 100,000 vertices to first picture",
-         printed("%.2f s median of %d, %.2f s at most; bound after %.2f s", quantile(seen, 0.5), kImports,
+         printed("%.2f s median of %d, %.2f s at most; bound after %.2f s", quantile(seen, 0.5), kTries,
                  quantile(seen, 1), quantile(bound, 0.5)));
   }
 
@@ -286,7 +354,7 @@ class UiBench {
                  frame_count(application_->session()), kScanPoints, vertices, seconds_since(began)));
   }
 
-  void idle() {
+  void turn() {
     std::vector<double> times;
     command("playback.pause");
     for (const auto began = Clock::now(); seconds_since(began) < seconds_;) {

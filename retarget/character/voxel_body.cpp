@@ -35,6 +35,43 @@ const std::array<Step, 26>& steps() {
   return all;
 }
 
+/// The shortest paths found so far, by cube of the grid. What is to be followed further waits in buckets by length, a
+/// cube wide each: no path within one is shorter than a step.
+class Paths {
+ public:
+  Paths(const std::vector<int>& cell_of, float size) : size_(size), length_(cell_of.size()) {
+    std::transform(cell_of.begin(), cell_of.end(), length_.begin(),
+                   [](int cell) { return cell < 0 ? kOutside : kUnreached; });
+    followed_ = length_;
+  }
+  float length(int at) const { return length_[at]; }
+  void reach(int at, float length) {
+    if (length >= length_[at]) return;
+    length_[at] = length;
+    const size_t bucket = length / size_;
+    if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
+    buckets_[bucket].push_back(at);
+  }
+  /// onward(cube, its path's length) reaches what is beside it; the shortest come first.
+  template <class Onward>
+  void follow(Onward onward) {
+    for (size_t b = 0; b < buckets_.size(); ++b)
+      for (size_t i = 0; i < buckets_[b].size(); ++i) {
+        const int at = buckets_[b][i];
+        if (length_[at] == followed_[at])
+          continue;  // it was reached twice, the shorter way has been followed
+        followed_[at] = length_[at];
+        onward(at, length_[at]);
+      }
+  }
+
+ private:
+  static constexpr float kOutside = -1;  // shorter than any path: nothing leads there
+  float size_;
+  std::vector<float> length_, followed_;
+  std::vector<std::vector<int>> buckets_;
+};
+
 /// How far apart a cloud's points lie: the median distance of some of them to their third neighbour.
 float spacing_of(const Points& points) {
   const Eigen::Index stride = std::max<Eigen::Index>(1, points.rows() / 500);
@@ -252,41 +289,31 @@ void VoxelBody::join_parts() {
 }
 
 std::vector<float> VoxelBody::distances_from(const std::vector<std::pair<Vec3, Vec3>>& segments) const {
-  std::vector<float> distance(cells_.size(), kUnreached);
-  std::vector<std::vector<int>> buckets(1);  // a cube wide each: no path within one is shorter than a step
-  const auto reach = [&](int cell, float length) {
-    if (length >= distance[cell]) return;
-    distance[cell] = length;
-    const size_t bucket = length / size_;
-    if (bucket >= buckets.size()) buckets.resize(bucket + 1);
-    buckets[bucket].push_back(cell);
-  };
+  Paths paths(cell_of_, size_);
   for (const auto& [from, to] : segments) {
     const int n = 1 + static_cast<int>((to - from).norm() / (0.5f * size_));
     bool inside = false;
     for (int i = 0; i <= n; ++i) {
       const Vec3 p = from + static_cast<float>(i) / static_cast<float>(n) * (to - from);
       const int cell = cell_at(p);
-      if (cell >= 0) reach(cell, 0);
+      if (cell >= 0) paths.reach(cells_[cell], 0);
       inside = inside || cell >= 0;
     }
     if (!inside)
-      for (const float t : {0.2f, 0.5f, 0.8f}) reach(nearest_cell(from + t * (to - from)), 0);
+      for (const float t : {0.2f, 0.5f, 0.8f}) paths.reach(cells_[nearest_cell(from + t * (to - from))], 0);
   }
-  for (size_t b = 0; b < buckets.size(); ++b)
-    for (size_t i = 0; i < buckets[b].size(); ++i) {
-      const int cell = buckets[b][i];
-      const float here = distance[cell];
-      if (static_cast<size_t>(here / size_) != b) continue;  // a shorter path was found since
-      const int at = cells_[cell];
-      for (const Step& s : steps()) {
-        const int next = cell_of_[at + grid_index(s.x, s.y, s.z)];
-        if (next >= 0) reach(next, here + s.length * size_);
-      }
-      if (!bridges_.empty())
-        for (const Bridge& bridge : bridges_[cell]) reach(bridge.b, here + std::max(bridge.length, size_));
-    }
-  return distance;
+  std::array<std::pair<int, float>, 26> ways;  // to the neighbours: in the grid, in metres
+  std::transform(steps().begin(), steps().end(), ways.begin(),
+                 [this](const Step& s) { return std::pair(grid_index(s.x, s.y, s.z), s.length * size_); });
+  paths.follow([&](int at, float here) {
+    for (const auto& [offset, length] : ways) paths.reach(at + offset, here + length);
+    if (bridges_.empty()) return;
+    for (const Bridge& bridge : bridges_[cell_of_[at]])
+      paths.reach(cells_[bridge.b], here + std::max(bridge.length, size_));
+  });
+  std::vector<float> lengths(cells_.size());
+  for (size_t c = 0; c < cells_.size(); ++c) lengths[c] = paths.length(cells_[c]);
+  return lengths;
 }
 
 float VoxelBody::at(const std::vector<float>& distances, const Vec3& point) const {
