@@ -113,7 +113,7 @@ std::string implausibility(const Stance& s) {
 }
 
 std::string doubt(const Stance& s) {
-  const std::string why = implausibility(s);
+  std::string why = implausibility(s);
   if (!why.empty() || s.feet <= 0.4f) return why;
   return "its feet are " + centimetres(s.feet, s.height) + " apart";
 }

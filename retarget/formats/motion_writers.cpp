@@ -88,6 +88,7 @@ void append_joint(std::string& out, const std::vector<BvhJoint>& joints, size_t 
 std::vector<BvhJoint> joints_of(const Joints& rest, const std::string& path) {
   US_CHECK(rest.allFinite(), path, ": a joint of the target is not finite");
   std::vector<BvhJoint> joints;
+  joints.reserve(kJointCount);
   for (int j = 0; j < kJointCount; ++j)
     joints.push_back({kJointNames[j], kParents[j], rest.row(j).transpose(), false});
   return joints;
