@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/session/studio.hpp"
+#include "retarget/base/error.hpp"
 
 namespace understudy::app {
 
@@ -80,6 +81,20 @@ class Call : public ArgumentReader {
 
 /// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
 void remember_folder(Studio& studio, const std::string& path);
+
+/// Opens what an entry of recent lists names, or checks that it can be opened. Where that throws Error the entry is taken
+/// off, and the sentence says so.
+template <class Open>
+auto opened(std::initializer_list<std::vector<std::string>*> recent, const std::string& entry,
+            const Open& open) {
+  try {
+    return open();
+  } catch (const Error& error) {
+    const std::string more = taken_off(recent, entry);
+    if (more.empty()) throw;
+    throw Error(error.what() + more);
+  }
+}
 
 /// The offer of a notice about a file that was written.
 inline Offer showing(const std::string& path) {

@@ -38,9 +38,10 @@ void ask_for_missing(Session& session) {
 
 void open_document(Studio& studio, const std::string& path) {
   const std::string whole = fs::absolute(path).lexically_normal().string();
-  const SavedDocument saved = read_document(whole);
+  auto& recent = studio.session().settings.recent;
+  const SavedDocument saved = opened({&recent}, whole, [&] { return read_document(whole); });
   studio.replace_document(saved, whole);
-  remember(studio.session().settings.recent, whole);
+  remember(recent, whole);
   remember_folder(studio, whole);
   if (!saved.weights.empty() && !studio.session().weights.empty() &&
       saved.weights != studio.session().weights)
@@ -244,7 +245,9 @@ void Studio::replace_document(SavedDocument saved, const std::string& path) {
 
 void Studio::open(const std::string& path) {
   const std::string whole = fs::absolute(path).lexically_normal().string();
-  switch (kind_of(session_.document, whole)) {
+  Settings& settings = session_.settings;
+  const auto lists = {&settings.recent, &settings.recent_sources, &settings.recent_targets};
+  switch (opened(lists, whole, [&] { return kind_of(session_.document, whole); })) {
     case Kind::Document:
       return run("document.open", {whole});
     case Kind::Case:

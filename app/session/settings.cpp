@@ -116,8 +116,8 @@ void write_settings(const std::string& path, const Settings& settings) {
   write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
-std::string recent_pair(const std::string& body, const std::string& motion) {
-  return body + '\n' + motion;
+std::string recent_source(const std::string& path, const std::string& motion) {
+  return motion.empty() ? path : path + '\n' + motion;
 }
 
 std::vector<std::string> paths_of_recent(const std::string& entry) {
@@ -131,6 +131,17 @@ void remember(std::vector<std::string>& recent, std::string path) {
   recent.erase(std::remove(recent.begin(), recent.end(), path), recent.end());
   recent.insert(recent.begin(), std::move(path));
   if (recent.size() > kMostRecent) recent.resize(kMostRecent);
+}
+
+std::string taken_off(std::initializer_list<std::vector<std::string>*> lists, const std::string& entry) {
+  bool any = false;
+  for (std::vector<std::string>* recent : lists) {
+    const auto found = std::find(recent->begin(), recent->end(), entry);
+    if (found == recent->end()) continue;
+    recent->erase(found);
+    any = true;
+  }
+  return any ? "; it was taken off the recent list" : "";
 }
 
 }  // namespace understudy::app

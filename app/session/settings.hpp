@@ -1,6 +1,7 @@
 // The user's settings between runs, as JSON in the user's configuration folder.
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ struct Settings {
   int cache_mb = 512;               ///< memory for frames shown, 64 .. 8192
   int undo_depth = 200;             ///< 10 .. 1000
   std::vector<std::string> recent;  ///< documents, the newest first, 12 at most
-  std::vector<std::string> recent_sources, recent_targets;  ///< of sources see recent_pair
+  std::vector<std::string> recent_sources, recent_targets;  ///< of sources see recent_source
   std::map<std::string, bool> panels;  ///< shown or not, by name; missing: as the window has it
   std::string last_folder;    ///< that something was opened from or saved in: where the browser starts
   std::string export_format;  ///< the last one used, by name; "csv": figures; empty: none yet
@@ -58,10 +59,12 @@ std::string state_folder();
 Settings read_settings(const std::string& path);
 /// Writes beside the file, then renames. Throws Error naming the path.
 void write_settings(const std::string& path, const Settings& settings);
-/// A body and the motion that it performs as one entry of recent sources, and an entry's paths.
-std::string recent_pair(const std::string& body, const std::string& motion);
+/// A source, or a body and the motion that it performs, as one entry of recent sources; and an entry's paths.
+std::string recent_source(const std::string& path, const std::string& motion);
 std::vector<std::string> paths_of_recent(const std::string& entry);
 /// Puts `path` first in a recent list.
 void remember(std::vector<std::string>& recent, std::string path);
+/// Takes what cannot be opened off recent lists. How the sentence that says why goes on: "" where it is in none.
+std::string taken_off(std::initializer_list<std::vector<std::string>*> lists, const std::string& entry);
 
 }  // namespace understudy::app

@@ -1,3 +1,5 @@
+#include <filesystem>
+
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/body/body.hpp"
@@ -12,7 +14,6 @@ namespace {
 /// For another source: drops the edits and settings of the old one's frames.
 void set_source(Call& c, SourceOptions source) {
   Document& document = c.document;
-  const std::string path = source.motion.empty() ? source.path : recent_pair(source.path, source.motion);
   remember_folder(c.studio, source.motion.empty() ? source.path : source.motion);
   document.source = std::move(source);
   document.truth.clear();
@@ -20,7 +21,11 @@ void set_source(Call& c, SourceOptions source) {
   document.skeleton_edits.clear();
   for (Take& take : document.takes) take.pose_edits = {};
   c.session.playback = Playback{};
-  remember(c.session.settings.recent_sources, path);
+}
+
+void check_file(const std::string& path) {
+  std::error_code failed;
+  US_CHECK(std::filesystem::exists(path, failed), path, ": there is no such file");
 }
 
 void add_opening(Commands& commands) {
@@ -30,9 +35,11 @@ void add_opening(Commands& commands) {
       [](Call& c) {
         SourceOptions source;
         source.path = c.path(0);
-        US_CHECK(!is_smpl_body(source.path), source.path,
-                 ": is a body; choose the motion that it performs as well");
-        if (!is_motion_file(source.path)) ScanSource{source.path};  // throws at once when there is no frame
+        opened({&c.session.settings.recent_sources}, source.path, [&] {
+          US_CHECK(!is_smpl_body(source.path), source.path,
+                   ": is a body; choose the motion that it performs as well");
+          if (!is_motion_file(source.path)) ScanSource{source.path};  // throws at once when there is no frame
+        });
         set_source(c, source);
       });
   commands.add_edit(
@@ -41,6 +48,9 @@ void add_opening(Commands& commands) {
         SourceOptions source;
         source.path = c.path(0, "body");
         source.motion = c.path(1, "motion");
+        opened({&c.session.settings.recent_sources}, recent_source(source.path, source.motion), [&] {
+          for (const std::string& path : {source.path, source.motion}) check_file(path);
+        });
         set_source(c, source);
       });
   commands.add_edit({"source.fps", "Frame rate", "FRAMES_PER_SECOND; 0: the source's own, or 30"},

@@ -92,6 +92,7 @@ class Studio {
   void offer_clean_up(const std::string& doubt);
   void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
   void roll_back_source();
+  void note_source_read();
   using Change = std::function<void(Document&)>;
   void roll_back(size_t steps, bool changed_before, const Change& change);
   void take_in_results();

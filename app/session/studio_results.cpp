@@ -109,8 +109,12 @@ template <>
 void Studio::take_in(SourceFailed& event) {
   session_.source.problem = event.sentence;
   if (asked_for(session_, event.sentence)) return log::warn(event.sentence);
+  const SourceOptions failed = session_.document.source;
+  const bool is_new = background_->opened_source.has_value();
   roll_back_source();
-  fail(event.sentence, "source.open");
+  auto& recent = session_.settings.recent_sources;
+  fail(event.sentence + (is_new ? taken_off({&recent}, recent_source(failed.path, failed.motion)) : ""),
+       "source.open");
 }
 
 /// The skeleton shown is the first take's: repaired and smoothed as it was transferred.
@@ -122,17 +126,25 @@ void Studio::show_skeleton(int first) {
                [&](size_t t, KeptSource& frame) { frame.joints = performed[t].source; });
 }
 
+/// From its first good frame on a source that was opened stays, and is among the recent ones.
+void Studio::note_source_read() {
+  auto& opened = background_->opened_source;
+  if (!opened) return;
+  for (const KeptSource& frame : session_.source.frames) {
+    if (frame.points == 0 && frame.flagged) continue;
+    const SourceOptions& source = session_.document.source;
+    remember(session_.settings.recent_sources, recent_source(source.path, source.motion));
+    return opened.reset();
+  }
+}
+
 template <>
 void Studio::take_in(SourceFrames& event) {
   SourceState& source = session_.source;
   for (const KeptSource& frame : event.frames) source.extent = united(source.extent, frame.extent);
   if (put(source.frames, event.first, std::move(event.frames))) ++source.generation;
   show_skeleton(event.first);
-  for (const KeptSource& frame : source.frames)
-    if (frame.points > 0 || !frame.flagged) {
-      background_->opened_source.reset();
-      break;
-    }
+  note_source_read();
   source.decision = event.decision;
   source.to_file = event.to_file;
   offer_clean_up(event.doubt);
@@ -166,7 +178,9 @@ void Studio::take_in(TakeReady& event) {
   if (!take) return;
   take->ready = true;
   take->problem.clear();
-  background_->opened_targets.erase(event.id);
+  if (background_->opened_targets.erase(event.id) > 0)
+    remember(session_.settings.recent_targets,
+             session_.document.takes[take - session_.takes.data()].target.path);
   take->character = event.character;
   take->target = event.target;
   take->binding = event.binding;
@@ -188,8 +202,10 @@ void Studio::take_in(TakeFailed& event) {
     background_->doubted.insert(event.id);
     return;
   }
-  if (event.not_opened) take_back_target(take - session_.takes.data());
-  fail(event.sentence, "target.add");
+  const size_t k = take - session_.takes.data();
+  const std::string path = session_.document.takes[k].target.path;
+  const bool gone = event.not_opened && take_back_target(k);
+  fail(event.sentence + (gone ? taken_off({&session_.settings.recent_targets}, path) : ""), "target.add");
 }
 
 template <>

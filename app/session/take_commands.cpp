@@ -43,10 +43,10 @@ void add_targets(Commands& commands) {
   commands.add_edit({"target.add", "Add target", "PATH"}, [](Call& c) {
     check_room(c.document);
     Take take;
-    take.target.path = target_file(c, 0);
+    take.target.path =
+        opened({&c.session.settings.recent_targets}, c.path(0), [&] { return target_file(c, 0); });
     take.target.not_a_person = NotAPerson::Refuse;
     take.name = fs::path(take.target.path).stem().string();
-    remember(c.session.settings.recent_targets, take.target.path);
     remember_folder(c.studio, take.target.path);
     c.document.takes.push_back(std::move(take));
     choose_take(c.session, static_cast<int>(c.document.takes.size()) - 1);
@@ -57,7 +57,6 @@ void add_targets(Commands& commands) {
     take.target.path = target_file(c, 1);
     take.target.not_a_person = NotAPerson::Refuse;
     take.target_edits = {};
-    remember(c.session.settings.recent_targets, take.target.path);
     remember_folder(c.studio, take.target.path);
     take.name = fs::path(take.target.path).stem().string();
   });

@@ -164,13 +164,59 @@ TEST_F(StudioTest, TheFolderUsedLastIsRememberedButNotThatOfTheSamples) {
   EXPECT_EQ(Studio(own).session().settings.last_folder, fs::path(path("out.bvh")).parent_path());
 }
 
-TEST_F(StudioTest, ABodyAndItsMotionAreOneRecentSource) {
+TEST(RecentSource, IsAPathOrABodyAndItsMotion) {
+  EXPECT_EQ(paths_of_recent(recent_source("/body.npz", "/a walk.npz")),
+            (std::vector<std::string>{"/body.npz", "/a walk.npz"}));
+  EXPECT_EQ(paths_of_recent(recent_source("/a b", "")), std::vector<std::string>{"/a b"});
+}
+
+TEST_F(StudioTest, WhatWasReadIsRecentAndWhatCannotBeReadAnyMoreIsTakenOffWithTheReason) {
   Studio studio(services());
-  studio.try_run("source.motion", {path("body.npz"), path("walk.npz")});
-  const auto& recent = studio.session().settings.recent_sources;
-  ASSERT_EQ(recent.size(), 1u);
-  EXPECT_EQ(paths_of_recent(recent[0]), (std::vector<std::string>{path("body.npz"), path("walk.npz")}));
-  EXPECT_EQ(paths_of_recent("/a b"), std::vector<std::string>{"/a b"});
+  Session& session = studio.session();
+  Settings& settings = session.settings;
+  open_both(studio);
+  EXPECT_EQ(settings.recent_sources, std::vector<std::string>{path("scan.npz")});
+  EXPECT_EQ(settings.recent_targets, std::vector<std::string>{path("target.obj")});
+  const std::string body = path("body.npz"), walk = path("walk.npz"), gone = path("gone.npz");
+  std::ofstream(body) << "no array", std::ofstream(walk) << "no array";
+  std::ofstream(path("broken.obj")) << "v 1 2\n";
+  settings.recent = {path("gone.understudy")};
+  settings.recent_sources = {recent_source(body, gone), recent_source(body, walk), path("scan.npz"), gone};
+  settings.recent_targets = {path("broken.obj"), path("target.obj")};
+  const auto fails = [&](const std::string& command, const Arguments& arguments) {
+    session.errors.clear();
+    studio.try_run(command, arguments);
+    studio.wait_idle(60);
+    ASSERT_EQ(session.errors.size(), 1u) << join_line(command, arguments);
+    const std::string sentence = session.errors.front().text;
+    EXPECT_NE(sentence.find(fs::path(arguments.back()).filename().string()), std::string::npos) << sentence;
+    EXPECT_NE(sentence.find("; it was taken off the recent list"), std::string::npos) << sentence;
+  };
+  fails("source.motion", {body, gone});
+  EXPECT_EQ(settings.recent_sources.size(), 3u);
+  fails("open", {gone});
+  EXPECT_EQ(settings.recent_sources.size(), 2u);
+  fails("target.add", {path("broken.obj")});
+  EXPECT_EQ(settings.recent_targets, std::vector<std::string>{path("target.obj")});
+  fails("document.open", {path("gone.understudy")});
+  EXPECT_TRUE(settings.recent.empty());
+  session.errors.clear();
+  studio.try_run("source.motion", {body, walk});  // both are there, and no body
+  studio.wait_idle(60);
+  ASSERT_EQ(session.errors.size(), 1u);
+  EXPECT_NE(session.errors.front().text.find("; it was taken off the recent list"), std::string::npos);
+  EXPECT_EQ(settings.recent_sources, std::vector<std::string>{path("scan.npz")}) << "the rest stays";
+  EXPECT_EQ(session.document.source.path, path("scan.npz"));
+}
+
+TEST_F(StudioTest, WhatWasNeverReadIsNotRecent) {
+  std::ofstream(path("broken.bvh")) << "HIERARCHY\nnothing\n";
+  Studio studio(services());
+  studio.try_run("source.open", {path("broken.bvh")});
+  studio.wait_idle(60);
+  ASSERT_EQ(studio.session().errors.size(), 1u);
+  EXPECT_EQ(studio.session().errors.front().text.find("recent"), std::string::npos);
+  EXPECT_TRUE(studio.session().settings.recent_sources.empty());
 }
 
 TEST_F(StudioTest, ATargetsHeightIsSetAndReset) {

@@ -362,7 +362,7 @@ TEST_F(PanelsTest, StartOpensSamplesRecentDocumentsAndDialogs) {
   expect_click("start.sample.0", {"open /s/scan /s/adult.glb"});
   expect_click("start.recent.0", {"document.open \"/home/ada/a dance.understudy\""});
   expect_click("start.recent_source.0", {"open /data/dance"});
-  session.settings.recent_sources = {app::recent_pair("/bodies/a b.npz", "/data/walk.npz"), "/data/dance"};
+  session.settings.recent_sources = {app::recent_source("/bodies/a b.npz", "/data/walk.npz"), "/data/dance"};
   frame(2);
   expect_click("start.recent_source.0", {"source.motion \"/bodies/a b.npz\" /data/walk.npz"});
   expect_click("start.recent_source.1", {"open /data/dance"});
