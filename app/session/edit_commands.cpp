@@ -192,22 +192,33 @@ void move_all_at(std::vector<Edit>& edits, int frame, int to) {
     if (int* const at = frame_of(edit); at != nullptr && *at == frame) *at = to;
 }
 
-/// All edits by hand of one joint, at whatever frame.
+/// All edits by hand of some joints, at whatever frame.
 template <class Edit>
-void remove_all_of(std::vector<Edit>& edits, Call& c, size_t i) {
-  const int joint = c.joint(i);
+void remove_all_of(std::vector<Edit>& edits, const std::vector<int>& joints) {
   const size_t before = edits.size();
-  const auto of_it = [&](const Edit& edit) { return joint_of(edit) == joint; };
-  edits.erase(std::remove_if(edits.begin(), edits.end(), of_it), edits.end());
+  const auto of_one = [&](const Edit& edit) {
+    return std::find(joints.begin(), joints.end(), joint_of(edit)) != joints.end();
+  };
+  edits.erase(std::remove_if(edits.begin(), edits.end(), of_one), edits.end());
   US_CHECK(edits.size() < before, "the joint has no edits");
+}
+
+void remove_drags_of(Call& c, int joint) {
   c.label = "Reset " + joint_label(joint);
+  remove_all_of(c.document.skeleton_edits, {joint});
+}
+
+/// Of a hand or a foot with all that moving it turned.
+void remove_rotations_of(Call& c, int joint) {
+  c.label = "Reset " + limb_label(joint);
+  remove_all_of(c.take(1).pose_edits.rotate, joints_turned_by(joint));
 }
 
 void remove_edit(Call& c) {
   const size_t kind = c.choice(
       0, "kind", {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of", "rotations_of"});
-  if (kind == 5) return remove_all_of(c.document.skeleton_edits, c, 1);
-  if (kind == 6) return remove_all_of(c.take(1).pose_edits.rotate, c, 2);
+  if (kind == 5) return remove_drags_of(c, c.joint(1));
+  if (kind == 6) return remove_rotations_of(c, c.joint(2));
   if (kind == 0) return remove_at(c.document.skeleton_edits, c, 1);
   if (kind == 1) return remove_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"));
   Take& take = c.take(1);

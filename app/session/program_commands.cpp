@@ -23,7 +23,7 @@ void see_crop_box(Call& c) {
   View& view = c.session.view;
   if (view.cameras.empty()) view.cameras.resize(1);
   const Box box = shown_crop(c.session);
-  const Vec3 offset = follow_offset(c.session, 0, shown_frame(c.session));
+  const Vec3 offset = follow_offset(c.session, 0, shown_frame(c.session)) - spread_offset(c.session, 0);
   CameraState& camera = view.cameras[0];  // the source's, linked or not
   camera.distance =
       std::max(camera.distance, distance_to_see(c.session, camera, box.low - offset, box.high - offset));

@@ -146,4 +146,16 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("metric", view.metric);
 }
 
+/// What a pane (0 the source, k the take k - 1) is seen through: the first camera while they are linked, else its own;
+/// where it has none yet, one like the first.
+inline CameraState camera_of(const View& view, int pane) {
+  const size_t i = view.linked || pane < 0 ? 0 : static_cast<size_t>(pane);
+  if (i < view.cameras.size()) return view.cameras[i];
+  return view.cameras.empty() ? CameraState{} : view.cameras[0];
+}
+/// What commands about the camera change.
+inline CameraState active_camera(const View& view) {
+  return camera_of(view, view.active_pane);
+}
+
 }  // namespace understudy::app

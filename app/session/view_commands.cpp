@@ -17,8 +17,7 @@ constexpr float kViewsAspect = 1.55f;  // of all views together in a usual windo
 CameraState& camera(Session& session, int pane) {
   View& view = session.view;
   if (view.linked || pane < 0) pane = 0;
-  const CameraState first = view.cameras.empty() ? CameraState{} : view.cameras[0];
-  if (pane >= ssize(view.cameras)) view.cameras.resize(pane + 1, first);
+  if (pane >= ssize(view.cameras)) view.cameras.resize(pane + 1, camera_of(view, pane));
   return view.cameras[pane];
 }
 
@@ -226,8 +225,10 @@ void add_layers(Commands& commands) {
   commands.add({"view.colour", "Colour by",
                 "source|take plain|weights|offsets|error|difference|confidence|uncertainty"},
                [](Call& c) { layers(c).colouring = c.choice<Colouring>(1, "colouring", kColouringNames); });
-  commands.add({"view.weights_joint", "Weights of", "JOINT|all"},
-               [](Call& c) { c.session.view.weights_joint = c.word(0, "joint") == "all" ? -1 : c.joint(0); });
+  commands.add({"view.weights_joint", "Weights of", "JOINT|all: shows them"}, [](Call& c) {
+    c.session.view.weights_joint = c.word(0, "joint") == "all" ? -1 : c.joint(0);
+    c.session.view.take.colouring = Colouring::Weights;
+  });
   commands.add({"view.trail_joint", "Trail of", "JOINT on|off"}, [](Call& c) {
     std::vector<int>& joints = c.session.view.trail_joints;
     const int joint = c.joint(0);

@@ -35,6 +35,21 @@ int limb_end(int joint) {
   }
 }
 
+std::vector<int> joints_turned_by(int joint) {
+  const int end = limb_end(joint);
+  if (end < 0) return {joint};
+  std::vector<int> joints = {kParents[kParents[end]], kParents[end], end};
+  if (joint != end) joints.push_back(joint);
+  return joints;
+}
+
+std::string limb_label(int joint) {
+  const int end = limb_end(joint);
+  if (end < 0) return joint_label(joint);
+  return std::string(end == LeftWrist || end == LeftAnkle ? "left " : "right ") +
+         (end == LeftAnkle || end == RightAnkle ? "leg" : "arm");
+}
+
 Pose moved_limb(const Joints& rest, int joint, const Vec3& way, Pose pose) {
   const int end = limb_end(joint);
   US_CHECK(end >= 0, "joint ", joint, " ends no limb");
@@ -52,8 +67,7 @@ void add_limb_move(const LimbMove& move, const Pose& performed, const Joints& re
   const Mat3 heading = rotation_about_y(edits.turn ? edits.turn->yaw_deg * kPi / 180 : 0);
   const Pose before = rotated(edits.rotate, move.frame, performed);
   const Pose after = moved_limb(rest, move.joint, heading.transpose() * move.way, before);
-  const int end = limb_end(move.joint), hinge = kParents[end];
-  for (const int j : {kParents[hinge], hinge, end}) {
+  for (const int j : joints_turned_by(move.joint)) {
     const Vec3 turn = rotation_to_axis_angle(before.local[j].transpose() * after.local[j]);
     if (turn.norm() > kLeast) add_rotation({move.frame, j, turn, move.falloff}, edits.rotate);
   }

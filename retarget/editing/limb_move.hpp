@@ -1,6 +1,9 @@
 // A hand or a foot of the result moved by the hand: its limb follows by inverse kinematics, kept as rotations.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "retarget/editing/pose_edits.hpp"
 
 namespace understudy {
@@ -8,6 +11,11 @@ namespace understudy {
 /// The wrist or ankle that is moved when a joint is dragged: the joint itself, a foot's ankle for its ball; -1 for a
 /// joint that ends no limb.
 int limb_end(int joint);
+/// The joints that turn when a joint is moved by hand, parent first: shoulder, elbow and wrist; hip, knee, ankle and the
+/// ball where that is moved; a joint that ends no limb alone.
+std::vector<int> joints_turned_by(int joint);
+/// All of them for people: "left arm", "right leg"; of a joint that ends no limb its own label.
+std::string limb_label(int joint);
 
 /// A hand or a foot taken along at one frame; the frames around follow less and less (falloff_weight).
 struct LimbMove {

@@ -156,6 +156,21 @@ TEST_F(StudioTest, TheCropToolStepsBackNoFurtherThanItsBoxAsksAndReturns) {
   EXPECT_TRUE(same(session.view.cameras[0], moved)) << "the user's own view stays";
 }
 
+TEST_F(StudioTest, TheCropToolStepsBackForABoxThatStandsAside) {
+  Studio studio(services());
+  open_both(studio);
+  studio.wait_idle(60);
+  const Session& session = studio.session();
+  const auto distance = [&](const char* spread) {
+    studio.run("tool", {"look"});
+    studio.run("view.spread", {spread});
+    studio.run("tool", {"crop"});
+    return session.view.cameras[0].distance;
+  };
+  studio.run("view.layout", {"overlay"});
+  EXPECT_GT(distance("10"), distance("0") + 5);
+}
+
 TEST_F(StudioTest, ASideOfTheCropThatIsDraggedIsOneStepBack) {
   Studio studio(services());
   open_both(studio);
@@ -409,6 +424,25 @@ TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {
   EXPECT_LT(moved(10, LeftWrist).norm(), 1e-6f);
   EXPECT_TRUE(studio.session().document.takes[0].pose_edits.rotate.empty());
   EXPECT_THROW(studio.run("edit.move_limb", {"0", "10", "left_elbow", "0", "0.1", "0"}), Error);
+}
+
+TEST_F(StudioTest, ALimbThatWasMovedIsResetAsAWhole) {
+  Studio studio(services());
+  open_both(studio);
+  const auto& rotations = studio.session().document.takes[0].pose_edits.rotate;
+  studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0.1", "0.05", "3"});
+  ASSERT_GT(rotations.size(), 1u);
+  studio.run("edit.rotate", {"0", "12", "right_elbow", "0.2", "0", "0"});
+  studio.run("edit.remove", {"rotations_of", "0", "left_wrist"});
+  EXPECT_EQ(studio.session().history.undo_label(), "Reset left arm");
+  ASSERT_EQ(rotations.size(), 1u);
+  EXPECT_EQ(rotations[0].joint, RightElbow);
+  EXPECT_THROW(studio.run("edit.remove", {"rotations_of", "0", "left_wrist"}), Error);
+  studio.run("edit.move_limb", {"0", "10", "right_foot", "0", "0.1", "0.05", "3"});
+  studio.run("edit.rotate", {"0", "10", "right_foot", "0.2", "0", "0"});
+  studio.run("edit.remove", {"rotations_of", "0", "right_foot"});
+  EXPECT_EQ(studio.session().history.undo_label(), "Reset right leg");
+  EXPECT_EQ(rotations.size(), 1u);
 }
 
 TEST_F(StudioTest, ItIsKnownWhichFeetStandInEachFrame) {

@@ -253,6 +253,10 @@ TEST_F(LayersPanel, Cameras) {
     expect_click("layers.preset." + name, {"view.preset " + name});
   expect_click("layers.fit", {"view.fit"});
   expect_click("layers.ortho", {"view.ortho on"});
+  session.view.linked = false, session.view.active_pane = 1;
+  session.view.cameras.resize(2), session.view.cameras[1].orthographic = true;
+  expect_click("layers.ortho", {"view.ortho off"});  // of the active view
+  session.view.linked = true;
   expect_click("layers.linked", {"view.link off"});
   expect_click("layers.follow", {"view.follow off"});
   expect_drag("layers.turntable", "view.turntable ");

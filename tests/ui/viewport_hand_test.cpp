@@ -171,6 +171,51 @@ TEST_F(ViewsTest, ARightClickAtAJointOffersToTakeItsEditsBack) {
   EXPECT_FALSE(shown("menu.edit.remove.drags_of.right_ankle")) << "it has none";
 }
 
+TEST_F(ViewsTest, WithoutATakeEditsOfTheSkeletonAreTakenBackByAClick) {
+  stage.session.document.takes.clear(), stage.session.takes.clear();
+  stage.session.document.skeleton_edits = {DragEdit{10, LeftWrist, Vec3(0, 0.1f, 0), 5, false}};
+  frame(2);
+  click(seen(0, source_joint(LeftWrist)), render::MouseButton::Right);
+  frame(3);
+  click("menu.edit.remove.drags_of.left_wrist");
+  EXPECT_EQ(asked("edit.remove"), (app::Arguments{"drags_of", "left_wrist"}));
+}
+
+TEST_F(ViewsTest, InAnOverlayTheMenuIsAboutThePersonOfTheTool) {
+  stage.session.view.layout = app::Layout::Overlay, stage.session.view.overlay.spread_m = 0.8f;
+  stage.session.tool = app::Tool::Bones;
+  stage.session.document.takes[0].pose_edits.rotate = {{10, LeftShoulder, Vec3(0, 0, 0.3f), 5}};
+  frame(3);
+  const Vec3 wrist = take_joint(LeftWrist) + Vec3(0.4f, 0, 0);  // the take is right of the middle
+  click(seen(0, wrist), render::MouseButton::Right);
+  frame(3);
+  EXPECT_TRUE(shown("menu.view.weights_joint.left_wrist"));
+  click("menu.edit.remove.rotations_of.0.left_wrist");  // which takes the whole arm back
+  EXPECT_EQ(asked("edit.remove"), (app::Arguments{"rotations_of", "0", "left_wrist"}));
+  stage.session.tool = app::Tool::Joints;
+  frame(2);
+  click(seen(0, source_joint(LeftWrist) - Vec3(0.4f, 0, 0)), render::MouseButton::Right);
+  frame(3);
+  EXPECT_TRUE(shown("menu.select.joint.left_wrist"));
+  EXPECT_FALSE(shown("menu.view.weights_joint.left_wrist"));
+  EXPECT_FALSE(shown("menu.edit.remove.rotations_of.0.left_wrist"));
+}
+
+TEST_F(ViewsTest, WhetherAViewHasPerspectiveIsSaidOfItsOwnCamera) {
+  stage.session.view.linked = false;
+  stage.session.view.cameras.resize(2);
+  stage.session.view.cameras[1].orthographic = true;
+  for (const int number : {0, 1}) {
+    const auto items = view_menu_items(stage.session, {pane_of(number)});
+    const auto from =
+        std::find_if(items.begin(), items.end(), [](const MenuItem& item) { return !item.inside.empty(); });
+    ASSERT_NE(from, items.end());
+    EXPECT_EQ(from->inside.back().command, "view.ortho");
+    EXPECT_EQ(from->inside.back().checked, number == 1);
+    EXPECT_EQ(from->inside.back().arguments, app::Arguments{number == 1 ? "off" : "on"});
+  }
+}
+
 TEST_F(ViewsTest, EveryEntryOfTheMenuIsACommand) {
   const app::Studio studio{app::StudioServices{}};
   const std::function<void(const std::vector<MenuItem>&)> look = [&](const std::vector<MenuItem>& items) {

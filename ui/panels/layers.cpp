@@ -173,7 +173,7 @@ void draw_camera(const app::Session& session, PanelContext& context) {
   ButtonOptions fit;
   fit.shortcut = keys_of(context.commands, "view.fit"), fit.width = -1;
   if (button(ui, "layers.fit", "Fit", fit)) context.ask("view.fit");
-  const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
+  const bool ortho = app::active_camera(session.view).orthographic;
   SwitchGrid grid(context);
   grid.add({"layers.ortho", "Orthographic", "Turns perspective off", "view.ortho"}, ortho);
   grid.add({"layers.linked", "Linked", "Uses one camera for all views", "view.link"}, session.view.linked);

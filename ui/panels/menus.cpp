@@ -87,7 +87,7 @@ MenuItem turntable(const app::Session& session) {
 }
 
 Items view_menu(const app::Session& session) {
-  const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
+  const bool ortho = app::active_camera(session.view).orthographic;
   return {layouts(session),
           kLine,
           {"Front", "view.preset", {"front"}},

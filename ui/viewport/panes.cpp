@@ -180,9 +180,7 @@ Vec3 follow_offset(const Session& session, const PaneContent& pane) {
 }
 
 render::Camera pane_camera(const Session& session, const PaneContent& pane) {
-  const auto& cameras = session.view.cameras;
-  const app::CameraState* state = at_or_null(cameras, camera_index(session, pane));
-  const app::CameraState s = state != nullptr ? *state : cameras.empty() ? app::CameraState{} : cameras[0];
+  const app::CameraState s = app::camera_of(session.view, pane.number);
   return {s.target + follow_offset(session, pane), s.yaw, s.pitch, s.distance, s.fov, s.orthographic};
 }
 

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "retarget/base/index.hpp"
+#include "retarget/editing/limb_move.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -15,7 +16,7 @@ void add_line(Items& items) {
   items.push_back({});
 }
 
-Items view_from(const app::Session& session) {
+Items view_from(const app::Session& session, int pane) {
   Items items;
   for (const auto& [label, preset] : {std::pair("Front", "front"),
                                       {"Back", "back"},
@@ -25,7 +26,7 @@ Items view_from(const app::Session& session) {
                                       {"Bottom", "bottom"},
                                       {"Three-quarter", "three-quarter"}})
     items.push_back({label, "view.preset", {preset}});
-  const bool ortho = !session.view.cameras.empty() && session.view.cameras.front().orthographic;
+  const bool ortho = app::camera_of(session.view, pane).orthographic;
   add_line(items);
   items.push_back({"Orthographic", "view.ortho", {on_off(!ortho)}, ortho});
   return items;
@@ -50,35 +51,41 @@ Items shown_layers(const app::Session& session, bool source) {
   return items;
 }
 
-bool is_edited(const app::Session& session, const PaneContent& pane, int joint) {
-  if (pane.number == 0) {
+/// person: as app::pane_joints() numbers them.
+bool is_edited(const app::Session& session, int person, int joint) {
+  if (person == 0) {
     const auto& edits = session.document.skeleton_edits;
     return std::any_of(edits.begin(), edits.end(), [&](const SkeletonEdit& edit) {
       const auto* const drag = std::get_if<DragEdit>(&edit);
       return drag != nullptr && drag->joint == joint;
     });
   }
-  const app::Take* const take = at_or_null(session.document.takes, pane.number - 1);
+  const app::Take* const take = at_or_null(session.document.takes, person - 1);
   if (take == nullptr) return false;
+  const std::vector<int> joints = joints_turned_by(joint);
   const auto& turned = take->pose_edits.rotate;
-  return std::any_of(turned.begin(), turned.end(),
-                     [&](const RotateEdit& edit) { return edit.joint == joint; });
+  return std::any_of(turned.begin(), turned.end(), [&](const RotateEdit& edit) {
+    return std::find(joints.begin(), joints.end(), edit.joint) != joints.end();
+  });
 }
 
 void add_joint(const app::Session& session, const ViewMenuPlace& place, Items& items) {
   if (place.joint < 0) return;
+  const int person = person_of_tool(session, place.pane);
   const std::string label = joint_label(place.joint), name = joint_name(place.joint);
   const auto& trails = session.view.trail_joints;
   const bool trail = std::find(trails.begin(), trails.end(), place.joint) != trails.end();
   add_line(items);
   items.push_back({"Select " + label, "select.joint", {name}, session.selected_joint == place.joint});
   items.push_back({"Trail of " + label, "view.trail_joint", {name, on_off(!trail)}, trail});
-  if (!place.pane.source) items.push_back({"Weights of " + label, "view.weights_joint", {name}});
-  if (!is_edited(session, place.pane, place.joint)) return;
-  const app::Arguments which =
-      place.pane.number == 0 ? app::Arguments{"drags_of", name}
-                             : app::Arguments{"rotations_of", std::to_string(place.pane.number - 1), name};
-  items.push_back({"Reset " + label, "edit.remove", which});
+  if (person > 0) items.push_back({"Weights of " + label, "view.weights_joint", {name}});
+  if (shows_rest(session, place.pane) || !is_edited(session, person, place.joint)) return;
+  if (person == 0)
+    items.push_back({"Reset " + label, "edit.remove", {"drags_of", name}});
+  else
+    items.push_back({"Reset " + limb_label(place.joint),
+                     "edit.remove",
+                     {"rotations_of", std::to_string(person - 1), name}});
 }
 
 }  // namespace
@@ -87,7 +94,7 @@ std::vector<MenuItem> view_menu_items(const app::Session& session, const ViewMen
   const PaneContent& pane = place.pane;
   Items items = {{"Fit", "view.fit"}};
   if (!place.centred.empty()) items.push_back({"Centre here", "view.camera_state", place.centred});
-  items.push_back({"View from", "", {}, false, view_from(session)});
+  items.push_back({"View from", "", {}, false, view_from(session, pane.number)});
   items.push_back({"Reset camera", "view.reset"});
   add_line(items);
   const bool both = pane.source && !pane.takes.empty();
