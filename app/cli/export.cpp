@@ -310,7 +310,7 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
       ->check(CLI::Range(0.0, 1000.0));
   command.add_flag("--in-place", options.file.in_place, "leaves out the path across the floor");
   command.add_flag("--root-motion", options.file.root_motion,
-                   "a bone above all others carries the path, as engines take root motion from");
+                   "adds a root bone that carries the path across the floor, as game engines expect");
   command.add_flag("--t-pose-clip", options.file.t_pose_clip, "the first clip is the T-pose");
   command.add_flag("--keep-clips", options.file.keep_clips, "keeps the file's own animations");
   command.add_option("--frames", options.frames, "at most this many frames of each source")
@@ -339,14 +339,14 @@ Action declare_export(CLI::App& command) {
   command.add_option("--take", options->takes,
                      "takes of the document, by name or number from 1; each becomes a clip");
   command.add_flag("--all-takes", options->all_takes,
-                   "a file of each take of the document, called like it, in the folder --out (default: GLB)");
+                   "a file of each take of the document, named after it, in the folder --out (default: GLB)");
   command.add_option("--source", options->sources, "motions to perform; each becomes a clip");
   command.add_option("--target", options->target.path,
                      "a character or an SMPL-format body: " + format_names(kTarget));
   command.add_option("--out", options->out, "the file, or the folder of a sequence");
   command.add_flag("--print-map", options->print_map, "prints which bone is which joint, and stops");
   command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");
-  command.add_option("--report", options->report, "file size and differences from the screen, as JSON");
+  command.add_option("--report", options->report, "file size and differences from the viewport, as JSON");
   add_source_options(command, options->source);
   add_target_options(command, options->target);
   add_file_options(command, *options);

@@ -116,7 +116,8 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
   std::map<std::string, RootMode> roots;
   for (const char* name : kRootNames) roots.emplace(name, static_cast<RootMode>(roots.size()));
   command
-      .add_option("--path,--root", method.path, "over the floor: scaled by leg length, original, in-place")
+      .add_option("--path,--root", method.path,
+                  "path across the floor: scaled by leg length, original, in-place")
       ->transform(CLI::CheckedTransformer(roots, CLI::ignore_case));
   for (const MethodSwitch& one : kSwitches) {
     std::string names = "!--no-" + dashed(one.name);

@@ -12,14 +12,14 @@ const std::vector<ExportPreset>& export_presets() {
       {"three", "three.js", "GLTFLoader reads 4 bones per vertex; fewer keys make a small download.", "glb",
        4, 0, 0.5f, false, false},
       {"unity", "Unity",
-       "Its glTF importers read 4 bones per vertex, morph targets are blend shapes, a root bone has the "
-       "path.",
+       "Its glTF importers read 4 bones per vertex. Morph targets become blend shapes, and a root bone "
+       "carries the path.",
        "glb", 4, 8, 0, false, true},
       {"unreal", "Unreal",
-       "Reads 8 bones per vertex and morph targets, takes root motion from a root bone, reduces keys itself.",
+       "Reads 8 bones per vertex and morph targets, takes root motion from a root bone and reduces keys.",
        "glb", 8, 8, 0, false, true},
       {"blender", "Blender",
-       "Reads any number of bones per vertex; clips, the T-pose too, are actions, morph targets shape keys.",
+       "Reads any number of bones per vertex. Clips and the T-pose become actions, morph targets shape keys.",
        "glb", 8, 16, 0, true, false}};
   return presets;
 }

@@ -16,7 +16,7 @@ struct Method {
   bool repair_swaps = true, smooth_joints = true, fix_lengths = true;  ///< of JointFilterOptions
   bool lock_feet = true;                                               ///< standing feet do not slide
   bool hand_contacts = true;                                           ///< hand contacts are kept
-  RootMode path = RootMode::Scaled;                                    ///< over the floor
+  RootMode path = RootMode::Scaled;                                    ///< across the floor
   float stride = 1, hip_height = 0, arm_reach = 0;                     ///< of the target, see kProportions
 };
 
@@ -33,14 +33,14 @@ constexpr Proportion kProportions[] = {
      &Method::stride,
      {0.25f, 3},
      "Stride",
-     "How long the steps and a scaled path are: 1 as the leg lengths give, 2 twice as long",
+     "Length of the steps and of a scaled path: 1 follows the leg lengths, 2 doubles it",
      "\u00d7 %.2f"},
     {"hip_height",
      &Method::hip_height,
      {-0.5f, 0.5f},
      "Hip height",
-     "Metres by which the pelvis is raised, as far as the legs reach; below 0 lowered; the feet stay in "
-     "place",
+     "Raises the pelvis by this many metres, as far as the legs reach; negative values lower it. The feet "
+     "stay in place",
      "%.3f m"},
     {"arm_reach",
      &Method::arm_reach,

@@ -53,7 +53,7 @@ void RetargetedSource::check_used() const {
   if (unrecognised_ == 0 && doubt_.empty()) return;
   std::string sentence = name_ + ": ";
   if (unrecognised_ > 0)
-    sentence += "nobody is recognised in " + std::to_string(unrecognised_) + " of " +
+    sentence += "no person recognised in " + std::to_string(unrecognised_) + " of " +
                 std::to_string(frames_) + " frames";
   if (!doubt_.empty()) sentence += (unrecognised_ > 0 ? ", and it " : "") + doubt_;
   log::warn(sentence + advice);

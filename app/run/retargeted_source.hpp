@@ -30,7 +30,7 @@ class RetargetedSource {
   std::optional<RetargetedFrame> next(const std::optional<Joints>& known = {});
   int64_t frames() const { return frames_; }
   int64_t flagged() const { return flagged_; }
-  /// At the end: warns, in one sentence that names the options, where nobody is recognised in frames that have points.
+  /// At the end: warns, in one sentence that names the options, where no person is recognised in frames that have points.
   /// Throws Error naming the source where all frames are flagged.
   void check_used() const;
 

@@ -86,7 +86,7 @@ void add_skeleton_edits(Commands& commands) {
                       edit.frame = frame_argument(c, 0);
                       edit.joint = c.joint(1);
                       c.label = "Drag " + joint_label(edit.joint);
-                      edit.offset = c.vector(2, "way");
+                      edit.offset = c.vector(2, "offset");
                       edit.falloff = falloff_argument(c, 5);
                       edit.with_children = c.has("children", 5);
                       c.document.skeleton_edits.push_back(edit);
@@ -105,12 +105,11 @@ void move_limb(Call& c) {
   LimbMove move;
   move.frame = frame_argument(c, 1);
   move.joint = c.joint(2);
-  US_CHECK(limb_end(move.joint) >= 0, "the ", joint_label(move.joint),
-           " ends no limb: a wrist, an ankle or a foot does");
-  const bool is_foot = limb_end(move.joint) == LeftAnkle || limb_end(move.joint) == RightAnkle;
-  c.label = std::string("Move ") + (kJointNames[move.joint][0] == 'l' ? "left " : "right ") +
-            (is_foot ? "foot" : "hand");
-  move.way = c.vector(3, "way");
+  US_CHECK(limb_end(move.joint) >= 0, joint_label(move.joint),
+           " cannot be moved: choose a wrist, an ankle or a foot");
+  c.label = std::string("Move ") + (kMirror[move.joint] > move.joint ? "left " : "right ") +
+            (is_leg(move.joint) ? "foot" : "hand");
+  move.offset = c.vector(3, "offset");
   move.falloff = falloff_argument(c, 6);
   US_CHECK(state.target && move.frame < ssize(state.performed), "frame ", move.frame,
            " is not performed yet");

@@ -80,7 +80,7 @@ void Studio::roll_back_source() {
   });
 }
 
-/// Where nobody is recognised in the first frames, once for each way in which the scan is cleaned.
+/// Where no person is recognised in the first frames, once for each way in which the scan is cleaned.
 void Studio::offer_clean_up(const std::string& doubt) {
   constexpr std::ptrdiff_t kFewest = 3, kFirst = 60;  // frames
   Background& b = *background_;

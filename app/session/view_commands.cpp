@@ -252,7 +252,7 @@ void add_overlay(Commands& commands) {
         float* const shares[] = {&look.scan, &look.skeletons, &look.results};
         *shares[c.choice(0, "layer", {"scan", "skeletons", "results"})] = c.clamped(1, "opacity", 0.f, 1.f);
       });
-  commands.add({"view.spread", "Spread of the overlay", "METRES: between two people, 0 on each other"},
+  commands.add({"view.spread", "Spread of the overlay", "METRES: between two people, 0 in one place"},
                [](Call& c) { c.session.view.overlay.spread_m = c.clamped(0, "distance", 0.f, 10.f); });
 }
 

@@ -234,7 +234,7 @@ void check_stance(PreparedCharacter& c, const CharacterOptions& options) {
 void check_person(const PreparedCharacter& c, const SideViews& seen, const CharacterOptions& options) {
   if (options.not_a_person != NotAPerson::Refuse || c.doubt.empty() || !shows_nobody(seen)) return;
   throw NotAPersonError(c.character.called() +
-                        ": does not look like a person: nobody is recognised in it, and " + c.doubt);
+                        ": does not look like a person: no person recognised in it, and " + c.doubt);
 }
 
 void note_turns(PreparedCharacter& c) {

@@ -22,7 +22,7 @@ constexpr const char* kOurSkin = "22 joints";
 /// What happens to a character that does not look like a person.
 enum class NotAPerson {
   RefuseClear,  ///< refused where no person can be so, else a warning: of documents of before, and of cases
-  Refuse,       ///< refused where it is doubtful and nobody is recognised in it, too
+  Refuse,       ///< refused where it is doubtful and no person is recognised in it, too
   Use           ///< used all the same, with a warning
 };
 constexpr Names<3> kNotAPersonNames{"refuse-clear", "refuse", "use"};

@@ -31,7 +31,7 @@ std::string refusal(const Stance& stance);
 std::string implausibility(const Stance& stance);
 
 /// Why its shape alone leaves doubt; empty: none. Weaker than implausibility(): people with their legs far apart and
-/// wide gowns have it, too, so it counts only where nobody is recognised in the shape.
+/// wide gowns have it, too, so it counts only where no person is recognised in the shape.
 std::string doubt(const Stance& stance);
 
 /// What the extractor predicts for a body, y up, that is turned by a quarter more each time.

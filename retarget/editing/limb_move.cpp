@@ -35,6 +35,10 @@ int limb_end(int joint) {
   }
 }
 
+bool is_leg(int joint) {
+  return limb_end(joint) == LeftAnkle || limb_end(joint) == RightAnkle;
+}
+
 std::vector<int> joints_turned_by(int joint) {
   const int end = limb_end(joint);
   if (end < 0) return {joint};
@@ -46,16 +50,15 @@ std::vector<int> joints_turned_by(int joint) {
 std::string limb_label(int joint) {
   const int end = limb_end(joint);
   if (end < 0) return joint_label(joint);
-  return std::string(end == LeftWrist || end == LeftAnkle ? "left " : "right ") +
-         (end == LeftAnkle || end == RightAnkle ? "leg" : "arm");
+  return std::string(kMirror[end] > end ? "left " : "right ") + (is_leg(end) ? "leg" : "arm");
 }
 
-Pose moved_limb(const Joints& rest, int joint, const Vec3& way, Pose pose) {
+Pose moved_limb(const Joints& rest, int joint, const Vec3& offset, Pose pose) {
   const int end = limb_end(joint);
   US_CHECK(end >= 0, "joint ", joint, " ends no limb");
-  US_CHECK(way.allFinite(), "a limb is moved by a distance that is not finite");
-  const Vec3 to = forward_kinematics(rest, pose).joints.row(end).transpose() + way;
-  if (end == LeftAnkle || end == RightAnkle)
+  US_CHECK(offset.allFinite(), "a limb is moved by a distance that is not finite");
+  const Vec3 to = forward_kinematics(rest, pose).joints.row(end).transpose() + offset;
+  if (is_leg(end))
     place_ankle(rest, end - LeftAnkle, to, pose);
   else
     place_wrist(rest, end - LeftWrist, to, pose);
@@ -66,7 +69,7 @@ void add_limb_move(const LimbMove& move, const Pose& performed, const Joints& re
   constexpr float kLeast = 1e-4f;  // radians
   const Mat3 heading = rotation_about_y(edits.turn ? edits.turn->yaw_deg * kPi / 180 : 0);
   const Pose before = rotated(edits.rotate, move.frame, performed);
-  const Pose after = moved_limb(rest, move.joint, heading.transpose() * move.way, before);
+  const Pose after = moved_limb(rest, move.joint, heading.transpose() * move.offset, before);
   for (const int j : joints_turned_by(move.joint)) {
     const Vec3 turn = rotation_to_axis_angle(before.local[j].transpose() * after.local[j]);
     if (turn.norm() > kLeast) add_rotation({move.frame, j, turn, move.falloff}, edits.rotate);

@@ -11,6 +11,8 @@ namespace understudy {
 /// The wrist or ankle that is moved when a joint is dragged: the joint itself, a foot's ankle for its ball; -1 for a
 /// joint that ends no limb.
 int limb_end(int joint);
+/// Whether it ends a leg.
+bool is_leg(int joint);
 /// The joints that turn when a joint is moved by hand, parent first: shoulder, elbow and wrist; hip, knee, ankle and the
 /// ball where that is moved; a joint that ends no limb alone.
 std::vector<int> joints_turned_by(int joint);
@@ -20,14 +22,14 @@ std::string limb_label(int joint);
 /// A hand or a foot taken along at one frame; the frames around follow less and less (falloff_weight).
 struct LimbMove {
   int frame = 0;
-  int joint = LeftWrist;    ///< one with a limb_end()
-  Vec3 way = Vec3::Zero();  ///< metres, world
+  int joint = LeftWrist;       ///< one with a limb_end()
+  Vec3 offset = Vec3::Zero();  ///< metres, world
   int falloff = 5;
 };
 
-/// The pose with the limb's end moved that way, or as far as the limb reaches: the limb keeps the plane it bends in, its
+/// The pose with the limb's end moved by an offset, or as far as the limb reaches: the limb keeps the plane it bends in, its
 /// end keeps its world rotation, nothing else moves. Throws Error for a joint that ends no limb.
-Pose moved_limb(const Joints& rest, int joint, const Vec3& way, Pose pose);
+Pose moved_limb(const Joints& rest, int joint, const Vec3& offset, Pose pose);
 
 /// Adds to the rotations what moves the limb in the result as shown, after all other edits but smoothing and pins, which
 /// come later and may take some of it back. `performed`: the frame's pose before any edit. Rotations of that frame and

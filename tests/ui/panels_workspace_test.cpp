@@ -591,8 +591,18 @@ TEST_F(Exporting, SaysWhatTheAnimationIsToBe) {
 }
 
 TEST_F(Exporting, TakesOfOneTargetBecomeClips) {
+  const auto choose_takes = [&](const char* which) {
+    click("export.takes");
+    frame(2);
+    click(which);
+    frame(2);
+  };
   open("export");
+  click("export.takes");
+  frame(2);
   EXPECT_FALSE(shown("export.takes.2"));  // the other take is of another target
+  click("export.takes.0");
+  frame(2);
   click("export.cancel");
   const app::Take adult = session.document.takes[0];
   for (const char* name : {"slow", "fast", "fast"}) {
@@ -601,8 +611,7 @@ TEST_F(Exporting, TakesOfOneTargetBecomeClips) {
     session.takes.push_back(session.takes[0]);
   }
   open("export");
-  click("export.takes.2");
-  frame(2);
+  choose_takes("export.takes.2");
   EXPECT_FALSE(shown("export.clip.1"));
   click("export.save");
   const std::string run = "export.run 0 " + (folder / "adult.glb").string() + " format=glb";
@@ -619,13 +628,19 @@ TEST_F(Exporting, TakesOfOneTargetBecomeClips) {
   frame(2);
   click("export.format.2");  // BVH holds one motion
   frame(2);
+  click("export.takes");
+  frame(2);
   EXPECT_FALSE(shown("export.takes.2"));
+  click("export.takes.0");
+  frame(2);
   click("export.save");
   EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.bvh").string() + " format=bvh"});
 }
 
 TEST_F(Exporting, AllTakesGoIntoAFolderAFileEach) {
   open("export");
+  click("export.takes");
+  frame(2);
   click("export.takes.1");
   frame(2);
   EXPECT_FALSE(shown("export.take")) << "there is none to choose";
@@ -649,12 +664,14 @@ TEST_F(Exporting, AllTakesGoIntoAFolderAFileEach) {
   click("export.save");
   EXPECT_EQ(take_log(), Lines{app::join_line("export.all", {(folder / "mine").string(), "format=csv"})});
   open("export");
+  click("export.takes");
+  frame(2);
   click("export.takes.0");
   frame(2);
   EXPECT_TRUE(shown("export.take"));
 }
 
-TEST_F(Exporting, APresetSetsTheOptionsAndAChangeMakesThemOnesOwn) {
+TEST_F(Exporting, APresetSetsTheOptionsAndAChangeMakesThemCustom) {
   open("export");
   EXPECT_FALSE(shown("export.preset.words"));
   click("export.format");
@@ -667,17 +684,27 @@ TEST_F(Exporting, APresetSetsTheOptionsAndAChangeMakesThemOnesOwn) {
     click(preset);
     frame(2);
   };
-  choose("export.preset.3");
+  choose("export.preset.2");
   EXPECT_TRUE(shown("export.preset.words"));
   click("export.save");
   EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() +
                               " format=glb root_motion=on influences=8 morphs=8"})
       << "no BVH: that has no vertices";
   open("export");
-  choose("export.preset.1");
+  choose("export.preset.0");
+  click("export.preset");
+  frame(2);
+  EXPECT_FALSE(shown("export.preset.4")) << "Custom is no choice where a preset fits";
+  click("export.preset.0");
+  frame(2);
   click("export.morphs.1");
   frame(2);
   EXPECT_FALSE(shown("export.preset.words")) << "no preset has these";
+  click("export.preset");
+  frame(2);
+  EXPECT_TRUE(shown("export.preset.4"));
+  click("export.preset.4");
+  frame(2);
   click("export.save");
   EXPECT_EQ(take_log(),
             Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb morphs=4 reduce=0.5"});

@@ -94,20 +94,21 @@ void follow_suffix(const app::Session& session, ExportState& state, const std::s
   state.path = path.string() + suffix;
 }
 
-/// Options that a program reads whole; what is chosen otherwise is one's own.
+/// Options that a program reads whole; "Custom" where they are no preset's.
 void draw_preset(const app::Session& session, Ui& ui, ExportState& state) {
   const auto& presets = app::export_presets();
-  std::vector<std::string> labels = {"Own"}, tips = {"The options as they are chosen below"};
+  std::vector<std::string> labels, tips;
   for (const app::ExportPreset& preset : presets)
     labels.push_back(preset.label), tips.push_back(preset.words);
   const app::ExportFormat* const format = format_of(state);
   const app::ExportPreset* const now =
       format != nullptr ? app::preset_of(*format, state.choice.file) : nullptr;
-  int chosen = now != nullptr ? 1 + static_cast<int>(now - presets.data()) : 0;
+  if (now == nullptr) labels.push_back("Custom"), tips.push_back("The options chosen below");
+  int chosen = static_cast<int>(now != nullptr ? now - presets.data() : ssize(presets));
   const std::string before = suffix_of(session, state);
-  if (choice_row(ui, {"export.preset", "Preset", "What another program reads", "", tips}, labels, chosen) &&
-      chosen > 0) {
-    const app::ExportPreset& preset = presets[chosen - 1];
+  row(ui, "Preset", "What another program reads");
+  if (dropdown(ui, "export.preset", labels, chosen, tips)) {
+    const app::ExportPreset& preset = presets[chosen];
     app::apply(preset, state.choice.file);
     const app::ExportFormat& wanted = app::export_format(preset.format, "");
     if (format == nullptr || !format->is_character)
@@ -122,7 +123,7 @@ void draw_preset(const app::Session& session, Ui& ui, ExportState& state) {
 void draw_format(const app::Session& session, Ui& ui, ExportState& state) {
   std::vector<std::string> labels;
   for (const app::ExportFormat& info : app::export_formats()) labels.push_back(info.label);
-  labels.push_back("Figures");
+  labels.push_back("Metrics");
   const std::string before = suffix_of(session, state);
   if (choice_row(ui, {"export.format", "Format"}, labels, state.format))
     follow_suffix(session, state, before);
@@ -242,17 +243,15 @@ void draw_take_rows(const app::Session& session, PanelContext& context, ExportSt
   const app::ExportFormat* const format = format_of(state);
   const bool can_be_clips = format != nullptr && format->is_character && count_of_clips(session) > 1;
   if (takes.size() > 1) {
-    std::vector<std::string> choices = {"This one", "File each"};
+    std::vector<std::string> choices = {"This take", "One file per take"};
     if (can_be_clips) choices.push_back("One file");
     int which = state.takes == ExportTakes::Clips && !can_be_clips ? 0 : static_cast<int>(state.takes);
     const std::string before = suffix_of(session, state);
-    const Control control{"export.takes",
-                          "Takes",
-                          "Which takes are exported",
-                          "",
-                          {"The take below alone", "All takes, each in a file that is called like it",
-                           "All takes of this target, as clips of one file"}};
-    if (choice_row(ui, control, choices, which)) state.takes = static_cast<ExportTakes>(which);
+    row(ui, "Takes", "Which takes are exported");
+    if (dropdown(ui, "export.takes", choices, which,
+                 {"The take below alone", "All takes, each in a file named after it",
+                  "All takes of this target, as clips of one file"}))
+      state.takes = static_cast<ExportTakes>(which);
     follow_suffix(session, state, before);
   }
   if (has_many_files(session, state)) return;
@@ -279,7 +278,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     if (format->is_character)
       toggle_row(ui,
                  {"export.root_motion", "Root motion",
-                  "A bone above all others carries the path over the floor, as game engines want it"},
+                  "Adds a root bone that carries the path across the floor, as game engines expect"},
                  state.choice.file.root_motion);
     const std::string frames = has_many_files(session, state)
                                    ? std::to_string(session.takes.size()) + " takes"

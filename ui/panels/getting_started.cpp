@@ -60,37 +60,32 @@ struct Card {
 constexpr std::array<Card, app::kGettingStartedCards> kCards = {{
     {"Open",
      "Click a sample, or open a scan or motion and a character to perform it. You can also drop files on "
-     "this "
-     "window.",
+     "this window.",
      [](const app::Session&) {
        return MarkNames{"start.sample.0", "start.open_source", "menu.file", "menu"};
      },
      has_opened},
     {"Look",
      "Drag in a view to turn it; the wheel zooms, the middle button moves. Space plays the motion. F1 "
-     "explains "
-     "whatever the pointer is on.",
+     "explains whatever the pointer is on.",
      [](const app::Session&) {
        return MarkNames{"view.0", "views"};
      },
      has_turned},
     {"Fix",
      "Where a joint was found in the wrong place, choose this tool (W) and drag the joint in the source's "
-     "view. The "
-     "frames around follow, and the result with them.",
+     "view. The frames around follow, and the result with them.",
      fix_widgets, has_fixed},
     {"Compare",
      "Compare with\u2026 adds a second take, made with another method. Add target\u2026 lets another body "
-     "perform the "
-     "same motion. Both stand side by side.",
+     "perform the same motion. Both stand side by side.",
      [](const app::Session&) {
        return MarkNames{"menu.compare.add", "method.compare", "take.add", "menu.target", "menu"};
      },
      has_compared},
     {"Export",
      "Export\u2026 (Ctrl+E) writes an animated character that any engine opens, or BVH and other formats. "
-     "Pictures and "
-     "videos are there, too.",
+     "Pictures and videos are there, too.",
      [](const app::Session&) {
        return MarkNames{"menu.dialog.open.export", "menu.file", "menu"};
      },
@@ -183,7 +178,7 @@ void draw_words(PanelContext& context, const Card& card, int number) {
   const bool is_last = number == app::kGettingStartedCards;
   ButtonRow buttons(2);
   ButtonOptions skip, next;
-  skip.look = ButtonLook::Quiet, skip.tooltip = "Ends this for good; it is in the menu Help";
+  skip.look = ButtonLook::Quiet, skip.tooltip = "Hides the cards. Help > Getting started shows them again";
   next.look = ButtonLook::Main;
   if (buttons.add(ui, "guide.skip", "Skip", skip)) context.ask("help.getting_started", {"off"});
   if (buttons.add(ui, "guide.next", is_last ? "Done" : "Next", next)) ask_for_card(context, number + 1);

@@ -32,9 +32,10 @@ void warn(Ui& ui, const std::string& sentence) {
 void draw_height(PanelContext& context, const std::string& group, const ImportOptions& import,
                  const std::string& take) {
   Ui& ui = context.ui;
-  const Control control{group + ".height", "Height",
-                        "Height in metres; auto: from the file's units, or 1.7 m where those make no person",
-                        group + ".height " + take};
+  const Control control{
+      group + ".height", "Height",
+      "Height in metres; auto: from the file's units, or 1.7 m where that gives no human height",
+      group + ".height " + take};
   row(ui, control.label, control.explanation);
   const float button = import.height ? ImGui::GetFrameHeight() + ui.px(4) : 0;
   ImGui::BeginChild((control.name + ".field").c_str(),
@@ -255,7 +256,7 @@ void draw_rest_pose(const app::Session& session, const app::Take& take, PanelCon
       context,
       {"target.rest_pose", edited ? "Done" : "Edit rest pose",
        edited ? "Back to the result"
-              : "Turn bones so that the target stands as the source does in T-pose, say where its arms droop",
+              : "Turn bones until the target stands like the source's T-pose, for example when its arms hang",
        edited ? "tool look" : "tool rest-pose"},
       edited || (state != nullptr && state->target != nullptr));
   buttons.ask(context,
@@ -303,11 +304,11 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
 void draw_work(const app::Session& session, PanelContext& context) {
   ButtonRow buttons(2);
   if (session.paused)
-    buttons.ask(context, {"work.resume", "Continue", "Processes the remaining frames"});
+    buttons.ask(context, {"work.resume", "Resume", "Processes the remaining frames"});
   else
     buttons.ask(context, {"work.pause", "Pause", "Stops processing frames until you resume"},
                 possible(session, "work.pause"));
-  buttons.ask(context, {"work.restart", "Again", "Computes every frame again"},
+  buttons.ask(context, {"work.restart", "Recompute", "Computes every frame again"},
               possible(session, "work.restart"));
 }
 

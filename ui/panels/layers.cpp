@@ -100,16 +100,15 @@ void draw_overlay_rows(const app::Session& session, PanelContext& context) {
   const app::OverlayLook usual;
   const auto opacity = [&](const char* layer, const char* label, float now, float at_first) {
     const std::string name = layer;
-    ask_number(context,
-               {"layers.opacity." + name, label, "How solid it is: 0 leaves it out", "view.opacity " + name},
-               now, {0, 1, 0.005f, "%.2f", at_first, true});
+    ask_number(context, {"layers.opacity." + name, label, "Opacity: 0 hides it", "view.opacity " + name}, now,
+               {0, 1, 0.005f, "%.2f", at_first, true});
   };
   opacity("scan", "Scan", look.scan, usual.scan);
   opacity("skeletons", "Skeletons", look.skeletons, usual.skeletons);
   opacity("results", "Results", look.results, usual.results);
   ask_number(
       context,
-      {"layers.spread", "Spread", "How far apart the people stand; 0 puts them on each other", "view.spread"},
+      {"layers.spread", "Spread", "How far apart the people stand; 0 puts them in one place", "view.spread"},
       look.spread_m, {0, 10, 0.01f, "%.2f m", 0, true});
 }
 
@@ -187,7 +186,7 @@ void draw_background(const app::View& view, PanelContext& context) {
   Ui& ui = context.ui;
   int chosen = static_cast<int>(view.backdrop);
   row(ui, "Background", "What is behind everything; pictures can leave it out");
-  if (dropdown(ui, "layers.background", {"Theme", "White", "Black", "Own colour"}, chosen))
+  if (dropdown(ui, "layers.background", {"Theme", "White", "Black", "Custom"}, chosen))
     context.ask("view.background", {app::kBackdropNames[static_cast<size_t>(chosen)]});
   if (view.backdrop != app::Backdrop::Own) return;
   row(ui, "Colour", "Of the background");

@@ -24,8 +24,7 @@ const std::vector<Panel>& panels() {
        "How good the current take is, over time and as a whole, and how long each stage took.", draw_metrics},
       {"timeline", "Timeline", "Alt+T", Dock::Timeline, true,
        "The frames and the edits made at them. Thin bars show when the left and the right foot are held on "
-       "the "
-       "floor. Red frames cannot be trusted: rest the pointer on one to read why.",
+       "the floor. Red frames cannot be trusted: rest the pointer on one to read why.",
        draw_timeline},
       {"log", "Log", "Alt+L", Dock::Below, false, "All messages since the start, the newest last.", draw_log},
       {"bad_frames", "Bad frames", "Alt+B", Dock::Below, false,

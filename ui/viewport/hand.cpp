@@ -38,10 +38,6 @@ app::Arguments& operator<<(app::Arguments& words, const Vec3& v) {
   return words;
 }
 
-bool is_leg(int joint) {
-  return limb_end(joint) == LeftAnkle || limb_end(joint) == RightAnkle;
-}
-
 int axis_of(GizmoHandle handle) {
   return std::clamp(static_cast<int>(handle) - static_cast<int>(GizmoHandle::AxisX), 0, 2);
 }

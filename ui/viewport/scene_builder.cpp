@@ -87,7 +87,7 @@ class Builder {
   void set_background();
   Vec3 aside_of(int person) const { return aside(session_, in_.pane, person); }
   /// The points where the person stands; `key` of the memory.
-  SharedPoints standing(SharedPoints points, int person, int key);
+  SharedPoints displaced(SharedPoints points, int person, int key);
   /// The colour behind everything, for what is drawn faintly.
   Vec3 air() const { return (out_.scene.background.top + out_.scene.background.bottom) / 2; }
   const SurfaceColours& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
@@ -131,7 +131,7 @@ void Builder::add_unposed() {
   out_.scene.skeletons.push_back(render::skeleton_view(in_.preview.take_joints.value_or(joints)));
 }
 
-SharedPoints Builder::standing(SharedPoints points, int person, int key) {
+SharedPoints Builder::displaced(SharedPoints points, int person, int key) {
   const Vec3 offset = aside_of(person);
   if (offset.isZero()) return points;
   SurfaceColours& kept = memory_[key];
@@ -159,7 +159,7 @@ void Builder::add_scan() {
     const auto& scan = in_.pictures.scan;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;
-    view.vertices = standing(part_of(scan, scan->mesh.vertices), 0, kScanAside);
+    view.vertices = displaced(part_of(scan, scan->mesh.vertices), 0, kScanAside);
     view.faces = part_of(scan, scan->mesh.faces);
     view.normals = part_of(scan, scan->normals);
     view.colors = made.colors->rows() > 0 ? made.colors : SharedPoints(part_of(scan, scan->mesh.colors));
@@ -194,7 +194,7 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
     return;
   const Mesh& mesh = target->mesh;
   render::MeshView view;
-  view.vertices = standing(part_of(posed, posed->vertices), k + 1, ghost < 0 ? ghost : kFirstTakeAside - k);
+  view.vertices = displaced(part_of(posed, posed->vertices), k + 1, ghost < 0 ? ghost : kFirstTakeAside - k);
   view.faces = part_of(target, mesh.faces), view.normals = part_of(posed, posed->normals);
   view.color = take_color(k), view.opacity = opacity;
   view.wireframe = session_.view.take.wireframe && ghost == 0;
@@ -238,7 +238,7 @@ void Builder::add_ghosts() {
     if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
       const float spacing = ghost.scan->spacing > 0 ? ghost.scan->spacing : render::PointsView().radius;
       render::MeshView view;
-      view.vertices = standing(part_of(ghost.scan, ghost.scan->mesh.vertices), 0, key - 1);
+      view.vertices = displaced(part_of(ghost.scan, ghost.scan->mesh.vertices), 0, key - 1);
       view.normals = part_of(ghost.scan, ghost.scan->normals);
       view.color = 0.75f * air() + 0.25f * kScanColor;
       add_surface(std::move(view), true, 0.6f * spacing);
@@ -279,7 +279,7 @@ void Builder::add_cropped_away() {
   const auto& scan = in_.pictures.scan;
   if (session_.tool != app::Tool::Crop || scan == nullptr || scan->cropped_away.rows() == 0) return;
   render::MeshView view;
-  view.vertices = standing(part_of(scan, scan->cropped_away), 0, kCroppedAway);
+  view.vertices = displaced(part_of(scan, scan->cropped_away), 0, kCroppedAway);
   view.color = 0.72f * air() + 0.28f * kScanColor;
   add_surface(std::move(view), true, 0.6f * scan->spacing);
 }

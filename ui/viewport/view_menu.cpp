@@ -99,11 +99,11 @@ std::vector<MenuItem> view_menu_items(const app::Session& session, const ViewMen
   add_line(items);
   const bool both = pane.source && !pane.takes.empty();
   if (pane.source)
-    items.push_back({both ? "Show of the source" : "Show", "", {}, false, shown_layers(session, true)});
+    items.push_back({both ? "Source layers" : "Layers", "", {}, false, shown_layers(session, true)});
   if (!pane.takes.empty())
-    items.push_back({both ? "Show of the takes" : "Show", "", {}, false, shown_layers(session, false)});
+    items.push_back({both ? "Result layers" : "Layers", "", {}, false, shown_layers(session, false)});
   if (session.view.layout != app::Layout::Single && !both)
-    items.push_back({"This view alone", "view.layout", {"single"}});
+    items.push_back({"Only this view", "view.layout", {"single"}});
   if (session.view.layout != app::Layout::SideBySide)
     items.push_back({"Side by side", "view.layout", {"side-by-side"}});
   add_joint(session, place, items);

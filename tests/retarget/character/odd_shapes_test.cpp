@@ -273,8 +273,8 @@ TEST(OddShapes, WhatIsNoPersonIsUsedOnlyWhereToldSo) {
   Character hand = bare();
   for (CharacterPart& part : hand.parts) part.vertices *= 0.13f;  // 22 cm
   const std::pair<Character, std::string> strangers[] = {
-      {character_of_mesh(horse(), "horse"), "nobody is recognised in it, and its feet are "},
-      {hand, "nobody is recognised in it, and its size is no person's in any unit"},
+      {character_of_mesh(horse(), "horse"), "no person recognised in it, and its feet are "},
+      {hand, "no person recognised in it, and its size is no person's in any unit"},
       {character_of_mesh(cat(), "cat"), "does not look like a person: it is "}};
   BlindExtractor blind;
   KnownExtractor known(made_joints({}));

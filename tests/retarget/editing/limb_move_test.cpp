@@ -29,11 +29,11 @@ struct LimbStage {
 
 TEST(LimbMove, BringsTheHandThereAndTheFramesAroundPartOfTheWay) {
   LimbStage stage;
-  const Vec3 way(0.03f, 0.12f, 0.08f);
-  stage.move({30, LeftWrist, way, 5});
-  EXPECT_LT((stage.moved(30, LeftWrist) - way).norm(), 3e-3f);
-  EXPECT_GT(stage.moved(33, LeftWrist).norm(), 0.3f * way.norm());
-  EXPECT_LT(stage.moved(33, LeftWrist).norm(), 0.7f * way.norm());
+  const Vec3 offset(0.03f, 0.12f, 0.08f);
+  stage.move({30, LeftWrist, offset, 5});
+  EXPECT_LT((stage.moved(30, LeftWrist) - offset).norm(), 3e-3f);
+  EXPECT_GT(stage.moved(33, LeftWrist).norm(), 0.3f * offset.norm());
+  EXPECT_LT(stage.moved(33, LeftWrist).norm(), 0.7f * offset.norm());
   EXPECT_LT(stage.moved(36, LeftWrist).norm(), 1e-5f);
   EXPECT_LT(stage.moved(24, LeftWrist).norm(), 1e-5f);
 }
@@ -49,10 +49,10 @@ TEST(LimbMove, LeavesTheRestOfTheBodyAndTheHandsRotation) {
 
 TEST(LimbMove, OfAFootsBallTakesTheWholeFoot) {
   LimbStage stage;
-  const Vec3 way(0, 0.1f, 0.06f);
-  stage.move({12, LeftFoot, way, 3});
-  EXPECT_LT((stage.moved(12, LeftAnkle) - way).norm(), 3e-3f);
-  EXPECT_LT((stage.moved(12, LeftFoot) - way).norm(), 3e-3f);
+  const Vec3 offset(0, 0.1f, 0.06f);
+  stage.move({12, LeftFoot, offset, 3});
+  EXPECT_LT((stage.moved(12, LeftAnkle) - offset).norm(), 3e-3f);
+  EXPECT_LT((stage.moved(12, LeftFoot) - offset).norm(), 3e-3f);
 }
 
 TEST(LimbMove, GoesNoFurtherThanTheArmReaches) {
@@ -71,10 +71,10 @@ TEST(LimbMove, IsOfTheResultAsItIsTurnedAndEditedBefore) {
   stage.edits.turn = TurnEdit{70};
   stage.edits.rotate = {{28, LeftShoulder, Vec3(0, 0.3f, 0), 6}};
   const Joints before = stage.after(30).joints;
-  const Vec3 way(0.1f, 0.05f, 0);
-  stage.move({30, LeftWrist, way, 5});
+  const Vec3 offset(0.1f, 0.05f, 0);
+  stage.move({30, LeftWrist, offset, 5});
   const Vec3 moved = (stage.after(30).joints.row(LeftWrist) - before.row(LeftWrist)).transpose();
-  EXPECT_LT((moved - way).norm(), 3e-3f);
+  EXPECT_LT((moved - offset).norm(), 3e-3f);
 }
 
 TEST(LimbMove, ASecondDragOfTheSameFrameContinuesTheFirst) {
