@@ -75,6 +75,7 @@ struct HelpState {
 const MenuItem* draw_palette(PanelContext& context, const app::Session& session,
                              const std::vector<MenuItem>& entries, float height) {
   std::vector<ListItem> items;
+  items.reserve(entries.size());
   for (const MenuItem& entry : entries)
     items.push_back(
         {entry.label, keys_of(context.commands, entry.command, entry.arguments), possible(session, entry)});

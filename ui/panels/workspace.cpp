@@ -129,6 +129,7 @@ void Workspace::draw_side(const app::Session& session, PanelContext& context) {
   const Panel& shown = shown_tab(session);
   ui.explain({places_.side, shown.title, shown.help, shown.keys});
   std::vector<std::string> titles;
+  titles.reserve(tabs.size());
   for (const Panel* panel : tabs) titles.push_back(panel->title);
   int chosen = static_cast<int>(std::find(tabs.begin(), tabs.end(), &shown) - tabs.begin());
   if (segmented(ui, "side.tab", titles, chosen)) context.ask("panel.show", {tabs[chosen]->name, "on"});
