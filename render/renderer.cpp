@@ -165,6 +165,16 @@ Image upright(const std::vector<uint8_t>& rgba, PixelSize size, bool transparent
   return image;
 }
 
+bool is_solid(const SkeletonView& skeleton) {
+  return !skeleton.x_ray && skeleton.opacity >= 1;
+}
+bool is_see_through(const SkeletonView& skeleton) {
+  return !skeleton.x_ray && skeleton.opacity < 1;
+}
+bool is_over_all(const SkeletonView& skeleton) {
+  return skeleton.x_ray;
+}
+
 }  // namespace
 
 struct Renderer::Parts {
@@ -174,8 +184,9 @@ struct Renderer::Parts {
   void show(const Scene& scene, const Camera& camera, const RenderTarget& target);
   void draw_meshes(const Scene& scene, bool opaque);
   void draw_clouds(const Scene& scene, bool opaque);
-  void draw_skeletons(const Scene& scene, bool x_ray);
+  void draw_skeletons(const Scene& scene, bool (*which)(const SkeletonView&));
   void draw_lines(const Scene& scene, bool x_ray);
+  void forget_depth_of_see_through(const Scene& scene);
 
   using Pass = void (*)(Parts&, const Scene&, const Camera&);
   static const Pass kPasses[];
@@ -216,14 +227,23 @@ void Renderer::Parts::draw_clouds(const Scene& scene, bool opaque) {
     if ((cloud.opacity >= 1) == opaque) points.draw(cloud, canvas.samples() > 1);
 }
 
-void Renderer::Parts::draw_skeletons(const Scene& scene, bool x_ray) {
+void Renderer::Parts::draw_skeletons(const Scene& scene, bool (*which)(const SkeletonView&)) {
   for (const auto& skeleton : scene.skeletons)
-    if (skeleton.x_ray == x_ray) meshes.draw(skeleton_solids(skeleton), 0);
+    if (which(skeleton)) meshes.draw(skeleton_solids(skeleton), 0);
 }
 
 void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
   for (const auto& view : scene.lines)
     if (view.x_ray == x_ray) lines.draw(view);
+}
+
+/// Clouds and skeletons to be seen through hide nothing that is drawn later: all depth is again that of what is opaque.
+void Renderer::Parts::forget_depth_of_see_through(const Scene& scene) {
+  gl::api().Clear(GL_DEPTH_BUFFER_BIT);
+  const gl::ColorMaskScope colors(false);
+  draw_meshes(scene, true);
+  draw_skeletons(scene, is_solid);
+  draw_clouds(scene, true);
 }
 
 /// What is drawn over the still background, in this order. A new pass is a file of passes/ with its shaders and
@@ -234,34 +254,35 @@ const Renderer::Parts::Pass Renderer::Parts::kPasses[] = {
     },
     // What is opaque; points are too rough for occlusion from depth.
     [](Parts& p, const Scene& s, const Camera&) { p.draw_meshes(s, true); },
-    [](Parts& p, const Scene& s, const Camera&) { p.draw_skeletons(s, false); },
+    [](Parts& p, const Scene& s, const Camera&) { p.draw_skeletons(s, is_solid); },
     [](Parts& p, const Scene& s, const Camera&) {
       if (p.options.quality != Quality::Best || s.occlusion <= 0 || s.meshes.empty()) return;
       p.canvas.resolve_depth();
       p.occlusion.draw(p.canvas.depth_texture(), p.frame.size(), s.occlusion);
     },
     [](Parts& p, const Scene& s, const Camera&) { p.draw_clouds(s, true); },
-    // Clouds to be seen through hide nothing that is drawn later: their depth goes again.
+    // What is to be seen through: skeletons first, which are inside the rest.
+    [](Parts& p, const Scene& s, const Camera&) {
+      if (std::none_of(s.skeletons.begin(), s.skeletons.end(), is_see_through)) return;
+      p.draw_skeletons(s, is_see_through);
+      p.forget_depth_of_see_through(s);
+    },
     [](Parts& p, const Scene& s, const Camera&) {
       const auto opaque = [](const auto& cloud) { return cloud.opacity >= 1; };
       if (std::all_of(s.clouds.begin(), s.clouds.end(), opaque)) return;
       p.draw_clouds(s, false);
-      gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-      const gl::ColorMaskScope colors(false);
-      p.draw_meshes(s, true);
-      p.draw_skeletons(s, false);
-      p.draw_clouds(s, true);
+      p.forget_depth_of_see_through(s);
     },
     // What lies over it.
     [](Parts& p, const Scene& s, const Camera&) { p.draw_lines(s, false); },
     [](Parts& p, const Scene& s, const Camera&) { p.draw_meshes(s, false); },
     // What shows through everything.
     [](Parts& p, const Scene& s, const Camera&) {
-      const auto x_ray = [](const auto& view) { return view.x_ray; };
-      if (std::any_of(s.skeletons.begin(), s.skeletons.end(), x_ray) ||
+      const auto x_ray = [](const LinesView& view) { return view.x_ray; };
+      if (std::any_of(s.skeletons.begin(), s.skeletons.end(), is_over_all) ||
           std::any_of(s.lines.begin(), s.lines.end(), x_ray))
         gl::api().Clear(GL_DEPTH_BUFFER_BIT);
-      p.draw_skeletons(s, true);
+      p.draw_skeletons(s, is_over_all);
       p.draw_lines(s, true);
     },
     [](Parts& p, const Scene& s, const Camera& camera) {

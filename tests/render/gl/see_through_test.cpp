@@ -108,5 +108,28 @@ TEST(SeeThroughCloud, HidesNothingThatIsDrawnAfterIt) {
   EXPECT_GT(image.at(70, 90)[1], image.at(70, 90)[0]) << "the green behind is seen through the red";
 }
 
+/// A thick red bone across the middle.
+SkeletonView bone(float z, float opacity) {
+  SkeletonView view;
+  view.joints.resize(2, 3);
+  view.joints << -0.5f, 0, z, 0.5f, 0, z;
+  view.parents = {-1, 0};
+  view.tint = Vec3(0.9f, 0.1f, 0.1f), view.tint_share = 1;
+  view.thickness = 6, view.x_ray = false, view.opacity = opacity;
+  return view;
+}
+
+TEST(SeeThroughSkeleton, IsSeenInsideASeeThroughBodyAndMakesNoHoleInOneBehind) {
+  Scene scene;
+  scene.meshes = {square(-0.3f)};
+  scene.meshes[0].opacity = 0.6f, scene.meshes[0].color = Vec3(0.1f, 0.9f, 0.1f);
+  const Image without = drawn(scene);
+  scene.skeletons = {bone(0.3f, 0.3f)};
+  const Image before = drawn(scene);
+  EXPECT_GT(before.at(80, 80)[1], before.at(80, 80)[0]) << "the green behind is seen through the red";
+  scene.skeletons = {bone(-0.6f, 0.8f)};
+  EXPECT_GT(darker(drawn(scene), without), 60) << "the bone is seen through the green";
+}
+
 }  // namespace
 }  // namespace understudy::render
