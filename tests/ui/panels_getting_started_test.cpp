@@ -78,6 +78,28 @@ TEST_F(GettingStarted, DoingWhatACardSaysGoesOn) {
   EXPECT_FALSE(shown("guide.card"));
 }
 
+TEST_F(GettingStarted, ClosingOrOpeningSomethingElseIsNotWhatACardSays) {
+  session = loaded_session();
+  frame(2);
+  const auto open = [&](app::Document document) {
+    session.document = std::move(document);
+    session.takes.resize(session.document.takes.size());
+    frame(3);
+    return take_log();
+  };
+  const app::Document dance = session.document;
+  app::Document walk;
+  walk.source.path = "/data/walk";
+  show(1, true);
+  EXPECT_EQ(open({}), Lines()) << "File > New opens nothing";
+  EXPECT_EQ(open(dance), Lines{"help.getting_started 2"}) << "what was there before, opened again, does";
+  session.view.cameras[0].yaw += 0.4f;
+  EXPECT_EQ(open(walk), Lines()) << "its camera was not turned by the person";
+  session.view.cameras[0].yaw += 0.4f;
+  EXPECT_EQ(open(walk), Lines{"help.getting_started 3"});
+  EXPECT_EQ(open(dance), Lines()) << "its edits were made before";
+}
+
 TEST_F(GettingStarted, NextGoesThroughAllAndSkipEndsIt) {
   session = loaded_session();
   frame(2);

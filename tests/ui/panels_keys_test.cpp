@@ -74,6 +74,15 @@ TEST_F(KeysTest, EnterAndSpaceUseWhatIsInTheRingAndAreNoShortcuts) {
   EXPECT_EQ(take_log(), Lines{"playback.toggle"});
 }
 
+TEST_F(KeysTest, InAWindowTooLowForMenusAltKeepsNoOtherKeyFromWorking) {
+  input.size.height = 60;
+  frame(2);
+  tap_alt();
+  take_log();
+  key(Key::Space);
+  EXPECT_EQ(take_log(), Lines{"playback.toggle"});
+}
+
 TEST_F(KeysTest, WhatIsGreyedOutIsPassedBy) {
   for (int i = 0; i < 200; ++i) {
     key(Key::Tab);

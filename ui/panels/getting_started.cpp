@@ -19,7 +19,8 @@ using MarkNames = std::vector<std::string>;
 
 bool has_opened(const app::Session& session, const Before& before) {
   const app::Document& now = session.document;
-  return now.source.path != before.document.source.path || now.takes.size() > before.document.takes.size();
+  const bool is_other = !now.source.path.empty() && now.source.path != before.document.source.path;
+  return is_other || now.takes.size() > before.document.takes.size();
 }
 
 bool has_turned(const app::Session& session, const Before& before) {
@@ -94,6 +95,13 @@ constexpr std::array<Card, app::kGettingStartedCards> kCards = {{
 
 Before before_of(const app::Session& session) {
   return {session.document, session.view.cameras, session.notices_made};
+}
+
+/// Whether what was there before says nothing about now: all of it was closed, or another source was opened, with
+/// cameras and edits of its own.
+bool is_outdated(const app::Session& session, const GettingStartedState& state) {
+  if (state.card == 1) return !has_document(session);
+  return session.document.source.path != state.before.document.source.path;
 }
 
 /// What the card points at.
@@ -221,6 +229,8 @@ void draw_getting_started(const app::Session& session, PanelContext& context, Ge
     const bool at_start = state.card < 0 && card == 1;
     state.before = at_start ? Before() : before_of(session);
     state.card = card;
+  } else if (is_outdated(session, state)) {
+    state.before = before_of(session);
   }
   if (card == 0) return;
   if (kCards[card - 1].done(session, state.before)) return ask_for_card(context, card + 1);

@@ -64,7 +64,10 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   parts_.timeline = open && panel_shown(session, "timeline");
   parts_.below = !panels_in(Panel::Dock::Below, session).empty();
   places_ = arrange(display, context.ui.scale(), parts_);
-  if (!places_.top.empty()) draw_top_bar(session, context, places_.top, menu_keys_);
+  if (places_.top.empty())
+    menu_keys_ = {};  // no menu will open
+  else
+    draw_top_bar(session, context, places_.top, menu_keys_);
   draw_centre(session, context);
   draw_below(session, context);
   draw_bottom(session, context, frame_rate);
