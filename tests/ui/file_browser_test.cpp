@@ -169,6 +169,23 @@ TEST_F(Browser, ASlashBeginsAPathThatIsTypedOn) {
   EXPECT_EQ(chosen, path("body.obj"));
 }
 
+TEST_F(Browser, APathThatIsEditedIsTypedAtOnce) {
+  open({filter_of(FileKind::Target)});
+  std::vector<render::InputEvent> events(2);
+  events[0].kind = events[1].kind = render::InputEvent::Kind::Key;
+  events[0].key = events[1].key = Key::L;
+  events[0].pressed = true, events[0].modifiers.control = true;
+  for (const char letter : path("body.obj")) {
+    events.emplace_back();
+    events.back().kind = render::InputEvent::Kind::Char,
+    events.back().codepoint = static_cast<char32_t>(letter);
+  }
+  play(events);
+  key(Key::Enter);
+  frame(3);
+  EXPECT_EQ(chosen, path("body.obj"));
+}
+
 TEST_F(Browser, APathWithoutASlashIsOneFromHere) {
   open({filter_of(FileKind::Target)});
   key(Key::L, {false, true});

@@ -27,6 +27,26 @@ class KeysTest : public WorkspaceTest {
     play({down, up});
     frame(3);
   }
+  /// Letters as keys and as text, one after the other without a frame in between.
+  static void add_typed(const std::string& letters, std::vector<render::InputEvent>& events) {
+    for (const char letter : letters) {
+      render::InputEvent key, text;
+      key.kind = render::InputEvent::Kind::Key, text.kind = render::InputEvent::Kind::Char;
+      key.key = static_cast<Key>(static_cast<int>(Key::A) + letter - 'a');
+      key.pressed = true, text.codepoint = static_cast<char32_t>(letter);
+      events.push_back(key), events.push_back(text);
+      key.pressed = false;
+      events.push_back(key);
+    }
+  }
+  static void add_key(Key key, std::vector<render::InputEvent>& events, render::Modifiers modifiers = {}) {
+    render::InputEvent event;
+    event.kind = render::InputEvent::Kind::Key, event.key = key, event.modifiers = modifiers;
+    event.pressed = true;
+    events.push_back(event);
+    event.pressed = false;
+    events.push_back(event);
+  }
 };
 
 TEST_F(KeysTest, TabGoesRoundAndBack) {
@@ -216,6 +236,38 @@ TEST_F(KeysTest, EveryMenuHasALetterOfItsOwn) {
     frame(3);
     key(Key::Escape), frame(2);
   }
+}
+
+TEST_F(KeysTest, WhatIsTypedAtOnceAfterADialogIsAskedForReachesItsField) {
+  frame(3);
+  std::vector<render::InputEvent> events;
+  add_typed("hturntable", events);  // h opens the palette; t, u, r and n are no shortcuts then
+  add_key(Key::Enter, events);
+  play(events);
+  frame(3);
+  EXPECT_EQ(take_log(), (Lines{"help.keys", "view.turntable"}));
+  events.clear();
+  session.path.clear();
+  add_key(Key::S, events, {false, true});
+  add_typed("waltz", events);
+  add_key(Key::Enter, events);
+  play(events);
+  frame(3);
+  const Lines lines = take_log();
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0], "dialog.open save_as");
+  EXPECT_NE(lines[1].find("/waltz.understudy"), std::string::npos) << lines[1];
+}
+
+TEST_F(KeysTest, KeysAreADialogsUntilItIsClosedAgain) {
+  frame(3);
+  std::vector<render::InputEvent> events;
+  add_key(Key::Comma, events, {false, true});
+  add_key(Key::Escape, events);
+  add_key(Key::Space, events);
+  play(events);
+  frame(3);
+  EXPECT_EQ(take_log(), (Lines{"dialog.open settings", "playback.toggle"}));
 }
 
 TEST_F(KeysTest, ASampleIsOpenedByTabAndEnter) {

@@ -153,8 +153,23 @@ void Focus::go() {
                       ImGuiScrollFlags_KeepVisibleEdgeY);
 }
 
+void Focus::await_dialog() {
+  constexpr int kMostFrames = 10;  // where none comes
+  awaiting_ = kMostFrames, awaited_ = ImGui::GetFrameCount();
+}
+
+void Focus::follow_dialog() {
+  if (awaiting_ == 0 || ImGui::GetFrameCount() == awaited_) return;
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  const ImGuiWindow* const dialog = ImGui::GetTopMostPopupModal();
+  const bool is_there = dialog != nullptr && dialog->Active && !dialog->Appearing && !dialog->Hidden;
+  const bool asks_for_text = context.NavMoveSubmitted || context.NavNextActivateId != 0;
+  awaiting_ = is_there && !asks_for_text ? 0 : awaiting_ - 1;
+}
+
 void Focus::finish_frame(const Ui& ui) {
   settling_ = false;
+  follow_dialog();
   if (step_ != 0) go();
   if (wanted_text_ != 0) use(wanted_text_, true), settling_ = true;
   wanted_text_ = 0, step_ = 0, alt_tapped_ = false;

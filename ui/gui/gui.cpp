@@ -98,7 +98,8 @@ bool writes(Key key) {
 
 struct Gui::Changes {
   bool moved = false, scrolled = false, typed = false, commanded = false;
-  bool pressed = false;         // a key that is no modifier, or a button
+  bool key_down = false;        // a key that is no modifier
+  bool pressed = false;         // such a key or a button, down or up
   render::Modifiers modifiers;  // that were held then
   std::bitset<static_cast<size_t>(render::MouseButton::Count)> buttons;
   std::bitset<kKeys> keys;
@@ -228,6 +229,9 @@ bool Gui::fits(const InputEvent& event, const Changes& changes) const {
   const bool modified = event.kind == Kind::Key || event.kind == Kind::MouseButton;
   if (modified && changes.pressed && !(event.modifiers == changes.modifiers))
     return false;  // Ctrl may be let go before the A of Ctrl+A was noticed
+  const bool is_press = event.kind == Kind::Key && event.pressed && event.key < Key::LeftShift;
+  if (is_press && changes.key_down && !wants_text())
+    return false;  // the first may open what the second is typed into
   switch (event.kind) {
     case Kind::MouseMove:
       return changes.buttons.none() && !changes.scrolled;
@@ -251,6 +255,7 @@ void Gui::apply(const InputEvent& event, Changes& changes) {
   if (event.kind == Kind::Key || event.kind == Kind::MouseButton) {
     to.KeyShift = event.modifiers.shift, to.KeyCtrl = event.modifiers.control;
     to.KeyAlt = event.modifiers.alt, to.KeySuper = event.modifiers.super;
+    changes.key_down |= event.kind == Kind::Key && event.pressed && event.key < Key::LeftShift;
     changes.pressed |= event.kind == Kind::MouseButton || event.key < Key::LeftShift;
     changes.modifiers = event.modifiers;
   }

@@ -79,6 +79,7 @@ std::optional<std::string> draw_files(const app::Session& session, PanelContext&
   if (!path || state.purpose == FilePurpose::Export) return path;
   if (state.purpose == FilePurpose::Source && is_smpl_body(*path)) {
     choose_file(session, state, FilePurpose::BodyMotion, *path);
+    context.ui.focus().await_dialog();
     return std::nullopt;
   }
   app::Arguments arguments = {*path};

@@ -188,6 +188,7 @@ bool draw_keys(const app::Session& session, PanelContext& context) {
   const float room = ImGui::GetIO().DisplaySize.y - ui.px(190);
   const float height = std::max(ui.px(40), std::min(room, ui.px(460)));
   if (state.page < 2 && (other || ImGui::IsWindowAppearing())) ImGui::SetKeyboardFocusHere();
+  if (other) ui.focus().await_dialog();
   const std::vector<MenuItem> entries = palette(session, context.commands);
   const MenuItem* chosen = state.page == 0 ? draw_palette(context, session, entries, height) : nullptr;
   if (state.page == 1) draw_scripts(context, height);

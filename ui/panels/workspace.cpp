@@ -72,14 +72,23 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   draw_below(session, context);
   draw_bottom(session, context, frame_rate);
   draw_side(session, context);
-  const bool asks = !session.errors.empty() || session.question || !dialog().empty();
+  const std::string before = dialog();
+  const bool asks = !session.errors.empty() || session.question || !before.empty();
   draw_dialog(session, context);
   draw_notices(session, context, notices_, places_.views);
   draw_getting_started(session, context, getting_started_, asks);
   // The key that closed a dialog, or led from one menu to the next, does nothing else.
-  if (asks || !menu_keys_.wanted.empty()) return;
-  if (context.ui.focus().alt_tapped()) context.ask("menu.open");
-  ask_for_keys(session, context);
+  if (!asks && menu_keys_.wanted.empty()) {
+    if (context.ui.focus().alt_tapped()) context.ask("menu.open");
+    ask_for_keys(session, context);
+  }
+  // What is typed from now on is for the dialog that comes.
+  const auto opens = [](const auto& asked) {
+    return asked.first == "dialog.open" || asked.first == "help.keys";
+  };
+  const bool opened = dialog() != before && !dialog().empty();
+  if (opened || std::any_of(context.queue.begin(), context.queue.end(), opens))
+    context.ui.focus().await_dialog();
 }
 
 void Workspace::open_menu(const app::Session& session, const std::string& name) {

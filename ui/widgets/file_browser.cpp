@@ -210,7 +210,6 @@ void FileBrowser::draw_path(Ui& ui) {
   path_id_ = ImGui::GetID("##path");
   if (editing_path_) {
     ImGui::SetNextItemWidth(width);
-    if (std::exchange(focus_path_, false)) ImGui::SetKeyboardFocusHere();
     const bool entered =
         ImGui::InputText("##path", &typed_path_,
                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll |
@@ -278,7 +277,9 @@ void FileBrowser::draw_crumbs(Ui& ui) {
   ui.stop("browser.path");
   tooltip(ui, "Type a path", "/ or Ctrl+L");
   edit |= ImGui::GetIO().KeyCtrl && pressed(Key::L);
-  if (edit) editing_path_ = focus_path_ = true, typed_path_ = folder_;
+  if (!edit) return;
+  editing_path_ = true, typed_path_ = folder_;
+  ui.focus().type_into(path_id_);
 }
 
 void FileBrowser::draw_places(Ui& ui) {

@@ -89,8 +89,7 @@ class FileBrowser {
   void finish(const std::string& path);
 
   BrowseRequest request_;
-  bool open_ = false, editing_path_ = false, focus_path_ = false, naming_folder_ = false,
-       scroll_to_selected_ = false;
+  bool open_ = false, editing_path_ = false, naming_folder_ = false, scroll_to_selected_ = false;
   bool path_begun_ = false;  ///< by a key: what is typed goes behind it
   ImGuiID path_id_ = 0;
   int filter_ = 0;
