@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sys/types.h>
 
 #include <functional>
 #include <map>
@@ -11,28 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "render/image.hpp"
 #include "tests/app/program.hpp"
+#include "tests/support/display/display.hpp"
 
 namespace understudy::tests {
-
-/// An X display without a screen, on a number that it picks; ends with this object.
-class Display {
- public:
-  Display();
-  ~Display();
-  Display(const Display&) = delete;
-  Display& operator=(const Display&) = delete;
-  bool works() const { return !number_.empty(); }
-  std::string name() const { return ":" + number_; }
-  /// What it shows now. Throws Error when it cannot be read.
-  render::Image picture() const;
-
- private:
-  ScratchFolder memory_;  ///< where Xvfb maps its pixels
-  pid_t pid_ = -1;
-  std::string number_;
-};
 
 /// Pixels from the display's top left.
 struct Place {

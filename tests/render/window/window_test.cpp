@@ -2,47 +2,39 @@
 #include "render/context/window.hpp"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 #include "render/renderer.hpp"
 #include "retarget/base/error.hpp"
 #include "tests/render/content.hpp"
+#include "tests/support/display/display.hpp"
 
 namespace understudy::render {
 namespace {
 
-/// Xvfb on a display number it picks; it ends with this process, whichever way that ends.
-class Display : public testing::Environment {
+/// All windows are on it.
+class OnDisplay : public testing::Environment {
  public:
   void SetUp() override {
-    int ends[2];
-    ASSERT_EQ(pipe(ends), 0);
-    if (fork() == 0) {
-      prctl(PR_SET_PDEATHSIG, SIGTERM);
-      const std::string to = std::to_string(ends[1]);
-      execlp("Xvfb", "Xvfb", "-displayfd", to.c_str(), "-screen", "0", "1400x900x24", "-nolisten", "tcp",
-             "-noreset", static_cast<char*>(nullptr));
-      _exit(127);
-    }
-    close(ends[1]);
-    std::string number;
-    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
-    close(ends[0]);
-    ASSERT_FALSE(number.empty()) << "Xvfb does not start: Debian package xvfb";
-    setenv("DISPLAY", (":" + number).c_str(), 1);
+    display_ = std::make_unique<tests::Display>(1400, 900);
+    ASSERT_TRUE(display_->works()) << "Xvfb does not start: Debian package xvfb";
+    setenv("DISPLAY", display_->name().c_str(), 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     unsetenv("WAYLAND_DISPLAY");
   }
+  void TearDown() override { display_.reset(); }
+
+ private:
+  std::unique_ptr<tests::Display> display_;
 };
-const auto* const display = testing::AddGlobalTestEnvironment(new Display);
+const auto* const on_display = testing::AddGlobalTestEnvironment(new OnDisplay);
 
 struct Told {
   std::vector<InputEvent> events;
