@@ -42,14 +42,9 @@ void adjust_cameras(Call& c) {
 }
 
 void add_tools(Commands& commands) {
-  struct Row {
-    const char *label, *key;
-  };
-  static constexpr Row kTools[] = {{"Look", "Q"},          {"Extracted joints", "W"}, {"Bones", "E"},
-                                   {"Target joints", "R"}, {"Paint weights", "P"},    {"Crop", "C"},
-                                   {"Rest pose", ""}};
+  constexpr Names<kToolNames.size()> kKeys{"Q", "W", "E", "R", "P", "C", ""};
   for (size_t i = 0; i < kToolNames.size(); ++i)
-    commands.add({std::string("tool.") + kToolNames[i], kTools[i].label, "", kTools[i].key},
+    commands.add({std::string("tool.") + kToolNames[i], kToolLabels[i], "", kKeys[i]},
                  [name = kToolNames[i]](Call& c) { c.studio.run("tool", {name}); });
   commands.add({"tool", "Tool", "look|joints|bones|target-joints|paint|crop|rest-pose"}, [](Call& c) {
     const Tool before = std::exchange(c.session.tool, c.choice<Tool>(0, "tool", kToolNames));

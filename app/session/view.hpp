@@ -46,6 +46,22 @@ FieldsOf<S, CameraState> fields(V& visit, S& camera) {
   visit("orthographic", camera.orthographic);
 }
 
+/// A direction to look from.
+struct ViewPreset {
+  const char* name;   ///< of the command view.preset
+  const char* label;  ///< on the screen
+  const char* key;
+  float yaw_deg, pitch_deg;
+};
+/// The faces of the view cube, then what is no face.
+constexpr ViewPreset kViewPresets[] = {{"front", "Front", "1", 0, 0},
+                                       {"back", "Back", "Ctrl+1", 180, 0},
+                                       {"right", "Right", "3", 90, 0},
+                                       {"left", "Left", "Ctrl+3", -90, 0},
+                                       {"top", "Top", "7", 0, 89},
+                                       {"bottom", "Bottom", "Ctrl+7", 0, -89},
+                                       {"three-quarter", "Three-quarter", "0", 32, 10}};
+
 /// Opacities of what lies over each other, and how far apart the people stand, in Layout::Overlay.
 struct OverlayLook {
   float scan = 1, skeletons = 1, results = 0.62f;

@@ -6,6 +6,7 @@
 #include "app/session/follow.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -29,33 +30,21 @@ void set_distance(CameraState& camera, float metres) {
   camera.distance = std::clamp(metres, 0.05f, 500.f);
 }
 
-struct Preset {
-  const char* name;
-  const char* label;
-  const char* key;
-  float yaw, pitch;  // degrees
-};
-constexpr Preset kPresets[] = {{"front", "Front view", "1", 0, 0},
-                               {"right", "Right view", "3", 90, 0},
-                               {"top", "Top view", "7", 0, 89},
-                               {"back", "Back view", "Ctrl+1", 180, 0},
-                               {"left", "Left view", "Ctrl+3", -90, 0},
-                               {"three-quarter", "Three-quarter view", "0", 32, 10},
-                               {"bottom", "Bottom view", "Ctrl+7", 0, -89}};
-
 void add_cameras(Commands& commands) {
   std::vector<std::string> names;
-  for (const Preset& preset : kPresets) {
+  std::string usage;
+  for (const ViewPreset& preset : kViewPresets) {
     names.push_back(preset.name);
-    commands.add({std::string("view.preset_") + preset.name, preset.label, "", preset.key},
-                 [&preset](Call& c) { c.studio.run("view.preset", {preset.name}); });
+    append_item(usage, preset.name, "|");
+    commands.add(
+        {std::string("view.preset_") + preset.name, std::string(preset.label) + " view", "", preset.key},
+        [&preset](Call& c) { c.studio.run("view.preset", {preset.name}); });
   }
-  commands.add({"view.preset", "Camera preset", "front|right|top|back|left|three-quarter|bottom"},
-               [names](Call& c) {
-                 const Preset& preset = kPresets[c.choice(0, "preset", names)];
-                 active_camera(c.session).yaw = preset.yaw * kDegree;
-                 active_camera(c.session).pitch = preset.pitch * kDegree;
-               });
+  commands.add({"view.preset", "Camera preset", usage}, [names](Call& c) {
+    const ViewPreset& preset = kViewPresets[c.choice(0, "preset", names)];
+    active_camera(c.session).yaw = preset.yaw_deg * kDegree;
+    active_camera(c.session).pitch = preset.pitch_deg * kDegree;
+  });
   commands.add({"view.camera", "Camera", "YAW_DEG PITCH_DEG [DISTANCE]"}, [](Call& c) {
     CameraState& camera = active_camera(c.session);
     camera.yaw = c.number(0, "yaw") * kDegree;

@@ -249,8 +249,8 @@ TEST_F(LayersPanel, ColoursTrailsAndScales) {
 }
 
 TEST_F(LayersPanel, Cameras) {
-  for (const std::string name : {"front", "right", "top", "back", "left", "three-quarter"})
-    expect_click("layers.preset." + name, {"view.preset " + name});
+  for (const app::ViewPreset& preset : app::kViewPresets)
+    expect_click(std::string("layers.preset.") + preset.name, {std::string("view.preset ") + preset.name});
   expect_click("layers.fit", {"view.fit"});
   expect_click("layers.ortho", {"view.ortho on"});
   session.view.linked = false, session.view.active_pane = 1;

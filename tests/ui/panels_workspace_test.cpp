@@ -197,9 +197,10 @@ TEST_F(WorkspaceTest, TheSidePanelsWidthIsDragged) {
 }
 
 TEST_F(WorkspaceTest, ToolsLayoutsAndUndo) {
-  for (const ToolChoice& tool : kTools) {
-    click(std::string("tools.") + tool.argument);
-    EXPECT_EQ(take_log(), Lines{std::string("tool ") + tool.argument});
+  for (size_t i = 0; i < kToolIcons.size(); ++i) {
+    const std::string tool = app::kToolNames[i];
+    click("tools." + tool);
+    EXPECT_EQ(take_log(), Lines{"tool " + tool});
   }
   click("top.layout.2");
   EXPECT_EQ(take_log(), Lines{"view.layout overlay"});
@@ -410,7 +411,7 @@ TEST_F(WorkspaceTest, F1ExplainsWhatThePointerIsOn) {
   };
   EXPECT_EQ(explained("edit.crop").rfind("Crop: ", 0), 0u) << "the switch of a row has the row's name";
   EXPECT_EQ(explained("edit.crop_tool").rfind("Edit: ", 0), 0u) << explained("edit.crop_tool");
-  EXPECT_EQ(explained("tools.bones"), std::string(": ") + kTools[2].label);
+  EXPECT_EQ(explained("tools.bones"), std::string(": ") + app::kToolLabels[2]);
   EXPECT_EQ(explained("edit.scan"), std::string("Edit: ") + panel_of("edit").help)
       << "a heading is the panel's";
   session.tool = app::Tool::Crop;

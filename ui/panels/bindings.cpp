@@ -3,10 +3,12 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "ui/gui/gui.hpp"
 #include "ui/gui/key_chord.hpp"
 #include "ui/panels/files.hpp"
+#include "ui/panels/menus.hpp"
 #include "ui/panels/panels.hpp"
 
 namespace understudy::ui {
@@ -25,14 +27,7 @@ const std::vector<Binding> kBuiltIn = {{"Ctrl+O", "open", {}, "Open"},
                                        {"?", "help.keys", {}, "Help"},
                                        {"F3", "help.keys", {}, "Help"},
                                        {"F1", "help.here", {}, "What is this?"},
-                                       {"F10", "menu.open", {}, "Menus"},
-                                       {"Alt+F", "menu.open", {"file"}, "Menu: File"},
-                                       {"Alt+E", "menu.open", {"edit"}, "Menu: Edit"},
-                                       {"Alt+V", "menu.open", {"view"}, "Menu: View"},
-                                       {"Alt+A", "menu.open", {"target"}, "Menu: Target"},
-                                       {"Alt+O", "menu.open", {"tools"}, "Menu: Tools"},
-                                       {"Alt+W", "menu.open", {"window"}, "Menu: Window"},
-                                       {"Alt+H", "menu.open", {"help"}, "Menu: Help"}};
+                                       {"F10", "menu.open", {}, "Menus"}};
 
 /// Whether keys with these arguments do, or undo, what `asked` does.
 bool same_or_toggles(const app::Arguments& keys, const app::Arguments& asked) {
@@ -59,6 +54,7 @@ std::vector<Binding> bindings(const app::Commands& commands) {
     const auto taken = [&](const Binding& other) { return other.keys == binding.keys; };
     if (std::none_of(all.begin(), all.end(), taken)) all.push_back(binding);
   }
+  for (Binding& binding : menu_bindings()) all.push_back(std::move(binding));
   for (const Panel& panel : panels())
     all.push_back({panel.keys, "panel.show", {panel.name, "toggle"}, std::string("Panel: ") + panel.title});
   return all;

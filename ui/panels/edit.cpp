@@ -30,17 +30,15 @@ std::string plural(size_t count, const std::string& one) {
 /// A button that takes a tool, lit while it is taken.
 void tool_button(const app::Session& session, PanelContext& context, const std::string& name,
                  app::Tool tool) {
-  for (const ToolChoice& choice : kTools) {
-    if (choice.tool != tool) continue;
-    const bool taken = session.tool == tool;
-    ButtonOptions options;
-    options.look = taken ? ButtonLook::Main : ButtonLook::Plain, options.width = -1;
-    options.shortcut = keys_of(context.commands, "tool", {choice.argument});
-    options.tooltip = taken ? "Back to looking around" : choice.label;
-    options.disabled = !possible(session, "tool");
-    if (button(context.ui, name, choice.label, options))
-      context.ask("tool", {taken ? "look" : choice.argument});
-  }
+  const std::string word = app::kToolNames[static_cast<size_t>(tool)],
+                    label = app::kToolLabels[static_cast<size_t>(tool)];
+  const bool taken = session.tool == tool;
+  ButtonOptions options;
+  options.look = taken ? ButtonLook::Main : ButtonLook::Plain, options.width = -1;
+  options.shortcut = keys_of(context.commands, "tool", {word});
+  options.tooltip = taken ? "Back to looking around" : label;
+  options.disabled = !possible(session, "tool");
+  if (button(context.ui, name, label, options)) context.ask("tool", {taken ? "look" : word});
 }
 
 /// `command`: also the button's name. `take`: its argument, where it has one.

@@ -111,8 +111,9 @@ void draw_mouse(Ui& ui, float height) {
   if (ImGui::BeginChild("##mouse", {0, height})) {
     draw_uses(ui, "Anywhere", kAnywhere);
     draw_uses(ui, "In the views", kInViews);
-    for (const ToolChoice& tool : kTools)
-      draw_uses(ui, std::string("With the tool \u201c") + tool.label + "\u201d", own_uses(tool.tool));
+    for (size_t i = 0; i < app::kToolLabels.size(); ++i)
+      draw_uses(ui, std::string("With the tool \u201c") + app::kToolLabels[i] + "\u201d",
+                own_uses(static_cast<app::Tool>(i)));
     draw_uses(ui, "In the timeline", kInTimeline);
     draw_uses(ui, "On numbers", kInNumbers);
   }

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/panels/layers.hpp"
+
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/rows.hpp"
 
@@ -15,21 +17,6 @@ namespace understudy::ui {
 namespace {
 
 using app::Colouring;
-
-struct Layer {
-  const char *name, *label, *explanation;
-  bool app::Layers::*on;
-};
-
-constexpr Layer kLayers[] = {
-    {"skeleton", "Skeleton", "The extracted joints, or those of the target", &app::Layers::skeleton},
-    {"x_ray", "X-ray", "Shows the skeleton through the surface", &app::Layers::x_ray},
-    {"joint_names", "Names",
-     "Shows the names of all joints; the joint under the pointer always shows its own",
-     &app::Layers::joint_names},
-    {"ground", "Ground", "The grid on the floor, with a soft shadow", &app::Layers::ground},
-    {"trails", "Trails", "The paths of the joints chosen below", &app::Layers::trails},
-    {"ghosts", "Ghosts", "Past and future frames, faint", &app::Layers::ghosts}};
 
 struct Colour {
   Colouring colouring;
@@ -76,21 +63,15 @@ class SwitchGrid {
 };
 
 void draw_pane(const app::Session& session, PanelContext& context, bool source) {
-  const app::Layers& layers = source ? session.view.source : session.view.take;
   const std::string pane = source ? "source" : "take";
   if (!section(context.ui, "layers." + pane, source ? "Source" : "Takes")) return;
   SwitchGrid grid(context);
-  const auto add = [&](const char* name, const char* label, const char* explanation, bool on) {
-    grid.add({"layers." + pane + "." + name, label, explanation, "view.layer " + pane + " " + name}, on);
-  };
-  add("surface", source ? "Scan" : "Mesh", source ? "The scan of this frame" : "The target's surface",
-      layers.surface);
-  if (source && session.source.has_faces)
-    add("as_points", "As points", "Shows the scan's points without its faces", layers.as_points);
-  if (!source || session.source.has_faces)
-    add("wireframe", "Wireframe", "The edges of the surface's faces, over it", layers.wireframe);
-  for (const Layer& layer : kLayers) add(layer.name, layer.label, layer.explanation, layers.*layer.on);
-  draw_colour(context, pane, source ? kSourceColours : kTakeColours, layers.colouring);
+  for (const LayerSwitch& layer : layer_switches(session, source))
+    grid.add({"layers." + pane + "." + layer.name, layer.label, layer.explanation,
+              "view.layer " + pane + " " + layer.name},
+             layer.on);
+  draw_colour(context, pane, source ? kSourceColours : kTakeColours,
+              (source ? session.view.source : session.view.take).colouring);
 }
 
 void draw_overlay_rows(const app::Session& session, PanelContext& context) {
@@ -152,16 +133,15 @@ void draw_colours(const app::Session& session, PanelContext& context) {
 }
 
 void draw_presets(PanelContext& context) {
-  constexpr const char* kNames[] = {"front", "right", "top", "back", "left", "three-quarter"};
-  constexpr const char* kLabels[] = {"Front", "Right", "Top", "Back", "Left", "3/4"};
-  for (int line = 0; line < 2; ++line) {
-    ButtonRow buttons(3);
-    for (int i = 3 * line; i < 3 * line + 3; ++i) {
-      ButtonOptions options;
-      options.shortcut = keys_of(context.commands, "view.preset", {kNames[i]});
-      if (buttons.add(context.ui, std::string("layers.preset.") + kNames[i], kLabels[i], options))
-        context.ask("view.preset", {kNames[i]});
-    }
+  const size_t count = std::size(app::kViewPresets), in_a_row = (count + 1) / 2;
+  ButtonRow first(in_a_row), second(count - in_a_row);
+  for (size_t i = 0; i < count; ++i) {
+    const app::ViewPreset& preset = app::kViewPresets[i];
+    ButtonOptions options;
+    options.shortcut = keys_of(context.commands, "view.preset", {preset.name});
+    if ((i < in_a_row ? first : second)
+            .add(context.ui, std::string("layers.preset.") + preset.name, preset.label, options))
+      context.ask("view.preset", {preset.name});
   }
 }
 
@@ -215,6 +195,26 @@ void draw_light(const app::Session& session, PanelContext& context) {
 }
 
 }  // namespace
+
+std::vector<LayerSwitch> layer_switches(const app::Session& session, bool source) {
+  const app::Layers& layers = source ? session.view.source : session.view.take;
+  const bool faces = !source || session.source.has_faces;
+  std::vector<LayerSwitch> all = {
+      {"surface", source ? "Scan" : "Mesh", source ? "The scan of this frame" : "The target's surface",
+       layers.surface},
+      {"skeleton", "Skeleton", "The extracted joints, or those of the target", layers.skeleton},
+      {"x_ray", "X-ray", "Shows the skeleton through the surface", layers.x_ray},
+      {"joint_names", "Names",
+       "Shows the names of all joints; the joint under the pointer always shows its own", layers.joint_names},
+      {"ground", "Ground", "The grid on the floor, with a soft shadow", layers.ground},
+      {"trails", "Trails", "The paths of the joints chosen below", layers.trails},
+      {"ghosts", "Ghosts", "Past and future frames, faint", layers.ghosts}};
+  if (faces)
+    all.push_back({"wireframe", "Wireframe", "The edges of the surface's faces, over it", layers.wireframe});
+  if (faces && source)
+    all.push_back({"as_points", "As points", "Shows the scan's points without its faces", layers.as_points});
+  return all;
+}
 
 void draw_layers(const app::Session& session, PanelContext& context) {
   const DisabledScope disabled(!has_document(session));

@@ -1,9 +1,9 @@
 #include "ui/panels/menus.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include "retarget/base/text.hpp"
-#include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 
 namespace understudy::ui {
@@ -87,24 +87,21 @@ MenuItem turntable(const app::Session& session) {
 }
 
 Items view_menu(const app::Session& session) {
-  const bool ortho = app::active_camera(session.view).orthographic;
-  return {layouts(session),
-          kLine,
-          {"Front", "view.preset", {"front"}},
-          {"Back", "view.preset", {"back"}},
-          {"Right", "view.preset", {"right"}},
-          {"Left", "view.preset", {"left"}},
-          {"Top", "view.preset", {"top"}},
-          {"Bottom", "view.preset", {"bottom"}},
-          {"Three-quarter", "view.preset", {"three-quarter"}},
-          {"Fit", "view.fit"},
-          {"Reset camera", "view.reset"},
-          kLine,
-          flag("Orthographic", "view.ortho", ortho),
-          flag("View cube", "view.cube", session.view.cube),
-          flag("Linked cameras", "view.link", session.view.linked),
-          flag("Follow the person", "view.follow", session.view.follow),
-          turntable(session)};
+  const app::View& view = session.view;
+  Items items = view_presets();
+  items.insert(items.begin(), {layouts(session), kLine});
+  for (const MenuItem& item :
+       {MenuItem{"Fit", "view.fit"}, MenuItem{"Reset camera", "view.reset"}, kLine,
+        flag("Orthographic", "view.ortho", app::active_camera(view).orthographic),
+        flag("View cube", "view.cube", view.cube), flag("Linked cameras", "view.link", view.linked),
+        flag("Follow the person", "view.follow", view.follow), turntable(session)})
+    items.push_back(item);
+  return items;
+}
+
+MenuItem tool_item(const app::Session& session, app::Tool tool) {
+  const size_t i = static_cast<size_t>(tool);
+  return {app::kToolLabels[i], "tool", {app::kToolNames[i]}, session.tool == tool};
 }
 
 Items target_menu(const app::Session& session) {
@@ -113,7 +110,7 @@ Items target_menu(const app::Session& session) {
   Items items = {{"Add target\u2026", "target.add"},
                  {"Replace\u2026", "target.replace"},
                  {"Compare with\u2026", "compare.add"},
-                 {"Edit rest pose", "tool", {"rest-pose"}, session.tool == app::Tool::RestPose},
+                 tool_item(session, app::Tool::RestPose),
                  {take == nullptr ? "Remove" : "Remove " + take->name, "target.remove", {k}}};
   if (!session.document.takes.empty()) items.push_back(kLine);
   for (size_t i = 0; i < session.document.takes.size(); ++i)
@@ -126,8 +123,8 @@ Items target_menu(const app::Session& session) {
 
 Items tools_menu(const app::Session& session) {
   Items items;
-  for (const ToolChoice& tool : kTools)
-    items.push_back({tool.label, "tool", {tool.argument}, session.tool == tool.tool});
+  for (size_t i = 0; i < kToolIcons.size(); ++i)
+    items.push_back(tool_item(session, static_cast<app::Tool>(i)));
   return items;
 }
 
@@ -154,24 +151,48 @@ Items window_menu(const app::Session& session) {
   return items;
 }
 
+Items help_menu(const app::Session&) {
+  return {{"Getting started", "help.getting_started"},
+          {"Commands, scripts, mouse\u2026", "help.keys"},
+          {"About Understudy", "dialog.open", {"about"}},
+          {"Log", "panel.show", {"log", "on"}}};
+}
+
+struct MenuRow {
+  const char *name, *label;
+  char letter;
+  Items (*items)(const app::Session&);
+};
+constexpr MenuRow kMenus[] = {{"file", "File", 'F', file_menu},    {"edit", "Edit", 'E', edit_menu},
+                              {"view", "View", 'V', view_menu},    {"target", "Target", 'a', target_menu},
+                              {"tools", "Tools", 'o', tools_menu}, {"window", "Window", 'W', window_menu},
+                              {"help", "Help", 'H', help_menu}};
+
 }  // namespace
 
 const std::vector<std::string> kLayoutLabels = {"Side by side", "Single", "Overlay", "Wipe"};
 
 std::vector<Menu> menus(const app::Session& session) {
-  return {{"file", "File", 'F', file_menu(session)},
-          {"edit", "Edit", 'E', edit_menu(session)},
-          {"view", "View", 'V', view_menu(session)},
-          {"target", "Target", 'a', target_menu(session)},
-          {"tools", "Tools", 'o', tools_menu(session)},
-          {"window", "Window", 'W', window_menu(session)},
-          {"help",
-           "Help",
-           'H',
-           {{"Getting started", "help.getting_started"},
-            {"Commands, scripts, mouse\u2026", "help.keys"},
-            {"About Understudy", "dialog.open", {"about"}},
-            {"Log", "panel.show", {"log", "on"}}}}};
+  std::vector<Menu> all;
+  for (const MenuRow& row : kMenus) all.push_back({row.name, row.label, row.letter, row.items(session)});
+  return all;
+}
+
+std::vector<Binding> menu_bindings() {
+  std::vector<Binding> all;
+  for (const MenuRow& row : kMenus)
+    all.push_back({std::string("Alt+") + static_cast<char>(std::toupper(row.letter)),
+                   "menu.open",
+                   {row.name},
+                   std::string("Menu: ") + row.label});
+  return all;
+}
+
+Items view_presets() {
+  Items items;
+  for (const app::ViewPreset& preset : app::kViewPresets)
+    items.push_back({preset.label, "view.preset", {preset.name}});
+  return items;
 }
 
 std::string mark_of(const MenuItem& item) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ui/panels/panel.hpp"
+#include "ui/panels/bindings.hpp"
 
 namespace understudy::ui {
 
@@ -27,6 +27,11 @@ extern const std::vector<std::string> kLayoutLabels;  ///< in the order of app::
 
 /// File, Edit, View, Target, Tools, Window, Help.
 std::vector<Menu> menus(const app::Session& session);
+
+/// The keys that open each of them.
+std::vector<Binding> menu_bindings();
+/// Entries that look from each app::kViewPresets.
+std::vector<MenuItem> view_presets();
 
 /// The mark of an entry: "menu.view.layout.single".
 std::string mark_of(const MenuItem& item);

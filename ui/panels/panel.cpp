@@ -10,14 +10,6 @@
 
 namespace understudy::ui {
 
-const std::array<ToolChoice, 6> kTools = {
-    {{app::Tool::Look, "look", "Look around", Icon::Camera},
-     {app::Tool::Joints, "joints", "Drag extracted joints", Icon::Skeleton},
-     {app::Tool::Bones, "bones", "Pose the result", Icon::Move},
-     {app::Tool::TargetJoints, "target-joints", "Place the target's joints", Icon::Person},
-     {app::Tool::Paint, "paint", "Paint skin weights", Icon::Brush},
-     {app::Tool::Crop, "crop", "Crop the scan", Icon::Select}}};
-
 std::string argument(double value) {
   std::string text = printed("%.6g", value);
   std::replace(text.begin(), text.end(), ',', '.');

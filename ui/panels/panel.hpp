@@ -51,14 +51,9 @@ double frames_per_second(const app::Session& session);
 /// "side_over", the side panel where it lies over the views for lack of room.
 bool panel_shown(const app::Session& session, const std::string& panel);
 
-/// The tools in menus and bars.
-struct ToolChoice {
-  app::Tool tool;
-  const char* argument;  ///< of the command tool
-  const char* label;
-  Icon icon;
-};
-extern const std::array<ToolChoice, 6> kTools;
+/// Of the tools in menus and bars, in the order of app::Tool: all but the rest pose, which the target has.
+constexpr std::array<Icon, 6> kToolIcons = {Icon::Camera, Icon::Skeleton, Icon::Move,
+                                            Icon::Person, Icon::Brush,    Icon::Select};
 
 /// Whether a command is possible now; menus and buttons are grey where it is not.
 bool possible(const app::Session& session, const std::string& command);

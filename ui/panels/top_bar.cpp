@@ -82,11 +82,11 @@ bool icon_at(Ui& ui, const ImVec2& left, const std::string& name, Icon icon, Ico
 
 void draw_tools(const app::Session& session, PanelContext& context, ImVec2 at) {
   Ui& ui = context.ui;
-  for (const ToolChoice& tool : kTools) {
-    const IconButtonOptions options{tool.label, keys_of(context.commands, "tool", {tool.argument}),
-                                    session.tool == tool.tool, !possible(session, "tool")};
-    if (icon_at(ui, at, std::string("tools.") + tool.argument, tool.icon, options))
-      context.ask("tool", {tool.argument});
+  for (size_t i = 0; i < kToolIcons.size(); ++i) {
+    const std::string name = app::kToolNames[i];
+    const IconButtonOptions options{app::kToolLabels[i], keys_of(context.commands, "tool", {name}),
+                                    session.tool == static_cast<app::Tool>(i), !possible(session, "tool")};
+    if (icon_at(ui, at, "tools." + name, kToolIcons[i], options)) context.ask("tool", {name});
     at.x += ui.px(31);
   }
   at.x += ui.px(10);

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "retarget/base/index.hpp"
+#include "app/session/view.hpp"
 
 namespace understudy::ui {
 namespace {
 
+constexpr int kFaces = 6;                                       // the first of app::kViewPresets
 constexpr float kCubeSide = 84, kCubeAway = 8;                  // points, of the corner it takes
 constexpr float kLeastViewWidth = 240, kLeastViewHeight = 190;  // points
 constexpr float kLargestShare = 0.28f;                  // of a view, where text is large in a small window
@@ -22,20 +23,27 @@ struct SeenFace {
   float towards = 0;  ///< cosine to the viewer
 };
 
-SeenFace seen_face(const CubeFace& face, const Rect& place, const render::Camera& camera) {
+/// From the cube's middle, in the world.
+Vec3 normal_of(const app::ViewPreset& face) {
+  const float yaw = face.yaw_deg * kPi / 180, pitch = face.pitch_deg * kPi / 180;
+  return {std::round(std::sin(yaw) * std::cos(pitch)), std::round(std::sin(pitch)),
+          std::round(std::cos(yaw) * std::cos(pitch))};
+}
+
+SeenFace seen_face(const app::ViewPreset& face, const Rect& place, const render::Camera& camera) {
+  const Vec3 out = normal_of(face);
   const Mat3 axes = render::axes(camera);
   const float half = kHalfEdge * place.width();
-  const Vec3 u = std::abs(face.out.y()) > 0.5f ? Vec3(1, 0, 0) : Vec3(0, 1, 0), v = face.out.cross(u);
+  const Vec3 u = std::abs(out.y()) > 0.5f ? Vec3(1, 0, 0) : Vec3(0, 1, 0), v = out.cross(u);
   const auto project = [&](const Vec3& point) {
     const Vec3 seen = half * (axes.transpose() * point);
     const ImVec2 centre = place.at(0.5f, 0.5f);
     return ImVec2(centre.x + seen.x(), centre.y - seen.y());
   };
   SeenFace seen;
-  seen.corners = {project(face.out + u + v), project(face.out + u - v), project(face.out - u - v),
-                  project(face.out - u + v)};
-  seen.middle = project(face.out);
-  seen.towards = face.out.dot(axes.col(2));
+  seen.corners = {project(out + u + v), project(out + u - v), project(out - u - v), project(out - u + v)};
+  seen.middle = project(out);
+  seen.towards = out.dot(axes.col(2));
   return seen;
 }
 
@@ -61,16 +69,6 @@ bool contains(const SeenFace& face, const ImVec2& at) {
 
 }  // namespace
 
-const std::array<CubeFace, 6>& cube_faces() {
-  static const std::array<CubeFace, 6> kFaces = {{{"front", "Front", Vec3(0, 0, 1)},
-                                                  {"back", "Back", Vec3(0, 0, -1)},
-                                                  {"right", "Right", Vec3(1, 0, 0)},
-                                                  {"left", "Left", Vec3(-1, 0, 0)},
-                                                  {"top", "Top", Vec3(0, 1, 0)},
-                                                  {"bottom", "Bottom", Vec3(0, -1, 0)}}};
-  return kFaces;
-}
-
 std::optional<Rect> cube_place(const Ui& ui, const Rect& view) {
   if (view.width() < ui.px(kLeastViewWidth) || view.height() < ui.px(kLeastViewHeight)) return std::nullopt;
   const float most = kLargestShare * std::min(view.width(), view.height());
@@ -80,9 +78,8 @@ std::optional<Rect> cube_place(const Ui& ui, const Rect& view) {
 }
 
 int cube_face_at(const Rect& place, const render::Camera& camera, const ImVec2& at) {
-  const auto& faces = cube_faces();
-  for (int i = 0; i < ssize(faces); ++i) {
-    const SeenFace seen = seen_face(faces[i], place, camera);
+  for (int i = 0; i < kFaces; ++i) {
+    const SeenFace seen = seen_face(app::kViewPresets[i], place, camera);
     if (seen.towards > kLeastSeen && contains(seen, at)) return i;
   }
   return -1;
@@ -96,21 +93,21 @@ void draw_cube(Ui& ui, const std::string& name, const Rect& place, const render:
   ui.mark(name, place);
   ui.explain({place, "View cube",
               "Shows where the view looks from. Click a face to look from there, drag to turn."});
-  const auto& faces = cube_faces();
-  for (int i = 0; i < ssize(faces); ++i) {
-    const SeenFace seen = seen_face(faces[i], place, camera);
+  for (int i = 0; i < kFaces; ++i) {
+    const SeenFace seen = seen_face(app::kViewPresets[i], place, camera);
     if (seen.towards <= kLeastSeen) continue;
     const bool lit = i == hovered;
     const ImVec4 fill = lit ? t.accent : mix(t.field_hover, t.raised, 1 - seen.towards);
     list.AddConvexPolyFilled(seen.corners.data(), 4, color(fill, lit ? 0.95f : 0.85f));
     list.AddPolyline(seen.corners.data(), 4, color(t.text_dim, 0.8f), ImDrawFlags_Closed, ui.px(1));
     const float reach = ui.px(4);
-    ui.mark(name + "." + faces[i].preset,
+    ui.mark(name + "." + app::kViewPresets[i].name,
             {{seen.middle.x - reach, seen.middle.y - reach}, {seen.middle.x + reach, seen.middle.y + reach}});
-    const ImVec2 size = ImGui::CalcTextSize(faces[i].label);
+    const char* const label = app::kViewPresets[i].label;
+    const ImVec2 size = ImGui::CalcTextSize(label);
     if (seen.towards < kReadable || size.x > width_of(seen)) continue;
     list.AddText({std::round(seen.middle.x - size.x / 2), std::round(seen.middle.y - size.y / 2)},
-                 color(lit ? t.on_accent : t.text), faces[i].label);
+                 color(lit ? t.on_accent : t.text), label);
   }
 }
 

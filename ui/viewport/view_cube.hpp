@@ -1,7 +1,6 @@
 // The cube in the corner of a view that shows where it looks from: a click on a face looks from there.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "render/camera.hpp"
@@ -9,16 +8,9 @@
 
 namespace understudy::ui {
 
-struct CubeFace {
-  const char* preset;  ///< of the command view.preset
-  const char* label;
-  Vec3 out;  ///< from the cube's middle, in the world
-};
-const std::array<CubeFace, 6>& cube_faces();
-
 /// Where the cube of a view is; none where there is no room.
 std::optional<Rect> cube_place(const Ui& ui, const Rect& view);
-/// The face under a pixel, as cube_faces(); -1 for none.
+/// The face under a pixel, as app::kViewPresets begins; -1 for none.
 int cube_face_at(const Rect& place, const render::Camera& camera, const ImVec2& at);
 /// Draws it into the current window; marks NAME, and NAME.front ... the faces that are seen.
 void draw_cube(Ui& ui, const std::string& name, const Rect& place, const render::Camera& camera, int hovered);

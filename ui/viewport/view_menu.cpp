@@ -5,7 +5,7 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/editing/limb_move.hpp"
-#include "ui/panels/panel.hpp"
+#include "ui/panels/layers.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -17,15 +17,7 @@ void add_line(Items& items) {
 }
 
 Items view_from(const app::Session& session, int pane) {
-  Items items;
-  for (const auto& [label, preset] : {std::pair("Front", "front"),
-                                      {"Back", "back"},
-                                      {"Right", "right"},
-                                      {"Left", "left"},
-                                      {"Top", "top"},
-                                      {"Bottom", "bottom"},
-                                      {"Three-quarter", "three-quarter"}})
-    items.push_back({label, "view.preset", {preset}});
+  Items items = view_presets();
   const bool ortho = app::camera_of(session.view, pane).orthographic;
   add_line(items);
   items.push_back({"Orthographic", "view.ortho", {on_off(!ortho)}, ortho});
@@ -34,20 +26,10 @@ Items view_from(const app::Session& session, int pane) {
 
 /// What is shown of the source, or of the takes, each to be hidden or shown.
 Items shown_layers(const app::Session& session, bool source) {
-  const app::Layers& layers = source ? session.view.source : session.view.take;
   const std::string pane = source ? "source" : "take";
   Items items;
-  const auto add = [&](const char* label, const char* layer, bool on) {
-    items.push_back({label, "view.layer", {pane, layer, on_off(!on)}, on});
-  };
-  add(source ? "Scan" : "Mesh", "surface", layers.surface);
-  add("Skeleton", "skeleton", layers.skeleton);
-  add("X-ray", "x_ray", layers.x_ray);
-  add("Names", "joint_names", layers.joint_names);
-  add("Ground", "ground", layers.ground);
-  add("Trails", "trails", layers.trails);
-  add("Ghosts", "ghosts", layers.ghosts);
-  if (!source || session.source.has_faces) add("Wireframe", "wireframe", layers.wireframe);
+  for (const LayerSwitch& layer : layer_switches(session, source))
+    items.push_back({layer.label, "view.layer", {pane, layer.name, on_off(!layer.on)}, layer.on});
   return items;
 }
 

@@ -261,7 +261,7 @@ void Views::use_cube(const Frame& f, Pane& pane, const Rect& part) {
                  render::orbited(pane.view.camera, -turned * io.MouseDelta.x, turned * io.MouseDelta.y));
   } else if (clicked && !dragged && face >= 0) {
     activate(f, pane);
-    f.queue.push_back({"view.preset", {cube_faces()[face].preset}});
+    f.queue.push_back({"view.preset", {app::kViewPresets[face].name}});
   }
 }
 
