@@ -195,6 +195,7 @@ struct Renderer::Parts {
   Canvas canvas;
   std::string still;  ///< key of what the canvas keeps
   gl::ArrayCache arrays;
+  std::vector<MeshView> solids;  ///< of the scene's skeletons, one each
   FrameBlock frame;
   BackgroundPass background;
   MeshPass meshes{arrays};
@@ -228,8 +229,8 @@ void Renderer::Parts::draw_clouds(const Scene& scene, bool opaque) {
 }
 
 void Renderer::Parts::draw_skeletons(const Scene& scene, bool (*which)(const SkeletonView&)) {
-  for (const auto& skeleton : scene.skeletons)
-    if (which(skeleton)) meshes.draw(skeleton_solids(skeleton), 0);
+  for (size_t i = 0; i < scene.skeletons.size(); ++i)
+    if (which(scene.skeletons[i])) meshes.draw(solids[i], 0);
 }
 
 void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
@@ -241,7 +242,10 @@ void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
 void Renderer::Parts::forget_depth_of_see_through(const Scene& scene) {
   gl::api().Clear(GL_DEPTH_BUFFER_BIT);
   const gl::ColorMaskScope colors(false);
-  draw_meshes(scene, true);
+  for (MeshView mesh : scene.meshes) {
+    mesh.wireframe = false;  // edges have no depth
+    if (mesh.opacity >= 1) meshes.draw(mesh, 0);
+  }
   draw_skeletons(scene, is_solid);
   draw_clouds(scene, true);
 }
@@ -313,6 +317,8 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 void Renderer::draw(const Scene& scene, const Camera& camera, const RenderTarget& target) {
   Parts& p = *parts_;
   for (const auto& mesh : scene.meshes) MeshPass::check(mesh);
+  p.solids.clear();
+  for (const auto& skeleton : scene.skeletons) p.solids.push_back(skeleton_solids(skeleton));
   if (p.canvas.resize(target.size)) p.still.clear();
   {
     const gl::TargetScope canvas(p.canvas.work(), target.size.width, target.size.height);

@@ -1,11 +1,21 @@
 #include "app/run/export_presets.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
+namespace {
+
+/// What a preset chooses, of it or of a file's options.
+template <class Options>
+auto chosen(Options& o) {
+  return std::tie(o.influences, o.shapes, o.reduce_mm, o.t_pose_clip, o.root_motion);
+}
+
+}  // namespace
 
 const std::vector<ExportPreset>& export_presets() {
   static const std::vector<ExportPreset> presets = {
@@ -51,21 +61,14 @@ std::string help_of_presets() {
 }
 
 void apply(const ExportPreset& preset, CharacterExportOptions& file) {
-  file.influences = preset.influences;
-  file.shapes = preset.shapes;
-  file.reduce_mm = preset.reduce_mm;
-  file.t_pose_clip = preset.t_pose_clip;
-  file.root_motion = preset.root_motion;
+  chosen(file) = chosen(preset);
 }
 
 const ExportPreset* preset_of(const ExportFormat& format, const CharacterExportOptions& file) {
   if (!format.is_character) return nullptr;
   const auto& presets = export_presets();
-  const auto found = std::find_if(presets.begin(), presets.end(), [&](const ExportPreset& preset) {
-    return preset.influences == file.influences && preset.shapes == file.shapes &&
-           preset.reduce_mm == file.reduce_mm && preset.t_pose_clip == file.t_pose_clip &&
-           preset.root_motion == file.root_motion;
-  });
+  const auto found = std::find_if(presets.begin(), presets.end(),
+                                  [&](const ExportPreset& preset) { return chosen(preset) == chosen(file); });
   return found == presets.end() ? nullptr : &*found;
 }
 

@@ -102,13 +102,9 @@ class MeshPass {
     const gl::BlendScope blend(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     const gl::DepthFuncScope depth(GL_LEQUAL);
     const gl::DepthMaskScope keeps(false);
-    const gl::CapabilityScope nearer(GL_POLYGON_OFFSET_LINE, true);
+    const gl::EdgesScope edges(-1, -4);
     edges_.set(1);
-    gl::api().PolygonOffset(-1, -4);
-    gl::api().PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     draw();
-    gl::api().PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    gl::api().PolygonOffset(0, 0);
   }
 
   void bind(const MeshView& view) {

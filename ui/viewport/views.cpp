@@ -77,7 +77,7 @@ bool Views::shows_take(int k) const {
 }
 
 void Views::draw(const Session& session, app::FrameCache& cache, PanelContext& context) {
-  const Frame f{session, cache, context, context.queue, context.ui};
+  const Frame f{session, cache, context};
   constexpr int kFlags = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
   if (ImGui::BeginChild("##views", {0, 0}, false, kFlags)) {
@@ -118,17 +118,17 @@ void Views::prepare(const Frame& f, size_t count) {
 /// The joints' colours, once, at the right of all views; takes its place from their area where that is wide.
 void Views::place_legend(const Frame& f, Rect& area) {
   const Legend legend = joints_legend(f.session);
-  const ImVec2 size = legend_size(f.ui, legend);
-  const float width = std::ceil(size.x + f.ui.px(16));
+  const ImVec2 size = legend_size(f.context.ui, legend);
+  const float width = std::ceil(size.x + f.context.ui.px(16));
   legend_beside_ = !legend.title.empty() && !f.session.takes.empty() && size.y <= area.height() &&
                    4 * width <= area.width();
   if (!legend_beside_) return;
   area.max.x -= width;
-  draw_legend(f.ui, legend, {{area.max.x, area.min.y}, {area.max.x + width, area.max.y}});
+  draw_legend(f.context.ui, legend, {{area.max.x, area.min.y}, {area.max.x + width, area.max.y}});
 }
 
 void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, const Rect& area) {
-  const auto rects = cells(area, contents.size(), f.ui.px(kGap));
+  const auto rects = cells(area, contents.size(), f.context.ui.px(kGap));
   for (size_t i = 0; i < contents.size(); ++i) {
     if (rects[i].width() < kLeastSide || rects[i].height() < kLeastSide) continue;
     Pane& pane = *panes_[i];
@@ -136,11 +136,11 @@ void Views::draw_row(const Frame& f, const std::vector<PaneContent>& contents, c
     use_cube(f, pane, rects[i]);
     const std::string name = "view." + std::to_string(contents[i].number);
     picture_button(name.c_str(), rects[i]);
-    f.ui.mark(name);
+    f.context.ui.mark(name);
     interact(f, pane);
     make_picture(f, pane);
     show(f, pane, rects[i], false);
-    draw_cube_of(f.ui, pane);
+    draw_cube_of(f.context.ui, pane);
   }
 }
 
@@ -158,27 +158,28 @@ void Views::draw_wipe(const Frame& f, const std::vector<PaneContent>& contents, 
   for (size_t i = 0; i < 2; ++i) {
     make_picture(f, *panes_[i]);
     const Rect part = i == 0 ? Rect{area.min, {line, area.max.y}} : Rect{{line, area.min.y}, area.max};
-    f.ui.mark("view." + std::to_string(contents[i].number), part);
+    f.context.ui.mark("view." + std::to_string(contents[i].number), part);
     show(f, *panes_[i], part, i == 1);
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float middle = area.min.y + 0.5f * area.height();
-  list.AddLine({line, area.min.y}, {line, area.max.y}, color(f.ui.theme().text, 0.85f), f.ui.px(1.5f));
-  list.AddCircleFilled({line, middle}, f.ui.px(7), color(f.ui.theme().text), 24);
-  draw_cube_of(f.ui, *panes_[0]);
+  list.AddLine({line, area.min.y}, {line, area.max.y}, color(f.context.ui.theme().text, 0.85f),
+               f.context.ui.px(1.5f));
+  list.AddCircleFilled({line, middle}, f.context.ui.px(7), color(f.context.ui.theme().text), 24);
+  draw_cube_of(f.context.ui, *panes_[0]);
 }
 
 /// The handle comes before the picture's item, so that it is met first.
 float Views::wipe_line(const Frame& f, const Rect& area) {
   const float line = std::floor(area.min.x + std::clamp(f.session.view.wipe, 0.f, 1.f) * area.width());
-  const float reach = f.ui.px(6);
+  const float reach = f.context.ui.px(6);
   ImGui::SetCursorScreenPos({line - reach, area.min.y});
   ImGui::InvisibleButton("view.wipe", {2 * reach, area.height()});
-  f.ui.mark("view.wipe");
+  f.context.ui.mark("view.wipe");
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0) {
     const float share = (ImGui::GetIO().MousePos.x - area.min.x) / area.width();
-    f.queue.push_back({"view.wipe", {argument(static_cast<double>(std::clamp(share, 0.f, 1.f)))}});
+    f.context.queue.push_back({"view.wipe", {argument(static_cast<double>(std::clamp(share, 0.f, 1.f)))}});
   }
   return line;
 }
@@ -198,8 +199,8 @@ void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const
 void Views::interact(const Frame& f, Pane& pane) {
   const Pointer now = pointer_of_item();
   const PaneView seen = tool_view(f.session, pane);
-  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.ui.scale()};
-  const bool taken = hand_.work(place, now, f.queue);
+  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale()};
+  const bool taken = hand_.work(place, now, f.context.queue);
   if (now.over || now.held) {
     pointer_ = now, under_ = &pane;
     const bool steering = now.turning || now.panning || now.wheel != 0;
@@ -216,11 +217,11 @@ PaneView Views::tool_view(const Session& session, const Pane& pane) {
 /// Commands are about it from now on.
 void Views::activate(const Frame& f, const Pane& pane) {
   if (pane.content.number != f.session.view.active_pane)
-    f.queue.push_back({"view.pane", {std::to_string(pane.content.number)}});
+    f.context.queue.push_back({"view.pane", {std::to_string(pane.content.number)}});
 }
 
 void Views::point_camera(const Frame& f, const Pane& pane, const render::Camera& camera) {
-  f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, camera)});
+  f.context.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, camera)});
 }
 
 void Views::ask_what_to_do(const Frame& f, const Pane& pane, const Pointer& now) {
@@ -241,7 +242,7 @@ void Views::draw_menu(const Frame& f) {
 
 /// Comes before the picture's item, so that it is met first. Beside its faces the picture is met.
 void Views::use_cube(const Frame& f, Pane& pane, const Rect& part) {
-  pane.cube = f.session.view.cube ? cube_place(f.ui, part) : std::nullopt;
+  pane.cube = f.session.view.cube ? cube_place(f.context.ui, part) : std::nullopt;
   const bool held = std::exchange(pane.cube_held, false);
   pane.cube_face = -1;
   if (!pane.cube || hand_.busy()) return;
@@ -255,18 +256,18 @@ void Views::use_cube(const Frame& f, Pane& pane, const Rect& part) {
   const bool dragged = io.MouseDragMaxDistanceSqr[0] >= io.MouseDragThreshold * io.MouseDragThreshold;
   if (ImGui::IsItemHovered() && !(pane.cube_held && dragged)) pane.cube_face = face;
   if (pane.cube_held && dragged) {
-    const float turned = kTurn * f.session.settings.mouse_sensitivity / f.ui.scale();
+    const float turned = kTurn * f.session.settings.mouse_sensitivity / f.context.ui.scale();
     activate(f, pane);
     point_camera(f, pane,
                  render::orbited(pane.view.camera, -turned * io.MouseDelta.x, turned * io.MouseDelta.y));
   } else if (clicked && !dragged && face >= 0) {
     activate(f, pane);
-    f.queue.push_back({"view.preset", {app::kViewPresets[face].name}});
+    f.context.queue.push_back({"view.preset", {app::kViewPresets[face].name}});
   }
 }
 
 void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left) {
-  const float turn = kTurn * f.session.settings.mouse_sensitivity / f.ui.scale();
+  const float turn = kTurn * f.session.settings.mouse_sensitivity / f.context.ui.scale();
   std::optional<render::Camera> camera;
   if (!hand_.busy()) camera = navigated(pane.view, now, free_left, turn);
   if (now.doubled && free_left) {
@@ -280,14 +281,14 @@ void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left
 
 void Views::make_picture(const Frame& f, Pane& pane) {
   const PaneView seen = tool_view(f.session, pane);
-  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.ui.scale()};
+  const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale()};
   PanePictures pictures = pane.keeper.pictures();
   pane.preview = hand_.preview(place);
   if (const auto turned = hand_.turned_picture(place); turned != nullptr && !pictures.takes.empty())
     pictures.takes[0] = turned;
   auto found = looks_of(f.session, looks_, pane.content);
   if (shows_as_loaded(f.session, pane.content)) found = {*unposed_look(f.session, looks_, pane.content)};
-  const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.ui.theme().kind};
+  const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.context.ui.theme().kind};
   pane.made = build_scene(input, pane.colours);
   draw_picture(f, pane);
 }
@@ -324,7 +325,7 @@ void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
   describe(f.session, pane, overlay);
   overlay.active = panes_.size() > 1 && f.session.view.layout == app::Layout::SideBySide &&
                    pane.content.number == f.session.view.active_pane;
-  draw_overlay(f.ui, overlay);
+  draw_overlay(f.context.ui, overlay);
   draw_brush(f, pane);
 }
 
@@ -375,17 +376,18 @@ void Views::draw_brush(const Frame& f, const Pane& pane) {
   const auto brush = hand_.brush(pane.content);
   if (!brush) return;
   const Vec3 u = brush->normal.unitOrthogonal(), v = brush->normal.cross(u);
+  const PaneView view = tool_view(f.session, pane);
   std::vector<ImVec2> circle;
   for (int i = 0; i < 48; ++i) {
     const float angle = 2 * kPi * static_cast<float>(i) / 48;
     const Vec3 at = brush->position + f.session.brush.radius_m * (std::cos(angle) * u + std::sin(angle) * v);
-    if (const auto seen = tool_view(f.session, pane).project(at)) circle.push_back(*seen);
+    if (const auto seen = view.project(at)) circle.push_back(*seen);
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddPolyline(circle.data(), circle.size(), color(ImVec4(0, 0, 0, 0.5f)), ImDrawFlags_Closed,
-                   f.ui.px(3));
+                   f.context.ui.px(3));
   list.AddPolyline(circle.data(), circle.size(), color(ImVec4(1, 1, 1, 0.9f)), ImDrawFlags_Closed,
-                   f.ui.px(1.5f));
+                   f.context.ui.px(1.5f));
 }
 
 /// Switching the following camera on or off keeps the current picture.
@@ -398,7 +400,8 @@ void Views::keep_view_when_following_changes(const Frame& f) {
     const Pane& pane = *panes_[i];
     if (i > 0 && f.session.view.linked) break;
     if (pane.view.rect.empty() || shows_rest(f.session, pane.content)) continue;
-    f.queue.push_back({"view.camera_state", camera_arguments(f.session, pane.content, pane.view.camera)});
+    f.context.queue.push_back(
+        {"view.camera_state", camera_arguments(f.session, pane.content, pane.view.camera)});
   }
 }
 

@@ -37,8 +37,6 @@ class Views {
     const app::Session& session;
     app::FrameCache& cache;
     PanelContext& context;
-    app::CommandQueue& queue;
-    Ui& ui;
   };
   void prepare(const Frame& f, size_t count);
   void place_legend(const Frame& f, Rect& area);
