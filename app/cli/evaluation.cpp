@@ -243,6 +243,7 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   for (const Proportion& one : kProportions)
     if (method.*one.value != Method().*one.value) report[one.name] = method.*one.value;
   if (method.path != Method().path) report["path"] = kRootNames[static_cast<size_t>(method.path)];
+  for (const BoneTurn& turn : options.how.rest_pose) report["rest_pose"].push_back(turn_words(turn));
   if (options.restart_every > 0) report["restart_every"] = options.restart_every;
   report["cases"] = Json::array();
   for (const CaseResult& result : evaluation.results) report["cases"].push_back(case_json(result));

@@ -185,13 +185,19 @@ int export_takes(const ExportOptions& options) {
   US_CHECK(options.preview.empty() && options.report.empty(),
            "--all-takes: --preview and --report are of one file");
   const ExportFormat& format = export_format(options.format.empty() ? "glb" : options.format, options.out);
+  if (options.bones == "own") check_own_bones(options.out, format);
   const auto studio = open_document(options);
   make_takes(options, *studio, 0);
   const auto files = take_files(studio->session(), options.out, choice_of(options, format));
   const auto problems = write_takes(options.out, files, [](float) { check_interrupt("during the export"); });
-  for (const std::string& problem : problems) log::warn(problem);
-  std::printf("%s %zu of %zu takes\n", options.out.c_str(), files.size() - problems.size(), files.size());
-  return problems.empty() ? 0 : 1;
+  size_t written = 0;
+  for (const std::string& problem : problems)
+    if (problem.empty())
+      ++written;
+    else
+      log::warn(problem);
+  std::printf("%s %zu of %zu takes\n", options.out.c_str(), written, files.size());
+  return written == files.size() ? 0 : 1;
 }
 
 /// Six moments of the first clip as the file has them, and how it stands in the T-pose.
@@ -270,6 +276,7 @@ int run_export(const ExportOptions& options) {
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
            ": --preview needs a GLB or glTF file");
   check_export(options.out, format);
+  if (options.bones == "own") check_own_bones(options.out, format);
   CharacterExportOptions on_any_rig = options.file;
   on_any_rig.their_rig = options.target.rig != "ours" && options.bones != "22";
   check_export_options(options.out, format, on_any_rig);
@@ -309,7 +316,7 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
   command.add_option("--reduce", options.file.reduce_mm, "removes keys up to this error, mm")
       ->check(CLI::Range(0.0, 1000.0));
   command.add_flag("--in-place", options.file.in_place, "leaves out the path across the floor");
-  command.add_flag("--root-motion", options.file.root_motion,
+  command.add_flag("--root-motion,!--no-root-motion", options.file.root_motion,
                    "adds a root bone that carries the path across the floor, as game engines expect");
   command.add_flag("--t-pose-clip", options.file.t_pose_clip, "the first clip is the T-pose");
   command.add_flag("--keep-clips", options.file.keep_clips, "keeps the file's own animations");

@@ -6,6 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/program_files.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/character/bone_map.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
@@ -143,6 +144,12 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
                      "weights file of the engine in place of the folder's");
   command.add_option("--extractor-weights", how.extractor_file,
                      "weights file of the extractor in place of the folder's");
+}
+
+std::string turn_words(const BoneTurn& turn) {
+  const Vec3 degrees = 180 / kPi * turn.axis_angle;
+  return printed("%s=%g,%g,%g", kJointNames[turn.joint], static_cast<double>(degrees.x()),
+                 static_cast<double>(degrees.y()), static_cast<double>(degrees.z()));
 }
 
 nn::NetworkOptions network_options(const MethodOptions& how) {

@@ -30,6 +30,8 @@ struct MethodOptions {
   std::vector<BoneTurn> rest_pose;          ///< of the target
 };
 void add_method_options(CLI::App& command, MethodOptions& how);
+/// As --rest-pose takes it: "left_shoulder=0,0,-30".
+std::string turn_words(const BoneTurn& turn);
 nn::NetworkOptions network_options(const MethodOptions& how);
 /// The options of the pipeline, networks apart.
 RetargetOptions retarget_options(const MethodOptions& how);

@@ -62,6 +62,7 @@ std::string help_of_presets() {
 
 void apply(const ExportPreset& preset, CharacterExportOptions& file) {
   chosen(file) = chosen(preset);
+  if (preset.root_motion) file.in_place = false;
 }
 
 const ExportPreset* preset_of(const ExportFormat& format, const CharacterExportOptions& file) {

@@ -28,7 +28,7 @@ std::string names_of_presets();
 /// "three: 4 bones per vertex ...; unity: ...", for help.
 std::string help_of_presets();
 
-/// Sets the preset's options; the others stay.
+/// Sets the preset's options; the others stay, but a file with root motion is not in place.
 void apply(const ExportPreset& preset, CharacterExportOptions& file);
 /// The preset whose options these are; null: none.
 const ExportPreset* preset_of(const ExportFormat& format, const CharacterExportOptions& file);

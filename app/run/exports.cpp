@@ -229,6 +229,9 @@ void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file) {
   US_CHECK(!format.is_character || file.their_rig || !file.keep_clips, path,
            ": the file's own clips need its own rig; they cannot be kept on our 22 joints");
+  US_CHECK(
+      !file.in_place || !file.root_motion, path,
+      ": the path across the floor is either left out (in place) or carried by a root bone (root motion)");
   if (format.is_character) return;
   US_CHECK(!file.t_pose_clip, path, ": ", format.label, " holds one motion, no T-pose besides");
   US_CHECK(!file.keep_clips, path, ": ", format.label,
@@ -238,6 +241,10 @@ void check_export_options(const std::string& path, const ExportFormat& format,
   US_CHECK(file.influences == 4, path, ": ", format.label, " holds no skin weights, so no ", file.influences,
            " bones per vertex");
   US_CHECK(!(file.reduce_mm > 0), path, ": ", format.label, " holds every frame, so keys cannot be left out");
+}
+
+void check_own_bones(const std::string& path, const ExportFormat& format) {
+  US_CHECK(format.own_bones, path, ": ", format.label, " cannot be on the character's own bones");
 }
 
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,

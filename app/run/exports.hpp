@@ -40,6 +40,9 @@ void check_export(const std::string& path, const ExportFormat& format);
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file);
 
+/// Throws Error where such a file cannot be on the character's own bones.
+void check_own_bones(const std::string& path, const ExportFormat& format);
+
 /// The character that performs, as on screen.
 struct ExportBody {
   std::shared_ptr<const PreparedCharacter> character;

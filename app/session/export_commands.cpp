@@ -43,18 +43,21 @@ std::string counted(size_t takes) {
   return std::to_string(takes) + (takes == 1 ? " take" : " takes");
 }
 
-/// What became of an export of all takes: a notice, and where some could not be written an error with why.
+/// What became of an export of all takes, of which one at least was written: a notice, and where some could not be an
+/// error with why. problems: as write_takes returns them.
 void tell_of_takes(Studio& studio, const std::vector<TakeFile>& files,
                    const std::vector<std::string>& problems) {
-  const std::string& first = files.front().path;
-  const size_t written = files.size() - problems.size();
-  const std::string of_all = problems.empty() ? "" : std::to_string(written) + " of ";
-  const std::string folder = fs::path(first).parent_path().filename().string();
-  studio.notify("Exported " + of_all + counted(files.size()) + " to " + folder, !problems.empty(),
-                showing(first));
+  const auto first = std::find(problems.begin(), problems.end(), "");
+  const std::string& path = files.at(first - problems.begin()).path;
+  const size_t written = std::count(problems.begin(), problems.end(), "");
+  const bool is_whole = written == files.size();
+  const std::string of_all = is_whole ? "" : std::to_string(written) + " of ";
+  const std::string folder = fs::path(path).parent_path().filename().string();
+  studio.notify("Exported " + of_all + counted(files.size()) + " to " + folder, !is_whole, showing(path));
   std::string all;
-  for (const std::string& problem : problems) append_item(all, problem, "; ");
-  US_CHECK(problems.empty(), counted(problems.size()), " could not be exported. ", all);
+  for (const std::string& problem : problems)
+    if (!problem.empty()) append_item(all, problem, "; ");
+  US_CHECK(is_whole, counted(files.size() - written), " could not be exported. ", all);
 }
 
 /// A file of each take. FOLDER [format=NAME|csv] and the options of export.run.

@@ -70,6 +70,27 @@ ExportChoice choice_for(const Session& session, size_t k, ExportChoice choice) {
   return choice;
 }
 
+/// Makes a folder, and those above it that are missing. In the end those of them that are still empty go again.
+class MadeFolder {
+ public:
+  explicit MadeFolder(const fs::path& folder) {
+    std::error_code failed;
+    for (fs::path each = folder; !each.empty() && !fs::exists(each, failed); each = each.parent_path())
+      made_.push_back(each);
+    fs::create_directories(folder, failed);  // what is written into it says why it is not there
+  }
+  ~MadeFolder() {
+    std::error_code failed;
+    for (const fs::path& each : made_)
+      if (fs::is_directory(each, failed)) fs::remove(each, failed);
+  }
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+
+ private:
+  std::vector<fs::path> made_;  // the innermost first
+};
+
 using WriteTake = decltype(TakeFile::write);
 /// A file of each take. `writing` gives what writes the take k to a path, or throws.
 std::vector<TakeFile> files_of(const Session& session, const std::string& folder, const std::string& suffix,
@@ -105,6 +126,7 @@ ExportChoice export_choice(const std::string& path, const std::vector<std::strin
       set_option(out, key, value);
   }
   out.format = &export_format(format, path);
+  if (out.theirs.value_or(false)) check_own_bones(path, *out.format);
   return out;
 }
 
@@ -208,21 +230,18 @@ std::vector<TakeFile> figure_files(const Session& session, const std::string& fo
 
 std::vector<std::string> write_takes(const std::string& folder, const std::vector<TakeFile>& files,
                                      const std::function<void(float)>& progress) {
-  std::error_code failed;
-  const bool made = fs::create_directories(folder, failed);
+  const MadeFolder made(folder);
   std::vector<std::string> problems;
   for (size_t i = 0; i < files.size(); ++i) {
     const auto of_all = [&](float done) {
       if (progress) progress((static_cast<float>(i) + done) / static_cast<float>(files.size()));
     };
     of_all(0);
-    const std::string problem =
-        files[i].write ? failure_of([&] { files[i].write(of_all); }) : files[i].problem;
-    if (!problem.empty()) problems.push_back(problem);
+    problems.push_back(files[i].write ? failure_of([&] { files[i].write(of_all); }) : files[i].problem);
   }
   if (progress) progress(1);  // whoever stopped the last one is heard here
-  if (problems.size() < files.size()) return problems;
-  if (made) fs::remove(folder, failed);
+  const auto is_written = [](const std::string& problem) { return problem.empty(); };
+  if (std::any_of(problems.begin(), problems.end(), is_written)) return problems;
   std::string all;
   for (const std::string& problem : problems) append_item(all, problem, "; ");
   throw Error(all.empty() ? "there is no take to export" : all);

@@ -56,8 +56,9 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
                                  const ExportChoice& choice);
 /// The same with the figures of every frame, as CSV.
 std::vector<TakeFile> figure_files(const Session& session, const std::string& folder);
-/// Makes the folder and writes one file after the other; what goes wrong with one keeps no other out. Returns why some
-/// could not be made, a sentence each. Throws Error where none could; a folder that it has made is gone then.
+/// Makes the folder and writes one file after the other; what goes wrong with one keeps no other out. Returns for each
+/// file why it could not be made, one sentence; empty: it was. Throws Error where none could, and what `progress` throws
+/// after the last one. Folders that it has made and that are empty at the end are gone then.
 std::vector<std::string> write_takes(const std::string& folder, const std::vector<TakeFile>& files,
                                      const std::function<void(float)>& progress);
 

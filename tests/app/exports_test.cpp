@@ -105,8 +105,13 @@ TEST(CheckExportOptions, WhatAFileCannotHoldIsRefusedAndNotLeftOut) {
                                  file.keep_clips = true;
                                }),
                        "own clips"));
-  for (const ExportFormat& info : export_formats())
+  EXPECT_TRUE(
+      contains(refused(export_format("glb", ""), [](auto& file) { file.in_place = file.root_motion = true; }),
+               "not both"));
+  for (const ExportFormat& info : export_formats()) {
     EXPECT_NO_THROW(check_export_options("a", info, {})) << info.name;
+    EXPECT_EQ(error_of([&] { check_own_bones("a", info); }).empty(), info.own_bones) << info.name;
+  }
 }
 
 class EveryFormat : public testing::TestWithParam<ExportFormat> {
@@ -212,7 +217,7 @@ TEST(ExportPresets, EachIsKnownByItsOptionsAndCanBeWritten) {
     CharacterExportOptions file;
     file.in_place = true;
     apply(preset, file);
-    EXPECT_TRUE(file.in_place) << "no matter of the program's";
+    EXPECT_EQ(file.in_place, !preset.root_motion) << "a root bone has a path to carry";
     const ExportFormat& format = export_format(preset.format, "");
     EXPECT_NO_THROW(check_export_options("a", format, file)) << preset.name;
     EXPECT_EQ(preset_of(format, file), &export_preset(preset.name));

@@ -98,6 +98,11 @@ TEST(EvaluationReport, NamesWhatOfTheMethodIsSwitched) {
                      "--no-smooth-joints --no-fix-lengths --no-lock-feet --no-hand-contacts --no-offsets"),
             "engine paper, no offsets, no repair_swaps, no smooth_joints, no fix_lengths, no lock_feet, "
             "no hand_contacts, no part_refiner, extractor paper, path in-place");
+  EvalOptions turned;
+  turned.how = parsed("--rest-pose left_shoulder=0,0,-30 --rest-pose head=30.5,0,1");
+  turned.how.weights = "no/such/folder";
+  EXPECT_EQ(report_of(turned, Evaluation())["rest_pose"],
+            Json::array({"left_shoulder=0,0,-30", "head=30.5,0,1"}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "app/session/document_file.hpp"
+#include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
@@ -184,6 +185,26 @@ TEST_F(StudioCharacter, AllTakesAreExportedAFileEachAndWhatFailsKeepsNoOtherOut)
   EXPECT_GT(fs::file_size(path("all/a_b.glb")), 1000u);
   EXPECT_GT(fs::file_size(path("figures/a_b.csv")), 100u);
   EXPECT_NE(refusal(studio, "export.all", {path("all"), "take=made"}).find("all takes"), std::string::npos);
+  EXPECT_NE(refusal(studio, "export.all", {path("all"), "format=ply", "bones=own"}).find("own bones"),
+            std::string::npos);
+
+  fs::remove(path("all/made.glb"));
+  fs::create_directories(path("all/made.glb/in the way"));
+  studio.run("export.all", {path("all"), "format=glb"});
+  studio.wait_idle(60);
+  const Notice& part = studio.session().notices.back();
+  EXPECT_EQ(part.text, "Exported 2 of 3 takes to all");
+  EXPECT_NE(part.offer.command.find("Made 2.glb"), std::string::npos) << "one that was written";
+}
+
+TEST_F(StudioTest, AnExportOfTakesThatIsCancelledLeavesNoEmptyFolder) {
+  const auto stopped = [](float) { throw Error("cancelled"); };
+  const std::vector<TakeFile> files = {{path("new/all/a.csv"), "", [](const auto&) {}}};
+  EXPECT_THROW(write_takes(path("new/all"), files, stopped), Error);
+  EXPECT_FALSE(fs::exists(path("new")));
+  fs::create_directories(path("kept"));
+  EXPECT_THROW(write_takes(path("kept"), files, stopped), Error);
+  EXPECT_TRUE(fs::exists(path("kept"))) << "it was there before";
 }
 
 TEST_F(StudioCharacter, AnExportOfTakesThatAllFailIsAnErrorAndLeavesNoFolder) {

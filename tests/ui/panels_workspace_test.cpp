@@ -672,6 +672,20 @@ TEST_F(Exporting, AllTakesGoIntoAFolderAFileEach) {
   EXPECT_TRUE(shown("export.take"));
 }
 
+TEST_F(Exporting, ThePathIsLeftOutOrCarriedNotBoth) {
+  open("export");
+  click("export.root_motion");
+  frame(2);
+  EXPECT_FALSE(mark("export.in_place").enabled);
+  click("export.root_motion");
+  frame(2);
+  click("export.in_place");
+  frame(2);
+  EXPECT_FALSE(mark("export.root_motion").enabled);
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 " + (folder / "adult.glb").string() + " format=glb in_place=on"});
+}
+
 TEST_F(Exporting, APresetSetsTheOptionsAndAChangeMakesThemCustom) {
   open("export");
   EXPECT_FALSE(shown("export.preset.words"));

@@ -261,6 +261,31 @@ void draw_take_rows(const app::Session& session, PanelContext& context, ExportSt
   if (are_clips(session, state)) draw_clip_rows(session, ui, state);
 }
 
+/// What becomes of the path across the floor: it is left out or carried by a bone, not both.
+void draw_path_rows(Ui& ui, bool is_character, CharacterExportOptions& file) {
+  if (!is_character) {
+    if (toggle_row(ui, {"export.in_place", "In place", "Leaves out the path across the floor"},
+                   file.in_place))
+      file.root_motion = false;  // not to be seen here
+    return;
+  }
+  {
+    const DisabledScope disabled(file.root_motion);
+    toggle_row(ui,
+               {"export.in_place", "In place",
+                file.root_motion ? "Not with root motion, which carries the path across the floor"
+                                 : "Leaves out the path across the floor"},
+               file.in_place);
+  }
+  const DisabledScope disabled(file.in_place);
+  toggle_row(
+      ui,
+      {"export.root_motion", "Root motion",
+       file.in_place ? "Not in place, where there is no path to carry"
+                     : "Adds a root bone that carries the path across the floor, as game engines expect"},
+      file.root_motion);
+}
+
 void draw_animation_rows(const app::Session& session, PanelContext& context, ExportState& state) {
   Ui& ui = context.ui;
   draw_preset(session, ui, state);
@@ -273,13 +298,7 @@ void draw_animation_rows(const app::Session& session, PanelContext& context, Exp
     if (own_bones && format->own_bones) draw_bone_choice(ui, *format, state);
     if (format->is_character)
       draw_character_rows(ui, *made, own_bones && on_own_bones(*format, state), state);
-    toggle_row(ui, {"export.in_place", "In place", "Leaves out the path across the floor"},
-               state.choice.file.in_place);
-    if (format->is_character)
-      toggle_row(ui,
-                 {"export.root_motion", "Root motion",
-                  "Adds a root bone that carries the path across the floor, as game engines expect"},
-                 state.choice.file.root_motion);
+    draw_path_rows(ui, format->is_character, state.choice.file);
     const std::string frames = has_many_files(session, state)
                                    ? std::to_string(session.takes.size()) + " takes"
                                    : frames_words(session, session.selected_take);
@@ -426,18 +445,17 @@ std::vector<std::string> files_in_the_way(const app::Session& session, const Exp
 
 /// Whether the dialog stays.
 bool draw_overwrite(const app::Session& session, PanelContext& context, ExportState& state) {
-  const std::vector<std::string> there = files_in_the_way(session, state);
+  const std::vector<std::string>& there = state.in_the_way;
   QuestionWords question;
   question.title = there.size() > 1 ? "Replace the files?" : "Replace the file?";
-  question.sentence =
-      (there.empty() ? file_name(state.path) : there[0]) +
-      (there.size() == 2  ? " and another are already there."
-       : there.size() > 2 ? " and " + std::to_string(there.size() - 1) + " others are already there."
-                          : " is already there.");
+  question.sentence = there[0] + (there.size() == 2  ? " and another are already there."
+                                  : there.size() > 2 ? " and " + std::to_string(there.size() - 1) +
+                                                           " others are already there."
+                                                     : " is already there.");
   question.yes = "Replace", question.dangerous = true;
   const Answer answer = ask(context.ui, "export.overwrite", question);
   if (answer == Answer::None) return true;
-  state.asking = false;
+  state.in_the_way.clear();
   if (answer == Answer::Yes) ask_for_export(session, context, state);
   return answer != Answer::Yes;
 }
@@ -482,7 +500,8 @@ bool begin_export(const app::Session& session, ExportState& state, const std::st
   const bool known = used != formats.end() || last == "csv";  // behind the formats: the figures
   state.kind = kind->second, state.format = known ? static_cast<int>(used - formats.begin()) : 0;
   state.path.clear(), state.agreed.clear(), state.asked.clear(), state.left_out.clear();
-  state.typed = state.asking = false;
+  state.in_the_way.clear();
+  state.typed = false;
   return true;
 }
 
@@ -499,7 +518,7 @@ bool export_failed(const app::Session& session, ExportState& state) {
 
 bool draw_export(const app::Session& session, PanelContext& context, ExportState& state, FilesState& files) {
   Ui& ui = context.ui;
-  if (state.asking) return draw_overwrite(session, context, state);
+  if (!state.in_the_way.empty()) return draw_overwrite(session, context, state);
   if (!begin_dialog(ui, "export", title_of(state.kind), 460)) return true;
   draw_choices_above(ui, [&] {
     if (state.kind == ExportKind::Animation)
@@ -519,8 +538,8 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
   if (buttons.add(ui, "export.save", "Save", save) ||
       (entered && !save.disabled && !ImGui::IsWindowAppearing())) {
     const bool agreed = state.path == state.agreed && !has_many_files(session, state);
-    state.asking = !agreed && !files_in_the_way(session, state).empty();
-    if (!state.asking) ask_for_export(session, context, state), stays = false;
+    if (!agreed) state.in_the_way = files_in_the_way(session, state);
+    if (state.in_the_way.empty()) ask_for_export(session, context, state), stays = false;
   }
   return finish_dialog(stays);
 }

@@ -8,6 +8,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "app/session/take_export.hpp"
 #include "ui/panels/files.hpp"
@@ -31,12 +32,12 @@ struct ExportState {
   std::string path;           ///< whole, with its suffix; of a file each their folder
   bool typed = false;         ///< the path, or chosen; else it follows the take
   int width = 1920, height = 1080;
-  bool all = true;           ///< all views; false: the active one
-  bool transparent = false;  ///< pictures
-  bool as_pictures = false;  ///< a video: a folder of them
-  bool asking = false;       ///< whether to write over the file that is there
-  std::string agreed;        ///< the path that may be written over, as the browser has asked
-  std::string asked;         ///< the command that was pushed last, as a line
+  bool all = true;                      ///< all views; false: the active one
+  bool transparent = false;             ///< pictures
+  bool as_pictures = false;             ///< a video: a folder of them
+  std::vector<std::string> in_the_way;  ///< names of files that would be replaced, asked about; empty: none
+  std::string agreed;                   ///< the path that may be written over, as the browser has asked
+  std::string asked;                    ///< the command that was pushed last, as a line
 };
 
 /// Opens the dialog of that name, with a new path to propose and the format used last: export, csv, picture or
