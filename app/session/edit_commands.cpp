@@ -107,8 +107,7 @@ void move_limb(Call& c) {
   move.joint = c.joint(2);
   US_CHECK(limb_end(move.joint) >= 0, joint_label(move.joint),
            " cannot be moved: choose a wrist, an ankle or a foot");
-  c.label = std::string("Move ") + (kMirror[move.joint] > move.joint ? "left " : "right ") +
-            (is_leg(move.joint) ? "foot" : "hand");
+  c.label = "Move " + limb_end_label(move.joint);
   move.offset = c.vector(3, "offset");
   move.falloff = falloff_argument(c, 6);
   US_CHECK(state.target && move.frame < ssize(state.performed), "frame ", move.frame,
@@ -213,11 +212,22 @@ void remove_rotations_of(Call& c, int joint) {
   remove_all_of(c.take(1).pose_edits.rotate, joints_turned_by(joint));
 }
 
+/// All that moving a hand or a foot turned at a frame.
+void remove_limb_move(Call& c) {
+  auto& edits = c.take(1).pose_edits.rotate;
+  const int frame = c.number<int>(2, "frame"), end = limb_end(c.joint(3));
+  const auto of_it = [&](const RotateEdit& edit) { return edit.frame == frame && edit.limb == end; };
+  const auto first = std::remove_if(edits.begin(), edits.end(), of_it);
+  US_CHECK(first != edits.end(), "no hand or foot was moved there");
+  edits.erase(first, edits.end());
+}
+
 void remove_edit(Call& c) {
   const size_t kind = c.choice(
-      0, "kind", {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of", "rotations_of"});
+      0, "kind", {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of", "rotations_of", "limb"});
   if (kind == 5) return remove_drags_of(c, c.joint(1));
   if (kind == 6) return remove_rotations_of(c, c.joint(2));
+  if (kind == 7) return remove_limb_move(c);
   if (kind == 0) return remove_at(c.document.skeleton_edits, c, 1);
   if (kind == 1) return remove_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"));
   Take& take = c.take(1);
@@ -273,7 +283,7 @@ void add_rearrangement(Commands& commands) {
   commands.add_edit(
       {"edit.remove", "Remove an edit",
        "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
-       "rotations_of TAKE JOINT | joint TAKE INDEX"},
+       "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX"},
       remove_edit);
   commands.add_edit(
       {"edit.move", "Move an edit in time",

@@ -12,8 +12,9 @@ namespace {
 void add_rotation(const RotateEdit& more, std::vector<RotateEdit>& edits) {
   const auto of_joint = [&](const RotateEdit& edit) { return edit.joint == more.joint; };
   const auto last = std::find_if(edits.rbegin(), edits.rend(), of_joint);
-  if (last == edits.rend() || last->frame != more.frame || last->falloff != more.falloff)
-    return edits.push_back(more);
+  const bool continues = last != edits.rend() && last->frame == more.frame && last->falloff == more.falloff &&
+                         last->limb == more.limb;
+  if (!continues) return edits.push_back(more);
   last->axis_angle = rotation_to_axis_angle(rotation_from_axis_angle(last->axis_angle) *
                                             rotation_from_axis_angle(more.axis_angle));
 }
@@ -53,6 +54,12 @@ std::string limb_label(int joint) {
   return std::string(kMirror[end] > end ? "left " : "right ") + (is_leg(end) ? "leg" : "arm");
 }
 
+std::string limb_end_label(int joint) {
+  const int end = limb_end(joint);
+  US_CHECK(end >= 0, "joint ", joint, " ends no limb");
+  return std::string(kMirror[end] > end ? "left " : "right ") + (is_leg(end) ? "foot" : "hand");
+}
+
 Pose moved_limb(const Joints& rest, int joint, const Vec3& offset, Pose pose) {
   const int end = limb_end(joint);
   US_CHECK(end >= 0, "joint ", joint, " ends no limb");
@@ -72,7 +79,8 @@ void add_limb_move(const LimbMove& move, const Pose& performed, const Joints& re
   const Pose after = moved_limb(rest, move.joint, heading.transpose() * move.offset, before);
   for (const int j : joints_turned_by(move.joint)) {
     const Vec3 turn = rotation_to_axis_angle(before.local[j].transpose() * after.local[j]);
-    if (turn.norm() > kLeast) add_rotation({move.frame, j, turn, move.falloff}, edits.rotate);
+    if (turn.norm() > kLeast)
+      add_rotation({move.frame, j, turn, move.falloff, limb_end(move.joint)}, edits.rotate);
   }
 }
 

@@ -27,6 +27,9 @@ struct LimbMove {
   int falloff = 5;
 };
 
+/// What is seen to move at its end: "left hand", "right foot". Throws Error for a joint that ends no limb.
+std::string limb_end_label(int joint);
+
 /// The pose with the limb's end moved by an offset, or as far as the limb reaches: the limb keeps the plane it bends in, its
 /// end keeps its world rotation, nothing else moves. Throws Error for a joint that ends no limb.
 Pose moved_limb(const Joints& rest, int joint, const Vec3& offset, Pose pose);

@@ -18,6 +18,8 @@ struct RotateEdit {
   int joint = 0;
   Vec3 axis_angle = Vec3::Zero();  ///< radians, in the joint's own frame, applied after its rotation
   int falloff = 5;                 ///< frames to each side that follow
+  /// The joint that ends the limb which turned the bone as it was moved (limb_end); none: the bone was turned by itself.
+  std::optional<int> limb{};
 };
 template <class V, class S>
 FieldsOf<S, RotateEdit> fields(V& visit, S& edit) {
@@ -25,6 +27,7 @@ FieldsOf<S, RotateEdit> fields(V& visit, S& edit) {
   visit("joint", edit.joint, Within<int>{0, kJointCount - 1});
   visit("axis_angle", edit.axis_angle);
   visit("falloff", edit.falloff, kFrameNumbers);
+  visit("limb", edit.limb, Within<int>{0, kJointCount - 1});
 }
 
 /// Rotations and root over time through a Gaussian that looks both ways (no delay).

@@ -107,6 +107,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take.method.part_refiner = take.method.hand_contacts = true;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
     take.target_edits.rest_pose.clear();
+    for (RotateEdit& edit : take.pose_edits.rotate) edit.limb.reset();
     take.target.import.height.reset();
     take.target.not_a_person = NotAPerson::RefuseClear;
   }

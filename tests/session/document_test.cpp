@@ -133,6 +133,7 @@ const Changes& document_changes() {
       POSES(rotate[0].joint = 1),
       POSES(rotate[0].axis_angle.z() += 0.1f),
       POSES(rotate[0].falloff = 1),
+      POSES(rotate[0].limb.reset()),
       POSES(smooth.reset()),
       POSES(smooth->strength = 0.5f),
       POSES(raise.reset()),
@@ -180,7 +181,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
   [[maybe_unused]] const auto& [rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();
-  [[maybe_unused]] const auto& [frame, joint, turn, falloff] = RotateEdit();
+  [[maybe_unused]] const auto& [frame, joint, turn, falloff, limb] = RotateEdit();
   [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();
   [[maybe_unused]] const auto& [begin_height, end_height, begin_speed, end_speed] = FootContactOptions();
   [[maybe_unused]] const auto& [strength] = SmoothEdit();

@@ -28,7 +28,8 @@ std::shared_ptr<const WeightRows> weight_rows() {
 
 PoseEdits pose_edits() {
   PoseEdits edits;
-  edits.rotate = {{12, LeftElbow, Vec3(0.1f, -0.2f, 1 / 3.0f), 7}, {0, Head, Vec3(1e-7f, 0, 0), 0}};
+  edits.rotate = {{12, LeftElbow, Vec3(0.1f, -0.2f, 1 / 3.0f), 7, LeftWrist},
+                  {0, Head, Vec3(1e-7f, 0, 0), 0}};
   edits.smooth = SmoothEdit{0.7f};
   edits.raise = RaiseEdit{-0.012f};
   edits.pin = PinEdit{false, false, {0.02f, 0.06f, 0.5f, 1.1f}, 0.3f, false, false, 0.05f};

@@ -426,6 +426,24 @@ TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {
   EXPECT_THROW(studio.run("edit.move_limb", {"0", "10", "left_elbow", "0", "0.1", "0"}), Error);
 }
 
+TEST_F(StudioTest, AHandThatWasMovedIsOneEditToRemove) {
+  Studio studio(services());
+  open_both(studio);
+  const auto& rotations = studio.session().document.takes[0].pose_edits.rotate;
+  studio.run("edit.rotate", {"0", "10", "left_elbow", "0.2", "0", "0"});
+  studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0.1", "0.05", "3"});
+  studio.run("edit.move_limb", {"0", "12", "left_wrist", "0", "0.1", "0.05", "3"});
+  const size_t before = rotations.size();
+  studio.run("edit.remove", {"limb", "0", "10", "left_wrist"});
+  EXPECT_LT(rotations.size(), before);
+  EXPECT_EQ(rotations[0].joint, LeftElbow) << "turned by itself";
+  EXPECT_FALSE(rotations[0].limb);
+  for (size_t i = 1; i < rotations.size(); ++i) EXPECT_EQ(rotations[i].frame, 12);
+  EXPECT_THROW(studio.run("edit.remove", {"limb", "0", "10", "left_wrist"}), Error);
+  studio.run("edit.undo");
+  EXPECT_EQ(rotations.size(), before);
+}
+
 TEST_F(StudioTest, ALimbThatWasMovedIsResetAsAWhole) {
   Studio studio(services());
   open_both(studio);

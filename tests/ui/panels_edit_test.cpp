@@ -1,5 +1,8 @@
 // The edit panel: what each control asks for.
+#include <algorithm>
+
 #include "tests/ui/support/panels_test.hpp"
+#include "ui/panels/timeline.hpp"
 
 namespace understudy::ui {
 namespace {
@@ -64,6 +67,24 @@ TEST_F(EditPanel, OfTheResult) {
   expect_click("edit.rotation.0", {"playback.frame 12"});
   expect_click("edit.rotation.0.remove", {"edit.remove rotation 0 0"});
   expect_click("edit.poses_clear", {"edit.poses_clear 0"});
+}
+
+TEST_F(EditPanel, AHandThatWasMovedIsOneEntry) {
+  auto& rotate = session.document.takes[0].pose_edits.rotate;
+  for (const int frame : {14, 16})
+    for (const int joint : {LeftShoulder, LeftElbow, LeftWrist})
+      rotate.push_back({frame, joint, Vec3(0.1f, 0, 0), 5, LeftWrist});
+  frame(2);
+  EXPECT_TRUE(shown("edit.rotation.0")) << "an elbow turned by itself";
+  for (const char* of_the_first : {"edit.rotation.2", "edit.rotation.3"}) EXPECT_FALSE(shown(of_the_first));
+  expect_click("edit.rotation.1", {"playback.frame 14"});
+  expect_click("edit.rotation.1.remove", {"edit.remove limb 0 14 left_wrist"});
+  expect_click("edit.rotation.4.remove", {"edit.remove limb 0 16 left_wrist"});
+  const std::vector<EditMark> marks = edit_marks(session, {});
+  const auto at = std::find_if(marks.begin(), marks.end(),
+                               [](const EditMark& edit) { return edit.mark.name == "rotations.14"; });
+  ASSERT_NE(at, marks.end());
+  EXPECT_EQ(at->mark.words, "Moved: left hand");
 }
 
 TEST_F(EditPanel, OfTheTarget) {

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "retarget/base/text.hpp"
+#include "retarget/editing/limb_move.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
@@ -218,6 +219,39 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
              edits.skip.count(frame) > 0);
 }
 
+struct ListedEdit {
+  size_t first = 0;  ///< among the rotations
+  std::string words;
+  int frame = 0;
+  app::Arguments removal;
+};
+
+/// A bone that was turned, or a hand or a foot that was moved with all that this turned.
+std::vector<ListedEdit> listed_rotations(const std::vector<RotateEdit>& edits, const std::string& take) {
+  std::vector<ListedEdit> listed;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    const RotateEdit& edit = edits[i];
+    const auto of_same_move = [&](const RotateEdit& other) {
+      return edit.limb && other.limb == edit.limb && other.frame == edit.frame;
+    };
+    const auto end = edits.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(edits.begin(), end, of_same_move)) continue;
+    const std::string number = std::to_string(edit.frame), frame = "Frame " + number + ": ";
+    if (edit.limb)
+      listed.push_back({i,
+                        frame + limb_end_label(*edit.limb) + " moved",
+                        edit.frame,
+                        {"limb", take, number, joint_name(*edit.limb)}});
+    else
+      listed.push_back(
+          {i,
+           frame + joint_label(edit.joint) + ", " + figure(edit.axis_angle.norm() * 180 / kPi, "\u00b0"),
+           edit.frame,
+           {"rotation", take, std::to_string(i)}});
+  }
+  return listed;
+}
+
 void draw_result(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "edit.result", take_title(session, "Result"))) return;
@@ -230,13 +264,10 @@ void draw_result(const app::Session& session, PanelContext& context) {
   draw_amounts(edits, context, k);
   draw_cost(selected_state(session), ui);
   draw_trim(session, context, edits, k);
-  for (size_t i = edits.rotate.size() > 50 ? edits.rotate.size() - 50 : 0; i < edits.rotate.size(); ++i) {
-    const RotateEdit& edit = edits.rotate[i];
-    edit_line(context, "edit.rotation." + std::to_string(i),
-              "Frame " + std::to_string(edit.frame) + ": " + joint_label(edit.joint) + ", " +
-                  figure(edit.axis_angle.norm() * 180 / kPi, "\u00b0"),
-              edit.frame, {"rotation", k, std::to_string(i)});
-  }
+  const std::vector<ListedEdit> listed = listed_rotations(edits.rotate, k);
+  for (size_t i = listed.size() > 50 ? listed.size() - 50 : 0; i < listed.size(); ++i)
+    edit_line(context, "edit.rotation." + std::to_string(listed[i].first), listed[i].words, listed[i].frame,
+              listed[i].removal);
   clear_button(context, "edit.poses_clear", !edits.empty(), k);
 }
 

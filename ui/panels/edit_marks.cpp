@@ -3,6 +3,7 @@
 #include <map>
 
 #include "retarget/base/index.hpp"
+#include "retarget/editing/limb_move.hpp"
 #include "retarget/math/rotation.hpp"
 #include "ui/panels/timeline.hpp"
 
@@ -18,10 +19,11 @@ struct KeyFrame {
 };
 using KeyFrames = std::map<int, KeyFrame>;
 
+/// `done`: what was done; said once a frame.
 template <class Edit>
-void add(KeyFrames& keys, const Edit& edit, const char* done) {
+void add(KeyFrames& keys, const Edit& edit, const std::string& done) {
   KeyFrame& key = keys[edit.frame];
-  key.words += (key.words.empty() ? "" : "\n") + std::string(done) + ": " + joint_label(edit.joint);
+  if (key.words.find(done) == std::string::npos) key.words += (key.words.empty() ? "" : "\n") + done;
   key.reach = std::max(key.reach, edit.falloff);
 }
 
@@ -50,7 +52,7 @@ void add_source_edits(std::vector<EditMark>& all, const app::Session& session) {
   const auto& edits = session.document.skeleton_edits;
   for (size_t i = 0; i < edits.size(); ++i) {
     if (const auto* drag = std::get_if<DragEdit>(&edits[i])) {
-      add(drags, *drag, "Dragged");
+      add(drags, *drag, "Dragged: " + joint_label(drag->joint));
       continue;
     }
     const SwapEdit& swap = std::get<SwapEdit>(edits[i]);
@@ -130,7 +132,9 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
   const std::string k = std::to_string(session.selected_take);
   add_skips(all, take->pose_edits.skip, k);
   KeyFrames rotations;
-  for (const RotateEdit& edit : take->pose_edits.rotate) add(rotations, edit, "Rotated");
+  for (const RotateEdit& edit : take->pose_edits.rotate)
+    add(rotations, edit,
+        edit.limb ? "Moved: " + limb_end_label(*edit.limb) : "Rotated: " + joint_label(edit.joint));
   add_diamonds(all, rotations, {"rotations", k}, 1);
   return all;
 }

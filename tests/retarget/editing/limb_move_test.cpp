@@ -89,6 +89,20 @@ TEST(LimbMove, ASecondDragOfTheSameFrameContinuesTheFirst) {
   EXPECT_GT(stage.edits.rotate.size(), edits);
 }
 
+TEST(LimbMove, KnowsItsRotationsAndLeavesThoseOfABoneTurnedByItself) {
+  LimbStage stage;
+  const Vec3 turn(0, 0.3f, 0);
+  stage.edits.rotate = {{30, LeftElbow, turn, 5}};
+  stage.move({30, LeftWrist, Vec3(0, 0.08f, 0), 5});
+  EXPECT_EQ(stage.edits.rotate[0].axis_angle, turn);
+  EXPECT_FALSE(stage.edits.rotate[0].limb);
+  ASSERT_GT(stage.edits.rotate.size(), 1u);
+  for (size_t i = 1; i < stage.edits.rotate.size(); ++i)
+    EXPECT_EQ(stage.edits.rotate[i].limb, LeftWrist) << i;
+  EXPECT_EQ(limb_end_label(LeftFoot), "left foot");
+  EXPECT_EQ(limb_end_label(RightWrist), "right hand");
+}
+
 TEST(LimbMove, IsOfHandsAndFeetAlone) {
   LimbStage stage;
   EXPECT_EQ(limb_end(RightFoot), RightAnkle);
