@@ -138,6 +138,25 @@ TEST_F(ViewsTest, TheMouseDoesInTheViewsWhatTheHelpSays) {
   }
 }
 
+TEST_F(ViewsTest, ARightDragWithControlTurnsTheLightAndNothingElse) {
+  stage.session.tool = app::Tool::Joints;
+  stage.session.view.light = {10, 20, 1};
+  const app::CameraState before = stage.session.view.cameras[0];
+  const ImVec2 from = seen(0, source_joint(LeftWrist));
+  render::Modifiers control;
+  control.control = true;
+  drag(from, {from.x + 60, from.y}, control, render::MouseButton::Right);
+  EXPECT_GT(std::stof(asked("view.light").at(1)), 10) << "it follows the pointer";
+  EXPECT_EQ(asked("view.light")[0], "turn");
+  drag(from, {from.x, from.y - 60}, control, render::MouseButton::Right);
+  EXPECT_EQ(asked("view.light")[0], "height");
+  EXPECT_GT(std::stof(asked("view.light").at(1)), 20) << "up";
+  EXPECT_EQ(stage.session.view.cameras[0].yaw, before.yaw);
+  EXPECT_EQ(count("edit.drag"), 0);
+  frame(3);
+  EXPECT_FALSE(shown("menu.view.fit")) << "no menu after a drag";
+}
+
 TEST_F(ViewsTest, ARightClickOffersWhatCanBeDoneInThatView) {
   click(mark("view.1").rect.at(0.1f, 0.8f), render::MouseButton::Right);
   frame(3);

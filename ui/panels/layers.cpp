@@ -184,10 +184,12 @@ void draw_light(const app::Session& session, PanelContext& context) {
   if (!section(context.ui, "layers.light_and_background", "Light and background", false)) return;
   const app::LightLook& light = session.view.light;
   ask_number(context,
-             {"layers.light.turn", "From the side", "Turns the main light about the view", "view.light turn"},
+             {"layers.light.turn", "From the side",
+              "Turns the main light about the view, as a Ctrl+right drag does", "view.light turn"},
              light.turn_deg, {-180, 180, 0.5f, "%.0f\u00b0", 0, true});
   ask_number(context,
-             {"layers.light.height", "From above", "Raises or lowers the main light", "view.light height"},
+             {"layers.light.height", "From above",
+              "Raises or lowers the main light, as a Ctrl+right drag does", "view.light height"},
              light.height_deg, {-90, 90, 0.5f, "%.0f\u00b0", 0, true});
   ask_number(context, {"layers.light.brightness", "Brightness", "Of all light", "view.light brightness"},
              light.brightness, {0, 3, 0.005f, "%.2f", 1, true});

@@ -238,7 +238,8 @@ Pointer pointer_of_item() {
   pointer.doubled = pointer.over && ImGui::IsMouseDoubleClicked(0);
   const bool dragged =
       active && !ImGui::IsItemActivated();  // the way to where it was pressed is no part of it
-  pointer.turning = dragged && ImGui::IsMouseDown(1);
+  const bool right = dragged && ImGui::IsMouseDown(1);
+  pointer.turning = right && !io.KeyCtrl, pointer.lighting = right && io.KeyCtrl;
   const bool still = io.MouseDragMaxDistanceSqr[1] < io.MouseDragThreshold * io.MouseDragThreshold;
   pointer.asks = pointer.over && ImGui::IsMouseReleased(1) && still;
   pointer.panning = dragged && (ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift));

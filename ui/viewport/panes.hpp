@@ -88,6 +88,7 @@ struct Pointer {
   bool pressed = false, held = false, released = false;  ///< left button; pressed: over the pane
   bool doubled = false;                                  ///< double click of the left button
   bool turning = false, panning = false;  ///< right, or middle and shift-left, pressed over the pane
+  bool lighting = false;                  ///< control-right, pressed over the pane
   bool asks = false;                      ///< a right click that dragged nothing: for what can be done there
 };
 /// Of the pane's item, just made.

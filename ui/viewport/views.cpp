@@ -203,7 +203,7 @@ void Views::interact(const Frame& f, Pane& pane) {
   const bool taken = hand_.work(place, now, f.context.queue);
   if (now.over || now.held) {
     pointer_ = now, under_ = &pane;
-    const bool steering = now.turning || now.panning || now.wheel != 0;
+    const bool steering = now.turning || now.lighting || now.panning || now.wheel != 0;
     if (now.pressed || steering || now.asks) activate(f, pane);
   }
   if (now.asks && !hand_.busy()) ask_what_to_do(f, pane, now);
@@ -277,6 +277,18 @@ void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left
     }
   }
   if (camera) point_camera(f, pane, *camera);
+  if (now.lighting && !hand_.busy()) turn_light(f, now);
+}
+
+/// The light goes the way the pointer goes.
+void Views::turn_light(const Frame& f, const Pointer& now) {
+  const app::LightLook& light = f.session.view.light;
+  const float turn = kTurn * f.session.settings.mouse_sensitivity / f.ui.scale() * 180 / kPi;
+  const auto ask = [&](const char* what, float degrees) {
+    f.queue.push_back({"view.light", {what, argument(static_cast<double>(degrees))}});
+  };
+  if (now.moved.x != 0) ask("turn", std::remainder(light.turn_deg + turn * now.moved.x, 360.f));
+  if (now.moved.y != 0) ask("height", std::clamp(light.height_deg - turn * now.moved.y, -90.f, 90.f));
 }
 
 void Views::make_picture(const Frame& f, Pane& pane) {

@@ -52,6 +52,7 @@ class Views {
   /// A pane as the person that the tool is about is seen in it.
   static PaneView tool_view(const app::Session& session, const Pane& pane);
   void point_camera(const Frame& f, const Pane& pane, const render::Camera& camera);
+  void turn_light(const Frame& f, const Pointer& now);
   void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
   void make_picture(const Frame& f, Pane& pane);
   void draw_picture(const Frame& f, Pane& pane);
