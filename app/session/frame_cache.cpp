@@ -13,6 +13,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/worker.hpp"
 #include "retarget/geometry/cloud_normals.hpp"
+#include "retarget/skeleton/skinning.hpp"
 
 namespace understudy::app {
 namespace {
@@ -21,6 +22,7 @@ constexpr size_t kMostDemands = 64;  // what was asked for before these is asked
 constexpr size_t kMostPrefetches = 8;
 constexpr size_t kFewestKept = 4;
 constexpr int kSource = -1;
+constexpr int kRest = -1;  // in place of a frame's number
 
 /// The points that are not in the box.
 Points outside(const Box& box, const Points& points) {
@@ -51,10 +53,12 @@ struct Recipe {
   std::shared_ptr<const Deformer> deformer;
   std::shared_ptr<const Target> target;
   Pose pose;
+  std::shared_ptr<const RowMatrix> weights{};  // of a rest pose
 
   /// Generations tell takes apart only as long as no take is removed or exchanged: hence the rest.
   bool operator==(const Recipe& other) const {
     return version == other.version && deformer == other.deformer && target == other.target &&
+           weights == other.weights &&
            std::memcmp(&pose, &other.pose, sizeof pose) == 0;  // NOLINT: all floats; NaN equals itself
   }
 };
@@ -216,14 +220,19 @@ class ScanReader {
 /// Never throws: a target that cannot be posed is a picture without vertices.
 PosedPicture posed_picture(const Request& request) {
   PosedPicture picture;
+  const Recipe& recipe = request.recipe;
+  const Mesh& mesh = recipe.target->mesh;
+  const bool rests = request.key.frame == kRest;
   try {
-    picture.vertices = request.recipe.deformer->deform(request.recipe.pose);
-    if (!request.recipe.target->mesh.is_cloud())
-      picture.normals = vertex_normals(picture.vertices, request.recipe.target->mesh.faces);
-    if (request.key.offsets) picture.offsets = request.recipe.deformer->offsets(request.recipe.pose);
+    picture.vertices = rests ? linear_blend_skinning(mesh.vertices, *recipe.weights, recipe.target->joints,
+                                                     forward_kinematics(recipe.target->joints, recipe.pose))
+                             : recipe.deformer->deform(recipe.pose);
+    if (!mesh.is_cloud()) picture.normals = vertex_normals(picture.vertices, mesh.faces);
+    if (request.key.offsets) picture.offsets = recipe.deformer->offsets(recipe.pose);
     return picture;
   } catch (const std::exception& error) {
-    log::warn_once("frame " + std::to_string(request.key.frame) + " cannot be shown: " + error.what());
+    const std::string what = rests ? "the rest pose" : "frame " + std::to_string(request.key.frame);
+    log::warn_once(what + " cannot be shown: " + error.what());
   }
   return {};
 }
@@ -277,6 +286,8 @@ struct FrameCache::Impl {
     return request;
   }
   std::optional<Request> posed_request(const TakeState& take, const Wanted& wanted);
+  void see(const TakeState& take, int k);
+  std::shared_ptr<const PosedPicture> posed(const std::optional<Request>& request);
   bool still_wanted(const Request& request) const;
   void take_next();
   Worker::Task next();
@@ -304,18 +315,30 @@ void FrameCache::Impl::prefetch(Request request) {
   worker.wake();
 }
 
-/// Nothing where there is no such frame. A take of another generation forgets what was made of it before.
+/// A take of another generation forgets what was made of it before.
+void FrameCache::Impl::see(const TakeState& take, int k) {
+  const auto now = std::make_pair(take.generation, take.deformer);
+  auto& known = takes[k];
+  if (known == now) return;
+  known = now;
+  forget([&](const Request& request) { return request.key.take == k; });
+}
+
+/// Nothing where there is no such frame.
 std::optional<Request> FrameCache::Impl::posed_request(const TakeState& take, const Wanted& wanted) {
   const size_t frame = wanted.frame;
   if (!take.deformer || !take.target || wanted.frame < 0 || frame >= take.shown.poses.size()) return {};
-  const auto now = std::make_pair(take.generation, take.deformer);
-  auto& known = takes[wanted.take];
-  if (known != now) {
-    known = now;
-    forget([&](const Request& request) { return request.key.take == wanted.take; });
-  }
+  see(take, wanted.take);
   return Request{{wanted.take, wanted.frame, wanted.offsets},
                  {take.generation, take.deformer, take.target, take.shown.poses[frame]}};
+}
+
+/// Asks for what is not made yet.
+std::shared_ptr<const PosedPicture> FrameCache::Impl::posed(const std::optional<Request>& request) {
+  if (!request) return nullptr;
+  if (const Entry* made = store.find(*request)) return made->posed;
+  ask(*request);
+  return nullptr;
 }
 
 bool FrameCache::Impl::still_wanted(const Request& request) const {
@@ -398,11 +421,15 @@ std::shared_ptr<const ScanPicture> FrameCache::scan(int frame) {
 
 std::shared_ptr<const PosedPicture> FrameCache::posed(const TakeState& take, const Wanted& wanted) {
   const auto held = impl_->worker.lock();
-  const std::optional<Request> request = impl_->posed_request(take, wanted);
-  if (!request) return nullptr;
-  if (const Entry* made = impl_->store.find(*request)) return made->posed;
-  impl_->ask(*request);
-  return nullptr;
+  return impl_->posed(impl_->posed_request(take, wanted));
+}
+
+std::shared_ptr<const PosedPicture> FrameCache::rest(const TakeState& take, int k, const Pose& pose) {
+  const auto held = impl_->worker.lock();
+  if (!take.target || !take.weights) return nullptr;
+  impl_->see(take, k);
+  return impl_->posed(
+      Request{{k, kRest, false}, {take.generation, take.deformer, take.target, pose, take.weights}});
 }
 
 void FrameCache::prefetch_scan(int frame) {

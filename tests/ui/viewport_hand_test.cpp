@@ -477,6 +477,10 @@ TEST_F(ViewsTest, ABoneIsSeenTurnedUntilTheEditShows) {
   EXPECT_NE(hand.turned_picture(place), nullptr);
   stage.session.time += 5;  // it never came
   EXPECT_EQ(hand.turned_picture(place), nullptr);
+  stage.session.time -= 5;
+  EXPECT_NE(hand.turned_picture(place), nullptr);
+  stage.session.takes[0].shown.poses[10].local[RightElbow].setIdentity();  // it shows, and no joint has moved
+  EXPECT_EQ(hand.turned_picture(place), nullptr);
 }
 
 TEST_F(ViewsTest, AHandIsDraggedAndItsArmFollowsInView) {
@@ -575,14 +579,28 @@ TEST_F(ViewsTest, ABoneOfTheRestPoseIsTurnedByARingAndSeenSo) {
   looks.of(stage.target);
   looks.wait();
   const auto look = looks.of(stage.target);
-  const auto posed = rest_picture(stage.session, pane_of(1), *look);
+  PictureKeeper keeper;
+  const auto seen_now = [&] {
+    return keeper.update(stage.session, *stage.cache, looks, pane_of(1)).takes.at(0);
+  };
+  EXPECT_EQ(seen_now(), look->rest) << "until the other is made, in the background";
+  EXPECT_TRUE(keeper.waiting());
+  stage.cache->wait();
+  const auto posed = seen_now();
+  EXPECT_FALSE(keeper.waiting());
   const Pose pose{rest_rotations(turns), stage.target->joints.row(Pelvis).transpose()};
   const Points wanted = linear_blend_skinning(stage.mesh.vertices, *stage.weights, stage.target->joints,
                                               forward_kinematics(stage.target->joints, pose));
   EXPECT_LT((posed->vertices - wanted).cwiseAbs().maxCoeff(), 1e-4f);
   EXPECT_GT((posed->vertices - look->rest->vertices).cwiseAbs().maxCoeff(), 0.1f);
   stage.session.tool = app::Tool::TargetJoints;  // is about the T-pose
-  EXPECT_EQ(rest_picture(stage.session, pane_of(1), *look), look->rest);
+  EXPECT_EQ(seen_now(), look->rest);
+  stage.session.tool = app::Tool::RestPose;
+  EXPECT_NE(seen_now(), look->rest);
+  stage.session.tool = app::Tool::Look;
+  seen_now();
+  stage.session.tool = app::Tool::RestPose, turns.pop_back();
+  EXPECT_EQ(seen_now(), look->rest) << "not the one that was left";
 }
 
 TEST_F(ViewsTest, AClickOnAJointOfTheRestPoseChoosesItsBone) {

@@ -26,7 +26,7 @@ struct SceneTest : testing::Test {
   }
   Stage stage;
   app::Session& session = stage.session;
-  ColourMemory memory;
+  SceneMemory memory;
   PanePictures last;
 };
 
@@ -98,6 +98,16 @@ TEST_F(OverlayScene, SpreadPutsThePeopleSideBySideAndZeroOnEachOther) {
   }
   const render::Scene again = overlaid();
   EXPECT_TRUE(same(apart, again)) << "nothing is to be drawn anew";
+  EXPECT_EQ(memory.moved.size(), 2u);
+  session.view.take.ghosts = session.view.source.ghosts = true;
+  overlaid(), overlaid();
+  EXPECT_GT(memory.moved.size(), 4u);
+  session.view.take.ghosts = session.view.source.ghosts = false;
+  overlaid();
+  EXPECT_EQ(memory.moved.size(), 2u) << "ghosts that are gone take no memory";
+  session.view.overlay.spread_m = 0;
+  overlaid();
+  EXPECT_EQ(memory.moved.size(), 0u);
 }
 
 TEST_F(SceneTest, SpreadAndOpacityAreOfTheOverlayAlone) {

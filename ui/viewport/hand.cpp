@@ -24,7 +24,6 @@ constexpr float kLeastMove = 5e-4f;         // metres or radians: less was a cli
 constexpr float kThinnest = 0.05f;          // metres, of a crop box
 constexpr float kDabStep = 0.35f;           // of the brush's radius, between dabs
 constexpr double kSettleSeconds = 1.5;      // an edit shows within this time, or never
-constexpr double kNextFrame = 1e-6;         // seconds: one of the rest pose shows in the next frame
 constexpr Eigen::Index kMostPosed = 60000;  // vertices posed for a preview on the thread that draws
 
 /// Null where the take has no such frame, or no target to pose.
@@ -36,6 +35,15 @@ const Pose* pose_of(const Session& session, int take, int frame) {
 app::Arguments& operator<<(app::Arguments& words, const Vec3& v) {
   for (int i = 0; i < 3; ++i) words.push_back(argument(static_cast<double>(v[i])));
   return words;
+}
+
+bool same_pose(const std::optional<Pose>& a, const std::optional<Pose>& b) {
+  return a.has_value() == b.has_value() && (!a || (a->root == b->root && a->local == b->local));
+}
+
+/// What the pane shows of its first take; null for nothing.
+std::shared_ptr<const app::PosedPicture> first_picture(const HandPlace& place) {
+  return place.pictures.takes.empty() ? nullptr : place.pictures.takes[0];
 }
 
 int axis_of(GizmoHandle handle) {
@@ -86,6 +94,7 @@ render::GizmoView Hand::gizmo_of(const Subject& subject, int joint) {
 
 void Hand::let_go() {
   grip_ = settling_ = Grip::None;
+  released_ = {};
   leave();
 }
 
@@ -100,6 +109,7 @@ void Hand::leave() {
 bool Hand::work(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
   const bool here = pointer.over || pointer.held || pointer.released;
   if (busy() && !(place.pane == pane_)) return false;
+  if (place.session.time >= settle_until_) released_ = {};
   if (!here && !busy()) {
     if (place.pane == pane_) leave();
     return false;
@@ -156,9 +166,10 @@ void Hand::grab(const HandPlace& place, const Subject& subject, const Pointer& p
   offset_.setZero();
   corrections_.resize(0, 3);
   source_drag_.reset();
+  released_ = {};
   if (grip_ == Grip::Joint) source_drag_.emplace(session, frame_, session.falloff);
   const app::TakeState* take = at_or_null(session.takes, take_);
-  const std::optional<Pose> pose = grasped_pose(session);
+  const std::optional<Pose> pose = pose_before_ = grasped_pose(session);
   if (pose && take->deformer != nullptr && take->target->mesh.vertices.rows() <= kMostPosed)
     corrections_ = grip_ == Grip::RestBone ? Points(Points::Zero(take->target->mesh.vertices.rows(), 3))
                                            : take->deformer->offsets(*pose);
@@ -183,6 +194,7 @@ void Hand::drag(const HandPlace& place, const Pointer& pointer) {
 void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
   const Session& session = place.session;
   const Grip grip = grip_;
+  released_ = {grip == Grip::RestBone ? turned_picture(place) : nullptr, first_picture(place)};
   grip_ = Grip::None;
   handle_ = GizmoHandle::None;
   tip_.clear();
@@ -211,7 +223,7 @@ void Hand::finish(const HandPlace& place, app::CommandQueue& queue) {
     queue.push_back({"edit.target_joint", words});
   }
   settling_ = grip;
-  settle_until_ = session.time + (grip == Grip::RestBone ? kNextFrame : kSettleSeconds);
+  settle_until_ = session.time + kSettleSeconds;
 }
 
 /// Whether the drag, or the edit just pushed, belongs to this pane and is not in its pictures yet.
@@ -224,7 +236,8 @@ bool Hand::shown_in(const HandPlace& place) const {
   const auto subject = subject_of(place);
   const Grip worked_on = grip == Grip::Limb ? Grip::Bone : grip;
   return place.session.time < settle_until_ && subject && subject->grip == worked_on &&
-         subject->take == take_ && (of_rest || place.pictures.frame == frame_) && subject->joints == before_;
+         subject->take == take_ && (of_rest || place.pictures.frame == frame_) &&
+         subject->joints == before_ && same_pose(grasped_pose(place.session), pose_before_);
 }
 
 /// The pose that is gripped: of the take's result, or its target's rest pose.
@@ -300,7 +313,15 @@ EditPreview Hand::preview(const HandPlace& place) const {
   return preview;
 }
 
+/// The rest pose as it was released, until the pane has another picture of it.
+std::shared_ptr<const app::PosedPicture> Hand::released_picture(const HandPlace& place) const {
+  const bool waits = !busy() && place.pane == pane_ && place.session.tool == Tool::RestPose &&
+                     place.session.time < settle_until_ && first_picture(place) == released_.before;
+  return waits ? released_.picture : nullptr;
+}
+
 std::shared_ptr<const app::PosedPicture> Hand::turned_picture(const HandPlace& place) const {
+  if (auto released = released_picture(place)) return released;
   if (!(of_result(current()) || current() == Grip::RestBone) || !shown_in(place)) return nullptr;
   const auto skeleton = turned_skeleton(place.session);
   if (!skeleton) return nullptr;

@@ -34,7 +34,8 @@ class Hand {
 
   /// The preview, in this pane, of the current drag or of the edit just pushed.
   EditPreview preview(const HandPlace& place) const;
-  /// The first take's picture with the bone turned or the limb moved; null without such a drag.
+  /// The first take's picture with the bone turned or the limb moved; null without such a drag, and as soon as the edit
+  /// shows.
   std::shared_ptr<const app::PosedPicture> turned_picture(const HandPlace& place) const;
 
   /// The joint under the pointer in a pane, -1 for none.
@@ -78,6 +79,7 @@ class Hand {
   std::optional<PosedSkeleton> turned_skeleton(const app::Session& session) const;
   bool beyond_reach(const app::Session& session) const;
   bool shown_in(const HandPlace& place) const;
+  std::shared_ptr<const app::PosedPicture> released_picture(const HandPlace& place) const;
 
   Grip grip_ = Grip::None;
   PaneContent pane_;  ///< the one that the pointer is in or the drag began in
@@ -88,11 +90,16 @@ class Hand {
   // While something is gripped, and shortly after, until the edit shows.
   int joint_ = -1, frame_ = -1, take_ = -1;
   Joints before_ = Joints::Zero();
+  std::optional<Pose> pose_before_;  ///< of a turned bone or a limb
   render::GizmoView gizmo_;
   render::Ray start_{}, last_{};
   Vec3 offset_ = Vec3::Zero();  ///< metres, world; of Bone: axis times angle, in the joint's frame
   std::optional<app::SourceDrag> source_drag_;  ///< of Joint
   Points corrections_{0, 3};  ///< of a turned bone or a limb: pose-corrective offsets when it was gripped
+  /// A bone of the rest pose as it was released, and what the pane showed then.
+  struct Released {
+    std::shared_ptr<const app::PosedPicture> picture, before;
+  } released_;
   double settle_until_ = -1;  ///< Session::time
   Grip settling_ = Grip::None;
   Box box_;

@@ -4,7 +4,6 @@
 
 #include "render/gl/program.hpp"
 #include "retarget/base/index.hpp"
-#include "retarget/skeleton/skinning.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace understudy::ui {
@@ -131,25 +130,19 @@ std::optional<std::shared_ptr<const TargetLook>> unposed_look(const Session& ses
   return std::nullopt;
 }
 
-std::shared_ptr<const app::PosedPicture> rest_picture(const Session& session, const PaneContent& pane,
-                                                      const TargetLook& look) {
+std::shared_ptr<const app::PosedPicture> rest_picture(const Session& session, app::FrameCache& cache,
+                                                      const PaneContent& pane, const TargetLook& look) {
   const app::TakeState& take = *first_take(session, pane);
   const bool turned = session.tool == app::Tool::RestPose && shows_rest(session, pane) &&
                       !session.document.takes[pane.takes[0]].target_edits.rest_pose.empty();
   if (!turned || take.weights == nullptr) return look.rest;
-  const Target& target = *take.target;
-  app::PosedPicture picture;
-  picture.vertices =
-      linear_blend_skinning(target.mesh.vertices, *take.weights, target.joints,
-                            forward_kinematics(target.joints, rest_pose(session, pane.takes[0])));
-  if (!target.mesh.is_cloud()) picture.normals = vertex_normals(picture.vertices, target.mesh.faces);
-  return std::make_shared<const app::PosedPicture>(std::move(picture));
+  return cache.rest(take, pane.takes[0], rest_pose(session, pane.takes[0]));
 }
 
 const PanePictures& PictureKeeper::update(const Session& session, app::FrameCache& cache, TargetLooks& looks,
                                           const PaneContent& pane) {
   forget_others(session, pane);
-  if (show_unposed(session, looks, pane)) return pictures_;
+  if (show_unposed(session, cache, looks, pane)) return pictures_;
   const int frame = pane_frame(session, pane);
   waiting_ = false;
   if (frame < 0) return pictures_ = {};
@@ -167,21 +160,21 @@ const PanePictures& PictureKeeper::update(const Session& session, app::FrameCach
 }
 
 /// The look in T-pose or as loaded; the one shown before stays until it is ready.
-bool PictureKeeper::show_unposed(const Session& session, TargetLooks& looks, const PaneContent& pane) {
+bool PictureKeeper::show_unposed(const Session& session, app::FrameCache& cache, TargetLooks& looks,
+                                 const PaneContent& pane) {
   const auto look = unposed_look(session, looks, pane);
   if (!look) return false;
   asked_.clear();
   waiting_ = *look == nullptr || (!(*look)->shaded && shows_rest(session, pane));
   if (*look == nullptr && pictures_.frame < 0) return true;
+  const bool rested = pictures_.frame < 0 && !pictures_.takes.empty();
+  const auto before = rested ? pictures_.takes[0] : nullptr;
   pictures_ = {};
   if (*look == nullptr || !session.view.take.surface) return true;
-  const app::TakeState& take = *first_take(session, pane);
-  const std::vector<BoneTurn>& turns = session.document.takes[pane.takes[0]].target_edits.rest_pose;
-  const std::vector<std::shared_ptr<const void>> from = {*look, take.target, take.weights};
-  const std::string key = key_of(turns, session.tool == app::Tool::RestPose);
-  if (rest_ == nullptr || from != rest_from_ || key != rest_key_)
-    rest_ = rest_picture(session, pane, **look), rest_from_ = from, rest_key_ = key;
-  pictures_.takes = {rest_};
+  auto rest = rest_picture(session, cache, pane, **look);
+  waiting_ = waiting_ || rest == nullptr;
+  if (rest == nullptr) rest = before != nullptr ? before : (*look)->rest;
+  pictures_.takes = {std::move(rest)};
   return true;
 }
 

@@ -28,9 +28,10 @@ std::vector<std::shared_ptr<const TargetLook>> looks_of(const app::Session& sess
 std::optional<std::shared_ptr<const TargetLook>> unposed_look(const app::Session& session, TargetLooks& looks,
                                                               const PaneContent& pane);
 
-/// How that target is seen: the look's own picture, or in its rest pose while that is edited.
-std::shared_ptr<const app::PosedPicture> rest_picture(const app::Session& session, const PaneContent& pane,
-                                                      const TargetLook& look);
+/// How that target is seen: the look's own picture, or in its rest pose while that is edited; null while it is being
+/// made.
+std::shared_ptr<const app::PosedPicture> rest_picture(const app::Session& session, app::FrameCache& cache,
+                                                      const PaneContent& pane, const TargetLook& look);
 
 /// Keeps the last frames until the next are ready.
 class PictureKeeper {
@@ -42,16 +43,14 @@ class PictureKeeper {
   bool waiting() const { return waiting_; }
 
  private:
-  bool show_unposed(const app::Session& session, TargetLooks& looks, const PaneContent& pane);
+  bool show_unposed(const app::Session& session, app::FrameCache& cache, TargetLooks& looks,
+                    const PaneContent& pane);
   void forget_others(const app::Session& session, const PaneContent& pane);
 
   PanePictures pictures_;
   std::deque<int> asked_;  // frames, the newest first
   std::vector<std::shared_ptr<const Target>> targets_;
   std::string source_;
-  std::shared_ptr<const app::PosedPicture> rest_;  // the last one, and what it was made from
-  std::vector<std::shared_ptr<const void>> rest_from_;
-  std::string rest_key_;
   bool waiting_ = false;
 };
 
@@ -81,7 +80,7 @@ struct Pane {
   PaneContent content;
   PaneView view;
   PictureKeeper keeper;
-  ColourMemory colours;
+  SceneMemory memory;
   PaneScene made;
   EditPreview preview;
   PaneCanvas canvas;

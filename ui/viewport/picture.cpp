@@ -28,6 +28,13 @@ PanePictures awaited(const Session& session, app::FrameCache& cache, const PaneC
   return got;
 }
 
+std::shared_ptr<const app::PosedPicture> awaited_rest(const Session& session, app::FrameCache& cache,
+                                                      const PaneContent& pane, const TargetLook& look) {
+  if (auto rest = rest_picture(session, cache, pane, look)) return rest;
+  cache.wait();
+  return rest_picture(session, cache, pane, look);
+}
+
 Vec3 ink_on(const PictureOptions& options, bool dark) {
   return dark && !options.transparent ? Vec3(0.9f, 0.91f, 0.93f) : Vec3(0.12f, 0.13f, 0.15f);
 }
@@ -114,10 +121,10 @@ Image PictureMaker::one(const Session& session, app::FrameCache& cache, const Pa
   if (!unposed)
     pictures = awaited(session, cache, pane);
   else if (session.view.take.surface)
-    pictures.takes = {rest_picture(session, pane, **unposed)};
+    pictures.takes = {awaited_rest(session, cache, pane, **unposed)};
   const ThemeKind theme = session.settings.dark ? ThemeKind::Dark : ThemeKind::Light;
-  PaneScene made =
-      build_scene({session, pane, pictures, looks_of(session, looks_, pane), {}, theme}, colours_);
+  PaneScene made = build_scene({session, pane, pictures, looks_of(session, looks_, pane), {}, theme},
+                               memories_[pane.number]);
   made.scene.background.transparent = options.transparent;
   Image image = renderer_.render_image(made.scene, camera, options.size);
   const float height = std::max(11.f, static_cast<float>(options.size.height) / 50);

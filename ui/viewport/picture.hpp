@@ -1,6 +1,8 @@
 // Pictures of the views for files and videos, in any size and the best quality; waits for every part.
 #pragma once
 
+#include <map>
+
 #include "app/session/frame_cache.hpp"
 #include "app/session/session.hpp"
 #include "render/renderer.hpp"
@@ -33,7 +35,7 @@ class PictureMaker {
 
   render::Renderer renderer_;
   TargetLooks looks_;
-  ColourMemory colours_;
+  std::map<int, SceneMemory> memories_;  // by PaneContent::number
 };
 
 }  // namespace understudy::ui

@@ -18,9 +18,7 @@ using render::SharedPoints;
 
 constexpr float kGhostOpacity = 0.16f, kTrailSeconds = 1.2f;
 constexpr float kUnseen = 0.004f;  // an opacity that leaves nothing
-// Keys of ColourMemory for points alone; colours that change must not take them along.
-constexpr int kScanAside = -2, kCroppedAway = -3, kFirstTakeAside = -100, kFirstGhost = -10000;
-constexpr float kDisc = 1.15f;  // a scan's discs against its spacing: few holes, edges still sharp
+constexpr float kDisc = 1.15f;     // a scan's discs against its spacing: few holes, edges still sharp
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
 
 /// A member of something shared, shared with the whole.
@@ -62,7 +60,7 @@ Vec3 take_color(int k) {
 
 class Builder {
  public:
-  Builder(const SceneInput& input, ColourMemory& memory)
+  Builder(const SceneInput& input, SceneMemory& memory)
       : in_(input),
         session_(input.session),
         unposed_(shows_rest(session_, in_.pane) || shows_as_loaded(session_, in_.pane)),
@@ -75,7 +73,7 @@ class Builder {
   void add_scan();
   void add_take(size_t i);
   void add_target_surface(size_t i, const std::shared_ptr<const app::PosedPicture>& posed, float opacity,
-                          int ghost = 0);
+                          int ghost = -1);
   void add_surface(render::MeshView view, bool as_points, float radius);
   void add_skeleton(const Joints& joints, const app::Layers& layers, int person);
   void add_trails();
@@ -86,8 +84,8 @@ class Builder {
   void set_ground();
   void set_background();
   Vec3 aside_of(int person) const { return aside(session_, in_.pane, person); }
-  /// The points where the person stands; `key` of the memory.
-  SharedPoints displaced(SharedPoints points, int person, int key);
+  /// The points where the person stands.
+  SharedPoints displaced(SharedPoints points, int person, MovedLayer layer, int number = 0);
   /// The colour behind everything, for what is drawn faintly.
   Vec3 air() const { return (out_.scene.background.top + out_.scene.background.bottom) / 2; }
   const SurfaceColours& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
@@ -98,7 +96,7 @@ class Builder {
   const Session& session_;
   const bool unposed_;  ///< in T-pose or as loaded instead of in a frame
   const bool overlaid_ = in_.pane.takes.size() + (in_.pane.source ? 1 : 0) > 1;
-  ColourMemory& memory_;
+  SceneMemory& memory_;
   PaneScene out_;
 };
 
@@ -120,6 +118,8 @@ PaneScene Builder::build() {
     out_.scene.gizmos.back().position += aside_of(person_of_tool(session_, in_.pane));
   }
   set_ground();
+  memory_.colours.drop_unused();
+  memory_.moved.drop_unused();
   return std::move(out_);
 }
 
@@ -131,10 +131,10 @@ void Builder::add_unposed() {
   out_.scene.skeletons.push_back(render::skeleton_view(in_.preview.take_joints.value_or(joints)));
 }
 
-SharedPoints Builder::displaced(SharedPoints points, int person, int key) {
+SharedPoints Builder::displaced(SharedPoints points, int person, MovedLayer layer, int number) {
   const Vec3 offset = aside_of(person);
   if (offset.isZero()) return points;
-  SurfaceColours& kept = memory_[key];
+  MovedPoints& kept = memory_.moved[{layer, number}];
   if (!(kept.in_place.pointer() == points.pointer() && kept.aside == offset)) {
     kept.in_place = points, kept.aside = offset;
     kept.moved = Points(points->rowwise() + offset.transpose());
@@ -159,7 +159,7 @@ void Builder::add_scan() {
     const auto& scan = in_.pictures.scan;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;
-    view.vertices = displaced(part_of(scan, scan->mesh.vertices), 0, kScanAside);
+    view.vertices = displaced(part_of(scan, scan->mesh.vertices), 0, MovedLayer::Scan);
     view.faces = part_of(scan, scan->mesh.faces);
     view.normals = part_of(scan, scan->normals);
     view.colors = made.colors->rows() > 0 ? made.colors : SharedPoints(part_of(scan, scan->mesh.colors));
@@ -194,11 +194,12 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
     return;
   const Mesh& mesh = target->mesh;
   render::MeshView view;
-  view.vertices = displaced(part_of(posed, posed->vertices), k + 1, ghost < 0 ? ghost : kFirstTakeAside - k);
+  view.vertices = displaced(part_of(posed, posed->vertices), k + 1,
+                            ghost < 0 ? MovedLayer::Take : MovedLayer::TakeGhost, ghost < 0 ? k : ghost);
   view.faces = part_of(target, mesh.faces), view.normals = part_of(posed, posed->normals);
   view.color = take_color(k), view.opacity = opacity;
-  view.wireframe = session_.view.take.wireframe && ghost == 0;
-  if (ghost == 0) {
+  view.wireframe = session_.view.take.wireframe && ghost < 0;
+  if (ghost < 0) {
     const SurfaceColours& made = take_colors(k, posed);
     view.colors = made.colors;
     if (made.colors->rows() == 0 && take_colouring(session_) == Colouring::Plain && mesh.colors.rows() > 0)
@@ -230,15 +231,16 @@ void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int 
 
 /// Poses before and after, fainter than the one shown.
 void Builder::add_ghosts() {
-  int key = kFirstGhost;
-  for (const PanePictures::Ghost& ghost : in_.pictures.ghosts) {
-    key -= 2;  // one of a take, one of a scan
+  for (size_t i = 0; i < in_.pictures.ghosts.size(); ++i) {
+    const PanePictures::Ghost& ghost = in_.pictures.ghosts[i];
+    const int number = static_cast<int>(i);
     if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts)
-      add_target_surface(0, ghost.take, kGhostOpacity, key);
+      add_target_surface(0, ghost.take, kGhostOpacity, number);
     if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
       const float spacing = ghost.scan->spacing > 0 ? ghost.scan->spacing : render::PointsView().radius;
       render::MeshView view;
-      view.vertices = displaced(part_of(ghost.scan, ghost.scan->mesh.vertices), 0, key - 1);
+      view.vertices =
+          displaced(part_of(ghost.scan, ghost.scan->mesh.vertices), 0, MovedLayer::ScanGhost, number);
       view.normals = part_of(ghost.scan, ghost.scan->normals);
       view.color = 0.75f * air() + 0.25f * kScanColor;
       add_surface(std::move(view), true, 0.6f * spacing);
@@ -279,7 +281,7 @@ void Builder::add_cropped_away() {
   const auto& scan = in_.pictures.scan;
   if (session_.tool != app::Tool::Crop || scan == nullptr || scan->cropped_away.rows() == 0) return;
   render::MeshView view;
-  view.vertices = displaced(part_of(scan, scan->cropped_away), 0, kCroppedAway);
+  view.vertices = displaced(part_of(scan, scan->cropped_away), 0, MovedLayer::CroppedAway);
   view.color = 0.72f * air() + 0.28f * kScanColor;
   add_surface(std::move(view), true, 0.6f * scan->spacing);
 }
@@ -337,7 +339,7 @@ const SurfaceColours& Builder::take_colors(int k, const std::shared_ptr<const ap
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, take.joints[f]);
   }
-  SurfaceColours& made = memory_[k];
+  SurfaceColours& made = memory_.colours[k];
   if (made.kept == now.kept && made.settings == now.settings) return made;
   now.values = take_values(session_, k, in_.pictures, posed);
   const bool categories = colouring == Colouring::Weights && !now.values.legend.categories.empty();
@@ -354,7 +356,7 @@ const SurfaceColours& Builder::scan_colors() {
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, session_.source.frames[f].joints);
   }
-  SurfaceColours& made = memory_[-1];
+  SurfaceColours& made = memory_.colours[-1];
   if (made.kept == now.kept && made.settings == now.settings) return made;
   now.values = scan_values(session_, in_.pictures);
   now.colors = scale_colors(now.values);
@@ -363,7 +365,7 @@ const SurfaceColours& Builder::scan_colors() {
 
 }  // namespace
 
-PaneScene build_scene(const SceneInput& input, ColourMemory& memory) {
+PaneScene build_scene(const SceneInput& input, SceneMemory& memory) {
   return Builder(input, memory).build();
 }
 

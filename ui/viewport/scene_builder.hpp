@@ -1,6 +1,7 @@
 // Builds the renderer's scene from the session and the cache's frames. No GL, no ImGui calls.
 #pragma once
 
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,17 +23,49 @@ struct EditPreview {
   std::optional<render::GizmoView> gizmo;
 };
 
-/// A surface's colours, and its points where they stand aside, kept while their inputs stay the same.
+/// A surface's colours, kept while their inputs stay the same.
 struct SurfaceColours {
   std::vector<float> settings;
   std::vector<std::shared_ptr<const void>> kept;  ///< the inputs: one and the same has not changed
   SurfaceValues values;
   render::SharedPoints colors;
-  render::SharedPoints in_place, moved;  ///< points, and the same moved by `aside`
+};
+/// Points of what stands aside, kept while they and its place stay the same.
+struct MovedPoints {
+  render::SharedPoints in_place, moved;
   Vec3 aside = Vec3::Zero();
 };
-/// One for each pane, by take, -1 the scan; below that what only stands aside.
-using ColourMemory = std::map<int, SurfaceColours>;
+
+/// Values by key from one build of a scene to the next. What a build does not ask for is dropped at its end.
+template <class Key, class Value>
+class KeptValues {
+ public:
+  Value& operator[](const Key& key) {
+    Entry& entry = entries_[key];
+    entry.used = true;
+    return entry.value;
+  }
+  void drop_unused() {
+    for (auto it = entries_.begin(); it != entries_.end();)
+      it = std::exchange(it->second.used, false) ? std::next(it) : entries_.erase(it);
+  }
+  size_t size() const { return entries_.size(); }
+
+ private:
+  struct Entry {
+    Value value;
+    bool used = false;
+  };
+  std::map<Key, Entry> entries_;
+};
+
+/// Whose points stand aside: those of a take by its number, of ghosts by theirs.
+enum class MovedLayer { Scan, CroppedAway, Take, ScanGhost, TakeGhost };
+/// One for each pane.
+struct SceneMemory {
+  KeptValues<int, SurfaceColours> colours;  ///< by take, -1 the scan
+  KeptValues<std::pair<MovedLayer, int>, MovedPoints> moved;
+};
 
 struct SceneInput {
   const app::Session& session;
@@ -53,7 +86,7 @@ struct PaneScene {
 
 /// Follows View and Layers: surfaces and their colouring, skeletons, trails, ghosts, ground, the crop box
 /// while that tool is active. What is not there yet is left out.
-PaneScene build_scene(const SceneInput& input, ColourMemory& memory);
+PaneScene build_scene(const SceneInput& input, SceneMemory& memory);
 
 /// The middles of a box's faces, [6, 3], in the order of kBoxSides.
 Points face_centres(const Box& box);

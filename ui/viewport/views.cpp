@@ -185,7 +185,7 @@ float Views::wipe_line(const Frame& f, const Rect& area) {
 }
 
 void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view) {
-  if (!(pane.content == content)) pane.colours = {};
+  if (!(pane.content == content)) pane.memory = {};
   const render::Camera before = pane.view.camera;
   const bool held = hold_ && pane.content == content && !pane.view.rect.empty();
   pane.content = content;
@@ -301,7 +301,7 @@ void Views::make_picture(const Frame& f, Pane& pane) {
   auto found = looks_of(f.session, looks_, pane.content);
   if (shows_as_loaded(f.session, pane.content)) found = {*unposed_look(f.session, looks_, pane.content)};
   const SceneInput input{f.session, pane.content, pictures, found, pane.preview, f.context.ui.theme().kind};
-  pane.made = build_scene(input, pane.colours);
+  pane.made = build_scene(input, pane.memory);
   draw_picture(f, pane);
 }
 
