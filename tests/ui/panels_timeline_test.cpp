@@ -237,12 +237,24 @@ TEST_F(Timeline, EachFootOnTheFloorIsABarOfItsFrames) {
   EXPECT_FALSE(shown("timeline.track.right_foot.1"));
   for (const char* edit : {"drags.4", "swap.1", "rotations.12"})
     EXPECT_TRUE(intersection(mark(std::string("timeline.track.") + edit).rect, first).empty()) << edit;
+  standing.resize(60);
+  for (size_t t = 48; t < 60; ++t) standing[t][1] = true;  // more frames have come
+  frame(2);
+  EXPECT_TRUE(shown("timeline.track.right_foot.1"));
+  standing.assign(60, Standing{false, true}), ++session.takes[0].generation;  // an edit has changed them
+  frame(2);
+  EXPECT_FALSE(shown("timeline.track.left_foot.0"));
+  EXPECT_TRUE(shown("timeline.track.right_foot.0"));
+  EXPECT_FALSE(shown("timeline.track.right_foot.1"));
+  session.selected_take = 1;
+  frame(2);
+  EXPECT_FALSE(shown("timeline.track.right_foot.0"));
 }
 
 TEST_F(Timeline, AFootsBarIsNoEditAndItsTooltipTellsWhatHolds) {
   session.takes[0].shown.standing.assign(48, Standing{true, false});
   frame();
-  EXPECT_EQ(contact_bands(session)[0].words, "Left foot on the floor");
+  EXPECT_EQ(contact_bands(session, state.standing)[0].words, "Left foot on the floor");
   const Rect bar = mark("timeline.track.left_foot.0").rect, track = mark("timeline.track").rect;
   queue.clear();
   click(ImVec2(track.at(30.f / 59, 0).x, bar.at(0, 0.5f).y));
@@ -251,7 +263,7 @@ TEST_F(Timeline, AFootsBarIsNoEditAndItsTooltipTellsWhatHolds) {
   ASSERT_FALSE(lines.empty());
   for (const std::string& line : lines) EXPECT_EQ(line, "playback.frame 30");  // as anywhere in the track
   session.document.takes[0].pose_edits.pin = PinEdit{};
-  EXPECT_EQ(contact_bands(session)[0].words, "Left foot pinned to the floor");
+  EXPECT_EQ(contact_bands(session, state.standing)[0].words, "Left foot pinned to the floor");
 }
 
 TEST_F(Timeline, KnowsTheBadFramesAndWhy) {

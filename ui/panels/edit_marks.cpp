@@ -79,18 +79,6 @@ void add_skips(std::vector<EditMark>& all, const std::set<int>& skip, const std:
   }
 }
 
-/// The runs of frames in which a foot is held.
-std::vector<LoopRange> standing_frames(const std::vector<Standing>& standing, int side) {
-  std::vector<LoopRange> runs;
-  const int count = standing.size();
-  for (int t = 0; t < count; ++t) {
-    if (!standing[t][side]) continue;
-    if (runs.empty() || runs.back().last + 1 < t) runs.push_back({t, t});
-    runs.back().last = t;
-  }
-  return runs;
-}
-
 /// The joint whose channel is shown, and whether it is the result's; -1 without a tool for it.
 std::pair<int, bool> channel_joint(const app::Session& session) {
   const bool bones = session.tool == app::Tool::Bones;
@@ -139,20 +127,36 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
   return all;
 }
 
-std::vector<TrackBand> contact_bands(const app::Session& session) {
-  const app::TakeState* state = selected_state(session);
+void StandingRuns::follow(const app::Session& session) {
+  const app::TakeState* const state = selected_state(session);
+  const size_t now = state != nullptr ? state->shown.standing.size() : 0;
+  const int64_t generation = state != nullptr ? state->generation : -1;
+  if (take_ != session.selected_take || generation_ != generation || now < frames_) {
+    for (auto& runs : of_foot) runs.clear();
+    take_ = session.selected_take, generation_ = generation, frames_ = 0;
+  }
+  for (; frames_ < now; ++frames_)
+    for (const int side : {0, 1}) {
+      if (!state->shown.standing[frames_][side]) continue;
+      const int frame = static_cast<int>(frames_);
+      auto& runs = of_foot[side];
+      if (runs.empty() || runs.back().last + 1 < frame) runs.push_back({frame, frame});
+      runs.back().last = frame;
+    }
+}
+
+std::vector<TrackBand> contact_bands(const app::Session& session, const StandingRuns& standing) {
   const app::Take* take = selected_take(session);
-  if (state == nullptr || take == nullptr) return {};
+  if (take == nullptr || (standing.of_foot[0].empty() && standing.of_foot[1].empty())) return {};
   const auto& pin = take->pose_edits.pin;
   const bool pinned[] = {pin && pin->left, pin && pin->right};
   std::vector<TrackBand> bands;
   for (const int side : {0, 1}) {
     const std::string foot = side == 0 ? "Left foot " : "Right foot ";
     bands.push_back({side == 0 ? "left_foot" : "right_foot",
-                     foot + (pinned[side] ? "pinned to the floor" : "on the floor"),
-                     standing_frames(state->shown.standing, side), side == 0 ? kBlue : kOrange});
+                     foot + (pinned[side] ? "pinned to the floor" : "on the floor"), standing.of_foot[side],
+                     side == 0 ? kBlue : kOrange});
   }
-  if (bands[0].bars.empty() && bands[1].bars.empty()) return {};
   return bands;
 }
 

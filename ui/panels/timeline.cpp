@@ -176,7 +176,7 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   }
   const std::vector<EditMark> edits = edit_marks(session, state.fills);
   for (const EditMark& edit : edits) data.marks.push_back(edit.mark);
-  data.bands = contact_bands(session);
+  data.bands = contact_bands(session, state.standing);
   const app::Take* take = selected_take(session);
   if (take != nullptr && take->pose_edits.trim)
     data.kept = LoopRange{take->pose_edits.trim->first, take->pose_edits.trim->last};
@@ -196,6 +196,7 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
 }  // namespace
 
 void TimelineState::follow(const app::Session& session) {
+  standing.follow(session);
   const app::SourceState& source = session.source;
   const size_t now = source.frames.size();
   if (source.generation != generation) {

@@ -11,6 +11,19 @@
 
 namespace understudy::ui {
 
+/// Runs of frames in which the left and the right foot of the selected take are held on the floor.
+struct StandingRuns {
+  std::vector<LoopRange> of_foot[2];
+
+  /// Updates it from the session; only frames that are new or changed are looked at.
+  void follow(const app::Session& session);
+
+ private:
+  int take_ = -1;
+  int64_t generation_ = -1;
+  size_t frames_ = 0;  // looked at
+};
+
 /// Values that are costly to find and change rarely.
 struct TimelineState {
   int64_t generation = -1;  ///< of the source that the rest is about
@@ -24,6 +37,7 @@ struct TimelineState {
     std::string why;
   };
   std::vector<Fill> fills;  ///< runs of frames without a pose of their own: the last good one fills them
+  StandingRuns standing;
 
   /// Updates it from the session.
   void follow(const app::Session& session);
@@ -57,7 +71,7 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
 
 /// In which frames of the selected take each foot is held on the floor: two bands, left and right; none where no foot
 /// ever is.
-std::vector<TrackBand> contact_bands(const app::Session& session);
+std::vector<TrackBand> contact_bands(const app::Session& session, const StandingRuns& standing);
 
 /// Heights at scale 1: with the track, and the transport alone.
 constexpr float kTimelineHeight = 152, kShortTimelineHeight = 102, kTransportHeight = 44;
