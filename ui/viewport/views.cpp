@@ -283,9 +283,9 @@ void Views::steer(const Frame& f, Pane& pane, const Pointer& now, bool free_left
 /// The light goes the way the pointer goes.
 void Views::turn_light(const Frame& f, const Pointer& now) {
   const app::LightLook& light = f.session.view.light;
-  const float turn = kTurn * f.session.settings.mouse_sensitivity / f.ui.scale() * 180 / kPi;
+  const float turn = kTurn * f.session.settings.mouse_sensitivity / f.context.ui.scale() * 180 / kPi;
   const auto ask = [&](const char* what, float degrees) {
-    f.queue.push_back({"view.light", {what, argument(static_cast<double>(degrees))}});
+    f.context.queue.push_back({"view.light", {what, argument(static_cast<double>(degrees))}});
   };
   if (now.moved.x != 0) ask("turn", std::remainder(light.turn_deg + turn * now.moved.x, 360.f));
   if (now.moved.y != 0) ask("height", std::clamp(light.height_deg - turn * now.moved.y, -90.f, 90.f));
