@@ -238,7 +238,8 @@ void Renderer::Parts::draw_lines(const Scene& scene, bool x_ray) {
     if (view.x_ray == x_ray) lines.draw(view);
 }
 
-/// Clouds and skeletons to be seen through hide nothing that is drawn later: all depth is again that of what is opaque.
+/// Clouds and skeletons to be seen through hide nothing that is drawn later:
+/// all depth is again that of what is opaque.
 void Renderer::Parts::forget_depth_of_see_through(const Scene& scene) {
   gl::api().Clear(GL_DEPTH_BUFFER_BIT);
   const gl::ColorMaskScope colors(false);
@@ -250,8 +251,9 @@ void Renderer::Parts::forget_depth_of_see_through(const Scene& scene) {
   draw_clouds(scene, true);
 }
 
-/// What is drawn over the still background, in this order. A new pass is a file of passes/ with its shaders and
-/// its class, which nothing but this file includes; a member of Parts and a row here; and a golden picture.
+/// What is drawn over the still background, in this order. A new pass is a file of passes/ with its shaders
+/// and its class, which nothing but this file includes; a member of Parts and a row here;
+/// and a golden picture.
 const Renderer::Parts::Pass Renderer::Parts::kPasses[] = {
     [](Parts& p, const Scene& s, const Camera&) {
       if (s.ground.visible && s.ground.shadow > 0) p.ground.draw_shadow(s);

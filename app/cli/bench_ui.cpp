@@ -46,7 +46,8 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
 }
 
-// What is shown: the bundled samples, brought to the sizes asked for, the scan from its start again at its end.
+// What is shown: the bundled samples, brought to the sizes asked for,
+// the scan from its start again at its end.
 
 /// Exactly `count` vertices: faces are cut into three, one after the other, then those made so.
 Mesh with_vertices(Mesh mesh, int count) {

@@ -178,7 +178,8 @@ Performance perform_document(const ExportOptions& options, const ExportFormat& f
   return {export_input(session, takes, choice_of(options, format)), session.document.takes[takes[0]].name};
 }
 
-/// A file of each take into the folder --out; what goes wrong with one keeps no other out. 1 where something did.
+/// A file of each take into the folder --out; what goes wrong with one keeps no other out.
+/// 1 where something did.
 int export_takes(const ExportOptions& options) {
   US_CHECK(!options.document.empty(), "--all-takes: only a document has takes");
   US_CHECK(options.takes.empty(), "--all-takes: --take cannot be combined with it");

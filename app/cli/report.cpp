@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kTables[] = {"baselines", "seen", "contexts", "rotation", "extraction", "offsets"};
 
-/// Calls visit(key, member) for all that the file may have of a row and that its results follow from as it is.
+/// Calls visit(key, member) for all that the file may have of a row and that its results follow from as it
+/// is.
 template <class Row, class Visit>
 void each_result_key(Row& row, Visit visit) {
   auto& method = row.eval.how.method;

@@ -40,9 +40,9 @@ class Breakdown {
   /// A case with its truth, after all of its frames were evaluated. `folder` is the case's. Cases named
   /// BODY_MOTION, the motion being the last tag, count for both.
   void add(const std::string& folder, const Case& c, const Evaluator& evaluator, const Truth& truth);
-  /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures": {"jolt":
-  /// {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...]}; without
-  /// what is unknown.
+  /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
+  /// {"jolt": {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...]};
+  /// without what is unknown.
   Json json() const;
   const ConfidenceRecord& confidence() const { return confidence_; }
   /// The worst first; those of one case are at least ten frames apart.

@@ -22,8 +22,8 @@ struct SuiteOptions {
 /// Writes the cases of a suite; reports each name as it is done. Returns their number. Truth is the same
 /// local rotations on the target, its path the source's from where it starts, scaled by leg length and put on
 /// the floor; every case is turned to a random heading. Throws Error naming what is missing. The suites:
-///   naked: 4 targets (the tallest, shortest, heaviest, slimmest of the split) x 4 motions, sources undressed,
-///     points drawn evenly on their surface
+///   naked: 4 targets (the tallest, shortest, heaviest, slimmest of the split) x 4 motions,
+///     sources undressed, points drawn evenly on their surface
 ///   clothed: the same with 4 dressed targets
 ///   captured: the naked suite's targets; dressed sources as a rig of cameras would see them: uneven density,
 ///     holes, noise, outliers, some floor

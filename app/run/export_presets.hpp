@@ -8,7 +8,8 @@
 
 namespace understudy::app {
 
-/// The options of a file that a program reads whole. glTF is always in metres with y up: nothing to choose there.
+/// The options of a file that a program reads whole.
+/// glTF is always in metres with y up: nothing to choose there.
 struct ExportPreset {
   const char* name;    ///< "three", as in --preset and commands
   const char* label;   ///< "three.js"

@@ -64,8 +64,8 @@ class MotionOutput {
  public:
   virtual ~MotionOutput() = default;
   virtual void push(const ExportFrame& frame) = 0;
-  /// From the frames' source_joints to the coordinates of the source's file, for formats that hold them; known
-  /// after the first frame.
+  /// From the frames' source_joints to the coordinates of the source's file, for formats that hold them;
+  /// known after the first frame.
   void set_source_to_scan(const Eigen::Matrix4d& matrix) { source_to_scan_ = matrix; }
   /// Size and error of the written file. Throws Error, also where there was no frame.
   virtual ExportCost finish() = 0;

@@ -24,13 +24,15 @@ struct RetargetedFrame {
 /// Goes through a source once, counts its frames and takes their times.
 class RetargetedSource {
  public:
-  /// `retargeter` starts anew. Both must outlive this. name: for people. `edits` are applied to each scan first.
+  /// `retargeter` starts anew. Both must outlive this. name: for people.
+  /// `edits` are applied to each scan first.
   RetargetedSource(Source& source, Retargeter& retargeter, std::string name, ScanEdits edits = {});
   /// None at the end. known: the source's joints, where they are not to be extracted.
   std::optional<RetargetedFrame> next(const std::optional<Joints>& known = {});
   int64_t frames() const { return frames_; }
   int64_t flagged() const { return flagged_; }
-  /// At the end: warns, in one sentence that names the options, where no person is recognised in frames that have points.
+  /// At the end: warns, in one sentence that names the options,
+  /// where no person is recognised in frames that have points.
   /// Throws Error naming the source where all frames are flagged.
   void check_used() const;
 

@@ -70,8 +70,9 @@ class Source {
   virtual void seek(int64_t frame) = 0;
   /// What was decided about units, axes and floor, one sentence; empty before the first usable frame.
   const std::string& decision() const { return decision_; }
-  /// From frames as they are handed out back to the file's own units, axes and floor: scale, rotation and offset
-  /// in one. Of a body that performs a motion to the body's, y up. The identity before the first usable frame.
+  /// From frames as they are handed out back to the file's own units, axes and floor: scale, rotation and
+  /// offset in one. Of a body that performs a motion to the body's, y up.
+  /// The identity before the first usable frame.
   const Eigen::Matrix4d& to_file() const { return to_file_; }
   /// None while it is not known.
   virtual std::optional<int64_t> count() const = 0;

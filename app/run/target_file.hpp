@@ -33,8 +33,8 @@ FieldsOf<S, TargetOptions> fields(V& visit, S& target) {
 
 /// The target as the retargeter needs it. The networks' extractors find the joints of what has no rig; they
 /// are only used during the call. Logs what it decided. Throws Error naming the file: it cannot be
-/// read, it does not look like a person (NotAPersonError, which names --use-anyway), its own rig is wanted and its
-/// bones are not known.
+/// read, it does not look like a person (NotAPersonError, which names --use-anyway), its own rig is wanted
+/// and its bones are not known.
 std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& options, const Networks& networks);
 
 /// The first half of it, which uses no network: as the file has it, upright and at its size, to be shown.

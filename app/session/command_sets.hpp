@@ -82,8 +82,8 @@ class Call : public ArgumentReader {
 /// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
 void remember_folder(Studio& studio, const std::string& path);
 
-/// Opens what an entry of recent lists names, or checks that it can be opened. Where that throws Error the entry is taken
-/// off, and the sentence says so.
+/// Opens what an entry of recent lists names, or checks that it can be opened. Where that throws Error the
+/// entry is taken off, and the sentence says so.
 template <class Open>
 auto opened(std::initializer_list<std::vector<std::string>*> recent, const std::string& entry,
             const Open& open) {

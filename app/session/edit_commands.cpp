@@ -236,8 +236,8 @@ void remove_edit(Call& c) {
   remove_at(take.target_edits.joints, c, 2);
 }
 
-/// The frames that an edit of some frames is moved to: argument `i` is the first, the next the last; without it there
-/// are as many as before.
+/// The frames that an edit of some frames is moved to: argument `i` is the first, the next the last; without
+/// it there are as many as before.
 Trim frames_to(Call& c, size_t i, int length) {
   Trim to;
   to.first = frame_argument(c, i);

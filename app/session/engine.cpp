@@ -440,8 +440,8 @@ Observation Engine::Impl::edited(const Seen& seen, size_t frame) const {
   return result;
 }
 
-/// Reports the frames seen since the last call. The first take repairs and smooths them and reports the result;
-/// without a take this does.
+/// Reports the frames seen since the last call. The first take repairs and smooths them and reports the
+/// result; without a take this does.
 bool Engine::Impl::send_source() {
   const std::vector<Seen>& frames = stream_of(plan.shown).frames;
   const bool no_take = takes.empty() || takes[0].failed;

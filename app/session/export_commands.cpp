@@ -43,8 +43,8 @@ std::string counted(size_t takes) {
   return std::to_string(takes) + (takes == 1 ? " take" : " takes");
 }
 
-/// What became of an export of all takes, of which one at least was written: a notice, and where some could not be an
-/// error with why. problems: as write_takes returns them.
+/// What became of an export of all takes, of which one at least was written: a notice, and where some could
+/// not be an error with why. problems: as write_takes returns them.
 void tell_of_takes(Studio& studio, const std::vector<TakeFile>& files,
                    const std::vector<std::string>& problems) {
   const auto first = std::find(problems.begin(), problems.end(), "");

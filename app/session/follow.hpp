@@ -1,4 +1,5 @@
-// Where people stand in the views: the offset of a camera that follows one, and of those that stand side by side.
+// Where people stand in the views: the offset of a camera that follows one,
+// and of those that stand side by side.
 #pragma once
 
 #include "app/session/session.hpp"
@@ -11,8 +12,8 @@ namespace understudy::app {
 /// source, k the take k - 1. Depends on the frame alone.
 Vec3 follow_offset(const Session& session, int pane, int frame);
 
-/// How far a person stands from its place while the people of an overlay stand side by side, metres; zero in other
-/// layouts. pane: 0 the source, k the take k - 1.
+/// How far a person stands from its place while the people of an overlay stand side by side, metres; zero in
+/// other layouts. pane: 0 the source, k the take k - 1.
 Vec3 spread_offset(const Session& session, int pane);
 
 /// The joints of the person of a pane in a frame, as shown; null where they are not there.

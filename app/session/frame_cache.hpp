@@ -52,7 +52,8 @@ class FrameCache {
     bool offsets = false;
   };
   std::shared_ptr<const PosedPicture> posed(const TakeState& take, const Wanted& wanted);
-  /// The target of the take k in a rest pose, skinned alone; null while it is being made, and without its weights.
+  /// The target of the take k in a rest pose, skinned alone;
+  /// null while it is being made, and without its weights.
   std::shared_ptr<const PosedPicture> rest(const TakeState& take, int k, const Pose& pose);
   /// Frames that will be needed soon; made when nothing else waits.
   void prefetch_scan(int frame);

@@ -21,8 +21,8 @@ class History {
   /// within a second of the last one becomes one with it (the dragging of a slider); empty: never.
   void add(const Document& before, const std::string& label, const std::string& merge = "",
            Time now = std::chrono::steady_clock::now());
-  /// Makes a change in all that is kept, as if it had always been so; steps that then change nothing are dropped.
-  /// `now` is the present document, changed alike.
+  /// Makes a change in all that is kept, as if it had always been so; steps that then change nothing are
+  /// dropped. `now` is the present document, changed alike.
   void change_all(const std::function<void(Document&)>& change, const Document& now);
   size_t steps() const { return past_.size(); }
   bool can_undo() const { return !past_.empty(); }

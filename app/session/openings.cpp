@@ -1,5 +1,5 @@
-// What was opened and could not be read is taken back; all else stays as it is. What is read but may be no person is
-// asked about, or offered to be cleaned up.
+// What was opened and could not be read is taken back; all else stays as it is. What is read but may be no
+// person is asked about, or offered to be cleaned up.
 #include <algorithm>
 
 #include "app/session/background.hpp"

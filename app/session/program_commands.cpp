@@ -29,7 +29,8 @@ void see_crop_box(Call& c) {
       std::max(camera.distance, distance_to_see(c.session, camera, box.low - offset, box.high - offset));
 }
 
-/// What a tool needs to see it sees; when it is left the cameras are as before, unless they were moved meanwhile.
+/// What a tool needs to see it sees; when it is left the cameras are as before,
+/// unless they were moved meanwhile.
 void adjust_cameras(Call& c) {
   Session& session = c.session;
   auto& cameras = session.view.cameras;

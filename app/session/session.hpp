@@ -49,7 +49,8 @@ struct SourceState {
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
   std::vector<SourceClip> clips;  ///< animations in the file; none of scans
   int clip = -1;                  ///< the one that is played
-  /// of the points of all frames so far before any edit; stays while the same source is read again with other edits
+  /// of the points of all frames so far before any edit;
+  /// stays while the same source is read again with other edits
   std::optional<Box> extent;
   SharedFrames<KeptSource> frames;  ///< of the extractor of the first take
   bool has_faces = false;
@@ -182,12 +183,13 @@ struct Session {
   bool drag_children = false, mirror_joint = true;
 };
 
-/// Makes a take the current one and its view the active one. The take must be in the document, or come with the
-/// command that runs.
+/// Makes a take the current one and its view the active one. The take must be in the document, or come with
+/// the command that runs.
 void choose_take(Session& session, int take);
 /// Makes a view the active one: 0 the source's, k that of the take k - 1, which becomes the current one.
 void choose_pane(Session& session, int pane);
-/// After takes have come or gone: the current take is one that there is, and the active view is its or the source's.
+/// After takes have come or gone: the current take is one that there is,
+/// and the active view is its or the source's.
 void settle_current_take(Session& session);
 /// The number of frames that can be shown: of the selected take, or of the source where there is no take.
 int frame_count(const Session& session);

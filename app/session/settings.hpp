@@ -64,7 +64,8 @@ std::string recent_source(const std::string& path, const std::string& motion);
 std::vector<std::string> paths_of_recent(const std::string& entry);
 /// Puts `path` first in a recent list.
 void remember(std::vector<std::string>& recent, std::string path);
-/// Takes what cannot be opened off recent lists. How the sentence that says why goes on: "" where it is in none.
+/// Takes what cannot be opened off recent lists. How the sentence that says why goes on:
+/// "" where it is in none.
 std::string taken_off(std::initializer_list<std::vector<std::string>*> lists, const std::string& entry);
 
 }  // namespace understudy::app

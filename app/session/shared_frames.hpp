@@ -9,8 +9,8 @@
 
 namespace understudy::app {
 
-/// Frames in chunks of kChunk that are never changed: a write replaces the chunks that it touches, and copies of
-/// the list keep the old ones. Copies may be read on other threads; each object belongs to one thread.
+/// Frames in chunks of kChunk that are never changed: a write replaces the chunks that it touches, and copies
+/// of the list keep the old ones. Copies may be read on other threads; each object belongs to one thread.
 template <class Frame>
 class SharedFrames {
  public:
@@ -39,7 +39,8 @@ class SharedFrames {
   void push_back(Frame frame) {
     write(size_, size_ + 1, [&](size_t, Frame& last) { last = std::move(frame); });
   }
-  /// Calls change(i, frame) for the frames from `first` to before `last`. The list grows to `last`, with default frames.
+  /// Calls change(i, frame) for the frames from `first` to before `last`.
+  /// The list grows to `last`, with default frames.
   template <class Change>
   void write(size_t first, size_t last, Change change) {
     chunks_.resize(std::max(chunks_.size(), (last + kChunk - 1) / kChunk));

@@ -8,14 +8,15 @@
 
 namespace understudy::app {
 
-/// The document's edits and a drag that is not yet one of them, applied to what was extracted, then repaired and
-/// smoothed: the stages of the engine, from shortly before the first frame that the drag changes. Looks at the session
-/// when it is made, not later.
+/// The document's edits and a drag that is not yet one of them, applied to what was extracted, then repaired
+/// and smoothed: the stages of the engine, from shortly before the first frame that the drag changes. Looks
+/// at the session when it is made, not later.
 class SourceDrag {
  public:
   /// Of a frame that is there, followed by `falloff` frames to each side.
   SourceDrag(const Session& session, int frame, int falloff);
-  /// The frame's joints, world, metres; none where the frame cannot be used. The drag is of this frame and falloff.
+  /// The frame's joints, world, metres; none where the frame cannot be used.
+  /// The drag is of this frame and falloff.
   std::optional<Joints> joints(const DragEdit& drag) const;
 
  private:

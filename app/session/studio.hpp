@@ -41,8 +41,8 @@ class Studio {
   void try_run(const std::string& name, const Arguments& arguments = {});
   void run_all(CommandQueue& queue);
 
-  /// Once per drawn frame: collects what the background has finished. Notices and copies of unsaved work go by the
-  /// `seconds` gone by, the playhead moves by those `played`.
+  /// Once per drawn frame: collects what the background has finished. Notices and copies of unsaved work go
+  /// by the `seconds` gone by, the playhead moves by those `played`.
   void tick(double seconds, double played);
   void tick(double seconds) { tick(seconds, seconds); }
   /// Ticks until all frames are made and nothing is left to do. Throws Error after `timeout_s`. For scripts
@@ -61,14 +61,14 @@ class Studio {
   void notify(const std::string& sentence, bool warning = false, const Offer& offer = {});
   /// The document as it would be saved now.
   SavedDocument saved_document() const;
-  /// Takes back the opening of a take's target. False, and nothing is done, where it came with the document or has been
-  /// read already.
+  /// Takes back the opening of a take's target. False, and nothing is done, where it came with the document
+  /// or has been read already.
   bool take_back_target(size_t k);
   /// Replaces the open document by a new, an opened or a recovered one.
   void replace_document(SavedDocument saved, const std::string& path);
   void save_settings();
-  /// After saving, and at the end: removes the copy kept for recovery, also one that is being written, where nothing is
-  /// unsaved; keeps what is unsaved for the next start.
+  /// After saving, and at the end: removes the copy kept for recovery, also one that is being written, where
+  /// nothing is unsaved; keeps what is unsaved for the next start.
   void end_autosave();
   /// The neighbouring vertices of a take's target; made on first use.
   const Neighbours& neighbours(size_t take);

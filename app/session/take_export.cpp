@@ -70,7 +70,8 @@ ExportChoice choice_for(const Session& session, size_t k, ExportChoice choice) {
   return choice;
 }
 
-/// Makes a folder, and those above it that are missing. In the end those of them that are still empty go again.
+/// Makes a folder, and those above it that are missing.
+/// In the end those of them that are still empty go again.
 class MadeFolder {
  public:
   explicit MadeFolder(const fs::path& folder) {

@@ -21,8 +21,9 @@ struct ExportChoice {
 };
 
 /// key=value words, of which a later one counts: format=NAME, preset=NAME, bones=own|22, influences=4|8,
-/// morphs=COUNT, reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, and any number
-/// of take=NAME for more clips; without a format the path's suffix decides. Throws Error for any other.
+/// morphs=COUNT, reduce=MM, in_place=on|off, root_motion=on|off, t_pose=on|off, keep_clips=on|off, and any
+/// number of take=NAME for more clips; without a format the path's suffix decides.
+/// Throws Error for any other.
 ExportChoice export_choice(const std::string& path, const std::vector<std::string>& words);
 
 /// The take with that name, or else with that number, counted from `first`. Throws Error, listing the takes,
@@ -41,7 +42,8 @@ ExportInput export_input(const Session& session, const std::vector<size_t>& take
 
 /// The name of a file or folder for something of this name, such that any file system takes it.
 std::string safe_file_name(const std::string& name);
-/// Of each take the name of its file among those of all: "adult.glb"; of the second that is called alike "adult 2.glb".
+/// Of each take the name of its file among those of all: "adult.glb";
+/// of the second that is called alike "adult 2.glb".
 std::vector<std::string> take_file_names(const Document& document, const std::string& suffix);
 
 /// One take's file among those of all takes.
@@ -56,9 +58,10 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
                                  const ExportChoice& choice);
 /// The same with the figures of every frame, as CSV.
 std::vector<TakeFile> figure_files(const Session& session, const std::string& folder);
-/// Makes the folder and writes one file after the other; what goes wrong with one keeps no other out. Returns for each
-/// file why it could not be made, one sentence; empty: it was. Throws Error where none could, and what `progress` throws
-/// after the last one. Folders that it has made and that are empty at the end are gone then.
+/// Makes the folder and writes one file after the other; what goes wrong with one keeps no other out. Returns
+/// for each file why it could not be made, one sentence; empty: it was. Throws Error where none could, and
+/// what `progress` throws after the last one. Folders that it has made and that are empty at the end are gone
+/// then.
 std::vector<std::string> write_takes(const std::string& folder, const std::vector<TakeFile>& files,
                                      const std::function<void(float)>& progress);
 

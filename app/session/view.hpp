@@ -162,8 +162,8 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("metric", view.metric);
 }
 
-/// What a pane (0 the source, k the take k - 1) is seen through: the first camera while they are linked, else its own;
-/// where it has none yet, one like the first.
+/// What a pane (0 the source, k the take k - 1) is seen through: the first camera while they are linked, else
+/// its own; where it has none yet, one like the first.
 inline CameraState camera_of(const View& view, int pane) {
   const size_t i = view.linked || pane < 0 ? 0 : static_cast<size_t>(pane);
   if (i < view.cameras.size()) return view.cameras[i];

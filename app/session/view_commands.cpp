@@ -72,8 +72,8 @@ void add_points(Extent& all, const Points& points, const Vec3& offset) {
     if (points.row(i).allFinite()) all.extend(Vec3(points.row(i).transpose() - offset));
 }
 
-/// The T-pose, or the mesh as it was loaded, placed where the person would be: on the floor, under the following
-/// camera.
+/// The T-pose, or the mesh as it was loaded, placed where the person would be: on the floor, under the
+/// following camera.
 void add_rest(Extent& all, const TakeState& take) {
   const Target* const target = take.target ? take.target.get() : take.as_loaded.get();
   if (!target || target->mesh.vertices.rows() == 0) return;
@@ -84,8 +84,8 @@ void add_rest(Extent& all, const TakeState& take) {
   add_points(all, vertices, from);
 }
 
-/// Around the scan, no further from the person than half a metre: strays and the floor do not count. Of a take that is
-/// not bound around its joints.
+/// Around the scan, no further from the person than half a metre: strays and the floor do not count. Of a
+/// take that is not bound around its joints.
 Extent scan_extent(const Session& session, int pane, int frame, const Joints& joints) {
   constexpr float kBody = 0.2f,
                   kReach = 0.5f;  // metres of a body beyond its outermost joints; of clothes and props
@@ -139,7 +139,8 @@ float aspect_of_a_view(const Session& session) {
   return kViewsAspect / static_cast<float>(views);
 }
 
-/// Turns the camera to the middle of all that is drawn and moves it back until it fits the view's narrow side.
+/// Turns the camera to the middle of all that is drawn and moves it back until it fits the view's narrow
+/// side.
 void fit(Call& call) {
   constexpr float kAir = 0.06f;    // of the height, around
   constexpr float kTitle = 0.08f;  // of the height stays free above the heads, for words

@@ -31,8 +31,8 @@ class Previews {
   Previews(const Previews&) = delete;
   Previews& operator=(const Previews&) = delete;
 
-  /// One picture of the scans, motions, targets and documents at these paths, side by side. Empty while it is being
-  /// made. Never waits.
+  /// One picture of the scans, motions, targets and documents at these paths, side by side. Empty while it is
+  /// being made. Never waits.
   const FilePreview& of(const std::vector<std::string>& paths, render::PixelSize size, bool dark);
   /// Draws at most one picture from what has been read. True when there is a new one.
   bool update();

@@ -57,7 +57,8 @@ struct TextureImage {
 };
 /// Binds the texture, gives it the picture, and clamps it at its edges.
 void set_image(const Texture& texture, const TextureImage& image);
-/// The same, and what is drawn into the framebuffer (its depth where the format is one) goes into the texture.
+/// The same, and what is drawn into the framebuffer (its depth where the format is one) goes into the
+/// texture.
 void attach(const Framebuffer& framebuffer, const Texture& texture, const TextureImage& image);
 
 /// Replaces a buffer's contents with `bytes` bytes.

@@ -22,8 +22,8 @@ std::string join(const Parts&... parts) {
 }
 }  // namespace detail
 
-/// Runs a part of a job that may fail without the whole failing; gives the sentence of what went wrong, of any
-/// exception, and an empty one when nothing did.
+/// Runs a part of a job that may fail without the whole failing; gives the sentence of what went wrong, of
+/// any exception, and an empty one when nothing did.
 template <class Part>
 std::string failure_of(Part part) {
   try {

@@ -47,7 +47,8 @@ void check_replaceable(const std::string& path, const std::string& part) {
   US_CHECK(replaceable(part), part, ": exists but was not left by an export; remove it first");
 }
 
-/// Brings what is `at`, a file or a folder's list of names, to the disk, which may only now find that it is full.
+/// Brings what is `at`, a file or a folder's list of names, to the disk,
+/// which may only now find that it is full.
 void sync_to_disk(const std::string& at, const std::string& path) {
   const int handle = ::open(at.c_str(), O_RDONLY | O_CLOEXEC);
   const bool good = handle >= 0 && (::fsync(handle) == 0 || errno == EINVAL);

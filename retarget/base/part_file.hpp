@@ -44,8 +44,9 @@ void write_file(const std::string& path, std::string_view bytes, bool synced = t
 /// Throws Error when a file cannot be written there; changes nothing. An empty path is good.
 void check_writable(const std::string& path);
 
-/// The same of a folder of frames: `FOLDER.part` is synced and takes the place of `FOLDER` at the end. A folder
-/// that is there already is replaced only where it is empty or holds nothing but frames written so before.
+/// The same of a folder of frames: `FOLDER.part` is synced and takes the place of `FOLDER` at the end. A
+/// folder that is there already is replaced only where it is empty or holds nothing but frames written so
+/// before.
 class PartFolder {
  public:
   /// Every file in it must have this among its first 200 bytes.

@@ -12,8 +12,8 @@ namespace understudy {
 /// Lowers the calling thread's priority, so that input and drawing come first.
 void yield_to_drawing();
 
-/// Asks its owner for the next task, does it, and asks again; sleeps while there is none. What owner and tasks
-/// share is guarded by its mutex. An exception of a task is logged, and the next one is done. Its
+/// Asks its owner for the next task, does it, and asks again; sleeps while there is none. What owner and
+/// tasks share is guarded by its mutex. An exception of a task is logged, and the next one is done. Its
 /// owner declares it last: its end waits for the task at work, and no other begins.
 class Worker {
  public:

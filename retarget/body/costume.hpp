@@ -1,5 +1,5 @@
-// What makes a posed person's points hard to read: wide skirts, thick coats, hair, things in a hand, sides that
-// no camera saw, limbs that are cut off. Truths stay as they are.
+// What makes a posed person's points hard to read: wide skirts, thick coats, hair, things in a hand, sides
+// that no camera saw, limbs that are cut off. Truths stay as they are.
 #pragma once
 
 #include "retarget/base/rng.hpp"

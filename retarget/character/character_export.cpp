@@ -407,8 +407,8 @@ void add_root_bone(Character& out, std::vector<CharacterAnimation>& own) {
     for (CharacterTrack& track : animation.tracks) ++track.node;
 }
 
-/// Lets a root bone go the way over the floor that the clips go from `rest`; the animations are on the spot. own: the
-/// file's animations, which are added later.
+/// Lets a root bone go the way over the floor that the clips go from `rest`; the animations are on the spot.
+/// own: the file's animations, which are added later.
 void carry_path(const std::vector<CharacterClip>& clips, const Vec3& rest,
                 const std::vector<MovedNode>& moved, Character& out, std::vector<CharacterAnimation>& own) {
   int root = root_bone(out, moved);

@@ -47,8 +47,8 @@ struct ShapeHints {
 ShapeHints shape_hints(const Mesh& mesh, const Joints& joints);
 
 /// Skin weights [V, 22] of a body in any upright pose, rows sum to 1: by the inverse of the distances,
-/// smoothed along the surface; a skirt follows pelvis and thighs, a big head is rigid. Distances and hints are
-/// those of that pose.
+/// smoothed along the surface; a skirt follows pelvis and thighs, a big head is rigid. Distances and hints
+/// are those of that pose.
 RowMatrix geometric_weights(const Mesh& mesh, const BoneDistances& distances, const ShapeHints& hints);
 
 /// Spreads values [V, K] along edges as far as a few centimetres; vertices far apart hardly mix.

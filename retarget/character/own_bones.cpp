@@ -42,8 +42,8 @@ std::string word_of(const std::string& name, int node) {
   return word;
 }
 
-/// Where the bones are in a pose: turned from the bind pose about their parents' axes, and their heads on their
-/// parents, in those, metres; of a bone without a parent in the world.
+/// Where the bones are in a pose: turned from the bind pose about their parents' axes, and their heads on
+/// their parents, in those, metres; of a bone without a parent in the world.
 struct PosedBones {
   std::vector<Mat3> local;
   Points places;

@@ -10,8 +10,8 @@
 
 namespace understudy {
 
-/// Of each node of the file how it moves in the world from the bind pose, metres: turned and shifted, never scaled.
-/// rest: the T-pose joints that the pose turns, metres.
+/// Of each node of the file how it moves in the world from the bind pose, metres: turned and shifted, never
+/// scaled. rest: the T-pose joints that the pose turns, metres.
 std::vector<Mat4> node_motions(const PreparedCharacter& character, const Joints& rest, const Pose& pose);
 
 /// A bone of a character. Bones are nodes that a skin has, or that poses move.
@@ -21,12 +21,13 @@ struct OwnBone {
   Vec3 rest = Vec3::Zero();  ///< its head in the bind pose, in the world, metres
   std::string name;          ///< without blanks, unlike any other
 };
-/// Parents first. Where several bones have none above, the node above all of them is a bone, too, if there is one.
+/// Parents first. Where several bones have none above, the node above all of them is a bone, too,
+/// if there is one.
 /// Throws Error naming the character: its bones are not known.
 std::vector<OwnBone> own_bones(const PreparedCharacter& character);
 
-/// BVH of the character's own bones, with its bind pose where all angles are zero; see BvhWriter. A bone that moves
-/// on its parent has its position in each frame.
+/// BVH of the character's own bones, with its bind pose where all angles are zero; see BvhWriter. A bone that
+/// moves on its parent has its position in each frame.
 class OwnBonesBvh {
  public:
   /// rest: the T-pose joints, metres. Throws Error: bones that are not known, and as BvhWriter.

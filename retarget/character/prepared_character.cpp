@@ -165,8 +165,8 @@ std::string up_of_lying(const PreparedCharacter& c, ImportOptions import) {
   return (stance_of(upright).centre < 0.46f ? "-" : "") + decision.up;
 }
 
-/// A source may crouch, a character stands: below half a metre it is nobody's size. Millimetres are guessed of people
-/// down to there, but a character of a few hundred units has units of its own.
+/// A source may crouch, a character stands: below half a metre it is nobody's size. Millimetres are guessed
+/// of people down to there, but a character of a few hundred units has units of its own.
 void refit(ImportDecision& decision, const CharacterOptions& options, Mesh mesh) {
   constexpr float kSmallest = 0.5f, kSmallestInMm = 0.84f, kUsual = 1.7f;
   const bool guessed = (options.units.empty() || options.units == "auto") && !options.height;
@@ -216,8 +216,8 @@ void place_in_world(PreparedCharacter& c, const CharacterOptions& options) {
   if (decision.units == "fit" && !options.height) c.doubt = "its size is no person's in any unit";
 }
 
-/// Refuses or warns of what does not stand like a person. Bones that are a person's outweigh wide wings, not feet far
-/// apart.
+/// Refuses or warns of what does not stand like a person. Bones that are a person's outweigh wide wings, not
+/// feet far apart.
 void check_stance(PreparedCharacter& c, const CharacterOptions& options) {
   constexpr float kFourFeet = 0.6f;
   const Stance stance = stance_of(c.surface.mesh);

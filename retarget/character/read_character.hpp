@@ -12,8 +12,8 @@ namespace understudy {
 #ifndef __has_feature  // clang's
 #define __has_feature(name) 0
 #endif
-/// Bytes for the process that reads FBX and DAE; no bound under a sanitizer, whose shadow memory alone takes terabytes
-/// of address space.
+/// Bytes for the process that reads FBX and DAE; no bound under a sanitizer, whose shadow memory alone takes
+/// terabytes of address space.
 constexpr int64_t kImportMemory = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
                                       ? std::numeric_limits<int64_t>::max()
                                       : 4ll << 30;

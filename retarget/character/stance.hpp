@@ -30,15 +30,16 @@ std::string refusal(const Stance& stance);
 /// Why this may not be a person; empty: nothing speaks against it.
 std::string implausibility(const Stance& stance);
 
-/// Why its shape alone leaves doubt; empty: none. Weaker than implausibility(): people with their legs far apart and
-/// wide gowns have it, too, so it counts only where no person is recognised in the shape.
+/// Why its shape alone leaves doubt; empty: none. Weaker than implausibility(): people with their legs far
+/// apart and wide gowns have it, too, so it counts only where no person is recognised in the shape.
 std::string doubt(const Stance& stance);
 
 /// What the extractor predicts for a body, y up, that is turned by a quarter more each time.
 using SideViews = std::array<Extraction, 4>;
 SideViews seen_from_sides(const Mesh& mesh, SkeletonExtractor& extractor);
 
-/// Whether no person is recognised: in at least three of the views the skeleton is not believed or implausible.
+/// Whether no person is recognised: in at least three of the views the skeleton is not believed or
+/// implausible.
 bool shows_nobody(const SideViews& seen);
 
 /// Radians about +y from +z towards +x: of the directions near the views' headings, the one about which the

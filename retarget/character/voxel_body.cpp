@@ -35,8 +35,8 @@ const std::array<Step, 26>& steps() {
   return all;
 }
 
-/// The shortest paths found so far, by cube of the grid. What is to be followed further waits in buckets by length, a
-/// cube wide each: no path within one is shorter than a step.
+/// The shortest paths found so far, by cube of the grid. What is to be followed further waits in buckets by
+/// length, a cube wide each: no path within one is shorter than a step.
 class Paths {
  public:
   Paths(const std::vector<int>& cell_of, float size) : size_(size), length_(cell_of.size()) {

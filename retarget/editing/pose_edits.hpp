@@ -18,7 +18,8 @@ struct RotateEdit {
   int joint = 0;
   Vec3 axis_angle = Vec3::Zero();  ///< radians, in the joint's own frame, applied after its rotation
   int falloff = 5;                 ///< frames to each side that follow
-  /// The joint that ends the limb which turned the bone as it was moved (limb_end); none: the bone was turned by itself.
+  /// The joint that ends the limb which turned the bone as it was moved (limb_end);
+  /// none: the bone was turned by itself.
   std::optional<int> limb{};
 };
 template <class V, class S>
@@ -120,13 +121,15 @@ struct EditedBody {
 
 /// All edits in this order, whatever order they were made in: rotate (as listed), smooth, raise, pin, turn.
 /// So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are always the
-/// original ones: frames that trim and skip leave out stay, for a timeline that still shows them. Deterministic.
-/// Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where it is held; a foot
-/// that was turned away from where it stood does not. Throws Error for unknown joints or a strength outside 0..1.
+/// original ones: frames that trim and skip leave out stay, for a timeline that still shows them.
+/// Deterministic. Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where
+/// it is held; a foot that was turned away from where it stood does not.
+/// Throws Error for unknown joints or a strength outside 0..1.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
 /// A frame's pose after the rotations alone. Throws Error for an unknown joint.
 Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose);
-/// Original numbers of the frames that trim and skip leave of `count`. Throws Error for a trim that leaves none.
+/// Original numbers of the frames that trim and skip leave of `count`.
+/// Throws Error for a trim that leaves none.
 std::vector<int> kept_frames(const PoseEdits& edits, int count);
 /// One step of it.
 void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body);

@@ -91,8 +91,8 @@ ScanEdits in_effect(ScanEdits edits);
 
 /// The scan that is left after crop, then floor, then cluster, in its old order, colours too: vertices that
 /// stay, and of a mesh the faces whose three corners stay and the vertices that these use. May be empty.
-/// Vertices that are not finite go with any edit. Throws Error for a crop box with no inside or sizes that are
-/// not positive.
+/// Vertices that are not finite go with any edit. Throws Error for a crop box with no inside or sizes that
+/// are not positive.
 Mesh apply(const ScanEdits& edits, const Mesh& scan);
 
 }  // namespace understudy

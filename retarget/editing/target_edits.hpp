@@ -39,11 +39,11 @@ FieldsOf<S, BoneTurn> fields(V& visit, S& turn) {
   visit("axis_angle", turn.axis_angle);
 }
 
-/// Local rotations of a rest pose against the T-pose. Throws Error for a joint that is none or an angle that is not
-/// finite.
+/// Local rotations of a rest pose against the T-pose. Throws Error for a joint that is none or an angle that
+/// is not finite.
 Rotations rest_rotations(const std::vector<BoneTurn>& turns);
-/// A rest pose in which one more bone is turned, after what turned it before: one turn a joint. mirror: the bone on
-/// the other side is turned as seen in a mirror.
+/// A rest pose in which one more bone is turned, after what turned it before: one turn a joint. mirror: the
+/// bone on the other side is turned as seen in a mirror.
 std::vector<BoneTurn> turned(const std::vector<BoneTurn>& turns, const BoneTurn& more, bool mirror);
 
 /// Rows of a [V, 22] weight matrix that replace those there: what documents keep.
@@ -64,8 +64,8 @@ FieldsOf<S, WeightRows> fields(V& visit, S& edit) {
 
 /// Puts the rows in. Throws Error when they were painted on other vertices than these, or the columns differ.
 void apply(const WeightRows& edit, RowMatrix& weights);
-/// With what is needed to bring the rows to another surface, should the target's file change. vertices: [V, 3] of
-/// the target in T-pose, metres.
+/// With what is needed to bring the rows to another surface, should the target's file change. vertices:
+/// [V, 3] of the target in T-pose, metres.
 WeightRows placed(WeightRows edit, const Points& vertices);
 /// The same on another surface [V, 3] in T-pose: a row goes to the vertex nearest to where it was painted; of
 /// several at one vertex the mean. Throws Error where it is not known where they were painted.

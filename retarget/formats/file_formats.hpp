@@ -40,8 +40,9 @@ struct FileFormat {
 const std::vector<FileFormat>& file_formats();
 /// The first format with the path's suffix, in any case, and any of the uses; null when there is none.
 const FileFormat* format_of_suffix(std::string_view path, unsigned uses);
-/// As the readers decide: the format of the suffix, else, where the suffix is nobody's, that of the content (of
-/// its first MiB). Null when there is none with these uses. Throws Error when the file must be read and cannot.
+/// As the readers decide: the format of the suffix, else, where the suffix is nobody's, that of the content
+/// (of its first MiB). Null when there is none with these uses.
+/// Throws Error when the file must be read and cannot.
 const FileFormat* format_of_file(const std::string& path, unsigned uses);
 /// The first format with any of the uses that the bytes give away; null when nothing does.
 const FileFormat* format_of_content(std::string_view bytes, unsigned uses);

@@ -60,8 +60,8 @@ struct AxisView {
   float middle_half = 0;  // between the quartiles of the mass
 };
 
-// Points with equal mass each: of a mesh by area, or dense hands would pull. Triangles that are not finite have
-// none.
+// Points with equal mass each: of a mesh by area, or dense hands would pull. Triangles that are not finite
+// have none.
 Points even_points(const Mesh& mesh) {
   if (mesh.is_cloud()) return finite_points(mesh.vertices);
   try {

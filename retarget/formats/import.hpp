@@ -47,10 +47,10 @@ struct ImportDecision {
 };
 
 /// Decides from the first usable frame. Outliers are left aside; a flat floor in the scan shows where down
-/// is. One rule of size for sources and targets: what is 0.5 to 2.6 m tall in some unit keeps that size, and so does
-/// who is lower and 0.5 to 2.6 m long (somebody who lies or crouches, in metres); all else is made 1.7 m tall, with a
-/// warning. Axes can only be guessed positive unless
-/// a floor is seen. Throws Error when the options are not among those named, or there is no finite point.
+/// is. One rule of size for sources and targets: what is 0.5 to 2.6 m tall in some unit keeps that size, and
+/// so does who is lower and 0.5 to 2.6 m long (somebody who lies or crouches, in metres); all else is made
+/// 1.7 m tall, with a warning. Axes can only be guessed positive unless a floor is seen.
+/// Throws Error when the options are not among those named, or there is no finite point.
 ImportDecision decide_import(const Mesh& first, const ImportOptions& forced);
 
 }  // namespace understudy

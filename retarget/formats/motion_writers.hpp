@@ -22,8 +22,8 @@ struct BvhJoint {
   bool moves = false;        ///< has a position in each frame, as roots have; else it stays on its parent
 };
 
-/// BVH: centimetres, y up; positions X Y Z of roots and of what moves, in place of the offset, and rotations, Z X Y in
-/// degrees, unwound so that curves have no jumps.
+/// BVH: centimetres, y up; positions X Y Z of roots and of what moves, in place of the offset, and rotations,
+/// Z X Y in degrees, unwound so that curves have no jumps.
 class BvhWriter {
  public:
   /// The 22 joints, in the T-pose where all angles are zero; the pelvis has position and rotation, the others
@@ -32,8 +32,8 @@ class BvhWriter {
   /// Others. Throws Error where there is none.
   BvhWriter(const std::string& path, std::vector<BvhJoint> joints, double fps);
   void push(const Pose& pose);  ///< of the 22
-  /// local [J]: turned from the rest about the parent's axes; places [J, 3] on the parent, in its axes, of roots in
-  /// the world, metres, used of what moves.
+  /// local [J]: turned from the rest about the parent's axes; places [J, 3] on the parent, in its axes, of
+  /// roots in the world, metres, used of what moves.
   void push(const std::vector<Mat3>& local, const Points& places);
   void finish();
 

@@ -68,7 +68,8 @@ class PtsParser {
 
 }  // namespace
 
-/// A cloud of one scan or several behind each other; colours where every point has them, intensities are left out.
+/// A cloud of one scan or several behind each other;
+/// colours where every point has them, intensities are left out.
 /// Without a count in front, as some programs write it, it is XYZ. Throws Error, naming `source`.
 Mesh parse_pts(std::string_view bytes, const std::string& source) {
   TextCursor text(bytes, source);

@@ -37,7 +37,8 @@ void group(const Points& middles, std::vector<int>& order, int first, int last, 
   group(middles, order, half, last, starts);
 }
 
-/// Share of the directions in which a point sees the cloud within kReach; its points count as discs of `radius`.
+/// Share of the directions in which a point sees the cloud within kReach;
+/// its points count as discs of `radius`.
 /// Near 1 inside a body, well below outside.
 double enclosure(const Points& cloud, const Vec3& point, float radius) {
   static const std::array<Vec3, kDirections> directions = [] {
@@ -59,7 +60,8 @@ double enclosure(const Points& cloud, const Vec3& point, float radius) {
   return static_cast<double>(std::count(seen.begin(), seen.end(), true)) / kDirections;
 }
 
-/// Typical distance between neighbouring points of a cloud of two or more, metres: the median over some of them.
+/// Typical distance between neighbouring points of a cloud of two or more, metres:
+/// the median over some of them.
 float typical_spacing(const Points& cloud) {
   const Eigen::Index step = std::max<Eigen::Index>(1, cloud.rows() / 50);
   std::vector<float> nearest;

@@ -61,9 +61,9 @@ std::vector<float> bone_drifts(const Sequence& p, const Sequence&, double) {
   return values;
 }
 
-/// Mean over frames and the eight pairs of bones of the source's skeleton of |left - right| over the mean of both
-/// lengths: 0 where the sides are alike, 2 where one has none. Without truth. The left joint of a pair comes
-/// directly before the right one (SMPL's order).
+/// Mean over frames and the eight pairs of bones of the source's skeleton of |left - right| over the mean of
+/// both lengths: 0 where the sides are alike, 2 where one has none. Without truth. The left joint of a pair
+/// comes directly before the right one (SMPL's order).
 double bone_asymmetry(const Sequence& p, const Sequence&, double) {
   const auto length = [](const Joints& joints, int j) {
     return (joints.row(j) - joints.row(kParents[j])).cast<double>().norm();

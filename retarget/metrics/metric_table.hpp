@@ -8,7 +8,8 @@
 
 namespace understudy {
 
-/// One body's motion, or its truth, as metrics see it. Each list has a frame an entry, or is empty: not known.
+/// One body's motion, or its truth, as metrics see it.
+/// Each list has a frame an entry, or is empty: not known.
 struct MetricSequence {
   JointSequence joints;              ///< of the target, world, metres
   std::vector<Rotations> rotations;  ///< of the target, local

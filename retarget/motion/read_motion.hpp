@@ -16,9 +16,9 @@ bool is_motion_file(const std::string& path);
 /// Whether a file of this name may hold a motion, and only reading it shows that.
 bool may_hold_motion(const std::string& path);
 
-/// Whether a glTF or GLB has an animation, by the first `most` bytes of its JSON alone: of a GLB the numbers are not
-/// read. None where only later bytes can decide. False for other formats and for JSON that breaks before an
-/// animation. Throws Error when there is no such file.
+/// Whether a glTF or GLB has an animation, by the first `most` bytes of its JSON alone: of a GLB the numbers
+/// are not read. None where only later bytes can decide. False for other formats and for JSON that breaks
+/// before an animation. Throws Error when there is no such file.
 std::optional<bool> is_animated_gltf(const std::string& path, uint64_t most);
 
 /// The animated character of a BVH, FBX, DAE, glTF or GLB file, or of an AMASS-format .npz; it may have no

@@ -46,8 +46,8 @@ void check_bones(const BoneMap& map, const std::string& name) {
            "surface as a scan");
 }
 
-/// Something to look at where a file holds bones alone: an octahedron from each bone under the pelvis to each of its
-/// children, bound to the bones in the pose of the nodes.
+/// Something to look at where a file holds bones alone: an octahedron from each bone under the pelvis to each
+/// of its children, bound to the bones in the pose of the nodes.
 void add_bone_shapes(Character& character, const BoneChoices& choices) {
   const std::vector<Mat4> world = character.world();
   CharacterSkin skin;

@@ -32,9 +32,10 @@ void sink(log::Level level, const std::string& message) {
   level == log::Level::Warning ? log::warn(message) : log::info(message);
 }
 
-/// The plug-in needs addresses for LibTorch, OpenBLAS's buffers and stacks of threads; with too few it asks for them
-/// for ever and nothing fails. Tried with `understudy retarget` on the samples under ulimit -v: one thread works in
-/// 1.3 GB, not in 1.0; two threads never end in 1.3; four reserve 1.7 while loading. The rest of 3 GB is for scans.
+/// The plug-in needs addresses for LibTorch, OpenBLAS's buffers and stacks of threads; with too few it asks
+/// for them for ever and nothing fails. Tried with `understudy retarget` on the samples under ulimit -v: one
+/// thread works in 1.3 GB, not in 1.0; two threads never end in 1.3; four reserve 1.7 while loading.
+/// The rest of 3 GB is for scans.
 void check_address_space() {
   struct rlimit space {};
   constexpr rlim_t kLeast = rlim_t{3} << 30;

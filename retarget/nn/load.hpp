@@ -27,11 +27,11 @@ std::unique_ptr<SkeletonExtractor> load_network_extractor(const std::string& pat
 /// Error when joints are not finite or the network's answer is not.
 std::unique_ptr<MotionTransfer> load_paper_transfer(const std::string& path);
 
-/// Skin weights and pose-corrective offsets of any target (paper 1, section 3.2); without `offsets` linear blend
-/// skinning alone. Its bind() throws Error when a coordinate is not finite or the networks give NaN; deform()
-/// before bind() throws. Deforming costs no network: one thread, some milliseconds. Of targets with more than
-/// `most_evaluated` vertices one a centimetre is evaluated, more where that is too coarse; the others are
-/// interpolated.
+/// Skin weights and pose-corrective offsets of any target (paper 1, section 3.2); without `offsets` linear
+/// blend skinning alone. Its bind() throws Error when a coordinate is not finite or the networks give NaN;
+/// deform() before bind() throws. Deforming costs no network: one thread, some milliseconds. Of targets with
+/// more than `most_evaluated` vertices one a centimetre is evaluated, more where that is too coarse; the
+/// others are interpolated.
 std::unique_ptr<Deformer> load_network_deformer(const std::string& path, bool offsets,
                                                 int most_evaluated = 40000);
 

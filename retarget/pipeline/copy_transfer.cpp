@@ -21,8 +21,9 @@ constexpr float kBendHigh_deg = 35;  // above this bend the hinge axis is believ
 constexpr float kRelax_s = 2;        // time in which a kept hinge axis falls back to the T-pose's
 
 /// How a joint's rotation is found. Measured with the trained extractor: limbs lie between their joints, and
-/// how they are turned about themselves is better seen on the legs than solved, less so on the arms; of leaves
-/// positions say nothing. The short bones of trunk and feet are pointed badly by joints a centimetre off.
+/// how they are turned about themselves is better seen on the legs than solved, less so on the arms; of
+/// leaves positions say nothing. The short bones of trunk and feet are pointed badly by joints a centimetre
+/// off.
 struct JointRule {
   int end;      // the joint at the other end of its one bone; -1 where there is none, or more than one
   float seen;   // weight, 0..1, of the seen rotation against the one solved from positions

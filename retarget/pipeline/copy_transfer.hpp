@@ -1,4 +1,5 @@
-// The analytic engines `copy` and `positions`: each bone's rotation solved from the source's joints, then copied.
+// The analytic engines `copy` and `positions`: each bone's rotation solved from the source's joints,
+// then copied.
 #pragma once
 
 #include "retarget/pipeline/interfaces.hpp"
@@ -9,8 +10,9 @@ namespace understudy {
 /// own T-pose is unknown, so its bones are taken to have the directions of a mean human's (human_rest).
 class CopyTransfer final : public MotionTransfer {
  public:
-  /// `sees_rotations`: whether the rotations that the extractor saw on the surface count, too. Without them it
-  /// is the engine `positions`, which knows what paper 1's input holds: twists, head, hands and feet are guessed.
+  /// `sees_rotations`: whether the rotations that the extractor saw on the surface count, too. Without them
+  /// it is the engine `positions`, which knows what paper 1's input holds: twists, head,
+  /// hands and feet are guessed.
   explicit CopyTransfer(bool sees_rotations = true) : sees_rotations_(sees_rotations) {}
   void reset(const Joints& rest_b) override;
   /// Equivariant to the source's heading and place; independent of its size. Throws Error when a joint is not

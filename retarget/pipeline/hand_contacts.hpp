@@ -25,8 +25,8 @@ class HandContacts {
   /// The source starts anew.
   void reset();
   /// The pose with its hands where they belong. source: the source's joints in this frame, world; girth: of
-  /// its scan, where there is one; dt seconds since the frame before; local_a: the source's local rotations where
-  /// they are not the pose's, whose limbs were placed elsewhere.
+  /// its scan, where there is one; dt seconds since the frame before; local_a: the source's local rotations
+  /// where they are not the pose's, whose limbs were placed elsewhere.
   Pose push(const Pose& pose, const Joints& source, const std::optional<BodyGirth>& girth, float dt,
             const Rotations* local_a = nullptr);
   /// How far each wrist is moved in the last frame, metres: left, right.

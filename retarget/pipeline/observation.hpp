@@ -29,8 +29,8 @@ bool finite(const Rotations& rotations);
 /// numbers that are finite, and a mean confidence of at least 0.08.
 std::string refusal(const Observation& seen);
 
-/// A stage from skeleton to skeleton: changes how the source moves before anything of the target is asked. Looks
-/// only back, one thread at a time.
+/// A stage from skeleton to skeleton: changes how the source moves before anything of the target is asked.
+/// Looks only back, one thread at a time.
 class MotionStyle : public Remembering {
  public:
   /// The source starts anew.

@@ -52,10 +52,10 @@ class RootPath {
   /// The target's pelvis in the world, metres. source: the source's joints and, where seen, the height of its
   /// soles; local_b: the target's local rotations; dt seconds since the last frame.
   Vec3 push(const Extraction& source, const Rotations& local_b, float dt);
-  /// The pose with its steps and its pelvis' height as the options want them. With h the hip and a the ankle of
-  /// a leg over the floor, and p the path of push(): a' = h + stride (a - h), as p' = stride p, so a foot that
-  /// stands still stands still. Feet keep their heights and rotations; the pelvis rises by hip_height_m, but no
-  /// further than the legs of standing feet reach, and comes down where steps are too long for them.
+  /// The pose with its steps and its pelvis' height as the options want them. With h the hip and a the ankle
+  /// of a leg over the floor, and p the path of push(): a' = h + stride (a - h), as p' = stride p, so a foot
+  /// that stands still stands still. Feet keep their heights and rotations; the pelvis rises by hip_height_m,
+  /// but no further than the legs of standing feet reach, and comes down where steps are too long for them.
   Pose step(const Pose& pose) const;
   /// The pose of the last push() with its legs bent or stretched so that soles in contact are as high as the
   /// source's: what the pelvis' height could not make good without shaking the body. Where a leg is too short

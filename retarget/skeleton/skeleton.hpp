@@ -93,9 +93,10 @@ Rotations global_rotations(const Rotations& local);
 /// The inverse.
 Rotations local_rotations(const Rotations& global);
 
-/// Local rotations of a body that turns from another rest pose as `local` turns from the T-pose. `rest`: local
-/// rotations of that pose against the T-pose. With global rotations R of `local` and P of `rest` those of the result
-/// are R_j P_j: where the source is in T-pose the body is in its rest pose, as in an IK retargeter.
+/// Local rotations of a body that turns from another rest pose as `local` turns from the T-pose. `rest`:
+/// local rotations of that pose against the T-pose. With global rotations R of `local` and P of `rest` those
+/// of the result are R_j P_j: where the source is in T-pose the body is in its rest pose,
+/// as in an IK retargeter.
 Rotations from_rest_pose(const Rotations& local, const Rotations& rest);
 
 /// Thigh plus shin in metres, mean of both sides. Bone lengths do not change with pose: any pose will do.

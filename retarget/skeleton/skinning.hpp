@@ -5,8 +5,8 @@
 
 namespace understudy {
 
-/// Where each joint takes what follows it, about the world's origin, from the T-pose: row j holds the rotation,
-/// row by row, then the translation.
+/// Where each joint takes what follows it, about the world's origin, from the T-pose: row j holds the
+/// rotation, row by row, then the translation.
 using JointTransforms = Eigen::Matrix<float, kJointCount, 12, Eigen::RowMajor>;
 JointTransforms joint_transforms(const Joints& rest_joints, const PosedSkeleton& posed);
 

@@ -57,7 +57,8 @@ class RunningMean {
   int count_ = 0;
 };
 
-/// Mean angle in degrees between rotations in their 6D form, [..., 6], not necessarily orthonormal; 0 of none.
+/// Mean angle in degrees between rotations in their 6D form, [..., 6], not necessarily orthonormal;
+/// 0 of none.
 inline double mean_angle_deg(const torch::Tensor& rotations, const torch::Tensor& truth) {
   const auto a = rotations.cpu().reshape({-1, 6}).contiguous(), b = truth.cpu().reshape({-1, 6}).contiguous();
   double sum = 0;

@@ -7,7 +7,8 @@
 
 namespace understudy::training {
 
-/// Tells captured motions from made ones: convolutions over time on joints and velocities of a body in its own heading (paper 1, L_adv; after SMRM).
+/// Tells captured motions from made ones: convolutions over time on joints and velocities of a body in its
+/// own heading (paper 1, L_adv; after SMRM).
 class MotionDiscriminatorImpl : public torch::nn::Module {
  public:
   explicit MotionDiscriminatorImpl(int64_t width = 96);

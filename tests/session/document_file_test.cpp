@@ -18,8 +18,8 @@
 #include "tests/session/full_document.hpp"
 
 namespace {
-/// Bytes asked of operator new so far: work that seconds would count less surely. Sanitizers have an operator new of
-/// their own: nothing is counted under them.
+/// Bytes asked of operator new so far: work that seconds would count less surely. Sanitizers have an operator
+/// new of their own: nothing is counted under them.
 std::atomic<uint64_t> allocated{0};
 }  // namespace
 

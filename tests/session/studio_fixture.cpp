@@ -25,8 +25,8 @@ class RestExtractor final : public SkeletonExtractor {
   std::string name() const override { return "rest"; }
 };
 
-/// Extracts the joints hidden in a scan and counts how often it was asked; in targets, and in points drawn from
-/// them, it sees a person in T-pose.
+/// Extracts the joints hidden in a scan and counts how often it was asked; in targets, and in points drawn
+/// from them, it sees a person in T-pose.
 class CountingExtractor final : public SkeletonExtractor {
  public:
   explicit CountingExtractor(std::shared_ptr<std::atomic<int>> count) : count_(std::move(count)) {}

@@ -1,5 +1,5 @@
-// The shipped studio in a real window on a display of its own (Xvfb), seen through the marks that it writes and worked
-// by xdotool: what a person does with mouse and keys.
+// The shipped studio in a real window on a display of its own (Xvfb), seen through the marks that it writes
+// and worked by xdotool: what a person does with mouse and keys.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,8 +33,8 @@ class StudioWindow : public testing::Test {
   static constexpr double kPatience = 120;  ///< seconds: software OpenGL on a busy machine
 
   void SetUp() override;
-  /// Starts the studio in a window of 1280 x 800 pixels, with nothing remembered from before but that there was a before:
-  /// unless `newcomer` no cards of Getting started.
+  /// Starts the studio in a window of 1280 x 800 pixels, with nothing remembered from before but that there
+  /// was a before: unless `newcomer` no cards of Getting started.
   void start(std::vector<std::string> more = {});
 
   /// The file that the studio writes them to.

@@ -22,9 +22,9 @@ inline ImTextureID texture_id(unsigned gl_name) {
 class DrawPass {
  public:
   DrawPass();
-  /// Makes the target show the frame over `backdrop`, colours as they are (sRGB), by drawing only what differs
-  /// from the frame presented before. Pictures other than the atlas count as different each time. Uploads the
-  /// atlas when its pixels are new. Throws Error where the context's messages are fatal.
+  /// Makes the target show the frame over `backdrop`, colours as they are (sRGB), by drawing only what
+  /// differs from the frame presented before. Pictures other than the atlas count as different each time.
+  /// Uploads the atlas when its pixels are new. Throws Error where the context's messages are fatal.
   void present(const ImDrawData& data, const ImFontAtlas& atlas, const render::RenderTarget& target,
                const ImVec4& backdrop);
 

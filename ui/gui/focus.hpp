@@ -17,8 +17,8 @@ class Ui;
 /// One per Ui. Shortcuts and ImGui's own keys stay as they are while the ring is not shown.
 class Focus {
  public:
-  /// The item just made can be reached by Tab, in the order of drawing; greyed out it cannot. typed: typing begins
-  /// as soon as it is reached.
+  /// The item just made can be reached by Tab, in the order of drawing; greyed out it cannot. typed: typing
+  /// begins as soon as it is reached.
   void add(const std::string& name, bool typed);
   /// The name of the item in the ring; "" where there is none.
   std::string name() const;
@@ -26,8 +26,8 @@ class Focus {
   const ImVec4* place() const;
   /// In the next frame typing begins in the text field of that id; what is typed until then waits.
   void type_into(ImGuiID id) { wanted_text_ = id; }
-  /// A dialog is about to open: what is typed or clicked waits until it is there and the text field that it asks for, if
-  /// any, is typed into.
+  /// A dialog is about to open: what is typed or clicked waits until it is there and the text field that it
+  /// asks for, if any, is typed into.
   void await_dialog();
   /// Takes the ring away: keys are for something else.
   void leave() { shown_ = false; }

@@ -71,8 +71,8 @@ class Ui {
   const Mark* find(const std::string& name) const;
   /// Says what a place of the current window is for, as far as it is to be seen.
   void explain(Explanation explanation);
-  /// The explanation of the smallest place there, of the last finished frame; without a title it has that of what
-  /// is around it. None where nothing is explained.
+  /// The explanation of the smallest place there, of the last finished frame; without a title it has that of
+  /// what is around it. None where nothing is explained.
   std::optional<Explanation> explanation_at(const ImVec2& at) const;
   /// The item just made can be reached by Tab; typed: typing begins as soon as it is.
   void stop(const std::string& name, bool typed = false) { focus_.add(name, typed); }

@@ -72,8 +72,8 @@ std::string proposed_path(const app::Session& session, const ExportState& state)
   return (usual_folder(session) / (app::safe_file_name(name) + suffix_of(session, state))).string();
 }
 
-/// What was typed as a whole path: in the usual folder where it names none, with the suffix where that is missing; in
-/// a folder that is there, the name proposed.
+/// What was typed as a whole path: in the usual folder where it names none, with the suffix where that is
+/// missing; in a folder that is there, the name proposed.
 std::string whole_path(const app::Session& session, const ExportState& state, const std::string& typed) {
   const std::string suffix = suffix_of(session, state);
   fs::path path = (usual_folder(session) / typed).lexically_normal();
@@ -466,8 +466,8 @@ const char* title_of(ExportKind kind) {
                                        : "Save video";
 }
 
-/// The rows above the path and the buttons: where the window is too low for all of them they scroll, and path and
-/// buttons stay.
+/// The rows above the path and the buttons: where the window is too low for all of them they scroll, and path
+/// and buttons stay.
 template <class Draw>
 void draw_choices_above(Ui& ui, const Draw& draw_rows) {
   float& height = ui.state<float>(ImGui::GetID("##choices.height"));  // as drawn last

@@ -1,9 +1,9 @@
 // The export dialog: animations, figures, pictures, video.
-// Marks: export.preset, export.preset.words, export.format, export.takes (.0 the current one, .1 a file each, .2 clips of one file),
-// export.take, export.bones, export.influences, export.morphs, export.reduce, export.in_place, export.root_motion, export.t_pose,
-// export.keep_clips, export.clip.TAKE, export.path,
-// export.browse, export.size, export.width, export.height, export.all, export.transparent, export.as, export.save,
-// export.cancel; export.overwrite.yes and .cancel.
+// Marks: export.preset, export.preset.words, export.format, export.takes (.0 the current one, .1 a file each,
+// .2 clips of one file), export.take, export.bones, export.influences, export.morphs, export.reduce,
+// export.in_place, export.root_motion, export.t_pose, export.keep_clips, export.clip.TAKE, export.path,
+// export.browse, export.size, export.width, export.height, export.all, export.transparent, export.as,
+// export.save, export.cancel; export.overwrite.yes and .cancel.
 #pragma once
 
 #include <set>
@@ -40,16 +40,17 @@ struct ExportState {
   std::string asked;                    ///< the command that was pushed last, as a line
 };
 
-/// Opens the dialog of that name, with a new path to propose and the format used last: export, csv, picture or
-/// video. False, and nothing changed, for another name.
+/// Opens the dialog of that name, with a new path to propose and the format used last: export, csv, picture
+/// or video. False, and nothing changed, for another name.
 bool begin_export(const app::Session& session, ExportState& state, const std::string& dialog);
 /// Takes the path that the browser gave.
 void choose_path(ExportState& state, const std::string& path);
-/// Whether what the dialog asked for last is among the errors: it comes back then, with all its choices. True once.
+/// Whether what the dialog asked for last is among the errors: it comes back then, with all its choices.
+/// True once.
 bool export_failed(const app::Session& session, ExportState& state);
 
-/// A dialog; call every frame while it is open. False once done or cancelled. Opens the browser where the user
-/// wants to choose the path.
+/// A dialog; call every frame while it is open. False once done or cancelled. Opens the browser where the
+/// user wants to choose the path.
 bool draw_export(const app::Session& session, PanelContext& context, ExportState& state, FilesState& files);
 
 }  // namespace understudy::ui

@@ -97,8 +97,8 @@ Before before_of(const app::Session& session) {
   return {session.document, session.view.cameras, session.notices_made};
 }
 
-/// Whether what was there before says nothing about now: all of it was closed, or another source was opened, with
-/// cameras and edits of its own.
+/// Whether what was there before says nothing about now: all of it was closed, or another source was opened,
+/// with cameras and edits of its own.
 bool is_outdated(const app::Session& session, const GettingStartedState& state) {
   if (state.card == 1) return !has_document(session);
   return session.document.source.path != state.before.document.source.path;

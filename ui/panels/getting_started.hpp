@@ -1,5 +1,5 @@
-// Getting started: five cards that point at the real widgets, one after the other. No dialog: everything can be used
-// meanwhile, and doing what a card says goes on to the next one.
+// Getting started: five cards that point at the real widgets, one after the other. No dialog: everything can
+// be used meanwhile, and doing what a card says goes on to the next one.
 // Marks: guide.card, guide.ring (around what it points at), guide.next, guide.skip.
 #pragma once
 
@@ -20,8 +20,8 @@ struct GettingStartedState {
   float height = 0;  ///< of the card's window, pixels
 };
 
-/// Call in every frame, outside any window. Shows the card that the settings name, unless it is `hidden`, and asks for
-/// the next one when the person has done what it says.
+/// Call in every frame, outside any window. Shows the card that the settings name, unless it is `hidden`, and
+/// asks for the next one when the person has done what it says.
 void draw_getting_started(const app::Session& session, PanelContext& context, GettingStartedState& state,
                           bool hidden);
 

@@ -1,10 +1,10 @@
 // What is open and how it is done: the source, the takes, their target and method.
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.units, source.up,
-// source.height(.reset), source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its row), take.name,
-// take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.yaw, target.betas, target.stride, target.hip_height,
-// target.arm_reach, target.rest_pose, target.rest_mirror, edit.rest_pose_clear; method.engine,
-// method.extractor, method.offsets, method.path, method.repair_swaps, method.smooth_joints, method.fix_lengths,
-// method.compare,
+// source.height(.reset), source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its
+// row), take.name, take.remove, take.add, take.replace; target.units, target.height(.reset), target.up,
+// target.yaw, target.betas, target.stride, target.hip_height, target.arm_reach, target.rest_pose,
+// target.rest_mirror, edit.rest_pose_clear; method.engine, method.extractor, method.offsets, method.path,
+// method.repair_swaps, method.smooth_joints, method.fix_lengths, method.compare,
 // work.pause, work.resume, work.restart.
 #include <algorithm>
 #include <sstream>

@@ -1,7 +1,7 @@
 // Metrics: curves over time tied to the timeline, the table of the whole, latency.
 // Marks: metrics.curves, metrics.table, metrics.latency (sections); metrics.plot.KEY,
-// metrics.in_timeline.KEY, metrics.figures.ROW(.text), metrics.needs_truth, metrics.stages.ROW, metrics.stage, metrics.histogram,
-// metrics.csv.
+// metrics.in_timeline.KEY, metrics.figures.ROW(.text), metrics.needs_truth, metrics.stages.ROW,
+// metrics.stage, metrics.histogram, metrics.csv.
 #pragma once
 
 #include <cstdint>

@@ -69,8 +69,8 @@ struct EditMark {
 /// row 0, rotated bones and skips in row 1.
 std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills);
 
-/// In which frames of the selected take each foot is held on the floor: two bands, left and right; none where no foot
-/// ever is.
+/// In which frames of the selected take each foot is held on the floor: two bands, left and right; none where
+/// no foot ever is.
 std::vector<TrackBand> contact_bands(const app::Session& session, const StandingRuns& standing);
 
 /// Heights at scale 1: with the track, and the transport alone.

@@ -34,9 +34,11 @@ class Workspace {
   void draw(const app::Session& session, PanelContext& context, float frame_rate = 0);
 
   /// open, open_source, open_target, replace_target, open_document, save_as, export, csv, picture,
-  /// video, compare, settings, about, keys, here (help for what the pointer is on); "none" closes. Throws Error for another name.
+  /// video, compare, settings, about, keys, here (help for what the pointer is on); "none" closes.
+  /// Throws Error for another name.
   void open_dialog(const app::Session& session, const std::string& name);
-  /// Opens a menu of the bar by its name, "" the first, or closes the one that is open. Throws Error for another name.
+  /// Opens a menu of the bar by its name, "" the first, or closes the one that is open.
+  /// Throws Error for another name.
   void open_menu(const app::Session& session, const std::string& name);
   /// Shows or hides a panel, "side" or "side_over". A tab of the side panel replaces the one that was on, and
   /// the side panel comes with it. Throws Error for another name.

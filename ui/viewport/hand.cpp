@@ -249,7 +249,8 @@ std::optional<Pose> Hand::grasped_pose(const Session& session) const {
   return pose == nullptr ? std::nullopt : std::optional<Pose>(*pose);
 }
 
-/// The take's skeleton with the bone turned in its own frame, or the limb moved; none where the pose is not there.
+/// The take's skeleton with the bone turned in its own frame, or the limb moved;
+/// none where the pose is not there.
 std::optional<PosedSkeleton> Hand::turned_skeleton(const Session& session) const {
   const std::optional<Pose> pose = grasped_pose(session);
   if (!pose) return std::nullopt;

@@ -34,8 +34,8 @@ class Hand {
 
   /// The preview, in this pane, of the current drag or of the edit just pushed.
   EditPreview preview(const HandPlace& place) const;
-  /// The first take's picture with the bone turned or the limb moved; null without such a drag, and as soon as the edit
-  /// shows.
+  /// The first take's picture with the bone turned or the limb moved; null without such a drag, and as soon
+  /// as the edit shows.
   std::shared_ptr<const app::PosedPicture> turned_picture(const HandPlace& place) const;
 
   /// The joint under the pointer in a pane, -1 for none.

@@ -28,8 +28,8 @@ std::vector<std::shared_ptr<const TargetLook>> looks_of(const app::Session& sess
 std::optional<std::shared_ptr<const TargetLook>> unposed_look(const app::Session& session, TargetLooks& looks,
                                                               const PaneContent& pane);
 
-/// How that target is seen: the look's own picture, or in its rest pose while that is edited; null while it is being
-/// made.
+/// How that target is seen: the look's own picture, or in its rest pose while that is edited; null while it
+/// is being made.
 std::shared_ptr<const app::PosedPicture> rest_picture(const app::Session& session, app::FrameCache& cache,
                                                       const PaneContent& pane, const TargetLook& look);
 

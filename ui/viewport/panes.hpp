@@ -23,8 +23,8 @@ struct PaneContent {
   }
 };
 
-/// Pane by pane, left to right, as the layout has them. A wipe has two, drawn over each other: what is left of
-/// its line and what is right of it (source and take where there is only one take).
+/// Pane by pane, left to right, as the layout has them. A wipe has two, drawn over each other: what is left
+/// of its line and what is right of it (source and take where there is only one take).
 std::vector<PaneContent> panes_of(const app::Session& session);
 /// One pane that shows the source or one take.
 PaneContent pane_of(int number);
@@ -43,7 +43,8 @@ int pane_frame(const app::Session& session, const PaneContent& pane);
 /// Whether a pane shows the T-pose of its take's target instead of a frame: while that is edited, and before
 /// there is a frame.
 bool shows_rest(const app::Session& session, const PaneContent& pane);
-/// How a take's target is seen there: in T-pose, or, while that is edited, in its rest pose. It must be ready.
+/// How a take's target is seen there: in T-pose, or, while that is edited, in its rest pose.
+/// It must be ready.
 Pose rest_pose(const app::Session& session, int take);
 Joints rest_joints(const app::Session& session, int take);
 /// Whether a pane shows its take's character as loaded, until it is bound.

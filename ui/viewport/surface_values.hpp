@@ -52,8 +52,8 @@ app::Colouring take_colouring(const app::Session& session);
 /// The joint whose weights are shown, -1 for all.
 int weights_joint(const app::Session& session);
 
-/// The legend of the joints' colours while takes show the weights of all joints; without a title while they do
-/// not.
+/// The legend of the joints' colours while takes show the weights of all joints; without a title while they
+/// do not.
 Legend joints_legend(const app::Session& session);
 
 /// Of take `k` in a picture of it in frame `frame`. reference: of the first take.

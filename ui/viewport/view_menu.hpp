@@ -16,8 +16,8 @@ struct ViewMenuPlace {
       {};  ///< of view.camera_state with the surface there in the middle; empty: there is none
 };
 
-/// Entries about that view alone: its camera, what it shows, the joint. Commands act on the active view: make it that
-/// one.
+/// Entries about that view alone: its camera, what it shows, the joint. Commands act on the active view: make
+/// it that one.
 std::vector<MenuItem> view_menu_items(const app::Session& session, const ViewMenuPlace& place);
 
 }  // namespace understudy::ui

@@ -76,7 +76,8 @@ bool section(Ui& ui, const std::string& name, const std::string& title, bool ope
 void text_cut(Ui& ui, const std::string& text, float width = 0);
 /// The text cut so that it takes at most `width` pixels in the current font.
 std::string cut_to(const std::string& text, float width);
-/// The text in lines of at most `room` pixels in the current font, broken at spaces alone: no number is split.
+/// The text in lines of at most `room` pixels in the current font, broken at spaces alone:
+/// no number is split.
 std::string in_lines(const std::string& text, float room);
 /// Text in such lines; width 0: what is left.
 void paragraph(const std::string& text, float width = 0);

@@ -22,8 +22,9 @@ struct ToastUse {
   int clicked = -1;  ///< away
   int offered = -1;  ///< its button was clicked
 };
-/// Call once a frame, outside any window. A line each at the bottom right of `over` (empty: of the window), beside
-/// `avoid` where there is room, the last at the bottom. The last is marked notice.0, its button notice.0.offer.
+/// Call once a frame, outside any window. A line each at the bottom right of `over` (empty: of the window),
+/// beside `avoid` where there is room, the last at the bottom.
+/// The last is marked notice.0, its button notice.0.offer.
 ToastUse draw_toasts(Ui& ui, const std::vector<Toast>& toasts, const Rect& over = {}, const Rect& avoid = {});
 
 enum class Answer { None, Yes, No, Cancel };

@@ -46,9 +46,9 @@ struct BrowseRequest {
 };
 
 /// One at a time. Keys: arrows, PageUp and PageDown, Home and End; Enter opens; Backspace goes up; Right
-/// looks into a folder that Enter would choose; letters find; / and ~ begin a path, Ctrl+L edits the one shown; Escape closes. Marks:
-/// browser.path, .up, .crumb.N, .place.LABEL, .entry.NAME, .look.NAME, .name, .filter, .new_folder,
-/// .folder_name, .create, .accept, .cancel, .overwrite.yes.
+/// looks into a folder that Enter would choose; letters find; / and ~ begin a path, Ctrl+L edits the one
+/// shown; Escape closes. Marks: browser.path, .up, .crumb.N, .place.LABEL, .entry.NAME, .look.NAME, .name,
+/// .filter, .new_folder, .folder_name, .create, .accept, .cancel, .overwrite.yes.
 class FileBrowser {
  public:
   std::vector<Place> places;  ///< below home, documents and root: samples, recent folders

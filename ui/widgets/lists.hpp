@@ -13,8 +13,9 @@ struct ListItem {
   std::string note{};   ///< grey, on the right
   bool enabled = true;  ///< grey and not to be chosen where not
 };
-/// A list with a search field above it; what begins with the words searched comes first. Returns the item clicked or chosen by arrows and Enter, -1 for none.
-/// `height` pixels, 0: what is left. The line is marked NAME.search, item i NAME.i.
+/// A list with a search field above it; what begins with the words searched comes first. Returns the item
+/// clicked or chosen by arrows and Enter, -1 for none. `height` pixels, 0: what is left.
+/// The line is marked NAME.search, item i NAME.i.
 int searchable_list(Ui& ui, const std::string& name, const std::vector<ListItem>& items, int selected,
                     float height = 0);
 

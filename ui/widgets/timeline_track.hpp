@@ -1,5 +1,5 @@
-// The timeline's track: processed frames, the playhead, bad frames, loop marks, edits, bars of what holds, and a curve
-// or the channel being edited.
+// The timeline's track: processed frames, the playhead, bad frames, loop marks, edits, bars of what holds,
+// and a curve or the channel being edited.
 #pragma once
 
 #include <functional>
@@ -72,8 +72,8 @@ struct TrackAnswer {
 /// double click in the ruler shows everything. A click at a mark chooses it and goes there; dragged it moves,
 /// by an end of a bar it gets longer or shorter, as the part does that is kept. Escape cancels a drag. Marks:
 /// NAME (the part under the ruler), NAME.ruler, NAME.loop_first, NAME.loop_last, NAME.playhead, NAME.MARK,
-/// NAME.BAND.K, NAME.trimmed (.before, .after), NAME.trim_first, NAME.trim_last (the grips), NAME.key.K (the K-th
-/// key), NAME.chosen (the mark chosen).
+/// NAME.BAND.K, NAME.trimmed (.before, .after), NAME.trim_first, NAME.trim_last (the grips), NAME.key.K (the
+/// K-th key), NAME.chosen (the mark chosen).
 TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& data);
 
 /// "0:03.27": minutes, seconds, hundredths.

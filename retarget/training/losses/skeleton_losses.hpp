@@ -51,8 +51,8 @@ inline torch::Tensor bone_lengths(const torch::Tensor& joints) {
   return (bones.square().sum(-1) + 1e-6).sqrt();
 }
 
-/// Mean difference of bone lengths, in the joints' unit: joints that are each a little off may leave a thigh too
-/// long, and the path with it. joints, truth [..., 22, 3].
+/// Mean difference of bone lengths, in the joints' unit: joints that are each a little off may leave a thigh
+/// too long, and the path with it. joints, truth [..., 22, 3].
 inline torch::Tensor length_loss(const torch::Tensor& joints, const torch::Tensor& truth) {
   return (bone_lengths(joints) - bone_lengths(truth)).abs().mean();
 }

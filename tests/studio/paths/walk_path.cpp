@@ -1,5 +1,5 @@
-// The paths of a person (paths/*.us) with mouse and keys through the real window. They are scripts of `understudy play`
-// without its commands: what a person has no widget or key for cannot be played.
+// The paths of a person (paths/*.us) with mouse and keys through the real window. They are scripts of
+// `understudy play` without its commands: what a person has no widget or key for cannot be played.
 #include <gtest/gtest.h>
 #include <signal.h>
 

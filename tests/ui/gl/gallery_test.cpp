@@ -62,8 +62,8 @@ TEST_P(Gallery, CutsNoWordAndHidesNoWidget) {
   }
 }
 
-/// Share of the pixels inside the mark that differ from its upper left one; of a mark that reaches out of the picture
-/// those that are in it.
+/// Share of the pixels inside the mark that differ from its upper left one; of a mark that reaches out of the
+/// picture those that are in it.
 double drawn(const render::Image& image, const Rect& mark) {
   const Rect rect =
       intersection(mark, {{0, 0}, {static_cast<float>(image.width), static_cast<float>(image.height)}});
