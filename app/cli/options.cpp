@@ -77,7 +77,7 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
   command.add_option("--height", source.import.height,
                      "height of the person in the source, metres (default: by its units, else 1.7)");
-  command.add_option("--yaw", source.import.yaw_deg, "turns the source about y, degrees");
+  command.add_option("--turn,--yaw", source.import.turn_deg, "turns the source about y, degrees");
   command.add_option("--floor", source.import.floor,
                      "height of the source's floor, metres (default: the lowest points)");
 }
@@ -100,9 +100,9 @@ void add_target_options(CLI::App& command, TargetOptions& target) {
       "uses a target that does not look like a person");
   command.add_option("--target-up", target.import.up, "the target's up axis: auto, y (default), z, ...");
   command.add_option_function<float>(
-      "--target-yaw",
-      [&target](float yaw_deg) {
-        target.import.yaw_deg = yaw_deg;
+      "--target-turn,--target-yaw",
+      [&target](float turn_deg) {
+        target.import.turn_deg = turn_deg;
         target.forward = false;
       },
       "turns the target about y, degrees (default: so that it faces forward)");

@@ -22,7 +22,7 @@ CharacterOptions character_options(const TargetOptions& options) {
   result.floor = options.import.floor;
   result.height = options.import.height;
   result.not_a_person = options.not_a_person;
-  if (!options.forward || options.import.yaw_deg != 0) result.yaw_deg = options.import.yaw_deg;
+  if (!options.forward || options.import.turn_deg != 0) result.turn_deg = options.import.turn_deg;
   result.own_joints = options.rig != "ours";
   return result;
 }

@@ -15,7 +15,7 @@ struct TargetOptions {
   std::string path;
   std::vector<float> betas;  ///< of an SMPL-format body
   ImportOptions import;      ///< up is y by default
-  bool forward = true;       ///< without a yaw it is turned so that it faces +z; false: it stays as it is
+  bool forward = true;       ///< without a turn it is turned so that it faces +z; false: it stays as it is
   std::string rig = "auto";  ///< theirs: its own bones and skin; ours: the 22 joints; auto: its own, if any
   BoneChoices bones;         ///< the user's corrections of which bone is which joint
   NotAPerson not_a_person = NotAPerson::RefuseClear;  ///< Refuse: of what a user opens

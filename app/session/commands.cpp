@@ -25,7 +25,9 @@ const Command* Commands::find(const std::string& name) const {
   static constexpr std::pair<const char*, const char*> kRenamed[] = {// as older scripts call them
                                                                      {"method.root", "method.path"},
                                                                      {"edit.floor_offset", "edit.raise"},
-                                                                     {"edit.heading", "edit.turn"}};
+                                                                     {"edit.heading", "edit.turn"},
+                                                                     {"source.yaw", "source.turn"},
+                                                                     {"target.yaw", "target.turn"}};
   for (const Command& command : commands_)
     if (command.name == name) return &command;
   for (const auto& [before, now] : kRenamed)

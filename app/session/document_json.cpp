@@ -191,11 +191,10 @@ Json Writer::json_of(const SkeletonEdit& edit, const std::string& where) {
 
 /// What older documents call a member.
 std::string name_before(const std::string& name) {
-  static const std::map<std::string, std::string> kBefore = {{"part_refiner", "near"},
-                                                             {"hand_contacts", "keep_contacts"},
-                                                             {"path", "root"},
-                                                             {"raise", "floor"},
-                                                             {"turn", "heading"}};
+  static const std::map<std::string, std::string> kBefore = {
+      {"part_refiner", "near"}, {"hand_contacts", "keep_contacts"},
+      {"path", "root"},         {"raise", "floor"},
+      {"turn", "heading"},      {"turn_deg", "yaw_deg"}};
   const auto found = kBefore.find(name);
   return found == kBefore.end() ? name : found->second;
 }

@@ -139,8 +139,8 @@ void add_pose_edits(Commands& commands) {
     c.take().pose_edits.raise = only_if(offset != 0, RaiseEdit{offset});
   });
   commands.add_slider({"edit.turn", "Turn", "TAKE DEGREES"}, [](Call& c) {
-    const float yaw = c.number(1, "angle");
-    c.take().pose_edits.turn = only_if(yaw != 0, TurnEdit{yaw});
+    const float angle = c.number(1, "angle");
+    c.take().pose_edits.turn = only_if(angle != 0, TurnEdit{angle});
   });
 }
 

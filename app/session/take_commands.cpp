@@ -83,11 +83,11 @@ void add_target_import(Commands& commands) {
                     [](Call& c) { c.take().target.import.height = c.body_height(1); });
   commands.add_edit({"target.use_anyway", "Use a target that does not look like a person", "TAKE"},
                     use_anyway);
-  commands.add_slider({"target.yaw", "Turn the target", "TAKE DEGREES|auto: so that it faces +z"},
+  commands.add_slider({"target.turn", "Turn the target", "TAKE DEGREES|auto: so that it faces +z"},
                       [](Call& c) {
                         TargetOptions& target = c.take().target;
                         target.forward = c.word(1, "angle") == "auto";
-                        target.import.yaw_deg = target.forward ? 0 : c.number(1, "angle");
+                        target.import.turn_deg = target.forward ? 0 : c.number(1, "angle");
                       });
   commands.add_slider({"target.betas", "Shape of the target", "TAKE \"1.2,-0.5\""}, [](Call& c) {
     std::vector<float>& betas = c.take().target.betas;

@@ -290,7 +290,8 @@ RestPose rest_pose_of_rig(const PreparedCharacter& c) {
 }
 
 void turn_rig_forward(PreparedCharacter& c, const CharacterOptions& options) {
-  const float yaw = options.yaw_deg ? -*options.yaw_deg * kPi / 180 : tidy(heading_of_joints(rig_joints(c)));
+  const float yaw =
+      options.turn_deg ? -*options.turn_deg * kPi / 180 : tidy(heading_of_joints(rig_joints(c)));
   if (std::abs(std::remainder(yaw, 2 * kPi)) > 1e-3f) turn_about_y(c, -yaw);
 }
 
@@ -377,7 +378,7 @@ void find_in_shape(PreparedCharacter& c, SkeletonExtractor& any_pose, SkeletonEx
     turn_over(c, options);
     seen = seen_from_sides(c.surface.mesh, any_pose);
   }
-  if (!options.yaw_deg) {
+  if (!options.turn_deg) {
     const float yaw = tidy(body_heading(c.surface.mesh, seen));
     if (std::abs(std::remainder(yaw, 2 * kPi)) > kSmallestTurn) turn_about_y(c, -yaw);
   }
@@ -434,8 +435,8 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
   check_stance(c, options);
   if (c.rigged)
     turn_rig_forward(c, options);
-  else if (options.yaw_deg && *options.yaw_deg != 0)
-    turn_about_y(c, *options.yaw_deg * kPi / 180);
+  else if (options.turn_deg && *options.turn_deg != 0)
+    turn_about_y(c, *options.turn_deg * kPi / 180);
   return c;
 }
 

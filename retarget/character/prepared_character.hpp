@@ -33,12 +33,12 @@ struct NotAPersonError : Error {
 };
 
 struct CharacterOptions {
-  BoneChoices choices;           ///< the user's corrections of the map
-  std::string units, up = "y";   ///< as in ImportOptions; empty: guessed
-  bool turn_if_lying = true;     ///< who lies or is upside down with y up is turned upright, with a note
-  std::optional<float> floor;    ///< its height after scale and axes, metres; none: the lowest points
-  std::optional<float> yaw_deg;  ///< turns it about y; none: so that it faces +z
-  std::optional<float> height;   ///< metres that it is made tall; none: see decide_import()
+  BoneChoices choices;            ///< the user's corrections of the map
+  std::string units, up = "y";    ///< as in ImportOptions; empty: guessed
+  bool turn_if_lying = true;      ///< who lies or is upside down with y up is turned upright, with a note
+  std::optional<float> floor;     ///< its height after scale and axes, metres; none: the lowest points
+  std::optional<float> turn_deg;  ///< turns it about y; none: so that it faces +z
+  std::optional<float> height;    ///< metres that it is made tall; none: see decide_import()
   NotAPerson not_a_person = NotAPerson::RefuseClear;
   bool own_joints = true;  ///< false: the T-pose joints are found by the network, not the bones
 };

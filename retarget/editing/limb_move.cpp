@@ -74,7 +74,7 @@ Pose moved_limb(const Joints& rest, int joint, const Vec3& offset, Pose pose) {
 
 void add_limb_move(const LimbMove& move, const Pose& performed, const Joints& rest, PoseEdits& edits) {
   constexpr float kLeast = 1e-4f;  // radians
-  const Mat3 heading = rotation_about_y(edits.turn ? edits.turn->yaw_deg * kPi / 180 : 0);
+  const Mat3 heading = rotation_about_y(edits.turn ? edits.turn->turn_deg * kPi / 180 : 0);
   const Pose before = rotated(edits.rotate, move.frame, performed);
   const Pose after = moved_limb(rest, move.joint, heading.transpose() * move.offset, before);
   for (const int j : joints_turned_by(move.joint)) {

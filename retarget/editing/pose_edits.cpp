@@ -116,9 +116,9 @@ void smooth(const SmoothEdit& edit, Motion& motion) {
 }
 
 void turn(const TurnEdit& edit, Motion& motion) {
-  if (motion.poses.empty() || edit.yaw_deg == 0) return;
-  US_CHECK(std::isfinite(edit.yaw_deg), "the turn is not finite");
-  const Mat3 R = rotation_about_y(edit.yaw_deg * kPi / 180);
+  if (motion.poses.empty() || edit.turn_deg == 0) return;
+  US_CHECK(std::isfinite(edit.turn_deg), "the turn is not finite");
+  const Mat3 R = rotation_about_y(edit.turn_deg * kPi / 180);
   const Vec3 centre = motion.poses.front().root;
   for (Pose& pose : motion.poses) {
     pose.root = centre + R * (pose.root - centre);

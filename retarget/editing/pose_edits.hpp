@@ -74,11 +74,11 @@ FieldsOf<S, PinEdit> fields(V& visit, S& edit) {
 
 /// The motion turned about the vertical through its first pelvis.
 struct TurnEdit {
-  float yaw_deg = 0;  ///< takes +z towards +x
+  float turn_deg = 0;  ///< takes +z towards +x
 };
 template <class V, class S>
 FieldsOf<S, TurnEdit> fields(V& visit, S& edit) {
-  visit("yaw_deg", edit.yaw_deg);
+  visit("turn_deg", edit.turn_deg);
 }
 
 /// What stays for playback and export. Frames are those of the motion before any edit.

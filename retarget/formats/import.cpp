@@ -239,14 +239,14 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
   decision.up = std::string(up.negative ? "-" : "") + static_cast<char>('x' + up.axis);
   decision.sentence = decide_size(high - low, extent, forced, decision);
   decision.height = (high - low) * decision.scale;
-  decision.axes = rotation_about_y(forced.yaw_deg * kPi / 180.0f) * to_y_up(up);
+  decision.axes = rotation_about_y(forced.turn_deg * kPi / 180.0f) * to_y_up(up);
   const float measured = low * decision.scale;
   // Within 2 cm the file's own zero is the better floor: the lowest points are a noisy measure of it.
   decision.floor = forced.floor ? *forced.floor : std::abs(measured) <= 0.02f ? 0.0f : measured;
   decision.sentence += ", up: " + decision.up + (guess ? "" : " (given)") +
                        (up.floor.seen ? " (from the floor)" : "") + ", floor at " +
                        printed("%.2f", static_cast<double>(decision.floor)) + " m";
-  if (forced.yaw_deg != 0) decision.sentence += ", turned by " + short_number(forced.yaw_deg) + " degrees";
+  if (forced.turn_deg != 0) decision.sentence += ", turned by " + short_number(forced.turn_deg) + " degrees";
   return decision;
 }
 

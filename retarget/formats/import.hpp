@@ -14,9 +14,9 @@ constexpr Within<float> kBodyHeights{0.05f, 100};
 
 /// What the user forces; what is left empty is guessed.
 struct ImportOptions {
-  std::string units;  ///< "m", "cm", "mm", "dm", "in"; empty or "auto": from the height of the body
-  std::string up;     ///< "x", "y", "z", "-x", "-y", "-z"; empty or "auto": from where the body extends
-  float yaw_deg = 0;  ///< turns the scan about y at the end, from +z towards +x
+  std::string units;   ///< "m", "cm", "mm", "dm", "in"; empty or "auto": from the height of the body
+  std::string up;      ///< "x", "y", "z", "-x", "-y", "-z"; empty or "auto": from where the body extends
+  float turn_deg = 0;  ///< turns the scan about y at the end, from +z towards +x
   std::optional<float> floor;  ///< height of the floor in the file, in metres; none: the lowest points
   std::optional<float>
       height{};  ///< metres that the body is made tall, whatever its units; none: by its units
@@ -25,7 +25,7 @@ template <class V, class S>
 FieldsOf<S, ImportOptions> fields(V& visit, S& import) {
   visit("units", import.units);
   visit("up", import.up);
-  visit("yaw_deg", import.yaw_deg);
+  visit("turn_deg", import.turn_deg);
   visit("floor_m", import.floor);
   visit("height_m", import.height, kBodyHeights);
 }

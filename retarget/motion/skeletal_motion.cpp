@@ -189,7 +189,7 @@ void SkeletalMotion::find_axes(const ImportOptions& import) {
   if (up.empty() && !has_skin_) up = up_of_motion();
   // Where the bind pose has the same up, the heading that it was turned to counts, too.
   if (!up.empty() && (axes_ * upright(up).transpose() * Vec3::UnitY()).y() < 0.9f) axes_ = upright(up);
-  axes_ = rotation_about_y(import.yaw_deg * kPi / 180) * axes_;
+  axes_ = rotation_about_y(import.turn_deg * kPi / 180) * axes_;
 }
 
 /// Of a skin the floor under its bind pose or the file's zero, where the soles come near to one of them; else

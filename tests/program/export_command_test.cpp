@@ -201,9 +201,10 @@ TEST_F(ExportCommand, EveryFormatIsWrittenWithoutAWindow) {
 
 TEST_F(ExportCommand, PerformsAsRetargetDoesWithTheSameOptions) {
   const std::string path = character();
-  for (const std::vector<std::string>& options : {std::vector<std::string>{"--root", "in-place"},
-                                                  {"--root", "original", "--no-foot-lock"},
-                                                  {"--target-yaw", "0", "--fps", "50", "--engine", "copy"}}) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--root", "in-place"},
+        {"--root", "original", "--no-foot-lock"},
+        {"--target-turn", "0", "--fps", "50", "--engine", "copy"}}) {
     std::vector<std::string> exported = {"--out", out("export.bvh")},
                              retargeted = {"--out", out("retarget.bvh")};
     exported.insert(exported.end(), options.begin(), options.end());

@@ -116,6 +116,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   without.erase(without.find("  \"follow\": true,\n", without.find("floor_m")), 18);
   without = replaced(without, "\"root\":", "\"path\":");  // names of then
   without = replaced(without, "\"heading\":", "\"turn\":");
+  without = replaced(without, "\"yaw_deg\":", "\"turn_deg\":");
   without = replaced(without, "\"floor\":", "\"raise\":", without.find("\"smooth\":"));
   auto written = to_json(read, "/a/documents");
   for (auto& take : written["takes"]) {

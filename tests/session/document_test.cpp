@@ -51,7 +51,7 @@ const Changes& document_changes() {
       CHANGE(source.fps = 30),
       CHANGE(source.import.units = "m"),
       CHANGE(source.import.up = "y"),
-      CHANGE(source.import.yaw_deg += 1),
+      CHANGE(source.import.turn_deg += 1),
       CHANGE(source.import.floor.reset()),
       CHANGE(source.import.floor = 0),
       CHANGE(source.as_scan = true),
@@ -150,7 +150,7 @@ const Changes& document_changes() {
       POSES(pin->to_floor = true),
       POSES(pin->max_drop_m += 1),
       POSES(turn.reset()),
-      POSES(turn->yaw_deg += 1),
+      POSES(turn->turn_deg += 1),
       POSES(trim.reset()),
       POSES(trim->first = 0),
       POSES(trim->last = 9),
@@ -186,7 +186,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [begin_height, end_height, begin_speed, end_speed] = FootContactOptions();
   [[maybe_unused]] const auto& [strength] = SmoothEdit();
   [[maybe_unused]] const auto& [offset_m] = RaiseEdit();
-  [[maybe_unused]] const auto& [yaw_deg] = TurnEdit();
+  [[maybe_unused]] const auto& [turn_deg] = TurnEdit();
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
                                 weights_joint, trails, ghosts, step, scale, wipe, cube, overlay, light,

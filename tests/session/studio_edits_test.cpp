@@ -365,8 +365,10 @@ TEST_F(StudioTest, EditsOfTheResultComeAndGo) {
   open_both(studio);
   const Motion before = studio.session().takes[0].shown;
   studio.run("edit.smooth", {"0", "0.8"});
-  EXPECT_EQ(studio.commands().find("edit.floor_offset"),
-            studio.commands().find("edit.raise"));  // its old name
+  for (const auto& [old_name, name] : {std::pair{"edit.floor_offset", "edit.raise"},
+                                       {"source.yaw", "source.turn"},
+                                       {"target.yaw", "target.turn"}})
+    EXPECT_EQ(studio.commands().find(old_name), studio.commands().find(name)) << name;
   studio.run("edit.raise", {"0", "0.25"});
   studio.wait_idle(60);
   EXPECT_NEAR(studio.session().takes[0].shown.poses[5].root.y(), before.poses[5].root.y() + 0.25f, 0.03f);

@@ -31,7 +31,7 @@ TEST_F(Inspector, ButtonsAskForTheirCommands) {
 TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_typed("source.fps", "25", {"source.fps 25"});
   expect_typed("source.fps", "auto", {});  // it was automatic
-  expect_typed("source.yaw", "90", {"source.yaw 90"});
+  expect_typed("source.turn", "90", {"source.turn 90"});
   expect_typed("source.floor", "0.05 m", {"source.floor 0.05"});
   expect_choice("source.units", 3, {"source.units mm"});
   expect_choice("source.up", 6, {"source.up -z"});
@@ -46,10 +46,10 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   frame(2);
   expect_typed("target.height", "auto", {"target.height 0 auto"});
   expect_click("target.height.reset", {"target.height 0 auto"});
-  expect_typed("target.yaw", "-45", {"target.yaw 0 -45"});
-  expect_typed("target.yaw", "north", {});
+  expect_typed("target.turn", "-45", {"target.turn 0 -45"});
+  expect_typed("target.turn", "north", {});
   session.document.takes[0].target.forward = false;
-  expect_typed("target.yaw", "auto", {"target.yaw 0 auto"});
+  expect_typed("target.turn", "auto", {"target.turn 0 auto"});
   expect_typed("target.betas", "1.2,-0.5", {"target.betas 0 1.2,-0.5"});
   expect_typed("take.name", "the adult", {"take.rename 0 \"the adult\""});
 }
@@ -114,17 +114,17 @@ TEST_F(Inspector, SaysWhereTheShapeBinds) {
 }
 
 TEST_F(Inspector, WhatIsLeftWithoutEnterIsAskedForToo) {
-  write_into("source.yaw", "15");
+  write_into("source.turn", "15");
   EXPECT_EQ(asked(), Lines());
   click("source.fps");
-  EXPECT_EQ(asked(), Lines{"source.yaw 15"});
+  EXPECT_EQ(asked(), Lines{"source.turn 15"});
 }
 
 TEST_F(Inspector, EscapeAndNonsenseAskForNothing) {
-  write_into("source.yaw", "15");
+  write_into("source.turn", "15");
   key(render::Key::Escape);
   EXPECT_EQ(asked(), Lines());
-  expect_typed("source.yaw", "north", {});
+  expect_typed("source.turn", "north", {});
 }
 
 TEST_F(Inspector, TheCurrentTakeIsNamedWhereItIsActedOn) {

@@ -194,7 +194,7 @@ void draw_amounts(const PoseEdits& edits, PanelContext& context, const std::stri
   ask_number(context,
              {"edit.turn", "Turn by", "Turns the whole motion about the vertical axis by this many degrees",
               "edit.turn " + k},
-             edits.turn ? edits.turn->yaw_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
+             edits.turn ? edits.turn->turn_deg : 0, {-180, 180, 0.5f, "%.1f\u00b0", 0, true});
 }
 
 void draw_trim(const app::Session& session, PanelContext& context, const PoseEdits& edits,

@@ -1,8 +1,8 @@
 // What is open and how it is done: the source, the takes, their target and method.
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.units, source.up,
-// source.height(.reset), source.yaw, source.floor, source.extractor, source.open, source.motion; take.K (its
+// source.height(.reset), source.turn, source.floor, source.extractor, source.open, source.motion; take.K (its
 // row), take.name, take.remove, take.add, take.replace; target.units, target.height(.reset), target.up,
-// target.yaw, target.betas, target.stride, target.hip_height, target.arm_reach, target.rest_pose,
+// target.turn, target.betas, target.stride, target.hip_height, target.arm_reach, target.rest_pose,
 // target.rest_mirror, edit.rest_pose_clear; method.engine, method.extractor, method.offsets, method.path,
 // method.repair_swaps, method.smooth_joints, method.fix_lengths, method.compare,
 // work.pause, work.resume, work.restart.
@@ -62,14 +62,14 @@ void draw_import(PanelContext& context, const std::string& group, const ImportOp
              kAxes, kAxes, word(import.up));
 }
 
-void draw_target_yaw(const app::TargetOptions& target, PanelContext& context, const std::string& k) {
-  const bool automatic = target.forward && target.import.yaw_deg == 0;
+void draw_target_turn(const app::TargetOptions& target, PanelContext& context, const std::string& k) {
+  const bool automatic = target.forward && target.import.turn_deg == 0;
   const auto text = text_row(
-      context.ui, {"target.yaw", "Turned by", "Degrees about the vertical; auto: so that it faces forward"},
-      automatic ? "auto" : argument(target.import.yaw_deg));
+      context.ui, {"target.turn", "Turn by", "Degrees about the vertical; auto: so that it faces forward"},
+      automatic ? "auto" : argument(target.import.turn_deg));
   if (!text) return;
   const auto deg = parse_number(*text);
-  if (deg || *text == "auto") context.ask("target.yaw", {k, deg ? argument(*deg) : "auto"});
+  if (deg || *text == "auto") context.ask("target.turn", {k, deg ? argument(*deg) : "auto"});
 }
 
 void draw_source_facts(const app::Session& session, Ui& ui) {
@@ -145,9 +145,9 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
   if (may_move(source)) draw_animation_fields(session.source, source, context);
   draw_import(context, "source", source.import);
-  if (const auto deg = typed_number_row(ui, {"source.yaw", "Turned by", "Degrees about the vertical"},
-                                        source.import.yaw_deg, 1))
-    context.ask("source.yaw", {argument(*deg)});
+  if (const auto deg = typed_number_row(ui, {"source.turn", "Turn by", "Degrees about the vertical"},
+                                        source.import.turn_deg, 1))
+    context.ask("source.turn", {argument(*deg)});
   const std::string floor = source.import.floor ? argument(*source.import.floor) : "auto";
   if (const auto text = text_row(ui, {"source.floor", "Floor", "Its height in metres, or auto"}, floor)) {
     const auto height = parse_number(*text);
@@ -280,7 +280,7 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
   row_text(ui, "File", file_name(take->target.path));
   if (const app::TakeState* state = selected_state(session)) draw_target_facts(*state, ui);
   draw_import(context, "target", take->target.import, k);
-  draw_target_yaw(take->target, context, k);
+  draw_target_turn(take->target, context, k);
   std::ostringstream betas;
   for (size_t i = 0; i < take->target.betas.size(); ++i)
     betas << (i > 0 ? "," : "") << argument(take->target.betas[i]);

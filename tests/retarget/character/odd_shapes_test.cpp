@@ -144,7 +144,7 @@ TEST(OddShapes, WhoIsHeadDownIsTurnedOverWithANote) {
   HonestExtractor honest;
   const Mat3 over = Eigen::AngleAxisf(kPi, Vec3::UnitZ()).toRotationMatrix();
   CharacterOptions options;
-  options.yaw_deg = 0;
+  options.turn_deg = 0;
   const PreparedCharacter c = prepare_character(turned(bare(), over), &honest, nullptr, options);
   EXPECT_TRUE(noted(c, "is upside down"));
   EXPECT_NEAR(c.surface.mesh.vertices.col(1).minCoeff(), 0, 0.03f);

@@ -131,7 +131,7 @@ TEST(Import, WhatIsForcedIsNotGuessed) {
   forced.units = "cm";
   forced.up = "z";
   forced.floor = 0.25f;
-  forced.yaw_deg = 90;
+  forced.turn_deg = 90;
   const Mesh file = as_file(person(false), "z", 1);
   const ImportDecision decision = decide_import(file, forced);
   EXPECT_EQ(decision.scale, 0.01f);
@@ -203,7 +203,7 @@ TEST(Import, TakesSomebodyWhoLiesAsMetresWhateverTheHeight) {
 TEST(Import, KnowsTheWayBack) {
   Mesh file = as_file(person(true), "z", 100, {30, -20, 700});
   ImportOptions turned;
-  turned.yaw_deg = 33;
+  turned.turn_deg = 33;
   const ImportDecision decision = decide_import(file, turned);
   ASSERT_EQ(decision.units, "cm");
   const Points world = decision.apply(file.vertices);
