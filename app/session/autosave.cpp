@@ -61,7 +61,7 @@ const Owner& myself() {
   return me;
 }
 
-std::string file_name(const Owner& owner) {
+std::string copy_name(const Owner& owner) {
   return kPrefix + owner.boot + '_' + std::to_string(owner.process) + '_' + std::to_string(owner.started) +
          kSuffix;
 }
@@ -75,7 +75,7 @@ std::optional<Owner> owner_of(const std::string& name) {
   std::istringstream in(words);
   Owner owner;
   if (!(in >> owner.boot >> owner.process >> owner.started)) return {};
-  return file_name(owner) == name.substr(0, end + std::string(kSuffix).size()) ? std::optional(owner)
+  return copy_name(owner) == name.substr(0, end + std::string(kSuffix).size()) ? std::optional(owner)
                                                                                : std::nullopt;
 }
 
@@ -129,12 +129,12 @@ void write_autosave(const std::string& folder, const SavedDocument& saved, const
                   {"document_path", document_path},
                   {"time", local_time()},
                   {"document", to_json(saved, "")}};
-  write_file((fs::path(folder) / file_name(myself())).string(), document_text(json));
+  write_file((fs::path(folder) / copy_name(myself())).string(), document_text(json));
 }
 
 void remove_autosave(const std::string& folder) {
   std::error_code ignored;
-  fs::remove(fs::path(folder) / file_name(myself()), ignored);
+  fs::remove(fs::path(folder) / copy_name(myself()), ignored);
 }
 
 std::vector<Autosave> found_autosaves(const std::string& folder) {
