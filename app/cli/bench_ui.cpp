@@ -239,28 +239,23 @@ class UiBench {
     line("start to the first frame", printed("%.2f s", seconds_since_start()));
   }
 
-  /// From the command until the first performed frame of every take has been presented.
-  double until_performed(const std::string& name, const Arguments& arguments, size_t takes) {
-    const auto began = Clock::now();
-    command(name, arguments);
-    while (application_->session().takes.size() < takes || frame_count(application_->session()) < 1 ||
-           !shown_whole() || !all_performed())
+  /// Until the first performed frame of so many takes has been presented.
+  double until_performed(size_t takes, Clock::time_point began) {
+    const auto performed = [](const TakeState& take) { return take.ready && !take.performed.empty(); };
+    const auto& all = application_->session().takes;
+    while (static_cast<size_t>(std::count_if(all.begin(), all.end(), performed)) < takes || !shown_whole())
       step();
     application_->frame(0);
     return seconds_since(began);
-  }
-  bool all_performed() {
-    const auto& takes = application_->session().takes;
-    return std::all_of(takes.begin(), takes.end(),
-                       [](const TakeState& take) { return take.ready && !take.performed.empty(); });
   }
 
   /// The start page stands for as long as somebody takes to read it; then a sample is chosen.
   void sample_card() {
     for (const auto began = Clock::now(); seconds_since(began) < kReading;) step();
     const std::string& samples = application_->studio().services().samples;
-    line("sample card to its first performed frame",
-         printed("%.2f s", until_performed("open", {samples + "/scan", samples + "/target_adult.glb"}, 1)));
+    const auto began = Clock::now();
+    command("open", {samples + "/scan", samples + "/target_adult.glb"});
+    line("sample card to its first performed frame", printed("%.2f s", until_performed(1, began)));
   }
 
   /// A document of two takes, opened again.
@@ -268,15 +263,19 @@ class UiBench {
     const std::string& samples = application_->studio().services().samples;
     command("target.add", {samples + "/target_child.glb"});
     settle();
-    command("document.save", {files.document()});
-    std::vector<double> times;
+    command("document.save_as", {files.document()});
+    std::vector<double> first, both;
     for (int i = 0; i < kTries; ++i) {
       clear();
-      times.push_back(until_performed("document.open", {files.document()}, 2));
+      const auto began = Clock::now();
+      command("document.open", {files.document()});
+      first.push_back(until_performed(1, began));
+      both.push_back(until_performed(2, began));
       settle();
     }
     line("document of two takes to its first performed frame",
-         printed("%.2f s median of %d, %.2f s at most", quantile(times, 0.5), kTries, quantile(times, 1)));
+         printed("%.2f s median of %d, %.2f s at most; of both %.2f s", quantile(first, 0.5), kTries,
+                 quantile(first, 1), quantile(both, 0.5)));
   }
 
   /// Nothing is asked of it and nothing moves.
@@ -296,7 +295,8 @@ class UiBench {
   void video(const BenchFiles& files) {
     const auto began = Clock::now();
     command("video.save", {files.video(), "1280", "720"});
-    while (!application_->session().jobs.empty()) step();
+    do step();
+    while (!application_->session().jobs.empty());
     line("video of 1280 x 720",
          printed("%.1f s for %d frames", seconds_since(began), frame_count(application_->session())));
   }

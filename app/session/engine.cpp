@@ -120,6 +120,7 @@ struct Engine::Impl {
   bool of_take(TakeWork& take, Work work);
   void load(TakeWork& take);
   void prepare(TakeWork& take);
+  TakeWork* next_to_prepare();
   Stream& stream_of(const Method& method) { return streams[extraction_key(method)]; }
   const std::shared_ptr<SkeletonExtractor>& extractor_of(const Method& method);
   std::vector<Method> wanted_extractions() const;
@@ -268,13 +269,23 @@ bool Engine::Impl::step() {
     open();
     return true;
   }
-  for (TakeWork& take : takes)
-    if (!take.performer && !take.failed) return of_take(take, [&] { prepare(take); });
+  if (TakeWork* const take = next_to_prepare()) return of_take(*take, [&] { prepare(*take); });
   if (send_source()) return true;
   for (TakeWork& take : takes)
     if (take.performer && take.done < stream_of(take.plan.method).frames.size())
       return of_take(take, [&] { perform(take); });
   return read_frame();
+}
+
+/// Binding takes a second: those that are bound perform their first frame before the next one is. Null: none, now.
+TakeWork* Engine::Impl::next_to_prepare() {
+  const auto waits = [](const TakeWork& take) { return !take.performer && !take.failed; };
+  const auto next = std::find_if(takes.begin(), takes.end(), waits);
+  const bool has_frames = source && !ended;
+  const bool first_comes = has_frames && std::any_of(takes.begin(), takes.end(), [](const TakeWork& take) {
+                             return take.performer && take.done == 0;
+                           });
+  return next == takes.end() || first_comes ? nullptr : &*next;
 }
 
 /// Works for one take; an error ends that take alone.
