@@ -277,10 +277,13 @@ bool Engine::Impl::step() {
   return read_frame();
 }
 
-/// Binding takes a second: those that are bound perform their first frame before the next one is. Null: none, now.
+/// Binding takes a second: the take that is looked at comes first, and what is bound performs its first frame before the
+/// next one is. Null: none, now.
 TakeWork* Engine::Impl::next_to_prepare() {
   const auto waits = [](const TakeWork& take) { return !take.performer && !take.failed; };
-  const auto next = std::find_if(takes.begin(), takes.end(), waits);
+  auto next = std::find_if(takes.begin(), takes.end(),
+                           [&](const TakeWork& take) { return waits(take) && take.plan.id == plan.first; });
+  if (next == takes.end()) next = std::find_if(takes.begin(), takes.end(), waits);
   const bool has_frames = source && !ended;
   const bool first_comes = has_frames && std::any_of(takes.begin(), takes.end(), [](const TakeWork& take) {
                              return take.performer && take.done == 0;

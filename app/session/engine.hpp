@@ -27,6 +27,7 @@ struct Plan {
   ScanEdits scan_edits;
   std::vector<SkeletonEdit> skeleton_edits;
   std::vector<TakePlan> takes;
+  int64_t first = 0;  ///< the take that is prepared before the others; no field: what comes of it is the same
 };
 Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids);
 template <class V, class S>

@@ -175,6 +175,7 @@ void Studio::follow_document() {
     follow_source(other_source);
     follow_edits();
     if (key == b.plan_key) return;
+    if (!b.take_ids.empty()) plan.first = b.take_ids[session_.selected_take];
     b.engine.set_plan(std::move(plan));
     b.plan_key = std::move(key);
     session_.working = true;

@@ -13,7 +13,7 @@
 namespace understudy {
 
 void yield_to_drawing() {
-  constexpr int kNice = 3;
+  constexpr int kNice = 10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);  // a thread of its own, on Linux
 }
 

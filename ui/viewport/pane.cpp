@@ -195,7 +195,11 @@ void PictureKeeper::forget_others(const Session& session, const PaneContent& pan
 
 bool PaneCanvas::shows(const render::Scene& scene, const render::Camera& camera,
                        render::PixelSize size) const {
-  return drawn_ && same(size, size_) && same(camera, camera_) && same(scene, scene_);
+  return seen_from(camera, size) && same(scene, scene_);
+}
+
+bool PaneCanvas::seen_from(const render::Camera& camera, render::PixelSize size) const {
+  return drawn_ && same(size, size_) && same(camera, camera_);
 }
 
 void PaneCanvas::draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,

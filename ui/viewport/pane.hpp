@@ -62,6 +62,8 @@ class PaneCanvas {
   /// `fine`: in the quality of the settings; else a quick draft while things move.
   void draw(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
             render::PixelSize size, bool fine);
+  /// Whether what it shows, old or new, is seen from there.
+  bool seen_from(const render::Camera& camera, render::PixelSize size) const;
   bool fine() const { return fine_; }
   /// Its name for ImGui::Image; upside down, as OpenGL has it.
   unsigned texture() const { return texture_.name(); }

@@ -112,6 +112,9 @@ void Views::prepare(const Frame& f, size_t count) {
   panes_.resize(count);
   if (tool_ != f.session.tool || (hand_.busy() && key_pressed(render::Key::Escape, false))) hand_.let_go();
   tool_ = f.session.tool;
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  pictures_wait_ = std::exchange(drawn_before_, drawn_) != drawn_ && is_live(f.session) && !steering() &&
+                   (moved.x != 0 || moved.y != 0);
   under_ = nullptr;
 }
 
@@ -292,6 +295,7 @@ void Views::turn_light(const Frame& f, const Pointer& now) {
 }
 
 void Views::make_picture(const Frame& f, Pane& pane) {
+  if (pictures_wait_ && pane.canvas.seen_from(pane.view.camera, pane.view.size())) return;
   const PaneView seen = tool_view(f.session, pane);
   const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale()};
   PanePictures pictures = pane.keeper.pictures();
@@ -315,13 +319,17 @@ void Views::draw_picture(const Frame& f, Pane& pane) {
   ++drawn_;
 }
 
+bool Views::is_live(const Session& session) {
+  return session.working && !session.paused && session.playback.live && app::shown_frame(session) >= 0;
+}
+
+bool Views::steering() const {
+  return (under_ != nullptr && (pointer_.held || pointer_.turning || pointer_.panning)) || hand_.busy() ||
+         std::any_of(panes_.begin(), panes_.end(), [](const auto& pane) { return pane->cube_held; });
+}
+
 bool Views::moving(const Session& session) const {
-  const bool live =
-      session.working && !session.paused && session.playback.live && app::shown_frame(session) >= 0;
-  const bool steering =
-      (under_ != nullptr && (pointer_.held || pointer_.turning || pointer_.panning)) ||
-      std::any_of(panes_.begin(), panes_.end(), [](const auto& pane) { return pane->cube_held; });
-  return session.playback.playing || live || steering || hand_.busy() || session.view.turntable_deg_s != 0;
+  return session.playback.playing || is_live(session) || steering() || session.view.turntable_deg_s != 0;
 }
 
 void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {

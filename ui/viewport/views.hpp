@@ -56,6 +56,8 @@ class Views {
   void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
   void make_picture(const Frame& f, Pane& pane);
   void draw_picture(const Frame& f, Pane& pane);
+  static bool is_live(const app::Session& session);
+  bool steering() const;
   bool moving(const app::Session& session) const;
   void show(const Frame& f, Pane& pane, const Rect& part, bool right);
   void describe(const app::Session& session, const Pane& pane, Overlay& overlay) const;
@@ -75,7 +77,9 @@ class Views {
   std::optional<bool> followed_;
   bool legend_beside_ = false;  ///< the joints' colours stand beside the views, not in each
   bool hold_ = false;           ///< cameras stay for this frame as they were
-  int64_t drawn_ = 0;
+  int64_t drawn_ = 0, drawn_before_ = 0;
+  /// Frames come one after the other, and the last draw was of one: this one shows at once what the pointer does.
+  bool pictures_wait_ = false;
 };
 
 }  // namespace understudy::ui
