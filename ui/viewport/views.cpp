@@ -190,7 +190,7 @@ float Views::wipe_line(const Frame& f, const Rect& area) {
 void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view) {
   if (!(pane.content == content)) pane.memory = {};
   const render::Camera before = pane.view.camera;
-  const bool held = hold_ && pane.content == content && !pane.view.rect.empty();
+  const bool held = (hold_ || pictures_wait_) && pane.content == content && !pane.view.rect.empty();
   pane.content = content;
   pane.view = view;
   if (held) pane.view.camera = before;
