@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -142,11 +143,16 @@ void save_video(Call& c) {
         Stage stage(std::move(*session), saving);
         const auto [width, height] = std::pair(saving.options.size.width, saving.options.size.height);
         render::VideoWriter writer(saving.path, {width, height, fps});
+        std::future<void> writing;  // of the frame before, while the next is drawn
         for (size_t i = 0; i < frames.size(); ++i) {
           control.check();
           control.progress(static_cast<float>(i) / static_cast<float>(frames.size()));
-          writer.push(stage.picture(frames[i]));
+          render::Image picture = stage.picture(frames[i]);
+          if (writing.valid()) writing.get();
+          writing = std::async(std::launch::async,
+                               [&writer, picture = std::move(picture)] { writer.push(picture); });
         }
+        writing.get();
         control.check();
         writer.finish();
       },

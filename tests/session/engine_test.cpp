@@ -28,10 +28,10 @@ TEST_F(StudioTest, PerformsAScanThatWasOpened) {
 TEST_F(StudioTest, ExtractsSkeletonsBeforeThereIsATarget) {
   Studio studio(services());
   studio.run("open", {path("scan.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(studio.session().source.frames.size(), static_cast<size_t>(kFrames));
   studio.run("open", {path("target.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(frame_count(studio.session()), kFrames);
   EXPECT_EQ(*extractions_, kFrames);  // the target came later; nothing was extracted twice
 }
@@ -43,14 +43,14 @@ TEST_F(StudioTest, ADraggedJointIsPerformedWithoutExtractingAgainAndUndone) {
   const Joints seen = studio.session().source.frames[10].joints;
   const int extracted = *extractions_;
   studio.run("edit.drag", {"10", "left_wrist", "0", "0.2", "0", "2"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_GT((studio.session().source.frames[10].joints - seen).row(LeftWrist).norm(), 0.02f);
   EXPECT_FALSE(same_poses(studio.session().takes[0].shown, before));
   studio.run("edit.undo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
   studio.run("edit.redo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_FALSE(same_poses(studio.session().takes[0].shown, before));
   EXPECT_EQ(*extractions_, extracted);
 }
@@ -60,7 +60,7 @@ TEST_F(StudioTest, FramesBeforeAnEditStayAsTheyWere) {
   open_both(studio);
   const Motion before = studio.session().takes[0].shown;
   studio.run("edit.drag", {"15", "left_wrist", "0", "0.3", "0", "0"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const Motion& after = studio.session().takes[0].shown;
   for (size_t t = 0; t < 15; ++t)
     EXPECT_EQ(after.poses[t].local[LeftElbow], before.poses[t].local[LeftElbow]) << t;
@@ -72,7 +72,7 @@ TEST_F(StudioTest, CroppingTheScanExtractsAgain) {
   open_both(studio);
   const int extracted = *extractions_;
   studio.run("edit.crop", {"-9", "-9", "-9", "9", "9", "9"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(*extractions_, extracted + kFrames);
 }
 
@@ -80,7 +80,7 @@ TEST_F(StudioTest, TwoMethodsOfOneTargetStandSideBySide) {
   Studio studio(services());
   open_both(studio);
   studio.run("compare.add", {"0", "engine=paper", "root=in-place"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(studio.session().takes.size(), 2u);
   EXPECT_EQ(studio.session().takes[1].shown.poses.size(), static_cast<size_t>(kFrames));
   EXPECT_FALSE(same_poses(studio.session().takes[0].shown, studio.session().takes[1].shown));
@@ -96,17 +96,17 @@ TEST_F(StudioTest, ProportionsOfATargetArePerformedWithoutBindingOrExtractingAga
   const auto deformer = take().deformer;
   const int extracted = *extractions_;
   for (const char* stride : {"1.2", "1.5"}) studio.run("target.stride", {"0", stride});  // as a slider does
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NEAR(pelvis(kFrames - 1).x() - first.x(), 1.5f * (last.x() - first.x()), 1e-3f);
   studio.run("edit.undo");
   studio.run("target.hip_height", {"0", "-0.05"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NEAR(pelvis(0).y(), first.y() - 0.05f, 0.01f);
   studio.run("edit.undo");
   studio.run("target.arm_reach", {"0", "7"});
   EXPECT_EQ(studio.session().document.takes[0].method.arm_reach, 1);
   studio.run("edit.undo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(same_poses(take().shown, before));
   EXPECT_EQ(take().deformer, deformer);
   EXPECT_EQ(*extractions_, extracted);
@@ -116,7 +116,7 @@ TEST_F(StudioTest, AnotherMethodOfATakeIsComparedByItsProportions) {
   Studio studio(services());
   open_both(studio);
   studio.run("compare.add", {"0", "stride=1.5", "arm_reach=0.5"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(studio.session().document.takes[1].method.stride, 1.5f);
   EXPECT_EQ(studio.session().document.takes[1].name, "target (stride 1.5, arm_reach 0.5)");
   EXPECT_FALSE(same_poses(studio.session().takes[0].shown, studio.session().takes[1].shown));
@@ -127,7 +127,7 @@ TEST_F(StudioTest, ABrokenTargetIsToldAndTheScanGoesOn) {
   Studio studio(services());
   studio.run("open", {path("scan.npz")});
   studio.run("target.add", {path("broken.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_FALSE(studio.session().errors.empty());
   EXPECT_NE(studio.session().errors.front().text.find("broken.obj"), std::string::npos);
   EXPECT_EQ(studio.session().source.frames.size(), static_cast<size_t>(kFrames));
@@ -143,7 +143,7 @@ TEST_F(StudioTest, AFrameThatCannotBeReadIsFlaggedAndTheRestPerformed) {
   }
   Studio studio(services());
   studio.run("open", {path("scans"), path("target.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const Session& session = studio.session();
   ASSERT_TRUE(session.errors.empty()) << session.errors.front().text;
   ASSERT_EQ(frame_count(session), 6);
@@ -175,10 +175,10 @@ TEST_F(StudioTest, ATargetThatNoNetworkTakesIsToldAndExchanged) {
   ASSERT_EQ(studio.session().errors.size(), 1u);
   EXPECT_EQ(studio.session().errors.front().text, "the target cannot be bound");
   studio.run("edit.swap", {"2", "4", "arms"});  // what is at work is brought in line with this
-  studio.wait_idle(60);
+  studio.wait_idle();
   *refusing = false;
   studio.run("method.engine", {"0", "paper"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(frame_count(studio.session()), kFrames);
 }
 
@@ -242,7 +242,7 @@ TEST_F(StudioTest, ATakeThatFailsLeavesTheOthersAtWork) {
   studio.run("open", {path("target.obj")});
   studio.run("compare.add", {"0", "engine=paper"});
   studio.run("open", {path("scan.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const Session& session = studio.session();
   EXPECT_EQ(session.source.frames.size(), static_cast<size_t>(kFrames));
   EXPECT_EQ(session.takes[0].performed.size(), static_cast<size_t>(kFrames));
@@ -255,11 +255,11 @@ TEST_F(StudioTest, ASkeletonIsShownAndExportedAsItsTakeTransferredIt) {
   Studio studio(services());
   open_both(studio);
   studio.run("compare.add", {"0", "smooth=off", "lengths=off", "swaps=off"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const auto& frames = studio.session().source.frames;
   const auto exported = [&](const char* take) {
     studio.run("export.run", {take, path("out.npz")});
-    studio.wait_idle(60);
+    studio.wait_idle();
     EXPECT_TRUE(studio.session().errors.empty());
     const NpyArray joints = read_npz(path("out.npz")).at("source_joints");
     return Joints(Eigen::Map<const Joints>(joints.values.data() + 10 * kJointCount * 3));
@@ -268,10 +268,10 @@ TEST_F(StudioTest, ASkeletonIsShownAndExportedAsItsTakeTransferredIt) {
   EXPECT_NE(exported("0"), frames[10].raw);
   EXPECT_EQ(exported("1"), frames[10].raw);  // nothing was to be done to it
   studio.run("target.remove", {"0"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(frames[10].joints, frames[10].raw);
   studio.run("target.remove", {"0"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NE(frames[10].joints, frames[10].raw);  // as before there was a target
 }
 
@@ -287,9 +287,9 @@ TEST_F(StudioTest, ExportedSkeletonsComeWithTheWayBackToTheScan) {
   Studio studio(services());
   open_both(studio);
   for (const char* filter : {"smooth", "lengths", "swaps"}) studio.run("method.filter", {"0", filter, "off"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   studio.run("export.run", {"0", path("out.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   const Npz out = read_npz(path("out.npz"));
   const Eigen::Matrix4f to_scan =
@@ -309,12 +309,12 @@ TEST_F(StudioTest, ExportedSkeletonsComeWithTheWayBackToTheScan) {
 TEST_F(StudioTest, ASkeletonIsShownRepairedWhereTheTargetIsBroken) {
   Studio alone(services());
   alone.run("open", {path("scan.npz")});
-  alone.wait_idle(60);
+  alone.wait_idle();
   std::ofstream(path("broken.obj")) << "v 1 2\n";
   Studio studio(services());
   studio.run("target.add", {path("broken.obj")});
   studio.run("open", {path("scan.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   for (size_t t = 0; t < kFrames; ++t)
     EXPECT_EQ(studio.session().source.frames[t].joints, alone.session().source.frames[t].joints) << t;
 }
@@ -337,16 +337,16 @@ TEST_F(StudioTest, NetworksAreLoadedWhenTheyAreNeeded) {
   };
   Studio studio(own);
   studio.run("open", {path("scan.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   expect(1, 0, 0);
   studio.run("open", {path("target.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   expect(1, 1, 1);  // a mesh without a rig is looked at
   studio.run("compare.add", {"0", "feet=off"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   expect(1, 2, 2);
   studio.run("method.engine", {"0", "paper"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   expect(1, 2, 3);
 }
 
@@ -365,15 +365,15 @@ TEST_F(StudioTest, WhatWasExtractedForRemovedTakesAloneIsForgotten) {
   open_both(studio);
   studio.run("compare.add", {"0", "near=off"});
   studio.run("compare.add", {"0", "extractor=paper"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(*extractions_, 3 * kFrames);
   EXPECT_EQ(kept(), 3);
   studio.run("target.remove", {"2"});
   studio.run("target.remove", {"1"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(kept(), 1);
   studio.run("compare.add", {"0", "root=in-place"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(*extractions_, 3 * kFrames);  // what is still wanted stays
   EXPECT_EQ(studio.session().takes[1].performed.size(), static_cast<size_t>(kFrames));
 }
@@ -384,7 +384,7 @@ TEST_F(StudioTest, RetargetingAgainMakesEveryFrameAnew) {
   const Motion before = studio.session().takes[0].shown;
   for (int round = 2; round <= 4; ++round) {
     studio.run("work.restart");
-    studio.wait_idle(60);
+    studio.wait_idle();
     EXPECT_EQ(*extractions_, round * kFrames);
   }
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));

@@ -26,7 +26,7 @@ class StudioCharacter : public StudioTest {
   void open(Studio& studio) {
     studio.run("open", {path("scan.npz")});
     studio.run("open", {path("made.glb")});
-    studio.wait_idle(60);
+    studio.wait_idle();
   }
   const TakeState& take(const Studio& studio) const { return studio.session().takes.at(0); }
   /// What it says when it refuses; empty when it does not.
@@ -46,7 +46,7 @@ TEST_F(StudioCharacter, OpensWhateverTheReaderTakesByItsSuffixOrItsContent) {
     fs::copy_file(path("made.glb"), path(name));
     studio.run("open", {path(name)});
   }
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(studio.session().takes.size(), 2u);
   for (const TakeState& take : studio.session().takes) EXPECT_TRUE(take.ready) << take.problem;
   std::ofstream(path("letter.doc")) << "Dear Ada";
@@ -98,7 +98,7 @@ TEST_F(StudioCharacter, IsSeenAsItCameBeforeAnyNetworkIsThere) {
   EXPECT_NEAR(y.maxCoeff(), 1.7f, 0.15f);
   EXPECT_GT(came->mesh.colors.rows(), 0);
   loaded.set_value();
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(take(studio).ready);
   EXPECT_EQ(take(studio).as_loaded, nullptr);
   EXPECT_EQ(take(studio).character->surface.mesh.vertices, came->mesh.vertices);
@@ -112,7 +112,7 @@ TEST_F(StudioCharacter, OnlyWeightsOfNetworksAreDoubted) {
   open(studio);
   EXPECT_EQ(take(studio).binding, nullptr);
   studio.run("target.rig", {"0", "ours"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_NE(take(studio).binding, nullptr);
   EXPECT_EQ(take(studio).binding->uncertainty.size(), take(studio).target->mesh.vertices.rows());
   studio.run("view.colour", {"take", "uncertainty"});
@@ -126,10 +126,10 @@ TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {
   studio.run("take.rename", {"1", "late"});
   studio.run("edit.trim", {"1", "10", "15"});
   studio.run("target.add", {path("target.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   studio.run("export.run", {"0", path("both.glb"), "take=late"});
   studio.run("export.run", {"1", path("one.glb")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   const auto both = read_character(path("both.glb")).animations;
   ASSERT_EQ(both.size(), 2u);
@@ -148,7 +148,7 @@ TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {
   studio.run("take.rename", {"2", "late"});
   EXPECT_NE(refused("take=late").find("several takes"), std::string::npos);
   studio.run("method.offsets", {"1", "off"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NE(refused("take=1").find("offsets"), std::string::npos);
 }
 
@@ -159,11 +159,11 @@ TEST_F(StudioCharacter, AllTakesAreExportedAFileEachAndWhatFailsKeepsNoOtherOut)
   studio.run("take.rename", {"1", "Made"});  // one file on many systems
   studio.run("target.add", {path("target.obj")});
   studio.run("take.rename", {"2", "a/b"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   fs::create_directories(path("all/a_b.glb/in the way"));
   studio.try_run("export.all", {path("all"), "preset=unreal", "keep_clips=on"});
   EXPECT_LE(studio.jobs().views().size(), 1u) << "one progress";
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(read_character(path("all/made.glb")).animations.at(0).name, "scan");
   EXPECT_GT(fs::file_size(path("all/Made 2.glb")), 1000u);
   ASSERT_EQ(studio.session().notices.size(), 1u) << "one notice";
@@ -177,9 +177,9 @@ TEST_F(StudioCharacter, AllTakesAreExportedAFileEachAndWhatFailsKeepsNoOtherOut)
   fs::remove_all(path("all/a_b.glb"));
   studio.run("error.dismiss");
   studio.run("export.all", {path("all"), "format=glb"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   studio.run("export.all", {path("figures"), "format=csv"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(studio.session().errors.empty());
   EXPECT_EQ(studio.session().notices[1].text, "Exported 3 takes to all");
   EXPECT_GT(fs::file_size(path("all/a_b.glb")), 1000u);
@@ -211,7 +211,7 @@ TEST_F(StudioCharacter, AnExportOfTakesThatAllFailIsAnErrorAndLeavesNoFolder) {
   Studio studio(services());
   open(studio);
   studio.run("export.all", {path("all"), "format=bvh", "morphs=4"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(studio.session().errors.size(), 1u);
   EXPECT_NE(studio.session().errors.front().text.find("morph"), std::string::npos);
   EXPECT_FALSE(fs::exists(path("all")));
@@ -222,11 +222,11 @@ TEST_F(StudioCharacter, ABvhIsOnThe22JointsOrOnItsOwnBones) {
   Studio studio(services());
   open(studio);
   studio.run("target.add", {path("target.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   studio.run("export.run", {"0", path("joints.bvh")});
   studio.run("export.run", {"0", path("own.bvh"), "bones=own"});
   studio.run("export.all", {path("all"), "format=bvh", "bones=own"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   const auto has_bone = [&](const std::string& file, const std::string& bone) {
     std::ifstream text(path(file));
@@ -270,7 +270,7 @@ TEST_F(StudioCharacter, OneOfAFilesAnimationsIsTheSource) {
   write_gltf_character(path("moves.glb"), moves);
   Studio studio(services());
   studio.run("source.open", {path("moves.glb")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const SourceState& source = studio.session().source;
   ASSERT_EQ(source.clips.size(), 2u);
   EXPECT_EQ(source.clips[0].name, "nod");
@@ -278,7 +278,7 @@ TEST_F(StudioCharacter, OneOfAFilesAnimationsIsTheSource) {
   EXPECT_EQ(source.clip, 1);  // the longest
   const size_t frames = source.frames.size();
   studio.run("source.clip", {"nod"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(source.clip, 0);
   EXPECT_LT(source.frames.size(), frames);
   EXPECT_NE(refusal(studio, "source.clip", {"jump"}).find("'jump', only 1 nod, 2 look"), std::string::npos);
@@ -296,11 +296,11 @@ TEST_F(StudioCharacter, TheRigIsChosenAndTheScanIsNotLookedAtAgain) {
   open(studio);
   const int extracted = *extractions_;
   studio.run("target.rig", {"0", "ours"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NE(take(studio).deformer->name(), "the rig's own skin");
   EXPECT_EQ(take(studio).performed.size(), static_cast<size_t>(kFrames));
   studio.run("edit.undo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(take(studio).deformer->name(), "the rig's own skin");
   EXPECT_EQ(*extractions_, extracted);
 }
@@ -309,15 +309,15 @@ TEST_F(StudioCharacter, ABoneIsTakenAwayGivenAndUndone) {
   Studio studio(services());
   open(studio);
   studio.run("target.bone", {"0", "left_wrist", "none"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_FALSE(take(studio).character->map.has(LeftWrist));
   EXPECT_TRUE(take(studio).character->rigged);
   studio.run("edit.undo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(take(studio).character->map.has(LeftWrist));
   const std::string neck = tests::made_name(tests::Naming::Mixamo, Neck);
   studio.run("target.bone", {"0", "head", neck});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const BoneMap& map = take(studio).character->map;
   EXPECT_EQ(take(studio).character->character.nodes[static_cast<size_t>(map.node[Head])].name, neck);
   EXPECT_FALSE(map.has(Neck));  // one bone for one joint
@@ -351,7 +351,7 @@ TEST_F(StudioCharacter, ItsOwnSkinTakesMovedJointsAndPaintedWeights) {
   const Vec3 elbow = before.joints.row(LeftElbow).transpose() + Vec3(-0.06f, 0.02f, 0);
   studio.run("edit.target_joint", {"0", "left_elbow", std::to_string(elbow.x()), std::to_string(elbow.y()),
                                    std::to_string(elbow.z())});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const TakeState state = take(studio);
   EXPECT_NEAR((state.target->joints.row(LeftElbow).transpose() - elbow).norm(), 0, 1e-5f);
   Pose rest;
@@ -365,7 +365,7 @@ TEST_F(StudioCharacter, ItsOwnSkinTakesMovedJointsAndPaintedWeights) {
   state.weights->col(LeftElbow).maxCoeff(&vertex);
   const Vec3 at = state.target->mesh.vertices.row(vertex).transpose();
   studio.run("edit.paint", {"0", std::to_string(at.x()), std::to_string(at.y()), std::to_string(at.z())});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const TakeState painted = take(studio);
   EXPECT_GT((painted.deformer->deform(state.shown.poses.back()) - pose_after).cwiseAbs().maxCoeff(), 0.005f);
   EXPECT_EQ(painted.deformer->name(), "the rig's own skin");
@@ -378,13 +378,13 @@ TEST_F(StudioCharacter, RigAndBonesAreSaved) {
     open(studio);
     studio.run("target.bone", {"0", "left_collar", "none"});
     studio.run("target.rig", {"0", "theirs"});
-    studio.wait_idle(60);
+    studio.wait_idle();
     performed = take(studio).performed;
     studio.run("document.save_as", {path("made")});
   }
   Studio studio(services());
   studio.run("open", {path("made.understudy")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const TargetOptions& target = studio.session().document.takes.at(0).target;
   EXPECT_EQ(target.rig, "theirs");
   EXPECT_EQ(target.bones, (BoneChoices{{"left_collar", ""}}));

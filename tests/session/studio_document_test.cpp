@@ -15,14 +15,14 @@ TEST_F(StudioTest, ASavedDocumentGivesTheSameResult) {
     studio.run("edit.drag", {"4", "right_wrist", "0.1", "0", "0"});
     studio.run("edit.rotate", {"0", "6", "head", "0", "0.4", "0", "3"});
     studio.run("edit.skip", {"0", "3", "on"});
-    studio.wait_idle(60);
+    studio.wait_idle();
     before = studio.session().takes[0].shown;
     studio.run("document.save_as", {path("dance")});
     EXPECT_FALSE(studio.session().changed);
   }
   Studio studio(services());
   studio.run("document.open", {path("dance.understudy")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_TRUE(studio.session().errors.empty());
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
   EXPECT_EQ(studio.session().document.takes[0].pose_edits.skip.count(3), 1u);
@@ -142,7 +142,7 @@ TEST_F(StudioTest, ACopyForRecoveryThatCannotBeWrittenIsToldOnceAndInNoDialog) {
   for (int i = 0; i < 5; ++i) {
     studio.session().notices.clear();
     studio.tick(1);
-    studio.wait_idle(60);
+    studio.wait_idle();
     for (const Notice& notice : studio.session().notices) told += notice.kind == Notice::Kind::Warning;
   }
   EXPECT_TRUE(studio.session().errors.empty());
@@ -161,11 +161,11 @@ TEST_F(StudioTest, MissingFilesAreAskedForAndFound) {
   studio.run("document.open", {path("dance.understudy")});
   ASSERT_TRUE(studio.session().question);
   EXPECT_EQ(studio.session().question->missing, std::vector<std::string>{path("scan.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(studio.session().errors.empty()) << "told twice: " << studio.session().errors.front().text;
   EXPECT_TRUE(studio.session().takes[0].ready);
   studio.run("document.relocate", {path("scan.npz"), path("elsewhere/scan.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_FALSE(studio.session().question);
   EXPECT_EQ(frame_count(studio.session()), kFrames);
 }
@@ -187,7 +187,7 @@ TEST_F(StudioTest, ACaseComesWithItsTruth) {
   write_npz((folder / "truth.npz").string(), {{"joints", joints}, {"source_joints", joints}});
   Studio studio(services());
   studio.run("open", {folder.string()});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   const Series* const error = find(studio.session().takes[0].series, "extraction_mpjpe_mm");
   ASSERT_NE(error, nullptr);
@@ -203,7 +203,7 @@ TEST_F(StudioTest, ANewDocumentIsEmptyWhateverWasBeingMade) {
     studio.run("target.add", {path("target.obj")});
     for (int i = 0; i < round; ++i) studio.tick(0.001);
     studio.replace_document({}, "");
-    studio.wait_idle(60);
+    studio.wait_idle();
     ASSERT_TRUE(studio.session().source.frames.empty()) << round;
     ASSERT_TRUE(studio.session().takes.empty());
   }

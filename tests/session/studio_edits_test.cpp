@@ -90,7 +90,7 @@ TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
   open_both(studio);
   const Session& session = studio.session();
   const auto points = [&] {
-    studio.wait_idle(60);
+    studio.wait_idle();
     std::vector<int> all;
     for (const KeptSource& frame : session.source.frames) all.push_back(frame.points);
     return all;
@@ -128,7 +128,7 @@ TEST_F(StudioTest, ANewCropCutsNothingUntilASideIsMovedAndIsUndone) {
 TEST_F(StudioTest, TheCropToolStepsBackNoFurtherThanItsBoxAsksAndReturns) {
   Studio studio(services());
   open_both(studio);
-  studio.wait_idle(60);
+  studio.wait_idle();
   studio.run("view.fit");
   const Session& session = studio.session();
   CameraState before = session.view.cameras[0];
@@ -159,7 +159,7 @@ TEST_F(StudioTest, TheCropToolStepsBackNoFurtherThanItsBoxAsksAndReturns) {
 TEST_F(StudioTest, TheCropToolStepsBackForABoxThatStandsAside) {
   Studio studio(services());
   open_both(studio);
-  studio.wait_idle(60);
+  studio.wait_idle();
   const Session& session = studio.session();
   const auto distance = [&](const char* spread) {
     studio.run("tool", {"look"});
@@ -227,7 +227,7 @@ TEST_F(StudioTest, PaintOfAnotherSurfaceIsAskedAboutAndBroughtOver) {
   thin_out(path("target.obj"));
   Studio studio(services());
   studio.run("document.open", {path("painted.understudy")});
-  studio.wait_idle(60);  // "weights were painted at vertex ..." ended the studio
+  studio.wait_idle();  // "weights were painted at vertex ..." ended the studio
   const Session& session = studio.session();
   const auto take = [&session]() -> const TakeState& { return session.takes[0]; };
   ASSERT_TRUE(session.question);
@@ -238,7 +238,7 @@ TEST_F(StudioTest, PaintOfAnotherSurfaceIsAskedAboutAndBroughtOver) {
   EXPECT_EQ(take().weights->col(Head).head(100).cwiseEqual(0.5f).count(), 0);  // as the networks gave them
   EXPECT_THROW(paint(studio, 90), Error);
   studio.run("question.answer", {"cancel"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_FALSE(session.question);  // asked once
   studio.run("edit.weights_reproject", {"0"});
   EXPECT_EQ(take().paint_problem, "");
@@ -288,7 +288,7 @@ TEST_F(StudioTest, AnEditThatCouldNotBeFollowedIsToldAndFollowedWithTheNextComma
   *refusals = 1;
   paint(studio, 200);
   studio.run("compare.add", {"0", "engine=paper"});  // what else is wanted is made, too
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(session.takes.size(), 2u);
   EXPECT_EQ(session.takes[1].performed.size(), static_cast<size_t>(kFrames));
   EXPECT_EQ(session.errors.size(), 2u);
@@ -305,7 +305,7 @@ TEST_F(StudioTest, PaintThatDoesNotFitKeepsNothingElseFromBeingDone) {
   rows.rows = RowMatrix::Identity(1, kJointCount);
   studio.session().document.takes[0].target_edits.weights = std::make_shared<const WeightRows>(rows);
   studio.run("compare.add", {"0", "engine=paper"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(studio.session().takes.size(), 2u);
   for (const TakeState& take : studio.session().takes) {
     EXPECT_EQ(take.shown.poses.size(), static_cast<size_t>(kFrames));
@@ -320,7 +320,7 @@ TEST_F(StudioTest, ARemovedTakeGivesItsMemoryBack) {
   Studio studio(services());
   open_both(studio);
   studio.run("compare.add", {"0", "engine=paper"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const TakeState& take = studio.session().takes[1];
   studio.neighbours(1);
   studio.cache().posed(take, {1, 3, false});
@@ -330,7 +330,7 @@ TEST_F(StudioTest, ARemovedTakeGivesItsMemoryBack) {
   const std::weak_ptr<const Target> target = take.target;
   const std::weak_ptr<const PreparedCharacter> character = take.character;
   studio.run("target.remove", {"1"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(deformer.expired());
   EXPECT_TRUE(target.expired());
   EXPECT_TRUE(character.expired());
@@ -341,7 +341,7 @@ TEST_F(StudioTest, AMovedTargetJointIsKeptAndPerformedAgain) {
   Studio studio(services());
   open_both(studio);
   studio.run("edit.target_joint", {"0", "left_elbow", "0.5", "1.3", "0", "mirror"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const Joints& joints = studio.session().takes[0].target->joints;
   EXPECT_NEAR(joints(LeftElbow, 0), 0.5f, 1e-5f);
   EXPECT_NEAR(joints(RightElbow, 0), 2 * symmetry_centre(joints) - 0.5f, 0.02f);
@@ -355,7 +355,7 @@ TEST_F(StudioTest, ARemovedTakeComesBackWithUndo) {
   studio.run("target.remove", {"0"});
   EXPECT_TRUE(studio.session().takes.empty());
   studio.run("edit.undo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(studio.session().takes.size(), 1u);
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
 }
@@ -370,11 +370,11 @@ TEST_F(StudioTest, EditsOfTheResultComeAndGo) {
                                        {"target.yaw", "target.turn"}})
     EXPECT_EQ(studio.commands().find(old_name), studio.commands().find(name)) << name;
   studio.run("edit.raise", {"0", "0.25"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NEAR(studio.session().takes[0].shown.poses[5].root.y(), before.poses[5].root.y() + 0.25f, 0.03f);
   EXPECT_GT(studio.session().takes[0].cost.mean_displacement_m, 0);
   studio.run("edit.poses_clear", {"0"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
 }
 
@@ -382,12 +382,12 @@ TEST_F(StudioTest, TheRestPoseOfATargetIsPerformedSavedAndUndone) {
   Studio studio(services());
   open_both(studio);
   studio.run("method.filter", {"0", "hand_contacts", "off"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const auto take = [&]() -> const TakeState& { return studio.session().takes[0]; };  // undo makes it anew
   const Motion before = take().shown;
   const auto deformer = take().deformer;
   studio.run("edit.rest_bone", {"0", "left_shoulder", "0", "0", "-0.5", "mirror"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(studio.session().history.undo_label(), "Turn left shoulder of the rest pose");
   EXPECT_EQ(take().deformer, deformer);  // nothing was bound again
   const auto turn = [&](size_t t, size_t j) {
@@ -398,7 +398,7 @@ TEST_F(StudioTest, TheRestPoseOfATargetIsPerformedSavedAndUndone) {
   studio.run("document.save_as", {path("rest.understudy")});
   EXPECT_EQ(read_document(path("rest.understudy")).document.takes[0].target_edits.rest_pose.size(), 2u);
   studio.run("edit.rest_pose_clear", {"0"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_TRUE(same_poses(take().shown, before));
   studio.run("edit.undo");
   EXPECT_EQ(studio.session().document.takes[0].target_edits.rest_pose.size(), 2u);
@@ -411,7 +411,7 @@ TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {
   const std::vector<Joints> before = take().joints;
   studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0.1", "0.05", "3"});
   studio.run("edit.move_limb", {"0", "10", "left_wrist", "0", "0", "-0.05", "3"});  // before it is shown
-  studio.wait_idle(60);
+  studio.wait_idle();
   const auto moved = [&](size_t t, int joint) {
     return Vec3((take().joints[t].row(joint) - before[t].row(joint)).transpose());
   };
@@ -422,7 +422,7 @@ TEST_F(StudioTest, AHandOfTheResultIsMovedInOneStepWithFalloff) {
   EXPECT_EQ(studio.session().history.undo_label(), "Move left hand");
   studio.run("edit.undo");
   studio.run("edit.undo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_LT(moved(10, LeftWrist).norm(), 1e-6f);
   EXPECT_TRUE(studio.session().document.takes[0].pose_edits.rotate.empty());
   EXPECT_THROW(studio.run("edit.move_limb", {"0", "10", "left_elbow", "0", "0.1", "0"}), Error);
@@ -473,7 +473,7 @@ TEST_F(StudioTest, ItIsKnownWhichFeetStandInEachFrame) {
   for (size_t t = 0; t < take().shown.standing.size(); ++t)
     EXPECT_EQ(take().shown.standing[t], take().performed[t].standing) << t;
   studio.run("edit.pin", {"0", "on"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(take().shown.standing.size(), static_cast<size_t>(kFrames));
 }
 
@@ -484,7 +484,7 @@ TEST_F(StudioTest, WhileAJointIsDraggedTheSkeletonIsAsItWillBeAfterwards) {
   const auto now = [&](size_t t) { return session.source.frames[t].joints; };
   studio.run("edit.swap", {"3", "4", "legs"});
   studio.run("edit.drag", {"11", "head", "0", "0.05", "0", "3"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   for (const bool with_children : {false, true}) {
     const Joints before = now(12);
     const SourceDrag drag(session, 12, 4);
@@ -496,7 +496,7 @@ TEST_F(StudioTest, WhileAJointIsDraggedTheSkeletonIsAsItWillBeAfterwards) {
     Arguments words{"12", "left_elbow", "0", "0.15", "0.02", "4"};
     if (with_children) words.push_back("children");
     studio.run("edit.drag", words);
-    studio.wait_idle(60);
+    studio.wait_idle();
     EXPECT_LT((now(12) - promised).norm(), 1e-4f);
   }
 }

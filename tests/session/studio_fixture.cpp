@@ -133,7 +133,7 @@ StudioServices StudioTest::services() {
 void StudioTest::open_both(Studio& studio) {
   studio.run("open", {path("scan.npz")});
   studio.run("open", {path("target.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
 }
 
 }  // namespace understudy::app

@@ -35,7 +35,7 @@ TEST_F(StudioTest, ATargetThatCannotBeOpenedIsTakenBackAndTheRestStays) {
   studio.run("target.add", {path("target.obj")});
   studio.run("target.add", {path("broken.obj")});
   studio.run("take.rename", {"0", "adult"});  // meanwhile
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(session.errors.size(), 1u);
   EXPECT_NE(session.errors.front().text.find("broken.obj"), std::string::npos);
   ASSERT_EQ(session.document.takes.size(), 1u);
@@ -55,7 +55,7 @@ TEST_F(StudioTest, ATargetThatCannotTakeAnothersPlaceLeavesItThere) {
   open_both(studio);
   studio.run("edit.turn", {"0", "20"});
   studio.run("target.replace", {"0", path("broken.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   const Session& session = studio.session();
   ASSERT_EQ(session.errors.size(), 1u);
   ASSERT_EQ(session.document.takes.size(), 1u);
@@ -75,7 +75,7 @@ TEST_F(StudioTest, ASourceThatCannotBeReadLeavesTheOneBefore) {
     open_both(studio);
     studio.run("edit.crop", {"-9", "-9", "-9", "9", "9", "9"});
     studio.try_run("source.open", {path(bad)});
-    studio.wait_idle(60);
+    studio.wait_idle();
     ASSERT_EQ(session.errors.size(), 1u) << bad;
     EXPECT_EQ(session.document.source.path, path("scan.npz")) << bad;
     EXPECT_TRUE(session.document.scan_edits.crop) << bad;
@@ -89,7 +89,7 @@ TEST_F(StudioTest, AFirstSourceThatCannotBeReadLeavesNone) {
   std::ofstream(path("broken.bvh")) << "HIERARCHY\nnothing\n";
   Studio studio(services());
   studio.run("source.open", {path("broken.bvh")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(studio.session().errors.size(), 1u);
   EXPECT_TRUE(studio.session().document.source.path.empty());
   EXPECT_FALSE(studio.session().changed);
@@ -105,7 +105,7 @@ TEST_F(StudioTest, ADocumentsSourceThatCannotBeReadIsKeptAndSaysWhy) {
   std::ofstream(path("scan.npz")) << "no array";
   Studio studio(services());
   studio.run("document.open", {path("dance.understudy")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(studio.session().document.source.path, path("scan.npz"));
   EXPECT_NE(studio.session().source.problem, "");
 }
@@ -117,7 +117,7 @@ TEST_F(StudioTest, WhatIsNoPersonIsUsedOnlyWhereTheUserSaysSo) {
   open_both(studio);
   for (const bool use : {false, true}) {
     studio.run("target.add", {path("table.obj")});
-    studio.wait_idle(60);
+    studio.wait_idle();
     ASSERT_TRUE(session.question);
     EXPECT_EQ(session.question->kind, Question::Kind::NotAPerson);
     EXPECT_NE(session.question->text.find("does not look like a person"), std::string::npos);
@@ -129,7 +129,7 @@ TEST_F(StudioTest, WhatIsNoPersonIsUsedOnlyWhereTheUserSaysSo) {
     else
       studio.run("question.answer", {"cancel"});
     EXPECT_FALSE(session.question);
-    studio.wait_idle(60);
+    studio.wait_idle();
     ASSERT_EQ(session.takes.size(), use ? 2u : 1u);
     EXPECT_TRUE(session.takes.back().ready);
   }
@@ -156,9 +156,9 @@ TEST_F(StudioTest, TheFolderUsedLastIsRememberedButNotThatOfTheSamples) {
     fs::create_directories(path("work"));
     studio.run("document.save_as", {path("work/dance")});
     EXPECT_EQ(last, path("work"));
-    studio.wait_idle(60);
+    studio.wait_idle();
     studio.run("export.run", {"0", path("out.bvh")});
-    studio.wait_idle(60);
+    studio.wait_idle();
     EXPECT_EQ(last, fs::path(path("out.bvh")).parent_path());
   }
   EXPECT_EQ(Studio(own).session().settings.last_folder, fs::path(path("out.bvh")).parent_path());
@@ -186,7 +186,7 @@ TEST_F(StudioTest, WhatWasReadIsRecentAndWhatCannotBeReadAnyMoreIsTakenOffWithTh
   const auto fails = [&](const std::string& command, const Arguments& arguments) {
     session.errors.clear();
     studio.try_run(command, arguments);
-    studio.wait_idle(60);
+    studio.wait_idle();
     ASSERT_EQ(session.errors.size(), 1u) << join_line(command, arguments);
     const std::string sentence = session.errors.front().text;
     EXPECT_NE(sentence.find(fs::path(arguments.back()).filename().string()), std::string::npos) << sentence;
@@ -202,7 +202,7 @@ TEST_F(StudioTest, WhatWasReadIsRecentAndWhatCannotBeReadAnyMoreIsTakenOffWithTh
   EXPECT_TRUE(settings.recent.empty());
   session.errors.clear();
   studio.try_run("source.motion", {body, walk});  // both are there, and no body
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(session.errors.size(), 1u);
   EXPECT_NE(session.errors.front().text.find("; it was taken off the recent list"), std::string::npos);
   EXPECT_EQ(settings.recent_sources, std::vector<std::string>{path("scan.npz")}) << "the rest stays";
@@ -213,7 +213,7 @@ TEST_F(StudioTest, WhatWasNeverReadIsNotRecent) {
   std::ofstream(path("broken.bvh")) << "HIERARCHY\nnothing\n";
   Studio studio(services());
   studio.try_run("source.open", {path("broken.bvh")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(studio.session().errors.size(), 1u);
   EXPECT_EQ(studio.session().errors.front().text.find("recent"), std::string::npos);
   EXPECT_TRUE(studio.session().settings.recent_sources.empty());
@@ -228,16 +228,16 @@ TEST_F(StudioTest, ATargetsHeightIsSetAndReset) {
   };
   const float own = height();
   studio.run("target.height", {"0", "1.2"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NEAR(height(), 1.2f, 0.1f);
   studio.run("document.save_as", {path("small.understudy")});
   studio.run("target.height", {"0", "auto"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(height(), own);
   EXPECT_THROW(studio.run("target.height", {"0", "900"}), Error);
   studio.session().changed = false;
   studio.run("document.open", {path("small.understudy")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_NEAR(height(), 1.2f, 0.1f);
 }
 
@@ -276,7 +276,7 @@ TEST_F(StudioTest, AScanInWhichNobodyIsRecognisedIsCleanedUpFromTheNotice) {
   Studio studio(own);
   Session& session = studio.session();
   studio.run("open", {path("scan.npz")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(session.notices.size(), 1u);
   EXPECT_EQ(session.notices[0].text, "No person recognised: the scan may hold a floor or a second person");
   EXPECT_EQ(session.notices[0].offer.label, "Clean up");
@@ -286,13 +286,13 @@ TEST_F(StudioTest, AScanInWhichNobodyIsRecognisedIsCleanedUpFromTheNotice) {
   EXPECT_TRUE(session.document.scan_edits.floor);
   EXPECT_TRUE(session.document.scan_edits.largest_cluster);
   EXPECT_EQ(session.history.undo_label(), "Clean up the scan");
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(session.notices.size(), 1u) << "the offer went with the scan that it was about";
   EXPECT_EQ(session.notices[0].offer.label, "") << "it is cleaned up already";
   studio.tick(600);
   EXPECT_TRUE(session.notices.empty()) << "nothing to answer";
   studio.run("edit.undo");
-  studio.wait_idle(60);
+  studio.wait_idle();
   const auto offer = std::find_if(session.notices.begin(), session.notices.end(),
                                   [](const Notice& notice) { return notice.offer.label == "Clean up"; });
   ASSERT_NE(offer, session.notices.end());

@@ -14,11 +14,11 @@ TEST_F(StudioTest, ANewTargetLeavesTheFrameAndItsJointsAreSeenWhole) {
   studio.run("playback.frame", {"12"});
   studio.run("open", {path("target.obj")});
   studio.tick(0.01);
-  studio.wait_idle(60);
+  studio.wait_idle();
   studio.tick(0.01);
   EXPECT_EQ(shown_frame(studio.session()), 12);
   studio.run("edit.crop", {"-9", "-9", "-9", "9", "9", "9"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   EXPECT_EQ(shown_frame(studio.session()), 12);
   studio.run("view.fit");
   studio.run("view.zoom", {"0.3"});
@@ -35,7 +35,7 @@ TEST_F(StudioTest, ExportsTheFramesThatTrimAndSkipLeave) {
   studio.run("export.run", {"0", path("out.npz")});
   studio.run("export.run", {"0", path("out.glb"), "morphs=2", "t_pose=on"});
   studio.run("export.csv", {"0", path("out.csv")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   EXPECT_EQ(read_npz(path("out.npz")).at("joints").shape[0], 9);
   EXPECT_GT(fs::file_size(path("out.glb")), 1000u);
@@ -47,7 +47,7 @@ TEST_F(StudioTest, AnExportSaysWhatItCostsAndWhatItCannotDo) {
   open_both(studio);
   studio.run("export.run", {"0", path("out.bvh"), "in_place=on"});
   studio.run("export.run", {"0", path("frames"), "format=obj"});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   EXPECT_TRUE(fs::exists(path("frames/frame_00024.obj")));
   std::string told;
@@ -118,7 +118,7 @@ TEST_F(StudioTest, ACancelledExportLeavesTheOldFile) {
   open_both(studio);
   studio.run("export.run", {"0", path("out.glb"), "morphs=4"});
   studio.jobs().cancel(studio.jobs().views().back().id);
-  studio.wait_idle(60);
+  studio.wait_idle();
   std::ifstream file(path("out.glb"));
   std::string text;
   file >> text;
@@ -131,7 +131,7 @@ TEST_F(StudioTest, ACancelledExportLeavesTheOldFile) {
 TEST_F(StudioTest, OfSeveralThingsOpenedOneThatFailsKeepsNoOtherOut) {
   Studio studio(services());
   studio.run("open", {path("not_there.ply"), path("scan.npz"), path("target.obj")});
-  studio.wait_idle(60);
+  studio.wait_idle();
   ASSERT_EQ(studio.session().errors.size(), 1u);
   EXPECT_NE(studio.session().errors.front().text.find("not_there.ply"), std::string::npos);
   EXPECT_EQ(frame_count(studio.session()), kFrames);
@@ -154,7 +154,7 @@ TEST_F(StudioTest, NoCommandCrashesOnNonsense) {
       studio.session().question.reset();
       studio.tick(0.01);
     }
-  studio.wait_idle(60);
+  studio.wait_idle();
 }
 
 TEST_F(StudioTest, PlaysRoundAndStopsAtTheEndWithoutALoop) {
@@ -201,7 +201,7 @@ TEST_F(StudioTest, OfALargeGltfOnlyWhatTellsItsKindIsReadAtOnce) {
     studio.run("open", {path(name)});
     const std::string& source = studio.session().document.source.path;
     EXPECT_EQ(source, name == std::string("first.gltf") ? path(name) : "");
-    studio.wait_idle(60);
+    studio.wait_idle();
     ASSERT_EQ(studio.session().errors.size(), 1u) << "opened as a source, and damaged";
     EXPECT_EQ(studio.session().errors.front().details, "source.open");
     EXPECT_EQ(source, "");

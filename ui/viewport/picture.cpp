@@ -25,6 +25,7 @@ PanePictures awaited(const Session& session, app::FrameCache& cache, const PaneC
     if (pictures && ghosts_ready(session, pane, got)) break;
     cache.wait();
   }
+  prefetch(session, cache, pane);  // of a video, while this frame is drawn
   return got;
 }
 
