@@ -35,6 +35,20 @@ TEST(MethodOptions, EverySwitchOfAMethodIsAnOption) {
   EXPECT_TRUE(same(by_old_names, all));
 }
 
+TEST(ImportOptionsOfTheCommandLine, TurnByTheirNameAndTheOlderOne) {
+  for (const char* line : {"--turn 30 --target-turn 20", "--yaw 30 --target-yaw 20"}) {
+    CLI::App app;
+    SourceOptions source;
+    TargetOptions target;
+    add_source_options(app, source);
+    add_target_options(app, target);
+    app.parse(line);
+    EXPECT_EQ(source.import.turn_deg, 30) << line;
+    EXPECT_EQ(target.import.turn_deg, 20) << line;
+    EXPECT_FALSE(target.forward) << line;
+  }
+}
+
 TEST(MethodOptions, ProportionsOfTheTargetHaveTheNamesThatTheStudioHas) {
   const Method method = parsed("--stride 1.5 --hip-height -0.1 --arm-reach 0.75").method;
   const RetargetOptions options = retarget_options(method);
