@@ -34,7 +34,7 @@ TargetOptions case_target(const Case& c) {
   options.import.up = "y";
   options.import.floor = 0.0f;
   options.forward = false;
-  options.rig = "ours";
+  options.rig = Rig::Ours;
   return options;
 }
 

@@ -164,7 +164,7 @@ void make_takes(const ExportOptions& options, Studio& studio, size_t take) {
 
 ExportChoice choice_of(const ExportOptions& options, const ExportFormat& format) {
   ExportChoice choice{&format, options.file, {}, {}};
-  if (options.target.rig != "auto" && format.is_character) choice.theirs = options.target.rig == "theirs";
+  if (options.target.rig != Rig::Auto && format.is_character) choice.theirs = options.target.rig == Rig::Own;
   if (!options.bones.empty()) choice.theirs = options.bones == "own";
   return choice;
 }
@@ -250,7 +250,7 @@ void report_cost(const ExportOptions& options, const Performance& done, const Ex
   if (options.report.empty()) return;
   Json report = report_header(nn::weights_folder(network_options(options.how)));
   report["target"] = done.target;
-  report["rig"] = done.input.body.file.their_rig ? "theirs" : "ours";
+  report["rig"] = kRigNames[static_cast<size_t>(done.input.body.file.their_rig ? Rig::Own : Rig::Ours)];
   report["mapped"] = prepared.map.count();
   report["notes"] = prepared.notes;
   report["cost"] = {{"frames", cost.frames}, {"keys", cost.keys}, {"bytes", cost.bytes}};
@@ -279,7 +279,7 @@ int run_export(const ExportOptions& options) {
   check_export(options.out, format);
   if (options.bones == "own") check_own_bones(options.out, format);
   CharacterExportOptions on_any_rig = options.file;
-  on_any_rig.their_rig = options.target.rig != "ours" && options.bones != "22";
+  on_any_rig.their_rig = options.target.rig != Rig::Ours && options.bones != "22";
   check_export_options(options.out, format, on_any_rig);
   US_CHECK(options.takes.empty() || !options.document.empty(), "--take: only a document has takes");
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
@@ -310,7 +310,7 @@ void add_file_options(CLI::App& command, ExportOptions& options) {
           "own: the file's bones are the character's own; 22: the 22 joints (default: own in GLB and glTF "
           "where the character performs on them, else 22)")
       ->check(CLI::IsMember({"own", "22"}));
-  command.add_option("--influences", options.file.influences, "bones per vertex on our rig: 4 or 8")
+  command.add_option("--influences", options.file.influences, "bones per vertex of the 22 joints: 4 or 8")
       ->check(CLI::IsMember({4, 8}));
   command.add_option("--morphs", options.file.shapes, "morph targets for the pose-corrective offsets")
       ->check(CLI::Range(0, 64));

@@ -84,9 +84,14 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
 
 void add_target_options(CLI::App& command, TargetOptions& target) {
   command
-      .add_option("--rig", target.rig,
-                  "theirs: the character's own bones and weights; ours: 22 joints (default: theirs, if any)")
-      ->check(CLI::IsMember({"auto", "theirs", "ours"}));
+      .add_option_function<std::string>(
+          "--rig",
+          [&target](const std::string& word) {
+            const auto name = std::find(kRigNames.begin(), kRigNames.end(), present_rig(word));
+            target.rig = static_cast<Rig>(name - kRigNames.begin());
+          },
+          "own: the character's own bones and weights; 22: the 22 joints (default: own, if any)")
+      ->check(CLI::IsMember({"auto", "own", "22", "theirs", "ours"}));
   command.add_option_function<std::string>(
       "--map", [&target](const std::string& path) { target.bones = read_bone_choices(path); },
       R"(JSON that names the character's bones: {"left_wrist": "Hand.L"})");

@@ -31,9 +31,8 @@ void each_result_key(Row& row, Visit visit) {
   visit("breakdown", row.breakdown);
   visit("engine", method.engine);
   visit("extractor", method.extractor);
-  visit("near", method.part_refiner);
   visit("offsets", method.offsets);
-  visit("foot_lock", method.lock_feet);
+  for (const MethodSwitch& one : kSwitches) visit(MemberName(one.name, one.old_name), method.*one.on);
   visit("oracle", row.eval.oracle);
   visit("baseline", row.eval.baseline);
   visit("context", row.eval.restart_every);
@@ -54,12 +53,16 @@ void each_key(ReportRow& row, Visit visit) {
 ReportRow row_from(const Json& json, const fs::path& folder) {
   ReportRow row;
   std::set<std::string> known;
-  each_key(row, [&](const char* key, const auto&) { known.insert(key); });
+  each_key(row, [&](const MemberName& key, const auto&) {
+    known.insert(key.now);
+    if (key.before != nullptr) known.insert(key.before);
+  });
   for (const auto& item : json.items())
     US_CHECK(known.count(item.key()) > 0, "a row has \"", item.key(), "\", which is unknown");
   for (const char* key : {"table", "name", "suite"}) json.at(key);  // these must be there
-  each_key(row, [&](const char* key, auto& member) {
-    if (json.contains(key)) json.at(key).get_to(member);
+  each_key(row, [&](const MemberName& key, auto& member) {
+    for (const char* name : {key.before, key.now})
+      if (name != nullptr && json.contains(name)) json.at(name).get_to(member);
   });
   US_CHECK(std::find(std::begin(kTables), std::end(kTables), row.table) != std::end(kTables),
            "there is no table \"", row.table, "\"");

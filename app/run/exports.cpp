@@ -228,7 +228,7 @@ void check_export(const std::string& path, const ExportFormat& format) {
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file) {
   US_CHECK(!format.is_character || file.their_rig || !file.keep_clips, path,
-           ": the file's own clips need its own rig; they cannot be kept on our 22 joints");
+           ": the file's own clips need its own bones; they cannot be kept on the 22 joints");
   US_CHECK(
       !file.in_place || !file.root_motion, path,
       ": the path across the floor is either left out (in place) or carried by a root bone (root motion)");

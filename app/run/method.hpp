@@ -53,14 +53,14 @@ template <class V, class S>
 FieldsOf<S, Method> fields(V& visit, S& method) {
   visit("engine", method.engine);
   visit("extractor", method.extractor);
-  visit("part_refiner", method.part_refiner);
+  visit(MemberName("part_refiner", "near"), method.part_refiner);
   visit("offsets", method.offsets);
   visit("repair_swaps", method.repair_swaps);
   visit("smooth_joints", method.smooth_joints);
   visit("fix_lengths", method.fix_lengths);
   visit("lock_feet", method.lock_feet);
-  visit("hand_contacts", method.hand_contacts);
-  visit("path", method.path, kRootNames);
+  visit(MemberName("hand_contacts", "keep_contacts"), method.hand_contacts);
+  visit(MemberName("path", "root"), method.path, kRootNames);
   for (const Proportion& one : kProportions) visit(one.name, method.*one.value, one.range);
 }
 

@@ -23,7 +23,7 @@ CharacterOptions character_options(const TargetOptions& options) {
   result.height = options.import.height;
   result.not_a_person = options.not_a_person;
   if (!options.forward || options.import.turn_deg != 0) result.turn_deg = options.import.turn_deg;
-  result.own_joints = options.rig != "ours";
+  result.own_joints = options.rig != Rig::Ours;
   return result;
 }
 
@@ -55,13 +55,11 @@ Character read_target(const std::string& path, const std::vector<float>& betas) 
 }
 
 std::shared_ptr<PreparedCharacter> load_target(const TargetOptions& options) {
-  US_CHECK(options.rig == "auto" || options.rig == "theirs" || options.rig == "ours",
-           "a rig is auto, theirs or ours, not '", options.rig, "'");
   Character character = read_target(options.path, options.betas);
   US_CHECK(character.vertex_count() > 0, options.path, ": holds no mesh");
   auto prepared = std::make_shared<PreparedCharacter>(
       naming(options.path, [&] { return load_character(std::move(character), character_options(options)); }));
-  US_CHECK(options.rig != "theirs" || prepared->rigged, options.path,
+  US_CHECK(options.rig != Rig::Own || prepared->rigged, options.path,
            ": has no skeleton of its own that can be driven: ", prepared->map.count(),
            " of 22 joints have a bone");
   return prepared;
@@ -93,7 +91,7 @@ std::shared_ptr<const PreparedCharacter> open_target(const TargetOptions& option
 }
 
 bool on_their_rig(const TargetOptions& options, const PreparedCharacter& character) {
-  return options.rig != "ours" && character.rigged;
+  return options.rig != Rig::Ours && character.rigged;
 }
 
 }  // namespace understudy::app

@@ -11,13 +11,25 @@
 
 namespace understudy::app {
 
+/// The bones that a target performs on.
+enum class Rig {
+  Auto,  ///< its own, if any
+  Own,   ///< its own, with its own skin weights
+  Ours   ///< the 22 joints
+};
+constexpr Names<3> kRigNames{"auto", "own", "22"};
+/// Older documents, scripts and command lines call them otherwise: the name of today.
+inline std::string present_rig(const std::string& word) {
+  return word == "theirs" ? "own" : word == "ours" ? "22" : word;
+}
+
 struct TargetOptions {
   std::string path;
   std::vector<float> betas;  ///< of an SMPL-format body
   ImportOptions import;      ///< up is y by default
   bool forward = true;       ///< without a turn it is turned so that it faces +z; false: it stays as it is
-  std::string rig = "auto";  ///< theirs: its own bones and skin; ours: the 22 joints; auto: its own, if any
-  BoneChoices bones;         ///< the user's corrections of which bone is which joint
+  Rig rig = Rig::Auto;
+  BoneChoices bones;                                  ///< the user's corrections of which bone is which joint
   NotAPerson not_a_person = NotAPerson::RefuseClear;  ///< Refuse: of what a user opens
 };
 template <class V, class S>
@@ -26,7 +38,7 @@ FieldsOf<S, TargetOptions> fields(V& visit, S& target) {
   visit("betas", target.betas);
   visit("import", target.import);
   visit("forward", target.forward);
-  visit("rig", target.rig);
+  visit("rig", target.rig, kRigNames);
   visit("bones", target.bones);
   visit("not_a_person", target.not_a_person, kNotAPersonNames);
 }

@@ -12,10 +12,11 @@ namespace understudy::app {
 
 void remember_folder(Studio& studio, const std::string& path) {
   namespace fs = std::filesystem;
-  const auto whole = [](const std::string& given) { return fs::absolute(given).lexically_normal(); };
+  std::error_code lost;  // the working folder is gone: then none is remembered
+  const auto whole = [&](const std::string& given) { return fs::absolute(given, lost).lexically_normal(); };
   const std::string folder = whole(path).parent_path().string(), &samples = studio.services().samples;
   if (!samples.empty() && starts_with(folder + '/', (whole(samples) / "").string())) return;
-  studio.session().settings.last_folder = folder;
+  if (!lost) studio.session().settings.last_folder = folder;
 }
 
 const std::string& ArgumentReader::word(size_t i, const char* what) const {

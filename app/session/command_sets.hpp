@@ -16,9 +16,6 @@ void add_export_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 
-/// The least distance, metres, from which a camera that looks as it does sees all of a box, with some air.
-float distance_to_see(const Session& session, const CameraState& camera, const Vec3& low, const Vec3& high);
-
 /// Arguments, parsed. Each function throws Error naming the argument that is wrong, as `what`.
 class ArgumentReader {
  public:

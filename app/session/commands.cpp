@@ -22,16 +22,9 @@ void Commands::add_slider(CommandText text, std::function<void(Call&)> run) {
 }
 
 const Command* Commands::find(const std::string& name) const {
-  static constexpr std::pair<const char*, const char*> kRenamed[] = {// as older scripts call them
-                                                                     {"method.root", "method.path"},
-                                                                     {"edit.floor_offset", "edit.raise"},
-                                                                     {"edit.heading", "edit.turn"},
-                                                                     {"source.yaw", "source.turn"},
-                                                                     {"target.yaw", "target.turn"}};
+  if (name.empty()) return nullptr;
   for (const Command& command : commands_)
-    if (command.name == name) return &command;
-  for (const auto& [before, now] : kRenamed)
-    if (name == before) return find(now);
+    if (command.name == name || command.old_name == name) return &command;
   return nullptr;
 }
 

@@ -18,6 +18,7 @@ struct CommandText {
   std::string label;       ///< for menus and undo: "Seek"
   std::string usage{};     ///< "SECONDS: jumps to a time"
   std::string shortcut{};  ///< "Ctrl+S", "Space"; empty: none
+  std::string old_name{};  ///< of older scripts; empty: none
 };
 
 struct Command : CommandText {

@@ -189,16 +189,6 @@ Json Writer::json_of(const SkeletonEdit& edit, const std::string& where) {
   return json;
 }
 
-/// What older documents call a member.
-std::string name_before(const std::string& name) {
-  static const std::map<std::string, std::string> kBefore = {
-      {"part_refiner", "near"}, {"hand_contacts", "keep_contacts"},
-      {"path", "root"},         {"raise", "floor"},
-      {"turn", "heading"},      {"turn_deg", "yaw_deg"}};
-  const auto found = kBefore.find(name);
-  return found == kBefore.end() ? name : found->second;
-}
-
 /// Values in. What is missing stays as it is, what is not known is passed over.
 class Reader {
  public:
@@ -208,16 +198,16 @@ class Reader {
   }
 
   template <class T, class... Rule>
-  void operator()(const char* name, T& value, const Rule&... rule) {
-    auto found = json_.find(name);
-    if (found == json_.end()) found = json_.find(name_before(name));
+  void operator()(const MemberName& name, T& value, const Rule&... rule) {
+    auto found = json_.find(name.now);
+    if (found == json_.end() && name.before != nullptr) found = json_.find(name.before);
     if (found == json_.end()) return;
     if constexpr (detail::kIs<std::optional, T>) {
-      if (!found->is_null()) read(*found, value.emplace(), where_ + name, rule...);
+      if (!found->is_null()) read(*found, value.emplace(), where_ + name.now, rule...);
     } else if constexpr (detail::kIs<std::shared_ptr, T>) {
-      if (!found->is_null()) read(*found, value, where_ + name);
+      if (!found->is_null()) read(*found, value, where_ + name.now);
     } else {
-      read(*found, value, where_ + name, rule...);
+      read(*found, value, where_ + name.now, rule...);
     }
   }
 
@@ -257,8 +247,14 @@ class Reader {
   void read(const Json& json, Enum& value, const std::string& where, const Names<N>& names) {
     std::string text, all = names[0];
     read(json, text, where);
-    if (text == "doubt") text = "uncertainty";  // what documents called it before
-    const auto found = std::find(names.begin(), names.end(), text);
+    auto found = std::find(names.begin(), names.end(), text);
+    static const std::map<std::string, std::string> kBefore = {// older documents' words
+                                                               {"doubt", "uncertainty"},
+                                                               {"own", "custom"},
+                                                               {"theirs", "own"},
+                                                               {"ours", "22"}};
+    if (found == names.end() && kBefore.count(text) > 0)
+      found = std::find(names.begin(), names.end(), kBefore.at(text));
     for (size_t i = 1; i < N; ++i) all += std::string(i + 1 < N ? ", " : " or ") + names[i];
     US_CHECK(found != names.end(), where, " must be ", all);
     value = static_cast<Enum>(found - names.begin());

@@ -134,11 +134,11 @@ void add_pose_edits(Commands& commands) {
     const float strength = c.clamped(1, "strength", 0.f, 1.f);
     c.take().pose_edits.smooth = only_if(strength > 0, SmoothEdit{strength});
   });
-  commands.add_slider({"edit.raise", "Raise", "TAKE METRES"}, [](Call& c) {
+  commands.add_slider({"edit.raise", "Raise", "TAKE METRES", "", "edit.floor_offset"}, [](Call& c) {
     const float offset = c.number(1, "height");
     c.take().pose_edits.raise = only_if(offset != 0, RaiseEdit{offset});
   });
-  commands.add_slider({"edit.turn", "Turn", "TAKE DEGREES"}, [](Call& c) {
+  commands.add_slider({"edit.turn", "Turn", "TAKE DEGREES", "", "edit.heading"}, [](Call& c) {
     const float angle = c.number(1, "angle");
     c.take().pose_edits.turn = only_if(angle != 0, TurnEdit{angle});
   });

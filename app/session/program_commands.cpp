@@ -25,8 +25,9 @@ void see_crop_box(Call& c) {
   const Box box = shown_crop(c.session);
   const Vec3 offset = follow_offset(c.session, 0, shown_frame(c.session)) - spread_offset(c.session, 0);
   CameraState& camera = view.cameras[0];  // the source's, linked or not
+  const float aspect = aspect_of_a_view(view, c.session.takes.size());
   camera.distance =
-      std::max(camera.distance, distance_to_see(c.session, camera, box.low - offset, box.high - offset));
+      std::max(camera.distance, distance_to_see(camera, aspect, box.low - offset, box.high - offset));
 }
 
 /// What a tool needs to see it sees; when it is left the cameras are as before,

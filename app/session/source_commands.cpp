@@ -79,7 +79,7 @@ void add_import(Commands& commands) {
         source.import.height = c.body_height(0);
         set_options(c, std::move(source));
       });
-  commands.add_slider({"source.turn", "Turn the scan", "DEGREES"},
+  commands.add_slider({"source.turn", "Turn the scan", "DEGREES", "", "source.yaw"},
                       [](Call& c) { c.document.source.import.turn_deg = c.number(0, "angle"); });
   commands.add_slider({"source.floor", "Floor of the scan", "METRES|auto"}, [](Call& c) {
     auto& floor = c.document.source.import.floor;

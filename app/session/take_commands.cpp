@@ -83,12 +83,13 @@ void add_target_import(Commands& commands) {
                     [](Call& c) { c.take().target.import.height = c.body_height(1); });
   commands.add_edit({"target.use_anyway", "Use a target that does not look like a person", "TAKE"},
                     use_anyway);
-  commands.add_slider({"target.turn", "Turn the target", "TAKE DEGREES|auto: so that it faces +z"},
-                      [](Call& c) {
-                        TargetOptions& target = c.take().target;
-                        target.forward = c.word(1, "angle") == "auto";
-                        target.import.turn_deg = target.forward ? 0 : c.number(1, "angle");
-                      });
+  commands.add_slider(
+      {"target.turn", "Turn the target", "TAKE DEGREES|auto: so that it faces +z", "", "target.yaw"},
+      [](Call& c) {
+        TargetOptions& target = c.take().target;
+        target.forward = c.word(1, "angle") == "auto";
+        target.import.turn_deg = target.forward ? 0 : c.number(1, "angle");
+      });
   commands.add_slider({"target.betas", "Shape of the target", "TAKE \"1.2,-0.5\""}, [](Call& c) {
     std::vector<float>& betas = c.take().target.betas;
     betas.clear();
@@ -98,9 +99,9 @@ void add_target_import(Commands& commands) {
 }
 
 void set_rig(Call& c) {
-  const std::string& rig = c.one_of(1, "rig", {"auto", "theirs", "ours"});
+  const Rig rig = ArgumentReader({present_rig(c.word(1, "rig"))}).choice<Rig>(0, "rig", kRigNames);
   const auto& character = c.take_state().character;
-  US_CHECK(rig != "theirs" || !character || character->rigged, c.take().name,
+  US_CHECK(rig != Rig::Own || !character || character->rigged, c.take().name,
            " has no skeleton of its own whose bones are known");
   c.take().target.rig = rig;
 }
@@ -117,7 +118,7 @@ void set_bone(Call& c) {
 }
 
 void add_rig(Commands& commands) {
-  commands.add_edit({"target.rig", "Rig of the target", "TAKE auto|theirs|ours"}, set_rig);
+  commands.add_edit({"target.rig", "Rig of the target", "TAKE auto|own|22"}, set_rig);
   commands.add_edit({"target.bone", "Bone of a joint", "TAKE JOINT BONE|none|auto"}, set_bone);
   commands.add_edit({"target.bones_clear", "Reset to the bones found", "TAKE"},
                     [](Call& c) { c.take().target.bones.clear(); });
@@ -181,14 +182,15 @@ void add_proportions(Commands& commands) {
 }
 
 void add_methods(Commands& commands) {
-  const auto setting = [&commands](const std::string& key, const char* label, const std::string& usage) {
-    commands.add_edit({"method." + key, label, usage},
+  const auto setting = [&commands](const std::string& key, const char* label, const std::string& usage,
+                                   const char* old_name = "") {
+    commands.add_edit({"method." + key, label, usage, "", old_name},
                       [key](Call& c) { set_method(c.take().method, key, c.word(1, "setting")); });
   };
   setting("engine", "Motion transfer", "TAKE " + names_of(engines(), "|"));
   setting("extractor", "Skeleton extraction", "TAKE " + names_of(extractors(), "|"));
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
-  setting("path", "Path", "TAKE scaled|original|in-place");
+  setting("path", "Path", "TAKE scaled|original|in-place", "method.root");
   std::string filters;
   for (const std::string& name : switch_names()) append_item(filters, name, "|");
   commands.add_edit({"method.filter", "Filter", "TAKE " + filters + " on|off"}, [](Call& c) {

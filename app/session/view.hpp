@@ -88,8 +88,8 @@ FieldsOf<S, LightLook> fields(V& visit, S& light) {
 }
 
 /// What is behind everything.
-enum class Backdrop { Theme, White, Black, Own };
-constexpr Names<4> kBackdropNames{"theme", "white", "black", "own"};
+enum class Background { Theme, White, Black, Custom };
+constexpr Names<4> kBackgroundNames{"theme", "white", "black", "custom"};
 
 /// What a pane draws.
 struct Layers {
@@ -134,9 +134,9 @@ struct View {
   bool cube = true;                       ///< a cube in each view that shows where it looks from
   OverlayLook overlay;
   LightLook light;
-  Backdrop backdrop = Backdrop::Theme;
-  Vec3 backdrop_color = Vec3(0.16f, 0.24f, 0.34f);  ///< of Backdrop::Own, sRGB
-  std::string metric = "confidence";                ///< plotted in the timeline
+  Background background = Background::Theme;
+  Vec3 background_color = Vec3(0.16f, 0.24f, 0.34f);  ///< of Background::Custom, sRGB
+  std::string metric = "confidence";                  ///< plotted in the timeline
 };
 template <class V, class S>
 FieldsOf<S, View> fields(V& visit, S& view) {
@@ -157,8 +157,8 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("cube", view.cube);
   visit("overlay", view.overlay);
   visit("light", view.light);
-  visit("backdrop", view.backdrop, kBackdropNames);
-  visit("backdrop_color", view.backdrop_color);
+  visit(MemberName("background", "backdrop"), view.background, kBackgroundNames);
+  visit(MemberName("background_color", "backdrop_color"), view.background_color);
   visit("metric", view.metric);
 }
 
@@ -173,5 +173,11 @@ inline CameraState camera_of(const View& view, int pane) {
 inline CameraState active_camera(const View& view) {
   return camera_of(view, view.active_pane);
 }
+
+/// Width by height of one of the views in a usual window.
+float aspect_of_a_view(const View& view, size_t takes);
+/// The least distance, metres, from which a camera that looks as it does sees all of a box, with some air.
+/// low <= high, in the camera's space; its fov is between 0 and pi, the aspect above 0.
+float distance_to_see(const CameraState& camera, float aspect, const Vec3& low, const Vec3& high);
 
 }  // namespace understudy::app

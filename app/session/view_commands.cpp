@@ -12,7 +12,6 @@ namespace understudy::app {
 namespace {
 
 constexpr float kDegree = kPi / 180;
-constexpr float kViewsAspect = 1.55f;  // of all views together in a usual window
 
 /// The camera of the active pane, made where there is none yet.
 CameraState& camera(Session& session, int pane) {
@@ -134,11 +133,6 @@ Extent shown_extent(const Session& session) {
   return all;
 }
 
-float aspect_of_a_view(const Session& session) {
-  const size_t views = session.view.layout == Layout::SideBySide ? 1 + session.takes.size() : 1;
-  return kViewsAspect / static_cast<float>(views);
-}
-
 /// Turns the camera to the middle of all that is drawn and moves it back until it fits the view's narrow
 /// side.
 void fit(Call& call) {
@@ -155,7 +149,7 @@ void fit(Call& call) {
   const Vec3 air = Vec3::Constant(kAir * shown.sizes().y());
   shown = Extent(shown.min() - air, shown.max() + air + Vec3(0, kTitle * shown.sizes().y(), 0));
   c.target = shown.center();
-  const float aspect = aspect_of_a_view(session);
+  const float aspect = aspect_of_a_view(session.view, session.takes.size());
   const Vec3 half = 0.5f * shown.sizes();
   const float wide = std::hypot(half.x(), half.z());
   set_distance(c, std::max(half.y(), wide / aspect) / std::tan(0.5f * c.fov) + 0.5f * wide);
@@ -254,10 +248,12 @@ void add_light(Commands& commands) {
     if (which == 1) light.height_deg = c.clamped(1, "angle", -90.f, 90.f);
     if (which == 2) light.brightness = c.clamped(1, "brightness", 0.f, 3.f);
   });
-  commands.add({"view.background", "Background", "theme|white|black|own [R G B]: 0 to 1"}, [](Call& c) {
+  commands.add({"view.background", "Background", "theme|white|black|custom [R G B]: 0 to 1"}, [](Call& c) {
     View& view = c.session.view;
-    view.backdrop = c.choice<Backdrop>(0, "background", kBackdropNames);
-    if (c.arguments.size() > 1) view.backdrop_color = c.vector(1, "colour").cwiseMax(0.f).cwiseMin(1.f);
+    view.background = c.word(0, "background") == "own"  // its name before
+                          ? Background::Custom
+                          : c.choice<Background>(0, "background", kBackgroundNames);
+    if (c.arguments.size() > 1) view.background_color = c.vector(1, "colour").cwiseMax(0.f).cwiseMin(1.f);
   });
 }
 
@@ -274,24 +270,6 @@ void add_panes(Commands& commands) {
 }
 
 }  // namespace
-
-float distance_to_see(const Session& session, const CameraState& camera, const Vec3& low, const Vec3& high) {
-  constexpr float kAir = 1.08f;
-  const Vec3 right(std::cos(camera.yaw), 0, -std::sin(camera.yaw));
-  const Vec3 back(std::sin(camera.yaw) * std::cos(camera.pitch), std::sin(camera.pitch),
-                  std::cos(camera.yaw) * std::cos(camera.pitch));
-  const Vec3 up = back.cross(right);
-  const float rise = std::tan(0.5f * camera.fov), run = rise * aspect_of_a_view(session);
-  float least = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 at = -camera.target;  // of the corner, from the target
-    for (int k = 0; k < 3; ++k) at[k] += (corner >> k & 1) != 0 ? high[k] : low[k];
-    const float nearer = camera.orthographic ? 0 : at.dot(back);
-    const float high_up = std::abs(at.dot(up)) / rise, far_out = std::abs(at.dot(right)) / run;
-    least = std::max(least, nearer + kAir * std::max(high_up, far_out));
-  }
-  return least;
-}
 
 void add_view_commands(Commands& commands) {
   add_panes(commands);

@@ -18,8 +18,8 @@
   X(DeleteVertexArrays) X(DepthFunc) X(DepthMask) X(DepthRange) X(Disable) X(DisableVertexAttribArray) \
   X(DrawArrays) X(DrawElements) X(DrawElementsBaseVertex) X(Enable) X(EnableVertexAttribArray) X(Finish) \
   X(FramebufferRenderbuffer) X(FramebufferTexture2D) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) \
-  X(GenTextures) X(GenVertexArrays) X(GetBooleanv) X(GetError) X(GetFloatv) X(GetIntegerv) \
-  X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetStringi) X(GetUniformBlockIndex) \
+  X(GenTextures) X(GenVertexArrays) X(GetBooleanv) X(GetError) X(GetIntegerv) X(GetProgramInfoLog) \
+  X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetStringi) X(GetUniformBlockIndex) \
   X(GetUniformLocation) X(IsEnabled) X(LinkProgram) X(PixelStorei) X(PolygonMode) X(PolygonOffset) X(ReadBuffer) \
   X(ReadPixels) X(RenderbufferStorageMultisample) X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) \
   X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform3f) X(Uniform4f) X(UniformBlockBinding) \

@@ -128,25 +128,20 @@ class ColorMaskScope : Scope {
   std::array<GLboolean, 4> before_{};
 };
 
-/// Faces drawn as their edges, moved towards the eye by an offset (glPolygonOffset).
+/// Faces drawn as their edges, moved towards the eye by an offset (glPolygonOffset),
+/// which counts in here alone.
 class EdgesScope : Scope {
  public:
   EdgesScope(float factor, float units) : moved_(GL_POLYGON_OFFSET_LINE, true) {
     api().GetIntegerv(GL_POLYGON_MODE, before_.data());
-    api().GetFloatv(GL_POLYGON_OFFSET_FACTOR, &factor_);
-    api().GetFloatv(GL_POLYGON_OFFSET_UNITS, &units_);
     api().PolygonOffset(factor, units);
     api().PolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   }
-  ~EdgesScope() {
-    api().PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(before_[0]));
-    api().PolygonOffset(factor_, units_);
-  }
+  ~EdgesScope() { api().PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(before_[0])); }
 
  private:
   CapabilityScope moved_;
-  std::array<GLint, 2> before_{};  // older drivers write two, of the front and of the back
-  float factor_ = 0, units_ = 0;
+  std::array<GLint, 2> before_{};  // some drivers write two, of the front and of the back
 };
 
 }  // namespace understudy::render::gl

@@ -5,8 +5,8 @@
 //     visit("first", trim.first, kFrameNumbers);
 //     visit("last", trim.last, kFrameNumbers);
 //   }
-// A visitor is called as visit(name, value, rule...), with at most one rule; value is const where the struct
-// is.
+// A visitor is called as visit(name, value, rule...), with at most one rule; name is a const char* or a
+// MemberName, value is const where the struct is.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +26,13 @@ namespace understudy {
 /// void, for S that is T or const T.
 template <class S, class T>
 using FieldsOf = std::enable_if_t<std::is_same_v<std::remove_const_t<S>, T>>;
+
+/// The name of a member that older files call otherwise.
+struct MemberName {
+  MemberName(const char* name, const char* old_name = nullptr) : now(name), before(old_name) {}
+  operator const char*() const { return now; }
+  const char *now, *before;  ///< before: null where it has always had its name
+};
 
 /// Members that are compared but never written need no names.
 template <class V, class... M>

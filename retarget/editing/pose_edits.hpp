@@ -78,7 +78,7 @@ struct TurnEdit {
 };
 template <class V, class S>
 FieldsOf<S, TurnEdit> fields(V& visit, S& edit) {
-  visit("turn_deg", edit.turn_deg);
+  visit(MemberName("turn_deg", "yaw_deg"), edit.turn_deg);
 }
 
 /// What stays for playback and export. Frames are those of the motion before any edit.
@@ -105,9 +105,9 @@ template <class V, class S>
 FieldsOf<S, PoseEdits> fields(V& visit, S& edits) {
   visit("rotate", edits.rotate);
   visit("smooth", edits.smooth);
-  visit("raise", edits.raise);
+  visit(MemberName("raise", "floor"), edits.raise);
   visit("pin", edits.pin);
-  visit("turn", edits.turn);
+  visit(MemberName("turn", "heading"), edits.turn);
   visit("trim", edits.trim);
   visit("skip", edits.skip, kFrameNumbers);
 }

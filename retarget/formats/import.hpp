@@ -25,7 +25,7 @@ template <class V, class S>
 FieldsOf<S, ImportOptions> fields(V& visit, S& import) {
   visit("units", import.units);
   visit("up", import.up);
-  visit("turn_deg", import.turn_deg);
+  visit(MemberName("turn_deg", "yaw_deg"), import.turn_deg);
   visit("floor_m", import.floor);
   visit("height_m", import.height, kBodyHeights);
 }

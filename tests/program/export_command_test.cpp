@@ -45,7 +45,7 @@ TEST_F(ExportCommand, WritesTheCharacterOnItsOwnSkeleton) {
   EXPECT_EQ(file.animations[1].name, "scans");
   EXPECT_EQ(file.nodes[2].name, "mixamorig:Hips");
   const auto report = nlohmann::json::parse(read_bytes(out("a.json")));
-  EXPECT_EQ(report["rig"], "theirs");
+  EXPECT_EQ(report["rig"], "own");
   EXPECT_EQ(report["mapped"], 22);
   EXPECT_LT(report["cost"]["mean_mm"], 5);
   EXPECT_EQ(out_files().size(), 3u);

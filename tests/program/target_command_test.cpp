@@ -55,7 +55,7 @@ TEST_F(TargetCommand, ARiggedCharacterInAPoseStandsInTheSourcesPoseOnEitherRig) 
   made.heading_deg = 90;
   const Character character = make_character(made);
   write_gltf_character(scratch.path("made.glb"), character);
-  for (const std::string rig : {"theirs", "ours"}) {
+  for (const std::string rig : {"own", "22", "ours"}) {
     const Finished done = perform(scratch.path("made.glb"), {"--out", out(rig + ".npz"), "--rig", rig});
     ASSERT_EQ(done.code, 0) << done.err;
     EXPECT_NE(done.err.find("22 of 22 joints"), std::string::npos) << done.err;

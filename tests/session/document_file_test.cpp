@@ -118,6 +118,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   without = replaced(without, "\"heading\":", "\"turn\":");
   without = replaced(without, "\"yaw_deg\":", "\"turn_deg\":");
   without = replaced(without, "\"floor\":", "\"raise\":", without.find("\"smooth\":"));
+  without = replaced(without, "\"rig\": \"ours\"", "\"rig\": \"22\"");
   auto written = to_json(read, "/a/documents");
   for (auto& take : written["takes"]) {
     take["method"].erase("part_refiner"), take["method"].erase("hand_contacts");
@@ -126,7 +127,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take["target_edits"].erase("rest_pose");
   }
   auto& view = written["view"];
-  for (const char* added : {"cube", "overlay", "light", "backdrop", "backdrop_color"}) view.erase(added);
+  for (const char* added : {"cube", "overlay", "light", "background", "background_color"}) view.erase(added);
   for (const char* layers : {"source", "take"}) view[layers].erase("wireframe");
   EXPECT_EQ(document_text(written), without);
 }
@@ -181,6 +182,28 @@ TEST(DocumentFile, ColoursOfBindingUncertaintyOpenUnderTheirOldName) {
   const SavedDocument saved = from_json(json, "/a", "doc");
   EXPECT_EQ(saved.view.take.colouring, Colouring::Uncertainty);
   EXPECT_EQ(to_json(saved, "/a")["view"]["take"]["colouring"], "uncertainty");
+}
+
+TEST(DocumentFile, BackgroundsOpenUnderTheirOldNames) {
+  SavedDocument before;
+  before.view.background = Background::Custom, before.view.background_color = Vec3(0.5f, 0.25f, 0);
+  Json json = to_json(before, "/a");
+  Json& view = json["view"];
+  EXPECT_EQ(view["background"], "custom");
+  const Json color = view["background_color"];
+  view["backdrop"] = "own", view["backdrop_color"] = color;
+  view.erase("background"), view.erase("background_color");
+  const SavedDocument saved = from_json(json, "/a", "doc");
+  EXPECT_EQ(saved.view.background, Background::Custom);
+  EXPECT_EQ(saved.view.background_color, before.view.background_color);
+}
+
+/// A name is old for the member alone that had it.
+TEST(DocumentFile, OldNamesOfOneMemberAreNotReadAsAnothers) {
+  Json json = to_json(SavedDocument{}, "/a");
+  json["source"].erase("path");
+  json["source"]["root"] = "/b";
+  EXPECT_EQ(from_json(json, "/a", "doc").document.source.path, "");
 }
 
 TEST(DocumentFile, SettingsOfTheMethodOpenUnderTheirOldNames) {

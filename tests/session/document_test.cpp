@@ -90,7 +90,7 @@ const Changes& document_changes() {
       TAKE(target.import.height.reset()),
       TAKE(target.forward = true),
       TAKE(target.not_a_person = NotAPerson::Refuse),
-      TAKE(target.rig = "theirs"),
+      TAKE(target.rig = Rig::Own),
       TAKE(target.bones.erase("head")),
       TAKE(target.bones["left_wrist"] = "hand.L"),
       TAKE(method.engine = "copy"),
@@ -190,7 +190,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
                                 weights_joint, trails, ghosts, step, scale, wipe, cube, overlay, light,
-                                backdrop, backdrop_color, metric] = View();
+                                background, background_color, metric] = View();
   [[maybe_unused]] const auto& [of_scan, of_skeletons, of_results, spread] = OverlayLook();
   [[maybe_unused]] const auto& [light_turn, light_height, brightness] = LightLook();
   [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();

@@ -46,7 +46,7 @@ Take take(const std::string& folder) {
                  {0.5f, -1.25f},
                  {"cm", "-z", 12.5f, 0.01f, 1.62f},
                  false,
-                 "ours",
+                 Rig::Ours,
                  {{"left_wrist", "Hand.L"}, {"head", ""}},
                  NotAPerson::Use};
   take.method = {"paper", "paper",           false, false,  false, false, false, false,
@@ -77,8 +77,8 @@ View view() {
   view.cube = false;
   view.overlay = {0.5f, 0.25f, 0.75f, 1.5f};
   view.light = {-30, 12, 1.25f};
-  view.backdrop = Backdrop::Own;
-  view.backdrop_color = Vec3(0.25f, 0.5f, 0.75f);
+  view.background = Background::Custom;
+  view.background_color = Vec3(0.25f, 0.5f, 0.75f);
   view.metric = "foot_skate";
   return view;
 }

@@ -111,7 +111,7 @@ TEST_F(StudioCharacter, OnlyWeightsOfNetworksAreDoubted) {
   Studio studio(services());
   open(studio);
   EXPECT_EQ(take(studio).binding, nullptr);
-  studio.run("target.rig", {"0", "ours"});
+  studio.run("target.rig", {"0", "22"});
   studio.wait_idle();
   ASSERT_NE(take(studio).binding, nullptr);
   EXPECT_EQ(take(studio).binding->uncertainty.size(), take(studio).target->mesh.vertices.rows());
@@ -295,7 +295,7 @@ TEST_F(StudioCharacter, TheRigIsChosenAndTheScanIsNotLookedAtAgain) {
   Studio studio(services());
   open(studio);
   const int extracted = *extractions_;
-  studio.run("target.rig", {"0", "ours"});
+  studio.run("target.rig", {"0", "22"});
   studio.wait_idle();
   EXPECT_NE(take(studio).deformer->name(), "the rig's own skin");
   EXPECT_EQ(take(studio).performed.size(), static_cast<size_t>(kFrames));
@@ -377,7 +377,7 @@ TEST_F(StudioCharacter, RigAndBonesAreSaved) {
     Studio studio(services());
     open(studio);
     studio.run("target.bone", {"0", "left_collar", "none"});
-    studio.run("target.rig", {"0", "theirs"});
+    studio.run("target.rig", {"0", "own"});
     studio.wait_idle();
     performed = take(studio).performed;
     studio.run("document.save_as", {path("made")});
@@ -386,7 +386,7 @@ TEST_F(StudioCharacter, RigAndBonesAreSaved) {
   studio.run("open", {path("made.understudy")});
   studio.wait_idle();
   const TargetOptions& target = studio.session().document.takes.at(0).target;
-  EXPECT_EQ(target.rig, "theirs");
+  EXPECT_EQ(target.rig, Rig::Own);
   EXPECT_EQ(target.bones, (BoneChoices{{"left_collar", ""}}));
   ASSERT_EQ(take(studio).performed.size(), performed.size());
   const size_t last = performed.size() - 1;

@@ -138,7 +138,8 @@ TEST_F(StudioTest, TheCropToolStepsBackNoFurtherThanItsBoxAsksAndReturns) {
   EXPECT_EQ(now.yaw, before.yaw);
   const Box box = shown_crop(session);
   const Vec3 offset = follow_offset(session, 0, shown_frame(session));
-  const float needed = distance_to_see(session, before, box.low - offset, box.high - offset);
+  const float needed = distance_to_see(before, aspect_of_a_view(session.view, session.takes.size()),
+                                       box.low - offset, box.high - offset);
   EXPECT_FLOAT_EQ(now.distance, std::max(before.distance, needed));
   studio.run("tool", {"look"});
   EXPECT_TRUE(same(session.view.cameras[0], before)) << "as it was";

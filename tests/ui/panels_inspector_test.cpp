@@ -231,7 +231,7 @@ TEST_F(LayersPanel, LightAndBackground) {
     expect_drag("layers.light." + what, "view.light " + what + " ");
   expect_choice("layers.background", 1, {"view.background white"});
   EXPECT_FALSE(shown("layers.background_colour"));
-  session.view.backdrop = app::Backdrop::Own;
+  session.view.background = app::Background::Custom;
   frame(2);
   EXPECT_TRUE(shown("layers.background_colour"));
 }

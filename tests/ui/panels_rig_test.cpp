@@ -18,9 +18,9 @@ class RigPanel : public PanelsTest {
 };
 
 TEST_F(RigPanel, TheRigIsChosen) {
-  expect_click("rig.choice.1", {"target.rig 0 theirs"});
-  expect_click("rig.choice.2", {"target.rig 0 ours"});
-  session.document.takes[0].target.rig = "ours";
+  expect_click("rig.choice.1", {"target.rig 0 own"});
+  expect_click("rig.choice.2", {"target.rig 0 22"});
+  session.document.takes[0].target.rig = app::Rig::Ours;
   frame(2);
   expect_click("rig.choice.0", {"target.rig 0 auto"});
 }

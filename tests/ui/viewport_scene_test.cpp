@@ -122,14 +122,14 @@ TEST_F(SceneTest, WireframeLightAndBackgroundAreTheViews) {
   EXPECT_TRUE(same(before.light, render::LightView()));
   session.view.take.wireframe = true;
   session.view.light = {90, 0, 0.5f};
-  session.view.backdrop = app::Backdrop::White;
+  session.view.background = app::Background::White;
   const render::Scene now = scene(1).scene;
   EXPECT_TRUE(now.meshes[0].wireframe);
   EXPECT_TRUE(now.light.key.isApprox(0.5f * before.light.key));
   EXPECT_NEAR(now.light.key_direction.y(), before.light.key_direction.normalized().y(), 1e-5f);
   EXPECT_GT(now.light.key_direction.x(), 0.3f) << "it came from the left";
   EXPECT_EQ(now.background.top, Vec3(1, 1, 1));
-  session.view.backdrop = app::Backdrop::Own, session.view.backdrop_color = Vec3(0.1f, 0.2f, 0.3f);
+  session.view.background = app::Background::Custom, session.view.background_color = Vec3(0.1f, 0.2f, 0.3f);
   EXPECT_EQ(scene(1).scene.background.bottom, Vec3(0.1f, 0.2f, 0.3f));
 }
 

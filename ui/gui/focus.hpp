@@ -17,8 +17,9 @@ class Ui;
 /// One per Ui. Shortcuts and ImGui's own keys stay as they are while the ring is not shown.
 class Focus {
  public:
-  /// The item just made can be reached by Tab, in the order of drawing; greyed out it cannot. typed: typing
-  /// begins as soon as it is reached.
+  /// The item just made, ImGui's last, can be reached by Tab, in the order of drawing; greyed out it cannot.
+  /// Between begin_frame() and finish_frame(), on ImGui's thread.
+  /// typed: typing begins as soon as it is reached.
   void add(const std::string& name, bool typed);
   /// The name of the item in the ring; "" where there is none.
   std::string name() const;

@@ -2,7 +2,7 @@
 // Marks: settings.theme(.0, .1), settings.scale, settings.samples, settings.cache, settings.autosave,
 // settings.undo_depth, settings.mouse, settings.close; error.copy, error.close; unsaved.yes, .no, .cancel;
 // recover.K, discard.K, recover.later; missing.K, missing.leave; about.copy, about.close; compare.engine,
-// compare.extractor, compare.offsets, compare.root, compare.apply, compare.cancel; person.yes, person.cancel;
+// compare.extractor, compare.offsets, compare.path, compare.apply, compare.cancel; person.yes, person.cancel;
 // notice.0 the newest notice, notice.0.offer its button.
 #pragma once
 

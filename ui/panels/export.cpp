@@ -152,7 +152,7 @@ void draw_bone_choice(Ui& ui, const app::ExportFormat& format, ExportState& stat
                         "",
                         {"The character's own, with their names, from its own rest pose",
                          "The 22 joints of this program, from the T-pose"}};
-  if (choice_row(ui, control, {"Its own", "22 joints"}, bones)) state.choice.theirs = bones == 0;
+  if (choice_row(ui, control, {"Own", "22 joints"}, bones)) state.choice.theirs = bones == 0;
 }
 
 /// What only an animated character has.

@@ -165,18 +165,18 @@ void draw_camera(const app::Session& session, PanelContext& context) {
 
 void draw_background(const app::View& view, PanelContext& context) {
   Ui& ui = context.ui;
-  int chosen = static_cast<int>(view.backdrop);
+  int chosen = static_cast<int>(view.background);
   row(ui, "Background", "What is behind everything; pictures can leave it out");
   if (dropdown(ui, "layers.background", {"Theme", "White", "Black", "Custom"}, chosen))
-    context.ask("view.background", {app::kBackdropNames[static_cast<size_t>(chosen)]});
-  if (view.backdrop != app::Backdrop::Own) return;
+    context.ask("view.background", {app::kBackgroundNames[static_cast<size_t>(chosen)]});
+  if (view.background != app::Background::Custom) return;
   row(ui, "Colour", "Of the background");
-  Vec3 color = view.backdrop_color;
+  Vec3 color = view.background_color;
   ImGui::SetNextItemWidth(-FLT_MIN);
   const bool changed = ImGui::ColorEdit3("##background", color.data(), ImGuiColorEditFlags_NoOptions);
   ui.mark("layers.background_colour");
   if (!changed) return;
-  app::Arguments words = {"own"};
+  app::Arguments words = {"custom"};
   for (int i = 0; i < 3; ++i) words.push_back(argument(static_cast<double>(color[i])));
   context.ask("view.background", words);
 }

@@ -88,7 +88,8 @@ void draw_rig(const app::Session& session, PanelContext& context) {
   ask_choice(context,
              {"rig.choice", "Performs on",
               "Its own bones and weights, or the 22 joints with weights found here", "target.rig " + k},
-             {"Auto", "Its own", "Ours"}, {"auto", "theirs", "ours"}, take->target.rig);
+             {"Auto", "Own", "22 joints"}, {app::kRigNames.begin(), app::kRigNames.end()},
+             app::kRigNames[static_cast<size_t>(take->target.rig)]);
   if (state == nullptr || !state->character) return;
   const PreparedCharacter& character = *state->character;
   draw_facts(character, ui);

@@ -299,10 +299,10 @@ void Builder::set_background() {
   const app::View& view = session_.view;
   render::BackgroundView& background = out_.scene.background;
   background = background_of(in_.theme);
-  if (view.backdrop == app::Backdrop::Theme) return;
-  background.top = background.bottom = view.backdrop == app::Backdrop::White   ? Vec3(1, 1, 1)
-                                       : view.backdrop == app::Backdrop::Black ? Vec3(0, 0, 0)
-                                                                               : view.backdrop_color;
+  if (view.background == app::Background::Theme) return;
+  background.top = background.bottom = view.background == app::Background::White   ? Vec3(1, 1, 1)
+                                       : view.background == app::Background::Black ? Vec3(0, 0, 0)
+                                                                                   : view.background_color;
 }
 
 void Builder::set_ground() {

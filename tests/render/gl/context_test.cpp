@@ -49,10 +49,11 @@ TEST(Renderer, GivesTheSameBytesTwice) {
 TEST(Renderer, LeavesTheStateAsItWas) {
   const auto context = make_offscreen_context({ContextKind::Any, gl::DebugMode::Fatal});
   Renderer renderer;
-  const Scene scene = pear_and_skeleton();
+  Scene scene = pear_and_skeleton();
+  scene.meshes[0].wireframe = true;
   renderer.render_image(scene, view_of(scene), {64, 64});
   for (const GLenum capability :
-       {GL_BLEND, GL_DEPTH_TEST, GL_PROGRAM_POINT_SIZE, GL_SAMPLE_ALPHA_TO_COVERAGE})
+       {GL_BLEND, GL_DEPTH_TEST, GL_PROGRAM_POINT_SIZE, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_POLYGON_OFFSET_LINE})
     EXPECT_EQ(gl::api().IsEnabled(capability), GL_FALSE) << capability;
   for (const GLenum binding : {GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING, GL_DRAW_FRAMEBUFFER_BINDING}) {
     GLint bound = -1;
