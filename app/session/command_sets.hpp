@@ -104,8 +104,4 @@ std::optional<Value> only_if(bool wanted, Value value) {
   return wanted ? std::optional<Value>(std::move(value)) : std::nullopt;
 }
 
-/// Units and up axes that a file's import may be given; "auto" finds them.
-inline const std::vector<std::string> kUnitNames{"auto", "m", "dm", "cm", "mm", "in"};
-inline const std::vector<std::string> kAxisNames{"auto", "x", "y", "z", "-x", "-y", "-z"};
-
 }  // namespace understudy::app

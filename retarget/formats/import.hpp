@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "retarget/base/fields.hpp"
 #include "retarget/geometry/mesh.hpp"
@@ -12,11 +13,15 @@ namespace understudy {
 /// Heights that can be asked for, metres.
 constexpr Within<float> kBodyHeights{0.05f, 100};
 
+/// What ImportOptions::units and up may be.
+inline const std::vector<std::string> kUnitNames{"auto", "m", "cm", "mm", "dm", "in"};
+inline const std::vector<std::string> kAxisNames{"auto", "x", "y", "z", "-x", "-y", "-z"};
+
 /// What the user forces; what is left empty is guessed.
 struct ImportOptions {
-  std::string units;   ///< "m", "cm", "mm", "dm", "in"; empty or "auto": from the height of the body
-  std::string up;      ///< "x", "y", "z", "-x", "-y", "-z"; empty or "auto": from where the body extends
-  float turn_deg = 0;  ///< turns the scan about y at the end, from +z towards +x
+  std::string units;           ///< of kUnitNames; empty or "auto": from the height of the body
+  std::string up;              ///< of kAxisNames; empty or "auto": from where the body extends
+  float turn_deg = 0;          ///< turns the scan about y at the end, from +z towards +x
   std::optional<float> floor;  ///< height of the floor in the file, in metres; none: the lowest points
   std::optional<float>
       height{};  ///< metres that the body is made tall, whatever its units; none: by its units

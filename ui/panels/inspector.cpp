@@ -19,9 +19,6 @@
 namespace understudy::ui {
 namespace {
 
-const std::vector<std::string> kUnits = {"auto", "m", "cm", "mm", "dm", "in"};
-const std::vector<std::string> kAxes = {"auto", "x", "y", "z", "-x", "-y", "-z"};
-
 void warn(Ui& ui, const std::string& sentence) {
   icon_label(ui, Icon::Warning, ui.theme().warning);
   ImGui::SameLine();
@@ -55,11 +52,11 @@ void draw_height(PanelContext& context, const std::string& group, const ImportOp
 void draw_import(PanelContext& context, const std::string& group, const ImportOptions& import,
                  const std::string& take = {}) {
   const auto word = [](const std::string& value) { return value.empty() ? "auto" : value; };
-  ask_choice(context, {group + ".units", "Units", "Of the file", group + ".units " + take}, kUnits, kUnits,
-             word(import.units));
+  ask_choice(context, {group + ".units", "Units", "Of the file", group + ".units " + take}, kUnitNames,
+             kUnitNames, word(import.units));
   draw_height(context, group, import, take);
   ask_choice(context, {group + ".up", "Up", "The axis of the file that points up", group + ".up " + take},
-             kAxes, kAxes, word(import.up));
+             kAxisNames, kAxisNames, word(import.up));
 }
 
 void draw_target_turn(const app::TargetOptions& target, PanelContext& context, const std::string& k) {
