@@ -277,8 +277,8 @@ bool Engine::Impl::step() {
   return read_frame();
 }
 
-/// Binding takes a second: the take that is looked at comes first, and what is bound performs its first frame before the
-/// next one is. Null: none, now.
+/// Binding takes a second: the take that is looked at comes first, and what is bound performs its first frame
+/// before the next one is. Null: none, now.
 TakeWork* Engine::Impl::next_to_prepare() {
   const auto waits = [](const TakeWork& take) { return !take.performer && !take.failed; };
   auto next = std::find_if(takes.begin(), takes.end(),

@@ -78,7 +78,8 @@ class Views {
   bool legend_beside_ = false;  ///< the joints' colours stand beside the views, not in each
   bool hold_ = false;           ///< cameras stay for this frame as they were
   int64_t drawn_ = 0, drawn_before_ = 0;
-  /// Frames come one after the other, and the last draw was of one: this one shows at once what the pointer does.
+  /// Frames come one after the other, and the last draw was of one: this one shows at once what the pointer
+  /// does.
   bool pictures_wait_ = false;
 };
 
