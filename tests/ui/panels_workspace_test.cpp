@@ -370,10 +370,13 @@ TEST_F(WorkspaceTest, KeysAreListedSearchedAndChosen) {
 }
 
 TEST_F(WorkspaceTest, EveryCommandOfThePaletteRunsAsItIs) {
+  int tools = 0;
   for (const MenuItem& entry : palette(session, studio.commands())) {
     expect_known(entry.command);
     EXPECT_FALSE(entry.label.empty()) << entry.command;
+    tools += entry.label == app::kToolLabels.back() ? 1 : 0;
   }
+  EXPECT_EQ(tools, 1) << "in a menu and a command, but one thing";
 }
 
 TEST_F(WorkspaceTest, ScriptsAreOnTheSecondPageAndCopied) {

@@ -101,7 +101,7 @@ Items view_menu(const app::Session& session) {
 
 MenuItem tool_item(const app::Session& session, app::Tool tool) {
   const size_t i = static_cast<size_t>(tool);
-  return {app::kToolLabels[i], "tool", {app::kToolNames[i]}, session.tool == tool};
+  return {app::kToolLabels[i], std::string("tool.") + app::kToolNames[i], {}, session.tool == tool};
 }
 
 Items target_menu(const app::Session& session) {

@@ -88,7 +88,8 @@ bool possible(const app::Session& session, const std::string& command) {
   if (command == "work.resume") return session.paused;
   if (command == "work.restart") return source && take;
   if (command == "source.open" || command == "source.motion" || command == "target.add") return true;
-  if (command == "tool" || command == "select.joint") return has_document(session);
+  if (command == "tool" || starts_with(command, "tool.") || command == "select.joint")
+    return has_document(session);
   if (command == "edit.remove" || command == "edit.move") return has_document(session);
   if (command == "document.save" || command == "document.save_as") return has_document(session);
   for (const char* of_source :
