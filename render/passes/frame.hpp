@@ -5,6 +5,7 @@
 
 #include "render/camera.hpp"
 #include "render/gl/object.hpp"
+#include "render/gl/scopes.hpp"
 #include "render/scene.hpp"
 
 namespace understudy::render {
@@ -19,6 +20,20 @@ extern const char* const kCoverGlsl;
 
 /// Throws Error unless an optional array, `what`, is empty or has one row for each point.
 void check_rows(const char* what, Eigen::Index rows, Eigen::Index points);
+
+/// Calls draw() for what is opaque. Of what is not only the front layer is seen, after its depth was drawn
+/// alone: inner surfaces do not shine through one another, discs that overlap do not add up.
+template <class Draw>
+void draw_front_layer(float opacity, const Draw& draw) {
+  if (opacity >= 1) return draw();
+  {
+    const gl::ColorMaskScope colors(false);
+    draw();
+  }
+  const gl::BlendScope blend(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const gl::DepthFuncScope depth(GL_LEQUAL);
+  draw();
+}
 
 /// The block's buffer.
 class FrameBlock {

@@ -77,25 +77,11 @@ class MeshPass {
                              nullptr);
     };
     edges_.set(0);
-    if (view.opacity >= 1)
-      draw();
-    else
-      draw_see_through(draw);
+    draw_front_layer(view.opacity, draw);
     if (view.wireframe) draw_edges(draw);
   }
 
  private:
-  template <class Draw>
-  static void draw_see_through(const Draw& draw) {
-    {  // the depth of the front layer first, so that inner surfaces do not shine through one another
-      const gl::ColorMaskScope colors(false);
-      draw();
-    }
-    const gl::BlendScope blend(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    const gl::DepthFuncScope depth(GL_LEQUAL);
-    draw();
-  }
-
   /// A little nearer than the faces, which hide those behind.
   template <class Draw>
   void draw_edges(const Draw& draw) {

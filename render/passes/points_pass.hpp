@@ -90,7 +90,7 @@ class PointsPass {
     const Kind& kind = flat ? discs_ : balls_;
     const gl::ProgramScope program(kind.program.id());
     const gl::VertexArrayScope array(kind.array.name());
-    const bool opaque = view.opacity >= 1, covers = multisampled && opaque;
+    const bool covers = multisampled && view.opacity >= 1;
     const gl::CapabilityScope size(GL_PROGRAM_POINT_SIZE, true),
         coverage(GL_SAMPLE_ALPHA_TO_COVERAGE, covers), whole(GL_SAMPLE_ALPHA_TO_ONE, covers);
     gl::use_attribute(0, arrays_.of(view.positions), 3);
@@ -102,15 +102,7 @@ class PointsPass {
     kind.radius.set(view.radius);
     kind.smooth.set(covers ? 1.f : 0.f);
     kind.opacity.set(view.opacity);
-    const auto draw = [&] { gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count)); };
-    if (opaque) return draw();
-    {  // the depth of the front layer first: discs that overlap would add up
-      const gl::ColorMaskScope colors(false);
-      draw();
-    }
-    const gl::BlendScope blend(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    const gl::DepthFuncScope depth(GL_LEQUAL);
-    draw();
+    draw_front_layer(view.opacity, [&] { gl::api().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count)); });
   }
 
  private:
