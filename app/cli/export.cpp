@@ -164,8 +164,9 @@ void make_takes(const ExportOptions& options, Studio& studio, size_t take) {
 
 ExportChoice choice_of(const ExportOptions& options, const ExportFormat& format) {
   ExportChoice choice{&format, options.file, {}, {}};
-  if (options.target.rig != Rig::Auto && format.is_character) choice.theirs = options.target.rig == Rig::Own;
-  if (!options.bones.empty()) choice.theirs = options.bones == "own";
+  if (options.target.rig != Rig::Auto && format.is_character)
+    choice.own_bones = options.target.rig == Rig::Own;
+  if (!options.bones.empty()) choice.own_bones = options.bones == "own";
   return choice;
 }
 

@@ -21,7 +21,7 @@ void set_option(ExportChoice& out, const std::string& key, const std::string& va
     return number;
   };
   if (key == "bones")
-    out.theirs = words.choice(0, "bones", {"own", "22"}) == 0;
+    out.own_bones = words.choice(0, "bones", {"own", "22"}) == 0;
   else if (key == "influences")
     out.file.influences = words.choice(0, "influences", {"4", "8"}) == 0 ? 4 : 8;
   else if (key == "morphs")
@@ -65,8 +65,8 @@ void add_clip(ExportInput& out, const Session& session, size_t k, const std::str
 ExportChoice choice_for(const Session& session, size_t k, ExportChoice choice) {
   const auto& character = session.takes[k].character;
   const bool own = character && on_their_rig(session.document.takes[k].target, *character);
-  if (!own) choice.theirs.reset();
-  if (!own || !choice.theirs.value_or(true)) choice.file.keep_clips = false;
+  if (!own) choice.own_bones.reset();
+  if (!own || !choice.own_bones.value_or(true)) choice.file.keep_clips = false;
   return choice;
 }
 
@@ -127,7 +127,7 @@ ExportChoice export_choice(const std::string& path, const std::vector<std::strin
       set_option(out, key, value);
   }
   out.format = &export_format(format, path);
-  if (out.theirs.value_or(false)) check_own_bones(path, *out.format);
+  if (out.own_bones.value_or(false)) check_own_bones(path, *out.format);
   return out;
 }
 
@@ -177,8 +177,8 @@ ExportInput export_input(const Session& session, const std::vector<size_t>& take
   }
   out.body = {state.character, state.deformer, choice.file};
   const bool own = on_their_rig(take.target, *state.character);
-  US_CHECK(own || !choice.theirs.value_or(false), take.name, ": does not perform on bones of its own");
-  out.body.file.their_rig = choice.theirs.value_or(own && choice.format->is_character);
+  US_CHECK(own || !choice.own_bones.value_or(false), take.name, ": does not perform on bones of its own");
+  out.body.file.their_rig = choice.own_bones.value_or(own && choice.format->is_character);
   out.body.file.joints = state.target->joints;
   return out;
 }

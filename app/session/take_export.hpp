@@ -16,7 +16,7 @@ struct ExportChoice {
   const ExportFormat* format = &export_formats().front();
   CharacterExportOptions file;
   /// the character's own bones; none: those of an animated character, where the take performs on them
-  std::optional<bool> theirs;
+  std::optional<bool> own_bones;
   std::vector<std::string> takes;  ///< more takes, by name or number from 0, each a clip of its own
 };
 

@@ -131,7 +131,7 @@ void draw_format(const app::Session& session, Ui& ui, ExportState& state) {
 
 /// Whether the file's bones are the character's own, where it has any.
 bool on_own_bones(const app::ExportFormat& format, const ExportState& state) {
-  return state.choice.theirs.value_or(format.is_character);
+  return state.choice.own_bones.value_or(format.is_character);
 }
 
 /// Whether a take that is exported performs on bones of its own.
@@ -152,7 +152,7 @@ void draw_bone_choice(Ui& ui, const app::ExportFormat& format, ExportState& stat
                         "",
                         {"The character's own, with their names, from its own rest pose",
                          "The 22 joints of this program, from the T-pose"}};
-  if (choice_row(ui, control, {"Own", "22 joints"}, bones)) state.choice.theirs = bones == 0;
+  if (choice_row(ui, control, {"Own", "22 joints"}, bones)) state.choice.own_bones = bones == 0;
 }
 
 /// What only an animated character has.
@@ -313,7 +313,7 @@ app::Arguments export_words(const app::ExportFormat& format, const app::ExportCh
   app::Arguments words = {std::string("format=") + format.name};
   const CharacterExportOptions& file = choice.file;
   if (file.in_place) words.push_back("in_place=on");
-  const bool own = choice.theirs.value_or(format.is_character);
+  const bool own = choice.own_bones.value_or(format.is_character);
   if (format.own_bones && own_bones && own != format.is_character)
     words.push_back(own ? "bones=own" : "bones=22");
   if (!format.is_character) return words;
