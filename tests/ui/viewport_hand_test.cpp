@@ -479,7 +479,7 @@ TEST_F(ViewsTest, ABoneIsSeenTurnedUntilTheEditShows) {
   EXPECT_EQ(hand.turned_picture(place), nullptr);
   stage.session.time -= 5;
   EXPECT_NE(hand.turned_picture(place), nullptr);
-  stage.session.takes[0].shown.poses[10].local[RightElbow].setIdentity();  // it shows, and no joint has moved
+  stage.session.takes[0].shown.poses[10].local[RightElbow] = rotation_about_y(0.3f);  // shown; no joint moved
   EXPECT_EQ(hand.turned_picture(place), nullptr);
 }
 
