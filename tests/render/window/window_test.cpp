@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
 #include <thread>
 
 #include "render/renderer.hpp"
@@ -23,16 +22,12 @@ namespace {
 class OnDisplay : public testing::Environment {
  public:
   void SetUp() override {
-    display_ = std::make_unique<tests::Display>(1400, 900);
-    ASSERT_TRUE(display_->works()) << "Xvfb does not start: Debian package xvfb";
-    setenv("DISPLAY", display_->name().c_str(), 1);
+    static const tests::Display display(1400, 900);  // made before GLFW starts: it ends after GLFW
+    ASSERT_TRUE(display.works()) << "Xvfb does not start: Debian package xvfb";
+    setenv("DISPLAY", display.name().c_str(), 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     unsetenv("WAYLAND_DISPLAY");
   }
-  void TearDown() override { display_.reset(); }
-
- private:
-  std::unique_ptr<tests::Display> display_;
 };
 const auto* const on_display = testing::AddGlobalTestEnvironment(new OnDisplay);
 
