@@ -44,7 +44,7 @@ float heading_of(const Joints& joints) {
 
 }  // namespace
 
-void write_preview(const std::string& path, std::vector<render::SheetMoment> moments,
+void write_preview(const std::string& path, const std::vector<render::SheetMoment>& moments,
                    const std::string& title, int columns) {
   US_CHECK(!moments.empty(), path, ": there is no frame to show");
   render::SheetOptions options;

@@ -31,7 +31,7 @@ class PreviewMoments {
 
 /// Draws the sheet, `columns` moments in a row, and writes it as a PNG. It looks from where the first
 /// skeleton faces.
-void write_preview(const std::string& path, std::vector<render::SheetMoment> moments,
+void write_preview(const std::string& path, const std::vector<render::SheetMoment>& moments,
                    const std::string& title, int columns = PreviewMoments::kShown);
 
 }  // namespace understudy::app

@@ -8,6 +8,7 @@ namespace understudy {
 
 void keep_rows(LabelledPoints& cloud, const std::vector<int>& kept) {
   std::vector<int> parts;
+  parts.reserve(kept.size());
   for (const int row : kept) parts.push_back(cloud.parts[row]);
   cloud.points = Points(cloud.points(kept, Eigen::all));
   cloud.parts = std::move(parts);

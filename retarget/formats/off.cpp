@@ -1,4 +1,5 @@
 // OFF, Geomview's format, ascii and binary, with its prefixes for colours, normals and texture coordinates.
+#include <utility>
 #include <vector>
 
 #include "retarget/formats/bytes.hpp"
@@ -45,7 +46,7 @@ void scale_colours(Points& colours) {
 class AsciiOff {
  public:
   AsciiOff(TextCursor text, const OffHeader& header, const std::string& source)
-      : text_(text), header_(header), source_(source) {}
+      : text_(std::move(text)), header_(header), source_(source) {}
 
   Mesh read() {
     Mesh mesh;

@@ -49,6 +49,7 @@ double rank_correlation(const std::vector<double>& a, const std::vector<double>&
 double best_rank_correlation(const std::vector<double>& expected) {
   Rng rng(1);
   std::vector<double> drawn;
+  drawn.reserve(expected.size());
   for (const double error : expected)
     drawn.push_back(error * Vec3(rng.normal(), rng.normal(), rng.normal()).norm());
   return rank_correlation(expected, drawn);

@@ -43,7 +43,7 @@ Vec3 place_end(const Joints& rest, const TwoBones& limb, const Vec3& wanted, Pos
   const Vec3 top = posed.joints.row(limb.upper).transpose();
   const Vec3 u = posed.joints.row(limb.hinge).transpose() - top;                           // upper bone
   const Vec3 s = (posed.joints.row(limb.end) - posed.joints.row(limb.hinge)).transpose();  // lower bone
-  const Vec3 reached = top + u + s;
+  Vec3 reached = top + u + s;
   if ((wanted - reached).squaredNorm() < 1e-14f) return reached;
   const float length = u.norm() + s.norm(), now = (u + s).norm();
   const float shortest = std::abs(u.norm() - s.norm()) + 0.05f * length;

@@ -111,6 +111,7 @@ void Damage::compare(std::vector<Rect>& rects, const List& before, const List& n
 
 std::vector<Rect> Damage::update(const ImDrawData& data) {
   std::vector<List> now;
+  now.reserve(data.CmdListsCount);
   for (int i = 0; i < data.CmdListsCount; ++i) now.push_back(copy(*data.CmdLists[i]));
   std::vector<Rect> rects;
   if (before_.empty() || size_.x != data.DisplaySize.x || size_.y != data.DisplaySize.y ||

@@ -75,7 +75,7 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
 }
 
 std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state) {
-  const std::optional<std::string> path = state.browser.draw(context.ui);
+  std::optional<std::string> path = state.browser.draw(context.ui);
   if (!path || state.purpose == FilePurpose::Export) return path;
   if (state.purpose == FilePurpose::Source && is_smpl_body(*path)) {
     choose_file(session, state, FilePurpose::BodyMotion, *path);
