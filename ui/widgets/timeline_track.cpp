@@ -14,7 +14,7 @@ namespace {
 enum class Grip { None, Playhead, LoopFirst, LoopLast, Pan, Mark, MarkFirst, MarkLast, TrimFirst, TrimLast };
 
 constexpr float kRowHeight = 12, kBandHeight = 7, kBadHeight = 5, kNearlyStill = 4;  // points
-constexpr float kEdge = 5, kTrimGrip = 7;                                            // points
+constexpr float kEdge = 6, kTrimGrip = 7;                                            // points
 
 /// Remembered between frames: the part of the sequence that is shown, and what is being dragged.
 struct TrackState {
