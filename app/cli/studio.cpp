@@ -23,9 +23,6 @@ StudioServices studio_services(const std::string& weights) {
   services.weights = [weights] {
     nn::NetworkOptions options;
     options.weights = weights;
-    // Loading the plug-in takes a third of the time to a first frame: it is done before anything is opened.
-    // What is wrong with it is told when it is needed.
-    failure_of([&] { nn::load_networks(options, NetworkParts{}); });
     return report_header(nn::weights_folder(options))["weights"].get<std::string>();
   };
   const std::string missing = failure_of([&] { services.samples = samples_folder(); });

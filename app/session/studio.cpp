@@ -77,6 +77,12 @@ void Studio::load_weights_name() {
       [this, name] { session_.weights = *name; });
 }
 
+void Studio::warm_up() {
+  jobs_.start("Loading networks", [networks = services_.networks](JobControl&) {
+    failure_of([&] { networks(Method{}, NetworkParts{}); });  // told when they are needed
+  });
+}
+
 void Studio::ask_about_autosaves() {
   if (services_.autosave_folder.empty()) return;
   const auto found = found_autosaves(services_.autosave_folder);

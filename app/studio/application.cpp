@@ -274,7 +274,7 @@ void Application::draw_interface(double dt, const std::vector<InputEvent>& event
   pass_->present(data, gui_->atlas(), target, gui_->ui().theme().backdrop);
   surface_->present();
   surface_->set_cursor(gui_->cursor());
-  ++drawn_;
+  if (++drawn_ == 1) studio_->warm_up();
 }
 
 /// Runs the commands that the interface pushed; the next frame shows their effect.
