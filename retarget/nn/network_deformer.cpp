@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <thread>
 #include <unordered_map>
 #include <vector>
 
@@ -182,22 +181,7 @@ class NetworkDeformer : public Deformer {
   std::vector<Influence> influences_;
 };
 
-/// Somebody waits for a binding: it may take all cores. More threads give the same numbers.
-class AllCores {
- public:
-  AllCores() : before_(at::get_num_threads()) {
-    at::set_num_threads(std::max(before_, static_cast<int>(std::thread::hardware_concurrency())));
-  }
-  ~AllCores() { at::set_num_threads(before_); }
-  AllCores(const AllCores&) = delete;
-  AllCores& operator=(const AllCores&) = delete;
-
- private:
-  int before_;
-};
-
 void NetworkDeformer::bind(const Points& rest, const Joints& rest_joints) {
-  const AllCores all;
   US_CHECK(rest.rows() > 0, "the target has no points");
   US_CHECK(rest.allFinite() && rest_joints.allFinite(), "the target has a coordinate that is not finite");
   const Points context = spread_points(rest, static_cast<int>(net_->options.context_points));
