@@ -35,8 +35,8 @@ class Studio {
   FrameCache& cache() { return cache_; }
   const StudioServices& services() const { return services_; }
 
-  /// Has the networks' plug-in loaded before it is needed. Not before the first frame is drawn: while one thread loads it
-  /// no other loads anything, a graphics driver neither.
+  /// Has the networks' plug-in loaded before it is needed. Not before the first frame is drawn: while one
+  /// thread loads it no other loads anything, a graphics driver neither.
   void warm_up();
   /// Runs one command. Throws Error with a sentence for the user.
   void run(const std::string& name, const Arguments& arguments = {});
