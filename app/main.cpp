@@ -44,6 +44,13 @@ int run(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     actions.emplace_back(sub, command.declare(*sub));
   }
+  if (argc < 2) {
+    std::fputs(
+        "understudy: name a subcommand: \"understudy studio\" opens the window, \"understudy --help\" "
+        "lists all\n",
+        stderr);
+    return 2;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {  // --help too

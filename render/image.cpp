@@ -56,7 +56,10 @@ Image::Image(int w, int h, const Vec3& color) : width(w), height(h) {
   US_CHECK(w > 0 && h > 0 && w <= 32768 && h <= 32768, "a picture cannot be ", w, " x ", h, " pixels");
   pixels.resize(static_cast<size_t>(w) * h * 3);
   const uint8_t rgb[3] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z())};
-  for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = rgb[i % 3];
+  if (rgb[0] == rgb[1] && rgb[1] == rgb[2])
+    std::memset(pixels.data(), rgb[0], pixels.size());  // a video makes many white ones
+  else
+    for (size_t i = 0; i < pixels.size(); i += 3) std::copy_n(rgb, 3, pixels.data() + i);
 }
 
 void paste(Image& image, const Image& source, int x, int y) {

@@ -88,7 +88,7 @@ int bench(const BenchOptions& options) {
   networks = networks_for(std::move(networks), *character, on_their_rig(onto, *character));
   Retargeter retargeter(std::move(networks), retarget_options(options.how));
   retargeter.set_target(character->target);
-  RetargetedSource retargeted(source, retargeter, from.path);
+  RetargetedSource retargeted(source, retargeter, from);
   Latency latency;
   double first_s = 0, memory_1000 = 0;
   Progress progress("bench", options.frames);

@@ -11,12 +11,15 @@ Action declare_cases(CLI::App& command) {
   command.add_option("data", options->data, "folder of people and motions with splits.json")->required();
   command.add_option("--suite", options->suite, "the suite to make")
       ->required()
-      ->check(CLI::IsMember({"naked", "clothed", "captured", "bends", "extraction", "occluded"}));
+      ->check(CLI::IsMember({"naked", "clothed", "captured", "hands", "bends", "extraction", "occluded",
+                             "partial", "sensors", "scenes"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split, "split of splits.json (default: dev)");
   command.add_option("--body", options->body, "an SMPL-format body in place of the folder's own");
   command.add_option("--cases", options->cases, "at most this many cases")->check(CLI::NonNegativeNumber);
-  command.add_option("--frames", options->frames, "frames per case (default: 90; extraction, occluded: 12)")
+  command
+      .add_option("--frames", options->frames,
+                  "frames per case, at most (default: 90; fewer where a suite is shorter)")
       ->check(CLI::Range(1, 100000));
   command.add_option("--points", options->points, "points per scan, roughly (default: 8000)")
       ->check(CLI::Range(100, 10000000));

@@ -8,6 +8,7 @@
 #include "render/context/context.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/networks/kernels/kernels.hpp"
 #include "retarget/networks/networks.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
@@ -50,6 +51,7 @@ int doctor(const nn::NetworkOptions& options) {
   bool healthy = true;
   line("program", kProgram);
   line("machine", processor());
+  line("kernels", nn::kernels().name);
   line("torch", found_or_why([] { return nn::runtime_report().torch_version; }, healthy));
   if (healthy) {
     const nn::RuntimeReport report = nn::runtime_report();

@@ -1,6 +1,7 @@
 #include "app/cli/evaluation.hpp"
 
 #include <chrono>
+#include <map>
 
 #include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
@@ -10,6 +11,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/baselines/body_fit.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "retarget/scene/scene.hpp"
 
 namespace understudy::app {
 
@@ -60,6 +62,9 @@ void evaluate_frame(const RetargetedFrame& frame, const PreparedCharacter* targe
   evaluated.source_joints = &result.source.joints;
   evaluated.raw_joints = result.flagged ? &result.source.joints : &result.observed.joints;
   evaluated.confidence = &result.confidence;
+  const SeenJoints visibility = result.flagged ? SeenJoints::Zero() : result.source.visibility;
+  evaluated.visibility = &visibility;
+  evaluated.limbs = result.limbs;
   evaluated.scan = frame.scan.usable ? &frame.scan.mesh : nullptr;
   evaluator.push(evaluated);
 }
@@ -68,7 +73,9 @@ void evaluate_frame(const RetargetedFrame& frame, const PreparedCharacter* targe
 /// skeleton takes the place of the extracted one.
 void evaluate_performance(const Case& c, const EvalOptions& options, Networks networks,
                           const std::shared_ptr<const PreparedCharacter>& character, CaseFigures& to) {
-  const auto source = open_source(case_source(c));
+  SourceOptions from = case_source(c);
+  from.edits = options.edits;
+  const auto source = open_source(from);
   CharacterClip clip{c.name, c.fps, {}};
   const std::vector<Joints>* const oracle =
       options.oracle == "skeleton" && to.truth ? &to.truth->source_joints : nullptr;
@@ -76,7 +83,7 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
            ": --oracle skeleton needs source_joints");
   Retargeter retargeter(std::move(networks), retarget_options(options.how));
   if (character) retargeter.set_target(character->target);
-  RetargetedSource retargeted(*source, retargeter, c.source, options.edits);
+  RetargetedSource retargeted(*source, retargeter, from);
   for (size_t t = 0;; ++t) {
     check_interrupt("in case " + c.name);
     US_CHECK(!oracle || t <= oracle->size(), c.name, ": the truth has too few source joints");
@@ -96,6 +103,77 @@ void evaluate_performance(const Case& c, const EvalOptions& options, Networks ne
   body.file.their_rig = false;
   body.file.shapes = *options.file_shapes;
   to.file = file_figures(body, clip, *to.truth);
+}
+
+/// Everybody in a scene, followed.
+class SceneWatch {
+ public:
+  SceneWatch(const EvalOptions& options, const Networks& networks)
+      : options_(options), networks_(networks), scene_(networks.extractor) {}
+
+  /// What is said of a scan, dt seconds after the one before.
+  PredictedPeople push(const Mesh& scan, float dt) {
+    const SceneFrame now = scene_.push(scan, dt);
+    PredictedPeople said;
+    said.owners.assign(scan.vertices.rows(), now.alone > 0 ? now.alone : kNobodysPoint);
+    for (size_t i = 0; i < now.owner.size(); ++i)
+      said.owners[i] = now.owner[i] > 0 ? now.owner[i] : kNobodysPoint;
+    for (const ScenePerson& person : now.people) {
+      if (person.unseen_s > 0) continue;
+      Retargeter& one =
+          followed_.try_emplace(person.id, networks_, retarget_options(options_.how)).first->second;
+      const Observation seen = one.observer().observe(part_of(scan, now, person.id), dt);
+      scene_.tell(person.id, seen, refusal(seen).empty());
+      const PerformedFrame frame = one.push(seen, dt);
+      if (!frame.flagged) said.people.push_back({person.id, frame.source.joints});
+    }
+    return said;
+  }
+
+ private:
+  const EvalOptions& options_;
+  const Networks& networks_;
+  Scene scene_;
+  std::map<int, Retargeter> followed_;
+};
+
+/// Each frame of a source and what is seen in it, without a target.
+template <class See>
+void watch(const SourceOptions& of, const EvalOptions& options, const Networks& networks, See&& see) {
+  const auto source = open_source(of);
+  Retargeter retargeter(networks, retarget_options(options.how));
+  RetargetedSource retargeted(*source, retargeter, of);
+  while (const auto frame = retargeted.next()) {
+    check_interrupt("in " + of.path);
+    see(*frame);
+  }
+}
+
+/// Who is in a scan; then each of these people in scans of them alone.
+void evaluate_scene(const Case& c, const EvalOptions& options, const Networks& networks, CaseFigures& to) {
+  US_CHECK(options.edits.empty(), c.name, ": points are taken out of no scene: each has an owner");
+  const auto source = open_source(case_source(c));
+  SceneWatch watched(options, networks);
+  while (const auto frame = source->next()) {
+    check_interrupt("in case " + c.name);
+    US_CHECK(frame->usable, c.source, ": ", frame->problem);
+    const auto began = std::chrono::steady_clock::now();
+    const PredictedPeople said = watched.push(frame->mesh, static_cast<float>(1 / source->fps()));
+    FrameTimes times;
+    times.extract = times.total = ms_since(began);
+    to.result.latency.add(times);
+    to.result.flagged += said.people.empty();
+    EvaluatedFrame evaluated;
+    evaluated.people = &said;
+    to.evaluator.push(evaluated);
+  }
+  for (size_t person = 0; person < c.alone.size(); ++person) {
+    SourceOptions alone = case_source(c);
+    alone.path = c.alone[person];
+    watch(alone, options, networks, [&](const RetargetedFrame& frame) {
+      to.evaluator.push_alone(frame.index, person, frame.result.source.joints);
+    });
+  }
 }
 
 /// True rotations, root and joints of the target: only weights and offsets are the method's.
@@ -156,6 +234,8 @@ void evaluate_case(const Bench& bench, const std::string& folder, const Case& c,
   CaseFigures to{evaluator, result, truth ? &*truth : nullptr, {}};
   if (knows_poses)
     evaluate_deformation(*truth, *mesh, *networks.deformer, to);
+  else if (truth && !truth->scene.empty())
+    evaluate_scene(c, options, networks, to);
   else
     evaluate_performance(c, options, std::move(networks), target, to);
   result.frames = result.latency.frames();

@@ -57,14 +57,28 @@ std::string clip_name(const std::string& source) {
   return stem.empty() ? "motion" : stem;
 }
 
-/// One source to its end, after what was performed before.
-void perform(const ExportOptions& options, const std::string& path, Retargeter& retargeter,
-             ExportInput& input) {
+/// A source's options for each clip that is made of it.
+std::vector<SourceOptions> performers_in(const ExportOptions& options, const std::string& path,
+                                         const Retargeter& retargeter) {
   SourceOptions one = options.source;
   one.path = path;
+  if (one.person != "all") return {one};
+  std::vector<SourceOptions> all;
+  for (const int id : all_people(one, retargeter.extractor())) {
+    one.person = std::to_string(id);
+    all.push_back(one);
+  }
+  return all;
+}
+
+/// One source to its end, after what was performed before.
+void perform(const ExportOptions& options, const SourceOptions& one, Retargeter& retargeter,
+             ExportInput& input) {
+  const std::string& path = one.path;
   const auto source = open_source(one);
-  RetargetedSource retargeted(*source, retargeter, path, one.edits);
-  CharacterClip clip{clip_name(path), source->fps(), {}};
+  RetargetedSource retargeted(*source, retargeter, one);
+  const std::string of_whom = options.source.person == "all" ? " person " + one.person : "";
+  CharacterClip clip{clip_name(path) + of_whom, source->fps(), {}};
   Progress progress(clip.name + " -> " + clip_name(options.target.path), source->count().value_or(0));
   while (const auto frame = retargeted.next()) {
     clip.poses.push_back(frame->result.pose);
@@ -102,7 +116,11 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
   retargeter.set_target(character->target);
   Performance out{{{character, retargeter.performer().deformer(), file}, {}, {}}, options.target.path};
-  for (const std::string& path : options.sources) perform(options, path, retargeter, out.input);
+  for (const std::string& path : options.sources)
+    for (const SourceOptions& one : performers_in(options, path, retargeter))
+      perform(options, one, retargeter, out.input);
+  US_CHECK(out.input.clips.size() == 1 || format.is_character, options.out, ": ", format.label,
+           " holds one motion, not ", out.input.clips.size(), " people's");
   return out;
 }
 

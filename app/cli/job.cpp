@@ -1,6 +1,7 @@
 #include "app/cli/job.hpp"
 
 #include <cstdio>
+#include <filesystem>
 
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
@@ -12,6 +13,7 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/networks/kernels/kernels.hpp"
 
 namespace understudy::app {
 namespace {
@@ -69,7 +71,7 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
     job.skeletons->add(frame.index, source_moment(frame, fps));
   if (job.evaluator)
     job.evaluator->push({&result.vertices, &result.joints, &result.pose.local, &result.source.joints, nullptr,
-                         frame.scan.usable ? &frame.scan.mesh : nullptr});
+                         frame.scan.usable ? &frame.scan.mesh : nullptr, nullptr, result.limbs});
   if (live) tell_live(frame);
 }
 
@@ -93,11 +95,10 @@ Running start(const JobOptions& options) {
   job.character = open_target(options.target, networks);
   networks = networks_for(std::move(networks), *job.character, on_their_rig(options.target, *job.character));
   job.source = open_source(options.source);
-  log::info("inference threads: " + nn::runtime_report().threads_why);
+  log::info(std::string("inference: one thread, ") + nn::kernels().name + " kernels");
   job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how));
   job.retargeter->set_target(job.character->target);
-  job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source.path,
-                                                      options.source.edits);
+  job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source);
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);
@@ -127,6 +128,13 @@ void finish(const JobOptions& options, Running& job) {
     if (!path.empty()) log::info("wrote " + path);
 }
 
+/// "out.glb" is "out-2.glb" for person 2.
+std::string path_of_person(const std::string& path, int id) {
+  const std::filesystem::path whole(path);
+  const std::string name = whole.stem().string() + "-" + std::to_string(id) + whole.extension().string();
+  return (whole.parent_path() / name).string();
+}
+
 }  // namespace
 
 void run_job(const JobOptions& options) {
@@ -146,6 +154,19 @@ void run_job(const JobOptions& options) {
   if (job.retargeted->frames() == 1)
     log::warn(options.source.path + ": holds only one frame: the result is a pose, not a motion");
   finish(options, job);
+}
+
+void run_jobs_of_all(const JobOptions& options) {
+  NetworkParts seeing;
+  seeing.extractor = true;
+  const Networks networks = nn::load_networks(network_options(options.how), seeing);
+  for (const int id : all_people(options.source, networks.extractor)) {
+    JobOptions one = options;
+    one.source.person = std::to_string(id);
+    for (std::string* path : {&one.out, &one.report, &one.preview, &one.skeletons})
+      if (!path->empty()) *path = path_of_person(*path, id);
+    run_job(one);
+  }
 }
 
 }  // namespace understudy::app

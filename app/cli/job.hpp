@@ -23,5 +23,8 @@ struct JobOptions {
 
 /// Does the job and reports progress. Files appear whole at the end, or not at all. Throws Error.
 void run_job(const JobOptions& options);
+/// A job for each person in the source, into files of their own: out-1.glb, out-2.glb, ... for out.glb.
+/// Throws Error.
+void run_jobs_of_all(const JobOptions& options);
 
 }  // namespace understudy::app

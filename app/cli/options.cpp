@@ -58,6 +58,9 @@ void add_scan_options(CLI::App& command, ScanEdits& edits) {
 
 void add_source_options(CLI::App& command, SourceOptions& source) {
   add_scan_options(command, source.edits);
+  command.add_option(
+      "--person", source.person,
+      "who of several people in scans: a number from 1, largest, or all (default: who is seen best)");
   command.add_option("--motion", source.motion,
                      "AMASS-format motion that an SMPL-format source body performs");
   command.add_option("--source-betas", source.betas, "shape parameters of the source body")->delimiter(',');

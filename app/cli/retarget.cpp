@@ -32,7 +32,10 @@ Action declare_retarget(CLI::App& command) {
   return [job] {
     if (job->out.empty() && job->report.empty() && job->preview.empty() && job->skeletons.empty())
       job->out = "out.glb";
-    run_job(*job);
+    if (job->source.person == "all")
+      run_jobs_of_all(*job);
+    else
+      run_job(*job);
     return 0;
   };
 }

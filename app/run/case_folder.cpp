@@ -48,6 +48,46 @@ std::vector<Rotations> rotation_frames(const std::vector<float>* values) {
   return result;
 }
 
+std::vector<SeenJoints> seen_frames(const std::vector<float>* values) {
+  std::vector<SeenJoints> result;
+  for (size_t i = 0; values && i < values->size(); i += kJointCount)
+    result.emplace_back(Eigen::Map<const SeenJoints>(&(*values)[i]));
+  return result;
+}
+
+/// `people_joints` [T, P, 22, 3], `people_seen` [T, P, 22], `people_touch` [T, P], `point_counts` [T] and
+/// `point_owners` of all frames, one after the other; none where there are no people_joints.
+std::vector<TruePeople> scene_frames(const Npz& npz, const std::string& path, int64_t& frames) {
+  const auto found = npz.find("people_joints");
+  if (found == npz.end()) return {};
+  const auto& shape = found->second.shape;
+  US_CHECK(shape.size() == 4 && shape[1] >= 1, path, ": people_joints has the wrong shape");
+  const int64_t people = shape[1];
+  const auto* joints = frames_of(npz, "people_joints", {people, kJointCount, 3}, path, frames);
+  const auto* seen = frames_of(npz, "people_seen", {people, kJointCount}, path, frames);
+  const auto* touch = frames_of(npz, "people_touch", {people}, path, frames);
+  const auto* counts = frames_of(npz, "point_counts", {}, path, frames);
+  US_CHECK(seen && touch && counts, path,
+           ": has people_joints, but not people_seen, people_touch, point_counts");
+  const auto& owners = require(npz, "point_owners", path).values;
+  std::vector<TruePeople> scene(frames);
+  size_t first = 0;
+  for (int64_t t = 0; t < frames; ++t) {
+    for (int64_t p = t * people; p < (t + 1) * people; ++p)
+      scene[t].people.push_back({joints_at(&(*joints)[p * kJointCount * 3]),
+                                 Eigen::Map<const SeenJoints>(&(*seen)[p * kJointCount]), (*touch)[p] != 0});
+    const float count = (*counts)[t];
+    US_CHECK(count >= 0 && count <= static_cast<float>(owners.size() - first), path,
+             ": point_owners ends before frame ", t + 1);
+    for (const size_t end = first + static_cast<size_t>(count); first < end; ++first) {
+      US_CHECK(owners[first] >= kUndecidedPoint && owners[first] < static_cast<float>(people), path,
+               ": point_owners names a person who is not there");
+      scene[t].owners.push_back(static_cast<int>(owners[first]));
+    }
+  }
+  return scene;
+}
+
 }  // namespace
 
 Points Truth::frame_vertices(int64_t t) const {
@@ -80,6 +120,13 @@ Case read_case(const std::string& folder) {
   result.source = text("source");
   US_CHECK(!result.source.empty(), path, ": has no \"source\"");
   result.target = text("target");
+  if (json.contains("alone")) {
+    US_CHECK(json["alone"].is_array(), path, ": \"alone\" is not a list of paths");
+    for (const auto& one : json["alone"]) {
+      US_CHECK(one.is_string(), path, ": \"alone\" is not a list of paths");
+      result.alone.push_back((root / one.get<std::string>()).string());
+    }
+  }
   result.truth = text("truth");
   if (json.contains("fps")) {
     US_CHECK(json["fps"].is_number() && json["fps"].get<double>() > 0, path,
@@ -113,6 +160,8 @@ Truth read_truth(const std::string& path) {
     }
   if (const auto* values = frames_of(npz, "source_buried", {}, path, truth.frames))
     truth.source_buried = *values;
+  truth.source_seen = seen_frames(frames_of(npz, "source_seen", {kJointCount}, path, truth.frames));
+  truth.scene = scene_frames(npz, path, truth.frames);
   const auto rest = npz.find("target_joints");
   if (rest != npz.end()) {
     US_CHECK(rest->second.shape == (std::vector<int64_t>{kJointCount, 3}), path,

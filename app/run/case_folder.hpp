@@ -7,6 +7,7 @@
 
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/metrics/hand_contact.hpp"
+#include "retarget/metrics/scene_score.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::app {
@@ -14,9 +15,10 @@ namespace understudy::app {
 struct Case {
   std::string name;
   double fps = 30;
-  std::string source;  ///< path
-  std::string target;  ///< path; empty: only the extraction is evaluated
-  std::string truth;   ///< path; empty: none
+  std::string source;              ///< path
+  std::string target;              ///< path; empty: only the extraction is evaluated
+  std::string truth;               ///< path; empty: none
+  std::vector<std::string> alone;  ///< paths: each person of a scene, scanned alone by the same sensors
   std::vector<std::string> tags;
 };
 
@@ -28,8 +30,10 @@ struct Truth {
   std::vector<Joints> joints, source_joints;
   std::vector<Rotations> rotations;  ///< local
   std::optional<Joints> target_joints;
-  std::vector<HandGaps> source_gaps;  ///< [T, 2, 5] metres: what the source's hands touch
-  std::vector<float> source_buried;   ///< [T] share of the source's hands and forearms inside its own body
+  std::vector<HandGaps> source_gaps;    ///< [T, 2, 5] metres: what the source's hands touch
+  std::vector<float> source_buried;     ///< [T] share of the source's hands and forearms inside its own body
+  std::vector<SeenJoints> source_seen;  ///< which of the source's joints the scan shows
+  std::vector<TruePeople> scene;  ///< of scans with several people and things; there source_joints is empty
   /// The vertices of one frame, [V, 3].
   Points frame_vertices(int64_t t) const;
 };

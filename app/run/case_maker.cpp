@@ -8,9 +8,12 @@
 #include <optional>
 #include <vector>
 
+#include "app/run/capture_suites.hpp"
+#include "app/run/case_writer.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/numpy_random.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/rng.hpp"
@@ -18,8 +21,7 @@
 #include "retarget/body/costume.hpp"
 #include "retarget/body/data_folder.hpp"
 #include "retarget/body/exact_body.hpp"
-#include "retarget/formats/npz.hpp"
-#include "retarget/formats/surface_writer.hpp"
+#include "retarget/body/hand_poses.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 
@@ -31,7 +33,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kExtractionCases = 40, kExtractionFrames = 12, kTargets = 4, kMotions = 4;
-constexpr int kBendFrames = 24;  // from straight to bent and back
+constexpr int kHandFrames = 45, kHandPeriod = 60;  // from one pose to another and back
+constexpr int kBendFrames = 24;                    // from straight to bent and back
 
 /// Which person performs which motion for which target.
 struct CasePlan {
@@ -68,6 +71,7 @@ struct Workshop {
   Body body;
   ExactBody shapes;
   double template_leg;
+  std::optional<HandPoses> hands;  // of the suite "hands"
   NumpyRandom random;
 
   Workshop(const SuiteOptions& wanted, DataSplit read)
@@ -76,7 +80,11 @@ struct Workshop {
         body(read_smpl_body(wanted.body.empty() ? split.body : wanted.body)),
         shapes(body),
         template_leg(shapes.shaped({}).leg()),
-        random(wanted.seed) {}
+        random(wanted.seed) {
+    if (wanted.suite != "hands") return;
+    US_CHECK(!split.hand_poses.empty(), wanted.data, ": has no hand poses, but the suite hands needs them");
+    hands.emplace(split.hand_poses);
+  }
 };
 
 /// Volume over height cubed.
@@ -183,7 +191,7 @@ Points64 surface(NumpyRandom& random, const Points64& vertices, const Faces& fac
   return points;
 }
 
-Points64 rows_of(const Points64& points, const std::vector<int64_t>& rows) {
+Points64 picked_rows(const Points64& points, const std::vector<int64_t>& rows) {
   Points64 picked(rows.size(), 3);
   for (size_t i = 0; i < rows.size(); ++i) picked.row(i) = points.row(rows[i]);
   return picked;
@@ -207,7 +215,7 @@ Points64 seen(NumpyRandom& random, const Points64& points) {
   std::vector<int64_t> rows;
   for (size_t i = 0; i < keep.size(); ++i)
     if (keep[i]) rows.push_back(static_cast<int64_t>(i));
-  return rows_of(points, rows);
+  return picked_rows(points, rows);
 }
 
 /// Points as a multi-view rig gives them: density by view, holes, noise, outliers, a bit of floor.
@@ -239,9 +247,7 @@ Points64 occluded(const CasePlan& plan, const Points64& points, const Joints64& 
   const PosedSkeleton truth{global_rotations(turned), joints.cast<float>()};
   LabelledPoints cloud{points.cast<float>(), {}};
   cloud.parts = nearest_parts(cloud.points, truth.joints);
-  uint64_t seed = 0;
-  for (const char c : plan.name) seed = 131 * seed + static_cast<unsigned char>(c);
-  Rng same(seed);
+  Rng same(case_seed(plan.name));
   kOcclusions[plan.occlusion].put(cloud, truth, same);
   return cloud.points.cast<double>();
 }
@@ -251,26 +257,6 @@ void write_target(const std::string& path, const ExactPerson& person) {
   for (const auto& v : person.vertices.rowwise()) text += printed("v %.6f %.6f %.6f\n", v[0], v[1], v[2]);
   for (const auto& f : person.faces.rowwise()) text += printed("f %d %d %d\n", f[0] + 1, f[1] + 1, f[2] + 1);
   write_file(path, text, /*synced=*/false);
-}
-
-template <class Frames>
-NpyArray frames_array(const Frames& frames, std::vector<int64_t> shape) {
-  NpyArray array;
-  array.shape = std::move(shape);
-  array.shape.insert(array.shape.begin(), static_cast<int64_t>(frames.size()));
-  for (const auto& frame : frames)
-    for (Eigen::Index i = 0; i < frame.size(); ++i)
-      array.values.push_back(static_cast<float>(frame.data()[i]));
-  return array;
-}
-
-NpyArray rotations_array(const std::vector<Rotations64>& frames) {
-  NpyArray array;
-  array.shape = {static_cast<int64_t>(frames.size()), kJointCount, 3, 3};
-  for (const Rotations64& frame : frames)
-    for (const Matrix3d& R : frame)
-      for (int k = 0; k < 9; ++k) array.values.push_back(static_cast<float>(R(k / 3, k % 3)));
-  return array;
 }
 
 /// Elbows, shoulders, knees and both hips, one after the other bent by 120 degrees and straightened, arms
@@ -305,7 +291,10 @@ ExactMotion bending_motion() {
 
 /// The clip of the case, turned to a random heading.
 ExactMotion turned_motion(Workshop& shop, const CasePlan& plan) {
-  const int frames = has_joints_only(shop.options.suite) ? kExtractionFrames : shop.options.frames;
+  const std::string& suite = shop.options.suite;
+  const int frames = has_joints_only(suite) ? kExtractionFrames
+                     : suite == "hands"     ? std::min(shop.options.frames, kHandFrames)
+                                            : shop.options.frames;
   ExactMotion motion = shop.options.suite == "bends"
                            ? bending_motion()
                            : read_exact_motion(plan.motion.path, plan.motion.start, frames);
@@ -313,6 +302,34 @@ ExactMotion turned_motion(Workshop& shop, const CasePlan& plan) {
   for (Rotations64& local : motion.local) local[Pelvis] = turn * local[Pelvis];
   for (Vector3d& root : motion.root) root = turn * root;
   return motion;
+}
+
+/// A pose of the file but its first, or any.
+HandAngles drawn_hand(const HandPoses& poses, NumpyRandom& random) {
+  if (random.random() < 0.7) return poses.poses().at(random.integers(1, ssize(poses.poses())));
+  return poses.sample({[&] { return random.random(); }, [&] { return random.normal(); },
+                       [&](int count) { return static_cast<int>(random.integers(0, count)); }});
+}
+
+/// T-pose vertices of each frame: both hands go from one random pose to another and back.
+std::vector<Points64> moving_fingers(Workshop& shop, const ExactPerson& person, size_t frames) {
+  const HandVertices hands = shop.hands->vertices_of(shop.body.weights, person.weights);
+  std::array<std::array<HandAngles, 2>, 2> ends;  // of each side
+  for (auto& side : ends)
+    for (HandAngles& end : side) end = drawn_hand(*shop.hands, shop.random);
+  std::vector<Points64> vertices;
+  for (size_t t = 0; t < frames; ++t) {
+    const auto share =
+        static_cast<float>(0.5 - 0.5 * std::cos(2 * M_PI * static_cast<double>(t) / kHandPeriod));
+    std::array<HandAngles, 2> now;
+    for (size_t side = 0; side < 2; ++side)
+      now[side] = ends[side][0] + share * (ends[side][1] - ends[side][0]);
+    const Points bent = shop.hands->apply(person.vertices.cast<float>(), hands, now);
+    Points64& all = vertices.emplace_back(person.vertices);  // exact but for the hands
+    for (const auto& rows : hands.rows)
+      for (const int row : rows) all.row(row) = bent.row(row).cast<double>();
+  }
+  return vertices;
 }
 
 /// What the source's hands touch, and how far its arms are in its own body.
@@ -350,13 +367,14 @@ void add_target(const Workshop& shop, const CasePlan& plan, const Performance& s
 
 void make_case(Workshop& shop, const CasePlan& plan) {
   const fs::path folder = fs::path(shop.options.out) / plan.name;
-  fs::remove_all(folder / "source");  // one made before may have had more frames
-  fs::create_directories(folder / "source");
+  make_scan_folder(folder / "source");
   const ExactMotion motion = turned_motion(shop, plan);
   const ExactPerson source = plan.dressed_source.empty()
                                  ? shop.shapes.shaped(plan.source)
                                  : exact_person(read_dressed_body(plan.dressed_source));
-  const Performance shown = perform(source, motion, source.leg() / shop.template_leg);
+  std::vector<Points64> fingers;
+  if (shop.hands) fingers = moving_fingers(shop, source, motion.local.size());
+  const Performance shown = perform(source, fingers, motion, source.leg() / shop.template_leg);
   Npz truth{{"rotations", rotations_array(motion.local)},
             {"source_joints", frames_array(shown.joints, {kJointCount, 3})}};
   const bool performed = plan.target || !plan.dressed_target.empty();
@@ -369,9 +387,8 @@ void make_case(Workshop& shop, const CasePlan& plan) {
     const auto scan = shop.options.suite == "captured" ? captured : surface;
     Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
     if (shop.options.suite == "occluded") points = occluded(plan, points, shown.joints[t], motion.local[t]);
-    const Points64 shuffled = rows_of(points, shop.random.permutation(points.rows()));
-    write_file((folder / "source" / printed("frame_%05zu.ply", t)).string(),
-               ply_bytes({}, shuffled.cast<float>(), ""), /*synced=*/false);
+    const Points64 shuffled = picked_rows(points, shop.random.permutation(points.rows()));
+    write_scan(folder / "source", t, shuffled.cast<float>());
   }
   write_npz((folder / "truth.npz").string(), truth);
   Json json = {{"fps", 30}, {"source", "source"}};
@@ -400,6 +417,7 @@ int make_suite(const SuiteOptions& options, const std::function<void(const std::
   DataSplit split = read_split(options.data, options.split);
   split.motions = motions_of(split);
   US_CHECK(!split.motions.empty(), options.data, ": the split \"", options.split, "\" names no motion");
+  if (is_capture_suite(options.suite)) return make_capture_suite(options, std::move(split), done);
   const bool dressed = options.suite == "clothed" || options.suite == "captured";
   US_CHECK(!dressed || !split.clothed.empty(), options.data, ": the split \"", options.split,
            "\" has no clothed people, but the suite ", options.suite, " needs them");

@@ -12,8 +12,9 @@ struct SuiteOptions {
   std::string out;              ///< folder; a case a folder is made in it
   std::string suite = "naked";  ///< see make_suite
   std::string split = "dev";
-  std::string body;   ///< SMPL-format; empty: the data folder's own
-  int frames = 90;    ///< of a case; those of joints alone have 12
+  std::string body;  ///< SMPL-format; empty: the data folder's own
+  int frames =
+      90;  ///< of a case; extraction and occluded have 12, of hands, scenes, partial and sensors fewer
   int points = 8000;  ///< of a scan, roughly
   int cases = 0;      ///< at most this many; 0: all
   uint32_t seed = 0;  ///< the same options give the same files
@@ -28,9 +29,17 @@ struct SuiteOptions {
 ///   captured: the naked suite's targets; dressed sources as a rig of cameras would see them: uneven density,
 ///     holes, noise, outliers, some floor
 ///   bends: the naked suite's targets and four more; elbows, shoulders, knees and hips bent by 120 degrees
+///   hands: the naked suite; the sources' fingers go from one random pose to another; at most 45 frames
 ///   extraction: 40 people and short clips, joints of the source only
 ///   occluded: the same in wide skirts, thick coats, much hair, with things in a hand, seen from one side or
 ///     without a limb (named by a tag)
+///   partial: 4 kinds x 4 people cut at hips, thighs and knees or chest, or seated behind a desk; truths
+///     hold which joints are seen; at most 30 frames, as those of
+///   sensors: 1, 3 and 10 simulated depth cameras x 5,000 to 100,000 points, with the ground
+///   scenes: 12 scenes of 1 to 4 people before 1 to 10 depth cameras, among ground, walls, furniture and a
+///     ball: apart, crossing, shaking hands, leaving and coming back; at most 40 frames; `points` are for one
+///     person, half as many more for each other. Truths hold the joints of each, and whose each point is;
+///     each person is scanned alone, too
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 
 }  // namespace understudy::app

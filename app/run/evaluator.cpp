@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/metrics/inside.hpp"
 
@@ -23,7 +24,7 @@ Evaluator::Evaluator(double fps, const Truth* truth, const Mesh* target, int slo
     if (!truth->source_gaps.empty()) hands_.emplace(target->vertices, target->faces, *truth->target_joints);
     if (!truth->rotations.empty()) bends_.emplace(target->vertices, target->faces, *truth->target_joints);
   }
-  if (truth) true_ = {truth->joints, truth->rotations, truth->source_joints, {}, {}};
+  if (truth) true_ = {truth->joints, truth->rotations, truth->source_joints, {}, {}, truth->source_seen};
   means_["medl_mm"].per_unit = means_["floor_mm"].per_unit = 1000;
 }
 
@@ -36,16 +37,33 @@ void Evaluator::push(const EvaluatedFrame& frame) {
   if (frame.source_joints) seen_.source_joints.push_back(*frame.source_joints);
   if (frame.raw_joints) seen_.raw_joints.push_back(*frame.raw_joints);
   if (frame.confidence) confidence_.push_back(*frame.confidence);
+  if (frame.truth) push_truth(*frame.truth);
+  if (frame.registered && frame.source_joints && frame.rotations)
+    registered_.push(*frame.registered, *frame.source_joints, global_rotations(*frame.rotations));
+  if (frame.visibility) seen_.visibility.push_back(*frame.visibility);
+  if (frame.people && truth_ && !truth_->scene.empty()) scene_.push(*frame.people, truth_->scene[frames_]);
   if (frame.vertices) push_surface(frame);
   if (frame.scan && frame.source_joints && frames_ % slow_every_ == 0)
-    note("inside", inside_share(*frame.scan, *frame.source_joints));
-  ++frames_;
+    note("inside", inside_share(*frame.scan, (*frame.source_joints)(joints_seen(frame.limbs), Eigen::all)));
+  if (legs_missing(frame.limbs)) ++without_legs_;
+  seen_.has_legs = 2 * without_legs_ < ++frames_;
+}
+
+void Evaluator::push_alone(size_t frame, size_t person, const Joints& joints) {
+  US_CHECK(truth_ && frame < truth_->scene.size() && person < truth_->scene[frame].people.size(),
+           "the truth has no person ", person + 1, " in frame ", frame + 1);
+  scene_.push_alone(frame, person, joints, truth_->scene[frame].people[person]);
 }
 
 void Evaluator::note(const char* key, double value) {
   Mean& mean = means_[key];
   mean.sum += value, ++mean.count;
   last_[key] = mean.per_unit * value;
+}
+
+void Evaluator::push_truth(const Extraction& truth) {
+  true_.source_joints.push_back(truth.joints);
+  if (truth.global) true_.rotations.push_back(local_rotations(*truth.global));
 }
 
 void Evaluator::push_surface(const EvaluatedFrame& frame) {
@@ -64,8 +82,16 @@ void Evaluator::push_surface(const EvaluatedFrame& frame) {
   const double depth = floor_penetration(p);
   note("floor_mm", depth);
   floor_worst_ = std::max(floor_worst_, depth);
+  if (frame.scan) push_lowest(p, frame.scan->vertices);
   if (hands_) push_hands(p);
   if (penetration_ && frames_ % slow_every_ == 0) note("self_penetration", penetration_->share(p));
+}
+
+void Evaluator::push_lowest(const Points& vertices, const Points& scan) {
+  const std::optional<float> target = lowest_height(vertices), source = lowest_height(scan);
+  if (!target || !source) return;
+  lowest_gaps_.push_back(1000.0 * static_cast<double>(std::abs(*target - *source)));
+  last_["lowest_gap_mm"] = lowest_gaps_.back();
 }
 
 void Evaluator::push_hands(const Points& vertices) {
@@ -98,18 +124,25 @@ Metrics Evaluator::metrics() const {
   for (const Metric& metric : metric_table()) {
     const auto summed = of_surfaces.find(metric.key);
     const double value = metric.of && is_known(metric, seen_, true_) ? metric.of(seen_, true_, fps_)
-                         : summed != of_surfaces.end()               ? summed->second
-                                                                     : std::nan("");
+                         : summed != of_surfaces.end() && (seen_.has_legs || !(metric.needs & kNeedsLegs))
+                             ? summed->second
+                             : std::nan("");
     if (std::isfinite(value)) result.emplace_back(metric.key, value);
   }
   return result;
 }
 
 std::map<std::string, double> Evaluator::surface_figures() const {
-  std::map<std::string, double> figures;
+  std::map<std::string, double> figures = scene_.figures();
   for (const auto& [key, mean] : means_)
     if (mean.count > 0) figures[key] = mean.value();
   if (figures.count("floor_mm")) figures["floor_worst_mm"] = 1000 * floor_worst_;
+  if (!lowest_gaps_.empty()) figures["lowest_gap_mm"] = percentile(lowest_gaps_, 50);
+  const std::vector<PartFigures> parts = registered_.parts();
+  if (!parts.empty()) {
+    figures["registered_rot_deg"] = mean_rot_deg(parts);
+    figures["registered_const_mm"] = mean_const_mm(parts);
+  }
   if (contacts_.count() == 0) return figures;
   figures["hand_contacts"] = contacts_.count();
   figures["hand_contact_kept"] = contacts_.kept();

@@ -12,8 +12,9 @@
 #include "retarget/metrics/bent_volume.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/metric_table.hpp"
+#include "retarget/metrics/registered_truth.hpp"
 #include "retarget/metrics/surface_metrics.hpp"
-#include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy::app {
 
@@ -28,7 +29,12 @@ struct EvaluatedFrame {
   const Joints* source_joints = nullptr;  ///< extracted, repaired and smoothed
   const Joints* raw_joints = nullptr;     ///< extracted, as predicted by the network
   const Mesh* scan = nullptr;
-  const Confidence* confidence = nullptr;  ///< of the raw joints
+  const Confidence* confidence = nullptr;   ///< of the raw joints
+  LimbsSight limbs{};                       ///< what the source shows; figures of its legs need them
+  const Extraction* truth = nullptr;        ///< of the source, where no sequence of it is known beforehand
+  const Points* registered = nullptr;       ///< the scan's vertices, in the order that all frames share
+  const SeenJoints* visibility = nullptr;   ///< of the source's joints
+  const PredictedPeople* people = nullptr;  ///< in a scene
 };
 
 /// Collects a sequence. Surface figures are summed as the frames come; the slow ones (self_penetration,
@@ -44,11 +50,17 @@ struct EvaluatedFrame {
 /// bent_volume is the volume about elbows, knees, shoulders and hips over that in T-pose, in frames in which
 /// they are turned by more than 90 degrees; bent_volume_true is the truth's. hand_stretch and head_stretch
 /// are PartStretch's, ..._true the truth's.
+///
+/// lowest_gap_mm is the median over frames of |the target's lowest vertex less the scan's|: a shoe that
+/// floats is seen in its shadow. registered_rot_deg and registered_const_mm are RegisteredTruth's means, of
+/// source_joints and rotations.
 class Evaluator {
  public:
   /// truth may be null; target (its T-pose) too. slow_every: frames between looks of the slow figures.
   Evaluator(double fps, const Truth* truth, const Mesh* target, int slow_every = 10);
   void push(const EvaluatedFrame& frame);
+  /// Somebody of a frame of a scene that was pushed, as extracted from a scan of them alone.
+  void push_alone(size_t frame, size_t person, const Joints& joints);
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
   /// Figures of the last frame's surface, by the metric's key; those not measured are left out.
@@ -60,6 +72,7 @@ class Evaluator {
   const JointSequence& raw_joints() const { return seen_.raw_joints; }
   const std::vector<Rotations>& rotations() const { return seen_.rotations; }
   const std::vector<Confidence>& confidence() const { return confidence_; }
+  const RegisteredTruth& registered() const { return registered_; }
 
  private:
   struct Mean {
@@ -69,7 +82,9 @@ class Evaluator {
     double value() const { return per_unit * sum / count; }
   };
   void note(const char* key, double value);
+  void push_truth(const Extraction& truth);
   void push_surface(const EvaluatedFrame& frame);
+  void push_lowest(const Points& vertices, const Points& scan);
   void push_hands(const Points& vertices);
   void push_bends(const Points& vertices, const Points& true_vertices);
   std::map<std::string, double> surface_figures() const;
@@ -82,12 +97,15 @@ class Evaluator {
   std::optional<BentVolume> bends_;   // of the target
   std::optional<PartStretch> parts_;  // of the target
   ContactsKept contacts_;
-  int64_t frames_ = 0;
+  SceneScore scene_;
+  int64_t frames_ = 0, without_legs_ = 0;
   MetricSequence seen_, true_;
   std::vector<Confidence> confidence_;
   std::map<std::string, double> last_;
   std::map<std::string, Mean> means_;  // of surface figures, by the metric's key
   double floor_worst_ = 0;
+  std::vector<double> lowest_gaps_;  // millimetres
+  RegisteredTruth registered_;
 };
 
 /// Means of figures, in the order of their first appearance.

@@ -16,9 +16,18 @@ Observation observed(Observer& observer, const SourceFrame& frame, float dt) {
   return seen;
 }
 
-RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, std::string name, ScanEdits edits)
-    : source_(source), retargeter_(retargeter), name_(std::move(name)), edits_(std::move(edits)) {
+void look_with(Retargeter& retargeter, Source& source) {
+  source.set_look([&retargeter](const Mesh& scan) { return retargeter.observer().look(scan); });
+}
+
+RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, const SourceOptions& options)
+    : source_(source),
+      retargeter_(retargeter),
+      name_(options.path),
+      edits_(options.edits),
+      cut_(retargeter.extractor(), options) {
   retargeter_.restart();
+  look_with(retargeter_, source_);
 }
 
 std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints>& known) {
@@ -26,6 +35,7 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
   auto scan = source_.next();
   if (!scan) return std::nullopt;
   if (scan->usable && !edits_.empty()) scan->mesh = understudy::apply(edits_, scan->mesh);
+  if (!known) cut_.apply(*scan, source_, frames_ + 1);
   RetargetedFrame frame;
   frame.times.read = ms_since(began);
   const float dt = static_cast<float>(1 / source_.fps());
@@ -33,6 +43,7 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
   Extraction given;
   if (known) given.joints = *known;
   const Observation seen = known ? observer.observe(given, scan->mesh, dt) : observed(observer, *scan, dt);
+  if (!known && scan->usable && !scan->skeleton) cut_.tell(seen);
   if (!seen.warning.empty()) doubt_ = seen.warning;
   if (scan->usable && !scan->skeleton && !refusal(seen).empty()) ++unrecognised_;
   frame.result = retargeter_.push(seen, dt);
@@ -43,12 +54,22 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
   frame.scan = std::move(*scan);
   frame.index = frames_++;
   flagged_ += frame.result.flagged ? 1 : 0;
+  count_limbs(frame.result);
   return frame;
+}
+
+void RetargetedSource::count_limbs(const PerformedFrame& frame) {
+  if (frame.flagged) return;
+  for (size_t k = 0; k < seen_.size(); ++k) seen_[k] += frame.limbs[k] == LimbSight::Seen ? 1 : 0;
+  const std::string unseen = told_.push(frame.limbs);
+  if (!unseen.empty()) log::warn(name_ + ": " + unseen);
 }
 
 void RetargetedSource::check_used() const {
   const std::string advice =
       std::string("; where a scan holds a floor or a second person, ") + kCleaning + " take them out";
+  const std::string missing = frames_ > flagged_ ? "" : cut_.missing();
+  US_CHECK(missing.empty(), name_, ": ", missing);
   US_CHECK(frames_ > flagged_, name_, ": no frame in it could be used", unrecognised_ > 0 ? advice : "");
   if (unrecognised_ == 0 && doubt_.empty()) return;
   std::string sentence = name_ + ": ";

@@ -1,8 +1,10 @@
 #include "app/run/source.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
@@ -13,10 +15,13 @@
 #include "retarget/formats/bytes.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/geometry/ground_finder.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion/clip.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/motion/skeletal_motion.hpp"
+#include "retarget/pipeline/observer.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy::app {
 namespace {
@@ -27,13 +32,50 @@ std::string in_words(double fps) {
   return printed("%g frames/s", fps);
 }
 
+/// A ground that is seen tells floor and tilt better than the lowest points do. Whether one is.
+bool stand_on_ground(ImportDecision& decision, Mesh first) {
+  constexpr float kLevel = 0.9998f, kOwnZero_m = 0.02f, kLeast_m2 = 1;  // cosine of 1 degree
+  decision.apply(first);
+  const std::optional<Ground> ground = GroundFinder().push(Cells(first, 0.05f));
+  if (!ground || ground->area_m2 < kLeast_m2) return false;  // a patch under somebody tells little of tilt
+  const FloorPlane& plane = ground->plane;
+  const bool is_tilted = plane.normal.y() < kLevel;
+  // Both are of the file's own zero, in metres.
+  const float floor = plane.height_m + plane.normal.y() * decision.floor;
+  if (!is_tilted && std::abs(plane.height_m) <= kOwnZero_m) return true;
+  if (is_tilted)
+    decision.axes = Eigen::Quaternionf::FromTwoVectors(plane.normal, Vec3::UnitY()) * decision.axes;
+  decision.floor = std::abs(floor) <= kOwnZero_m && !is_tilted ? 0.0f : floor;
+  decision.sentence += printed(", ground seen at %.2f m", static_cast<double>(decision.floor));
+  if (is_tilted)
+    decision.sentence +=
+        printed(", tilted by %.1f degrees",
+                static_cast<double>(std::acos(std::min(1.0f, plane.normal.y())) * 180 / kPi));
+  return true;
+}
+
+FeetCheck feet_check(const std::function<Extraction(const Mesh&)>& look) {
+  return [look](const Mesh& upright) -> std::optional<UnseenFeet> {
+    Observation seen;
+    try {
+      static_cast<Extraction&>(seen) = look(upright);
+    } catch (const Error&) {  // who looks at the frame next tells
+      return std::nullopt;
+    }
+    const bool is_person = refusal(seen).empty() && !is_implausible(seen);
+    const auto half = is_person ? half_body(seen) : std::nullopt;
+    if (!half) return std::nullopt;
+    return UnseenFeet{half->stature, half->floor, half->upright};
+  };
+}
+
 /// Scans on disk, brought into the program's units and axes as decided from the first usable frame.
 class ScanFiles final : public Source {
  public:
   explicit ScanFiles(const SourceOptions& options)
       : Source(options.fps > 0 ? options.fps : 30),
         scans_(options.path, scan_options(options)),
-        import_(options.import),
+        forced_(options.import),
         quiet_(options.quiet) {
     if (options.quiet) return;
     log::info(options.path + ": " + in_words(fps()) + (options.fps > 0 ? "" : " assumed (--fps changes it)"));
@@ -52,7 +94,10 @@ class ScanFiles final : public Source {
       return frame;
     }
     if (!decision_) {
-      decision_ = decide_import(frame->mesh, import_);
+      decision_ = decide_import(frame->mesh, forced_, look_ ? feet_check(look_) : FeetCheck());
+      const bool grounded = !forced_.floor && stand_on_ground(*decision_, frame->mesh);
+      if (grounded && decision_->again) decision_->again->floor.reset();  // it will be seen again
+      set_import(decision_->again);
       set_decision(decision_->sentence, decision_->to_file());
       if (!quiet_) log::info(frame->path + ": " + decision_->sentence);
     }
@@ -70,6 +115,7 @@ class ScanFiles final : public Source {
     scans_.seek(at_ = frame);
   }
   std::optional<int64_t> count() const override { return scans_.count(); }
+  void set_look(const std::function<Extraction(const Mesh&)>& look) override { look_ = look; }
 
  private:
   static ScanSourceOptions scan_options(const SourceOptions& options) {
@@ -80,7 +126,8 @@ class ScanFiles final : public Source {
   }
 
   ScanSource scans_;
-  ImportOptions import_;
+  ImportOptions forced_;
+  std::function<Extraction(const Mesh&)> look_;
   bool quiet_;
   std::optional<ImportDecision> decision_;
   int64_t at_ = 0, undecided_ = 0;  // the next frame, and up to which none decides; while nothing is decided
@@ -99,6 +146,16 @@ Eigen::VectorXf betas_in(const std::string& motion, Eigen::Index most) {
 
 Eigen::VectorXf as_vector(const std::vector<float>& values) {
   return Eigen::Map<const Eigen::VectorXf>(values.data(), values.size());
+}
+
+/// The skeleton as a similarity of the world moves it.
+Extraction moved(Extraction skeleton, const Eigen::Matrix4d& by) {
+  const Eigen::Matrix4f m = by.cast<float>();
+  const Mat3 turn = nearest_rotation(m.topLeftCorner<3, 3>());
+  skeleton.joints = (skeleton.joints * m.topLeftCorner<3, 3>().transpose()).rowwise() +
+                    m.topRightCorner<3, 1>().transpose();
+  for (Mat3& R : *skeleton.global) R = turn * R;
+  return skeleton;
 }
 
 /// Frames of an animation: it counts them.
@@ -128,7 +185,8 @@ class PerformingBody final : public AnimatedSource {
  public:
   PerformingBody(const SourceOptions& options, Motion motion)
       : AnimatedSource(options.fps > 0 ? options.fps : motion.fps, ssize(motion.poses)),
-        motion_(std::move(motion)) {
+        motion_(std::move(motion)),
+        tells_truth_(options.truth) {
     const Body body = read_smpl_body(options.path);
     US_CHECK(!motion_.poses.empty(), options.motion, ": has no frames");
     const bool turned = turn_upright(motion_, options.import.up);
@@ -150,6 +208,12 @@ class PerformingBody final : public AnimatedSource {
     SourceFrame out;
     out.mesh = posed(frame);
     decision_.apply(out.mesh);
+    if (!tells_truth_) return out;
+    const PosedSkeleton bones = forward_kinematics(person_.joints, motion_.poses[frame]);
+    Extraction truth;
+    truth.joints = bones.joints;
+    truth.global = bones.global;
+    out.truth = moved(std::move(truth), to_file().inverse());
     return out;
   }
 
@@ -169,9 +233,19 @@ class PerformingBody final : public AnimatedSource {
   }
 
   Motion motion_;
+  bool tells_truth_;
   ShapedBody person_;
   ImportDecision decision_;
 };
+
+SkeletalMotionOptions skeletal_options(const SourceOptions& options) {
+  SkeletalMotionOptions how;
+  how.clip = options.clip;
+  how.bones = options.bones;
+  how.import = options.import;
+  how.fps = options.fps;
+  return how;
+}
 
 /// A skeleton that moves.
 class MovingSkeleton final : public AnimatedSource {
@@ -210,6 +284,7 @@ class ScannedCharacter final : public AnimatedSource {
         decision_(decide_import(surface(0), options.import)) {
     set_clips(character_, clip_);
     set_decision(decision_.sentence, decision_.to_file());
+    if (options.truth) find_bones(options);
     if (!options.quiet)
       log::info(options.path + ": its surface is sampled as a scan, " + in_words(fps()) + ", " +
                 decision_.sentence);
@@ -221,7 +296,12 @@ class ScannedCharacter final : public AnimatedSource {
     Rng rng(static_cast<uint64_t>(frame) + 1);
     SourceFrame out;
     out.mesh.vertices = decision_.apply(sample_points(surface(frame), kPoints, rng));
+    if (bones_) out.truth = moved(bones_->skeleton(frame), to_file().inverse() * bones_->to_file());
     return out;
+  }
+  void find_bones(const SourceOptions& options) {
+    const std::string failure = failure_of([&] { bones_.emplace(character_, skeletal_options(options)); });
+    if (!failure.empty()) log::warn(options.path + ": is not judged against its bones: " + failure);
   }
   /// In the file's units and axes.
   Mesh surface(int64_t frame) const {
@@ -236,6 +316,7 @@ class ScannedCharacter final : public AnimatedSource {
   ClipTimes times_;
   MergedSurface merged_;
   ImportDecision decision_;
+  std::optional<SkeletalMotion> bones_;  // none: nobody asked
 };
 
 /// What asks for bones or animations of a source that has none would go unheard.
@@ -260,6 +341,8 @@ void check_body_options(const SourceOptions& options) {
            ": is a body in metres, its height follows from its shape (--source-betas)");
   US_CHECK(!options.follow, options.path,
            ": is a body that performs a motion, only a folder of scans can be followed");
+  US_CHECK(options.person.empty(), options.path,
+           ": is a body that performs a motion, only scans may hold several people (--person)");
 }
 
 void check_skeletal_options(const SourceOptions& options) {
@@ -268,6 +351,8 @@ void check_skeletal_options(const SourceOptions& options) {
   US_CHECK(options.betas.empty(), options.path,
            ": is a skeletal motion, only an SMPL-format body that performs a --motion takes --source-betas");
   US_CHECK(!options.follow, options.path, ": is a skeletal motion, only a folder of scans can be followed");
+  US_CHECK(options.person.empty(), options.path,
+           ": is a skeletal motion, only scans may hold several people (--person)");
 }
 
 std::unique_ptr<Source> as_scan(Character character, const SourceOptions& options) {
@@ -278,12 +363,7 @@ std::unique_ptr<Source> as_scan(Character character, const SourceOptions& option
 }
 
 std::unique_ptr<Source> as_skeleton(const Character& character, const SourceOptions& options) {
-  SkeletalMotionOptions how;
-  how.clip = options.clip;
-  how.bones = options.bones;
-  how.import = options.import;
-  how.fps = options.fps;
-  return std::make_unique<MovingSkeleton>(SkeletalMotion(character, how), options);
+  return std::make_unique<MovingSkeleton>(SkeletalMotion(character, skeletal_options(options)), options);
 }
 
 }  // namespace
@@ -312,7 +392,23 @@ bool turn_upright(Motion& motion, const std::string& up) {
   return true;
 }
 
+SourceOptions without_people(SourceOptions options) {
+  options.person.clear();
+  options.people.clear();
+  return options;
+}
+
+int person_number(const std::string& person) {
+  if (person.empty() || person == "best" || person == "largest" || person == "all") return 0;
+  const bool digits = person.size() < 6 &&
+                      std::all_of(person.begin(), person.end(), [](char c) { return c >= '0' && c <= '9'; });
+  const int number = digits ? std::stoi(person) : 0;
+  US_CHECK(number > 0, "--person ", person, ": must be a number from 1, largest, best or all");
+  return number;
+}
+
 void check_source_options(const SourceOptions& options) {
+  person_number(options.person);
   if (!options.motion.empty()) return check_body_options(options);
   if (is_motion_file(options.path)) return check_skeletal_options(options);
   std::error_code failed;

@@ -2,6 +2,7 @@
 // skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/scene/person_edits.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::app {
@@ -29,10 +31,13 @@ struct SourceOptions {
   std::string clip;      ///< of a skeletal motion's animations, by name or number from 1; empty: the longest
   BoneChoices bones;     ///< of a skeletal motion, as the user wants them
   bool quiet = false;    ///< log nothing: another source has logged it all
+  bool truth = false;    ///< of scans made from a body the bones come along, to be judged by
+  std::string person{};  ///< who of a scan: a number, "largest", "all"; empty or "best": who is seen best
+  std::vector<PersonEdit> people{};  ///< who is who, where it was not seen rightly
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
-/// What documents keep of it: `follow`, `quiet` and `edits` belong to one run.
+/// What documents keep of it: `follow`, `quiet`, `truth` and `edits` belong to one run.
 template <class V, class S>
 FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("path", source.path, FilePath{});
@@ -43,11 +48,19 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("as_scan", source.as_scan);
   visit("clip", source.clip);
   visit("bones", source.bones);
+  visit("person", source.person);
+  visit("people", source.people);
 }
+/// The options without those that say who of the scans is taken: scans that are read by equal ones are the
+/// same.
+SourceOptions without_people(SourceOptions options);
 
 /// A scan, or what a skeleton looks like, and then the skeleton itself.
 struct SourceFrame : ScanFrame {
   std::optional<Extraction> skeleton;  ///< nothing is to be extracted from the scan
+  // To be judged by alone, the method never sees them.
+  std::optional<Extraction> truth{};  ///< the bones that the scan was made from
+  Points registered{0, 3};  ///< the scan's vertices in their topology's order; see registered_source.hpp
 };
 
 /// One of the animations in a file.
@@ -70,6 +83,12 @@ class Source {
   virtual void seek(int64_t frame) = 0;
   /// What was decided about units, axes and floor, one sentence; empty before the first usable frame.
   const std::string& decision() const { return decision_; }
+  /// What is seen in the first usable frame then decides units and floor, too, where the scan shows somebody
+  /// without feet: its height is not theirs. Called on the thread of next(), at most once; what throws sees
+  /// nobody. Motions of bodies and skeletons do not ask.
+  virtual void set_look(const std::function<Extraction(const Mesh&)>& /*look*/) {}
+  /// The options by which the same is decided without a look; none: those that it was opened with.
+  const std::optional<ImportOptions>& import() const { return import_; }
   /// From frames as they are handed out back to the file's own units, axes and floor: scale, rotation and
   /// offset in one. Of a body that performs a motion to the body's, y up.
   /// The identity before the first usable frame.
@@ -86,14 +105,20 @@ class Source {
   explicit Source(double fps) : fps_(fps) {}
   void set_clips(const Character& character, int clip);
   void set_decision(const std::string& sentence, const Eigen::Matrix4d& to_file);
+  void set_import(const std::optional<ImportOptions>& import) { import_ = import; }
 
  private:
   double fps_;
   std::string decision_;
+  std::optional<ImportOptions> import_;
   Eigen::Matrix4d to_file_ = Eigen::Matrix4d::Identity();
   std::vector<SourceClip> clips_;
   int clip_ = -1;
 };
+
+/// The number in SourceOptions::person; 0: it is a word.
+/// Throws Error where it is no number from 1, nor "largest", "all", "best" or empty.
+int person_number(const std::string& person);
 
 /// Logs what it decided about units, axes and rate. Throws Error naming the path, also where
 /// an option is about something that such a source does not have, as bones of a scan.

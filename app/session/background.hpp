@@ -56,8 +56,12 @@ struct Studio::Background {
   std::string advised;        // the source key for which a clean-up was offered
   std::set<int64_t> doubted;  // takes whose target may be no person: to be asked about
   std::string plan_key, source_key, truth_path;
-  std::string extent_of;         // the source that SourceState::extent is of
-  std::string autosave_problem;  // the last one reported
+  std::string scans_key;  // of the source and its edits but for who is taken: of what is drawn
+  std::string extent_of;  // the source that SourceState::extent is of
+  std::string people_of;  // the scans that these are in
+  std::vector<PersonSeen> people_before, people_now;  // of them, until they are met again
+  std::string told_of;                                // the scans of which it was told who is taken
+  std::string autosave_problem;                       // the last one reported
   double since_autosave = 0;
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };

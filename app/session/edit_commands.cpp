@@ -79,6 +79,44 @@ void add_scan_edits(Commands& commands) {
                     [](Call& c) { c.document.scan_edits.largest_cluster = c.on(0); });
 }
 
+bool is_seen(const Session& session, int person) {
+  const auto& people = session.source.people;
+  return std::any_of(people.begin(), people.end(), [&](const PersonSeen& one) { return one.id == person; });
+}
+
+/// Frames of the whole source, those that are still to be read among them.
+PersonEdit person_range(const Call& c, size_t i) {
+  PersonEdit edit;
+  edit.first = c.number<int>(i, "frame"), edit.last = c.number<int>(i + 1, "frame");
+  const auto count = std::max<int64_t>(c.session.source.count.value_or(0), ssize(c.session.source.frames));
+  US_CHECK(edit.first >= 0 && edit.first <= edit.last && edit.last < count, "there are no frames ",
+           edit.first, " to ", edit.last, " among ", count);
+  return edit;
+}
+
+void correct_people(Call& c) {
+  PersonEdit edit = person_range(c, 0);
+  edit.person = c.number<int>(2, "person"), edit.other = c.number<int>(3, "person");
+  edit.how = c.choice<PersonEdit::How>(4, "correction", kPersonEditNames);
+  US_CHECK(is_seen(c.session, edit.person), "there is no person ", edit.person, " in the source");
+  US_CHECK(edit.other != edit.person, "a correction is about two people");
+  const bool joins = edit.how == PersonEdit::How::Join;
+  US_CHECK(
+      joins ? is_seen(c.session, edit.other) : edit.other >= kPersonIds.low && edit.other <= kPersonIds.high,
+      "there is no person ", edit.other, " in the source");
+  c.document.source.people.push_back(edit);
+}
+
+void add_person_edits(Commands& commands) {
+  commands.add_edit(
+      {"edit.people", "Correct who is who",
+       "FIRST LAST PERSON OTHER exchange|join: numbers of people; one that nobody has splits the "
+       "person off, join makes the other the person, too"},
+      correct_people);
+  commands.add_edit({"edit.people_clear", "Clear who is who"},
+                    [](Call& c) { c.document.source.people.clear(); });
+}
+
 void add_skeleton_edits(Commands& commands) {
   commands.add_edit({"edit.drag", "Drag a joint", "FRAME JOINT X Y Z [FALLOFF] [children]: metres"},
                     [](Call& c) {
@@ -224,7 +262,9 @@ void remove_limb_move(Call& c) {
 
 void remove_edit(Call& c) {
   const size_t kind = c.choice(
-      0, "kind", {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of", "rotations_of", "limb"});
+      0, "kind",
+      {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of", "rotations_of", "limb", "people"});
+  if (kind == 8) return remove_at(c.document.source.people, c, 1);
   if (kind == 5) return remove_drags_of(c, c.joint(1));
   if (kind == 6) return remove_rotations_of(c, c.joint(2));
   if (kind == 7) return remove_limb_move(c);
@@ -258,6 +298,15 @@ void move_swap(Call& c) {
   swap->first = to.first, swap->last = to.last;
 }
 
+void move_person_edit(Call& c) {
+  auto& edits = c.document.source.people;
+  const int index = c.number<int>(1, "edit");
+  US_CHECK(index >= 0 && index < ssize(edits), "there is no edit ", index, " among ", edits.size());
+  PersonEdit& edit = edits[static_cast<size_t>(index)];
+  const Trim to = frames_to(c, 2, edit.last - edit.first);
+  edit.first = to.first, edit.last = to.last;
+}
+
 void move_skips(Call& c) {
   auto& skip = c.take(1).pose_edits.skip;
   const int first = c.number<int>(2, "frame"), last = c.number<int>(3, "frame");
@@ -271,11 +320,12 @@ void move_skips(Call& c) {
 }
 
 void move_edit(Call& c) {
-  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips"});
+  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people"});
   if (kind == 0)
     return move_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"), frame_argument(c, 2));
   if (kind == 1) return move_swap(c);
   if (kind == 3) return move_skips(c);
+  if (kind == 4) return move_person_edit(c);
   move_all_at(c.take(1).pose_edits.rotate, c.number<int>(2, "frame"), frame_argument(c, 3));
 }
 
@@ -283,11 +333,12 @@ void add_rearrangement(Commands& commands) {
   commands.add_edit(
       {"edit.remove", "Remove an edit",
        "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
-       "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX"},
+       "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX | people INDEX"},
       remove_edit);
   commands.add_edit(
       {"edit.move", "Move an edit in time",
-       "drags FRAME TO | swap INDEX TO [LAST] | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO [LAST]"},
+       "drags FRAME TO | swap INDEX TO [LAST] | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO [LAST] | "
+       "people INDEX TO [LAST]"},
       move_edit);
 }
 
@@ -421,6 +472,7 @@ void add_history(Commands& commands) {
 void add_edit_commands(Commands& commands) {
   add_history(commands);
   add_scan_edits(commands);
+  add_person_edits(commands);
   add_skeleton_edits(commands);
   add_pose_edits(commands);
   add_pose_ranges(commands);

@@ -8,6 +8,7 @@
 #include "app/run/retargeted_source.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/base/worker.hpp"
@@ -41,11 +42,14 @@ struct Seen {
   Observation observation;
   double read_ms = 0;
   std::optional<Box> extent;  // of the scan before any edit
+  int person = 0;             // as KeptSource's, with the owners
+  std::shared_ptr<const KeptOwners> owners;
 };
 
 /// One extractor over the source so far.
 struct Stream {
   std::shared_ptr<SkeletonExtractor> extractor;  // null: nothing has asked for it yet
+  std::optional<PersonCut> cut;                  // none before the first scan
   std::optional<Observer> observer;              // none before the first frame
   std::vector<Seen> frames;
 };
@@ -126,7 +130,9 @@ struct Engine::Impl {
   std::vector<Method> wanted_extractions() const;
   bool read_frame();
   std::string nothing_in_it() const;
+  Observer& observer_of(const Method& method);
   void observe(const SourceFrame& frame, const Method& method, double read_ms);
+  Seen seen_in(const SourceFrame& frame, Stream& stream, double read_ms);
   float interval() const;
   Observation edited(const Seen& seen, size_t frame) const;
   bool send_source();
@@ -250,7 +256,7 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
 
 void Engine::Impl::close_source() {
   source.reset();
-  for (auto& [name, stream] : streams) stream.frames.clear(), stream.observer.reset();
+  for (auto& [name, stream] : streams) stream.frames.clear(), stream.observer.reset(), stream.cut.reset();
   opened = ended = has_faces = any_usable = false;
   unusable.clear();
   doubt.clear();
@@ -314,6 +320,7 @@ void Engine::Impl::open() {
   opened = true;
   try {
     source = open_source(plan.source);
+    source->set_look([this](const Mesh& scan) { return observer_of(plan.shown).look(scan); });
     SourceOpened event;
     event.name = file_name(plan.source.motion.empty() ? plan.source.path : plan.source.motion);
     event.count = source->count();
@@ -424,11 +431,19 @@ std::string Engine::Impl::nothing_in_it() const {
   return unusable.empty() ? path + ": has no frames" : path + ": no frame in it could be used: " + unusable;
 }
 
+/// Of scans, where none was made for skeletons.
+Observer& Engine::Impl::observer_of(const Method& method) {
+  std::optional<Observer>& observer = stream_of(method).observer;
+  if (!observer) observer.emplace(extractor_of(method));
+  return *observer;
+}
+
 /// Takes whose extractor cannot be had end here; where it is the view's, too, the source does.
 void Engine::Impl::observe(const SourceFrame& frame, const Method& method, double read_ms) {
   Stream& stream = stream_of(method);
   try {
-    if (!stream.observer) stream.observer.emplace(frame.skeleton ? nullptr : extractor_of(method));
+    if (frame.skeleton && !stream.observer) stream.observer.emplace();
+    observer_of(method);
   } catch (const std::exception&) {
     const std::string key = extraction_key(method);
     for (TakeWork& take : takes)
@@ -436,9 +451,34 @@ void Engine::Impl::observe(const SourceFrame& frame, const Method& method, doubl
     if (extraction_key(plan.shown) == key) throw;
     return;
   }
-  stream.frames.push_back({observed(*stream.observer, frame, interval()), read_ms, std::nullopt});
+  stream.frames.push_back(seen_in(frame, stream, read_ms));
   const std::string& warning = stream.frames.back().observation.warning;
   if (!warning.empty()) doubt = warning;
+}
+
+/// Of the person who is cut out of it, where it is a scan.
+Seen Engine::Impl::seen_in(const SourceFrame& frame, Stream& stream, double read_ms) {
+  Seen seen;
+  seen.read_ms = read_ms;
+  if (!frame.usable || frame.skeleton) {
+    seen.observation = observed(*stream.observer, frame, interval());
+    return seen;
+  }
+  const auto began = std::chrono::steady_clock::now();
+  if (!stream.cut) {
+    SourceOptions options = plan.source;
+    options.edits = plan.scan_edits;
+    options.quiet = true;  // the studio tells
+    stream.cut.emplace(stream.extractor, options);
+  }
+  SourceFrame part = frame;
+  stream.cut->apply(part, *source, ssize(stream.frames) + 1);
+  seen.person = stream.cut->person();
+  seen.owners = KeptOwners::of(frame.mesh.vertices, stream.cut->scene(), seen.person);
+  seen.read_ms += ms_since(began);
+  seen.observation = observed(*stream.observer, part, interval());
+  if (part.usable) stream.cut->tell(seen.observation);
+  return seen;
 }
 
 /// Seconds between two frames.
@@ -469,21 +509,26 @@ bool Engine::Impl::send_source() {
   SourceFrames event;
   event.first = sent;
   event.decision = source ? source->decision() : "";
-  if (source) event.to_file = source->to_file();
+  if (source) event.to_file = source->to_file(), event.import = source->import();
   event.has_faces = has_faces;
   event.doubt = std::exchange(doubt, {});
+  if (const auto& cut = stream_of(plan.shown).cut)
+    event.people = cut->people(), event.person = cut->person(), event.left_out = cut->scene().left_out;
   for (int n = 0; n < kReplayChunk && sent < frames.size(); ++n, ++sent) {
     const Observation seen = edited(frames[sent], sent);
     KeptSource kept;
     kept.raw = frames[sent].observation.joints;
     kept.raw_confidence = frames[sent].observation.confidence;
+    kept.visibility = seen.visibility;
     kept.exact = frames[sent].observation.exact;
     kept.points = static_cast<int>(seen.points);
     kept.extent = frames[sent].extent;
+    kept.person = frames[sent].person;
+    kept.owners = frames[sent].owners;
     kept.reason = refusal(seen);
     kept.flagged = !kept.reason.empty();
     if (!kept.flagged) kept.confidence_of = seen.confidence;
-    kept.confidence = kept.confidence_of.mean();
+    kept.confidence = kept.flagged ? 0 : mean_confidence(seen);
     kept.joints = alone ? alone->perform(seen, interval()).source.joints : seen.joints;
     event.frames.push_back(std::move(kept));
   }
@@ -500,6 +545,7 @@ void Engine::Impl::perform(TakeWork& take) {
     const Seen& seen = frames[take.done];
     const PerformedFrame result = take.performer->perform(edited(seen, take.done), interval());
     event.frames.push_back(kept(result));
+    if (!result.warning.empty()) event.warning = result.warning;
     if (take.done < take.sent_times) continue;
     take.sent_times = take.done + 1;
     const double extract_ms = seen.observation.extract_ms;

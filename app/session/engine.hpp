@@ -68,6 +68,10 @@ struct SourceFrames {
   std::string doubt;                                      ///< why it may be no person; set once
   std::string decision;                                   ///< about units, axes and floor
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();  ///< as SourceState's
+  std::optional<ImportOptions> import;                    ///< as SourceState's
+  std::vector<PersonSeen> people;                         ///< in all frames so far
+  int person = 0;                                         ///< as SourceState's
+  int left_out = 0;                                       ///< people so far who are too many to be followed
   std::vector<KeptSource> frames;
 };
 /// A target's file was read: how it came, upright and at its size. What performs is still to be bound.
@@ -94,6 +98,7 @@ struct TakeFrames {
   int first = 0;
   std::vector<KeptFrame> frames;
   std::vector<FrameTimes> times;  ///< of new frames; empty when redone
+  std::string warning;            ///< that the target falls apart; once
 };
 using EngineEvent =
     std::variant<SourceOpened, SourceFailed, SourceFrames, TakeLoaded, TakeReady, TakeFailed, TakeFrames>;

@@ -19,6 +19,9 @@ std::vector<Item> first_of(const std::vector<Item>& all, size_t count) {
 MetricSequence seen_in(const FigureInput& input, size_t count) {
   MetricSequence seen;
   seen.joints = first_of(input.joints, count);
+  size_t without_legs = 0;
+  for (size_t t = 0; t < count; ++t) without_legs += legs_missing(input.performed[t].limbs) ? 1 : 0;
+  seen.has_legs = 2 * without_legs < std::max<size_t>(count, 1);
   for (size_t t = 0; t < count; ++t) seen.rotations.push_back(input.shown.poses[t].local);
   for (size_t t = 0; t < count && input.source.size() >= count; ++t) {
     seen.source_joints.push_back(input.performed[t].source);

@@ -1,5 +1,5 @@
 // What was opened and could not be read is taken back; all else stays as it is. What is read but may be no
-// person is asked about, or offered to be cleaned up.
+// person is asked about; scans in which nobody is found are offered to be cleaned up.
 #include <algorithm>
 
 #include "app/session/background.hpp"
@@ -80,7 +80,7 @@ void Studio::roll_back_source() {
   });
 }
 
-/// Where no person is recognised in the first frames, once for each way in which the scan is cleaned.
+/// Where nobody is found in the first frames, once for each way in which the scan is cleaned.
 void Studio::offer_clean_up(const std::string& doubt) {
   constexpr std::ptrdiff_t kFewest = 3, kFirst = 60;  // frames
   Background& b = *background_;
@@ -90,17 +90,20 @@ void Studio::offer_clean_up(const std::string& doubt) {
   std::ptrdiff_t seen = 0, nobody = 0;
   for (std::ptrdiff_t t = 0; t < std::min(kFirst, ssize(source.frames)); ++t) {
     const KeptSource& frame = source.frames[t];
-    if (frame.points > 0) ++seen, nobody += frame.flagged ? 1 : 0;
+    if (!frame.extent) continue;
+    ++seen;
+    const bool elsewhere = frame.person > 0 && frame.points == 0;  // somebody who comes later, or has left
+    nobody += frame.flagged && !elsewhere ? 1 : 0;
   }
   const bool lost = seen >= kFewest && nobody * 5 >= seen * 4;
   if (doubt.empty() && !lost) return;
   b.advised = b.source_key;
   const bool cleaned = edits.floor && edits.largest_cluster;
-  const std::string sentence =
-      std::string("No person recognised") +
-      (cleaned ? ". Crop the scan in Edit > Scan" : ": the scan may hold a floor or a second person");
+  const std::string sentence = !lost     ? "It may be no person that is seen"
+                               : cleaned ? "No person recognised. Crop the scan in Edit > Scan"
+                                         : "No person recognised: a floor or things may hide them";
   log::warn(session_.document.source.path + ": " + (doubt.empty() ? sentence : doubt));
-  notify(sentence, true, cleaned ? Offer{} : Offer{"Clean up", "edit.clean_up", true});
+  notify(sentence, true, lost && !cleaned ? Offer{"Clean up", "edit.clean_up", true} : Offer{});
 }
 
 /// One after the other.

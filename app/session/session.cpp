@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/text.hpp"
+#include "retarget/editing/skeleton_edits.hpp"
 
 namespace understudy::app {
 namespace {
@@ -23,15 +24,31 @@ const std::vector<std::vector<std::string>> kMendEachOther = {
     {"picture.save", "video.save"},
     {"export.run", "export.all", "export.csv"}};
 
-/// Why a frame of the source is not to be trusted; empty when it is.
-std::string badness(const KeptSource& frame, const Eigen::Array<float, kJointCount, 1>& usual) {
+/// The joints as extracted and then edited, but not repaired.
+Joints seen_joints(const Session& session, int frame) {
+  Extraction seen;
+  seen.joints = session.source.frames[frame].raw;
+  return understudy::apply(session.document.skeleton_edits, seen, frame).joints;
+}
+
+/// Why a frame of the source is not to be trusted; empty when it is. `seen`: its seen_joints(). A bone that a
+/// user has put right is right, and what they make of one that was is their choice.
+std::string badness(const KeptSource& frame, const Joints& seen,
+                    const Eigen::Array<float, kJointCount, 1>& usual) {
   if (frame.flagged) return frame.reason;
   if (frame.confidence < kLowConfidence) return "Low confidence";
   for (int j = 1; j < kJointCount; ++j)
-    if (frame.confidence_of[j] < kWeakLimb) return "Low confidence: " + joint_label(j);
+    if (frame.visibility[j] >= kSeen && frame.confidence_of[j] < kWeakLimb)
+      return "Low confidence: " + joint_label(j);
   for (int j = 1; j < kJointCount; ++j) {
-    const float length = (frame.raw.row(j) - frame.raw.row(kParents[j])).norm();
-    if (usual[j] > 0.05f && std::abs(length - usual[j]) > std::max(kLengthOff * usual[j], kLengthOffM))
+    if (std::min(frame.visibility[j], frame.visibility[kParents[j]]) < kSeen) continue;
+    const auto length_in = [j](const Joints& joints) {
+      return (joints.row(j) - joints.row(kParents[j])).norm();
+    };
+    const auto is_off = [&](float length) {
+      return usual[j] > 0.05f && std::abs(length - usual[j]) > std::max(kLengthOff * usual[j], kLengthOffM);
+    };
+    if (const float length = length_in(seen); is_off(length) && is_off(length_in(frame.raw)))
       return bone_label(j) + printed(" changed length (%+.0f %%)", 100 * (length / usual[j] - 1));
   }
   return "";
@@ -68,6 +85,17 @@ std::optional<Box> everything(const Session& session) {
 }
 
 }  // namespace
+
+SourceOptions source_as_read(const Session& session) {
+  SourceOptions source = session.document.source;
+  if (session.source.import) source.import = *session.source.import;
+  return source;
+}
+
+bool has_several_people(const Session& session) {
+  const auto& people = session.source.people;
+  return std::count_if(people.begin(), people.end(), [](const PersonSeen& one) { return one.is_sure; }) > 1;
+}
 
 void choose_take(Session& session, int take) {
   session.selected_take = take;
@@ -136,7 +164,8 @@ std::vector<BadFrame> bad_frames(const Session& session) {
   std::vector<BadFrame> bad;
   const auto usual = usual_lengths(session.source.frames);
   for (size_t i = 0; i < session.source.frames.size(); ++i) {
-    const std::string why = badness(session.source.frames[i], usual);
+    const std::string why =
+        badness(session.source.frames[i], seen_joints(session, static_cast<int>(i)), usual);
     if (!why.empty()) bad.push_back({static_cast<int>(i), why});
   }
   return bad;

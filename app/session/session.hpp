@@ -11,9 +11,11 @@
 #include "app/run/case_folder.hpp"
 #include "app/run/evaluator.hpp"
 #include "app/run/latency.hpp"
+#include "app/run/person_cut.hpp"
 #include "app/session/document.hpp"
 #include "app/session/document_file.hpp"
 #include "app/session/history.hpp"
+#include "app/session/kept_owners.hpp"
 #include "app/session/playback.hpp"
 #include "app/session/series.hpp"
 #include "app/session/settings.hpp"
@@ -23,19 +25,22 @@
 
 namespace understudy::app {
 
-/// The data kept of each frame of the source: under 1 kB.
+/// The data kept of each frame of the source: under 1 kB, and whose its points are where there are several.
 struct KeptSource {
   Joints raw = Joints::Zero();  ///< as extracted, before the user's edits
   Confidence raw_confidence = Confidence::Zero();
+  Confidence visibility = Confidence::Ones();
   bool exact = false;  ///< a skeleton's own, not to be repaired
   /// 0..1 a joint
   Eigen::Array<float, kJointCount, 1> confidence_of = Eigen::Array<float, kJointCount, 1>::Zero();
   Joints joints = Joints::Zero();  ///< edited, repaired and smoothed; of the last good frame where flagged
-  float confidence = 0;            ///< mean over joints
+  float confidence = 0;            ///< mean over joints that are seen
   bool flagged = false;
-  std::string reason;         ///< why; empty when good
-  int points = 0;             ///< in the scan
-  std::optional<Box> extent;  ///< of the scan before any edit; none: it has no points
+  std::string reason;                        ///< why; empty when good
+  int points = 0;                            ///< in the scan
+  std::optional<Box> extent;                 ///< of the scan before any edit; none: it has no points
+  int person = 0;                            ///< who was cut out of the scan; 0: nobody, or there is no scan
+  std::shared_ptr<const KeptOwners> owners;  ///< of the scan after its edits; null: all is the person's
 };
 
 /// The source, as far as it has been read.
@@ -47,11 +52,17 @@ struct SourceState {
   std::string decision;  ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
   /// from the frames' joints to the file's coordinates
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
+  /// by which units, axes and floor are decided again as they were; none: by the document's
+  std::optional<ImportOptions> import;
   std::vector<SourceClip> clips;  ///< animations in the file; none of scans
   int clip = -1;                  ///< the one that is played
   /// of the points of all frames so far before any edit;
   /// stays while the same source is read again with other edits
   std::optional<Box> extent;
+  /// Who is in the scans, by id. While the same scans are read again who is not met yet stays among them.
+  std::vector<PersonSeen> people;
+  int person = 0;                   ///< who is cut out of them; 0: nobody yet
+  bool has_scene = false;           ///< the scans hold more than one person
   SharedFrames<KeptSource> frames;  ///< of the extractor of the first take
   bool has_faces = false;
   int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
@@ -72,6 +83,7 @@ struct TakeState {
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
   SharedFrames<KeptFrame> performed;         ///< the engine's frames
+  LimbsSight limbs{};                        ///< the least that is seen of each limb so far
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
   std::vector<Joints> joints;  ///< of `shown`
   std::vector<Series> series;  ///< as many values as frames shown
@@ -183,6 +195,11 @@ struct Session {
   bool drag_children = false, mirror_joint = true;
 };
 
+/// The document's source, with what was decided about units, axes and floor when its first frame was looked
+/// at.
+SourceOptions source_as_read(const Session& session);
+/// Whether people are told apart by their colours: there is more than one.
+bool has_several_people(const Session& session);
 /// Makes a take the current one and its view the active one. The take must be in the document, or come with
 /// the command that runs.
 void choose_take(Session& session, int take);

@@ -38,7 +38,9 @@ std::optional<Joints> SourceDrag::push(const std::vector<SkeletonEdit>& edits, i
   if (kept.flagged) return std::nullopt;
   Extraction seen;
   seen.joints = kept.raw, seen.confidence = kept.raw_confidence, seen.exact = kept.exact;
-  return state.filter.push(understudy::apply(edits, seen, frame), std::exchange(state.waited, 0)).joints;
+  seen.visibility = kept.visibility;
+  const float dt = std::exchange(state.waited, 0);
+  return state.filter.push(state.unseen.push(understudy::apply(edits, seen, frame), dt), dt).joints;
 }
 
 }  // namespace understudy::app

@@ -5,6 +5,7 @@
 
 #include "app/session/session.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy::app {
 
@@ -21,6 +22,7 @@ class SourceDrag {
 
  private:
   struct State {
+    UnseenLimbs unseen;
     JointFilter filter;
     float waited = 0;  // seconds since the last good frame
   };

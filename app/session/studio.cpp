@@ -143,6 +143,9 @@ void Studio::fail(const std::string& sentence, const std::string& details) {
 }
 
 void Studio::notify(const std::string& sentence, bool warning, const Offer& offer) {
+  const Arguments offered = split_line(offer.command);
+  if (offered.size() == 2 && offered[0] == "file.show")
+    log::info(offered[1] + ": is written");  // the notice is gone soon, and names no folder
   const auto kind = warning ? Notice::Kind::Warning : Notice::Kind::Info;
   const double until = offer.waits ? std::numeric_limits<double>::infinity() : session_.time + kNoticeSeconds;
   session_.notices.push_back({kind, sentence, "", until, offer, ++session_.notices_made});
@@ -231,7 +234,12 @@ void Studio::follow_source(bool other_path) {
   const ScanEdits edits = in_effect(document.scan_edits);
   const std::string key = key_of(document.source, edits);
   if (key != b.source_key) {
-    cache_.set_source(document.source, edits);
+    const std::string scans = key_of(without_people(document.source), edits);
+    if (scans != b.scans_key) {
+      cache_.set_source(without_people(document.source), edits);
+      session_.source.import.reset();
+      b.scans_key = scans;
+    }
     auto& notices = session_.notices;
     notices.erase(std::remove_if(notices.begin(), notices.end(),
                                  [](const Notice& notice) { return notice.offer.waits; }),

@@ -12,6 +12,8 @@
 
 namespace understudy::app {
 
+struct SourceFrames;
+
 /// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
   std::function<Networks(const Method&, const NetworkParts&)> networks;  ///< called off the UI thread
@@ -92,6 +94,8 @@ class Studio {
   void apply_weights(size_t k);
   void ask_about_paint();
   void ask_about_persons();
+  void tell_unseen(size_t k, int first);
+  void take_in_people(const SourceFrames& event);
   void offer_clean_up(const std::string& doubt);
   void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
   void roll_back_source();

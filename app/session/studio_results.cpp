@@ -82,12 +82,21 @@ TakeState* Studio::take_of(int64_t id) {
 
 template <>
 void Studio::take_in(SourceOpened& event) {
+  Background& b = *background_;
   const int64_t generation = session_.source.generation + 1;
-  const std::string source = key_of(session_.document.source);
-  const bool again = std::exchange(background_->extent_of, source) == source;
+  const std::string source = key_of(without_people(session_.document.source));
+  const bool again = std::exchange(b.extent_of, source) == source;
   const std::optional<Box> extent = again ? session_.source.extent : std::nullopt;
+  const std::optional<ImportOptions> import = session_.source.import;
+  const bool same_scans = std::exchange(b.people_of, b.scans_key) == b.scans_key;
+  b.people_before = same_scans ? std::move(session_.source.people) : std::vector<PersonSeen>();
+  const bool had_scene = session_.source.has_scene;
+  b.people_now.clear();
   session_.source = SourceState{};
   session_.source.extent = extent;
+  session_.source.import = import;
+  session_.source.people = b.people_before;
+  session_.source.has_scene = same_scans && had_scene;
   session_.source.generation = generation;
   session_.source.name = event.name;
   session_.source.count = event.count;
@@ -141,14 +150,44 @@ void Studio::note_source_read() {
 template <>
 void Studio::take_in(SourceFrames& event) {
   SourceState& source = session_.source;
-  for (const KeptSource& frame : event.frames) source.extent = united(source.extent, frame.extent);
+  for (const KeptSource& frame : event.frames) {
+    source.extent = united(source.extent, frame.extent);
+    source.has_scene = source.has_scene || frame.owners;
+  }
   if (put(source.frames, event.first, std::move(event.frames))) ++source.generation;
   show_skeleton(event.first);
   note_source_read();
   source.decision = event.decision;
   source.to_file = event.to_file;
+  source.import = event.import;
+  cache_.set_source(without_people(source_as_read(session_)), in_effect(session_.document.scan_edits));
+  take_in_people(event);
   offer_clean_up(event.doubt);
   source.has_faces = event.has_faces;
+}
+
+/// Tells once of these scans who is taken where the user did not choose.
+void Studio::take_in_people(const SourceFrames& event) {
+  Background& b = *background_;
+  SourceState& source = session_.source;
+  source.person = event.person;
+  source.people = b.people_now = event.people;
+  for (const PersonSeen& before : b.people_before)
+    if (std::none_of(event.people.begin(), event.people.end(),
+                     [&](const PersonSeen& now) { return now.id == before.id; }))
+      source.people.push_back(before);
+  std::sort(source.people.begin(), source.people.end(),
+            [](const auto& a, const auto& c) { return a.id < c.id; });
+  const auto sure = std::count_if(event.people.begin(), event.people.end(),
+                                  [](const PersonSeen& one) { return one.is_sure; });
+  const std::string& wanted = session_.document.source.person;
+  if (sure < 2 || person_number(wanted) > 0 || b.told_of == b.scans_key) return;
+  b.told_of = b.scans_key;
+  std::string sentence =
+      std::to_string(sure) + " people are seen: person " + std::to_string(event.person) +
+      (wanted == "largest" ? " performs, who has most points" : " performs, who is seen best");
+  if (event.left_out > 0) sentence += "; more are left out";
+  notify(sentence + ". A click on another in the source's view chooses them");
 }
 
 template <>
@@ -208,6 +247,20 @@ void Studio::take_in(TakeFailed& event) {
   fail(event.sentence + (gone ? taken_off({&session_.settings.recent_targets}, path) : ""), "target.add");
 }
 
+/// Of each limb once, and anew where the frames are.
+void Studio::tell_unseen(size_t k, int first) {
+  TakeState& take = session_.takes[k];
+  if (first == 0) take.limbs = {};
+  UnseenTold told(take.limbs);
+  for (size_t t = static_cast<size_t>(first); t < take.performed.size(); ++t) {
+    const std::string sentence = told.push(take.performed[t].limbs);
+    if (sentence.empty()) continue;
+    log::warn(session_.document.takes[k].name + ": " + sentence);
+    notify(sentence, true);
+  }
+  take.limbs = told.limbs();
+}
+
 template <>
 void Studio::take_in(TakeFrames& event) {
   TakeState* const take = take_of(event.id);
@@ -217,10 +270,12 @@ void Studio::take_in(TakeFrames& event) {
   const size_t k = take - session_.takes.data();
   if (k == 0) show_skeleton(event.first);
   if (redone) ++take->generation;
+  tell_unseen(k, event.first);
   if (session_.document.takes[k].pose_edits.empty() || !redone)
     append_shown(*take, event.first, session_.source.fps);
   background_->applied[event.id].measured = false;
   background_->dirty.insert(event.id);
+  if (!event.warning.empty()) notify(session_.document.takes[k].name + ": " + event.warning, true);
 }
 
 void Studio::take_in_refined() {
@@ -292,13 +347,24 @@ struct Measuring {
   SourceOptions source;
   ScanEdits edits;
   Motion shown;
-  std::vector<Joints> joints, raw_joints, source_joints;
+  std::vector<Joints> joints, source_joints;
+  SharedFrames<KeptSource> kept;
+  std::vector<LimbsSight> limbs;
   std::shared_ptr<const PreparedCharacter> character;
   std::shared_ptr<const Deformer> deformer;
   std::shared_ptr<const Truth> truth;
   std::vector<Series> series;
   Metrics metrics;
 };
+
+/// Leaves what is the person's. False: that is nothing.
+bool cut_out(const KeptSource& kept, Mesh& scan) {
+  if (!kept.owners) return true;
+  SceneFrame scene;
+  scene.owner = kept.owners->owners(scan.vertices);
+  if (!scene.owner.empty()) scan = part_of(scan, scene, kept.person);
+  return scan.vertices.rows() > 0;
+}
 
 void evaluate_all(Measuring& m, JobControl& control) {
   const size_t count = m.shown.poses.size();
@@ -318,8 +384,9 @@ void evaluate_all(Measuring& m, JobControl& control) {
     auto scan = source->next();
     if (scan && scan->usable) scan->mesh = understudy::apply(m.edits, scan->mesh);
     const Points vertices = m.character->surface.in_file_order(m.deformer->deform(m.shown.poses[t]));
-    evaluator.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.raw_joints[t],
-                    scan && scan->usable ? &scan->mesh : nullptr});
+    if (scan && scan->usable) scan->usable = cut_out(m.kept[t], scan->mesh);
+    evaluator.push({&vertices, &m.joints[t], &m.shown.poses[t].local, &m.source_joints[t], &m.kept[t].raw,
+                    scan && scan->usable ? &scan->mesh : nullptr, nullptr, m.limbs[t]});
     for (Series& series : m.series)
       if (const auto found = evaluator.last().find(series.key); found != evaluator.last().end())
         series.values[t] = static_cast<float>(found->second);
@@ -333,13 +400,14 @@ void Studio::measure(size_t k) {
   const int64_t id = background_->take_ids[k];
   const TakeState& take = session_.takes[k];
   auto m = std::make_shared<Measuring>();
-  m->source = session_.document.source;
+  m->source = source_as_read(session_);
   m->edits = session_.document.scan_edits;
   m->shown = take.shown;
   m->joints = take.joints;
-  for (const KeptSource& frame : session_.source.frames) m->raw_joints.push_back(frame.raw);
-  for (const KeptFrame& frame : take.performed) m->source_joints.push_back(frame.source);
-  if (std::min(m->raw_joints.size(), m->source_joints.size()) < m->shown.poses.size()) return;
+  m->kept = session_.source.frames;
+  for (const KeptFrame& frame : take.performed)
+    m->source_joints.push_back(frame.source), m->limbs.push_back(frame.limbs);
+  if (std::min(m->kept.size(), m->source_joints.size()) < m->shown.poses.size()) return;
   m->character = take.character;
   m->deformer = take.deformer;
   m->truth = session_.truth;
@@ -373,6 +441,8 @@ void Studio::take_in_results() {
     });
     if (applied.measuring != 0 && !running) applied.measuring = 0;
   }
+  if (!session_.working && !session_.paused && !b.people_before.empty())
+    b.people_before.clear(), session_.source.people = b.people_now;
   measure_finished();
 }
 

@@ -167,7 +167,8 @@ void compare(Call& c) {
     US_CHECK(equals != std::string::npos, "a setting is written as engine=paper, not ", setting);
     const std::string key = present_name(setting.substr(0, equals)), value = setting.substr(equals + 1);
     set_method(other.method, key, value);
-    other.name.append(i == 1 ? " (" : ", ").append(key).append(" ").append(value);
+    const std::string shown = key == "engine" ? "transfer" : key;  // as the panels call it
+    other.name.append(i == 1 ? " (" : ", ").append(shown).append(" ").append(value);
   }
   other.name += c.arguments.size() > 1 ? ")" : " (2)";
   c.document.takes.push_back(std::move(other));

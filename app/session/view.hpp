@@ -102,6 +102,7 @@ struct Layers {
   bool trails = false;     ///< paths of View::trail_joints
   bool ghosts = false;     ///< past and coming frames, faint
   bool wireframe = false;  ///< edges of the surface's faces over it
+  bool scene = true;       ///< of a scan what is nobody's: ground and things
   Colouring colouring = Colouring::Plain;
 };
 template <class V, class S>
@@ -115,6 +116,7 @@ FieldsOf<S, Layers> fields(V& visit, S& layers) {
   visit("trails", layers.trails);
   visit("ghosts", layers.ghosts);
   visit("wireframe", layers.wireframe);
+  visit("scene", layers.scene);
   visit("colouring", layers.colouring, kColouringNames);
 }
 

@@ -83,8 +83,8 @@ void add_rest(Extent& all, const TakeState& take) {
   add_points(all, vertices, from);
 }
 
-/// Around the scan, no further from the person than half a metre: strays and the floor do not count. Of a
-/// take that is not bound around its joints.
+/// Around the scan, no further from the person than half a metre: strays and the floor do not count; where
+/// people are told apart, around all of them. Of a take that is not bound around its joints.
 Extent scan_extent(const Session& session, int pane, int frame, const Joints& joints) {
   constexpr float kBody = 0.2f,
                   kReach = 0.5f;  // metres of a body beyond its outermost joints; of clothes and props
@@ -94,6 +94,12 @@ Extent scan_extent(const Session& session, int pane, int frame, const Joints& jo
   const auto grown = [&](float by) {
     return Extent(person.min() - Vec3::Constant(by), person.max() + Vec3::Constant(by));
   };
+  const KeptSource* const seen = at_or_null(session.source.frames, frame);
+  if (pane == 0 && seen && seen->owners) {
+    all = grown(kBody);
+    for (const auto& [id, box] : seen->owners->people()) all.extend(Extent(box.low, box.high));
+    return all;
+  }
   const ScanEdits& edits = session.document.scan_edits;
   const bool thinned = edits.floor || edits.largest_cluster;
   const bool scanned = pane == 0 && frame < ssize(session.source.frames) && !thinned;

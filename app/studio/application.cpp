@@ -34,7 +34,7 @@ constexpr double kListening = 0.008;     // between looks at what works in the b
 constexpr double kTooltips = 1.0;        // after the last input things may still appear by themselves
 constexpr double kLookingAround = 0.05;  // between frames in that time
 constexpr double kBlink = 0.25;          // while a text is being typed
-constexpr double kBarMoves = 0.1;        // progress that nothing is known of
+constexpr double kBarMoves = 0.2;        // a job's bar: what draws less often leaves the job the cores
 constexpr double kAsleep = 0.5;          // between looks at nothing, for autosave
 constexpr double kLongest = 0.25;        // time that one frame plays: after a sleep nothing jumps
 constexpr int kSettling = 3;             // frames that widgets take to come to rest
@@ -209,7 +209,7 @@ std::string Application::fingerprint() const {
   for (const TakeState& take : s.takes)
     key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
                   take.performed.size(), take.series.size(), take.as_loaded != nullptr);
-  for (const JobView& job : s.jobs) key += key_of(job.id, static_cast<int>(job.progress * 200));
+  for (const JobView& job : s.jobs) key += key_of(job.id);
   if (const auto said = status_line(s)) key += key_of(said->text);
   return key;
 }

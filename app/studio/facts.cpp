@@ -39,6 +39,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"frame", std::to_string(shown_frame(session))},
       {"source_frames", count(session.source.frames.size())},
       {"source", session.document.source.path},
+      {"people", count(session.source.people.size())},
+      {"person", std::to_string(session.source.person)},
       {"takes", count(session.document.takes.size())},
       {"ready_takes", takes([](const TakeState& take) { return take.ready; })},
       // whose file has been read, whether they are bound yet or not

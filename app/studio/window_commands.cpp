@@ -43,7 +43,7 @@ class Stage {
         options_(saving.options),
         cache_(kCacheMb),
         context_(render::make_offscreen_context()) {
-    SourceOptions source = session_.document.source;
+    SourceOptions source = source_as_read(session_);
     source.quiet = true;
     cache_.set_source(source, session_.document.scan_edits);
     session_.playback.playing = session_.playback.live = false;
@@ -175,6 +175,7 @@ void show_file(Call& c) {
       ::posix_spawn(&pid, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(arguments), environ) == 0;
   US_CHECK(began && ::waitpid(pid, &status, 0) == pid && status == 0, folder,
            ": cannot be shown, xdg-open is not installed");
+  c.studio.notify(file_name(c.path(0)) + " is in " + folder);  // xdg-open may know no program for folders
 }
 
 }  // namespace

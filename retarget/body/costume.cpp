@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
+#include "retarget/body/cell_image.hpp"
 #include "retarget/math/directions.hpp"
 
 namespace understudy {
@@ -18,31 +18,6 @@ constexpr float kUnder = 0.01f;  // what pokes out of a skirt by so much is stil
 
 Vec3 at(const PosedSkeleton& truth, int joint) {
   return truth.joints.row(joint).transpose();
-}
-
-/// Points to the square metre: a body's surface is about twice the square of its leg's length and a bit.
-float density(const LabelledPoints& cloud, const PosedSkeleton& truth) {
-  const float leg = leg_length(truth.joints);
-  return static_cast<float>(cloud.points.rows()) / (2.4f * leg * leg);
-}
-
-Eigen::Map<const Points> rows_of(const std::vector<Vec3>& points) {
-  return {reinterpret_cast<const float*>(points.data()), static_cast<Eigen::Index>(points.size()), 3};
-}
-
-void append(LabelledPoints& cloud, const std::vector<Vec3>& points, const std::vector<int>& parts) {
-  const Eigen::Index before = cloud.points.rows();
-  cloud.points.conservativeResize(before + static_cast<Eigen::Index>(points.size()), 3);
-  cloud.points.bottomRows(points.size()) = rows_of(points);
-  cloud.parts.insert(cloud.parts.end(), parts.begin(), parts.end());
-}
-
-template <class Stays>
-void keep_where(LabelledPoints& cloud, Stays&& stays) {
-  std::vector<int> kept;
-  for (int i = 0; i < cloud.points.rows(); ++i)
-    if (stays(i)) kept.push_back(i);
-  keep_rows(cloud, kept);
 }
 
 bool is_under_skirt(int part) {
@@ -240,28 +215,16 @@ void see_from_one_side(LabelledPoints& cloud, const PosedSkeleton& truth, Rng& r
   const float leg = leg_length(truth.joints), turn = rng.uniform(-kPi, kPi), rise = rng.uniform(-0.2f, 0.6f);
   const Vec3 from(std::cos(rise) * std::sin(turn), std::sin(rise), std::cos(rise) * std::cos(turn));
   const Vec3 right = from.unitOrthogonal(), up = from.cross(right);
-  using Cell = std::pair<int, int>;
-  std::map<Cell, float> nearest;
-  const auto cell_of = [&](const Vec3& x) {
-    return Cell{static_cast<int>(std::floor(x.dot(right) / (kCell * leg))),
-                static_cast<int>(std::floor(x.dot(up) / (kCell * leg)))};
-  };
-  for (Eigen::Index i = 0; i < cloud.points.rows(); ++i) {
+  const float cell = kCell * leg;
+  Points image(cloud.points.rows(), 3);
+  for (Eigen::Index i = 0; i < image.rows(); ++i) {
     const Vec3 x = cloud.points.row(i);
-    const auto [at, is_new] = nearest.emplace(cell_of(x), x.dot(from));
-    if (!is_new) at->second = std::max(at->second, x.dot(from));
+    image.row(i) << x.dot(right) / cell, x.dot(up) / cell, x.dot(from);
   }
+  const CellImage seen(image);
   std::vector<int> kept;
-  for (int i = 0; i < cloud.points.rows(); ++i) {
-    const Vec3 x = cloud.points.row(i);
-    const Cell cell = cell_of(x);
-    float hidden_behind = nearest[cell];
-    for (const Cell& beside : {Cell{-1, 0}, Cell{1, 0}, Cell{0, -1}, Cell{0, 1}}) {
-      const auto at = nearest.find({cell.first + beside.first, cell.second + beside.second});
-      if (at != nearest.end()) hidden_behind = std::max(hidden_behind, at->second - 0.5f * kDepth * leg);
-    }
-    if (x.dot(from) > hidden_behind - kDepth * leg) kept.push_back(i);
-  }
+  for (int i = 0; i < image.rows(); ++i)
+    if (seen.shows(i, kDepth * leg)) kept.push_back(i);
   if (kept.size() >= kLeast) keep_rows(cloud, kept);
 }
 

@@ -29,6 +29,8 @@ DataSplit split_of(const fs::path& root, const json& all, const std::string& nam
   const auto whole = [&root](const json& path) { return (root / path.get<std::string>()).string(); };
   DataSplit split;
   split.body = (root / all.value("body", "body/makehuman_smplformat.npz")).string();
+  const fs::path hands = fs::path(split.body).parent_path() / "hand_poses.npz";
+  if (fs::exists(hands)) split.hand_poses = hands.string();
   const json& betas = part.at("betas");
   split.betas = read_betas(whole(betas.at("file")), betas.at("rows").at(0), betas.at("rows").at(1));
   for (const json& path : part.value("clothed", json::array())) split.clothed.push_back(whole(path));

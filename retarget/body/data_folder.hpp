@@ -18,6 +18,7 @@ struct EvaluatedMotion {
 /// One split of FOLDER/splits.json; paths are whole.
 struct DataSplit {
   std::string body;                         ///< SMPL-format
+  std::string hand_poses;                   ///< beside it: poses of its fingers; empty where there are none
   std::vector<Eigen::VectorXf> betas;       ///< shape parameters of its people
   std::vector<std::string> clothed;         ///< rigged, dressed T-pose meshes; may be empty
   std::vector<std::string> motion_folders;  ///< of clips

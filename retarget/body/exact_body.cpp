@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/math/percentile.hpp"
 
 namespace understudy {
 namespace {
@@ -47,14 +48,6 @@ PosedPerson posed(const ExactPerson& person, const Rotations64& local, const Vec
       if (const double w = person.weights(v, j); w != 0)
         result.vertices.row(v) += w * (rest.row(v) * global[j].transpose() + shift.row(j));
   return result;
-}
-
-/// NumPy's percentile: linear between the sorted values.
-double percentile(std::vector<double> values, double percent) {
-  std::sort(values.begin(), values.end());
-  const double at = percent / 100 * static_cast<double>(values.size() - 1);
-  const size_t below = at, above = std::min(below + 1, values.size() - 1);
-  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 void turn_y_up(ExactMotion& motion) {
@@ -125,10 +118,17 @@ ExactMotion read_exact_motion(const std::string& path, int start, int frames) {
 }
 
 Performance perform(const ExactPerson& person, const ExactMotion& motion, double path_scale) {
+  return perform(person, {}, motion, path_scale);
+}
+
+Performance perform(const ExactPerson& person, const std::vector<Points64>& shapes, const ExactMotion& motion,
+                    double path_scale) {
   Performance performance;
   std::vector<double> lowest;
+  ExactPerson now = person;
   for (size_t t = 0; t < motion.local.size(); ++t) {
-    PosedPerson frame = posed(person, motion.local[t], motion.root[t] * path_scale);
+    if (!shapes.empty()) now.vertices = shapes.at(t);
+    PosedPerson frame = posed(now, motion.local[t], motion.root[t] * path_scale);
     lowest.push_back(frame.vertices.col(1).minCoeff());
     performance.vertices.push_back(std::move(frame.vertices));
     performance.joints.push_back(frame.joints);

@@ -60,5 +60,8 @@ struct Performance {
 /// The person performs the motion with its path scaled; the soles stand on the floor: the 2nd percentile of
 /// the frames' lowest points is 0.
 Performance perform(const ExactPerson& person, const ExactMotion& motion, double path_scale);
+/// The same with other T-pose vertices in each frame, as of a person whose fingers move.
+Performance perform(const ExactPerson& person, const std::vector<Points64>& shapes, const ExactMotion& motion,
+                    double path_scale);
 
 }  // namespace understudy

@@ -14,6 +14,18 @@ void keep_rows(LabelledPoints& cloud, const std::vector<int>& kept) {
   cloud.parts = std::move(parts);
 }
 
+void append(LabelledPoints& cloud, const std::vector<Vec3>& points, const std::vector<int>& parts) {
+  const Eigen::Index before = cloud.points.rows();
+  cloud.points.conservativeResize(before + static_cast<Eigen::Index>(points.size()), 3);
+  cloud.points.bottomRows(points.size()) = rows_of(points);
+  cloud.parts.insert(cloud.parts.end(), parts.begin(), parts.end());
+}
+
+float density(const LabelledPoints& cloud, const PosedSkeleton& truth) {
+  const float leg = leg_length(truth.joints);
+  return static_cast<float>(cloud.points.rows()) / (2.4f * leg * leg);
+}
+
 namespace {
 
 bool is_last(int joint) {

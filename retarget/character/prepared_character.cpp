@@ -12,6 +12,7 @@
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/import.hpp"
 #include "retarget/pipeline/human_rest.hpp"
+#include "retarget/pipeline/torn_surface.hpp"
 #include "retarget/skeleton/skinning.hpp"
 
 namespace understudy {
@@ -303,7 +304,10 @@ void find_in_rig(PreparedCharacter& c) {
   Mesh mesh = c.surface.mesh;
   mesh.vertices = in_t_pose(mesh.vertices, c.weights, c.pose);
   note_turns(c);
+  const float parted = TornSurface(c.surface.mesh, c.weights).parted(mesh.vertices);
   c.target = prepare_target(mesh, c.pose.rest);
+  if (parted > TornSurface::kMost)
+    c.target.warnings.push_back("the target falls apart in T-pose: the bones of its joints may be wrong");
 }
 
 /// Extracted shoulders of bodies unlike those the network knows are rough, forearms and hands stand free and
@@ -431,6 +435,7 @@ PreparedCharacter load_character(Character character, const CharacterOptions& op
   if (!c.rigged && !c.character.skins.empty())
     c.notes.push_back("its bones could not be mapped (" + std::to_string(c.map.count()) +
                       " of 22): its own rig is not used");
+  if (const std::string note = guess_note(c.map); c.rigged && !note.empty()) c.notes.push_back(note);
   place_in_world(c, options);
   check_stance(c, options);
   if (c.rigged)

@@ -1,6 +1,5 @@
 #include "retarget/editing/scan_edits.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -154,64 +153,7 @@ Kept kept_flags(const ScanEdits& edits, const Mesh& scan) {
   return kept;
 }
 
-Points within(const Points& points, const FloorPlane& plane, float tolerance) {
-  std::vector<int> on;
-  for (int i = 0; i < points.rows(); ++i)
-    if (std::abs(plane.above(point(points, i))) < tolerance) on.push_back(i);
-  return points(on, Eigen::all);
-}
-
-/// Area over which points within `tolerance` of the plane lie, square metres, in cells of 5 cm.
-float covered_area(const Points& points, const FloorPlane& plane, float tolerance) {
-  constexpr float kCell = 0.05f;
-  const Points flat = FromAbove(plane.normal).flat(within(points, plane, tolerance));
-  return static_cast<float>(PointGrid(flat, kCell).cells().size()) * kCell * kCell;
-}
-
-/// Least squares plane through the points within `tolerance` of a plane; the normal keeps pointing up.
-FloorPlane refined(const Points& points, const FloorPlane& plane, float tolerance) {
-  const Points p = within(points, plane, tolerance);
-  const Vec3 mean = p.colwise().mean().transpose();
-  const Points centred = p.rowwise() - mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(Mat3(centred.transpose() * centred));
-  FloorPlane result;
-  result.normal = solver.eigenvectors().col(0);  // of the smallest spread
-  if (result.normal.y() < 0) result.normal = -result.normal;
-  result.height_m = result.normal.dot(mean);
-  return result;
-}
-
 }  // namespace
-
-std::optional<FloorPlane> detect_floor(const Points& all) {
-  constexpr float kNear = 0.015f, kLevel = 0.966f;  // metres; cosine of 15 degrees
-  constexpr float kArea = 0.15f;                    // square metres; two soles have 0.05
-  constexpr int kTries = 300, kLooked = 4000;
-  const Points finite = finite_points(all);
-  if (finite.rows() < 32) return std::nullopt;
-  Rng rng(1);
-  Points points(kLooked, 3);
-  for (auto row : points.rowwise()) row = finite.row(rng.below(finite.rows()));
-
-  FloorPlane best;
-  int best_score = 0;
-  for (int t = 0; t < kTries; ++t) {
-    const Vec3 a = point(points, rng.below(kLooked)), b = point(points, rng.below(kLooked)),
-               c = point(points, rng.below(kLooked));
-    Vec3 n = (b - a).cross(c - a);
-    if (n.norm() < 1e-4f) continue;
-    n = n.normalized() * (n.y() < 0 ? -1.0f : 1.0f);
-    if (n.y() < kLevel) continue;
-    const Eigen::ArrayXf h = (points * n).array() - n.dot(a);
-    const int on = static_cast<int>((h.abs() < kNear).count()),
-              below = static_cast<int>((h < -2 * kNear).count());
-    if (on - 5 * below > best_score) best_score = on - 5 * below, best = {n, n.dot(a)};
-  }
-  if (best_score < kLooked / 100) return std::nullopt;
-  const FloorPlane plane = refined(points, best, kNear);
-  if (plane.normal.y() < kLevel || covered_area(points, plane, kNear) < kArea) return std::nullopt;
-  return plane;
-}
 
 std::optional<Box> extent_of(const Points& points) {
   std::optional<Box> box;
@@ -235,24 +177,7 @@ ScanEdits in_effect(ScanEdits edits) {
 
 Mesh apply(const ScanEdits& edits, const Mesh& scan) {
   if (edits.empty()) return scan;
-  const Kept kept = kept_flags(edits, scan);
-  Kept used(kept.size(), 0);
-  std::vector<Eigen::Index> faces;
-  for (Eigen::Index f = 0; f < scan.faces.rows(); ++f) {
-    const auto corners = scan.faces.row(f);
-    if (!std::all_of(corners.begin(), corners.end(), [&](int v) { return kept[v]; })) continue;
-    faces.push_back(f);
-    for (const int v : corners) used[v] = 1;
-  }
-
-  const std::vector<int> which = indices(scan.is_cloud() ? kept : used);
-  std::vector<int> renumbered(kept.size(), -1);
-  for (size_t i = 0; i < which.size(); ++i) renumbered[which[i]] = i;
-  Mesh result;
-  result.vertices = scan.vertices(which, Eigen::all);
-  if (scan.colors.rows() == scan.vertices.rows()) result.colors = scan.colors(which, Eigen::all);
-  result.faces = scan.faces(faces, Eigen::all).unaryExpr([&](int v) { return renumbered[v]; });
-  return result;
+  return kept_part(scan, kept_flags(edits, scan));
 }
 
 }  // namespace understudy

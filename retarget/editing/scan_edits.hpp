@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "retarget/base/fields.hpp"
+#include "retarget/geometry/floor_plane.hpp"
 #include "retarget/geometry/mesh.hpp"
 
 namespace understudy {
@@ -36,23 +37,6 @@ std::optional<Box> extent_of(const Points& points);
 std::optional<Box> united(const std::optional<Box>& a, const std::optional<Box>& b);
 /// What commands call a box's sides.
 constexpr Names<6> kBoxSides{"low.x", "high.x", "low.y", "high.y", "low.z", "high.z"};
-
-/// The points x with normal . x = height; normal has unit length and points up.
-struct FloorPlane {
-  Vec3 normal = Vec3::UnitY();
-  float height_m = 0;
-  float above(const Vec3& point) const { return normal.dot(point) - height_m; }
-};
-template <class V, class S>
-FieldsOf<S, FloorPlane> fields(V& visit, S& plane) {
-  visit("normal", plane.normal);
-  visit("height_m", plane.height_m);
-}
-
-/// The floor under a body, in a scan that shows some of it: a nearly level plane with hardly a point below,
-/// larger than soles are. Nothing when the scan has no such plane. Deterministic; finds tilts up to 15
-/// degrees.
-std::optional<FloorPlane> detect_floor(const Points& points);
 
 /// Takes the floor out and leaves the soles on it.
 struct FloorCut {

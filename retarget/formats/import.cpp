@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/geometry/cells.hpp"
+#include "retarget/geometry/ground_finder.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -29,6 +32,7 @@ constexpr std::array<Unit, 5> kUnits = {{{"m", "metres", 1.0f, 0.5f, 2.6f},
                                          {"mm", "millimetres", 0.001f, 500.0f, 2600.0f}}};
 
 constexpr float kUsualHeight = 1.7f;
+constexpr float kBodyCell = 0.04f;  // of the extent: bodies further apart are several
 
 struct Range {
   float low = 0, high = 0;
@@ -131,15 +135,34 @@ UpGuess guess_up(const Points& points, const std::array<AxisView, 3>& views) {
   return best;
 }
 
-UpGuess forced_up(const std::string& up, const Points& points, const std::array<AxisView, 3>& views) {
-  const bool negative = !up.empty() && up[0] == '-';
-  const std::string letter = negative ? up.substr(1) : up;
-  US_CHECK(letter == "x" || letter == "y" || letter == "z", "the up axis '", up,
-           "' is not one of x, y, z, -x, -y, -z");
-  UpGuess guess{letter[0] - 'x', negative, {}};
-  const FloorSlab floor = find_floor(points, guess.axis, views[guess.axis]);
-  if (floor.seen && floor.at_high_end == negative) guess.floor = floor;
-  return guess;
+/// The points of the largest of several bodies that stand beside each other; none where there is one.
+/// Together they are wider than tall, and would be taken for somebody who lies.
+std::optional<Points> largest_body(const Points& points, const std::array<AxisView, 3>& views) {
+  const float extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
+  if (!(extent > 1e-20f) || extent > 1e30f) return std::nullopt;
+  Mesh cloud;
+  cloud.vertices = points * (1 / extent);
+  const Cells cells(cloud, kBodyCell);
+  int count = 0;
+  const std::vector<int> set = connected_cells(cells, std::vector<char>(cells.count(), 1), &count);
+  std::vector<int> size(count, 0);
+  for (const int s : set) ++size[s];
+  const auto bodies = std::count_if(size.begin(), size.end(), [&](int n) { return 4 * n >= cells.count(); });
+  if (bodies < 2) return std::nullopt;
+  const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (const int cell = cells.of_vertex()[i]; cell >= 0 && set[cell] == largest) rows.push_back(i);
+  return points(rows, Eigen::all);
+}
+
+std::array<AxisView, 3> views_of(const Points& points) {
+  std::array<AxisView, 3> views;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto values = sorted(points.col(axis));
+    views[axis] = {dense_range(values), values[values.size() * 3 / 4] - values[values.size() / 4]};
+  }
+  return views;
 }
 
 // The rotation that takes the up axis to +y; x stays where it can.
@@ -153,6 +176,48 @@ Mat3 to_y_up(const UpGuess& up) {
   else
     R << 1, 0, 0, 0, 0, s, 0, -s, 0;
   return R;
+}
+
+/// A wide ground that is tilted or noisy, in a scan that is in metres by its size.
+std::optional<UpGuess> ground_in_metres(const Points& points, const std::array<AxisView, 3>& views) {
+  constexpr float kSmallest = 1.5f, kLargest = 12;  // metres; square metres of ground
+  const float extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
+  if (extent < kSmallest || extent > kLargest) return std::nullopt;
+  for (const int axis : {1, 2}) {
+    UpGuess guess{axis, false, {}};
+    const Mesh upright{points * to_y_up(guess).transpose()};
+    const std::optional<Ground> ground = GroundFinder().push(Cells(upright, 0.05f));
+    if (!ground || ground->area_m2 < kSmallest) continue;
+    const Vec3 centre = upright.vertices.colwise().mean().transpose();
+    guess.floor = {true, false, centre.y() - ground->plane.above(centre)};
+    return guess;
+  }
+  return std::nullopt;
+}
+
+/// As the largest of several bodies has it, where all of them have the same height.
+UpGuess guess_up_among(const Points& points, const std::array<AxisView, 3>& views) {
+  const UpGuess of_all = guess_up(points, views);
+  if (of_all.floor.seen) return of_all;
+  if (const auto ground = ground_in_metres(points, views)) return *ground;
+  const auto body = largest_body(points, views);
+  if (!body || body->rows() < 32) return of_all;
+  const std::array<AxisView, 3> own = views_of(*body);
+  const UpGuess of_one = guess_up(*body, own);
+  // Pieces of one body, one above the other, are as long together as they are not alone.
+  const bool is_whole = own[of_one.axis].range.size() > 0.7f * views[of_one.axis].range.size();
+  return is_whole && !of_one.floor.seen ? of_one : of_all;
+}
+
+UpGuess forced_up(const std::string& up, const Points& points, const std::array<AxisView, 3>& views) {
+  const bool negative = !up.empty() && up[0] == '-';
+  const std::string letter = negative ? up.substr(1) : up;
+  US_CHECK(letter == "x" || letter == "y" || letter == "z", "the up axis '", up,
+           "' is not one of x, y, z, -x, -y, -z");
+  UpGuess guess{letter[0] - 'x', negative, {}};
+  const FloorSlab floor = find_floor(points, guess.axis, views[guess.axis]);
+  if (floor.seen && floor.at_high_end == negative) guess.floor = floor;
+  return guess;
 }
 
 std::string short_number(float value) {
@@ -169,7 +234,7 @@ std::string decide_odd_size(float height, float extent, ImportDecision& decision
   const std::string what = "a height of " + short_number(height) + " fits no person in any unit";
   decision.units = metric ? "m" : "fit";
   decision.scale = metric ? 1.0f : kUsualHeight / height;
-  log::warn(what + (metric ? ", it is taken as metres" : ", it is made 1.7 m"));
+  decision.warning = what + (metric ? ", it is taken as metres" : ", it is made 1.7 m");
   return std::string("units: ") + (metric ? "metres (" : "unknown, made 1.7 m tall (") + what + ")";
 }
 
@@ -182,21 +247,102 @@ std::string given_height(float height, float wanted, ImportDecision& decision) {
   return "height: " + short_number(wanted) + " m (given)";
 }
 
-// Writes unit and scale into the decision; returns the words about it. extent: the largest along any axis.
-std::string decide_size(float height, float extent, const ImportOptions& options, ImportDecision& decision) {
+bool is_given(const std::string& option) {
+  return !option.empty() && option != "auto";
+}
+
+// What units are guessed from.
+struct BodySize {
+  float height = 0, extent = 0;  // of the scan, along up and along any axis
+  std::optional<float> stature;  // of somebody whose feet are not in it
+};
+
+// Writes unit and scale into the decision; returns the words about it.
+std::string decide_size(const BodySize& size, const ImportOptions& options, ImportDecision& decision) {
+  const float height = size.stature.value_or(size.height);
   const std::string& forced = options.units;
-  const bool guess = forced.empty() || forced == "auto";
+  const bool guess = !is_given(forced);
   const Unit* unit = nullptr;
   for (const auto& candidate : kUnits)
     if (guess ? height >= candidate.low && height < candidate.high : forced == candidate.name)
       unit = &candidate;
   US_CHECK(guess || unit, "the unit '", forced, "' is not one of m, dm, cm, mm, in");
   if (options.height) return given_height(height, *options.height, decision);
-  if (!unit) return decide_odd_size(height, extent, decision);
+  if (!unit) return decide_odd_size(height, size.stature ? height : size.extent, decision);
   decision.units = unit->name;
   decision.scale = unit->metres;
   return std::string("units: ") + unit->plural +
-         (guess ? " (from the height " + short_number(height) + ")" : " (given)");
+         (!guess         ? " (given)"
+          : size.stature ? " (from a stature of " + short_number(height) + ", by what is seen)"
+                         : " (from the height " + short_number(height) + ")");
+}
+
+// The first frame, as far as it is decided from.
+class FirstView {
+ public:
+  FirstView(const Mesh& first, const std::string& up);
+  ImportDecision decided(const ImportOptions& forced, const std::optional<UnseenFeet>& cut) const;
+  // What a check finds, in the file's units.
+  std::optional<UnseenFeet> checked(const Mesh& first, const ImportOptions& forced,
+                                    const FeetCheck& check) const;
+  bool is_sideways() const { return up_.axis == 0 && !up_.floor.seen; }
+
+ private:
+  UpGuess up_;
+  float low_ = 0;  // of the body, along up
+  BodySize size_;
+};
+
+FirstView::FirstView(const Mesh& first, const std::string& up) {
+  const Points points = even_points(first);
+  US_CHECK(points.rows() > 0, "the first frame has no finite point to decide units and axes from");
+  const std::array<AxisView, 3> views = views_of(points);
+  up_ = is_given(up) ? forced_up(up, points, views) : guess_up_among(points, views);
+  const Range range = views[up_.axis].range;
+  low_ = up_.negative ? -range.high : range.low;
+  const float high = up_.negative ? -range.low : range.high;
+  if (up_.floor.seen) low_ = up_.negative ? -up_.floor.height : up_.floor.height;
+  size_.height = high - low_;
+  size_.extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
+}
+
+std::optional<UnseenFeet> FirstView::checked(const Mesh& first, const ImportOptions& forced,
+                                             const FeetCheck& check) const {
+  const ImportDecision by_height = decided(forced, {});
+  Mesh upright = first;
+  by_height.apply(upright);
+  std::optional<UnseenFeet> cut = check(upright);
+  if (!cut) return cut;
+  cut->stature /= by_height.scale;
+  cut->floor = (cut->floor + by_height.floor) / by_height.scale;
+  return cut;
+}
+
+ImportDecision FirstView::decided(const ImportOptions& forced, const std::optional<UnseenFeet>& cut) const {
+  BodySize size = size_;
+  if (cut) size.stature = cut->stature;
+  const float low = cut && !up_.floor.seen ? cut->floor : low_;
+  ImportDecision decision;
+  decision.up = std::string(up_.negative ? "-" : "") + static_cast<char>('x' + up_.axis);
+  decision.sentence = decide_size(size, forced, decision);
+  decision.height = size.stature.value_or(size.height) * decision.scale;
+  decision.axes = rotation_about_y(forced.turn_deg * kPi / 180.0f) * to_y_up(up_);
+  const float measured = low * decision.scale;
+  // Within 2 cm the file's own zero is the better floor: the lowest points are a noisy measure of it.
+  decision.floor = forced.floor ? *forced.floor : std::abs(measured) <= 0.02f ? 0.0f : measured;
+  decision.sentence += ", up: " + decision.up + (is_given(forced.up) ? " (given)" : "") +
+                       (up_.floor.seen ? " (from the floor)" : "") + ", floor at " +
+                       printed("%.2f", static_cast<double>(decision.floor)) + " m";
+  if (forced.turn_deg != 0) decision.sentence += ", turned by " + short_number(forced.turn_deg) + " degrees";
+  if (!cut) return decision;
+  ImportOptions& again = decision.again.emplace(forced);
+  again.up = decision.up;
+  again.floor = decision.floor;
+  if (decision.units == "fit")
+    again.height = size.height * decision.scale;
+  else
+    again.units = decision.units;
+  return decision;
 }
 
 }  // namespace
@@ -219,34 +365,23 @@ Eigen::Matrix4d ImportDecision::to_file() const {
   return to_world.inverse();
 }
 
-ImportDecision decide_import(const Mesh& first, const ImportOptions& forced) {
-  const Points points = even_points(first);
-  US_CHECK(points.rows() > 0, "the first frame has no finite point to decide units and axes from");
-  std::array<AxisView, 3> views;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto values = sorted(points.col(axis));
-    views[axis] = {dense_range(values), values[values.size() * 3 / 4] - values[values.size() / 4]};
+ImportDecision decide_import(const Mesh& first, const ImportOptions& forced, const FeetCheck& check) {
+  FirstView view(first, forced.up);
+  std::optional<UnseenFeet> cut;
+  if (check && !(is_given(forced.units) && !forced.height && forced.floor)) {
+    cut = view.checked(first, forced, check);
+    // Whose chest alone is seen is wider than tall.
+    if (!is_given(forced.up) && view.is_sideways())
+      for (const char* up : {"y", "z"}) {
+        const FirstView other(first, up);
+        const std::optional<UnseenFeet> found = other.checked(first, forced, check);
+        if (!found || (cut && cut->upright >= found->upright)) continue;
+        cut = found;
+        view = other;
+      }
   }
-  const bool guess = forced.up.empty() || forced.up == "auto";
-  const UpGuess up = guess ? guess_up(points, views) : forced_up(forced.up, points, views);
-  const Range range = views[up.axis].range;
-  float low = up.negative ? -range.high : range.low;
-  const float high = up.negative ? -range.low : range.high;
-  if (up.floor.seen) low = up.negative ? -up.floor.height : up.floor.height;
-
-  const float extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
-  ImportDecision decision;
-  decision.up = std::string(up.negative ? "-" : "") + static_cast<char>('x' + up.axis);
-  decision.sentence = decide_size(high - low, extent, forced, decision);
-  decision.height = (high - low) * decision.scale;
-  decision.axes = rotation_about_y(forced.turn_deg * kPi / 180.0f) * to_y_up(up);
-  const float measured = low * decision.scale;
-  // Within 2 cm the file's own zero is the better floor: the lowest points are a noisy measure of it.
-  decision.floor = forced.floor ? *forced.floor : std::abs(measured) <= 0.02f ? 0.0f : measured;
-  decision.sentence += ", up: " + decision.up + (guess ? "" : " (given)") +
-                       (up.floor.seen ? " (from the floor)" : "") + ", floor at " +
-                       printed("%.2f", static_cast<double>(decision.floor)) + " m";
-  if (forced.turn_deg != 0) decision.sentence += ", turned by " + short_number(forced.turn_deg) + " degrees";
+  ImportDecision decision = view.decided(forced, cut);
+  if (!decision.warning.empty()) log::warn(decision.warning);
   return decision;
 }
 

@@ -1,6 +1,7 @@
 // From a file's units and axes to the program's: metres, y up, the floor at 0.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,16 @@ FieldsOf<S, ImportOptions> fields(V& visit, S& import) {
   visit("height_m", import.height, kBodyHeights);
 }
 
+/// Somebody of whom a scan does not show the feet, so that its height is not theirs.
+struct UnseenFeet {
+  float stature = 0;  ///< sole to crown
+  float floor = 0;    ///< height at which they stand
+  float upright = 1;  ///< 1: the trunk is upright, 0: it lies
+};
+/// Looks at a first frame as it would be imported by its height, and answers in those metres: too many rather
+/// than too few. None where feet are seen, or nobody is.
+using FeetCheck = std::function<std::optional<UnseenFeet>(const Mesh& upright)>;
+
 /// How to bring every frame of a sequence into the program's world; decided from its first frame alone.
 struct ImportDecision {
   float scale = 1;               ///< file units to metres
@@ -43,6 +54,9 @@ struct ImportDecision {
   float height = 0;              ///< of the body in the first frame, metres
   std::string units, up;         ///< as in ImportOptions
   std::string sentence;          ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
+  std::string warning;           ///< why the size is odd; empty: it is not
+  std::optional<ImportOptions>
+      again;  ///< by which the scan alone decides the same; none: by the options given
 
   /// A frame in metres, y up, floor at 0.
   void apply(Mesh& mesh) const;
@@ -55,7 +69,10 @@ struct ImportDecision {
 /// is. One rule of size for sources and targets: what is 0.5 to 2.6 m tall in some unit keeps that size, and
 /// so does who is lower and 0.5 to 2.6 m long (somebody who lies or crouches, in metres); all else is made
 /// 1.7 m tall, with a warning. Axes can only be guessed positive unless a floor is seen.
+/// Of a body whose feet are not seen its stature decides in place of the scan's height, and the floor is
+/// where it stands, unless a floor is seen. Only asked where units or floor are to be decided;
+/// it tells which way is up, too, where x seems to be.
 /// Throws Error when the options are not among those named, or there is no finite point.
-ImportDecision decide_import(const Mesh& first, const ImportOptions& forced);
+ImportDecision decide_import(const Mesh& first, const ImportOptions& forced, const FeetCheck& check = {});
 
 }  // namespace understudy

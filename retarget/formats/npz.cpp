@@ -19,6 +19,7 @@ namespace {
 
 constexpr char kNoNumber = '?';           // objects, dates, records: their kind
 constexpr int kLongestElement = 1 << 24;  // bytes, or characters of a text
+constexpr uint64_t kMostTexts = 65536;    // names: more are no list of names
 
 struct Header {
   char kind = 'f';  // f, i, u, b, U
@@ -94,6 +95,18 @@ std::string text_from_ucs4(const char* data, int bytes) {
     text += code < 128 ? static_cast<char>(code) : '?';
   }
   return text;
+}
+
+/// As many strings as the shape says and the bytes hold, at most kMostTexts.
+std::vector<std::string> texts_from_ucs4(const char* data, uint64_t available, const Header& header) {
+  std::vector<std::string> texts;
+  uint64_t wanted = 1;
+  for (const int64_t extent : header.shape)
+    wanted = std::min(kMostTexts, wanted * std::min<uint64_t>(extent, kMostTexts));
+  const auto step = static_cast<uint64_t>(header.bytes);
+  for (uint64_t at = 0; texts.size() < wanted && at < available && step > 0; at += step)
+    texts.push_back(text_from_ucs4(data + at, static_cast<int>(std::min(available - at, step))));
+  return texts;
 }
 
 /// Fortran order to C order.
@@ -183,8 +196,8 @@ NpyArray parse_npy(const std::string& bytes, const std::string& source) {
   array.shape = header.shape;
   const uint64_t available = bytes.size() - header.data_offset;
   if (header.kind == 'U') {
-    array.text = text_from_ucs4(bytes.data() + header.data_offset,
-                                static_cast<int>(std::min<uint64_t>(available, header.bytes)));
+    array.texts = texts_from_ucs4(bytes.data() + header.data_offset, available, header);
+    if (!array.texts.empty()) array.text = array.texts.front();
     return array;
   }
   const auto type = type_of(header);

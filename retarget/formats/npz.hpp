@@ -16,8 +16,9 @@ using IntegerMatrix = Eigen::Matrix<int64_t, Eigen::Dynamic, Eigen::Dynamic, Eig
 struct NpyArray {
   std::vector<int64_t> shape;
   std::vector<float> values;        ///< C order
-  std::string text;                 ///< for a scalar string
+  std::string text;                 ///< for a scalar string; of several the first
   std::vector<int64_t> whole = {};  ///< of an array of integers the same without loss, up to 9e15; beyond: -1
+  std::vector<std::string> texts = {};  ///< of an array of strings, C order; 65,536 at most
   int64_t size() const { return static_cast<int64_t>(values.size()); }
   /// As a matrix of `cols` columns. Throws Error (naming `what`) when it does not divide.
   RowMatrix matrix(int64_t cols, const std::string& what) const;

@@ -145,4 +145,24 @@ IntMatrix nearest_neighbours(const Points& points, const Points& queries, int k)
   return result;
 }
 
+Mesh kept_part(const Mesh& scan, const std::vector<char>& kept) {
+  std::vector<char> used(kept.size(), 0);
+  std::vector<Eigen::Index> faces;
+  for (Eigen::Index f = 0; f < scan.faces.rows(); ++f) {
+    const auto corners = scan.faces.row(f);
+    if (!std::all_of(corners.begin(), corners.end(), [&](int v) { return kept[v]; })) continue;
+    faces.push_back(f);
+    for (const int v : corners) used[v] = 1;
+  }
+  const std::vector<char>& stays = scan.is_cloud() ? kept : used;
+  std::vector<int> which, renumbered(kept.size(), -1);
+  for (int v = 0; v < scan.vertices.rows(); ++v)
+    if (stays[v]) renumbered[v] = static_cast<int>(which.size()), which.push_back(v);
+  Mesh result;
+  result.vertices = scan.vertices(which, Eigen::all);
+  if (scan.colors.rows() == scan.vertices.rows()) result.colors = scan.colors(which, Eigen::all);
+  result.faces = scan.faces(faces, Eigen::all).unaryExpr([&](int v) { return renumbered[v]; });
+  return result;
+}
+
 }  // namespace understudy

@@ -30,6 +30,8 @@ class SurfaceSampler {
   /// Throws Error when the mesh has no face or no area.
   SurfaceSampler(const Points& vertices, const Faces& faces);
   Sample sample(Rng& rng) const;
+  /// Of the whole surface.
+  float area() const { return static_cast<float>(cumulative_area_.back()); }
 
  private:
   std::vector<double> cumulative_area_;  // [F]
@@ -49,6 +51,10 @@ std::vector<int> far_apart(const Points& points, const std::vector<int>& of, int
 Points finite_points(const Points& points);
 /// How many points are finite.
 Eigen::Index finite_count(const Points& points);
+
+/// The part of a scan whose vertices have `kept` [V] not 0, in its old order, colours too: of a cloud those
+/// vertices, of a mesh the faces whose three corners stay and the vertices that these use.
+Mesh kept_part(const Mesh& scan, const std::vector<char>& kept);
 
 using IntMatrix = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 /// For each query the indices of its k nearest points, nearest first, [Q, k]; k <= points.rows(). Exact.

@@ -12,6 +12,7 @@
 namespace understudy {
 namespace {
 
+constexpr float kSeen = 0.5f;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Joints64 = Eigen::Matrix<double, kJointCount, 3, Eigen::RowMajor>;
 
@@ -50,6 +51,25 @@ double mean_joint_error(const JointSequence& predicted, const JointSequence& tru
   for (size_t t = 0; t < truth.size(); ++t)
     sum += (predicted[t].cast<double>() - truth[t].cast<double>()).rowwise().norm().sum();
   return sum / (static_cast<double>(truth.size()) * kJointCount);
+}
+
+double seen_joint_error(const JointSequence& predicted, const JointSequence& truth,
+                        const std::vector<SeenJoints>& seen) {
+  check_same_length(predicted.size(), truth.size());
+  check_same_length(seen.size(), truth.size());
+  double sum = 0;
+  int64_t count = 0;
+  for (size_t t = 0; t < truth.size(); ++t)
+    for (int j = 0; j < kJointCount; ++j)
+      if (seen[t][j] >= kSeen) sum += distance(predicted[t], j, truth[t], j), ++count;
+  return count > 0 ? sum / static_cast<double>(count) : kNan;
+}
+
+double visibility_right(const std::vector<SeenJoints>& predicted, const std::vector<SeenJoints>& truth) {
+  check_same_length(predicted.size(), truth.size());
+  Eigen::Index right = 0;
+  for (size_t t = 0; t < truth.size(); ++t) right += ((predicted[t] >= kSeen) == (truth[t] >= kSeen)).count();
+  return static_cast<double>(right) / (static_cast<double>(truth.size()) * kJointCount);
 }
 
 JointSequence aligned_joints(const JointSequence& predicted, const JointSequence& truth) {

@@ -9,11 +9,18 @@ namespace understudy {
 
 /// One body's joints over time, world, metres.
 using JointSequence = std::vector<Joints>;
+/// Of each joint whether the scan shows it, 0..1: from one half on it is seen.
+using SeenJoints = Eigen::Array<float, kJointCount, 1>;
 
 // With truth. Both sequences must be equally long and not empty, otherwise Error. Sums are kept in double.
 
 /// Mean over frames and joints of |p - q|, metres.
 double mean_joint_error(const JointSequence& predicted, const JointSequence& truth);
+/// The same of those joints that are seen; NaN where none is. `seen` has a frame for each of both.
+double seen_joint_error(const JointSequence& predicted, const JointSequence& truth,
+                        const std::vector<SeenJoints>& seen);
+/// Share of frames and joints of which it is said rightly whether they are seen.
+double visibility_right(const std::vector<SeenJoints>& predicted, const std::vector<SeenJoints>& truth);
 /// Each frame's prediction after the best similarity (rotation, translation, scale) onto the truth of that
 /// frame.
 JointSequence aligned_joints(const JointSequence& predicted, const JointSequence& truth);

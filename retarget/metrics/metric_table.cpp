@@ -11,7 +11,7 @@ namespace {
 using Sequence = MetricSequence;
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 constexpr unsigned kOfJoints = kNeedsJoints | kNeedsTruth, kOfRotations = kNeedsRotations | kNeedsTruth,
-                   kOfSource = kNeedsSource | kNeedsTruth;
+                   kOfSource = kNeedsSource | kNeedsTruth, kOfVisibility = kNeedsVisibility | kNeedsTruth;
 
 double aligned_error(const Sequence& p, const Sequence& q, double) {
   return mean_joint_error(aligned_joints(p.joints, q.joints), q.joints);
@@ -24,6 +24,17 @@ double aligned_acceleration_error(const Sequence& p, const Sequence& q, double f
 template <double RotationError::*part>
 double turned(const Sequence& p, const Sequence& q, double) {
   return rotation_error(p.rotations, q.rotations).*part;
+}
+
+/// Mean over frames and the joints that end thighs, shins, upper arms and forearms.
+double limb_error_mm(const Sequence& p, const Sequence& q, double) {
+  constexpr int kEnds[] = {LeftKnee,  RightKnee,  LeftAnkle, RightAnkle,
+                           LeftElbow, RightElbow, LeftWrist, RightWrist};
+  double sum = 0;
+  for (size_t t = 0; t < p.source_joints.size(); ++t)
+    for (const int j : kEnds)
+      sum += static_cast<double>((p.source_joints[t].row(j) - q.source_joints[t].row(j)).norm());
+  return 1000 * sum / (static_cast<double>(p.source_joints.size()) * std::size(kEnds));
 }
 
 /// Second difference of joint positions at 30 frames/s around frame t.
@@ -95,10 +106,39 @@ Sequence part_of(const Sequence& s, size_t first, size_t count) {
           part_of(s.rotations, first, count),
           part_of(s.source_joints, first, count),
           part_of(s.raw_joints, first, count),
-          {}};
+          {},
+          part_of(s.visibility, first, count)};
 }
 
-std::vector<Metric> made_table() {
+/// Of registered surfaces, of half bodies, and of several people: whose each point is, and who is who.
+std::vector<Metric> rows_of_scenes() {
+  using S = const Sequence&;
+  const Better lower = Better::Lower, higher = Better::Higher, neither = Better::Neither;
+  const bool each = true, whole = false;
+  return {
+      {"registered_rot_deg", "Turn of bones off the registered surface's", "deg", 1, whole, lower},
+      {"registered_const_mm", "Wander of joints in the registered surface", "mm", 1, whole, lower},
+      {"extraction_seen_mm", "Extraction error, joints seen", "mm", 1, each, lower, kOfSource | kOfVisibility,
+       [](S p, S q, double) {
+         return 1000 * seen_joint_error(p.source_joints, q.source_joints, q.visibility);
+       }},
+      {"visibility_right", "Visibility right", "", 3, each, higher, kOfVisibility,
+       [](S p, S q, double) { return visibility_right(p.visibility, q.visibility); }},
+      {"points_owner_right", "Points whose owner is right", "", 3, whole, higher, kNeedsScene},
+      {"identities_exchanged", "Identities exchanged", "", 2, whole, lower, kNeedsScene},
+      {"people_missed", "People missed", "", 3, whole, lower, kNeedsScene},
+      {"people_invented", "People invented, a frame", "", 3, whole, lower, kNeedsScene},
+      {"people_mm", "Extraction error of people", "mm", 1, whole, lower, kNeedsScene},
+      {"people_alone_mm", "The same people alone", "mm", 1, whole, neither, kNeedsScene},
+      {"people_over_alone", "Extraction error over alone", "", 2, whole, lower, kNeedsScene},
+      {"people_touching_mm", "Extraction error where people touch", "mm", 1, whole, lower, kNeedsScene},
+      {"people_touching_alone_mm", "The same people alone, where they touch", "mm", 1, whole, neither,
+       kNeedsScene},
+      {"people_touching_over_alone", "Extraction error over alone where people touch", "", 2, whole, lower,
+       kNeedsScene}};
+}
+
+std::vector<Metric> rows_of_one() {
   using S = const Sequence&;
   const Better lower = Better::Lower, higher = Better::Higher, neither = Better::Neither;
   const bool each = true, whole = false;
@@ -132,11 +172,12 @@ std::vector<Metric> made_table() {
        [](S p, S q, double) { return 1000 * mean_joint_error(p.raw_joints, q.source_joints); }},
       {"bone_drift", "Bone length drift", "", 4, each, lower, kNeedsSource,
        [](S p, S, double) { return bone_drift(p.source_joints); }, 0, bone_drifts},
-      {"bone_asymmetry", "Left-right bone difference", "", 4, each, lower, kNeedsSource, bone_asymmetry},
-      {"foot_skate", "Foot skate", "m/s", 3, each, lower, kNeedsJoints,
+      {"bone_asymmetry", "Left-right bone difference", "", 4, each, lower, kNeedsSource | kNeedsLegs,
+       bone_asymmetry},
+      {"foot_skate", "Foot skate", "m/s", 3, each, lower, kNeedsJoints | kNeedsLegs,
        [](S p, S, double fps) { return foot_skate(p.joints, fps); }, 1},
-      {"floor_mm", "Floor penetration", "mm", 2, each, lower},
-      {"floor_worst_mm", "Deepest floor penetration", "mm", 1, whole, lower},
+      {"floor_mm", "Floor penetration", "mm", 2, each, lower, kNeedsLegs},
+      {"floor_worst_mm", "Deepest floor penetration", "mm", 1, whole, lower, kNeedsLegs},
       {"hand_contacts", "Hand contacts of the source", "", 0, whole, neither, kNeedsTruth},
       {"hand_contact_kept", "Hand contacts kept", "", 2, whole, higher, kNeedsTruth},
       {"hand_contact_gap_mm", "Gap in hand contacts", "mm", 1, whole, lower, kNeedsTruth},
@@ -151,13 +192,20 @@ std::vector<Metric> made_table() {
       {"jerk", "Jerk", per_s3, 2, each, lower, kNeedsJoints,
        [](S p, S, double fps) { return jerk(p.joints, fps); }, 3},
       {"self_penetration", "Self-penetration", "", 4, each, lower},
-      {"inside", "Joints inside the scan", "", 3, each, higher}};
+      {"inside", "Joints inside the scan", "", 3, each, higher},
+      {"extraction_limb_mm", "Knees, ankles, elbows and wrists, extraction error", "mm", 1, each, lower,
+       kOfSource, limb_error_mm},
+      {"lowest_gap_mm", "Lowest vertex off the scan's", "mm", 1, each, lower}};
 }
 
 }  // namespace
 
 const std::vector<Metric>& metric_table() {
-  static const std::vector<Metric> table = made_table();
+  static const std::vector<Metric> table = [] {
+    std::vector<Metric> all = rows_of_one();
+    for (const Metric& row : rows_of_scenes()) all.push_back(row);
+    return all;
+  }();
   return table;
 }
 
@@ -176,11 +224,12 @@ bool is_known(const Metric& metric, const MetricSequence& p, const MetricSequenc
   const auto there = [&](const auto& in_p, const auto& in_q) {
     return !in_p.empty() && (!needs(kNeedsTruth) || !in_q.empty());
   };
-  return (!needs(kNeedsJoints) || there(p.joints, q.joints)) &&
+  return (!needs(kNeedsLegs) || p.has_legs) && (!needs(kNeedsJoints) || there(p.joints, q.joints)) &&
          (!needs(kNeedsRotations) || there(p.rotations, q.rotations)) &&
          (!needs(kNeedsSource) || there(p.source_joints, q.source_joints)) &&
          (!needs(kNeedsRaw) || there(p.raw_joints, q.source_joints)) &&
-         (!needs(kNeedsConfidence) || !p.confidence.empty());
+         (!needs(kNeedsConfidence) || !p.confidence.empty()) &&
+         (!needs(kNeedsVisibility) || there(p.visibility, q.visibility));
 }
 
 std::vector<float> per_frame_figures(const Metric& metric, const MetricSequence& p, const MetricSequence& q,

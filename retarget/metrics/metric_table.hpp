@@ -11,11 +11,13 @@ namespace understudy {
 /// One body's motion, or its truth, as metrics see it.
 /// Each list has a frame an entry, or is empty: not known.
 struct MetricSequence {
-  JointSequence joints;              ///< of the target, world, metres
-  std::vector<Rotations> rotations;  ///< of the target, local
-  JointSequence source_joints;       ///< seen in the source, repaired and smoothed
-  JointSequence raw_joints;          ///< as extracted
-  std::vector<float> confidence;     ///< of the extraction, 0..1
+  JointSequence joints;                     ///< of the target, world, metres
+  std::vector<Rotations> rotations;         ///< of the target, local
+  JointSequence source_joints;              ///< seen in the source, repaired and smoothed
+  JointSequence raw_joints;                 ///< as extracted
+  std::vector<float> confidence;            ///< of the extraction, 0..1
+  std::vector<SeenJoints> visibility = {};  ///< of the source's joints
+  bool has_legs = true;                     ///< false: the source's legs are not seen in half of the frames
 };
 
 /// What a metric looks at. It is asked only where all of that is known, for at least one frame.
@@ -26,6 +28,9 @@ enum MetricNeeds : unsigned {
   kNeedsRaw = 8,
   kNeedsConfidence = 16,
   kNeedsTruth = 32,  ///< the truth of the same, too
+  kNeedsVisibility = 64,
+  kNeedsScene = 128,  ///< the truth of a scene: who is in it, and whose each point is
+  kNeedsLegs = 256,   ///< seen
 };
 
 enum class Better { Lower, Higher, Neither };

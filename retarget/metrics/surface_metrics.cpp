@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "retarget/base/error.hpp"
 
@@ -53,6 +54,15 @@ double edge_length_error(const Points& p, const Points& q, int neighbours) {
     edges += used;
   }
   return edges == 0 ? 0 : sum / static_cast<double>(edges);
+}
+
+std::optional<float> lowest_height(const Points& vertices) {
+  std::optional<float> lowest;
+  for (Eigen::Index v = 0; v < vertices.rows(); ++v)
+    if (vertices.row(v).allFinite() &&
+        vertices(v, 1) < lowest.value_or(std::numeric_limits<float>::infinity()))
+      lowest = vertices(v, 1);
+  return lowest;
 }
 
 double floor_penetration(const Points& vertices) {

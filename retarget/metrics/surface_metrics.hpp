@@ -1,6 +1,7 @@
 // Errors of a surface against the true one, frame by frame, and figures of a surface without truth.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
@@ -20,6 +21,8 @@ double aligned_vertex_error(const Points& p, const Points& q);
 /// others). Mean over edges of |length in p - length in q|, metres. 0 for a single vertex.
 double edge_length_error(const Points& p, const Points& q, int neighbours = 6);
 
+/// y of the lowest vertex that is finite; none where none is.
+std::optional<float> lowest_height(const Points& vertices);
 /// How far the lowest vertex lies below the floor (y = 0), metres; 0 when none does.
 double floor_penetration(const Points& vertices);
 

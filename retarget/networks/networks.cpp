@@ -12,7 +12,10 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/program_files.hpp"
+#include "retarget/networks/dense_extractor.hpp"
+#include "retarget/networks/network_deformer.hpp"
 #include "retarget/networks/plugin_api.hpp"
+#include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -69,6 +72,22 @@ const PluginApi& plugin() {
   return api;
 }
 
+/// Null where the folder has none: weights of one's own need no second look.
+std::unique_ptr<PartRefiner> load_parts(const std::string& folder) {
+  const std::string path = folder + "/part.weights";
+  if (!fs::exists(path)) {
+    log::warn_once(path + ": is missing; limbs and head are not refined");
+    return nullptr;
+  }
+  return load_part_refiner(path);
+}
+
+std::unique_ptr<SkeletonExtractor> load_dense(const NetworkOptions& options, const std::string& folder) {
+  const std::string file = folder + "/" + extractor_named(options.extractor).weights;
+  return load_dense_extractor(options.extractor_file.empty() ? file : options.extractor_file,
+                              options.near ? load_parts(folder) : nullptr);
+}
+
 /// At most this many threads of OpenMP: more only cost memory, and a hundred thousand of them the process.
 void clamp_threads() {
   const char* const wanted = std::getenv("OMP_NUM_THREADS");
@@ -107,7 +126,19 @@ Networks load_networks(const NetworkOptions& options, const NetworkParts& parts)
   US_CHECK(!folder.empty(),
            "the trained weights are missing: no folder assets/weights beside the program or above "
            "it, nor ../share/understudy/weights");
-  return plugin().load(options, folder, parts);
+  const bool dense = options.extractor == "dense";
+  const MethodChoice& engine = engine_named(options.engine);
+  // The plug-in is for what needs LibTorch.
+  const NetworkParts left{parts.extractor && !dense, false, parts.transfer && !engine.make, false};
+  Networks networks;
+  if (left.extractor || left.transfer) networks = plugin().load(options, folder, left);
+  if (parts.extractor && dense) networks.extractor = load_dense(options, folder);
+  if (parts.rest_extractor && dense && options.extractor_file.empty())
+    networks.rest_extractor = load_dense_extractor(folder + "/skeleton_rest.weights");
+  if (parts.transfer && engine.make) networks.transfer = engine.make();
+  if (parts.deformer)
+    networks.deformer = load_network_deformer(folder + "/deformation.weights", options.offsets);
+  return networks;
 }
 
 RuntimeReport runtime_report() {

@@ -1,5 +1,6 @@
 #include "retarget/networks/part_crops.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "retarget/math/rotation.hpp"
@@ -34,10 +35,29 @@ const Mat3& frame_of(const Extraction& seen, const Part& part) {
   return (*seen.global)[part.joint];
 }
 
+/// Some points at a time, first all distances, then what they are compared with: the compiler turns both into
+/// vector instructions.
 std::vector<int> points_within(const Points& scan, const Vec3& middle, float radius) {
+  constexpr Eigen::Index kRun = 64;
+  const float most = radius * radius;
+  std::array<float, kRun> squared;
+  std::array<int, kRun> found;
   std::vector<int> near;
-  for (Eigen::Index i = 0; i < scan.rows(); ++i)
-    if ((scan.row(i).transpose() - middle).squaredNorm() < radius * radius) near.push_back(i);
+  for (Eigen::Index from = 0; from < scan.rows(); from += kRun) {
+    const Eigen::Index count = std::min(kRun, scan.rows() - from);
+    const float* const point = scan.data() + 3 * from;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const float x = point[3 * i] - middle.x(), y = point[3 * i + 1] - middle.y(),
+                  z = point[3 * i + 2] - middle.z();
+      squared[i] = x * x + (y * y + z * z);
+    }
+    size_t within = 0;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      found[within] = static_cast<int>(from + i);
+      within += squared[i] < most ? 1 : 0;
+    }
+    near.insert(near.end(), found.begin(), found.begin() + within);
+  }
   return near;
 }
 

@@ -7,7 +7,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 7;
+constexpr int kPluginVersion = 8;
 
 struct PluginApi {
   int version;

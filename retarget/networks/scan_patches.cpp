@@ -14,15 +14,30 @@ float median(Eigen::ArrayXf values) {
   return *middle;
 }
 
-/// The kPatchPoints nearest of all points. Distances and numbers are packed into one integer (the bits of a
-/// positive float sort as it does), which selects three times faster than comparing through an index.
-void nearest_of(const Eigen::ArrayXf& squared, std::vector<uint64_t>& keys) {
-  for (Eigen::Index i = 0; i < squared.size(); ++i) {
-    uint32_t bits;
-    const float d = squared[i];
-    std::memcpy(&bits, &d, 4);
-    keys[i] = static_cast<uint64_t>(bits) << 32 | static_cast<uint32_t>(i);
-  }
+constexpr int kGroups = 128;  // of points
+static_assert(kScanPoints % kGroups == 0 && kGroups >= kPatchPoints);
+
+using Distances = Eigen::Array<float, kScanPoints, 1>;
+
+/// Distances and numbers in one integer, which sorts as they do: so do the bits of a positive float.
+uint64_t key_of(float squared, int point) {
+  uint32_t bits;
+  std::memcpy(&bits, &squared, 4);
+  return static_cast<uint64_t>(bits) << 32 | static_cast<uint32_t>(point);
+}
+
+/// The kPatchPoints nearest of all points, as keys. Each group's nearest is found first: where so many groups
+/// begin, so many points lie, and only few others can be nearer than the last of those.
+void nearest_of(const Distances& squared, std::vector<uint64_t>& keys) {
+  Eigen::Array<float, kGroups, 1> nearest = squared.head<kGroups>();  // every kGroups-th point is a group
+  for (int i = kGroups; i < kScanPoints; i += kGroups) nearest = nearest.min(squared.segment<kGroups>(i));
+  Eigen::Array<float, kGroups, 1> sorted = nearest;
+  std::nth_element(sorted.data(), sorted.data() + (kPatchPoints - 1), sorted.data() + kGroups);
+  const float enough = sorted[kPatchPoints - 1];
+  keys.clear();
+  for (int group = 0; group < kGroups; ++group)
+    for (int i = group; nearest[group] <= enough && i < kScanPoints; i += kGroups)
+      if (squared[i] <= enough) keys.push_back(key_of(squared[i], i));
   std::nth_element(keys.begin(), keys.begin() + (kPatchPoints - 1), keys.end());
 }
 
@@ -44,8 +59,9 @@ ScanPatches cut_patches(const Points& points) {
   x.rowwise().squaredNorm().minCoeff(&first);
   patches.centre_index = farthest_points(x, kPatches, first);
 
-  const Eigen::ArrayXf px = x.col(0), py = x.col(1), pz = x.col(2);
-  std::vector<uint64_t> keys(kScanPoints);
+  const Distances px = x.col(0), py = x.col(1), pz = x.col(2);
+  std::vector<uint64_t> keys;
+  keys.reserve(kScanPoints);
   patches.centres.resize(kPatches, 3);
   patches.offsets.resize(kPatches * kPatchPoints, 3);
   for (int m = 0; m < kPatches; ++m) {

@@ -25,6 +25,10 @@ struct ScanPatches {
 /// used because outliers and floor move them little. Throws Error when all points coincide.
 ScanPatches cut_patches(const Points& points);
 
+/// Which of a scan's points extractors look at: always the same ones, so that the same scan gives the same
+/// joints.
+constexpr uint64_t kThinningSeed = 20240318;
+
 /// Exactly kScanPoints finite points of a scan: of a mesh's surface, or of a cloud (with repeats when it has
 /// fewer). `seed` picks which. Throws Error when fewer than 32 points are finite.
 Points thin_scan(const Mesh& scan, uint64_t seed);

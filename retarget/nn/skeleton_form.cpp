@@ -37,15 +37,6 @@ torch::Tensor stacked(const std::vector<ScanPatches>& patches, Points ScanPatche
   return torch::stack(all);
 }
 
-/// [22, 6]; zero where nothing is known.
-torch::Tensor recent_of(const RecentJoints& recent, const ScanPatches& patches) {
-  Eigen::Matrix<float, kJointCount, 6, Eigen::RowMajor> rows;
-  rows.setZero();
-  if (recent.last) rows.leftCols(3) = (recent.last->rowwise() - patches.centre.transpose()) / patches.scale;
-  if (recent.before_last) rows.rightCols(3) = (*recent.last - *recent.before_last) / patches.scale;
-  return tensor_of(rows);
-}
-
 }  // namespace
 
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name) {
@@ -58,8 +49,8 @@ WeightsHeader skeleton_header(const std::string& name) {
   return {"skeleton-" + name, kSkeletonVersion, {}};
 }
 
-void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form) {
-  load_weights(path, "skeleton-" + name, kSkeletonVersion, form);
+bool load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form) {
+  return load_weights(path, "skeleton-" + name, kSkeletonVersion, form, kVisibilityHead).lacking.empty();
 }
 
 ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,
@@ -72,7 +63,7 @@ ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,
   input.offsets = stacked(patches, &ScanPatches::offsets).view({-1, kPatches, kPatchPoints, 3});
   std::vector<torch::Tensor> joints, known;
   for (size_t b = 0; b < recent.size(); ++b) {
-    joints.push_back(recent_of(recent[b], patches[b]));
+    joints.push_back(tensor_of(normalised_past(recent[b], patches[b])));
     known.push_back(torch::tensor({recent[b].last ? 1.0f : 0.0f, recent[b].before_last ? 1.0f : 0.0f}));
   }
   if (!recent.empty()) input.recent = torch::stack(joints), input.recent_known = torch::stack(known);

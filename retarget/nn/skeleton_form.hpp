@@ -5,14 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "retarget/networks/scan_patches.hpp"
+#include "retarget/networks/extractor_forward.hpp"
 #include "retarget/nn/modules/skeleton_extractor.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy::nn {
-
-constexpr int kSkeletonVersion = 1;
 
 class SkeletonForm : public torch::nn::Module {
  public:
@@ -23,7 +21,8 @@ class SkeletonForm : public torch::nn::Module {
 std::shared_ptr<SkeletonForm> make_skeleton_form(const std::string& name);
 /// Header for the weights of a form; the trainer adds the numbers.
 WeightsHeader skeleton_header(const std::string& name);
-void load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form);
+/// Whether the weights hold all of the network: without kVisibilityHead, that gives what it was made with.
+bool load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form);
 
 /// A batch of B scans, on the CPU. `recent`: the extracted joints of the frames before each scan; empty for
 /// scans of no stream.

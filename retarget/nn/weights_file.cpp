@@ -7,6 +7,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/networks/weights_layout.hpp"
 
 namespace understudy::nn {
@@ -21,7 +22,7 @@ void each_tensor(const torch::nn::Module& module, Visit visit) {
 }
 
 WeightsHeader header_of(const StoredWeights& stored) {
-  return {stored.kind, stored.version, stored.numbers};
+  return {stored.kind, stored.version, stored.numbers, {}};
 }
 
 torch::Tensor tensor_of(const StoredTensor& stored) {
@@ -72,21 +73,26 @@ int64_t header_size(const std::string& path, const WeightsHeader& header, const 
 }
 
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,
-                           torch::nn::Module& module) {
+                           torch::nn::Module& module, const std::string& later) {
   const std::string bytes = read_file(path);
   const StoredWeights stored = parse_weights(bytes, path);
   US_CHECK(stored.kind == kind, path, ": holds weights for '", stored.kind, "', not for '", kind, "'");
   US_CHECK(stored.version == version, path, ": weights of version ", stored.version,
            ", this program needs version ", version);
+  WeightsHeader header = header_of(stored);
   const torch::NoGradGuard no_grad;
   each_tensor(module, [&](const std::string& name, torch::Tensor tensor) {
     const auto found = stored.tensors.find(name);
+    if (found == stored.tensors.end() && !later.empty() && starts_with(name, later)) {
+      header.lacking.push_back(name);
+      return;
+    }
     US_CHECK(found != stored.tensors.end(), path, ": has no '", name, "'");
     US_CHECK(tensor.sizes() == c10::IntArrayRef(found->second.shape), path, ": '", name,
              "' has another shape");
     tensor.copy_(tensor_of(found->second));
   });
-  return header_of(stored);
+  return header;
 }
 
 }  // namespace understudy::nn

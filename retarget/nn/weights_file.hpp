@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace understudy::nn {
 
@@ -13,6 +14,7 @@ struct WeightsHeader {
   std::string kind;                       ///< "skeleton", "part", "motion" or "deformation"
   int version = 0;                        ///< of the network's form; another version is refused
   std::map<std::string, double> numbers;  ///< sizes and training figures
+  std::vector<std::string> lacking{};  ///< of a file that was loaded: tensors that it has not, and may lack
 };
 
 /// Writes the module's parameters and buffers as float16 (half = true) or float32, beside the path, then
@@ -26,8 +28,9 @@ WeightsHeader read_weights_header(const std::string& path);
 int64_t header_size(const std::string& path, const WeightsHeader& header, const char* key, int64_t usual,
                     int64_t most);
 /// Fills the module. Throws Error naming the file when kind or version differ, or a tensor is missing or of
-/// another shape.
+/// another shape. Tensors whose names begin with `later`, if that is not empty, may be missing, as files from
+/// before they existed lack them: they stay as they are, and the header names them.
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,
-                           torch::nn::Module& module);
+                           torch::nn::Module& module, const std::string& later = "");
 
 }  // namespace understudy::nn

@@ -7,6 +7,7 @@
 #include "retarget/math/segment.hpp"
 #include "retarget/pipeline/copy_transfer.hpp"
 #include "retarget/pipeline/human_rest.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy {
 namespace {
@@ -145,7 +146,12 @@ BodyGirth measure_girth(const Extraction& source, const Points& scan) {
   CopyTransfer solver;
   solver.reset(human_rest());
   const Pose pose{solver.push(source, 1 / 30.0f), Vec3::Zero()};
-  return measure_girth(source.joints, forward_kinematics(human_rest(), pose).global, scan);
+  BodyGirth girth = measure_girth(source.joints, forward_kinematics(human_rest(), pose).global, scan);
+  for (const Bone& bone : kBones)
+    for (int s = bone.station; bone.end >= 0 && is_lost(source, bone.end) && s < bone.station + bone.stations;
+         ++s)
+      girth.radius[s].fill(0);  // what is near is something else
+  return girth;
 }
 
 const BodyGirth& human_girth() {

@@ -29,7 +29,8 @@ GirthPlace girth_place(const Vec3& point, const Joints& joints, const Rotations&
 
 /// Measured on at most 500 of the points, those that are sure. `global` as above.
 BodyGirth measure_girth(const Joints& joints, const Rotations& global, const Points& surface);
-/// The same of a scan and what was extracted from it; rotations that were not seen are solved.
+/// The same of a scan and what was extracted from it; rotations that were not seen are solved, and bones that
+/// are lost (is_lost) have no girth.
 BodyGirth measure_girth(const Extraction& source, const Points& scan);
 
 /// A mean adult's (of the built-in people), with legs one metre long.

@@ -49,7 +49,7 @@ std::array<bool, 4> FootLock::contacts(const Joints& source, float dt) {
   return on;
 }
 
-Pose FootLock::push(const Pose& pose, const Joints& rest, float dt, const Joints& source) {
+Pose FootLock::push(const Pose& pose, const Joints& rest, float dt, const Joints& source, Standing seen) {
   US_CHECK(source.allFinite(), "the source's joints are not finite");
   const bool first = !started_;
   if (first) start(source);
@@ -61,7 +61,7 @@ Pose FootLock::push(const Pose& pose, const Joints& rest, float dt, const Joints
   for (int side = 0; side < 2; ++side) {
     const size_t s = side;
     const Leg leg = Leg::of(side);
-    const bool on_heel = on[s], on_ball = on[s + 2];
+    const bool on_heel = seen[s] && on[s], on_ball = seen[s] && on[s + 2];
     const Vec3 ankle = posed.joints.row(leg.ankle).transpose(), ball = posed.joints.row(leg.ball).transpose();
     const Vec3 heel_offset(0, rest(leg.ball, 1) - rest(leg.ankle, 1), -0.06f * leg_m);
     const Vec3 heel = ankle + posed.global[leg.ankle] * heel_offset;

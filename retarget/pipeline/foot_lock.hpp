@@ -21,8 +21,10 @@ class FootLock {
   explicit FootLock(const FootLockOptions& options = {}) : options_(options) {}
   void reset() { started_ = false; }
   /// The pose with its standing feet held. rest: the target's T-pose joints; source: the source's joints in
-  /// this frame, world, which decide what stands; dt seconds since the frame before.
-  Pose push(const Pose& pose, const Joints& rest, float dt, const Joints& source);
+  /// this frame, world, which decide what stands; dt seconds since the frame before; seen: of the source's
+  /// feet, those that are not seen are not held.
+  Pose push(const Pose& pose, const Joints& rest, float dt, const Joints& source,
+            Standing seen = {true, true});
   /// Which feet stand in the last frame: left, right.
   Standing standing() const { return standing_; }
 

@@ -7,6 +7,9 @@ namespace understudy {
 
 /// T-pose joints of a mean human with legs one metre long, pelvis at the origin, facing +z. Symmetric.
 const Joints& human_rest();
+/// Sole to crown of that human, metres; of 400 sampled people with their bones it is so within 3 % (root mean
+/// square).
+constexpr float kHumanStature = 2.065f;
 
 /// Human T-pose directions with the bone lengths seen: `lengths[j]` from j's parent to j, metres, the pelvis'
 /// unused.

@@ -36,6 +36,9 @@ struct Extraction {
   std::optional<Rotations> global;   ///< world rotations seen on the surface, where known
   std::optional<float> sole_height;  ///< metres over the floor of the lowest points near the feet, where seen
   bool exact = false;  ///< a skeleton's own, seen in no scan: nothing is to be repaired, smoothed or solved
+  /// 0..1, whether the scan shows the surface about each joint; 1 where the extractor does not know. Not the
+  /// confidence: where a joint lies may be plain without seeing it, or doubtful although it is seen.
+  Confidence visibility = Confidence::Ones();
 };
 
 /// The joints seen in the last two frames of a stream, world, metres. Those that are not finite are left out.

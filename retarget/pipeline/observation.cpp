@@ -4,11 +4,12 @@
 #include <utility>
 
 #include "retarget/base/error.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr float kLeastConfidence = 0.08f;  // mean over joints
+constexpr float kLeastConfidence = 0.08f;  // mean over joints that are seen
 
 }  // namespace
 
@@ -27,7 +28,7 @@ std::string refusal(const Observation& seen) {
   if (!seen.problem.empty()) return seen.problem;
   if (!seen.joints.allFinite() || !seen.confidence.allFinite() || (seen.global && !finite(*seen.global)))
     return "the extracted skeleton has numbers that are not finite";
-  const float confidence = seen.confidence.mean();
+  const float confidence = mean_confidence(seen);
   if (confidence < kLeastConfidence)
     return detail::join("the confidence in the skeleton is only ", confidence);
   return {};

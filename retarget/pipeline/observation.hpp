@@ -26,7 +26,7 @@ Observation without_skeleton(std::string problem);
 bool finite(const Rotations& rotations);
 
 /// Why an observation is not to be performed; empty: it is. The one place that decides what is believed:
-/// numbers that are finite, and a mean confidence of at least 0.08.
+/// numbers that are finite, and a mean confidence of at least 0.08 in the joints that are seen.
 std::string refusal(const Observation& seen);
 
 /// A stage from skeleton to skeleton: changes how the source moves before anything of the target is asked.

@@ -13,7 +13,7 @@ namespace understudy {
 /// to 0.7 comes out.
 float bone_implausibility(const Joints& joints);
 
-/// Whether the bones are no person's, or unlike a person's and seen with little confidence.
+/// Whether the bones that are seen are no person's, or unlike a person's and seen with little confidence.
 bool is_implausible(const Extraction& seen);
 
 /// Looks at what is extracted from a source, frame after frame.
@@ -47,13 +47,22 @@ class Observer {
   Observation observe(const Extraction& given, const Mesh& scan, float dt);
   /// A skeleton that comes without a scan.
   Observation observe(const Extraction& given, float dt);
+  /// What is seen in a scan before the stream begins. Where that scan is then the first to be observed, it is
+  /// not looked at again. Throws Error without an extractor, and where it does.
+  Extraction look(const Mesh& scan);
   /// A frame in which there is nothing to look at.
   Observation skip(std::string problem, float dt);
 
  private:
   void pass(float dt);
+  Extraction extracted(const Mesh& scan);
 
   std::shared_ptr<SkeletonExtractor> extractor_;
+  struct Look {
+    Points points;
+    Extraction seen;
+  };
+  std::optional<Look> looked_;  // before the first frame
   RecentJoints recent_;
   float unseen_s_ = 0;  // since the last of them
   PersonCheck person_;

@@ -1,5 +1,6 @@
 #include "retarget/pipeline/performer.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "retarget/base/clock.hpp"
@@ -7,11 +8,22 @@
 #include "retarget/base/log.hpp"
 
 namespace understudy {
+namespace {
+
+/// Where no leg is bent for the floor the pelvis alone takes the soles there.
+RootPathOptions root_options(const RetargetOptions& options) {
+  RootPathOptions root = options.root;
+  if (!options.lock_feet) root.contact = 1;
+  return root;
+}
+
+}  // namespace
 
 Performer::Performer(const RetargetOptions& options)
     : options_(options),
-      now_{JointFilter(options.filter),
-           RootPath(options.root),
+      now_{UnseenLimbs(),
+           JointFilter(options.filter),
+           RootPath(root_options(options)),
            FootLock(options.feet),
            ArmReach(options.arm_reach),
            HandContacts(),
@@ -28,6 +40,7 @@ Performer::Performer(Target target, std::shared_ptr<MotionTransfer> transfer,
   for (const std::string& warning : target_.warnings) log::warn(warning);
   deformer_->bind(target_.mesh.vertices, target_.joints);
   now_.hands.bind(target_.mesh, target_.joints, deformer_->weights());
+  surface_ = TornSurface(target_.mesh, deformer_->weights());
   restart();
 }
 
@@ -38,6 +51,7 @@ void Performer::add_style(std::unique_ptr<MotionStyle> style) {
 
 void Performer::restart() {
   for (const auto& style : styles_) style->reset();
+  now_.unseen.reset();
   now_.filter.reset();
   now_.feet.reset();
   now_.arms.reset();
@@ -53,7 +67,7 @@ void Performer::restart() {
 void Performer::restart(const RetargetOptions& options) {
   options_ = options;
   now_.filter = JointFilter(options.filter);
-  now_.root = RootPath(options.root);
+  now_.root = RootPath(root_options(options));
   now_.feet = FootLock(options.feet);
   now_.arms = ArmReach(options.arm_reach);
   restart();
@@ -84,6 +98,10 @@ void Performer::run(PerformedFrame& frame) {
   static constexpr Stage kStyle = [](Performer& p, PerformedFrame& f) {
     for (const auto& style : p.styles_) f.source = style->push(std::move(f.source), p.waited_);
   };
+  static constexpr Stage kUnseen = [](Performer& p, PerformedFrame& f) {
+    static_cast<Extraction&>(f.source) = p.now_.unseen.push(f.source, p.waited_);
+    f.limbs = p.now_.unseen.limbs();
+  };
   static constexpr Stage kFilter = [](Performer& p, PerformedFrame& f) {
     static_cast<Extraction&>(f.source) = p.now_.filter.push(f.source, p.waited_);
   };
@@ -99,9 +117,11 @@ void Performer::run(PerformedFrame& frame) {
     f.pose = p.now_.root.step(f.pose);
   };
   static constexpr Stage kFeet = [](Performer& p, PerformedFrame& f) {
-    if (p.options_.lock_feet) f.pose = p.now_.root.plant(f.pose, p.waited_);
-    if (!p.options_.lock_feet || p.options_.root.mode != RootMode::Scaled) return;
-    f.pose = p.now_.feet.push(f.pose, p.target_.joints, p.waited_, f.source.joints);
+    if (!p.options_.lock_feet) return;
+    const Standing seen = p.now_.unseen.feet();
+    if (seen[0] || seen[1]) f.pose = p.now_.root.plant(f.pose, p.waited_);
+    if (p.options_.root.mode != RootMode::Scaled) return;
+    f.pose = p.now_.feet.push(f.pose, p.target_.joints, p.waited_, f.source.joints, seen);
     f.standing = p.now_.feet.standing();
   };
   static constexpr Stage kArms = [](Performer& p, PerformedFrame& f) {
@@ -117,9 +137,10 @@ void Performer::run(PerformedFrame& frame) {
              "the motion transfer gave numbers that are not finite");
     p.finish(f);
     US_CHECK(f.vertices.allFinite(), "the deformation gave numbers that are not finite");
+    p.watch(f);
   };
   const auto began = std::chrono::steady_clock::now();
-  for (const Stage stage : {kStyle, kFilter}) stage(*this, frame);
+  for (const Stage stage : {kStyle, kUnseen, kFilter}) stage(*this, frame);
   if (transfer_)
     for (const Stage stage : {kTransfer, kRoot, kSteps, kFeet, kArms, kHands, kSkin}) stage(*this, frame);
   frame.transfer_ms = ms_since(began) - frame.deform_ms;
@@ -145,6 +166,7 @@ PerformedFrame Performer::repeat(PerformedFrame frame, std::string reason) {
   frame.confidence.setZero();
   frame.pose = last_.pose;
   frame.standing = last_.standing;
+  frame.limbs = last_.limbs;
   frame.source.joints = last_.source;
   if (transfer_) finish(frame);
   return frame;
@@ -157,8 +179,20 @@ void Performer::finish(PerformedFrame& frame) const {
   frame.deform_ms = ms_since(began);
 }
 
+/// Tells once that the target falls apart, which lasts: every fifth frame is enough.
+void Performer::watch(PerformedFrame& frame) {
+  constexpr int kEvery = 5;
+  if (is_torn_ || watched_++ % kEvery != 0) return;
+  const float share = surface_.parted(target_.joints, frame.pose);
+  if (share <= TornSurface::kMost) return;
+  is_torn_ = true;
+  frame.warning = "the target falls apart: its pieces part by " + std::to_string(std::lround(100 * share)) +
+                  " % of its height; the bones of its joints may be wrong";
+  log::warn(frame.warning);
+}
+
 KeptFrame kept(const PerformedFrame& frame) {
-  return {frame.pose, frame.source.joints, frame.flagged, frame.standing};
+  return {frame.pose, frame.source.joints, frame.flagged, frame.standing, frame.limbs};
 }
 
 }  // namespace understudy

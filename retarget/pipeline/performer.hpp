@@ -14,6 +14,8 @@
 #include "retarget/pipeline/observation.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/pipeline/target.hpp"
+#include "retarget/pipeline/torn_surface.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy {
 
@@ -40,8 +42,10 @@ struct PerformedFrame {
                                    ///< flagged that of the last good frame
   Confidence confidence = Confidence::Zero();  ///< of the observed joints; zero where flagged
   Standing standing{};                         ///< the feet that are held on the floor
+  LimbsSight limbs{};                          ///< what is seen of the limbs; the rest stands or hangs still
   bool flagged = false;                        ///< the frame could not be used; the pose is the last good one
   std::string reason;                          ///< why it is flagged, one sentence
+  std::string warning;                         ///< that the target falls apart, once; it is logged, too
   double transfer_ms = 0, deform_ms = 0;
 };
 
@@ -51,6 +55,7 @@ struct KeptFrame {
   Joints source = Joints::Zero();  ///< joints of the source, repaired and smoothed
   bool flagged = false;
   Standing standing{};  ///< the feet that are held on the floor
+  LimbsSight limbs{};   ///< what is seen of the limbs
 };
 KeptFrame kept(const PerformedFrame& frame);
 
@@ -81,6 +86,7 @@ class Performer {
  private:
   /// What the stages remember, one value.
   struct Memory {
+    UnseenLimbs unseen;
     JointFilter filter;
     RootPath root;
     FootLock feet;
@@ -93,6 +99,7 @@ class Performer {
   Memory remembered() const;
   void put_back(Memory memory);
   void run(PerformedFrame& frame);
+  void watch(PerformedFrame& frame);
   PerformedFrame repeat(PerformedFrame frame, std::string reason);
   void finish(PerformedFrame& frame) const;
 
@@ -103,6 +110,9 @@ class Performer {
   std::vector<std::unique_ptr<MotionStyle>> styles_;
   Memory now_;
   Rotations copied_;  // local, of this frame, before its limbs were placed
+  TornSurface surface_;
+  bool is_torn_ = false;  // and it has been told
+  int64_t watched_ = 0;   // frames
   KeptFrame last_;
   float waited_ = 0;  // seconds since the last good frame
 };

@@ -42,6 +42,8 @@ class Retargeter {
   PerformedFrame push(const Observation& seen, float dt) { return performer().perform(seen, dt); }
 
   Observer& observer() { return observer_; }
+  /// Null: it takes given skeletons alone.
+  const std::shared_ptr<SkeletonExtractor>& extractor() const { return networks_.extractor; }
   /// Throws Error without a target.
   Performer& performer() {
     US_CHECK(performer_, "there is no target yet");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/pipeline/unseen_limbs.hpp"
 #include "retarget/skeleton/limb_ik.hpp"
 
 namespace understudy {
@@ -12,19 +13,24 @@ namespace {
 
 constexpr std::array<int, 4> kFeet = {LeftAnkle, RightAnkle, LeftFoot, RightFoot};
 constexpr float kContactEase = 0.1f;  // seconds in which a contact takes hold
-constexpr float kPlantEase = 0.15f;   // the same of a leg that reaches for the floor
+constexpr float kAloneEase = 0.03f;   // the same where the pelvis alone takes the soles to the floor
+constexpr float kPlantEase = 0.06f;   // the same of a leg that reaches for the floor
 constexpr float kPelvisEase = 0.2f;   // the same of a pelvis that was seen far from where the feet put it
 constexpr float kUsual = 0.035f;      // of the leg: what errors of the feet alone amount to
-constexpr float kSlack = 0.01f;       // of the leg: soles this near are left alone
+constexpr float kSlack = 0.002f;      // of the leg: soles this near are left alone
 constexpr float kDeepest = 0.25f;     // of the leg: a pelvis comes down no further for long steps
+constexpr float kWidth = 0.4f;        // of a foot, of its length
 constexpr float kSpan = 0.988f;       // of the leg: as far as it reaches before it straightens softly
 
 /// At most some 2,000 points of the scan within `reach` of a foot's joint, the lowest first.
-std::vector<Vec3> points_near_feet(const Joints& source, const Points& scan, float reach) {
+std::vector<Vec3> points_near_feet(const Extraction& source, const Points& scan, float reach) {
+  std::vector<int> feet;
+  for (const int j : kFeet)
+    if (!is_lost(source, j)) feet.push_back(j);
   std::vector<Vec3> near;
   for (Eigen::Index i = 0; i < scan.rows(); ++i)
-    for (const int j : kFeet)
-      if ((scan.row(i) - source.row(j)).squaredNorm() < reach * reach) {
+    for (const int j : feet)
+      if ((scan.row(i) - source.joints.row(j)).squaredNorm() < reach * reach) {
         near.push_back(scan.row(i).transpose());
         break;
       }
@@ -44,8 +50,8 @@ int neighbours_of(const Vec3& point, const std::vector<Vec3>& points, float reac
 
 }  // namespace
 
-std::optional<float> sole_height(const Joints& source, const Points& scan) {
-  const float leg = std::max(leg_length(source), 1e-3f);
+std::optional<float> sole_height(const Extraction& source, const Points& scan) {
+  const float leg = std::max(leg_length(source.joints), 1e-3f);
   const std::vector<Vec3> near = points_near_feet(source, scan, 0.25f * leg);
   if (near.size() < 20) return std::nullopt;
   // Bits of floor and outliers lie below the soles, but sparsely; a sole is as dense as the legs above it.
@@ -81,17 +87,20 @@ SupportPoints SupportPoints::from(const Points& rest, const Joints& rest_joints)
   for (const int side : {0, 1}) {
     const int ankle = side == 0 ? LeftAnkle : RightAnkle, toe = side == 0 ? LeftFoot : RightFoot;
     const float mid = 0.5f * (rest_joints(LeftAnkle, 0) + rest_joints(RightAnkle, 0));
-    // The sole in cells along the foot: of each the lowest vertex, behind the ball with the ankle, before it
-    // with the toes.
-    constexpr int kCells = 6;
+    // The sole in cells along and across the foot, which may stand on an edge: of each the lowest vertex,
+    // behind the ball with the ankle, before it with the toes.
+    constexpr int kCells = 6, kAcross = 4;
     const float heel = rest_joints(ankle, 2) - 0.09f * leg_length(rest_joints),
-                length = 0.35f * leg_length(rest_joints);
-    std::array<int, kCells> lowest;
+                length = 0.35f * leg_length(rest_joints), edge = rest_joints(toe, 0) - 0.5f * kWidth * length,
+                width = kWidth * length;
+    std::array<int, kCells * kAcross> lowest;
     lowest.fill(-1);
     for (Eigen::Index v = 0; v < rest.rows(); ++v) {
       const bool mine = (rest(v, 0) > mid) == (side == 0) && rest(v, 1) < rest_joints(ankle, 1);
-      const int cell = static_cast<int>(std::floor((rest(v, 2) - heel) / length * kCells));
-      if (!mine || cell < 0 || cell >= kCells) continue;
+      const int along = static_cast<int>(std::floor((rest(v, 2) - heel) / length * kCells));
+      if (!mine || along < 0 || along >= kCells) continue;
+      const int across = static_cast<int>(std::floor((rest(v, 0) - edge) / width * kAcross));
+      const int cell = along * kAcross + std::clamp(across, 0, kAcross - 1);
       if (lowest[cell] < 0 || rest(v, 1) < rest(lowest[cell], 1)) lowest[cell] = v;
     }
     for (const int v : lowest)
@@ -169,7 +178,8 @@ Vec3 RootPath::push(const Extraction& source, const Rotations& local_b, float dt
   // every foot's error; larger ones whole, then it is the pelvis that was not well seen.
   const float height = std::max(0.0f, clear) / std::max(options_.contact_height_m, 1e-4f);
   touching_ = std::clamp(1.5f - height, 0.0f, 1.0f);
-  const float ease = started_ ? 1 - std::exp(-dt / kContactEase) : 1.0f;
+  const float contact_ease = options_.contact < 1 ? kContactEase : kAloneEase;
+  const float ease = started_ ? 1 - std::exp(-dt / contact_ease) : 1.0f;
   const float error = exact - root_.y();
   const float small = std::clamp(error, -kUsual * leg_b_, kUsual * leg_b_);
   const float swift = started_ ? 1 - std::exp(-dt / kPelvisEase) : 1.0f;

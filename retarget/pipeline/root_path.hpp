@@ -40,8 +40,9 @@ struct SupportPoints {
 };
 
 /// Height over y = 0 of the soles: the lowest scan points near the foot joints that lie as densely as a body
-/// does (bits of floor and outliers do not), metres. None where fewer than 20 points are near.
-std::optional<float> sole_height(const Joints& source, const Points& scan);
+/// does (bits of floor and outliers do not), metres. None where fewer than 20 points are near. Feet that are
+/// lost (is_lost) have no soles.
+std::optional<float> sole_height(const Extraction& source, const Points& scan);
 
 /// Online: only the frames so far. s = leg_B / leg_A, leg_A the median over the frames so far; the path is
 /// summed from scaled steps, so that a better s never makes it jump.

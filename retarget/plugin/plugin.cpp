@@ -2,8 +2,6 @@
 #include <dlfcn.h>
 #include <torch/torch.h>
 
-#include <filesystem>
-
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/networks/plugin_api.hpp"
@@ -15,21 +13,10 @@ namespace understudy::nn {
 namespace {
 
 std::unique_ptr<MotionTransfer> load_transfer(const NetworkOptions& options, const std::string& folder) {
-  const MethodChoice& engine = engine_named(options.engine);
-  if (engine.make) return engine.make();
-  const std::string file = options.engine_file.empty() ? folder + "/" + engine.weights : options.engine_file;
+  const std::string usual = folder + "/" + engine_named(options.engine).weights;
+  const std::string file = options.engine_file.empty() ? usual : options.engine_file;
   if (options.engine == "paper") return load_paper_transfer(file);
   throw Error("the networks plug-in does not know the engine " + options.engine);
-}
-
-/// Null where the folder has none: weights of one's own need no second look.
-std::unique_ptr<PartRefiner> load_parts(const std::string& folder) {
-  const std::string path = folder + "/part.weights";
-  if (!std::filesystem::exists(path)) {
-    log::warn_once(path + ": is missing; limbs and head are not refined");
-    return nullptr;
-  }
-  return load_part_refiner(path);
 }
 
 /// A name of the BLAS library that LibTorch uses, or null: only OpenBLAS has these.
@@ -60,10 +47,10 @@ void send_log_to(void (*sink)(log::Level, const std::string&)) {
 }
 
 std::unique_ptr<SkeletonExtractor> load_extractor(const NetworkOptions& options, const std::string& folder) {
-  const bool dense = options.extractor == "dense";
   const std::string file = folder + "/" + extractor_named(options.extractor).weights;
-  return load_network_extractor(options.extractor_file.empty() ? file : options.extractor_file,
-                                options.extractor, dense && options.near ? load_parts(folder) : nullptr);
+  if (options.extractor != "paper")
+    throw Error("the networks plug-in does not know the extractor " + options.extractor);
+  return load_paper_extractor(options.extractor_file.empty() ? file : options.extractor_file);
 }
 
 Networks load(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts) {
@@ -71,11 +58,7 @@ Networks load(const NetworkOptions& options, const std::string& folder, const Ne
     log::warn_once("the slow reference BLAS is in use, some 30 times slower: install libopenblas0-openmp");
   Networks networks;
   if (parts.extractor) networks.extractor = load_extractor(options, folder);
-  if (parts.rest_extractor && options.extractor == "dense" && options.extractor_file.empty())
-    networks.rest_extractor = load_network_extractor(folder + "/skeleton_rest.weights", "dense");
   if (parts.transfer) networks.transfer = load_transfer(options, folder);
-  if (parts.deformer)
-    networks.deformer = load_network_deformer(folder + "/deformation.weights", options.offsets);
   return networks;
 }
 

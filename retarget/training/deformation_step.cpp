@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "retarget/geometry/mesh.hpp"
-#include "retarget/nn/load.hpp"
+#include "retarget/networks/network_deformer.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/skeleton/skinning.hpp"
 #include "retarget/training/losses/deformation_losses.hpp"

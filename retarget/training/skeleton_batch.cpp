@@ -1,5 +1,7 @@
 #include "retarget/training/skeleton_batch.hpp"
 
+#include <algorithm>
+
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/skeleton_form.hpp"
@@ -7,10 +9,14 @@
 
 namespace understudy::training {
 
+float joint_weight(float away) {
+  return std::clamp(1.4f - 2 * away, 0.2f, 1.0f);
+}
+
 SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<RecentJoints>& recent) {
   std::vector<nn::ScanPatches> all;
   std::vector<float> scales;
-  std::vector<torch::Tensor> centres, joints, rotations, parts;
+  std::vector<torch::Tensor> centres, joints, rotations, parts, seen, weights;
   for (const MadeScan& scan : scans) {
     const nn::ScanPatches& patches = all.emplace_back(nn::cut_patches(scan.points));
     scales.push_back(patches.scale);
@@ -23,11 +29,14 @@ SkeletonBatch make_batch(const std::vector<MadeScan>& scans, const std::vector<R
     std::vector<int64_t> own;
     for (const int centre : patches.centre_index) own.push_back(scan.parts[centre]);
     parts.push_back(torch::tensor(own));
+    seen.push_back(nn::tensor_of(scan.sight.seen).flatten());
+    weights.push_back(nn::tensor_of(PerJoint(scan.sight.away.unaryExpr(&joint_weight))).flatten());
   }
   return {nn::extractor_input(all, recent),
           torch::tensor(scales),
           torch::stack(centres),
-          {torch::stack(joints), torch::stack(rotations), torch::stack(parts)}};
+          {torch::stack(joints), torch::stack(rotations), torch::stack(parts), torch::stack(seen),
+           torch::stack(weights)}};
 }
 
 SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device) {
@@ -37,7 +46,8 @@ SkeletonBatch to_device(const SkeletonBatch& batch, const torch::Device& device)
            moved(in.recent_known)},
           batch.scale.to(device),
           batch.centre.to(device),
-          {batch.truth.joints.to(device), batch.truth.rotations.to(device), batch.truth.parts.to(device)}};
+          {batch.truth.joints.to(device), batch.truth.rotations.to(device), batch.truth.parts.to(device),
+           batch.truth.seen.to(device), batch.truth.weights.to(device)}};
 }
 
 LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch) {
@@ -48,12 +58,15 @@ LossSum skeleton_loss(const nn::ExtractorOutput& out, const SkeletonBatch& batch
     return loss;
   }
   const auto error = (out.joints - truth.joints).square().sum(-1).sqrt();  // [B, 22]
-  loss.add("joint_loss", mean_distance(out.joints, truth.joints) + mean_distance(out.voted, truth.joints));
+  const torch::Tensor& weights = truth.weights;
+  loss.add("joint_loss", mean_distance(out.joints, truth.joints, weights) +
+                             mean_distance(out.voted, truth.joints, weights));
   loss.add("vote_loss", vote_loss(out.votes, batch.input.centres, truth.joints, /*reach=*/0.8));
   loss.add("part_loss", label_loss(out.parts, truth.parts), 0.05);
-  loss.add("rotation_loss", columns_loss(out.rotations, truth.rotations), 0.3);
-  loss.add("length_loss", length_loss(out.joints, truth.joints), 0.3);
+  loss.add("rotation_loss", columns_loss(out.rotations, truth.rotations, weights), 0.3);
+  loss.add("length_loss", length_loss(out.joints, truth.joints, weights), 0.3);
   loss.add("spread_loss", spread_loss(error, out.log_spread), 0.01);
+  loss.add("visibility_loss", visibility_loss(out.visibility, truth.seen), 0.03);
   return loss;
 }
 

@@ -15,7 +15,13 @@ struct SkeletonTruth {
   torch::Tensor joints;     ///< [B, 22, 3]
   torch::Tensor rotations;  ///< [B, 22, 6] world
   torch::Tensor parts;      ///< [B, M] int64, 22: not the body
+  torch::Tensor seen;       ///< [B, 22] 1 where the cloud shows the joint, else 0
+  torch::Tensor weights;    ///< [B, 22] of each joint in the losses of places and rotations; see joint_weight
 };
+
+/// 1 for a joint that lies in the cloud or near it, 0.2 from 0.6 leg lengths away: nobody can tell just where
+/// it is, and it should not outweigh those that are seen.
+float joint_weight(float away);
 
 struct SkeletonBatch {
   nn::ExtractorInput input;

@@ -14,7 +14,7 @@ namespace {
 using nn::SkeletonForm;
 
 constexpr double kLearningRate = 1e-3, kContinuedRate = 5e-4;  // the latter where weights are trained on
-constexpr int kBatch = 32, kDevScans = 192, kDevPeople = 32;
+constexpr int kBatch = 32, kDevScans = 192, kDevHalves = 128, kDevPeople = 32;
 constexpr int kFollowed = 5;  // frames that a person is followed for, at most
 
 /// Several copies of one network on as many threads. Their parameters are the same memory, their gradients
@@ -54,11 +54,13 @@ class SkeletonTrainer final : public TrainingRun {
   void add_replicas();
   void learn(Replica& replica, int scans);
   void average_gradients();
-  Figures evaluate(const std::string& name, float captured);
+  ScanMakerOptions plain(float captured) const;
+  Figures evaluate(const std::string& name, const ScanMakerOptions& scans, bool all_joints);
 
   Step learn() override;
   Figures evaluate() override;
   nn::WeightsHeader header() const override { return nn::skeleton_header(options_.form); }
+  std::string later_part() const override { return nn::kVisibilityHead; }
 
   nn::SkeletonTrainOptions options_;
   TrainingData train_, dev_;
@@ -150,34 +152,71 @@ void SkeletonTrainer::average_gradients() {
   }
 }
 
-Figures SkeletonTrainer::evaluate(const std::string& name, float captured) {
-  ScanMakerOptions plain = scans_;
+/// Of scans that are evaluated on: people of the dev split as they move.
+ScanMakerOptions SkeletonTrainer::plain(float captured) const {
+  ScanMakerOptions plain = scans_.whole_and_alone();
   plain.mixed = plain.jittered = plain.tilted = plain.stretch = 0;
   if (options_.poses == "all") plain.t_pose = 0;
   plain.mirror = false;
   plain.captured = plain.dressed = captured;
-  ScanStreams streams(dev_, plain, 77, kDevPeople);
+  return plain;
+}
+
+/// What is gathered over scans that are evaluated on.
+struct DevSums {
   JointSequence found, truth;
-  double turned_deg = 0;
-  for (int i = 0; i < kDevScans / kDevPeople; ++i) {
+  double turned_deg = 0, seen_mm = 0, seen = 0, right = 0;
+
+  void add(const nn::ExtractorOutput& out, const SkeletonBatch& batch, const std::vector<Joints>& joints,
+           const std::vector<MadeScan>& scans);
+};
+
+void DevSums::add(const nn::ExtractorOutput& out, const SkeletonBatch& batch,
+                  const std::vector<Joints>& joints, const std::vector<MadeScan>& scans) {
+  found.insert(found.end(), joints.begin(), joints.end());
+  for (size_t i = 0; i < scans.size(); ++i) {
+    truth.push_back(scans[i].truth.joints);
+    const PerJoint error = (joints[i] - truth.back()).rowwise().norm().array();
+    seen_mm += 1000.0 * (error * scans[i].sight.seen).sum();
+    seen += scans[i].sight.seen.sum();
+  }
+  if (out.rotations.defined()) turned_deg += mean_angle_deg(out.rotations, batch.truth.rotations);
+  if (out.visibility.defined())
+    right += ((out.visibility > 0) == (batch.truth.seen > 0)).to(torch::kFloat32).mean().item<double>();
+}
+
+/// Of whole bodies all joints, of others those that are seen.
+Figures SkeletonTrainer::evaluate(const std::string& name, const ScanMakerOptions& scans, bool all_joints) {
+  ScanStreams streams(dev_, scans, 77, kDevPeople);
+  DevSums sums;
+  const int batches = (all_joints ? kDevScans : kDevHalves) / kDevPeople;
+  for (int i = 0; i < batches; ++i) {
     const FollowedScans followed = streams.next(kDevPeople);
     const SkeletonBatch batch = to_device(make_batch(followed.scans, followed.recent), device());
     const auto out = average_->forward(batch.input);
     const auto joints = world_joints(out, batch);
     streams.saw(joints);
-    found.insert(found.end(), joints.begin(), joints.end());
-    for (const MadeScan& scan : followed.scans) truth.push_back(scan.truth.joints);
-    if (out.rotations.defined()) turned_deg += mean_angle_deg(out.rotations, batch.truth.rotations);
+    sums.add(out, batch, joints, followed.scans);
   }
-  return {{name + "_mm", 1000 * mean_joint_error(found, truth)},
-          {name + "_swap", swap_rate(found, truth)},
-          {name + "_deg", turned_deg * kDevPeople / kDevScans}};
+  if (!all_joints)
+    return {{name + "_mm", sums.seen_mm / std::max(1.0, sums.seen)}, {name + "_seen", sums.right / batches}};
+  return {{name + "_mm", 1000 * mean_joint_error(sums.found, sums.truth)},
+          {name + "_swap", swap_rate(sums.found, sums.truth)},
+          {name + "_deg", sums.turned_deg / batches}};
 }
 
-/// Unseen people in unseen motions: clean and captured scans.
+/// Unseen people in unseen motions: clean and captured scans; half bodies, and scans of depth cameras with
+/// things about.
 Figures SkeletonTrainer::evaluate() {
-  Figures figures = evaluate("dev", 0);
-  for (const Figure& figure : evaluate("captured", 1)) figures.push_back(figure);
+  Figures figures = evaluate("dev", plain(0), true);
+  const auto add = [&](const Figures& more) { figures.insert(figures.end(), more.begin(), more.end()); };
+  add(evaluate("captured", plain(1), true));
+  if (options_.poses == "rest") return figures;
+  ScanMakerOptions half = plain(0.5f), sensed = plain(1);
+  half.cut_below = 0.6f, half.cut_beside = half.desks = half.seated = 0.2f;
+  sensed.sensors = 1, sensed.ground = 0.5f, sensed.furniture = sensed.others = 0.2f;
+  add(evaluate("partial", half, false));
+  add(evaluate("sensors", sensed, false));
   return figures;
 }
 

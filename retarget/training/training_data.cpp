@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::training {
@@ -26,6 +27,18 @@ std::vector<Clip> read_clips(const fs::path& folder) {
   return clips;
 }
 
+void find_hands(TrainingData& data, const std::string& file) {
+  data.dressed_hands.resize(data.dressed.size());
+  if (file.empty()) {
+    log::warn_once("The data has no hand_poses.npz beside the body: all hands are flat");
+    return;
+  }
+  data.hand_poses = std::make_shared<HandPoses>(file);
+  data.hands = data.hand_poses->vertices_of(data.body.weights, data.body.weights);
+  for (size_t i = 0; i < data.dressed.size(); ++i)
+    data.dressed_hands[i] = data.hand_poses->vertices_of(data.body.weights, data.dressed[i].weights);
+}
+
 }  // namespace
 
 TrainingData load_training_data(const std::string& folder, Split split) {
@@ -35,6 +48,7 @@ TrainingData load_training_data(const std::string& folder, Split split) {
   data.template_leg = leg_length(data.body.shaped(Eigen::VectorXf::Zero(1)).joints);
   data.betas = part.betas;
   for (const auto& file : part.clothed) data.dressed.push_back(read_dressed_body(file));
+  find_hands(data, part.hand_poses);
   for (const auto& subject : part.motion_folders)
     for (Clip& clip : read_clips(subject)) data.clips.push_back(std::move(clip));
   for (const Clip& clip : data.clips) data.good_frames += static_cast<int64_t>(clip.good.size());

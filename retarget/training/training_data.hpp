@@ -2,11 +2,13 @@
 // splits).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "retarget/base/rng.hpp"
 #include "retarget/body/data_folder.hpp"
+#include "retarget/body/hand_poses.hpp"
 
 namespace understudy::training {
 
@@ -22,6 +24,10 @@ struct TrainingData {
   float template_leg = 1;              ///< leg length the clips' root paths are made for, metres
   std::vector<Eigen::VectorXf> betas;  ///< shape parameters of the split's people
   std::vector<ShapedBody> dressed;     ///< people with clothes and hair; no pose_dirs
+  std::shared_ptr<const HandPoses> hand_poses = {};  ///< null where the folder has none: all hands are flat
+  HandVertices hands = {};                           ///< of the body
+  std::vector<HandVertices> dressed_hands =
+      {};  ///< of each dressed person; empty where they are not the body's
   std::vector<Clip> clips;
   int64_t good_frames = 0;
 };

@@ -57,7 +57,11 @@ void TrainingRun::own(std::shared_ptr<torch::nn::Module> net, std::shared_ptr<to
   net_ = std::move(net);
   average_ = std::move(average);
   optimizer_ = std::move(optimizer);
-  if (!options_.init.empty()) nn::load_weights(options_.init, header().kind, header().version, *net_);
+  if (!options_.init.empty()) {
+    const auto begun = nn::load_weights(options_.init, header().kind, header().version, *net_, later_part());
+    for (const std::string& name : begun.lacking)
+      log::info(options_.init + " has no '" + name + "': trained from new");
+  }
   copy_into(net_->parameters(), average_->parameters());
   if (options_.keep > 0) first_ = copies_of(average_->parameters());
 }

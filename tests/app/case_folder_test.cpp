@@ -78,6 +78,46 @@ TEST_F(CaseFolder, ReadsTheTruth) {
   EXPECT_TRUE(truth.source_joints.empty());
 }
 
+/// Two people in two frames of 3 and 2 points.
+Npz scene_truth(std::vector<float> counts, std::vector<float> owners) {
+  Npz npz{{"people_joints", array({2, 2, 22, 3})},
+          {"people_seen", array({2, 2, 22})},
+          {"people_touch", array({2, 2})}};
+  npz["point_counts"] = {{static_cast<int64_t>(counts.size())}, counts, ""};
+  npz["point_owners"] = {{static_cast<int64_t>(owners.size())}, owners, ""};
+  return npz;
+}
+
+TEST_F(CaseFolder, ReadsTheTruthOfAScene) {
+  write_npz(scratch.path("t.npz"), scene_truth({3, 2}, {0, 1, -1, -2, 1}));
+  const Truth truth = read_truth(scratch.path("t.npz"));
+  EXPECT_EQ(truth.frames, 2);
+  ASSERT_EQ(truth.scene.size(), 2u);
+  EXPECT_EQ(truth.scene[0].owners, (std::vector<int>{0, 1, kNobodysPoint}));
+  EXPECT_EQ(truth.scene[1].owners, (std::vector<int>{kUndecidedPoint, 1}));
+  EXPECT_EQ(truth.scene[1].people[1].joints(2, 1), 3 * 66 + 7);
+  EXPECT_EQ(truth.scene[1].people[0].seen[5], 2 * 22 + 5);
+  EXPECT_FALSE(truth.scene[0].people[0].touches);
+  EXPECT_TRUE(truth.scene[0].people[1].touches);
+  EXPECT_EQ(read_case(with_json(R"({"source": "s", "alone": ["a", "b"]})")).alone[1], scratch.path("walk/b"));
+  EXPECT_THROW(read_case(with_json(R"({"source": "s", "alone": "a"})")), Error);
+}
+
+TEST_F(CaseFolder, RefusesASceneWhosePointsDoNotAddUp) {
+  const auto refused = [&](Npz npz) {
+    write_npz(scratch.path("t.npz"), npz);
+    EXPECT_THROW(read_truth(scratch.path("t.npz")), Error);
+  };
+  refused(scene_truth({3, 3}, {0, 1, -1, 0, 1}));
+  refused(scene_truth({3, -1}, {0, 1, -1, 0, 1}));
+  refused(scene_truth({3, NAN}, {0, 1, -1, 0, 1}));
+  refused(scene_truth({3, 2}, {0, 1, -1, 0, 2}));
+  refused(scene_truth({3}, {0, 1, -1}));
+  Npz npz = scene_truth({3, 2}, {0, 1, -1, 0, 1});
+  npz.erase("people_seen");
+  refused(npz);
+}
+
 TEST_F(CaseFolder, RefusesATruthThatDisagreesWithItself) {
   write_npz(scratch.path("t.npz"), {{"vertices", array({2, 5, 3})}, {"joints", array({3, 22, 3})}});
   EXPECT_THROW(read_truth(scratch.path("t.npz")), Error);

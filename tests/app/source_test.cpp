@@ -10,6 +10,7 @@
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/pipeline/human_rest.hpp"
 #include "tests/app/program.hpp"
 #include "tests/retarget/motion/made_motion.hpp"
 
@@ -73,6 +74,48 @@ TEST_F(SourceFiles, ComeInMetresAsTheFirstFrameSays) {
   EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 1.7f, 0.02);
   EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 3.4f, 0.04);
   EXPECT_FALSE(source->next());
+}
+
+/// Whose feet nobody sees: the column is its upper half.
+Extraction half_seen(const Mesh& scan) {
+  Extraction seen;
+  seen.joints = human_rest();
+  const float top = scan.vertices.col(1).maxCoeff(), low = scan.vertices.col(1).minCoeff();
+  seen.joints *= (top - low) / 0.95f;
+  seen.joints.col(1).array() += low;
+  for (const int j : {LeftKnee, RightKnee, LeftAnkle, RightAnkle, LeftFoot, RightFoot})
+    seen.visibility[j] = seen.confidence[j] = 0.1f;
+  return seen;
+}
+
+TEST_F(SourceFiles, OfHalfABodyAreAsLargeAsItsBonesSay) {
+  for (int t = 0; t < 3; ++t) write_frame(t, 35);  // 60 high: inches, were it all
+  const auto source = open_source(here());
+  int looks = 0;
+  source->set_look([&](const Mesh& scan) { return ++looks, half_seen(scan); });
+  const auto first = source->next(), second = source->next();
+  EXPECT_EQ(looks, 1);
+  EXPECT_NE(source->decision().find("centimetres"), std::string::npos) << source->decision();
+  EXPECT_NEAR(first->mesh.vertices.col(1).maxCoeff() - first->mesh.vertices.col(1).minCoeff(), 0.6f, 0.01f);
+  EXPECT_NEAR(first->mesh.vertices.col(1).minCoeff(), 0.7f, 0.1f);  // that is where hips are
+
+  SourceOptions again = here();
+  again.import = source->import().value();
+  EXPECT_LT((open_source(again)->next()->mesh.vertices - first->mesh.vertices).cwiseAbs().maxCoeff(), 1e-5f);
+}
+
+TEST_F(SourceFiles, AreAsBeforeWhereNobodyOrAWholePersonIsSeen) {
+  write_frame(0, 35);
+  const auto plain = open_source(here())->next();
+  const auto nobody = open_source(here()), whole = open_source(here());
+  nobody->set_look([](const Mesh&) -> Extraction { throw Error("nobody"); });
+  whole->set_look([](const Mesh& scan) {
+    Extraction seen = half_seen(scan);
+    seen.visibility.setOnes();
+    return seen;
+  });
+  EXPECT_EQ(nobody->next()->mesh.vertices, plain->mesh.vertices);
+  EXPECT_EQ(whole->next()->mesh.vertices, plain->mesh.vertices);
 }
 
 TEST_F(SourceFiles, KnowTheWayBackToTheirFiles) {
@@ -237,6 +280,16 @@ TEST_F(SourceFiles, ABodyPerformsAMotion) {
   const Points first = source->next()->mesh.vertices, second = source->next()->mesh.vertices;
   EXPECT_NEAR((second.col(0) - first.col(0)).mean(), 0.5f, 1e-5);
   EXPECT_NEAR(first.col(1).minCoeff(), 0, 0.1);  // on the floor
+  options.truth = true;
+  options.import.turn_deg = 90;
+  const auto turned = open_source(options);
+  const auto frame = turned->next();
+  ASSERT_TRUE(frame->truth);
+  for (int j = 0; j < kJointCount; ++j)  // in the middle of its two vertices
+    EXPECT_LT(
+        (frame->truth->joints.row(j) - frame->mesh.vertices.middleRows(2 * j, 2).colwise().mean()).norm(),
+        1e-4f);
+  EXPECT_NEAR(heading_of((*frame->truth->global)[Head]), kPi / 2, 1e-4f);
 }
 
 TEST_F(SourceFiles, ASkeletonThatMovesIsASource) {
@@ -285,8 +338,38 @@ TEST_F(SourceFiles, AnAnimatedSurfaceIsSampledAnewWhereAScanIsAskedFor) {
   EXPECT_EQ(first->mesh.vertices.rows(), 8000);
   EXPECT_NEAR((second->mesh.vertices.col(0).mean() - first->mesh.vertices.col(0).mean()), 0.25f, 0.02f);
   EXPECT_GT((second->mesh.vertices.row(0) - first->mesh.vertices.row(0)).norm(), 0.01f);
+  EXPECT_FALSE(first->truth);  // nobody asked
   options.as_scan = false;
   EXPECT_TRUE(open_source(options)->next()->skeleton);
+}
+
+TEST_F(SourceFiles, AnAnimatedSurfaceBringsItsBonesToBeJudgedByWhereTheyAreAskedFor) {
+  SourceOptions options;
+  options.path = scratch.path("turn.glb");
+  Character person = tests::make_character();
+  CharacterTrack turn;
+  turn.node = 1;  // the hips
+  turn.path = TrackPath::Rotation;
+  turn.times = {0, 1};
+  turn.values = {0, 0, 0, 1, 0, std::sqrt(0.5f), 0, std::sqrt(0.5f)};  // a quarter about y
+  person.animations.push_back({"turn", {turn}});
+  write_gltf_character(options.path, person);
+  options.as_scan = options.truth = true;
+  options.fps = 1;
+  options.import.turn_deg = 30;
+  const auto source = open_source(options);
+  const auto first = source->next(), last = source->next();
+  ASSERT_TRUE(first->truth && last->truth);
+  for (const auto& frame : {first, last}) {
+    const Points& scan = frame->mesh.vertices;
+    const Eigen::RowVector3f middle = frame->truth->joints.row(Pelvis), low = scan.colwise().minCoeff(),
+                             high = scan.colwise().maxCoeff();
+    EXPECT_TRUE((middle.array() > low.array()).all() && (middle.array() < high.array()).all());
+    EXPECT_LT(frame->truth->joints(LeftAnkle, 1), 0.25f);  // on the scan's floor, at its size
+    EXPECT_GT(frame->truth->joints(Head, 1), 0.8f * high.y());
+  }
+  const Mat3 before = (*first->truth->global)[Pelvis], after = (*last->truth->global)[Pelvis];
+  EXPECT_NEAR(heading_of(after * before.transpose()), kPi / 2, 0.01f);
 }
 
 TEST_F(SourceFiles, ABodyIsOneWhateverTheCaseOfItsSuffix) {

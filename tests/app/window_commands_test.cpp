@@ -47,6 +47,9 @@ TEST(WindowCommands, TheFolderOfAFileIsShownByTheSystem) {
   std::string text;
   std::getline(std::ifstream(said), text);
   EXPECT_EQ(text, folder);
+  ASSERT_FALSE(studio.session().notices.empty());
+  EXPECT_EQ(studio.session().notices.back().text, "dance $(x).glb is in " + folder)
+      << "where no program shows folders, too";
   EXPECT_THROW(studio.run("file.show", {"/no such folder/dance.glb"}), Error);
   ::setenv("PATH", before.c_str(), 1);
   fs::remove_all(folder);

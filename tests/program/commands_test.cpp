@@ -27,7 +27,9 @@ TEST_F(Commands, AllHaveHelp) {
 }
 
 TEST_F(Commands, AreRefusedWhenUnknown) {
-  EXPECT_EQ(run_program({}).code, 2);
+  const Finished alone = run_program({});
+  EXPECT_EQ(alone.code, 2);
+  EXPECT_NE(alone.err.find("understudy studio"), std::string::npos) << alone.err;
   EXPECT_EQ(run_program({"dance"}).code, 2);
   EXPECT_EQ(run_program({"retarget", "--source", scans()}).code, 2);  // no target
   EXPECT_EQ(run_program({"bench", "--frames", "-3"}).code, 2);
@@ -226,7 +228,7 @@ TEST_F(Commands, SampleRefusesAFolderThatCannotBeMade) {
 TEST_F(Commands, DoctorTellsWhatIsThere) {
   const Finished run = run_program({"doctor"});
   EXPECT_EQ(run.code, 0) << run.out;
-  for (const char* word : {"torch", "BLAS", "threads", "weights", "OpenGL"})
+  for (const char* word : {"kernels", "torch", "BLAS", "threads", "weights", "OpenGL"})
     EXPECT_NE(run.out.find(word), std::string::npos) << word;
 }
 

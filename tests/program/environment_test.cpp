@@ -23,17 +23,19 @@ TEST(Threads, AHundredThousandAreClamped) {
       << run.err;
 }
 
-TEST(AddressSpace, TooLittleOfItIsToldInOneSentence) {
+TEST(AddressSpace, TooLittleForLibTorchIsToldInOneSentence) {
   const ScratchFolder scratch;
-  const std::string command = std::string("ulimit -v 1048576; timeout 60 ") + US_PROGRAM + " demo --out " +
-                              scratch.path("demo") + " 2> " + scratch.path("said");
+  const std::string samples = US_SOURCE_DIR "/assets/samples/";
+  const std::string command = std::string("ulimit -v 1048576; timeout 60 ") + US_PROGRAM +
+                              " retarget --engine paper --source " + samples + "scan --target " + samples +
+                              "target_adult.glb --out " + scratch.path("motion.npz") + " 2> " +
+                              scratch.path("said");
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
   EXPECT_NE(read_bytes(scratch.path("said")).find("of address space"), std::string::npos)
       << read_bytes(scratch.path("said"));
 }
 
-/// A plug-in has a log of its own: what it says must come to the program's.
-TEST(PluginLog, ComesToTheProgramsSink) {
+TEST(Weights, ThatLackPartsAreWarnedOf) {
   const ScratchFolder scratch;
   for (const auto& file : fs::directory_iterator(US_SOURCE_DIR "/assets/weights"))
     if (file.path().filename() != "part.weights")

@@ -100,6 +100,42 @@ TEST_F(Measuring, MeasureTellsOfAScanWithoutTruth) {
     EXPECT_TRUE(report["raw"].contains(key)) << key;
   }
   EXPECT_GT(report["metrics"]["inside"], 0.5);
+  EXPECT_EQ(report["limbs_seen"]["left leg"], kFrames);
+}
+
+TEST_F(Measuring, MeasureJudgesARegisteredCaptureByItsSurface) {
+  for (int frame = 0; frame < 4; ++frame) {
+    write_target(scratch.path("person.obj"));  // the same vertices in the same order
+    std::filesystem::create_directories(scratch.path("capture"));
+    std::filesystem::rename(scratch.path("person.obj"),
+                            scratch.path("capture/frame_" + std::to_string(frame) + ".obj"));
+  }
+  const Finished run = run_program({"measure", scratch.path("capture"), "--out", out("m.json")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("share one topology"), std::string::npos) << run.err;
+  const Json report = Json::parse(read_bytes(out("m.json")));
+  ASSERT_GE(report["registered"].size(), 12u);
+  EXPECT_LT(report["metrics"]["registered_rot_deg"], 6);  // nothing moves, but the order of the vertices
+  EXPECT_LT(report["metrics"]["registered_const_mm"], 10);
+  const Finished plain =
+      run_program({"measure", scratch.path("capture"), "--out", out("m.json"), "--registered", "no"});
+  ASSERT_EQ(plain.code, 0) << plain.err;
+  EXPECT_FALSE(Json::parse(read_bytes(out("m.json"))).contains("registered"));
+  const Finished unknown = run_program({"measure", scratch.path("capture"), "--registered", "perhaps"});
+  EXPECT_GT(unknown.code, 0);
+  EXPECT_NE(unknown.err.find("--registered"), std::string::npos) << unknown.err;
+}
+
+TEST_F(Measuring, MeasureJudgesACharacterAsAScanByItsBones) {
+  const std::string adult = US_SOURCE_DIR "/assets/samples/target_adult.glb", moving = out("moving.glb");
+  const Finished made = run_program({"retarget", "--source", scans(), "--target", adult, "--out", moving});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Finished run = run_program({"measure", moving, "--as-scan", "--out", out("m.json")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json metrics = Json::parse(read_bytes(out("m.json")))["metrics"];
+  for (const char* key : {"wrist_deg", "head_deg"}) EXPECT_TRUE(metrics.contains(key)) << key;
+  EXPECT_LT(metrics["extraction_limb_mm"], 40);
+  EXPECT_LT(metrics["rot_deg"], 20);
 }
 
 }  // namespace

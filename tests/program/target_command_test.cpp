@@ -27,7 +27,8 @@ class TargetCommand : public ShippedProgram {
       all.push_back(Eigen::Map<const Joints>(npz.at("joints").values.data() + t * kJointCount * 3));
     return all;
   }
-  /// Arms stretched out, legs straight and apart.
+  /// Arms stretched out, legs apart and straight, but for the millimetres by which soles are put on the
+  /// floor.
   void expect_t_pose(const Joints& joints) {
     const auto bone = [&](int from, int to) { return Vec3((joints.row(to) - joints.row(from)).transpose()); };
     for (const int right : {0, 1}) {
@@ -36,7 +37,7 @@ class TargetCommand : public ShippedProgram {
       EXPECT_LT(angle_deg(bone(LeftElbow + right, LeftWrist + right), out), 20) << right;
       EXPECT_LT(angle_deg(bone(LeftHip + right, LeftKnee + right), -Vec3::UnitY()), 12) << right;
       EXPECT_LT(angle_deg(bone(LeftHip + right, LeftKnee + right), bone(LeftKnee + right, LeftAnkle + right)),
-                12)
+                15)
           << right;
     }
     EXPECT_GT(joints(LeftAnkle, 0), joints(RightAnkle, 0));  // shins do not cross

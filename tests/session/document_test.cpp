@@ -58,6 +58,13 @@ const Changes& document_changes() {
       CHANGE(source.clip += "x"),
       CHANGE(source.bones.clear()),
       CHANGE(source.import.height.reset()),
+      CHANGE(source.person = "7"),
+      CHANGE(source.people.clear()),
+      CHANGE(source.people[0].how = PersonEdit::How::Exchange),
+      CHANGE(source.people[0].first += 1),
+      CHANGE(source.people[0].last += 1),
+      CHANGE(source.people[0].person += 10),
+      CHANGE(source.people[0].other += 10),
       CHANGE(truth.clear()),
       CHANGE(scan_edits.crop.reset()),
       CHANGE(scan_edits.crop->low.x() -= 1),
@@ -163,7 +170,8 @@ const Changes& document_changes() {
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
-                                edits] = SourceOptions();
+                                with_truth, person, people, edits] = SourceOptions();
+  [[maybe_unused]] const auto& [how, edit_first, edit_last, whose, other] = PersonEdit();
   [[maybe_unused]] const auto& [units, up, yaw, floor, body_height] = ImportOptions();
   [[maybe_unused]] const auto& [crop, cut, cluster, gap] = ScanEdits();
   [[maybe_unused]] const auto& [low, high] = Box();
@@ -195,7 +203,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [light_turn, light_height, brightness] = LightLook();
   [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();
   [[maybe_unused]] const auto& [surface, points, bones, x_ray, names, ground, trail, ghost, wireframe,
-                                colouring] = Layers();
+                                scenery, colouring] = Layers();
   [[maybe_unused]] const auto& [playing, loop, live, rate, now, in, out] = Playback();
 }
 
@@ -357,6 +365,25 @@ TEST_F(HistoryTest, SharesWhatIsLarge) {
   for (int i = 0; i < 5; ++i) history.add(document, "Step");
   EXPECT_EQ(weights.use_count(), users + 5);
   EXPECT_EQ(history.undo(document).takes[0].target_edits.weights, weights);
+}
+
+TEST(BadFrames, AJointThatWasDraggedToItsPlaceIsNoLongerOne) {
+  Session session;
+  KeptSource good;
+  good.confidence = 1, good.confidence_of.setOnes();
+  for (int j = 1; j < kJointCount; ++j)
+    good.joints.row(j) = good.joints.row(kParents[j]) + Vec3(0, 0.3f, 0).transpose();
+  good.raw = good.joints;
+  for (int i = 0; i < 20; ++i) session.source.frames.push_back(good);
+  KeptSource wrong = good;
+  wrong.raw.row(LeftWrist) += Vec3(0, 0.2f, 0).transpose();
+  session.source.frames.write(7, 8, [&](size_t, KeptSource& frame) { frame = wrong; });
+  ASSERT_EQ(bad_frames(session).size(), 1u);
+  EXPECT_NE(bad_frames(session)[0].why.find("changed length (+67 %)"), std::string::npos);
+  session.document.skeleton_edits = {DragEdit{7, LeftWrist, Vec3(0, -0.2f, 0), 0, false}};
+  EXPECT_TRUE(bad_frames(session).empty());
+  session.document.skeleton_edits = {DragEdit{7, LeftWrist, Vec3(0, 0.2f, 0), 0, false}};
+  ASSERT_EQ(bad_frames(session).size(), 1u) << "dragged further away";
 }
 
 }  // namespace

@@ -25,6 +25,47 @@ TEST_F(StudioTest, PerformsAScanThatWasOpened) {
   EXPECT_EQ(session.takes[0].latency.frames(), kFrames);
 }
 
+/// Sees no legs.
+class HalfSeeing final : public SkeletonExtractor {
+ public:
+  explicit HalfSeeing(std::shared_ptr<SkeletonExtractor> whole) : whole_(std::move(whole)) {}
+  Extraction extract(const Mesh& scan) override {
+    Extraction seen = whole_->extract(scan);
+    for (const int j : {LeftKnee, RightKnee, LeftAnkle, RightAnkle, LeftFoot, RightFoot})
+      seen.visibility[j] = seen.confidence[j] = 0.05f;
+    return seen;
+  }
+  std::string name() const override { return "half"; }
+
+ private:
+  std::shared_ptr<SkeletonExtractor> whole_;
+};
+
+TEST_F(StudioTest, TellsOnceThatLegsAreNotSeenAndMeasuresNone) {
+  StudioServices half = services();
+  half.networks = [all = half.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = all(method, parts);
+    if (networks.extractor && !networks.rest_extractor)
+      networks.extractor = std::make_shared<HalfSeeing>(networks.extractor);
+    return networks;
+  };
+  Studio studio(half);
+  open_both(studio);
+  const Session& session = studio.session();
+  ASSERT_EQ(session.takes.size(), 1u);
+  const std::string sentence = "Legs not seen: they stand still.";
+  EXPECT_EQ(unseen_sentence(session.takes[0].limbs), sentence);
+  EXPECT_EQ(std::count_if(session.notices.begin(), session.notices.end(),
+                          [&](const Notice& notice) { return notice.text == sentence; }),
+            1);
+  EXPECT_EQ(find(session.takes[0].series, "foot_skate"), nullptr);
+  EXPECT_NE(find(session.takes[0].series, "jerk"), nullptr);
+  for (const BadFrame& bad : bad_frames(session)) ADD_FAILURE() << bad.frame << bad.why;
+  EXPECT_GT(session.source.frames[0].confidence, 0.9f);
+  ASSERT_TRUE(session.source.import &&
+              session.source.import->floor);  // under the legs, for everybody who reads the scans again
+}
+
 TEST_F(StudioTest, ExtractsSkeletonsBeforeThereIsATarget) {
   Studio studio(services());
   studio.run("open", {path("scan.npz")});

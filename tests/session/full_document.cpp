@@ -65,8 +65,8 @@ View view() {
   view.cameras = {{Vec3(1, 2, 3), -0.5f, 0.25f, 3.3f, 0.6f, true}, {}};
   view.follow = false;
   view.turntable_deg_s = 12;
-  view.source = {false, true, false, false, true, false, true, true, true, Colouring::Confidence};
-  view.take = {false, true, false, false, true, false, true, true, true, Colouring::Difference};
+  view.source = {false, true, false, false, true, false, true, true, true, false, Colouring::Confidence};
+  view.take = {false, true, false, false, true, false, true, true, true, false, Colouring::Difference};
   view.active_pane = 2;
   view.weights_joint = LeftKnee;
   view.trail_joints = {LeftFoot, Head, Pelvis};
@@ -98,6 +98,8 @@ SavedDocument full_document(const std::string& folder) {
                            {{"head", "Head"}},
                            /*quiet=*/false,
                            /*edits=*/{}};
+  saved.document.source.person = "2";
+  saved.document.source.people = {{PersonEdit::How::Join, 3, 9, 1, 4}};
   saved.document.truth = folder + "/truth.npz";
   saved.document.scan_edits = scan_edits();
   saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},

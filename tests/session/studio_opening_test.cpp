@@ -279,7 +279,7 @@ TEST_F(StudioTest, AScanInWhichNobodyIsRecognisedIsCleanedUpFromTheNotice) {
   studio.run("open", {path("scan.npz")});
   studio.wait_idle();
   ASSERT_EQ(session.notices.size(), 1u);
-  EXPECT_EQ(session.notices[0].text, "No person recognised: the scan may hold a floor or a second person");
+  EXPECT_EQ(session.notices[0].text, "No person recognised: a floor or things may hide them");
   EXPECT_EQ(session.notices[0].offer.label, "Clean up");
   studio.tick(600);
   ASSERT_EQ(session.notices.size(), 1u) << "it waits for an answer";

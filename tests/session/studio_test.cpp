@@ -1,6 +1,10 @@
 #include "app/session/studio.hpp"
 
+#include <algorithm>
+#include <mutex>
+
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/formats/file_formats.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -43,11 +47,19 @@ TEST_F(StudioTest, ExportsTheFramesThatTrimAndSkipLeave) {
 }
 
 TEST_F(StudioTest, AnExportSaysWhatItCostsAndWhatItCannotDo) {
+  std::mutex guard;
+  std::vector<std::string> logged;
+  const log::Sink before = log::set_sink([&](log::Level, const std::string& line) {
+    const std::lock_guard<std::mutex> lock(guard);
+    logged.push_back(line);
+  });
   Studio studio(services());
   open_both(studio);
   studio.run("export.run", {"0", path("out.bvh"), "in_place=on"});
   studio.run("export.run", {"0", path("frames"), "format=obj"});
   studio.wait_idle();
+  log::set_sink(before);
+  EXPECT_EQ(std::count(logged.begin(), logged.end(), path("out.bvh") + ": is written"), 1);
   ASSERT_TRUE(studio.session().errors.empty()) << studio.session().errors.front().text;
   EXPECT_TRUE(fs::exists(path("frames/frame_00024.obj")));
   std::string told;

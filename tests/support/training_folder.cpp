@@ -79,6 +79,34 @@ void write_dressed(const fs::path& path) {
                             {"weight", array({V, 4}, weight)}});
 }
 
+/// A hand is the box of its wrist; one corner is a fingertip.
+void write_hand_poses(const fs::path& path) {
+  constexpr int64_t kJoints = 26, kAngles = 26, kBones = 20, kPoses = 3;
+  std::vector<float> left, right, weights(kCorners * kBones, 0), joints, poses(kPoses * kAngles, 0);
+  for (int c = 0; c < kCorners; ++c) {
+    left.push_back(static_cast<float>(LeftWrist * kCorners + c));
+    right.push_back(static_cast<float>(RightWrist * kCorners + c));
+  }
+  weights[6] = 1;  // the third bone of the index
+  Rng rng(4);
+  for (int j = 0; j < kJoints; ++j) {
+    std::vector<float> shares(kCorners);
+    float sum = 0;
+    for (float& share : shares) sum += share = rng.uniform();
+    for (const float share : shares) joints.push_back(share / sum);
+  }
+  for (float& angle : poses) angle = rng.uniform(0, 60);
+  write_npz(path.string(), {{"left_idx", array({kCorners}, left)},
+                            {"right_idx", array({kCorners}, right)},
+                            {"weights", array({kCorners, 5, 4}, weights)},
+                            {"joint_reg", array({kJoints, kCorners}, joints)},
+                            {"pose_angles", array({kPoses, kAngles}, poses)},
+                            {"dof_lo", array({kAngles}, std::vector<float>(kAngles, -20))},
+                            {"dof_hi", array({kAngles}, std::vector<float>(kAngles, 90))},
+                            {"thumb_nail", array({3}, {0, 0, 1})},
+                            {"finger_roll", array({5}, {0, 0, 0, 0, 0})}});
+}
+
 void write_clip(const fs::path& path, uint64_t seed) {
   constexpr int64_t frames = 60;
   Rng rng(seed);
@@ -102,6 +130,7 @@ void write_training_folder(const std::string& folder) {
   const fs::path root(folder);
   for (const char* part : {"body", "motion/a", "motion/b"}) fs::create_directories(root / part);
   write_body(root / "body/makehuman_smplformat.npz");
+  write_hand_poses(root / "body/hand_poses.npz");
   write_npz((root / "body/betas.npz").string(), {{"betas", array({8, 1}, {-2, -1, -.5f, 0, .5f, 1, 2, 3})}});
   write_dressed(root / "body/dressed.npz");
   write_clip(root / "motion/a/one_poses.npz", 1);

@@ -5,7 +5,8 @@
 
 namespace understudy::test {
 
-/// Writes a body of a few boxes, eight shapes, one dressed person and two clips under `folder`.
+/// Writes a body of a few boxes, eight shapes, poses of its hands, one dressed person and two clips under
+/// `folder`.
 void write_training_folder(const std::string& folder);
 
 }  // namespace understudy::test

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -86,6 +87,42 @@ TEST_F(Browser, AFolderOfGlbFramesIsAScanAndOneOfCharactersIsNot) {
   open({filter_of(FileKind::Source)});
   EXPECT_TRUE(shown("browser.look.scan"));
   EXPECT_FALSE(shown("browser.look.people"));
+}
+
+TEST_F(Browser, AsManyFilesOfTwoFormatsAreNoScan) {
+  fs::create_directories(root / "people");
+  for (const char* name : {"anna.ply", "bert.ply", "anna.glb", "bert.glb"})
+    write(std::string("people/") + name);
+  open({filter_of(FileKind::Source)});
+  EXPECT_FALSE(shown("browser.look.people")) << "a reader would ask which";
+  write("people/carl.ply");
+  open({filter_of(FileKind::Source)});
+  EXPECT_TRUE(shown("browser.look.people"));
+}
+
+TEST_F(Browser, OpensTheFolderItselfOnlyWhereThatIsAScanOrACase) {
+  open({filter_of(FileKind::Source)});
+  EXPECT_FALSE(mark("browser.accept").enabled) << "nothing is selected, and these are no frames";
+  click("browser.look.walk");
+  settle();
+  click("browser.accept");
+  EXPECT_EQ(chosen, path("walk"));
+  chosen.clear();
+  open({filter_of(FileKind::Source)});
+  double_click("browser.entry.single");
+  settle();
+  EXPECT_FALSE(mark("browser.accept").enabled);
+}
+
+TEST_F(Browser, OffersTheFolderOfDocumentsWhereThereIsOne) {
+  const std::string before = std::getenv("HOME") != nullptr ? std::getenv("HOME") : "/";
+  ::setenv("HOME", root.c_str(), 1);
+  open({filter_of(FileKind::Source)});
+  EXPECT_FALSE(shown("browser.place.Documents"));
+  fs::create_directories(root / "Documents");
+  frame(2);
+  EXPECT_TRUE(shown("browser.place.Documents"));
+  ::setenv("HOME", before.c_str(), 1);
 }
 
 TEST_F(Browser, ADoubleClickChoosesAFile) {
@@ -240,8 +277,7 @@ TEST_F(Browser, SavingTakesTheNameTypedWithEnter) {
 TEST_F(Browser, MakesFolders) {
   open({filter_of(FileKind::Document)}, true, "new");
   click("browser.new_folder");
-  click("browser.folder_name");
-  type("results");
+  type("results");  // its name can be typed at once
   click("browser.create");
   settle();
   EXPECT_TRUE(fs::is_directory(root / "results"));

@@ -54,6 +54,26 @@ TEST_F(EditPanel, SwappingTakesTheLoopMarksUnlessFramesAreWritten) {
   expect_click("edit.swap.apply", {"edit.swap 20 20 arms"});
 }
 
+TEST_F(EditPanel, OfWhoIsWho) {
+  EXPECT_FALSE(shown("edit.people.apply"));
+  session.source.people = {{1, true, 48}, {2, true, 30}};
+  frame(2);
+  expect_click("edit.people.apply", {"edit.people 5 30 1 3 exchange"});
+  expect_choice("edit.people.other", 1, {});
+  expect_click("edit.people.apply", {"edit.people 5 30 1 2 exchange"});
+  expect_typed("edit.people.first", "9", {});
+  expect_typed("edit.people.last", "11", {});
+  expect_click("edit.people.how.1", {});
+  expect_click("edit.people.apply", {"edit.people 9 11 1 2 join"});
+  session.document.source.people = {{PersonEdit::How::Join, 9, 11, 1, 2}};
+  session.playback.in = session.playback.out = -1;
+  frame(2);
+  expect_click("edit.people.apply", {"edit.people 20 47 1 2 join"});
+  expect_click("edit.people.0", {"playback.frame 9"});
+  expect_click("edit.people.0.remove", {"edit.remove people 0"});
+  expect_click("edit.people_clear", {"edit.people_clear"});
+}
+
 TEST_F(EditPanel, OfTheResult) {
   expect_click("edit.bones_tool", {"tool bones"});
   expect_drag("edit.bone_falloff", "tool.falloff ");

@@ -48,6 +48,35 @@ TEST_F(GettingStarted, EachCardPointsAtTheRealWidget) {
   expect_ring_around("menu.dialog.open.export");
 }
 
+TEST_F(GettingStarted, CardsBelowTheTopBarLeaveHeadsFree) {
+  session = loaded_session();
+  const Rect views[] = {{{0, 42}, {472, 612}}, {{474, 42}, {946, 612}}};
+  content = [&](Ui& ui) {
+    for (const size_t k : {0, 1}) ui.mark("view." + std::to_string(k), views[k]);
+    workspace.draw(session, context, 60);
+    obey();
+  };
+  session.takes.resize(1), session.document.takes.resize(1);
+  for (const int card : {3, 5}) {
+    show(card, true);
+    frame(4);
+    const Rect place = mark("guide.card").rect;
+    for (const Rect& view : views) {
+      const float middle = view.at(0.5f, 0).x;
+      const Rect head{{middle - 45, view.min.y + 50}, {middle + 45, view.min.y + 140}};
+      EXPECT_TRUE(intersection(place, head).empty()) << "card " << card;
+    }
+  }
+}
+
+TEST_F(GettingStarted, TheCardAboutComparingPointsAtItsButton) {
+  session = loaded_session();
+  frame(2);
+  click("inspector.source");  // closed: its button is then in sight
+  show(4, true);
+  expect_ring_around("method.compare");
+}
+
 TEST_F(GettingStarted, DoingWhatACardSaysGoesOn) {
   show(1, false);
   const auto done = [&] {

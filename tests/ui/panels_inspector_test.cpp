@@ -54,6 +54,23 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_typed("take.name", "the adult", {"take.rename 0 \"the adult\""});
 }
 
+TEST_F(Inspector, PeopleAreListedAndAClickChoosesOne) {
+  session.source.people = {{1, true, 48}};
+  session.source.person = 1;
+  frame(2);
+  EXPECT_FALSE(shown("source.people.0")) << "a person alone is no list";
+  session.source.people.push_back({3, false, 1});
+  frame(2);
+  EXPECT_FALSE(shown("source.people.2"));
+  expect_click("source.people.1", {"source.person 3"});
+  expect_choice("source.person", 1, {"source.person largest"});
+  expect_choice("source.person", 2, {"source.person 1"});
+  session.document.source.person = "3";
+  frame(2);
+  expect_click("source.people.1", {});
+  expect_click("source.people.0", {"source.person 1"});
+}
+
 TEST_F(Inspector, TheTargetsProportionsAreDraggedAndReset) {
   const std::pair<const char*, float app::Method::*> numbers[] = {
       {"target.stride", &app::Method::stride},

@@ -108,6 +108,16 @@ TEST_F(Timeline, ADraggedEditIsMovedOnceWhereItIsLetGo) {
   EXPECT_EQ(moved("fill.20", ten), Lines{});
 }
 
+TEST_F(Timeline, WhatWasDraggedIsRemovedByDelete) {
+  session.document.skeleton_edits = {DragEdit{4, LeftWrist, Vec3(0, 0.1f, 0), 5, false}};
+  frame();
+  EXPECT_EQ(dragged("drags.4", 0.5f, frames_wide(10)), Lines{"edit.move drags 4 14"});
+  std::get<DragEdit>(session.document.skeleton_edits[0]).frame = 14;
+  frame();
+  key(render::Key::Delete);
+  EXPECT_EQ(besides_frames(), Lines{"edit.remove drags 14"});
+}
+
 TEST_F(Timeline, AnEndOfABarIsDraggedAndTheOtherStays) {
   session.document.takes[0].pose_edits.skip = {22, 23, 24};
   frame();

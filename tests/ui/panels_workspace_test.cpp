@@ -312,6 +312,21 @@ TEST_F(WorkspaceTest, WhatIsNotPossibleIsGrey) {
   }
 }
 
+TEST_F(WorkspaceTest, NothingIsClearedWhereNothingWasEdited) {
+  app::Take& take = session.document.takes[0];
+  session.selected_take = 0;
+  session.document.skeleton_edits.clear();
+  take.pose_edits = {}, take.target_edits = {};
+  const std::vector<std::string> all = {"edit.skeleton_clear", "edit.poses_clear", "edit.target_joints_clear",
+                                        "edit.weights_clear"};
+  for (const auto& command : all) EXPECT_FALSE(possible(session, command)) << command;
+  session.document.skeleton_edits.push_back(DragEdit{7, LeftWrist, Vec3(0, 0.1f, 0), 5, false});
+  take.pose_edits.skip = {3};
+  take.target_edits.joints.push_back({});
+  take.target_edits.weights = std::make_shared<const WeightRows>();
+  for (const auto& command : all) EXPECT_TRUE(possible(session, command)) << command;
+}
+
 TEST_F(WorkspaceTest, KeysAskUnlessSomethingIsWritten) {
   frame(2);
   key(Key::Comma, {false, true});
@@ -357,6 +372,7 @@ TEST_F(WorkspaceTest, KeysAreListedSearchedAndChosen) {
   EXPECT_EQ(workspace.dialog(), "");
   EXPECT_EQ(run("overlay"), Lines{"view.layout overlay"}) << "an entry of an inner menu";
   EXPECT_EQ(run("panel: edit"), Lines{"panel.show edit on"});
+  EXPECT_EQ(run("fix wrist"), Lines{"tool.joints"}) << "words that are in no label";
   EXPECT_EQ(run("export"), Lines{"dialog.open export"}) << "what asks for more opens its dialog";
   EXPECT_EQ(workspace.dialog(), "export");
   workspace.open_dialog(session, "none");
@@ -816,6 +832,17 @@ TEST_F(Exporting, TheNameFollowsTheTakeUntilItIsTyped) {
   write_into("export.path", " ");
   key(Key::Backspace), key(Key::Enter);  // emptied: proposed again
   EXPECT_EQ(take_log(), Lines{"export.run 1 " + (folder / "child.glb").string() + " format=glb"});
+}
+
+TEST_F(Exporting, ALongPathIsSeenWithTheNameOfItsFile) {
+  session.path = "/" + std::string(60, 'a') + "/" + std::string(60, 'b') + "/dance.understudy";
+  open("export");
+  const Rect field = mark("export.path").rect, words = mark("export.path.shown").rect;
+  EXPECT_LT(words.width(), field.width());
+  EXPECT_GT(words.width(), 0.8f * field.width()) << "cut in its middle to what fits";
+  click("export.path");
+  frame(2);
+  EXPECT_FALSE(shown("export.path.shown")) << "typed in, it is the field's own";
 }
 
 TEST_F(Exporting, EnterSaves) {

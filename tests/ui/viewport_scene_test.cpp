@@ -54,6 +54,45 @@ TEST_F(SceneTest, EachLayerIsThereOnlyWhenItIsOn) {
   EXPECT_FALSE(scene(1).scene.ground.visible);
 }
 
+TEST_F(SceneTest, PeopleHaveTheirColoursAndTheSceneIsGreyOrHidden) {
+  const Points points = *scene(0).scene.clouds[0].positions;
+  SceneFrame parts;
+  for (int v = 0; v < points.rows(); ++v) parts.owner.push_back(v % 4 - 1);  // nobody, things, 1, 2
+  session.source.frames.write(10, 11, [&](size_t, app::KeptSource& frame) {
+    frame.owners = app::KeptOwners::of(points, parts, 1), frame.person = 1;
+  });
+  session.source.people = {{1, true, 5}, {2, true, 5}}, session.source.person = 1;
+  const auto color_of = [&](int number) {
+    const ImVec4 color = person_color(theme(ThemeKind::Dark), number);
+    return Vec3(color.x, color.y, color.z);
+  };
+  const auto cloud = scene(0).scene.clouds[0];
+  ASSERT_EQ(cloud.colors->rows(), points.rows());
+  EXPECT_EQ(Vec3(cloud.colors->row(2)), color_of(1));
+  EXPECT_EQ(Vec3(cloud.colors->row(3)), color_of(2));
+  EXPECT_NE(color_of(1), color_of(2));
+  EXPECT_EQ(Vec3(cloud.colors->row(0)), Vec3(cloud.colors->row(1)));
+  session.source.people.pop_back();
+  EXPECT_NE(Vec3(scene(0).scene.clouds[0].colors->row(2)), color_of(1)) << "one person needs no colour";
+  session.view.source.scene = false;
+  const auto people = scene(0).scene.clouds[0];
+  ASSERT_EQ(people.positions->rows(), points.rows() / 2);
+  EXPECT_EQ(Vec3(people.positions->row(0)), Vec3(points.row(2)));
+  EXPECT_EQ(people.normals->rows(), people.positions->rows());
+  EXPECT_EQ(people.colors->rows(), people.positions->rows());
+}
+
+TEST_F(SceneTest, TwoMethodsOnOneTargetAreToldApartByALineOfTheirOwn) {
+  stage.add_take("adult");
+  session.document.takes[1].method.engine = "paper";
+  EXPECT_EQ(pane_title(session, pane_of(1)), "adult");
+  EXPECT_EQ(pane_method(session, pane_of(1)), "copied rotations");
+  EXPECT_EQ(pane_method(session, pane_of(2)), "paper's network");
+  EXPECT_EQ(pane_method(session, pane_of(0)), "") << "the source is not made";
+  session.view.layout = app::Layout::Overlay;
+  EXPECT_EQ(pane_method(session, panes_of(session)[0]), "");
+}
+
 /// Where a picture's points are in the middle.
 Vec3 middle_of(const Points& points) {
   return points.colwise().mean().transpose();

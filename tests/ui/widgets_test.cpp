@@ -79,6 +79,18 @@ TEST_F(Widgets, DropdownOffersItsChoices) {
   EXPECT_FALSE(shown("method.2"));
 }
 
+TEST_F(Widgets, ALongListAtTheRightEdgeStaysInTheWindow) {
+  int chosen = 0;
+  in_window([&](Ui& ui) {
+    ImGui::SetCursorPosX(640);
+    dropdown(ui, "colour", {"Plain", "Error against ground truth of the whole sequence, mm"}, chosen);
+  });
+  click("colour");
+  frame(2);
+  EXPECT_LE(mark("colour.1").rect.max.x, 800);
+  EXPECT_GT(mark("colour.1").rect.width(), 200);
+}
+
 TEST_F(Widgets, NumberIsDraggedClampedAndReset) {
   float value = 0.5f;
   NumberOptions options;
@@ -142,6 +154,23 @@ TEST_F(Widgets, CutTextFitsAndKeepsLettersWhole) {
   frame();
 }
 
+TEST_F(Widgets, NamesAreCutInTheirMiddle) {
+  in_window([](Ui&) {
+    const std::string name = "quaternius_female_dress (engine paper)";
+    EXPECT_EQ(cut_name(name, 500), name);
+    for (float width = 60; width < 200; width += 7) {
+      const std::string cut = cut_name(name, width);
+      EXPECT_LE(ImGui::CalcTextSize(cut.c_str()).x, width);
+      EXPECT_EQ(cut.substr(0, 2), "qu") << width;
+      EXPECT_EQ(cut.substr(cut.size() - 2), "r)") << "what tells two takes apart";
+    }
+    const std::string letters = "\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9";
+    for (float width = 20; width < 80; width += 3)
+      EXPECT_EQ((cut_name(letters, width).size() - 3) % 2, 0u) << "no letter is split";
+  });
+  frame();
+}
+
 TEST_F(Widgets, LinesAreBrokenAtSpacesAlone) {
   in_window([](Ui&) {
     const std::string text = "differs by 0.39 mm on average, 22.5 mm at most";
@@ -172,6 +201,16 @@ TEST_F(Widgets, SearchableListFindsAndChooses) {
   EXPECT_TRUE(shown("joints.2"));
   key(Key::Enter);
   EXPECT_EQ(chosen, 2);
+}
+
+TEST_F(Widgets, SearchableListFindsByWordsThatItDoesNotShow) {
+  in_window([&](Ui& ui) {
+    searchable_list(ui, "commands", {{"Drag joints", "W", true, "fix wrist"}, {"Export", ""}}, -1, 200);
+  });
+  click("commands.search");
+  type("wrist");
+  EXPECT_TRUE(shown("commands.0"));
+  EXPECT_FALSE(shown("commands.1"));
 }
 
 TEST_F(Widgets, SearchableListMovesByArrows) {
@@ -298,6 +337,20 @@ TEST_F(Widgets, PlotSeeksWhereItIsClickedAndDragged) {
   EXPECT_EQ(seeks.back(), 25);
   drag(area.at(0.25f, 0.5f), area.at(0.75f, 0.5f));
   EXPECT_EQ(seeks.back(), 75);
+}
+
+TEST_F(Widgets, ALegendNamesEveryLine) {
+  const std::vector<float> values(10, 1);
+  const std::vector<PlotLine> lines = {{"quaternius_female_dress (engine paper)", values},
+                                       {"quaternius_female_dress", values}};
+  in_window([&](Ui& ui) {
+    if (ImGui::BeginChild("side", {290, 0})) plot(ui, "error", lines);
+    ImGui::EndChild();
+  });
+  const Rect first = mark("error.label.0").rect, second = mark("error.label.1").rect;
+  EXPECT_LT(first.max.x, second.min.x);
+  EXPECT_LT(second.max.x, 300);
+  EXPECT_GT(std::min(first.width(), second.width()), 80);
 }
 
 TEST_F(Widgets, PlotsOfNothingAndOfNaNOnlyAreHarmless) {

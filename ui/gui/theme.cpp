@@ -1,5 +1,7 @@
 #include "ui/gui/theme.hpp"
 
+#include <algorithm>
+
 namespace understudy::ui {
 namespace {
 
@@ -101,6 +103,11 @@ const Theme& theme(ThemeKind kind) {
 void apply(const Theme& theme, float scale, ImGuiStyle& style) {
   set_measures(scale, style);
   set_colors(theme, style.Colors);
+}
+
+ImVec4 person_color(const Theme& theme, int number) {
+  const size_t k = static_cast<size_t>(std::max(number, 1) - 1), n = theme.series.size();
+  return k % (2 * n) < n ? theme.series[k % n] : mix(theme.series[k % n], theme.text, 0.5f);
 }
 
 ImU32 color(const ImVec4& color, float opacity) {

@@ -26,6 +26,9 @@ struct Theme {
 
 const Theme& theme(ThemeKind kind);
 
+/// Of the person with that number, from 1, in lists and views.
+ImVec4 person_color(const Theme& theme, int number);
+
 /// Measures and colours for ImGui. `scale` is 1 to 3.
 void apply(const Theme& theme, float scale, ImGuiStyle& style);
 

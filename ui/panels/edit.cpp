@@ -1,7 +1,8 @@
 // What the user changes: the scan, the skeleton, the result, the target. All of it can be undone.
-// Sections: edit.scan, edit.skeleton, edit.result, edit.target, edit.weights. Marks: edit.crop,
+// Sections: edit.scan, edit.people, edit.skeleton, edit.result, edit.target, edit.weights. Marks: edit.crop,
 // edit.crop_tool, edit.crop.LOW|HIGH.AXIS (edit.crop.low.x), edit.floor_removal, edit.floor_height,
-// edit.cluster; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
+// edit.cluster; edit.people.first, .last, .person, .how, .other, .apply, edit.people.K (one made before),
+// edit.people_clear; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
 // edit.skeleton.K (one made before), edit.skeleton_clear; edit.bones_tool, edit.bone_falloff, edit.pin,
 // edit.smooth, edit.raise, edit.turn, edit.trim, edit.trim_off, edit.skip, edit.rotation.K,
 // edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
@@ -19,9 +20,15 @@
 namespace understudy::ui {
 namespace {
 
+/// Frames as typed; -1: the loop marks, or the frame shown.
+struct TypedRange {
+  int first = -1, last = -1;
+};
 struct EditState {
-  int swap_first = -1, swap_last = -1;  ///< -1: the loop marks, or the frame shown
-  int swap_limbs = 2;                   ///< arms, legs, both
+  TypedRange swap, people;
+  int swap_limbs = 2;         ///< arms, legs, both
+  int person = 1, other = 0;  ///< numbers of people; the other 0: somebody new
+  int correction = 0;         ///< of kPersonEditNames
 };
 
 std::string plural(size_t count, const std::string& one) {
@@ -127,28 +134,104 @@ void edit_line(PanelContext& context, const std::string& name, const std::string
     context.ask("edit.remove", removal);
 }
 
-void draw_swap(const app::Session& session, PanelContext& context) {
-  auto& state = panel_state<EditState>(context);
-  Ui& ui = context.ui;
+/// Rows NAME.first and NAME.last. `last`: where neither marks nor the user say so.
+app::FrameRange range_rows(const app::Session& session, PanelContext& context, const std::string& name,
+                           TypedRange& typed, int last_frame) {
   const app::FrameRange range = app::play_range(session.playback, app::frame_count(session));
   const bool marked = session.playback.in >= 0 || session.playback.out >= 0;
   const int shown = std::max(0, app::shown_frame(session));
-  const int first = state.swap_first >= 0 ? state.swap_first : marked ? range.first : shown;
-  const int last = std::max(first, state.swap_last >= 0 ? state.swap_last : marked ? range.last : shown);
-  hint(ui, "Swap left and right in these frames:");
+  const int first = typed.first >= 0 ? typed.first : marked ? range.first : shown;
+  const int last = std::max(first, typed.last >= 0 ? typed.last : marked ? range.last : last_frame);
   if (const auto f = typed_number_row(
-          ui, {"edit.swap.first", "From frame", "The loop's start unless you type one"}, first, 0))
-    state.swap_first = static_cast<int>(std::max(0.0, *f));
-  if (const auto f =
-          typed_number_row(ui, {"edit.swap.last", "To frame", "The loop's end unless you type one"}, last, 0))
-    state.swap_last = static_cast<int>(std::max(0.0, *f));
+          context.ui, {name + ".first", "From frame", "The loop's start unless you type one"}, first, 0))
+    typed.first = static_cast<int>(std::max(0.0, *f));
+  if (const auto f = typed_number_row(
+          context.ui, {name + ".last", "To frame", "The loop's end unless you type one"}, last, 0))
+    typed.last = static_cast<int>(std::max(0.0, *f));
+  return {first, last};
+}
+
+void draw_swap(const app::Session& session, PanelContext& context) {
+  auto& state = panel_state<EditState>(context);
+  Ui& ui = context.ui;
+  hint(ui, "Swap left and right in these frames:");
+  const app::FrameRange frames =
+      range_rows(session, context, "edit.swap", state.swap, std::max(0, app::shown_frame(session)));
   row(ui, "Limbs");
   segmented(ui, "edit.swap.limbs", {"Arms", "Legs", "Both"}, state.swap_limbs);
   ButtonOptions options;
   options.width = -1;
   if (!button(ui, "edit.swap.apply", "Swap left and right", options)) return;
-  context.ask("edit.swap", {std::to_string(first), std::to_string(last), kLimbNames[state.swap_limbs]});
-  state.swap_first = state.swap_last = -1;
+  context.ask("edit.swap",
+              {std::to_string(frames.first), std::to_string(frames.last), kLimbNames[state.swap_limbs]});
+  state.swap = {};
+}
+
+/// One of the people seen, by number, or somebody new (0).
+void person_row(const app::Session& session, PanelContext& context, const Control& control, bool or_new,
+                int& number) {
+  std::vector<std::string> labels;
+  std::vector<int> numbers;
+  for (const app::PersonSeen& one : session.source.people)
+    labels.push_back("Person " + std::to_string(one.id)), numbers.push_back(one.id);
+  if (or_new) labels.emplace_back("Somebody new"), numbers.push_back(0);
+  auto at = std::find(numbers.begin(), numbers.end(), number);
+  if (at == numbers.end()) at = numbers.begin();
+  int chosen = static_cast<int>(at - numbers.begin());
+  row(context.ui, control.label, control.explanation);
+  dropdown(context.ui, control.name, labels, chosen);
+  number = numbers[static_cast<size_t>(chosen)];
+}
+
+/// A number that nobody has.
+int new_person(const app::Session& session) {
+  int most = 0;
+  for (const app::PersonSeen& one : session.source.people) most = std::max(most, one.id);
+  for (const PersonEdit& edit : session.document.source.people)
+    most = std::max({most, edit.person, edit.other});
+  return most + 1;
+}
+
+void draw_people_correction(const app::Session& session, PanelContext& context) {
+  auto& state = panel_state<EditState>(context);
+  Ui& ui = context.ui;
+  hint(ui, "Where one person was taken for another, in these frames:");
+  const int end = std::max(0, static_cast<int>(session.source.frames.size()) - 1);
+  const app::FrameRange frames = range_rows(session, context, "edit.people", state.people, end);
+  person_row(session, context, {"edit.people.person", "Person", "Who was taken for another"}, false,
+             state.person);
+  row(ui, "Correction", "Exchanged: each is the other. One: what is the other's is the person's, too");
+  segmented(ui, "edit.people.how", {"Exchanged", "One"}, state.correction);
+  person_row(session, context, {"edit.people.other", "With", "Somebody new: the person is split off"},
+             state.correction == 0, state.other);
+  const bool same = state.person == state.other;
+  ButtonOptions options;
+  options.width = -1, options.disabled = same;
+  if (!button(ui, "edit.people.apply", "Correct", options)) return;
+  const int other = state.other > 0 ? state.other : new_person(session);
+  context.ask("edit.people",
+              {std::to_string(frames.first), std::to_string(frames.last), std::to_string(state.person),
+               std::to_string(other), kPersonEditNames[static_cast<size_t>(state.correction)]});
+  state.people = {};
+}
+
+std::string describe(const PersonEdit& edit) {
+  const std::string person = std::to_string(edit.person), other = std::to_string(edit.other);
+  return printed("Frames %d to %d: ", edit.first, edit.last) +
+         (edit.how == PersonEdit::How::Join ? other + " is " + person
+                                            : person + " and " + other + " exchanged");
+}
+
+/// Only where there is more than one, or was before it was put right.
+void draw_person_edits(const app::Session& session, PanelContext& context) {
+  const auto& edits = session.document.source.people;
+  if (session.source.people.size() < 2 && edits.empty()) return;
+  if (!section(context.ui, "edit.people", "People")) return;
+  if (!session.source.people.empty()) draw_people_correction(session, context);
+  for (size_t i = edits.size() > 50 ? edits.size() - 50 : 0; i < edits.size(); ++i)
+    edit_line(context, "edit.people." + std::to_string(i), describe(edits[i]), edits[i].first,
+              {"people", std::to_string(i)});
+  clear_button(context, "edit.people_clear", !edits.empty());
 }
 
 void draw_skeleton(const app::Session& session, PanelContext& context) {
@@ -332,6 +415,7 @@ void draw_weights(const app::Session& session, PanelContext& context) {
 
 void draw_edit(const app::Session& session, PanelContext& context) {
   draw_scan(session, context);
+  draw_person_edits(session, context);
   draw_skeleton(session, context);
   draw_result(session, context);
   draw_target(session, context);

@@ -46,6 +46,24 @@ std::string frames_text(int first, int last) {
                        : "frames " + std::to_string(first) + " to " + std::to_string(last);
 }
 
+std::string in_words(const PersonEdit& edit) {
+  const std::string person = std::to_string(edit.person), other = std::to_string(edit.other);
+  return edit.how == PersonEdit::How::Join ? "Person " + other + " is person " + person
+                                           : "Person " + person + " and " + other + " exchanged";
+}
+
+void add_person_edits(std::vector<EditMark>& all, const app::Session& session) {
+  const auto& edits = session.document.source.people;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    const PersonEdit& edit = edits[i];
+    const std::string number = std::to_string(i);
+    all.push_back({{"people." + number, in_words(edit) + ", " + frames_text(edit.first, edit.last),
+                    edit.first, edit.last, false, 0, 0, kBlue},
+                   {"people", number},
+                   "edit.remove people " + number});
+  }
+}
+
 void add_source_edits(std::vector<EditMark>& all, const app::Session& session) {
   const char* limbs[] = {"arms", "legs", "arms and legs"};
   KeyFrames drags;
@@ -114,6 +132,7 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
           fill.first, fill.last, false, 0, 0, kBlue, true},
          {},
          ""});
+  add_person_edits(all, session);
   add_source_edits(all, session);
   const app::Take* take = selected_take(session);
   if (take == nullptr) return all;

@@ -407,6 +407,19 @@ struct PathAnswer {
   bool browse = false;  ///< the user wants to
   bool entered = false;
 };
+/// Over a field that nobody types in: with the name of the file, which the field itself would cut off.
+void draw_path_cut(Ui& ui, const std::string& path) {
+  const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax(),
+               padding = ImGui::GetStyle().FramePadding;
+  const std::string cut = cut_name(path, max.x - min.x - 2 * padding.x);
+  ui.mark("export.path.shown", {min, {min.x + ImGui::CalcTextSize(cut.c_str()).x, max.y}});
+  if (cut == path) return;
+  tooltip(ui, path);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(min, max, color(ui.theme().field), ImGui::GetStyle().FrameRounding);
+  list.AddText({min.x + padding.x, min.y + padding.y}, color(ui.theme().text), cut.c_str());
+}
+
 /// The path to write, which follows the take until one is typed.
 PathAnswer draw_path(const app::Session& session, Ui& ui, ExportState& state) {
   PathAnswer answer;
@@ -416,6 +429,7 @@ PathAnswer draw_path(const app::Session& session, Ui& ui, ExportState& state) {
   ImGui::BeginChild("##path", {std::max(1.f, ImGui::GetContentRegionAvail().x - side - ui.px(6)), side});
   const auto path = committed_text(ui, "export.path", state.path);
   answer.entered = ImGui::IsItemDeactivated() && enter_pressed();
+  if (!ImGui::IsItemActive()) draw_path_cut(ui, state.path);
   ImGui::EndChild();
   if (path) {
     state.typed = !path->empty();

@@ -113,15 +113,48 @@ std::optional<Rect> pointed_at(const Ui& ui, const MarkNames& names) {
   return std::nullopt;
 }
 
+/// How much of the card would lie over where heads are: about the middles of the views.
+float over_heads(const std::vector<Rect>& views, float left, float width) {
+  float over = 0;
+  for (const Rect& view : views) {
+    const float middle = view.at(0.5f, 0).x, half = 0.1f * view.height();
+    over += std::max(0.f, std::min(left + width, middle + half) - std::max(left, middle - half));
+  }
+  return over;
+}
+
+/// The place nearest to `wanted` where a card below the top bar hides the least of heads.
+float beside_heads(const std::vector<Rect>& views, float wanted, float width, float room) {
+  float best = wanted;
+  const auto is_better = [&](float x) {
+    const float over = over_heads(views, x, width), least = over_heads(views, best, width);
+    return over < least || (over == least && std::abs(x - wanted) < std::abs(best - wanted));
+  };
+  for (float x = 0; x <= room; x += 4)
+    if (is_better(x)) best = x;
+  return best;
+}
+
+std::vector<Rect> shown_views(const Ui& ui, const app::Session& session) {
+  std::vector<Rect> views;
+  for (size_t k = 0; k <= session.takes.size(); ++k)
+    if (const Mark* const mark = ui.find("view." + std::to_string(k)); mark != nullptr)
+      views.push_back(mark->rect);
+  return views;
+}
+
 /// Beside the place where there is room, else over its right edge: between two figures.
-Rect place_card(const ImVec2& display, const ImVec2& size, const Rect& at, float away) {
+Rect place_card(const ImVec2& display, const ImVec2& size, const Rect& at, float away,
+                const std::vector<Rect>& views) {
   const auto kept_in = [](float value, float room) { return std::max(0.f, std::min(value, room)); };
   const float x = kept_in(at.at(0.5f, 0).x - size.x / 2, display.x - size.x - away / 2);
   const float y = kept_in(at.at(0, 0.5f).y - size.y / 2, display.y - size.y - away / 2);
   ImVec2 from{kept_in(at.max.x - size.x / 2, display.x - size.x - away / 2),
               std::max(0.f, at.max.y - size.y - away / 2)};
+  const auto is_over = [&](const Rect& view) { return at.max.y + away < view.max.y; };
+  const bool hides = std::any_of(views.begin(), views.end(), is_over);
   if (at.max.y + away + size.y < display.y)
-    from = {x, at.max.y + away};
+    from = {hides ? beside_heads(views, x, size.x, display.x - size.x - away / 2) : x, at.max.y + away};
   else if (at.min.y - away - size.y > 0)
     from = {x, at.min.y - away - size.y};
   else if (at.max.x + away + size.x < display.x)
@@ -199,7 +232,7 @@ void draw_guide_card(const app::Session& session, PanelContext& context, Getting
   const ImVec2 size(std::min(ui.px(kCardWidth), display.x), state.height);
   const std::optional<Rect> at = pointed_at(ui, card.widgets(session));
   const Rect middle{{0, display.y / 2}, {display.x, display.y / 2 + 1}};
-  const Rect place = place_card(display, size, at.value_or(middle), ui.px(kAway));
+  const Rect place = place_card(display, size, at.value_or(middle), ui.px(kAway), shown_views(ui, session));
   if (at && state.height > 0) draw_ring(ui, *at, place);
   ImGui::SetNextWindowPos(place.min);
   ImGui::SetNextWindowSize({size.x, 0});

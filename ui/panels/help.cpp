@@ -66,6 +66,26 @@ void add_entries(const std::vector<MenuItem>& items, const std::string& before, 
   }
 }
 
+/// Words that people look for and that no label has.
+std::string other_words(const MenuItem& entry) {
+  constexpr std::pair<const char*, const char*> kWords[] = {
+      {"tool.joints", "fix correct wrong joint wrist elbow hand foot"},
+      {"tool.bones", "fix correct wrong bone rotate wrist hand foot arm leg"},
+      {"compare.add", "engine method extractor second take"},
+      {"panel.show inspector", "engine method extractor height units scale axis fps stride"},
+      {"panel.show layers", "colour weights difference error opacity points wireframe light"},
+      {"panel.show edit", "fix clean floor crop swap smooth trim skip pin feet wrong"},
+      {"panel.show metrics", "error jitter jerk skate csv latency compare"},
+      {"panel.show bad_frames", "fix wrong warnings red"},
+      {"dialog.open export", "save glb gltf bvh fbx animation unity unreal blender"},
+      {"dialog.open video", "film movie mp4 record"},
+      {"dialog.open picture", "image png screenshot"}};
+  const std::string name = entry.command + (entry.arguments.empty() ? "" : " " + entry.arguments.front());
+  for (const auto& [command, words] : kWords)
+    if (name == command || entry.command == command) return words;
+  return "";
+}
+
 struct HelpState {
   int page = 0;
 };
@@ -76,8 +96,8 @@ const MenuItem* draw_palette(PanelContext& context, const app::Session& session,
   std::vector<ListItem> items;
   items.reserve(entries.size());
   for (const MenuItem& entry : entries)
-    items.push_back(
-        {entry.label, keys_of(context.commands, entry.command, entry.arguments), possible(session, entry)});
+    items.push_back({entry.label, keys_of(context.commands, entry.command, entry.arguments),
+                     possible(session, entry), other_words(entry)});
   const int chosen = searchable_list(context.ui, "keys", items, -1, height);
   return chosen < 0 ? nullptr : &entries[chosen];
 }

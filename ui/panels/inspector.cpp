@@ -1,11 +1,11 @@
 // What is open and how it is done: the source, the takes, their target and method.
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.units, source.up,
-// source.height(.reset), source.turn, source.floor, source.extractor, source.open, source.motion; take.K (its
-// row), take.name, take.remove, take.add, take.replace; target.units, target.height(.reset), target.up,
-// target.turn, target.betas, target.stride, target.hip_height, target.arm_reach, target.rest_pose,
-// target.rest_mirror, edit.rest_pose_clear; method.engine, method.extractor, method.offsets, method.path,
-// method.repair_swaps, method.smooth_joints, method.fix_lengths, method.compare,
-// work.pause, work.resume, work.restart.
+// source.height(.reset), source.turn, source.floor, source.extractor, source.people.K (a row of who is
+// there), source.person, source.open, source.motion; take.K (its row), take.name, take.remove, take.add,
+// take.replace; target.units, target.height(.reset), target.up, target.turn, target.betas, target.stride,
+// target.hip_height, target.arm_reach, target.rest_pose, target.rest_mirror, edit.rest_pose_clear;
+// method.engine, method.extractor, method.offsets, method.path, method.repair_swaps, method.smooth_joints,
+// method.fix_lengths, method.compare, work.pause, work.resume, work.restart.
 #include <algorithm>
 #include <sstream>
 
@@ -82,6 +82,29 @@ void draw_source_facts(const app::Session& session, Ui& ui) {
     if (kept.flagged) warn(ui, kept.reason);
   }
   if (!source.decision.empty()) hint(ui, source.decision);
+}
+
+/// Who is in the scans; a click makes somebody the source.
+void draw_people(const app::Session& session, PanelContext& context) {
+  Ui& ui = context.ui;
+  const auto& people = session.source.people;
+  if (people.empty() || (people.size() < 2 && !session.source.has_scene)) return;
+  std::vector<std::string> words = {"best", "largest"}, labels = {"Who is seen best", "Who has most points"};
+  for (const app::PersonSeen& one : people)
+    words.push_back(std::to_string(one.id)), labels.push_back("Person " + words.back());
+  const std::string& wanted = session.document.source.person;
+  const std::string count = people.size() == 1 ? "1 person" : std::to_string(people.size()) + " people";
+  if (Table table(ui, "source.people", {{count}, {"Seen in", 84, true}}); table.open())
+    for (size_t i = 0; i < people.size(); ++i) {
+      const app::PersonSeen& one = people[i];
+      if (table.row(one.id == session.source.person) && words[i + 2] != wanted)
+        context.ask("source.person", {words[i + 2]});
+      color_chip(ui, person_color(ui.theme(), one.id));
+      table.cell(labels[i + 2] + (one.is_sure ? "" : ", unsure"));
+      table.cell(grouped(one.frames) + (one.frames == 1 ? " frame" : " frames"));
+    }
+  ask_choice(context, {"source.person", "Performs", "Who of the scans the targets follow"}, labels, words,
+             wanted.empty() ? "best" : wanted);
 }
 
 /// Whether a file of this name may hold a skeleton that moves.
@@ -163,6 +186,7 @@ void draw_source(const app::Session& session, PanelContext& context) {
     hint(ui, "No source is open. Drop a folder of scans or a motion anywhere, or choose one.");
   } else {
     draw_source_facts(session, ui);
+    draw_people(session, context);
     draw_source_fields(session, context);
   }
   ask_button(context, {"source.open", "Open source\u2026", "A scan or a motion", "dialog.open open_source"});
@@ -189,15 +213,20 @@ void draw_takes(const app::Session& session, PanelContext& context) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float y = at.y + ui.px(3);
     list.AddText({at.x + ui.px(6), y}, color(ui.theme().text),
-                 cut_to(takes[i].name, width - room - ui.px(10)).c_str());
+                 cut_name(takes[i].name, width - room - ui.px(10)).c_str());
     list.AddText({at.x + width - room + ui.px(8), y}, color(ui.theme().text_dim), how.c_str());
   }
-  ask_button(context, {"take.add", "Add target\u2026", "", "dialog.open open_target"});
   const app::Take* take = selected_take(session);
+  ButtonRow buttons(2);
+  buttons.ask(context, {"take.add", "Add target\u2026", "", "dialog.open open_target"});
+  buttons.ask(context,
+              {"method.compare", "Compare with\u2026",
+               "Adds a second take of this target, made with another method", "dialog.open compare"},
+              take != nullptr);
   const std::string label = take == nullptr ? "Remove" : "Remove " + take->name;
   ask_button(
       context,
-      {"take.remove", cut_to(label, ImGui::GetContentRegionAvail().x - ui.px(28)),
+      {"take.remove", cut_name(label, ImGui::GetContentRegionAvail().x - ui.px(28)),
        "Removes the current take; can be undone", "target.remove " + std::to_string(session.selected_take)},
       take != nullptr);
 }
@@ -232,6 +261,7 @@ void draw_target_facts(const app::TakeState& state, Ui& ui) {
   row_text(ui, "Joints", std::to_string(kJointCount) + " found in the T-pose");
   if (state.binding) draw_binding(*state.binding, ui);
   for (const std::string& warning : state.target->warnings) warn(ui, warning);
+  if (const std::string unseen = unseen_sentence(state.limbs); !unseen.empty()) warn(ui, unseen);
 }
 
 void draw_proportions(const app::Method& method, PanelContext& context, const std::string& k) {
@@ -330,8 +360,6 @@ void draw_method(const app::Session& session, PanelContext& context) {
              {"Scaled", "Original", "In place"}, {kRootNames.begin(), kRootNames.end()},
              kRootNames[static_cast<int>(method.path)]);
   draw_filter(method, context, k);
-  ask_button(context, {"method.compare", "Compare with\u2026",
-                       "Adds a second take of this target, made with another method", "dialog.open compare"});
   draw_work(session, context);
 }
 

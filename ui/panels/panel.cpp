@@ -2,13 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "retarget/base/fields.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/widgets/plot.hpp"
 
 namespace understudy::ui {
+namespace {
+
+/// Whether there are edits that a command of the menu Edit clears; nothing for other commands.
+std::optional<bool> has_to_clear(const app::Session& session, const std::string& command) {
+  if (command == "edit.skeleton_clear") return !session.document.skeleton_edits.empty();
+  const app::Take none;
+  const app::Take* const selected = selected_take(session);
+  const app::Take& take = selected != nullptr ? *selected : none;
+  if (command == "edit.poses_clear") return !same(take.pose_edits, none.pose_edits);
+  if (command == "edit.target_joints_clear") return !take.target_edits.joints.empty();
+  if (command == "edit.weights_clear") return take.target_edits.weights != nullptr;
+  return std::nullopt;
+}
+
+}  // namespace
 
 std::string argument(double value) {
   std::string text = printed("%.6g", value);
@@ -79,6 +96,7 @@ bool panel_shown(const app::Session& session, const std::string& panel) {
 }
 
 bool possible(const app::Session& session, const std::string& command) {
+  if (const auto has = has_to_clear(session, command)) return *has;
   const bool source = !session.document.source.path.empty();
   const bool take = selected_take(session) != nullptr;
   const bool frames = app::frame_count(session) > 0;
@@ -95,7 +113,7 @@ bool possible(const app::Session& session, const std::string& command) {
   for (const char* of_source :
        {"source.", "edit.crop", "edit.floor_removal", "edit.cluster", "edit.clean_up"})
     if (starts_with(command, of_source)) return source;
-  for (const char* of_frames : {"playback.", "edit.drag", "edit.swap", "edit.skeleton_clear", "video."})
+  for (const char* of_frames : {"playback.", "edit.drag", "edit.swap", "edit.people", "video."})
     if (starts_with(command, of_frames)) return frames;
   for (const char* of_take : {"target.", "take.", "method.", "compare.", "edit.", "export."})
     if (starts_with(command, of_take)) return take;

@@ -26,7 +26,7 @@ std::string how_sure(const app::Take& take, const BoneMap& map, size_t joint) {
   if (take.target.bones.count(kJointNames[joint]) > 0) return "yours";
   if (map.node[joint] < 0) return "";
   if (map.confidence[joint] >= 0.95f) return "sure";
-  return map.confidence[joint] >= 0.7f ? "by name" : "by place";
+  return map.confidence[joint] >= BoneMap::kGuessed ? "by name" : "guessed";
 }
 
 void draw_facts(const PreparedCharacter& character, Ui& ui) {

@@ -79,6 +79,15 @@ std::optional<double> typed_number_row(Ui& ui, const Control& control, double va
   return typed ? parse_number(*typed) : std::nullopt;
 }
 
+void color_chip(Ui& ui, const ImVec4& of) {
+  const float side = ui.px(10), line = ImGui::GetTextLineHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 corner(at.x + ui.px(2), at.y + 0.5f * (line - side));
+  ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + side, corner.y + side}, color(of), ui.px(2));
+  ImGui::Dummy({side + ui.px(2), line});
+  ImGui::SameLine(0, ui.px(7));
+}
+
 std::optional<std::string> committed_text(Ui& ui, const std::string& name, const std::string& value,
                                           const std::string& hint) {
   auto& editing = ui.state<Editing>(ImGui::GetID((name + ".editing").c_str()));

@@ -52,6 +52,9 @@ void ask_number(PanelContext& context, const Control& control, float value, cons
 /// Over the whole width.
 void ask_button(PanelContext& context, const Control& control, bool enabled = true);
 
+/// A small square of a colour, before what follows on the line.
+void color_chip(Ui& ui, const ImVec4& of);
+
 /// The field alone, over the width that is left.
 std::optional<std::string> committed_text(Ui& ui, const std::string& name, const std::string& value,
                                           const std::string& hint = {});

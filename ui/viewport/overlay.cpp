@@ -55,6 +55,7 @@ class Writer {
   void draw_missing();
   void draw_labels();
   void draw_handles();
+  void draw_tags();
   void draw_tip();
 
   Ui& ui_;
@@ -66,6 +67,7 @@ void Writer::draw() {
   list_.PushClipRect(in_.rect.min, in_.rect.max, true);
   draw_labels();
   draw_handles();
+  draw_tags();
   draw_title();
   draw_hint();
   if (!in_.legend.title.empty()) {
@@ -88,7 +90,7 @@ void Writer::draw_title() {
   ImVec2 title_size, subtitle_size(0, 0);
   {
     const FontScope strong(ui_.fonts().strong);
-    title = cut_to(in_.title, room);
+    title = cut_name(in_.title, room);
     title_size = ImGui::CalcTextSize(title.c_str());
   }
   const FontScope small(ui_.fonts().small);
@@ -207,6 +209,23 @@ void Writer::draw_handles() {
     list_.AddRectFilled(rect.min, rect.max, color(fill), px(2));
     list_.AddRect(rect.min, rect.max, color(ImVec4(0, 0, 0, 0.8f)), px(2), 0, px(1));
     ui_.mark(handle.name, rect);
+  }
+}
+
+void Writer::draw_tags() {
+  const FontScope small(ui_.fonts().small);
+  const float chip = px(9), gap = px(5);
+  for (const Overlay::Tag& tag : in_.tags) {
+    const ImVec2 words = ImGui::CalcTextSize(tag.text.c_str()), size(words.x + chip + gap, words.y);
+    const float left = in_.rect.min.x + px(6), right = in_.rect.max.x - px(6) - size.x;
+    const ImVec2 at(std::max(left, std::min(tag.at.x - size.x / 2, right)), tag.at.y - size.y - px(6));
+    const Rect rect = around(at, size, px(5), px(2));
+    box(rect, ui_.theme().panel, tag.strong ? 0.9f : 0.65f);
+    if (tag.strong) list_.AddRect(rect.min, rect.max, color(tag.color), px(5), 0, px(1.5f));
+    const float top = at.y + 0.5f * (size.y - chip);
+    list_.AddRectFilled({at.x, top}, {at.x + chip, top + chip}, color(tag.color), px(2));
+    text({at.x + chip + gap, at.y}, tag.strong ? ui_.theme().text : ui_.theme().text_dim, tag.text);
+    ui_.mark(tag.name, rect);
   }
 }
 

@@ -29,7 +29,15 @@ struct Overlay {
     bool hovered = false;
   };
   std::vector<Handle> handles;  ///< of the crop box
-  std::string tip;              ///< beside the pointer
+  struct Tag {
+    ImVec2 at;  ///< above the head
+    std::string text;
+    ImVec4 color;
+    bool strong = false;  ///< who performs
+    std::string name;     ///< its mark
+  };
+  std::vector<Tag> tags;  ///< of several people
+  std::string tip;        ///< beside the pointer
   ImVec2 tip_at{0, 0};
   bool active = false;  ///< the pane that keys and panels are about, among several
 };

@@ -38,6 +38,7 @@ std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCac
       const int f = frame + side * i * view.ghost_step;
       if (f < 0 || f >= frame_count(session, pane)) continue;
       PanePictures::Ghost ghost;
+      ghost.frame = f;
       if (view.source.ghosts && wants_scan(session, pane)) ghost.scan = cache.scan(f);
       if (view.take.ghosts && !pane.takes.empty() && wants_take(session, pane.takes[0], f))
         ghost.take = cache.posed(*first_take(session, pane), {pane.takes[0], f, false});
@@ -48,7 +49,7 @@ std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCac
 
 std::optional<render::SurfaceHit> scan_under(const Session& session, const Pane& pane,
                                              const render::Ray& ray) {
-  const auto& scan = pane.keeper.pictures().scan;
+  const auto& scan = pane.memory.scan.shown ? pane.memory.scan.shown : pane.keeper.pictures().scan;
   if (scan == nullptr || !session.view.source.surface) return std::nullopt;
   const auto vertex = render::point_near(scan->mesh.vertices, ray, kNearScan);
   if (!vertex) return std::nullopt;
@@ -233,6 +234,13 @@ std::string value_under(const Session& session, const Pane& pane, const ImVec2& 
   if (!hit) return "";
   if (values == nullptr) return weight_words(session, pane, hit->vertex);
   return hit->vertex < values->size() ? figure(static_cast<double>((*values)[hit->vertex]), legend.unit) : "";
+}
+
+int person_under(const Session& session, const Pane& pane, const ImVec2& at) {
+  const std::vector<int>& owner = pane.memory.scan.owner;
+  if (!pane.content.source || owner.empty() || !app::has_several_people(session)) return 0;
+  const auto hit = scan_under(session, pane, pane.view.shifted(aside(session, pane.content, 0)).ray(at));
+  return hit && hit->vertex < ssize(owner) ? std::max(0, owner[static_cast<size_t>(hit->vertex)]) : 0;
 }
 
 std::optional<Vec3> surface_place(const Session& session, const Pane& pane, const ImVec2& at) {

@@ -107,9 +107,14 @@ std::string pane_title(const Session& session, const PaneContent& pane) {
     const app::Take* take = at_or_null(session.document.takes, k);
     if (take == nullptr) continue;
     title += (title.empty() ? "" : "  +  ") + take->name;
-    if (pane.takes.size() == 1 && !pane.source) title += "  \u00b7  " + method_words(take->method);
   }
   return title;
+}
+
+std::string pane_method(const Session& session, const PaneContent& pane) {
+  const app::Take* take =
+      pane.takes.size() == 1 && !pane.source ? at_or_null(session.document.takes, pane.takes[0]) : nullptr;
+  return take == nullptr ? "" : method_words(take->method);
 }
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {

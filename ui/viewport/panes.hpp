@@ -29,8 +29,10 @@ std::vector<PaneContent> panes_of(const app::Session& session);
 /// One pane that shows the source or one take.
 PaneContent pane_of(int number);
 
-/// "dance", or "adult, paper" with the method where two takes are of one target.
+/// "dance", or "dance  +  adult" where several are in one pane.
 std::string pane_title(const app::Session& session, const PaneContent& pane);
+/// How the pane's only take is made, "copied rotations"; empty for others.
+std::string pane_method(const app::Session& session, const PaneContent& pane);
 /// Why the pane is empty, for the user; empty when it is not.
 std::string pane_hint(const app::Session& session, const PaneContent& pane);
 

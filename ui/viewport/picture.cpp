@@ -42,14 +42,16 @@ Vec3 ink_on(const PictureOptions& options, bool dark) {
 
 /// Pastes a part at x, y with its alpha; opaque where it has none.
 void put(Image& image, const Image& part, int x, int y) {
-  for (int row = 0; row < part.height && y + row < image.height; ++row)
-    for (int column = 0; column < part.width && x + column < image.width; ++column) {
-      std::copy_n(part.at(column, row), 3, image.at(x + column, y + row));
-      const size_t from = static_cast<size_t>(row) * part.width + column;
-      if (!image.alpha.empty())
-        image.alpha[static_cast<size_t>(y + row) * image.width + x + column] =
-            part.alpha.empty() ? 255 : part.alpha[from];
-    }
+  const int columns = std::min(part.width, image.width - x);
+  for (int row = 0; row < part.height && y + row < image.height && columns > 0; ++row) {
+    std::copy_n(part.at(0, row), 3 * columns, image.at(x, y + row));
+    if (image.alpha.empty()) continue;
+    const auto to = image.alpha.begin() + (static_cast<std::ptrdiff_t>(y + row) * image.width + x);
+    if (part.alpha.empty())
+      std::fill_n(to, columns, 255);
+    else
+      std::copy_n(part.alpha.begin() + static_cast<std::ptrdiff_t>(row) * part.width, columns, to);
+  }
 }
 
 /// Writes the legend onto a picture; `height` of its words in pixels.

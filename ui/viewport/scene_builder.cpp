@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "app/session/follow.hpp"
@@ -58,6 +59,24 @@ Vec3 take_color(int k) {
   return kTints[std::max(0, k) % kTints.size()];
 }
 
+/// What has `kept` not 0, with the faces whose corners stay.
+app::ScanPicture kept_picture(const app::ScanPicture& whole, const std::vector<char>& kept) {
+  std::vector<int> which, renumbered(kept.size(), -1), faces;
+  for (size_t v = 0; v < kept.size(); ++v)
+    if (kept[v]) renumbered[v] = static_cast<int>(which.size()), which.push_back(static_cast<int>(v));
+  const Mesh& mesh = whole.mesh;
+  for (int f = 0; f < mesh.faces.rows(); ++f)
+    if (std::all_of(mesh.faces.row(f).begin(), mesh.faces.row(f).end(), [&](int v) { return kept[v]; }))
+      faces.push_back(f);
+  app::ScanPicture part;
+  part.spacing = whole.spacing;
+  part.mesh.vertices = mesh.vertices(which, Eigen::all);
+  part.mesh.faces = mesh.faces(faces, Eigen::all).unaryExpr([&](int v) { return renumbered[v]; });
+  if (mesh.colors.rows() == mesh.vertices.rows()) part.mesh.colors = mesh.colors(which, Eigen::all);
+  if (whole.normals.rows() == mesh.vertices.rows()) part.normals = whole.normals(which, Eigen::all);
+  return part;
+}
+
 class Builder {
  public:
   Builder(const SceneInput& input, SceneMemory& memory)
@@ -89,7 +108,11 @@ class Builder {
   /// The colour behind everything, for what is drawn faintly.
   Vec3 air() const { return (out_.scene.background.top + out_.scene.background.bottom) / 2; }
   const SurfaceColours& take_colors(int k, const std::shared_ptr<const app::PosedPicture>& posed);
+  const ShownScan& shown(ShownScan& made, const std::shared_ptr<const app::ScanPicture>& whole, int frame,
+                         ShownScan::Part part) const;
+  const ShownScan& shown_scan();
   const SurfaceColours& scan_colors();
+  Points people_colors(const ShownScan& scan, const SharedPoints& plain) const;
   void explain(const SurfaceColours& made, int take);
 
   const SceneInput& in_;
@@ -118,6 +141,8 @@ PaneScene Builder::build() {
     out_.scene.gizmos.back().position += aside_of(person_of_tool(session_, in_.pane));
   }
   set_ground();
+  if (!in_.pane.source || in_.pictures.scan == nullptr) memory_.scan = {};
+  memory_.ghosts.drop_unused();
   memory_.colours.drop_unused();
   memory_.moved.drop_unused();
   return std::move(out_);
@@ -156,7 +181,7 @@ void Builder::add_surface(render::MeshView view, bool as_points, float radius) {
 void Builder::add_scan() {
   const app::Layers& layers = session_.view.source;
   if (layers.surface && in_.pictures.scan != nullptr) {
-    const auto& scan = in_.pictures.scan;
+    const auto& scan = shown_scan().shown;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;
     view.vertices = displaced(part_of(scan, scan->mesh.vertices), 0, MovedLayer::Scan);
@@ -237,11 +262,12 @@ void Builder::add_ghosts() {
     if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts)
       add_target_surface(0, ghost.take, kGhostOpacity, number);
     if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
-      const float spacing = ghost.scan->spacing > 0 ? ghost.scan->spacing : render::PointsView().radius;
+      const auto& scan =
+          shown(memory_.ghosts[number], ghost.scan, ghost.frame, ShownScan::Part::Person).shown;
+      const float spacing = scan->spacing > 0 ? scan->spacing : render::PointsView().radius;
       render::MeshView view;
-      view.vertices =
-          displaced(part_of(ghost.scan, ghost.scan->mesh.vertices), 0, MovedLayer::ScanGhost, number);
-      view.normals = part_of(ghost.scan, ghost.scan->normals);
+      view.vertices = displaced(part_of(scan, scan->mesh.vertices), 0, MovedLayer::ScanGhost, number);
+      view.normals = part_of(scan, scan->normals);
       view.color = 0.75f * air() + 0.25f * kScanColor;
       add_surface(std::move(view), true, 0.6f * spacing);
     }
@@ -347,19 +373,77 @@ const SurfaceColours& Builder::take_colors(int k, const std::shared_ptr<const ap
   return made = std::move(now);
 }
 
+/// The part of a frame's scan that is shown; whose each of its points is.
+const ShownScan& Builder::shown(ShownScan& made, const std::shared_ptr<const app::ScanPicture>& whole,
+                                int frame, ShownScan::Part part) const {
+  const app::KeptSource* seen = at_or_null(session_.source.frames, frame);
+  const auto kept = seen != nullptr ? seen->owners : nullptr;
+  const int alone =
+      seen != nullptr && kept == nullptr && app::has_several_people(session_) ? seen->person : 0;
+  if (made.whole == whole && made.kept == kept && made.part == part && made.alone == alone) return made;
+  made = {whole, whole, kept, part, alone, {}};
+  if (alone > 0) made.owner.assign(static_cast<size_t>(whole->mesh.vertices.rows()), alone);
+  if (kept == nullptr) return made;
+  made.owner = kept->owners(whole->mesh.vertices);
+  if (part == ShownScan::Part::Whole || made.owner.empty()) return made;
+  const auto stays = [&](int owner) {
+    return part == ShownScan::Part::People ? owner > People::kScenery : owner == seen->person;
+  };
+  std::vector<char> flags(made.owner.size());
+  std::transform(made.owner.begin(), made.owner.end(), flags.begin(), stays);
+  made.shown = std::make_shared<const app::ScanPicture>(kept_picture(*whole, flags));
+  made.owner.erase(std::remove_if(made.owner.begin(), made.owner.end(), std::not_fn(stays)),
+                   made.owner.end());
+  return made;
+}
+
+const ShownScan& Builder::shown_scan() {
+  const bool scene = session_.view.source.scene;
+  return shown(memory_.scan, in_.pictures.scan, in_.pictures.frame,
+               scene ? ShownScan::Part::Whole : ShownScan::Part::People);
+}
+
+/// Several people each in their colour, all else grey. plain: the colours of one person's surface, [V, 3] or
+/// none.
+Points Builder::people_colors(const ShownScan& scan, const SharedPoints& plain) const {
+  const Vec3 grey = 0.62f * air() + 0.38f * kScanColor;
+  const bool by_number =
+      app::has_several_people(session_) && session_.view.source.colouring == Colouring::Plain;
+  const bool own = plain->rows() == ssize(scan.owner);
+  Points colors(ssize(scan.owner), 3);
+  for (Eigen::Index v = 0; v < colors.rows(); ++v) {
+    const int owner = scan.owner[static_cast<size_t>(v)];
+    Vec3 color = grey;
+    if (by_number && owner > People::kScenery) {
+      const ImVec4 tint = person_color(theme(in_.theme), owner);
+      color = Vec3(tint.x, tint.y, tint.z);
+    } else if (!by_number && owner > People::kScenery && owner == session_.source.person) {
+      color = own ? Vec3(plain->row(v)) : kScanColor;
+    }
+    colors.row(v) = color;
+  }
+  return colors;
+}
+
 const SurfaceColours& Builder::scan_colors() {
   SurfaceColours now;
   const int f = std::max(0, in_.pictures.frame);
-  now.kept = {in_.pictures.scan};
-  now.settings = {static_cast<float>(session_.view.source.colouring)};
+  const ShownScan& scan = shown_scan();
+  now.kept = {scan.shown, scan.kept};
+  now.settings = {static_cast<float>(session_.view.source.colouring),
+                  app::has_several_people(session_) ? 1.f : 0, static_cast<float>(session_.source.person),
+                  static_cast<float>(in_.theme)};
+  append(now.settings, air());
   if (f < ssize(session_.source.frames)) {
     append(now.settings, session_.source.frames[f].confidence_of);
     append(now.settings, session_.source.frames[f].joints);
   }
   SurfaceColours& made = memory_.colours[-1];
   if (made.kept == now.kept && made.settings == now.settings) return made;
-  now.values = scan_values(session_, in_.pictures);
+  now.values = scan_values(session_, scan.shown->mesh.vertices, in_.pictures.frame);
   now.colors = scale_colors(now.values);
+  const SharedPoints own = part_of(scan.shown, scan.shown->mesh.colors);
+  if (!scan.owner.empty()) now.colors = people_colors(scan, now.values.values != nullptr ? now.colors : own);
   return made = std::move(now);
 }
 

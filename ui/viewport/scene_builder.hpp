@@ -30,6 +30,14 @@ struct SurfaceColours {
   SurfaceValues values;
   render::SharedPoints colors;
 };
+/// A scan as it is shown, and whose its points are, kept while its inputs stay the same.
+struct ShownScan {
+  std::shared_ptr<const app::ScanPicture> whole, shown;
+  std::shared_ptr<const app::KeptOwners> kept;
+  enum class Part { Whole, People, Person } part = Part::Whole;
+  int alone = 0;           ///< whose all of it is, where others come later or have left; 0: nobody's
+  std::vector<int> owner;  ///< of each vertex shown, as KeptOwners::owners; empty: they are not told apart
+};
 /// Points of what stands aside, kept while they and its place stay the same.
 struct MovedPoints {
   render::SharedPoints in_place, moved;
@@ -65,6 +73,8 @@ enum class MovedLayer { Scan, CroppedAway, Take, ScanGhost, TakeGhost };
 struct SceneMemory {
   KeptValues<int, SurfaceColours> colours;  ///< by take, -1 the scan
   KeptValues<std::pair<MovedLayer, int>, MovedPoints> moved;
+  ShownScan scan;
+  KeptValues<int, ShownScan> ghosts;  ///< by their number
 };
 
 struct SceneInput {

@@ -129,10 +129,9 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
   return {};
 }
 
-SurfaceValues scan_values(const Session& session, const PanePictures& pictures) {
-  if (session.view.source.colouring != Colouring::Confidence || pictures.scan == nullptr) return {};
-  return confidence(session, pictures.scan->mesh.vertices, app::pane_joints(session, 0, pictures.frame),
-                    pictures.frame);
+SurfaceValues scan_values(const Session& session, const Points& scan, int frame) {
+  if (session.view.source.colouring != Colouring::Confidence) return {};
+  return confidence(session, scan, app::pane_joints(session, 0, frame), frame);
 }
 
 }  // namespace understudy::ui

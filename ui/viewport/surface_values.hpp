@@ -19,6 +19,7 @@ struct PanePictures {
   struct Ghost {
     std::shared_ptr<const app::ScanPicture> scan;
     std::shared_ptr<const app::PosedPicture> take;
+    int frame = -1;
   };
   std::vector<Ghost> ghosts;
 };
@@ -59,7 +60,7 @@ Legend joints_legend(const app::Session& session);
 /// Of take `k` in a picture of it in frame `frame`. reference: of the first take.
 SurfaceValues take_values(const app::Session& session, int k, const PanePictures& pictures,
                           const std::shared_ptr<const app::PosedPicture>& posed);
-/// Of the source's scan.
-SurfaceValues scan_values(const app::Session& session, const PanePictures& pictures);
+/// Of the source's scan in a frame, [V, 3].
+SurfaceValues scan_values(const app::Session& session, const Points& scan, int frame);
 
 }  // namespace understudy::ui

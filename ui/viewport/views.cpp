@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/session/follow.hpp"
+#include "render/gizmo.hpp"
 #include "retarget/base/index.hpp"
 #include "ui/gui/draw_pass.hpp"
 #include "ui/gui/gui.hpp"
@@ -44,6 +45,26 @@ void picture_button(const char* name, const Rect& rect) {
   ImGui::InvisibleButton(name, {rect.width(), rect.height()},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
+}
+
+/// Above the heads, where there are several people.
+std::vector<Overlay::Tag> person_tags(const Session& session, const Pane& pane, int frame,
+                                      const Theme& look) {
+  const app::KeptSource* seen = at_or_null(session.source.frames, frame);
+  std::vector<Overlay::Tag> tags;
+  if (!pane.content.source || seen == nullptr || !seen->owners || !session.view.source.surface ||
+      !app::has_several_people(session))
+    return tags;
+  const PaneView view = pane.view.shifted(aside(session, pane.content, 0));
+  for (const auto& [id, box] : seen->owners->people()) {
+    const Vec3 top(0.5f * (box.low.x() + box.high.x()), box.high.y(), 0.5f * (box.low.z() + box.high.z()));
+    const auto at = view.project(top);
+    if (!at || !view.rect.contains(*at)) continue;
+    const std::string number = std::to_string(id);
+    tags.push_back(
+        {*at, "Person " + number, person_color(look, id), id == seen->person, "view.0.person." + number});
+  }
+  return tags;
 }
 
 void draw_cube_of(Ui& ui, const Pane& pane) {
@@ -113,8 +134,8 @@ void Views::prepare(const Frame& f, size_t count) {
   if (tool_ != f.session.tool || (hand_.busy() && key_pressed(render::Key::Escape, false))) hand_.let_go();
   tool_ = f.session.tool;
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
-  pictures_wait_ = std::exchange(drawn_before_, drawn_) != drawn_ && is_live(f.session) && !steering() &&
-                   (moved.x != 0 || moved.y != 0);
+  const bool shares = is_live(f.session) && !steering() && (moved.x != 0 || moved.y != 0);
+  turn_ = shares ? (turn_ + 1) % std::max(2, static_cast<int>(count)) : -1;
   under_ = nullptr;
 }
 
@@ -190,7 +211,7 @@ float Views::wipe_line(const Frame& f, const Rect& area) {
 void Views::set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view) {
   if (!(pane.content == content)) pane.memory = {};
   const render::Camera before = pane.view.camera;
-  const bool held = (hold_ || pictures_wait_) && pane.content == content && !pane.view.rect.empty();
+  const bool held = (hold_ || waits(pane)) && pane.content == content && !pane.view.rect.empty();
   pane.content = content;
   pane.view = view;
   if (held) pane.view.camera = before;
@@ -210,11 +231,22 @@ void Views::interact(const Frame& f, Pane& pane) {
     if (now.pressed || steering || now.asks) activate(f, pane);
   }
   if (now.asks && !hand_.busy()) ask_what_to_do(f, pane, now);
+  if (now.released && !taken) choose_person(f, pane, now);
   steer(f, pane, now, !taken);
 }
 
 PaneView Views::tool_view(const Session& session, const Pane& pane) {
   return pane.view.shifted(aside(session, pane.content, person_of_tool(session, pane.content)));
+}
+
+/// A click, not a drag, on somebody in the scan makes them the source.
+void Views::choose_person(const Frame& f, const Pane& pane, const Pointer& now) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool dragged = io.MouseDragMaxDistanceSqr[0] >= io.MouseDragThreshold * io.MouseDragThreshold;
+  if (dragged || !now.over || f.session.tool != app::Tool::Look) return;
+  const int person = person_under(f.session, pane, now.at);
+  if (person > 0 && person != f.session.source.person)
+    f.context.queue.push_back({"source.person", {std::to_string(person)}});
 }
 
 /// Commands are about it from now on.
@@ -294,8 +326,12 @@ void Views::turn_light(const Frame& f, const Pointer& now) {
   if (now.moved.y != 0) ask("height", std::clamp(light.height_deg - turn * now.moved.y, -90.f, 90.f));
 }
 
+bool Views::waits(const Pane& pane) const {
+  return turn_ >= 0 && (turn_ >= ssize(panes_) || panes_[turn_].get() != &pane);
+}
+
 void Views::make_picture(const Frame& f, Pane& pane) {
-  if (pictures_wait_ && pane.canvas.seen_from(pane.view.camera, pane.view.size())) return;
+  if (waits(pane) && pane.canvas.seen_from(pane.view.camera, pane.view.size())) return;
   const PaneView seen = tool_view(f.session, pane);
   const HandPlace place{f.session, pane.content, seen, pane.keeper.pictures(), f.context.ui.scale()};
   PanePictures pictures = pane.keeper.pictures();
@@ -342,15 +378,16 @@ void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
   overlay.rect = part, overlay.title_right = right;
   const auto& cube = pane.cube ? pane.cube : panes_.front()->cube;  // a wipe has one
   if (cube && cube->max.x <= part.max.x) overlay.right_taken = cube->width();
-  describe(f.session, pane, overlay);
+  describe(f.session, pane, f.context.ui.theme(), overlay);
   overlay.active = panes_.size() > 1 && f.session.view.layout == app::Layout::SideBySide &&
                    pane.content.number == f.session.view.active_pane;
   draw_overlay(f.context.ui, overlay);
   draw_brush(f, pane);
+  mark_rings(f, pane);
 }
 
 /// The words and labels over a pane.
-void Views::describe(const Session& session, const Pane& pane, Overlay& overlay) const {
+void Views::describe(const Session& session, const Pane& pane, const Theme& look, Overlay& overlay) const {
   const int frame = pane.keeper.pictures().frame;
   const bool rest = shows_rest(session, pane.content);
   overlay.title = pane_title(session, pane.content);
@@ -362,6 +399,8 @@ void Views::describe(const Session& session, const Pane& pane, Overlay& overlay)
                        : rest       ? "T-pose"
                        : frame >= 0 ? "frame " + std::to_string(frame)
                                     : "";
+    const std::string method = rest ? "" : pane_method(session, pane.content);
+    if (!method.empty()) overlay.subtitle += (overlay.subtitle.empty() ? "" : " \u00b7 ") + method;
     if (!legend_beside_ || pane.made.legend.categories.empty()) overlay.legend = pane.made.legend;
   }
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
@@ -385,10 +424,31 @@ void Views::describe(const Session& session, const Pane& pane, Overlay& overlay)
         overlay.handles.push_back(
             {*at, std::string("view.crop.") + kBoxSides[face], face == pane.preview.crop_face});
   }
+  overlay.tags = person_tags(session, pane, frame, look);
   if (under_ != &pane) return;
   overlay.tip_at = pointer_.at;
   overlay.tip = hand_.tip();
-  if (overlay.tip.empty() && !session.playback.playing) overlay.tip = value_under(session, pane, pointer_.at);
+  if (!overlay.tip.empty() || session.playback.playing) return;
+  overlay.tip = value_under(session, pane, pointer_.at);
+  if (!overlay.tip.empty() || session.tool != app::Tool::Look) return;
+  if (const int number = person_under(session, pane, pointer_.at); number > 0)
+    overlay.tip = "Person " + std::to_string(number) +
+                  (number == session.source.person ? ": performs" : ": click, and they perform");
+}
+
+/// Where each ring of the gizmo is farthest from its middle, as seen.
+void Views::mark_rings(const Frame& f, const Pane& pane) const {
+  const auto& gizmo = pane.preview.gizmo;
+  if (!gizmo || gizmo->kind != render::GizmoView::Kind::Turn) return;
+  const PaneView view = tool_view(f.session, pane);
+  const Vec3 to_eye = render::eye(view.camera) - gizmo->position;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 side = gizmo->axes.col(axis).cross(to_eye).normalized();
+    const auto at = view.project(gizmo->position + render::gizmo_reach(*gizmo, view.camera) * side);
+    if (!at) continue;
+    const Rect place{{at->x - 1, at->y - 1}, {at->x + 1, at->y + 1}};
+    f.context.ui.mark(std::string("view.ring.") + "xyz"[axis], place);
+  }
 }
 
 /// The brush's circle, flat on the surface.

@@ -18,7 +18,7 @@ class Views {
   /// Fills what is left of the current window with the panes of the layout. Redraws a pane only when
   /// its content, camera or size has changed. Marks: "view.0" the source, "view.1" the first take
   /// ..., with "view.0.cube" (.front ... .bottom), "view.wipe" the line of a wipe, "view.legend",
-  /// "view.warning", "view.tip". Throws Error where the context's messages are fatal.
+  /// "view.warning", "view.tip", "view.0.person.N". Throws Error where the context's messages are fatal.
   void draw(const app::Session& session, app::FrameCache& cache, PanelContext& context);
 
   /// Drops everything shown: the document was closed.
@@ -46,6 +46,7 @@ class Views {
   void set_up(const Frame& f, Pane& pane, const PaneContent& content, const PaneView& view);
   void interact(const Frame& f, Pane& pane);
   void use_cube(const Frame& f, Pane& pane, const Rect& part);
+  void choose_person(const Frame& f, const Pane& pane, const Pointer& now);
   void activate(const Frame& f, const Pane& pane);
   void ask_what_to_do(const Frame& f, const Pane& pane, const Pointer& now);
   void draw_menu(const Frame& f);
@@ -54,14 +55,16 @@ class Views {
   void point_camera(const Frame& f, const Pane& pane, const render::Camera& camera);
   void turn_light(const Frame& f, const Pointer& now);
   void steer(const Frame& f, Pane& pane, const Pointer& pointer, bool free_left);
+  bool waits(const Pane& pane) const;
   void make_picture(const Frame& f, Pane& pane);
   void draw_picture(const Frame& f, Pane& pane);
   static bool is_live(const app::Session& session);
   bool steering() const;
   bool moving(const app::Session& session) const;
   void show(const Frame& f, Pane& pane, const Rect& part, bool right);
-  void describe(const app::Session& session, const Pane& pane, Overlay& overlay) const;
+  void describe(const app::Session& session, const Pane& pane, const Theme& look, Overlay& overlay) const;
   void draw_brush(const Frame& f, const Pane& pane);
+  void mark_rings(const Frame& f, const Pane& pane) const;
   void keep_view_when_following_changes(const Frame& f);
 
   std::optional<render::Renderer> renderer_,
@@ -77,10 +80,11 @@ class Views {
   std::optional<bool> followed_;
   bool legend_beside_ = false;  ///< the joints' colours stand beside the views, not in each
   bool hold_ = false;           ///< cameras stay for this frame as they were
-  int64_t drawn_ = 0, drawn_before_ = 0;
-  /// Frames come one after the other, and the last draw was of one: this one shows at once what the pointer
-  /// does.
-  bool pictures_wait_ = false;
+  int64_t drawn_ = 0;
+  /// The only pane that may draw a new picture now, -1: all may. Where frames come one after the other while
+  /// the pointer moves, each draw is of one pane, so that what the pointer does is shown soon; one pane alone
+  /// draws every second time.
+  int turn_ = -1;
 };
 
 }  // namespace understudy::ui

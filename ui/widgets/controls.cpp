@@ -139,6 +139,30 @@ void draw_bar(Ui& ui, const Rect& rect, float fraction) {
          t.accent, corner);
 }
 
+/// The text with "\u2026" for as few bytes as possible; `front` says how many of the kept ones are before it.
+template <class Front>
+std::string longest_cut(const std::string& text, float width, Front front) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  const auto is_inside = [&](size_t at) {  // a UTF-8 letter, which is never split
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+  };
+  const auto cut = [&](size_t kept) {
+    size_t begin = front(kept), end = text.size() - (kept - begin);
+    while (begin > 0 && is_inside(begin)) --begin;
+    while (is_inside(end)) ++end;
+    return text.substr(0, begin) + "\u2026" + text.substr(end);
+  };
+  size_t low = 0, high = text.size();
+  while (low < high) {
+    const size_t middle = (low + high + 1) / 2;
+    if (ImGui::CalcTextSize(cut(middle).c_str()).x <= width)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  return cut(low);
+}
+
 }  // namespace
 
 void tooltip(Ui& ui, const std::string& text, const std::string& shortcut) {
@@ -229,13 +253,17 @@ bool dropdown(Ui& ui, const std::string& name, const std::vector<std::string>& c
   const float padding = ImGui::GetStyle().FramePadding.x;
   fill(p.rect, p.held ? t.field_active : p.hovered ? t.field_hover : t.field, rounding());
   write({p.rect.min.x + padding, p.rect.min.y + ImGui::GetStyle().FramePadding.y},
-        cut_to(known ? choices[chosen] : "", width - 2 * padding - arrow), t.text);
+        cut_name(known ? choices[chosen] : "", width - 2 * padding - arrow), t.text);
   draw_icon(*ImGui::GetWindowDrawList(), Icon::ChevronDown,
             {p.rect.max.x - arrow - ui.px(5), p.rect.min.y + (height - arrow) / 2}, arrow, color(t.text_dim));
   if (p.clicked) ImGui::OpenPopup(popup.c_str());
   const float wanted = static_cast<float>(choices.size()) * ImGui::GetTextLineHeightWithSpacing() + ui.px(24);
   const bool above = p.rect.max.y + wanted > ImGui::GetIO().DisplaySize.y && p.rect.min.y > wanted;
-  ImGui::SetNextWindowPos({p.rect.min.x, above ? p.rect.min.y - ui.px(3) : p.rect.max.y + ui.px(3)},
+  float widest = 0;
+  for (const std::string& choice : choices) widest = std::max(widest, ImGui::CalcTextSize(choice.c_str()).x);
+  const float room = ImGui::GetIO().DisplaySize.x - widest - 2 * ImGui::GetStyle().WindowPadding.x - ui.px(4);
+  ImGui::SetNextWindowPos({std::max(0.f, std::min(p.rect.min.x, room)),
+                           above ? p.rect.min.y - ui.px(3) : p.rect.max.y + ui.px(3)},
                           ImGuiCond_Always, {0, above ? 1.f : 0.f});
   ImGui::SetNextWindowSizeConstraints({width, 0}, {std::max(width, ui.px(480)), ui.px(360)});
   bool changed = false;
@@ -306,20 +334,11 @@ bool section(Ui& ui, const std::string& name, const std::string& title, bool ope
 }
 
 std::string cut_to(const std::string& text, float width) {
-  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-  size_t low = 0, high = text.size();  // the longest beginning that fits with the dots
-  const auto whole = [&](size_t at) {  // never inside a UTF-8 letter
-    while (at > 0 && at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) --at;
-    return at;
-  };
-  while (low < high) {
-    const size_t middle = (low + high + 1) / 2;
-    if (ImGui::CalcTextSize((text.substr(0, whole(middle)) + "\u2026").c_str()).x <= width)
-      low = middle;
-    else
-      high = middle - 1;
-  }
-  return text.substr(0, whole(low)) + "\u2026";
+  return longest_cut(text, width, [](size_t kept) { return kept; });
+}
+
+std::string cut_name(const std::string& name, float width) {
+  return longest_cut(name, width, [](size_t kept) { return (kept + 1) / 2; });
 }
 
 void text_cut(Ui& ui, const std::string& text, float width) {

@@ -76,6 +76,8 @@ bool section(Ui& ui, const std::string& name, const std::string& title, bool ope
 void text_cut(Ui& ui, const std::string& text, float width = 0);
 /// The text cut so that it takes at most `width` pixels in the current font.
 std::string cut_to(const std::string& text, float width);
+/// The same for a name, cut in its middle: names of takes and files often differ at their ends.
+std::string cut_name(const std::string& name, float width);
 /// The text in lines of at most `room` pixels in the current font, broken at spaces alone:
 /// no number is split.
 std::string in_lines(const std::string& text, float room);

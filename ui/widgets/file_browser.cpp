@@ -127,6 +127,11 @@ bool FileBrowser::can_choose(const FolderEntry& entry) const {
   return !entry.is_folder || (!request_.save && filter().folders && (entry.frames > 0 || entry.is_case));
 }
 
+/// Whether the folder that is shown can itself be opened.
+bool FileBrowser::can_choose_folder() const {
+  return !request_.save && filter().folders && (contents_->frames > 0 || contents_->is_case);
+}
+
 std::string FileBrowser::path_of(const FolderEntry& entry) const {
   return (fs::path(folder_) / entry.name).string();
 }
@@ -236,8 +241,10 @@ void FileBrowser::draw_path(Ui& ui) {
   }
   if (buttons == 0) return;
   ImGui::SameLine();
-  if (button(ui, "browser.new_folder", "New folder", {ButtonLook::Plain, "", "", false, -1}))
+  if (button(ui, "browser.new_folder", "New folder", {ButtonLook::Plain, "", "", false, -1})) {
     naming_folder_ = !naming_folder_, new_folder_.clear();
+    if (naming_folder_) ui.focus().type_into(ImGui::GetID("##folder_name"));
+  }
 }
 
 /// The path as buttons, from its end: what does not fit is left out at the front. The rest of the field, when
@@ -283,9 +290,11 @@ void FileBrowser::draw_crumbs(Ui& ui) {
 }
 
 void FileBrowser::draw_places(Ui& ui) {
-  std::vector<Place> all = {{"Home", home(), Icon::Home},
-                            {"Documents", home() + "/Documents", Icon::File},
-                            {"Computer", "/", Icon::Layers}};
+  std::vector<Place> all = {{"Home", home(), Icon::Home}};
+  const std::string documents = home() + "/Documents";
+  if (std::error_code error; fs::is_directory(documents, error))
+    all.push_back({"Documents", documents, Icon::File});
+  all.push_back({"Computer", "/", Icon::Layers});
   all.insert(all.end(), places.begin(), places.end());
   for (const Place& place : all) {
     const IdScope id(place.path);
@@ -371,7 +380,7 @@ void FileBrowser::draw_entry(Ui& ui, int row_number) {
   draw_icon(list, icon_of(entry), {at.x + ui.px(4), at.y + (height - icon) / 2}, icon,
             color(special ? t.accent_hover : t.text_dim));
   list.AddText({at.x + ui.px(26), y}, color(t.text),
-               cut_to(entry.name, sizes - size - at.x - ui.px(26)).c_str());
+               cut_name(entry.name, sizes - size - at.x - ui.px(26)).c_str());
   const std::string words = about(entry);
   list.AddText({sizes - ImGui::CalcTextSize(words.c_str()).x, y}, color(special ? t.text : t.text_dim),
                words.c_str());
@@ -402,7 +411,8 @@ void FileBrowser::draw_preview(Ui& ui) {
     ui.mark("browser.preview");
   }
   text_cut(ui, entry->name);
-  if (const std::string words = about(*entry); !words.empty()) hint(ui, words);
+  const std::string words = about(*entry);
+  if (!words.empty() && !starts_with(shown.text, words)) hint(ui, words);
   if (!shown.text.empty()) hint(ui, shown.text);
 }
 
@@ -429,7 +439,7 @@ void FileBrowser::draw_footer(Ui& ui) {
     open_ = false;
   ImGui::SameLine();
   const FolderEntry* entry = selected();
-  const bool ready = request_.save ? !name_.empty() : entry != nullptr || filter().folders;
+  const bool ready = request_.save ? !name_.empty() : entry != nullptr || can_choose_folder();
   const bool enter = !request_.save && entry != nullptr && !can_choose(*entry);
   if (button(ui, "browser.accept", enter ? "Go there" : request_.accept,
              {ButtonLook::Main, "", "", !ready, ui.px(100)}))
@@ -517,7 +527,7 @@ void FileBrowser::accept() {
   if (!request_.save) {
     if (const FolderEntry* entry = selected())
       activate(*entry);
-    else if (filter().folders)
+    else if (can_choose_folder())
       finish(folder_);
     return;
   }

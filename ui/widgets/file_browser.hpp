@@ -65,6 +65,7 @@ class FileBrowser {
   void refresh();
   const FileFilter& filter() const;
   bool can_choose(const FolderEntry& entry) const;
+  bool can_choose_folder() const;
   std::string path_of(const FolderEntry& entry) const;
   int selected_row() const;
   const FolderEntry* selected() const;

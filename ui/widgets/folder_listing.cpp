@@ -52,20 +52,55 @@ FolderEntry entry_of(const fs::directory_entry& found) {
   return entry;
 }
 
-/// Looks into a folder for scan frames and a case; a single frame is no sequence.
+/// The files of each format that frames come in. As many of two formats are no scan: a reader asks which.
+class FrameCounts {
+ public:
+  void add(const std::string& name) {
+    const FileFormat* const format = format_of_suffix(name, kScanFrame);
+    if (format == nullptr || format->is_plain_text) return;
+    Count& count = counts_[format];
+    ++count.files, count.frames += is_frame(name, *format) ? 1 : 0;
+  }
+  /// A single frame is no sequence.
+  int frames() const {
+    Count most;
+    bool is_alone = false;
+    for (const auto& [format, count] : counts_) {
+      if (count.files >= most.files) is_alone = count.files > most.files;
+      if (count.files > most.files) most = count;
+    }
+    return is_alone && most.frames > 1 ? most.frames : 0;
+  }
+
+ private:
+  struct Count {
+    int files = 0, frames = 0;
+  };
+  std::map<const FileFormat*, Count> counts_;
+};
+
+/// Looks into a folder for scan frames and a case.
 void look_inside(const fs::path& folder, FolderEntry& entry, const std::atomic<bool>& unwanted) {
   std::error_code error;
-  std::map<const FileFormat*, int> counts;
+  FrameCounts counts;
   int seen = 0;
   for (fs::directory_iterator at(folder, error), end; !error && at != end && !unwanted; at.increment(error)) {
     const std::string name = at->path().filename().string();
     if (name == "case.json") entry.is_case = true;
-    const FileFormat* const format = format_of_suffix(name, kScanFrame);
-    if (format && is_frame(name, *format)) ++counts[format];
+    counts.add(name);
     if (++seen >= kMostFrames) break;
   }
-  for (const auto& [format, count] : counts)
-    if (count > 1) entry.frames = std::max(entry.frames, count);
+  entry.frames = counts.frames();
+}
+
+/// What the folder itself can be opened as.
+void describe_folder(FolderContents& contents) {
+  FrameCounts counts;
+  for (const FolderEntry& entry : contents.entries) {
+    if (!entry.is_folder) counts.add(entry.name);
+    contents.is_case |= entry.name == "case.json";
+  }
+  contents.frames = counts.frames();
 }
 
 }  // namespace
@@ -99,6 +134,7 @@ void FolderListing::Shared::list(const std::string& folder) {
   }
   if (error) contents.problem = reason(folder, error);
   std::sort(contents.entries.begin(), contents.entries.end(), comes_before);
+  describe_folder(contents);
   publish(contents);
   count_frames(folder, contents);
   contents.finished = true;
@@ -120,7 +156,11 @@ FolderListing::FolderListing(const std::string& folder) : shared_(std::make_shar
   // Detached: a network drive that hangs must not block closing the browser.
   std::thread([shared = shared_, folder] {
     const std::string problem = failure_of([&] { shared->list(folder); });
-    if (!problem.empty()) shared->publish({{}, true, folder + " cannot be listed: " + problem + "."});
+    if (!problem.empty()) {
+      FolderContents none;
+      none.finished = true, none.problem = folder + " cannot be listed: " + problem + ".";
+      shared->publish(none);
+    }
   }).detach();
 }
 

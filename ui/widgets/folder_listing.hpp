@@ -21,7 +21,9 @@ struct FolderEntry {
 struct FolderContents {
   std::vector<FolderEntry> entries;
   bool finished = false;
-  std::string problem;  ///< why it cannot be listed, one sentence; empty when it can
+  int frames = 0;        ///< as in FolderEntry, of the folder itself; known when all entries are
+  bool is_case = false;  ///< it has a case.json
+  std::string problem;   ///< why it cannot be listed, one sentence; empty when it can
 };
 
 /// Lists one folder in the background. Made and asked from one thread; never blocks it. What was found stays

@@ -30,7 +30,7 @@ bool matches(const std::string& text, const std::string& search) {
 std::vector<int> matching(const std::vector<ListItem>& items, const std::string& search) {
   std::vector<int> found;
   for (int i = 0; i < ssize(items); ++i)
-    if (matches(items[i].text + " " + items[i].note, search)) found.push_back(i);
+    if (matches(items[i].text + " " + items[i].note + " " + items[i].also, search)) found.push_back(i);
   const auto begins_a_word = [&, words = lower_case(search)](int i) {
     const std::string text = lower_case(items[i].text);
     const size_t at = text.find(words);
@@ -112,7 +112,10 @@ Table::Table(Ui& ui, const std::string& name, std::vector<Column> columns, float
   const ColorScope dim(ImGuiCol_Text, ui.theme().text_dim);
   for (size_t i = 0; i < columns_.size(); ++i) {
     ImGui::TableSetColumnIndex(i);
-    write(columns_[i], columns_[i].title);
+    const std::string title = cut_name(columns_[i].title, ImGui::GetContentRegionAvail().x);
+    write(columns_[i], title);
+    ui.mark(name + ".title." + std::to_string(i));
+    if (title != columns_[i].title) tooltip(ui, columns_[i].title);
   }
 }
 

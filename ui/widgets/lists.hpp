@@ -12,6 +12,7 @@ struct ListItem {
   std::string text;
   std::string note{};   ///< grey, on the right
   bool enabled = true;  ///< grey and not to be chosen where not
+  std::string also{};   ///< not shown: other words that find it
 };
 /// A list with a search field above it; what begins with the words searched comes first. Returns the item
 /// clicked or chosen by arrows and Enter, -1 for none. `height` pixels, 0: what is left.

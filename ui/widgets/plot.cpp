@@ -25,6 +25,7 @@ void finish_stroke(ImDrawList& list, ImU32 color, float thickness) {
 /// Everything one plot's drawing needs.
 struct Plot {
   Ui& ui;
+  const std::string& name;
   const std::vector<PlotLine>& series;
   const PlotOptions& options;
   ImDrawList& list;
@@ -60,16 +61,21 @@ Range value_range(const std::vector<PlotLine>& series) {
 }
 
 void draw_legend(Plot& p, const ImVec2& at, float width) {
-  float x = at.x;
-  const float line = ImGui::GetTextLineHeight(),
+  float x = at.x, wanted = 0;
+  const float line = ImGui::GetTextLineHeight(), dash = p.ui.px(12), around = dash + p.ui.px(19),
               right = at.x + width - word_width(p.options.unit) - p.ui.px(10);
+  for (const PlotLine& one : p.series) wanted += word_width(one.label) + around;
+  const float share = (right - at.x) / static_cast<float>(std::max<size_t>(1, p.series.size())) - around;
+  const bool all_fit = wanted <= right - at.x;
   for (size_t k = 0; k < p.series.size(); ++k) {
-    const float dash = p.ui.px(12), room = right - x - dash - p.ui.px(5);
-    if (room < p.ui.px(24)) break;
-    const std::string label = cut_to(p.series[k].label, room);
+    const float room = all_fit ? right - x : std::max(share, p.ui.px(24));
+    if (x + dash + p.ui.px(24) > right) break;
+    const std::string label = cut_name(p.series[k].label, room);
     p.list.AddLine({x, at.y + line / 2}, {x + dash, at.y + line / 2}, p.color_of(k), p.ui.px(2));
-    p.list.AddText({x + dash + p.ui.px(5), at.y}, color(p.ui.theme().text_dim), label.c_str());
-    x += dash + p.ui.px(5) + word_width(label) + p.ui.px(14);
+    const ImVec2 from(x + dash + p.ui.px(5), at.y);
+    p.list.AddText(from, color(p.ui.theme().text_dim), label.c_str());
+    p.ui.mark(p.name + ".label." + std::to_string(k), {from, {from.x + word_width(label), from.y + line}});
+    x += around + word_width(label);
   }
   p.list.AddText({at.x + width - word_width(p.options.unit), at.y}, color(p.ui.theme().text_dim),
                  p.options.unit.c_str());
@@ -202,7 +208,8 @@ std::optional<int> plot(Ui& ui, const std::string& name, const std::vector<PlotL
   const FontScope small(ui.fonts().small);
   const ImVec2 at = ImGui::GetCursorScreenPos(),
                size(std::max(ImGui::GetContentRegionAvail().x, ui.px(60)), ui.px(options.height));
-  Plot p{ui, series, options, *ImGui::GetWindowDrawList(), {at, {at.x + size.x, at.y + size.y}}, {}, {}};
+  Plot p{ui, name, series, options, *ImGui::GetWindowDrawList(), {at, {at.x + size.x, at.y + size.y}},
+         {}, {}};
   const int count = frame_count(series);
   p.axis.last = std::max(1, count - 1);
   p.range = value_range(series);
@@ -220,7 +227,7 @@ std::optional<int> plot(Ui& ui, const std::string& name, const std::vector<PlotL
   draw_value_axis(p, ticks);
   draw_frame_axis(p);
   p.list.PushClipRect(p.axis.area.min, p.axis.area.max, true);
-  for (size_t k = 0; k < series.size(); ++k)
+  for (size_t k = series.size(); k-- > 0;)  // the first, the selected take's, over the others
     draw_curve(p.list, p.axis, series[k].values, p.range, p.color_of(k), ui.px(1.5f));
   const float now = std::round(p.axis.x(options.current));
   if (options.current >= 0)

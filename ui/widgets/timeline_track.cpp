@@ -320,10 +320,12 @@ void draw_body(Track& t, const std::string& name) {
   const FontScope small(t.ui.fonts().small);
   if (!range.empty() && !t.data.curve_label.empty()) {
     const ImVec2 size = ImGui::CalcTextSize(t.data.curve_label.c_str());
-    const float x = t.body.max.x - size.x - t.ui.px(6);
+    const float x = t.body.max.x - size.x - t.ui.px(14);  // beside the playhead at the last frame
     const bool below = runs_high(t, range, x);
     const float y =
         below ? t.body.max.y - t.ui.px(kBadHeight + 2) - rows_height(t) - size.y : t.body.min.y + t.ui.px(3);
+    t.list.AddRectFilled({x - t.ui.px(4), y}, {x + size.x + t.ui.px(3), y + size.y},
+                         color(theme.field, 0.85f), t.ui.px(3));  // three curves leave no place free
     t.list.AddText({x, y}, color(theme.text_dim), t.data.curve_label.c_str());
     t.ui.mark(name + (below ? ".label_below" : ".label_above"), {{x, y}, {x + size.x, y + size.y}});
   }
@@ -476,6 +478,12 @@ std::optional<int> frame_to_show(const Track& t, const LoopRange& range, bool be
   return last ? range.last : range.first;
 }
 
+/// A diamond is named after its frame, "drags.12".
+std::string moved_name(const TrackMark& mark, const LoopRange& to) {
+  if (!mark.diamond) return mark.name;
+  return mark.name.substr(0, mark.name.rfind('.') + 1) + std::to_string(to.first);
+}
+
 /// The mark that is gripped: shown where it is clicked, changed where it is let go.
 void work_on_mark(Track& t, bool began, bool held, TrackAnswer& answer) {
   const int chosen = chosen_mark(t);
@@ -486,7 +494,7 @@ void work_on_mark(Track& t, bool began, bool held, TrackAnswer& answer) {
     answer.seek = frame_to_show(t, to, began);
   } else if (to.first != mark.first || to.last != mark.last) {
     answer.move = TrackAnswer::Move{static_cast<size_t>(chosen), to};
-    t.state.chosen.clear();
+    t.state.chosen = moved_name(mark, to);  // for Delete
   }
 }
 

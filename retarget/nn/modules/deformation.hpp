@@ -7,26 +7,17 @@
 #include <utility>
 #include <vector>
 
+#include "retarget/networks/deformation_forward.hpp"
+
 namespace understudy::nn {
 
-/// Of the networks' form: weights files of another version are refused.
-constexpr int kDeformationVersion = 1;
-
 struct DeformationOptions {
-  int64_t width = 256;           ///< hidden units a point
-  int64_t trunk_blocks = 3;      ///< residual blocks shared by W_net and O_net
-  int64_t context = 96;          ///< size of the summary of the whole surface
-  int64_t code = 128;            ///< size of the body code: joints and summary
-  int64_t context_points = 512;  ///< points that the summary is made of
+  int64_t width = 256;                      ///< hidden units a point
+  int64_t trunk_blocks = 3;                 ///< residual blocks shared by W_net and O_net
+  int64_t context = 96;                     ///< size of the summary of the whole surface
+  int64_t code = 128;                       ///< size of the body code: joints and summary
+  int64_t context_points = kContextPoints;  ///< points that the summary is made of
 };
-
-/// Every point is seen from its own side of the body: the right half is mirrored, so that the networks learn
-/// one half only. Within this distance of the middle (metres on an adult) both views are
-/// blended.
-constexpr double kMirrorBand = 0.02;
-
-/// Pose features of SMPL: (R - I) of joints 1..21, row-major.
-constexpr int64_t kPoseFeatureCount = 189;
 
 /// Size of a body: the length of its bones together over that of an adult's, [B, 1, 1]. joints [B, 22, 3].
 torch::Tensor body_scale(const torch::Tensor& joints);
@@ -35,7 +26,6 @@ torch::Tensor body_scale(const torch::Tensor& joints);
 /// from every joint and along every bone, over the body's size, and waves of both. Unchanged when body and
 /// point move or grow together.
 torch::Tensor point_features(const torch::Tensor& points, const torch::Tensor& joints);
-constexpr int64_t kPointFeatureCount = 244;
 
 /// Points [B, N, 3] in a mirror at x = middle [B].
 torch::Tensor mirror_points(const torch::Tensor& points, const torch::Tensor& middle);

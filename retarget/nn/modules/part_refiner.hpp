@@ -3,15 +3,9 @@
 
 #include <torch/torch.h>
 
-#include "retarget/networks/part_crops.hpp"
+#include "retarget/networks/part_forward.hpp"
 
 namespace understudy::nn {
-
-constexpr int kPartVersion = 2;
-constexpr const char* kPartFileKind = "leaf";  ///< as its files have it
-/// Outputs for a joint: its rotation in the crop's frame as 6D, its displacement from where it was extracted,
-/// and the log of the expected error of that, both in leg lengths.
-constexpr int kPartNumbers = 10;
 
 /// Two levels of a PointNet (Qi et al., CVPR 2017) over one kind of part: the second sees each point beside
 /// the pooled features of the first.

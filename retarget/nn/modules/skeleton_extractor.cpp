@@ -105,6 +105,10 @@ SkeletonExtractorNetImpl::SkeletonExtractorNetImpl() {
   for (int64_t i = 0; i < kDecoderLayers; ++i) decoder->push_back(JointDecoderLayer());
   joint_norm = register_module("joint_norm", layer_norm());
   joint_head = register_module("joint_head", Sequential(Linear(C, 128), ReLU(), Linear(128, 3 + 6 + 1)));
+  visibility_head = register_module("visibility_head", Linear(C, 1));
+  // At first most joints are seen, whatever the scan: training begins near what is most often true.
+  torch::nn::init::zeros_(visibility_head->weight);
+  torch::nn::init::constant_(visibility_head->bias, 2);
   joint_embedding = register_parameter("joint_embedding", 0.5 * torch::randn({1, J, C}));
 }
 
@@ -156,11 +160,13 @@ void SkeletonExtractorNetImpl::decode(const torch::Tensor& tokens, const Extract
   if (input.recent.defined()) x = x + embed_recent(input, at);
   for (const auto& layer : *decoder)
     x = layer->as<JointDecoderLayer>()->forward(x, position, tokens, among, across);
-  const auto output = joint_head->forward(joint_norm(x));  // [B, 22, 10]
+  x = joint_norm(x);
+  const auto output = joint_head->forward(x);  // [B, 22, 10]
   out.joints = out.voted + 0.1 * output.narrow(2, 0, 3);
   const auto upright = torch::tensor({1.f, 0.f, 0.f, 0.f, 1.f, 0.f}, centres.options());
   out.rotations = output.narrow(2, 3, 6) + upright;
   out.log_spread = output.select(2, 9) - 3.0;
+  out.visibility = visibility_head->forward(x).squeeze(2);
 }
 
 }  // namespace understudy::nn

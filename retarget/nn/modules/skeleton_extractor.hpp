@@ -24,6 +24,7 @@ struct ExtractorOutput {
   torch::Tensor joints;      ///< [B, 22, 3] after the decoder
   torch::Tensor rotations;   ///< [B, 22, 6] world rotations relative to the T-pose
   torch::Tensor log_spread;  ///< [B, 22] log of the expected error (normalised units)
+  torch::Tensor visibility;  ///< [B, 22] logits: whether the scan shows the surface about the joint
 };
 
 /// Multi-head attention with a learned preference for near tokens: score -= softplus(a_head) * distance^2.
@@ -91,7 +92,7 @@ class SkeletonExtractorNetImpl : public torch::nn::Module {
 
   torch::nn::Sequential patch_mlp{nullptr}, position_mlp{nullptr}, recent_mlp{nullptr}, vote_head{nullptr},
       joint_head{nullptr};
-  torch::nn::Linear patch_out{nullptr};
+  torch::nn::Linear patch_out{nullptr}, visibility_head{nullptr};
   torch::nn::ModuleList encoder{nullptr}, decoder{nullptr};
   torch::nn::LayerNorm token_norm{nullptr}, joint_norm{nullptr};
   torch::Tensor joint_embedding;

@@ -4,29 +4,13 @@
 
 #include <algorithm>
 
-#include "retarget/body/builtin_person.hpp"
+#include "tests/support/standing_person.hpp"
 
 namespace understudy {
 namespace {
 
-/// The built-in person in T-pose, every vertex a point.
-struct Standing {
-  PosedSkeleton truth;
-  LabelledPoints cloud;
-
-  Standing() {
-    const ShapedBody body = builtin_person();
-    truth.joints = body.joints;
-    truth.global = identity_rotations();
-    cloud.points = body.vertices;
-    cloud.parts = nearest_parts(cloud.points, truth.joints);
-  }
-  float leg() const { return leg_length(truth.joints); }
-};
-
-int count_of(const LabelledPoints& cloud, int part) {
-  return static_cast<int>(std::count(cloud.parts.begin(), cloud.parts.end(), part));
-}
+using fixtures::count_of;
+using Standing = fixtures::StandingPerson;
 
 /// Half the width of all at a height, metres.
 float width_at(const LabelledPoints& cloud, float height) {

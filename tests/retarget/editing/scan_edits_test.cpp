@@ -7,6 +7,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
+#include "retarget/geometry/ground_finder.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/skeleton/skinning.hpp"
 
@@ -119,7 +120,6 @@ TEST(ScanEdits, OfAnEmptyScanGiveAnEmptyScan) {
   Mesh empty;
   empty.vertices.resize(0, 3);
   EXPECT_EQ(apply(edits, empty).vertices.rows(), 0);
-  EXPECT_FALSE(detect_floor(empty.vertices));
 }
 
 TEST(FloorCut, TakesTheFloorAndLeavesTheFeet) {
@@ -139,20 +139,14 @@ TEST(FloorCut, FollowsATiltedFloorThatWasFound) {
   ScanEdits level, found;
   level.floor = FloorCut{};
   level.floor->height_m = 0.4f;
-  const auto plane = detect_floor(scan.cloud.vertices);
-  ASSERT_TRUE(plane);
-  EXPECT_NEAR(std::acos(plane->normal.y()) * 180 / kPi, 6, 0.7f);
+  const auto ground = GroundFinder().push(Cells(scan.cloud, 0.05f));
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(std::acos(ground->plane.normal.y()) * 180 / kPi, 6, 0.7f);
   found.floor = FloorCut{};
-  found.floor->plane = plane;
+  found.floor->plane = ground->plane;
   EXPECT_GT(scan.kept(level).second, 0.2f);
   EXPECT_LT(scan.kept(found).second, 0.10f);
   EXPECT_GT(scan.kept(found).first, 0.98f);
-}
-
-TEST(DetectFloor, FindsNoneUnderABodyAlone) {
-  EXPECT_FALSE(detect_floor(Scan(20, 8000, 0).cloud.vertices));
-  EXPECT_FALSE(detect_floor(walker(0).vertices));
-  EXPECT_TRUE(detect_floor(Scan(20, 8000, 3000).cloud.vertices));
 }
 
 TEST(LargestCluster, SendsAwayASecondPersonAndStrays) {

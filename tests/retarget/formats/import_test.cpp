@@ -1,5 +1,6 @@
 #include "retarget/formats/import.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "retarget/math/rotation.hpp"
@@ -214,8 +215,114 @@ TEST(Import, KnowsTheWayBack) {
   }
 }
 
+// The person above a height, as a camera sees somebody behind a desk.
+std::vector<Vec3> above(float height) {
+  std::vector<Vec3> points = person(false);
+  points.erase(std::remove_if(points.begin(), points.end(), [&](const Vec3& p) { return p.y() < height; }),
+               points.end());
+  return points;
+}
+
+// What an extractor gives that knows the widths of this person's trunk, 0.24 m, and shoulders, 0.58 m: 1.7 m
+// tall.
+std::optional<UnseenFeet> know_the_person(const Mesh& upright) {
+  const Vec3 size =
+      (upright.vertices.colwise().maxCoeff() - upright.vertices.colwise().minCoeff()).transpose();
+  const float person = size.z() / 0.24f;
+  const bool lies = std::abs(size.x() / person - 0.58f) > 0.02f;
+  return UnseenFeet{1.7f * person, upright.vertices.col(1).maxCoeff() - 1.7f * person, lies ? 0.0f : 1.0f};
+}
+
+TEST(Import, TheSizeOfSomebodyWithoutFeetComesFromWhatIsSeen) {
+  const std::vector<std::pair<const char*, float>> units = {
+      {"m", 1}, {"dm", 10}, {"in", 1 / 0.0254f}, {"cm", 100}, {"mm", 1000}};
+  for (const float cut : {0.45f, 0.85f, 1.2f})  // knees, hips, chest
+    for (const auto& [unit, scale] : units)
+      for (const char* up : {"y", "z"}) {
+        const Mesh file = as_file(above(cut), up, scale, {0, 0, 0});
+        const ImportDecision decision = decide_import(file, {}, know_the_person);
+        EXPECT_EQ(decision.units, unit) << cut << decision.sentence;
+        EXPECT_EQ(decision.up, up);
+        const Points world = decision.apply(file.vertices);
+        EXPECT_NEAR(world.col(1).maxCoeff(), 1.7f, 0.02f)
+            << cut << unit;  // the head where it is on the floor
+        EXPECT_NEAR(world.col(1).minCoeff(), cut, 0.03f);
+        EXPECT_TRUE(contains(decision.sentence, "by what is seen")) << decision.sentence;
+      }
+}
+
+TEST(Import, WhatIsSeenDecidesNothingOfAWholePerson) {
+  const Mesh file = as_file(person(false), "z", 100, {30, -20, 700});
+  int asked = 0;
+  const ImportDecision plain = decide_import(file, {}),
+                       checked = decide_import(file, {}, [&](const Mesh&upright) {
+                         EXPECT_NEAR(upright.vertices.col(1).maxCoeff(), 1.7f, 0.03f);
+                         ++asked;
+                         return std::nullopt;
+                       });
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(checked.sentence, plain.sentence);
+  EXPECT_EQ(checked.scale, plain.scale);
+  EXPECT_EQ(checked.floor, plain.floor);
+  EXPECT_EQ(checked.axes, plain.axes);
+}
+
+TEST(Import, NobodyIsLookedAtWhereUnitsAndFloorAreGiven) {
+  ImportOptions given;
+  given.units = "m";
+  given.floor = 0.0f;
+  decide_import(as_file(above(0.85f), "y", 1), given, [](const Mesh&) -> std::optional<UnseenFeet> {
+    ADD_FAILURE() << "asked";
+    return std::nullopt;
+  });
+}
+
+TEST(Import, WithoutFeetAFloorThatIsSeenOrGivenStays) {
+  std::vector<Vec3> points = above(0.85f);
+  Rng rng(5);
+  for (int i = 0; i < 4000; ++i)
+    points.push_back({rng.uniform(-1, 1), 0.002f * rng.normal(), rng.uniform(-1, 1)});
+  const auto wrong = [](const Mesh&) -> std::optional<UnseenFeet> { return UnseenFeet{1.7f, -0.4f}; };
+  EXPECT_NEAR(decide_import(as_file(points, "y", 1), {}, wrong).floor, 0, 0.02f);
+  ImportOptions given;
+  given.floor = 0.3f;
+  EXPECT_EQ(decide_import(as_file(above(0.85f), "y", 1), given, wrong).floor, 0.3f);
+}
+
+TEST(Import, TheSameIsDecidedAgainWithoutALook) {
+  for (const float scale : {1.0f, 100.0f, 209.0f}) {  // the last fits no person in any unit
+    const Mesh file = as_file(above(1.2f), "z", scale, {3, -2, 7});
+    ImportOptions turned;
+    turned.turn_deg = 180;
+    Warnings warnings;
+    const ImportDecision first = decide_import(file, turned, know_the_person);
+    const ImportDecision second = decide_import(file, first.again.value());
+    EXPECT_NEAR(second.scale / first.scale, 1, 1e-5f);
+    EXPECT_EQ(second.floor, first.floor);
+    EXPECT_EQ(second.axes, first.axes);
+    EXPECT_NEAR(first.apply(file.vertices).col(1).maxCoeff(), 1.7f, 0.02f);
+  }
+}
+
 TEST(Import, KeepsTheFilesZeroWhenTheLowestPointsAreNearIt) {
   EXPECT_EQ(decide_import(as_file(person(false), "y", 1, {0, 0.015f, 0}), {}).floor, 0);
+}
+
+TEST(Import, PeopleBesideEachOtherStandThoughTheyAreWiderThanTall) {
+  for (const bool z_up : {false, true}) {
+    std::vector<Vec3> both = person(false);
+    for (const Vec3& p : person(false)) both.push_back(p + Vec3(1.6f, 0, 0));
+    Mesh cloud{to_points(both)};
+    if (z_up) {
+      const Eigen::VectorXf y = cloud.vertices.col(1);
+      cloud.vertices.col(1) = -cloud.vertices.col(2);
+      cloud.vertices.col(2) = y;
+    }
+    const ImportDecision decision = decide_import(cloud, {});
+    EXPECT_EQ(decision.up, z_up ? "z" : "y");
+    EXPECT_EQ(decision.units, "m");
+    EXPECT_NEAR(decision.height, 1.7f, 0.03f);
+  }
 }
 
 }  // namespace

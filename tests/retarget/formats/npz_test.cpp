@@ -51,6 +51,17 @@ TEST(Npz, IntegersInFortranOrderStandWhereTheFloatsStand) {
   }
 }
 
+TEST(Npz, AListOfNamesIsReadWhole) {
+  const std::string fist{"f\0\0\0i\0\0\0s\0\0\0t\0\0\0", 16}, ok{"o\0\0\0k\0\0\0\0\0\0\0\0\0\0\0", 16};
+  const NpyArray names = parsed("<U4", "(2,)", fist + ok);
+  ASSERT_EQ(names.texts.size(), 2u);
+  EXPECT_EQ(names.texts[0], "fist");
+  EXPECT_EQ(names.texts[1], "ok");
+  EXPECT_EQ(names.text, "fist");
+  EXPECT_EQ(parsed("<U4", "(2,)", fist).texts.size(), 1u);  // cut off
+  EXPECT_TRUE(parsed("<U4", "(0,)", "").texts.empty());
+}
+
 TEST(Npz, FloatsServeAsIntegersAndWhatIsNoNumberIsNone) {
   const IntegerMatrix read =
       parsed("<f4", "(3,)", array_bytes(std::vector<float>{7, 2.5f, NAN})).integers(1, "x");

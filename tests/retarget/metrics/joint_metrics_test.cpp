@@ -48,6 +48,25 @@ TEST(MeanJointError, RefusesDifferentLengths) {
   EXPECT_THROW(mean_joint_error({}, {}), Error);
 }
 
+TEST(SeenJointError, IsOfTheJointsThatAreSeen) {
+  Joints truth = Joints::Zero(), predicted = truth;
+  predicted.row(Head).y() = 0.3f;
+  predicted.row(LeftFoot).x() = 100;
+  SeenJoints seen = SeenJoints::Zero();
+  EXPECT_TRUE(std::isnan(seen_joint_error({predicted}, {truth}, {seen})));
+  for (const int j : {Head, Neck, Spine3}) seen[j] = 1;
+  EXPECT_NEAR(seen_joint_error({predicted}, {truth}, {seen}), 0.1, 1e-7);
+  EXPECT_THROW(seen_joint_error({predicted}, {truth}, {}), Error);
+}
+
+TEST(VisibilityRight, IsTheShareOfJointsOnTheRightSideOfOneHalf) {
+  SeenJoints truth = SeenJoints::Ones(), predicted = SeenJoints::Constant(0.6f);
+  EXPECT_EQ(visibility_right({predicted}, {truth}), 1);
+  for (int j = 0; j < 11; ++j) truth[j] = 0;
+  EXPECT_EQ(visibility_right({predicted}, {truth}), 0.5);
+  EXPECT_EQ(visibility_right({SeenJoints(1 - truth)}, {truth}), 0);
+}
+
 TEST(AlignedJoints, UndoARotationAScaleAndAShift) {
   const Joints q = some_joints();
   const Joints p = moved(2.0f * q * rotation_about_y(0.8f).transpose(), {1, 2, 3});

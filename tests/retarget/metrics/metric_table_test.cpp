@@ -50,6 +50,10 @@ TEST(MetricTable, IsAskedOnlyWhereAllThatItNeedsIsKnown) {
   EXPECT_FALSE(is_known(*find_metric("mpjpe_m"), {}, q));
   EXPECT_TRUE(is_known(*find_metric("bone_drift"), p, {}));
   EXPECT_FALSE(is_known(*find_metric("confidence"), {}, {}));
+  MetricSequence half = p;
+  half.has_legs = false;
+  EXPECT_TRUE(is_known(*find_metric("foot_skate"), p, {}));
+  EXPECT_FALSE(is_known(*find_metric("foot_skate"), half, {}));
 }
 
 TEST(MetricTable, FiguresOfFramesHaveTheWholesMean) {

@@ -1,5 +1,5 @@
 // The facade: what bind() and deform() promise.
-#include "retarget/nn/load.hpp"
+#include "retarget/networks/network_deformer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/character/careful_deformer.hpp"
-#include "retarget/nn/load.hpp"
+#include "retarget/networks/network_deformer.hpp"
 
 namespace understudy {
 namespace {

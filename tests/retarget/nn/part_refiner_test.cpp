@@ -1,4 +1,4 @@
-#include "retarget/nn/load.hpp"
+#include "retarget/networks/part_refiner.hpp"
 
 #include <gtest/gtest.h>
 

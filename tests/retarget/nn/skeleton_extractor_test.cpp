@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "retarget/base/rng.hpp"
+#include "retarget/networks/dense_extractor.hpp"
 #include "retarget/nn/skeleton_form.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -65,6 +67,38 @@ TEST(SkeletonExtractor, OnlyAPastThatIsKnownCounts) {
              with = net(with_past(in, torch::tensor({{1.f, 1.f}, {0.f, 0.f}}))).joints;
   EXPECT_FALSE(torch::allclose(alone[0], with[0], 0, 1e-3));
   EXPECT_TRUE(torch::allclose(alone[1], with[1], 0, 1e-5));
+}
+
+TEST(SkeletonExtractor, BeforeItIsTrainedMostIsSeenWhateverTheScan) {
+  torch::manual_seed(7);
+  const torch::NoGradGuard no_grad;
+  SkeletonExtractorNet net;
+  const auto visibility = net(random_input(2)).visibility;
+  EXPECT_EQ(visibility.sizes(), (std::vector<int64_t>{2, kJointCount}));
+  EXPECT_TRUE(torch::allclose(visibility, torch::full({2, kJointCount}, 2.f)));
+}
+
+Mesh random_scan() {
+  Rng rng(8);
+  Mesh scan;
+  scan.vertices.resize(2000, 3);
+  for (float& x : scan.vertices.reshaped()) x = rng.normal();
+  return scan;
+}
+
+TEST(NetworkExtractor, GivesWhatIsSeenWhereItsWeightsKnow) {
+  torch::manual_seed(9);
+  const std::string path = (std::filesystem::temp_directory_path() / "understudy_seen_test.weights").string();
+  const auto form = make_skeleton_form("dense");
+  save_weights(path, skeleton_header("dense"), *form);
+  const Extraction seen = load_dense_extractor(path)->extract(random_scan());
+  EXPECT_LT((seen.visibility - 1 / (1 + std::exp(-2.0f))).abs().maxCoeff(), 1e-3f);
+  std::filesystem::remove(path);
+}
+
+TEST(NetworkExtractor, WithWeightsFromBeforeAllJointsAreSeen) {
+  const auto extractor = load_dense_extractor(US_SOURCE_DIR "/assets/weights/skeleton_rest.weights");
+  EXPECT_EQ(extractor->extract(random_scan()).visibility.minCoeff(), 1);
 }
 
 /// What was seen moves and grows with the scan.

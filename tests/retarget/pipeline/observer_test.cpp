@@ -84,11 +84,23 @@ TEST(Observer, SaysWhyThereIsNoSkeletonAndHasNoConfidenceThen) {
   EXPECT_EQ(skipped.confidence.maxCoeff(), 0);
 }
 
+TEST(Observer, LooksOnceAtTheFirstScan) {
+  Watch watch;
+  EXPECT_EQ(watch.observer.look(watch.scan(0)).joints, watch.see(0).joints);
+  EXPECT_TRUE(watch.extractor->told.empty());
+  watch.see(0);
+  EXPECT_EQ(watch.extractor->told.size(), 1u);  // that is another frame
+  watch.observer.restart();
+  watch.observer.look(watch.scan(1));
+  EXPECT_EQ(watch.see(2).joints, forward_kinematics(human_rest(), dance(2 / 30.0f)).joints);
+  EXPECT_EQ(watch.extractor->told.size(), 2u);  // another scan than the one looked at
+}
+
 TEST(Observer, MeasuresSolesAndGirthOnTheScan) {
   Watch watch;
   const Observation seen = watch.see(0);
   const Mesh scan = watch.scan(0);
-  EXPECT_EQ(seen.sole_height, sole_height(seen.joints, scan.vertices));
+  EXPECT_EQ(seen.sole_height, sole_height(seen, scan.vertices));
   ASSERT_TRUE(seen.girth);
   EXPECT_EQ(seen.girth->radius, measure_girth(seen, scan.vertices).radius);
   const Observation told = watch.observer.observe(fixtures::seen(seen.joints), scan, kInterval);

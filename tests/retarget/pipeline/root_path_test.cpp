@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
+#include "retarget/body/builtin_person.hpp"
+#include "retarget/math/rotation.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
 
 namespace understudy {
@@ -26,8 +30,7 @@ struct SideSteps {
       const Mesh scan = scan_of(a, human_rest(), pose);
       Extraction source;
       source.joints = forward_kinematics(human_rest(), pose).joints;
-      source.sole_height =
-          sole_height(source.joints, scan.vertices.topRows(scan.vertices.rows() - kJointCount));
+      source.sole_height = sole_height(source, scan.vertices.topRows(scan.vertices.rows() - kJointCount));
       result.push_back(root.push(source, identity_rotations(), 1 / 30.0f));
     }
     return result;
@@ -90,14 +93,68 @@ TEST(SoleHeight, IsThatOfTheFeetNotOfBitsOfFloorBelowThem) {
   Joints source = human_rest();
   for (const float height : {0.0f, 0.06f, 0.15f}) {
     source.col(1).array() += height + 0.08f - source(LeftAnkle, 1);
-    const auto sole = sole_height(source, feet_over_a_floor(source, height));
+    const auto sole = sole_height(seen(source), feet_over_a_floor(source, height));
     ASSERT_TRUE(sole);
     EXPECT_NEAR(*sole, height, 0.005f);
   }
 }
 
 TEST(SoleHeight, IsUnknownWhereNoFootWasSeen) {
-  EXPECT_FALSE(sole_height(human_rest(), Points::Constant(500, 3, 5.0f)));
+  EXPECT_FALSE(sole_height(seen(human_rest()), Points::Constant(500, 3, 5.0f)));
+}
+
+TEST(SupportPoints, KnowTheEdgesOfTheSoles) {
+  const ShapedBody body = builtin_person();
+  const SupportPoints support = SupportPoints::from(body.vertices, body.joints);
+  for (const float roll_deg : {-20.0f, -8.0f, 0.0f, 8.0f, 20.0f}) {
+    Pose pose;
+    pose.local[Pelvis] = rotation_from_axis_angle(Vec3(0, 0, roll_deg * kPi / 180));
+    const Points posed = (body.vertices.rowwise() - body.joints.row(Pelvis)) * pose.local[Pelvis].transpose();
+    EXPECT_NEAR(support.lowest(forward_kinematics(body.joints, pose)), posed.col(1).minCoeff(), 0.003f)
+        << roll_deg;
+  }
+}
+
+/// Errors of the legs shake the soles by 3 cm once a second; the median and the largest gap between them and
+/// the source's, which stand still.
+std::array<float, 2> sole_gaps(float contact, bool bends_legs) {
+  const SideSteps stand;
+  RootPathOptions options;
+  options.contact = contact;
+  RootPath root(options);
+  root.reset(stand.b.mesh.vertices, stand.rest_b);
+  const SupportPoints support = SupportPoints::from(stand.b.mesh.vertices, stand.rest_b);
+  std::vector<float> gaps;
+  for (int i = 0; i < 90; ++i) {
+    Extraction source;
+    source.joints = human_rest();
+    source.joints.rowwise() += Eigen::RowVector3f(0, 1.1f, 0);
+    source.sole_height = 0.01f;
+    Pose pose;
+    const float bend = 0.25f * (1 + std::sin(2 * kPi * static_cast<float>(i) / 30));
+    for (const int side : {0, 1}) {
+      pose.local[LeftHip + side] = rotation_from_axis_angle(Vec3(-bend, 0, 0));
+      pose.local[LeftKnee + side] = rotation_from_axis_angle(Vec3(2 * bend, 0, 0));
+      pose.local[LeftAnkle + side] = rotation_from_axis_angle(Vec3(-bend, 0, 0));
+    }
+    pose.root = root.push(source, pose.local, 1 / 30.0f);
+    if (bends_legs) pose = root.plant(pose, 1 / 30.0f);
+    const PosedSkeleton posed = forward_kinematics(stand.rest_b, pose);
+    gaps.push_back(std::abs(support.lowest(posed) + posed.joints(Pelvis, 1) - 0.6f * 0.01f));
+  }
+  std::sort(gaps.begin(), gaps.end());
+  return {gaps[gaps.size() / 2], gaps.back()};
+}
+
+TEST(RootPath, KeepsTheSolesAtTheSourcesHeightWithLegsThatAreBentForIt) {
+  const auto [median, worst] = sole_gaps(0.5f, true);
+  EXPECT_LT(median, 0.003f);
+  EXPECT_LT(worst, 0.013f);
+}
+
+TEST(RootPath, KeepsTheSolesNearerTheSourcesHeightWhereThePelvisAloneTakesThemThere) {
+  const float half = sole_gaps(0.5f, false)[0], whole = sole_gaps(1, false)[0];
+  EXPECT_LT(whole, 0.75f * half);
 }
 
 TEST(RootPath, DoesNotJumpWhenTheLegsTurnOutShorter) {

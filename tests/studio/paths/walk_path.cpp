@@ -16,6 +16,8 @@
 #include "app/studio/facts.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/npz.hpp"
+#include "tests/retarget/scene/made_scene.hpp"
 #include "tests/studio/studio_window.hpp"
 #include "ui/gui/key_chord.hpp"
 
@@ -55,6 +57,23 @@ std::string x_key(render::Key key) {
 bool is_number(const std::string& text) {
   double value = 0;
   return parse_number(text, value);
+}
+
+/// Two people, 1.5 m apart, dance on a ground, 16 frames.
+void write_people(const std::string& file) {
+  if (fs::exists(file)) return;
+  test::Actor left, right;
+  left.place = {-0.75f, 0, 0}, right.place = {0.75f, 0, -0.2f};
+  left.motion = right.motion = "dance", right.first = 20, right.stature = 1.62f;
+  test::MadeScene scene({left, right});
+  scene.add_ground(1.8f, 5000);
+  NpyArray points;
+  for (int t = 0; t < 16; ++t) {
+    const Points frame = scene.frame(t).scan.vertices;
+    points.shape = {t + 1, frame.rows(), 3};
+    points.values.insert(points.values.end(), frame.data(), frame.data() + frame.size());
+  }
+  write_npz(file, {{"points", points}});
 }
 
 class Path : public StudioWindow, public testing::WithParamInterface<std::string> {
@@ -292,6 +311,7 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
   }
 
   std::string path_of(const std::string& word) const {
+    if (word == "out/people.npz") write_people(scratch.path("people.npz"));
     if (starts_with(word, "samples/")) return std::string(US_SOURCE_DIR "/assets/") + word;
     return starts_with(word, "out/") ? scratch.path(word.substr(4)) : word;
   }

@@ -1,14 +1,11 @@
-#include "retarget/nn/load.hpp"
+#include "retarget/networks/part_refiner.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "retarget/math/rotation.hpp"
 #include "retarget/math/smooth_step.hpp"
-#include "retarget/networks/scan_patches.hpp"
-#include "retarget/nn/modules/part_refiner.hpp"
-#include "retarget/nn/modules/tensor_of.hpp"
-#include "retarget/nn/weights_file.hpp"
+#include "retarget/networks/part_forward.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -36,14 +33,10 @@ float confidence_of_both(float crop, float whole);
 
 class NetworkPartRefiner final : public PartRefiner {
  public:
-  explicit NetworkPartRefiner(const std::string& path) {
-    load_weights(path, kPartFileKind, kPartVersion, *net_);
-    net_->eval();
-  }
+  explicit NetworkPartRefiner(const std::string& path) : net_(path) {}
 
   void refine(const Mesh& scan, Extraction& seen) override {
     if (!seen.global) return;
-    const torch::NoGradGuard no_grad;
     const Points points = dense_points(scan);
     const auto whole = seen.confidence;  // from the whole body
     // From the trunk outwards: a hand is looked at beside the forearm as it is known by then.
@@ -58,41 +51,39 @@ class NetworkPartRefiner final : public PartRefiner {
 
  private:
   void refine_kind(const Points& points, PartKind kind, Extraction& seen);
-  static void correct(int slot, const Part& part, const float* output, const Extraction& before,
+  static void correct(int slot, const Part& part, const PartOutput& output, const Extraction& before,
                       Extraction& seen);
 
-  PartRefinerNet net_;
+  PartForward net_;
 };
 
 void NetworkPartRefiner::refine_kind(const Points& points, PartKind kind, Extraction& seen) {
   std::vector<const Part*> parts;
-  std::vector<torch::Tensor> crops, contexts;
+  std::vector<PartCrop> crops;
   for (const Part& part : kCroppedParts) {
     if (part.kind != kind) continue;
-    const auto crop = cut_part(points, seen, part);
+    auto crop = cut_part(points, seen, part);
     if (!crop) continue;
     parts.push_back(&part);
-    crops.push_back(tensor_of(crop->points));
-    contexts.push_back(tensor_of(crop->context).flatten());
+    crops.push_back(std::move(*crop));
   }
   if (parts.empty()) return;
-  const auto output = net_->of(kind)->forward(torch::stack(crops), torch::stack(contexts)).contiguous();
+  const std::vector<PartOutput> outputs = net_.run(kind, crops);
   const Extraction before = seen;
   for (size_t i = 0; i < parts.size(); ++i)
-    for (int k = 0; k < kPartJoints; ++k)
-      correct(k, *parts[i], output.data_ptr<float>() + (i * kPartJoints + k) * kPartNumbers, before, seen);
+    for (int k = 0; k < kPartJoints; ++k) correct(k, *parts[i], outputs[i], before, seen);
 }
 
-void NetworkPartRefiner::correct(int slot, const Part& part, const float* output, const Extraction& before,
-                                 Extraction& seen) {
+void NetworkPartRefiner::correct(int slot, const Part& part, const PartOutput& output,
+                                 const Extraction& before, Extraction& seen) {
   const int joint = part.corrects[slot];
   if (joint < 0) return;
-  const Mat3 local = rotation_from_6d(Eigen::Map<const Vec6>(output));
+  const Mat3 local = rotation_from_6d(output.row(slot).head<6>().transpose());
   (*seen.global)[joint] = from_part(local, before, part);
   if (slot >= part.moves) return;
-  const Vec3 displacement = vector_from_part(Eigen::Map<const Vec3>(output + 6), before, part);
+  const Vec3 displacement = vector_from_part(output.row(slot).segment<3>(6).transpose(), before, part);
   seen.joints.row(joint) = before.joints.row(joint) + displacement.transpose();
-  seen.confidence[joint] = confidence_for(std::exp(output[9]) * leg_length(before.joints));
+  seen.confidence[joint] = confidence_for(std::exp(output(slot, 9)) * leg_length(before.joints));
 }
 
 float confidence_of_both(float crop, float whole) {

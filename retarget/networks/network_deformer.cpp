@@ -1,4 +1,4 @@
-#include "retarget/nn/load.hpp"
+#include "retarget/networks/network_deformer.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -11,9 +11,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/geometry/mesh.hpp"
-#include "retarget/nn/modules/deformation.hpp"
-#include "retarget/nn/modules/tensor_of.hpp"
-#include "retarget/nn/weights_file.hpp"
+#include "retarget/networks/deformation_forward.hpp"
 
 namespace understudy::nn {
 namespace {
@@ -22,11 +20,11 @@ constexpr float kLeastWeight = 2e-3f;   // smaller skin weights are noise: in tr
 constexpr float kLeastOffset = 2e-5f;   // metres: an offset that no pose makes larger is left out
 constexpr float kLargestBend = 2.829f;  // Frobenius norm of R - I at 180 degrees
 
-/// The part of O_net that answers to one joint at one point: offset += block * (R - I). Four rows, the last
-/// one zero: columns of four are what the machine multiplies at once.
+/// The part of O_net that answers to one joint at one point: offset += block * (R - I). Nine columns of
+/// three, and one number more: four are what the machine multiplies at once, the last of them for nothing.
 struct OffsetBlock {
   int row, joint;
-  Eigen::Matrix<float, 4, 9> block;
+  std::array<float, 28> columns;
 };
 
 struct Influence {
@@ -35,8 +33,8 @@ struct Influence {
 };
 
 OffsetBlock offset_block(int row, int joint, const Eigen::Matrix<float, 3, 9>& block) {
-  OffsetBlock b{row, joint, Eigen::Matrix<float, 4, 9>::Zero()};
-  b.block.topRows<3>() = block;
+  OffsetBlock b{row, joint, {}};
+  Eigen::Map<Eigen::Matrix<float, 3, 9>>(b.columns.data()) = block;
   return b;
 }
 
@@ -77,6 +75,7 @@ std::vector<int> one_a_cell(const Points& points, const std::vector<int>& of, fl
     if (!fresh) found->second = std::min(found->second, own);
   }
   std::vector<int> kept;
+  kept.reserve(best.size());
   for (const auto& [key, own] : best) kept.push_back(own.second);
   std::sort(kept.begin(), kept.end());
   return kept;
@@ -148,10 +147,10 @@ struct Between {
 class NetworkDeformer : public Deformer {
  public:
   NetworkDeformer(const std::string& path, bool offsets, int most_evaluated)
-      : path_(path), offsets_(offsets), most_evaluated_(most_evaluated) {
-    load_weights(path, "deformation", kDeformationVersion, *net_);
-    net_->eval();
-  }
+      : net_(std::make_shared<const DeformationForward>(path)),
+        path_(path),
+        offsets_(offsets),
+        most_evaluated_(most_evaluated) {}
   void bind(const Points& rest, const Joints& rest_joints) override;
   const RowMatrix& weights() const override { return weights_; }
   std::shared_ptr<Deformer> with_weights(RowMatrix weights) const override;
@@ -166,7 +165,7 @@ class NetworkDeformer : public Deformer {
   void keep_weights();
   void add_offsets(const Pose& pose, Points& rest) const;
 
-  DeformationNet net_;
+  std::shared_ptr<const DeformationForward> net_;  // shared by copies with other weights
   std::string path_;
   bool offsets_;
   int most_evaluated_;
@@ -184,7 +183,7 @@ class NetworkDeformer : public Deformer {
 void NetworkDeformer::bind(const Points& rest, const Joints& rest_joints) {
   US_CHECK(rest.rows() > 0, "the target has no points");
   US_CHECK(rest.allFinite() && rest_joints.allFinite(), "the target has a coordinate that is not finite");
-  const Points context = spread_points(rest, static_cast<int>(net_->options.context_points));
+  const Points context = spread_points(rest, kContextPoints);
   joints_ = rest_joints;
   Samples samples;
   auto between = std::make_shared<Between>();
@@ -218,11 +217,9 @@ void NetworkDeformer::evaluate(const Points& points, const Points& context, Samp
 
 void NetworkDeformer::evaluate_slice(Eigen::Index first, Eigen::Index count, const Points& context,
                                      Samples& samples) {
-  const BoundSurface bound = bind_surface(net_, tensor_of(samples.points.middleRows(first, count)),
-                                          tensor_of(joints_), tensor_of(context));
-  const torch::Tensor weights = bound.weights.contiguous(), basis = bound.basis.contiguous();
-  const Eigen::Map<const RowMatrix> W(weights.data_ptr<float>(), count, kJointCount),
-      B(basis.data_ptr<float>(), 3 * count, kPoseFeatureCount);
+  const SurfaceValues values = net_->evaluate(samples.points.middleRows(first, count), joints_, context);
+  const RowMatrix& W = values.weights;
+  const Eigen::Map<const RowMatrix> B(values.basis.data(), 3 * count, kPoseFeatureCount);
   US_CHECK(W.allFinite() && B.allFinite(), path_,
            ": the deformation networks give values that are not finite for this target");
   samples.known.middleRows(first, count).leftCols<kJointCount>() = W;
@@ -293,7 +290,8 @@ void NetworkDeformer::add_offsets(const Pose& pose, Points& rest) const {
   moved.setZero(sampled_, 4);
   for (const OffsetBlock& b : *blocks_) {
     Eigen::Vector4f offset = Eigen::Vector4f::Zero();
-    for (int k = 0; k < 9; ++k) offset += b.block.col(k) * bend[b.joint][k];
+    for (int k = 0; k < 9; ++k)
+      offset += Eigen::Map<const Eigen::Vector4f>(b.columns.data() + 3 * k) * bend[b.joint][k];
     moved.row(b.row) += offset.transpose();
   }
   if (between_->near.rows() == 0)
