@@ -130,7 +130,8 @@ Extraction Observer::look(const Mesh& scan) {
 
 Extraction Observer::extracted(const Mesh& scan) {
   const std::optional<Look> looked = std::exchange(looked_, std::nullopt);
-  if (looked && !recent_.last && looked->points == scan.vertices) return looked->seen;
+  const bool same_size = looked && looked->points.rows() == scan.vertices.rows();
+  if (same_size && !recent_.last && looked->points == scan.vertices) return looked->seen;
   return extractor_->extract_after(recent_, scan);
 }
 

@@ -94,6 +94,12 @@ TEST(Observer, LooksOnceAtTheFirstScan) {
   watch.observer.look(watch.scan(1));
   EXPECT_EQ(watch.see(2).joints, forward_kinematics(human_rest(), dance(2 / 30.0f)).joints);
   EXPECT_EQ(watch.extractor->told.size(), 2u);  // another scan than the one looked at
+  watch.observer.restart();
+  Mesh part = watch.scan(3);
+  watch.observer.look(part);
+  part.vertices = Points(part.vertices.topRows(part.vertices.rows() / 2));
+  watch.observer.observe(part, kInterval);
+  EXPECT_EQ(watch.extractor->told.size(), 3u);  // a part of it is another one, too
 }
 
 TEST(Observer, MeasuresSolesAndGirthOnTheScan) {
