@@ -2,6 +2,7 @@
 // file.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,7 +34,8 @@ FieldsOf<S, TargetEdits> fields(V& visit, S& edits) {
 
 /// One target that performs the source, in one way. Two takes of one target compare two methods.
 struct Take {
-  std::string name;  ///< shown; from the file's name
+  std::string name;    ///< shown; from the file's name
+  std::string person;  ///< who of the scans is performed, a number; empty: who the source's person is
   TargetOptions target;
   Method method;
   TargetEdits target_edits;
@@ -42,6 +44,7 @@ struct Take {
 template <class V, class S>
 FieldsOf<S, Take> fields(V& visit, S& take) {
   visit("name", take.name);
+  visit("person", take.person);
   visit("target", take.target);
   visit("method", take.method);
   visit("target_edits", take.target_edits);
@@ -62,6 +65,18 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
   visit("scan_edits", document.scan_edits);
   visit("skeleton_edits", document.skeleton_edits);
   visit("takes", document.takes);
+}
+
+/// Whether a take performs somebody else of the scans than the source's own person.
+inline bool performs_another(const Document& document, const Take& take) {
+  return !take.person.empty() && take.person != document.source.person;
+}
+/// The first take of the source's own person, by which the source's skeletons are repaired and smoothed; as
+/// many as there are takes: none.
+inline size_t take_of_source(const Document& document) {
+  const auto found = std::find_if(document.takes.begin(), document.takes.end(),
+                                  [&](const Take& take) { return !performs_another(document, take); });
+  return static_cast<size_t>(found - document.takes.begin());
 }
 
 }  // namespace understudy::app

@@ -46,7 +46,14 @@ struct Seen {
   std::shared_ptr<const KeptOwners> owners;
 };
 
-/// One extractor over the source so far.
+/// Whose skeletons are extracted, and how.
+struct Whom {
+  Method method;
+  std::string person;  // as SourceOptions'
+  std::string key() const { return extraction_key(method) + '\n' + person; }
+};
+
+/// One person over the source so far, as one extractor sees them.
 struct Stream {
   std::shared_ptr<SkeletonExtractor> extractor;  // null: nothing has asked for it yet
   std::optional<PersonCut> cut;                  // none before the first scan
@@ -58,6 +65,7 @@ struct Stream {
 struct TakeWork {
   Plan::TakePlan plan;
   std::string target_is, networks_are, method_is, joints_are, rest_is;
+  Whom wants() const { return {plan.method, plan.person}; }
   std::shared_ptr<PreparedCharacter> loaded;  // until it is the character
   std::shared_ptr<const PreparedCharacter> character;
   std::optional<Performer> performer;
@@ -75,10 +83,12 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
   plan.skeleton_edits = document.skeleton_edits;
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const Take& take = document.takes[k];
-    plan.takes.push_back(
-        {take_ids[k], take.target, take.method, take.target_edits.joints, take.target_edits.rest_pose});
+    plan.takes.push_back({take_ids[k], take.person.empty() ? document.source.person : take.person,
+                          take.target, take.method, take.target_edits.joints, take.target_edits.rest_pose});
   }
-  if (!plan.takes.empty()) plan.shown = plan.takes[0].method;
+  const size_t by = take_of_source(document);
+  if (by < plan.takes.size()) plan.shown_by = take_ids[by];
+  if (!plan.takes.empty()) plan.shown = plan.takes[by < plan.takes.size() ? by : 0].method;
   return plan;
 }
 
@@ -125,16 +135,17 @@ struct Engine::Impl {
   void load(TakeWork& take);
   void prepare(TakeWork& take);
   TakeWork* next_to_prepare();
-  Stream& stream_of(const Method& method) { return streams[extraction_key(method)]; }
-  const std::shared_ptr<SkeletonExtractor>& extractor_of(const Method& method);
-  std::vector<Method> wanted_extractions() const;
+  Whom shown() const { return {plan.shown, plan.source.person}; }
+  Stream& stream_of(const Whom& whom) { return streams[whom.key()]; }
+  const std::shared_ptr<SkeletonExtractor>& extractor_of(const Whom& whom);
+  std::vector<Whom> wanted_streams() const;
   bool read_frame();
   std::string nothing_in_it() const;
-  Observer& observer_of(const Method& method);
-  void observe(const SourceFrame& frame, const Method& method, double read_ms);
-  Seen seen_in(const SourceFrame& frame, Stream& stream, double read_ms);
+  Observer& observer_of(const Whom& whom);
+  void observe(const SourceFrame& frame, const Whom& whom, double read_ms);
+  Seen seen_in(const SourceFrame& frame, const Whom& whom, double read_ms);
   float interval() const;
-  Observation edited(const Seen& seen, size_t frame) const;
+  Observation edited(const Seen& seen, const Whom& whom, size_t frame) const;
   bool send_source();
   void perform(TakeWork& take);
 };
@@ -206,8 +217,7 @@ void Engine::Impl::adopt(Plan wanted) {
     source_is = source_wanted;
   }
   const std::string skeleton_wanted = key_of(wanted.skeleton_edits);
-  const auto first = [](const Plan& of) { return of.takes.empty() ? 0 : of.takes[0].id; };
-  const bool another_take = first(plan) != 0 && first(plan) != first(wanted);
+  const bool another_take = plan.shown_by != 0 && plan.shown_by != wanted.shown_by;
   if (skeleton_wanted != skeleton_is || extraction_key(wanted.shown) != extraction_key(plan.shown) ||
       another_take)
     sent = 0;
@@ -227,8 +237,7 @@ void Engine::Impl::adopt(Plan wanted) {
   skeleton_is = skeleton_wanted;
   plan = std::move(wanted);
   std::map<std::string, Stream> still_wanted;  // what only removed takes used is dropped
-  for (const Method& method : wanted_extractions())
-    still_wanted.insert(streams.extract(extraction_key(method)));
+  for (const Whom& whom : wanted_streams()) still_wanted.insert(streams.extract(whom.key()));
   streams = std::move(still_wanted);
 }
 
@@ -236,11 +245,12 @@ void Engine::Impl::adopt_take(TakeWork& take, const Plan::TakePlan& wanted) {
   const std::string target_wanted = key_of(wanted.target), method_wanted = key_of(wanted.method),
                     networks_wanted = networks_key(wanted.method), joints_wanted = key_of(wanted.joints),
                     rest_wanted = key_of(wanted.rest_pose);
+  const bool another = wanted.person != take.plan.person;
   if (target_wanted != take.target_is) take.character.reset(), take.loaded.reset();
-  if (target_wanted != take.target_is || method_wanted != take.method_is) take.sent_times = 0;
+  if (target_wanted != take.target_is || method_wanted != take.method_is || another) take.sent_times = 0;
   const bool bound = target_wanted == take.target_is && networks_wanted == take.networks_are &&
                      joints_wanted == take.joints_are;
-  if (!bound || method_wanted != take.method_is || rest_wanted != take.rest_is) {
+  if (!bound || another || method_wanted != take.method_is || rest_wanted != take.rest_is) {
     if (!bound) take.performer.reset();
     if (take.performer) take.performer->restart(options_of(wanted));
     take.failed = false;
@@ -278,7 +288,7 @@ bool Engine::Impl::step() {
   if (TakeWork* const take = next_to_prepare()) return of_take(*take, [&] { prepare(*take); });
   if (send_source()) return true;
   for (TakeWork& take : takes)
-    if (take.performer && take.done < stream_of(take.plan.method).frames.size())
+    if (take.performer && take.done < stream_of(take.wants()).frames.size())
       return of_take(take, [&] { perform(take); });
   return read_frame();
 }
@@ -320,7 +330,7 @@ void Engine::Impl::open() {
   opened = true;
   try {
     source = open_source(plan.source);
-    source->set_look([this](const Mesh& scan) { return observer_of(plan.shown).look(scan); });
+    source->set_look([this](const Mesh& scan) { return observer_of(shown()).look(scan); });
     SourceOpened event;
     event.name = file_name(plan.source.motion.empty() ? plan.source.path : plan.source.motion);
     event.count = source->count();
@@ -349,7 +359,7 @@ void Engine::Impl::prepare(TakeWork& take) {
   const bool looked_at = !take.character && needs_extractor(take.plan.target, *take.loaded);
   parts.rest_extractor = looked_at;
   Networks networks = networks_of(method, parts);
-  if (looked_at) networks.extractor = extractor_of(method);
+  if (looked_at) networks.extractor = extractor_of(take.wants());
   if (!take.character)
     take.character = bind_target(std::exchange(take.loaded, nullptr), take.plan.target, networks);
   networks =
@@ -362,8 +372,12 @@ void Engine::Impl::prepare(TakeWork& take) {
                  networks.deformer, binding_of(networks.deformer)});
 }
 
-const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const Method& method) {
-  auto& extractor = stream_of(method).extractor;
+/// Streams of one method share it.
+const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const Whom& whom) {
+  const Method& method = whom.method;
+  auto& extractor = stream_of(whom).extractor;
+  for (const auto& [key, stream] : streams)
+    if (!extractor && key.rfind(extraction_key(method) + '\n', 0) == 0) extractor = stream.extractor;
   if (!extractor) {
     NetworkParts parts;
     parts.extractor = true;
@@ -373,26 +387,26 @@ const std::shared_ptr<SkeletonExtractor>& Engine::Impl::extractor_of(const Metho
   return extractor;
 }
 
-/// Methods with all the extractors that the view or a take needs.
-std::vector<Method> Engine::Impl::wanted_extractions() const {
-  std::map<std::string, Method> wanted{{extraction_key(plan.shown), plan.shown}};
+/// All that the view or a take needs.
+std::vector<Whom> Engine::Impl::wanted_streams() const {
+  std::map<std::string, Whom> wanted{{shown().key(), shown()}};
   for (const TakeWork& take : takes)
-    if (!take.failed) wanted.emplace(extraction_key(take.plan.method), take.plan.method);
-  std::vector<Method> methods;
-  methods.reserve(wanted.size());
-  for (const auto& [key, method] : wanted) methods.push_back(method);
-  return methods;
+    if (!take.failed) wanted.emplace(take.wants().key(), take.wants());
+  std::vector<Whom> all;
+  all.reserve(wanted.size());
+  for (auto& [key, whom] : wanted) all.push_back(std::move(whom));
+  return all;
 }
 
 /// The next frame, seen by every stream that is wanted. One that came later catches up first.
 bool Engine::Impl::read_frame() {
   if (!source || plan.source.path.empty()) return false;
   try {
-    const std::vector<Method> wanted = wanted_extractions();
-    size_t behind = stream_of(plan.shown).frames.size();
+    const std::vector<Whom> wanted = wanted_streams();
+    size_t behind = stream_of(shown()).frames.size();
     bool even = true;
-    for (const Method& method : wanted) {
-      const size_t seen = stream_of(method).frames.size();
+    for (const Whom& whom : wanted) {
+      const size_t seen = stream_of(whom).frames.size();
       even = even && seen == behind;
       behind = std::min(behind, seen);
     }
@@ -411,10 +425,10 @@ bool Engine::Impl::read_frame() {
     const std::optional<Box> extent = frame->usable ? extent_of(frame->mesh.vertices) : std::nullopt;
     if (frame->usable) frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
     const double read_ms = ms_since(began);
-    for (const Method& method : wanted) {
-      Stream& stream = stream_of(method);
+    for (const Whom& whom : wanted) {
+      Stream& stream = stream_of(whom);
       if (stream.frames.size() != behind) continue;
-      observe(*frame, method, read_ms);
+      observe(*frame, whom, read_ms);
       if (stream.frames.size() > behind) stream.frames.back().extent = extent;
     }
     return true;
@@ -432,32 +446,32 @@ std::string Engine::Impl::nothing_in_it() const {
 }
 
 /// Of scans, where none was made for skeletons.
-Observer& Engine::Impl::observer_of(const Method& method) {
-  std::optional<Observer>& observer = stream_of(method).observer;
-  if (!observer) observer.emplace(extractor_of(method));
+Observer& Engine::Impl::observer_of(const Whom& whom) {
+  std::optional<Observer>& observer = stream_of(whom).observer;
+  if (!observer) observer.emplace(extractor_of(whom));
   return *observer;
 }
 
 /// Takes whose extractor cannot be had end here; where it is the view's, too, the source does.
-void Engine::Impl::observe(const SourceFrame& frame, const Method& method, double read_ms) {
-  Stream& stream = stream_of(method);
+void Engine::Impl::observe(const SourceFrame& frame, const Whom& whom, double read_ms) {
+  Stream& stream = stream_of(whom);
   try {
     if (frame.skeleton && !stream.observer) stream.observer.emplace();
-    observer_of(method);
+    observer_of(whom);
   } catch (const std::exception&) {
-    const std::string key = extraction_key(method);
     for (TakeWork& take : takes)
-      if (extraction_key(take.plan.method) == key) of_take(take, [] { throw; });
-    if (extraction_key(plan.shown) == key) throw;
+      if (take.wants().key() == whom.key()) of_take(take, [] { throw; });
+    if (shown().key() == whom.key()) throw;
     return;
   }
-  stream.frames.push_back(seen_in(frame, stream, read_ms));
+  stream.frames.push_back(seen_in(frame, whom, read_ms));
   const std::string& warning = stream.frames.back().observation.warning;
   if (!warning.empty()) doubt = warning;
 }
 
 /// Of the person who is cut out of it, where it is a scan.
-Seen Engine::Impl::seen_in(const SourceFrame& frame, Stream& stream, double read_ms) {
+Seen Engine::Impl::seen_in(const SourceFrame& frame, const Whom& whom, double read_ms) {
+  Stream& stream = stream_of(whom);
   Seen seen;
   seen.read_ms = read_ms;
   if (!frame.usable || frame.skeleton) {
@@ -467,6 +481,7 @@ Seen Engine::Impl::seen_in(const SourceFrame& frame, Stream& stream, double read
   const auto began = std::chrono::steady_clock::now();
   if (!stream.cut) {
     SourceOptions options = plan.source;
+    options.person = whom.person;
     options.edits = plan.scan_edits;
     options.quiet = true;  // the studio tells
     stream.cut.emplace(stream.extractor, options);
@@ -486,21 +501,42 @@ float Engine::Impl::interval() const {
   return source ? static_cast<float>(1 / source->fps()) : 1 / 30.0f;
 }
 
-/// As the user corrected it.
-Observation Engine::Impl::edited(const Seen& seen, size_t frame) const {
+/// As the user corrected it, who sees the source's own person alone.
+Observation Engine::Impl::edited(const Seen& seen, const Whom& whom, size_t frame) const {
   Observation result = seen.observation;
-  if (result.problem.empty())
+  if (result.problem.empty() && whom.person == plan.source.person)
     static_cast<Extraction&>(result) = understudy::apply(plan.skeleton_edits, result, frame);
   return result;
 }
 
-/// Reports the frames seen since the last call. The first take repairs and smooths them and reports the
-/// result; without a take this does.
+/// What the session keeps of a frame. joints: repaired and smoothed.
+KeptSource kept_source(const Seen& frame, const Observation& edited, const Joints& joints) {
+  KeptSource kept;
+  kept.raw = frame.observation.joints;
+  kept.raw_confidence = frame.observation.confidence;
+  kept.visibility = edited.visibility;
+  kept.exact = frame.observation.exact;
+  kept.points = static_cast<int>(edited.points);
+  kept.extent = frame.extent;
+  kept.person = frame.person;
+  kept.owners = frame.owners;
+  kept.reason = refusal(edited);
+  kept.flagged = !kept.reason.empty();
+  if (!kept.flagged) kept.confidence_of = edited.confidence;
+  kept.confidence = kept.flagged ? 0 : mean_confidence(edited);
+  kept.joints = joints;
+  return kept;
+}
+
+/// Reports the frames seen since the last call. The first take of the source's own person repairs and smooths
+/// them and reports the result; without such a take this does.
 bool Engine::Impl::send_source() {
-  const std::vector<Seen>& frames = stream_of(plan.shown).frames;
-  const bool no_take = takes.empty() || takes[0].failed;
+  const std::vector<Seen>& frames = stream_of(shown()).frames;
+  const bool no_take = std::none_of(takes.begin(), takes.end(), [this](const TakeWork& take) {
+    return take.plan.id == plan.shown_by && !take.failed;
+  });
   if (no_take && !alone) {
-    alone.emplace(poses_only(takes.empty() ? Method{} : takes[0].plan.method));
+    alone.emplace(poses_only(plan.shown));
     sent = 0;
   }
   if (!no_take) alone.reset();
@@ -512,39 +548,30 @@ bool Engine::Impl::send_source() {
   if (source) event.to_file = source->to_file(), event.import = source->import();
   event.has_faces = has_faces;
   event.doubt = std::exchange(doubt, {});
-  if (const auto& cut = stream_of(plan.shown).cut)
+  if (const auto& cut = stream_of(shown()).cut)
     event.people = cut->people(), event.person = cut->person(), event.left_out = cut->scene().left_out;
   for (int n = 0; n < kReplayChunk && sent < frames.size(); ++n, ++sent) {
-    const Observation seen = edited(frames[sent], sent);
-    KeptSource kept;
-    kept.raw = frames[sent].observation.joints;
-    kept.raw_confidence = frames[sent].observation.confidence;
-    kept.visibility = seen.visibility;
-    kept.exact = frames[sent].observation.exact;
-    kept.points = static_cast<int>(seen.points);
-    kept.extent = frames[sent].extent;
-    kept.person = frames[sent].person;
-    kept.owners = frames[sent].owners;
-    kept.reason = refusal(seen);
-    kept.flagged = !kept.reason.empty();
-    if (!kept.flagged) kept.confidence_of = seen.confidence;
-    kept.confidence = kept.flagged ? 0 : mean_confidence(seen);
-    kept.joints = alone ? alone->perform(seen, interval()).source.joints : seen.joints;
-    event.frames.push_back(std::move(kept));
+    const Observation seen = edited(frames[sent], shown(), sent);
+    const Joints joints = alone ? alone->perform(seen, interval()).source.joints : seen.joints;
+    event.frames.push_back(kept_source(frames[sent], seen, joints));
   }
   emit(std::move(event));
   return true;
 }
 
 void Engine::Impl::perform(TakeWork& take) {
-  const std::vector<Seen>& frames = stream_of(take.plan.method).frames;
+  const Whom whom = take.wants();
+  const std::vector<Seen>& frames = stream_of(whom).frames;
   TakeFrames event;
   event.id = take.plan.id;
   event.first = static_cast<int>(take.done);
   for (int n = 0; n < kReplayChunk && take.done < frames.size(); ++n, ++take.done) {
     const Seen& seen = frames[take.done];
-    const PerformedFrame result = take.performer->perform(edited(seen, take.done), interval());
+    const Observation observation = edited(seen, whom, take.done);
+    const PerformedFrame result = take.performer->perform(observation, interval());
     event.frames.push_back(kept(result));
+    if (whom.person != plan.source.person)
+      event.seen.push_back(kept_source(seen, observation, result.source.joints));
     if (!result.warning.empty()) event.warning = result.warning;
     if (take.done < take.sent_times) continue;
     take.sent_times = take.done + 1;

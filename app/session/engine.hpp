@@ -16,14 +16,16 @@ namespace understudy::app {
 /// What the engine makes: a copy of the parts of the document that it depends on.
 struct Plan {
   struct TakePlan {
-    int64_t id = 0;  ///< stays with a take while others come and go
+    int64_t id = 0;      ///< stays with a take while others come and go
+    std::string person;  ///< who of the scans is performed, as SourceOptions'
     TargetOptions target;
     Method method;
     std::vector<JointMove> joints;
     std::vector<BoneTurn> rest_pose;
   };
   SourceOptions source;
-  Method shown;  ///< its extractor is of the skeletons shown
+  Method shown;          ///< its extractor is of the skeletons shown
+  int64_t shown_by = 0;  ///< the take that repairs and smooths these; 0: none
   ScanEdits scan_edits;
   std::vector<SkeletonEdit> skeleton_edits;
   std::vector<TakePlan> takes;
@@ -33,6 +35,7 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids);
 template <class V, class S>
 FieldsOf<S, Plan::TakePlan> fields(V& visit, S& take) {
   visit("id", take.id);
+  visit("person", take.person);
   visit("target", take.target);
   visit("method", take.method);
   visit("joints", take.joints);
@@ -42,6 +45,7 @@ template <class V, class S>
 FieldsOf<S, Plan> fields(V& visit, S& plan) {
   visit("source", plan.source);
   visit("shown", plan.shown);
+  visit("shown_by", plan.shown_by);
   visit("scan_edits", plan.scan_edits);
   visit("skeleton_edits", plan.skeleton_edits);
   visit("takes", plan.takes);
@@ -97,6 +101,7 @@ struct TakeFrames {
   int64_t id = 0;
   int first = 0;
   std::vector<KeptFrame> frames;
+  std::vector<KeptSource> seen;   ///< of each frame, where it is of another person than the source's
   std::vector<FrameTimes> times;  ///< of new frames; empty when redone
   std::string warning;            ///< that the target falls apart; once
 };

@@ -114,6 +114,11 @@ void settle_current_take(Session& session) {
   pane = last < 0 || pane <= 0 ? 0 : session.selected_take + 1;
 }
 
+const SharedFrames<KeptSource>& performed_by(const Session& session, size_t take) {
+  const bool is_another = performs_another(session.document, session.document.takes[take]);
+  return is_another ? session.takes[take].another : session.source.frames;
+}
+
 int frame_count(const Session& session) {
   const size_t selected = session.selected_take;
   if (selected < session.takes.size()) return session.takes[selected].shown.poses.size();

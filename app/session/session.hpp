@@ -83,6 +83,7 @@ struct TakeState {
   std::shared_ptr<const RowMatrix> weights;  ///< [V, 22], edited
   std::shared_ptr<const Deformer> deformer;  ///< bound to the target, with those weights
   SharedFrames<KeptFrame> performed;         ///< the engine's frames
+  SharedFrames<KeptSource> another;          ///< who is performed, where that is not the source's person
   LimbsSight limbs{};                        ///< the least that is seen of each limb so far
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
   std::vector<Joints> joints;  ///< of `shown`
@@ -208,6 +209,8 @@ void choose_pane(Session& session, int pane);
 /// After takes have come or gone: the current take is one that there is,
 /// and the active view is its or the source's.
 void settle_current_take(Session& session);
+/// Who is performed by a take, as far as they were seen.
+const SharedFrames<KeptSource>& performed_by(const Session& session, size_t take);
 /// The number of frames that can be shown: of the selected take, or of the source where there is no take.
 int frame_count(const Session& session);
 /// What the status bar says: the newest message for ten seconds, then the newest failure until it is mended.

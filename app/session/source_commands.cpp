@@ -19,7 +19,7 @@ void set_source(Call& c, SourceOptions source) {
   document.truth.clear();
   document.scan_edits = {};
   document.skeleton_edits.clear();
-  for (Take& take : document.takes) take.pose_edits = {};
+  for (Take& take : document.takes) take.pose_edits = {}, take.person.clear();
   c.session.playback = Playback{};
 }
 
@@ -86,17 +86,15 @@ void add_import(Commands& commands) {
     floor.reset();
     if (c.word(0, "height") != "auto") floor = c.number(0, "height");
   });
-  commands.add_edit({"source.person", "Choose the person", "NUMBER|largest|best: who of the scan performs"},
-                    [](Call& c) {
-                      SourceOptions source = c.document.source;
-                      source.person = c.word(0, "person");
-                      US_CHECK(source.person != "all",
-                               "one person performs here: all give a clip each by "
-                               "`understudy export --person all`");
-                      if (person_number(source.person) > 0) c.label = "Choose person " + source.person;
-                      if (source.person == "best") source.person.clear();
-                      set_options(c, std::move(source));
-                    });
+  commands.add_edit(
+      {"source.person", "Choose the person", "NUMBER|largest|best: who of the scan performs"}, [](Call& c) {
+        SourceOptions source = c.document.source;
+        source.person = c.word(0, "person");
+        US_CHECK(source.person != "all", "the source is one person; take.person gives a take another");
+        if (person_number(source.person) > 0) c.label = "Choose person " + source.person;
+        if (source.person == "best") source.person.clear();
+        set_options(c, std::move(source));
+      });
   commands.add_edit({"source.extractor", "Skeleton extraction", names_of(extractors(), "|")}, [](Call& c) {
     const std::string& extractor = c.one_of(0, "extractor", names_of(extractors()));
     for (Take& take : c.document.takes) take.method.extractor = extractor;

@@ -29,7 +29,7 @@ std::vector<int> matched_takes(const std::vector<Take>& before, const std::vecto
   };
   const auto same_target = [](const Take& a, const Take& b) { return same(a.target, b.target); };
   pass([&](const Take& a, const Take& b) {
-    return same_target(a, b) && same(a.method, b.method) && a.name == b.name;
+    return same_target(a, b) && same(a.method, b.method) && a.name == b.name && a.person == b.person;
   });
   pass([&](const Take& a, const Take& b) { return same_target(a, b); });
   pass([&](const Take& a, const Take& b) { return a.target.path == b.target.path; });

@@ -105,6 +105,7 @@ void Studio::take_in(SourceOpened& event) {
   session_.source.clip = event.clip;
   for (TakeState& take : session_.takes) {
     take.performed.clear();
+    take.another.clear();
     take.shown = Motion{};
     take.joints.clear();
     take.series.clear();
@@ -128,8 +129,9 @@ void Studio::take_in(SourceFailed& event) {
 
 /// The skeleton shown is the first take's: repaired and smoothed as it was transferred.
 void Studio::show_skeleton(int first) {
-  if (session_.takes.empty()) return;
-  const SharedFrames<KeptFrame>& performed = session_.takes[0].performed;
+  const size_t by = take_of_source(session_.document);
+  if (by >= session_.takes.size()) return;
+  const SharedFrames<KeptFrame>& performed = session_.takes[by].performed;
   SharedFrames<KeptSource>& frames = session_.source.frames;
   frames.write(first, std::min(performed.size(), frames.size()),
                [&](size_t t, KeptSource& frame) { frame.joints = performed[t].source; });
@@ -268,7 +270,8 @@ void Studio::take_in(TakeFrames& event) {
   const bool redone = put(take->performed, event.first, std::move(event.frames));
   for (const FrameTimes& times : event.times) take->latency.add(times);
   const size_t k = take - session_.takes.data();
-  if (k == 0) show_skeleton(event.first);
+  if (!event.seen.empty()) put(take->another, event.first, std::move(event.seen));
+  if (k == take_of_source(session_.document)) show_skeleton(event.first);
   if (redone) ++take->generation;
   tell_unseen(k, event.first);
   if (session_.document.takes[k].pose_edits.empty() || !redone)
@@ -302,6 +305,11 @@ void Studio::take_in_refined() {
   }
 }
 
+/// A case's truth is of one person.
+std::shared_ptr<const Truth> truth_of(const Session& session, size_t take) {
+  return performs_another(session.document, session.document.takes[take]) ? nullptr : session.truth;
+}
+
 void Studio::refine_dirty() {
   Background& b = *background_;
   for (auto id = b.dirty.begin(); id != b.dirty.end();) {
@@ -318,8 +326,8 @@ void Studio::refine_dirty() {
     if (take && !take->performed.empty()) {
       const size_t k = take - session_.takes.data();
       b.refiner.request({*id, take->performed, static_cast<float>(session_.source.fps),
-                         session_.document.takes[k].pose_edits, take->target, session_.source.frames,
-                         session_.truth});
+                         session_.document.takes[k].pose_edits, take->target, performed_by(session_, k),
+                         truth_of(session_, k)});
       applied.refined_at = session_.time;
       applied.measured = false;
     }
@@ -404,13 +412,13 @@ void Studio::measure(size_t k) {
   m->edits = session_.document.scan_edits;
   m->shown = take.shown;
   m->joints = take.joints;
-  m->kept = session_.source.frames;
+  m->kept = performed_by(session_, k);
   for (const KeptFrame& frame : take.performed)
     m->source_joints.push_back(frame.source), m->limbs.push_back(frame.limbs);
   if (std::min(m->kept.size(), m->source_joints.size()) < m->shown.poses.size()) return;
   m->character = take.character;
   m->deformer = take.deformer;
-  m->truth = session_.truth;
+  m->truth = truth_of(session_, k);
   const int64_t generation = take.generation;
   Background::Applied& applied = background_->applied[id];
   applied.measuring = jobs_.start(

@@ -63,6 +63,13 @@ void add_targets(Commands& commands) {
   commands.add_edit({"target.remove", "Remove take", "TAKE"}, remove_take);
   commands.add({"target.select", "Select take", "TAKE"},
                [](Call& c) { choose_take(c.session, static_cast<int>(c.take_number())); });
+  commands.add_edit({"take.person", "Choose whom a take performs", "TAKE NUMBER|source"}, [](Call& c) {
+    std::string& person = c.take().person;
+    person = c.word(1, "person");
+    if (person == "source") return person.clear();
+    US_CHECK(person_number(person) > 0, "a take performs a person by their number, or the source's (source)");
+    c.label = c.take().name + ": perform person " + person;
+  });
   commands.add_edit({"take.rename", "Rename take", "TAKE NAME"},
                     [](Call& c) { c.take().name = c.word(1, "name"); });
 }

@@ -151,8 +151,8 @@ std::vector<size_t> takes_of_one_body(const Document& document, size_t take) {
   const Take& first = document.takes.at(take);
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const Take& other = document.takes[k];
-    if (same(other.target, first.target) && same(other.target_edits, first.target_edits) &&
-        other.method.offsets == first.method.offsets)
+    if (other.person == first.person && same(other.target, first.target) &&
+        same(other.target_edits, first.target_edits) && other.method.offsets == first.method.offsets)
       out.push_back(k);
   }
   return out;

@@ -91,6 +91,7 @@ const Changes& document_changes() {
       {"swap.limbs", [](SavedDocument& s) { swap(s.document).limbs = SwapEdit::Limbs::Arms; }},
       CHANGE(takes.pop_back()),
       TAKE(name = "other"),
+      TAKE(person = "7"),
       TAKE(target.path += "x"),
       TAKE(target.betas.clear()),
       TAKE(target.import.units = "m"),
@@ -179,7 +180,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [normal, height] = FloorPlane();
   [[maybe_unused]] const auto& [drag_frame, drag_joint, offset, drag_falloff, children] = DragEdit();
   [[maybe_unused]] const auto& [swap_first, swap_last, limbs] = SwapEdit();
-  [[maybe_unused]] const auto& [name, target, method, target_edits, pose_edits] = Take();
+  [[maybe_unused]] const auto& [name, performed, target, method, target_edits, pose_edits] = Take();
   [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
                                 target_bones, not_a_person] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,

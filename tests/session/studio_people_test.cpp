@@ -132,6 +132,50 @@ TEST_F(PeopleTest, OnePersonOfAScenePerformsWithoutAHandAndAnotherWhenChosen) {
   EXPECT_EQ(follows(session, 3), 2) << "who has 1,400 points";
 }
 
+TEST_F(PeopleTest, TwoTargetsPerformTwoOfTheScans) {
+  Studio studio(knowing());
+  open(studio);
+  const Session& session = studio.session();
+  const int first = follows(session, 0), other = 3 - first;
+  ASSERT_GT(first, 0);
+  const std::string one = std::to_string(session.source.person),
+                    two = std::to_string(number_of(session, other, 0));
+  studio.run("target.add", {path("target.obj")});
+  studio.run("take.person", {"1", two});
+  EXPECT_EQ(session.history.undo_label(), "target: perform person " + two);
+  studio.wait_idle();
+  ASSERT_EQ(session.takes[1].shown.poses.size(), static_cast<size_t>(kShown));
+  for (int t = 0; t < kShown; ++t) {
+    EXPECT_EQ(follows(session, t), first) << t;
+    const Joints& theirs = made_[static_cast<size_t>(t)].joints[static_cast<size_t>(other - 1)];
+    EXPECT_LT((session.takes[1].another[t].raw - theirs).rowwise().norm().mean(), 0.05f) << t;
+    EXPECT_EQ(session.takes[1].another[t].person, std::stoi(two)) << t;
+  }
+  // Each stands where their person stands.
+  const auto place = [&](size_t k) { return Vec3(session.takes[k].shown.poses[0].root); };
+  for (const size_t k : {0, 1}) {
+    const Joints& theirs = made_[0].joints[static_cast<size_t>((k == 0 ? first : other) - 1)];
+    EXPECT_NEAR(place(k).x(), theirs(Pelvis, 0), 0.06f) << k;
+    EXPECT_NEAR(place(k).z(), theirs(Pelvis, 2), 0.06f) << k;
+  }
+  EXPECT_FALSE(session.takes[1].metrics.empty()) << "measured against their own part of the scans";
+  const Joints before = session.source.frames[2].joints;
+  studio.run("take.person", {"0", two});
+  studio.wait_idle();
+  EXPECT_LT((session.source.frames[2].joints - before).rowwise().norm().maxCoeff(), 0.02f)
+      << "the source stays who it was, though nobody performs it";
+  studio.run("take.person", {"1", "source"});
+  studio.wait_idle();
+  EXPECT_NEAR(place(1).x(), made_[0].joints[static_cast<size_t>(first - 1)](Pelvis, 0), 0.06f);
+  EXPECT_THROW(studio.run("take.person", {"1", "largest"}), Error);
+  EXPECT_THROW(studio.run("take.person", {"1", "me"}), Error);
+  studio.run("take.person", {"1", "7"});
+  studio.wait_idle();
+  EXPECT_EQ(session.takes[1].another[0].reason, "person 7 is not seen in it");
+  studio.run("open", {path("alone.npz")});
+  EXPECT_TRUE(session.document.takes[0].person.empty()) << "other scans, other people";
+}
+
 TEST_F(PeopleTest, WhoIsAloneIsNotCutAndWhoIsNotThereIsNamed) {
   Studio studio(knowing());
   open(studio, "alone.npz");

@@ -297,6 +297,22 @@ void draw_rest_pose(const app::Session& session, const app::Take& take, PanelCon
   hint(context.ui, "Click a joint of the target and drag its rings; the result follows.");
 }
 
+/// Of several people in the scans the one whom this target performs.
+void draw_performed(const app::Session& session, const app::Take& take, PanelContext& context,
+                    const std::string& k) {
+  const auto& people = session.source.people;
+  if (people.size() < 2 && take.person.empty()) return;
+  std::vector<std::string> words = {"source"}, labels = {"Who the source is"};
+  for (const app::PersonSeen& one : people)
+    words.push_back(std::to_string(one.id)), labels.push_back("Person " + words.back());
+  const std::string chosen = take.person.empty() ? "source" : take.person;
+  if (std::find(words.begin(), words.end(), chosen) == words.end())
+    words.push_back(chosen), labels.push_back("Person " + chosen + ", not seen yet");
+  ask_choice(context,
+             {"take.person", "Performs", "Whom of the scans this target performs", "take.person " + k},
+             labels, words, chosen);
+}
+
 void draw_target_facts(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::Take* take = selected_take(session);
@@ -305,6 +321,7 @@ void draw_target_facts(const app::Session& session, PanelContext& context) {
   if (const auto name = text_row(ui, {"take.name", "Name", ""}, take->name))
     if (!name->empty()) context.ask("take.rename", {k, *name});
   row_text(ui, "File", file_name(take->target.path));
+  draw_performed(session, *take, context, k);
   if (const app::TakeState* state = selected_state(session)) draw_target_facts(*state, ui);
   draw_import(context, "target", take->target.import, k);
   draw_target_turn(take->target, context, k);

@@ -361,8 +361,9 @@ const SurfaceColours& Builder::take_colors(int k, const std::shared_ptr<const ap
     now.settings.push_back(static_cast<float>(in_.pictures.frame));
   }
   const int f = std::max(0, in_.pictures.frame);
-  if (colouring == Colouring::Confidence && f < ssize(session_.source.frames) && f < ssize(take.joints)) {
-    append(now.settings, session_.source.frames[f].confidence_of);
+  const auto& performed_by = app::performed_by(session_, k);
+  if (colouring == Colouring::Confidence && f < ssize(performed_by) && f < ssize(take.joints)) {
+    append(now.settings, performed_by[f].confidence_of);
     append(now.settings, take.joints[f]);
   }
   SurfaceColours& made = memory_.colours[k];

@@ -11,6 +11,7 @@ namespace {
 using app::Colouring;
 using app::Session;
 using Scale = Legend::Scale;
+using SeenFrames = app::SharedFrames<app::KeptSource>;
 using Picture = std::shared_ptr<const app::PosedPicture>;
 
 SurfaceValues missing(const std::string& title, const std::string& why) {
@@ -61,8 +62,8 @@ SurfaceValues error(const Session& session, const Points& vertices, int frame) {
 }
 
 /// Each point has the confidence of the joint nearest to it.
-SurfaceValues confidence(const Session& session, const Points& points, const Joints* joints, int frame) {
-  const app::KeptSource* seen = at_or_null(session.source.frames, frame);
+SurfaceValues confidence(const SeenFrames& frames, const Points& points, const Joints* joints, int frame) {
+  const app::KeptSource* seen = at_or_null(frames, frame);
   if (joints == nullptr || seen == nullptr) return missing("Confidence", "not ready yet");
   Eigen::VectorXf values(points.rows());
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
@@ -124,14 +125,15 @@ SurfaceValues take_values(const Session& session, int k, const PanePictures& pic
         return missing("Difference", "the first take is of another mesh");
       return distances(session, "Difference", posed->vertices, pictures.reference->vertices);
     case Colouring::Confidence:
-      return confidence(session, posed->vertices, at_or_null(take.joints, pictures.frame), pictures.frame);
+      return confidence(app::performed_by(session, k), posed->vertices,
+                        at_or_null(take.joints, pictures.frame), pictures.frame);
   }
   return {};
 }
 
 SurfaceValues scan_values(const Session& session, const Points& scan, int frame) {
   if (session.view.source.colouring != Colouring::Confidence) return {};
-  return confidence(session, scan, app::pane_joints(session, 0, frame), frame);
+  return confidence(session.source.frames, scan, app::pane_joints(session, 0, frame), frame);
 }
 
 }  // namespace understudy::ui
