@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "app/cli/commands.hpp"
@@ -35,21 +36,27 @@ namespace {
 struct ExportOptions {
   std::string document;            // empty: --source and --target
   std::vector<std::string> takes;  // by name, or number from 1; empty: the first
-  std::vector<std::string> sources;
+  std::vector<std::string> sources, targets;
   std::string format, bones, out, preview, report;
   std::string not_of_documents;  // a given option that a document answers itself
   SourceOptions source;          // what all sources share
-  TargetOptions target;
+  TargetOptions target;          // what all targets share
   CharacterExportOptions file;
   MethodOptions how;
   bool print_map = false, all_takes = false, chose_influences = false;
   int64_t frames = 0;
 };
 
-/// What is written, and its performer.
+/// What is written, and who performs it, for people.
 struct Performance {
-  ExportInput input;
-  std::string target;  // for people
+  std::vector<ExportInput> performers;
+  std::string by;
+};
+
+/// One of the people of a source, as it is opened for them.
+struct Role {
+  SourceOptions source;
+  std::string called;
 };
 
 std::string clip_name(const std::string& source) {
@@ -57,29 +64,67 @@ std::string clip_name(const std::string& source) {
   return stem.empty() ? "motion" : stem;
 }
 
-/// A source's options for each clip that is made of it.
-std::vector<SourceOptions> performers_in(const ExportOptions& options, const std::string& path,
-                                         const Retargeter& retargeter) {
+/// The numbers in "1,3"; none: it is no list.
+std::vector<int> listed_people(const std::string& person) {
+  std::vector<int> numbers;
+  if (person.find(',') == std::string::npos) return numbers;
+  std::istringstream words(person);
+  for (std::string word; std::getline(words, word, ',');) {
+    numbers.push_back(person_number(word));
+    US_CHECK(numbers.back() > 0, "--person ", person, ": a list holds numbers from 1 alone");
+  }
+  return numbers;
+}
+
+std::string counted_people(size_t count) {
+  return std::to_string(count) + (count == 1 ? " person" : " people");
+}
+
+/// A target each for several people: whether all is given that this needs.
+void check_cast(const ExportOptions& options, const ExportFormat& format) {
+  const size_t targets = options.targets.size();
+  if (targets == 1) return;
+  check_performers(options.out, format, targets);
+  if (options.source.person == "all") return;
+  const size_t people = listed_people(options.source.person).size();
+  US_CHECK(
+      people > 0, options.sources[0], ": ", targets,
+      " targets perform as many of its people: --person all, or a list such as --person 1,2, tells which");
+  US_CHECK(people == targets, options.sources[0], ": --person ", options.source.person, " is ",
+           counted_people(people), ", but there are ", targets, " targets");
+}
+
+/// Those who are performed of a source: for one target each is a clip, of several each has one.
+std::vector<Role> roles_in(const ExportOptions& options, const std::string& path,
+                           const std::shared_ptr<SkeletonExtractor>& extractor) {
   SourceOptions one = options.source;
   one.path = path;
-  if (one.person != "all") return {one};
-  std::vector<SourceOptions> all;
-  for (const int id : all_people(one, retargeter.extractor())) {
+  std::vector<int> people = listed_people(one.person);
+  if (one.person != "all" && people.empty()) return {{one, clip_name(path)}};
+  if (one.person == "all") people = all_people(one, extractor);
+  std::vector<Role> roles;
+  for (const int id : people) {
     one.person = std::to_string(id);
-    all.push_back(one);
+    roles.push_back({one, clip_name(path) + " person " + one.person});
   }
-  return all;
+  const size_t targets = options.targets.size();
+  if (targets == 1) return roles;
+  US_CHECK(roles.size() >= targets, path, ": shows ", counted_people(roles.size()), ", too few for ", targets,
+           " targets");
+  for (size_t left = targets; left < roles.size(); ++left)
+    log::info(roles[left].called + " is left out: there are " + std::to_string(targets) + " targets");
+  roles.resize(targets);
+  return roles;
 }
 
 /// One source to its end, after what was performed before.
-void perform(const ExportOptions& options, const SourceOptions& one, Retargeter& retargeter,
-             ExportInput& input) {
-  const std::string& path = one.path;
-  const auto source = open_source(one);
-  RetargetedSource retargeted(*source, retargeter, one);
-  const std::string of_whom = options.source.person == "all" ? " person " + one.person : "";
-  CharacterClip clip{clip_name(path) + of_whom, source->fps(), {}};
-  Progress progress(clip.name + " -> " + clip_name(options.target.path), source->count().value_or(0));
+void perform(const ExportOptions& options, const Role& role, Retargeter& retargeter, ExportInput& input) {
+  const std::string& path = role.source.path;
+  const auto source = open_source(role.source);
+  RetargetedSource retargeted(*source, retargeter, role.source);
+  const bool is_together = options.targets.size() > 1;
+  CharacterClip clip{is_together ? clip_name(path) : role.called, source->fps(), {}};
+  Progress progress(role.called + " -> " + input.name, source->count().value_or(0));
   while (const auto frame = retargeted.next()) {
     clip.poses.push_back(frame->result.pose);
     input.source_joints.push_back(frame->result.source.joints);
@@ -97,30 +142,60 @@ void perform(const ExportOptions& options, const SourceOptions& one, Retargeter&
   input.clips.push_back(std::move(clip));
 }
 
-Performance perform_sources(const ExportOptions& options, const ExportFormat& format) {
-  US_CHECK(!options.sources.empty(), "--source is required: the motion to perform");
-  US_CHECK(!options.target.path.empty(), "--target is required: the character that performs it");
-  US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
-           " holds one motion, not ", options.sources.size());
+/// A target, and what performs on it.
+struct CastTarget {
+  std::shared_ptr<const PreparedCharacter> character;
+  CharacterExportOptions file;
+  std::unique_ptr<Retargeter> retargeter;
+};
+
+CastTarget open_cast_target(const ExportOptions& options, const std::string& path,
+                            const ExportFormat& format) {
+  TargetOptions target = options.target;
+  target.path = path;
   Networks networks = nn::load_networks(network_options(options.how));
-  const auto character = open_target(options.target, networks);
-  const bool theirs = on_their_rig(options.target, *character);
-  CharacterExportOptions file = options.file;
-  US_CHECK(theirs || options.bones != "own", options.target.path, ": does not perform on bones of its own");
+  CastTarget out{open_target(target, networks), options.file, nullptr};
+  const bool theirs = on_their_rig(target, *out.character);
+  CharacterExportOptions& file = out.file;
+  US_CHECK(theirs || options.bones != "own", path, ": does not perform on bones of its own");
   file.their_rig = options.bones.empty() ? theirs && format.is_character : options.bones == "own";
   check_export_options(options.out, format, file);
-  US_CHECK(!file.their_rig || !options.chose_influences || file.influences == 4, options.target.path,
+  US_CHECK(!file.their_rig || !options.chose_influences || file.influences == 4, path,
            ": keeps its own skin weights; --influences needs --bones 22");
   RetargetOptions quick = retarget_options(options.how);
   quick.vertices = false;
-  Retargeter retargeter(networks_for(std::move(networks), *character, theirs), quick);
-  retargeter.set_target(character->target);
-  Performance out{{{character, retargeter.performer().deformer(), file}, {}, {}}, options.target.path};
-  for (const std::string& path : options.sources)
-    for (const SourceOptions& one : performers_in(options, path, retargeter))
-      perform(options, one, retargeter, out.input);
-  US_CHECK(out.input.clips.size() == 1 || format.is_character, options.out, ": ", format.label,
-           " holds one motion, not ", out.input.clips.size(), " people's");
+  out.retargeter =
+      std::make_unique<Retargeter>(networks_for(std::move(networks), *out.character, theirs), quick);
+  out.retargeter->set_target(out.character->target);
+  return out;
+}
+
+Performance perform_sources(const ExportOptions& options, const ExportFormat& format) {
+  US_CHECK(!options.sources.empty(), "--source is required: the motion to perform");
+  US_CHECK(!options.targets.empty(), "--target is required: the character that performs it");
+  US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
+           " holds one motion, not ", options.sources.size());
+  check_cast(options, format);
+  Performance out;
+  std::vector<std::vector<Role>> roles;  // of each source
+  for (size_t k = 0; k < options.targets.size(); ++k) {
+    const std::string& path = options.targets[k];
+    const CastTarget target = open_cast_target(options, path, format);
+    Retargeter& retargeter = *target.retargeter;
+    if (k == 0)
+      for (const std::string& source : options.sources)
+        roles.push_back(roles_in(options, source, retargeter.extractor()));
+    ExportInput input{{target.character, retargeter.performer().deformer(), target.file}, {}, {}};
+    input.name = clip_name(path);
+    for (const auto& of_source : roles)
+      for (size_t i = 0; i < of_source.size(); ++i)
+        if (options.targets.size() == 1 || i == k) perform(options, of_source[i], retargeter, input);
+    append_item(out.by, options.targets.size() == 1 ? path : file_name(path));
+    out.performers.push_back(std::move(input));
+  }
+  const size_t clips = out.performers[0].clips.size();
+  US_CHECK(clips == 1 || format.is_character, options.out, ": ", format.label, " holds one motion, not ",
+           clips, " people's");
   return out;
 }
 
@@ -194,7 +269,7 @@ Performance perform_document(const ExportOptions& options, const ExportFormat& f
   const Session& session = studio->session();
   const std::vector<size_t> takes = chosen_takes(options, session.document, format);
   make_takes(options, *studio, takes[0]);
-  return {export_input(session, takes, choice_of(options, format)), session.document.takes[takes[0]].name};
+  return {{export_input(session, takes, choice_of(options, format))}, session.document.takes[takes[0]].name};
 }
 
 /// A file of each take into the folder --out; what goes wrong with one keeps no other out.
@@ -220,18 +295,51 @@ int export_takes(const ExportOptions& options) {
   return written == files.size() ? 0 : 1;
 }
 
-/// Six moments of the first clip as the file has them, and how it stands in the T-pose.
+/// How somebody stands in the T-pose, facing as in the first frame: the preview looks from where the motion
+/// begins.
+struct StandingStill {
+  explicit StandingStill(const ExportInput& input) {
+    const PreparedCharacter& prepared = *input.body.character;
+    joints = input.body.file.joints.value_or(prepared.target.joints);
+    const Pose& first = input.clips[0].poses[0];
+    heading = heading_of_joints(forward_kinematics(joints, first).joints);
+    const Mat3 turn = rotation_about_y(heading);
+    mesh = prepared.target.mesh;
+    mesh.vertices = (mesh.vertices * turn.transpose()).eval();
+    joints = (joints * turn.transpose()).eval();
+    place = (first.root - Vec3(joints.row(Pelvis).transpose())).cwiseProduct(Vec3(1, 0, 1));
+  }
+  float heading = 0;
+  Mesh mesh;
+  Joints joints;
+  Vec3 place;  ///< from here to where they begin
+};
+
+/// One alone stands as they are, with their joints; several where each of them begins.
+void add_t_poses(const std::vector<StandingStill>& cast, render::SheetMoment& moment) {
+  moment.source = cast[0].mesh;
+  if (cast.size() == 1) {
+    moment.source_joints = cast[0].joints;
+    return;
+  }
+  Mesh all;
+  for (const StandingStill& one : cast) {
+    const Eigen::Index before = all.vertices.rows(), faces = all.faces.rows();
+    all.vertices.conservativeResize(before + one.mesh.vertices.rows(), 3);
+    all.vertices.bottomRows(one.mesh.vertices.rows()) = one.mesh.vertices.rowwise() + one.place.transpose();
+    all.faces.conservativeResize(faces + one.mesh.faces.rows(), 3);
+    all.faces.bottomRows(one.mesh.faces.rows()) =
+        (one.mesh.faces.array() + static_cast<int>(before)).matrix();
+  }
+  moment.source = std::move(all);
+}
+
+/// Six moments of the first clip as the file has them, and how all stand in the T-pose.
 void preview_file(const ExportOptions& options, const Performance& done) {
-  const PreparedCharacter& prepared = *done.input.body.character;
-  const CharacterClip& clip = done.input.clips[0];
-  const Joints joints = done.input.body.file.joints.value_or(prepared.target.joints);
+  const CharacterClip& clip = done.performers[0].clips[0];
   const Character written = parse_gltf_character(read_file(options.out), options.out);
   const int animation = options.file.t_pose_clip ? 1 : 0;
-  // The sheet looks from where the motion begins; the T-pose turns along.
-  const float heading = heading_of_joints(forward_kinematics(joints, clip.poses[0]).joints);
-  const Mat3 turn = rotation_about_y(heading);
-  Mesh rest = prepared.target.mesh;
-  rest.vertices = (rest.vertices * turn.transpose()).eval();
+  const std::vector<StandingStill> cast(done.performers.begin(), done.performers.end());
   std::vector<render::SheetMoment> moments;
   const size_t shown = std::min<size_t>(PreviewMoments::kShown, clip.poses.size());
   for (size_t i = 0; i < shown; ++i) {
@@ -239,8 +347,7 @@ void preview_file(const ExportOptions& options, const Performance& done) {
     render::SheetMoment moment;
     moment.frame = at;
     moment.seconds = static_cast<double>(at) / clip.fps;
-    moment.source = rest;
-    moment.source_joints = Joints(joints * turn.transpose());
+    add_t_poses(cast, moment);
     MergedSurface surface =
         merged_surface(written, vertices_at(written, animation, static_cast<float>(moment.seconds)));
     paint(surface, written);
@@ -248,15 +355,22 @@ void preview_file(const ExportOptions& options, const Performance& done) {
     moments.push_back(std::move(moment));
   }
   render::SheetOptions sheet;
-  sheet.title = clip.name + " by " + clip_name(done.target);
-  sheet.heading = heading;
+  sheet.title = clip.name + " by " + (cast.size() == 1 ? clip_name(done.by) : done.by);
+  sheet.heading = cast[0].heading;
   sheet.source_caption = "T-pose";
   sheet.target_caption = "Written file";
   render::write_png(options.preview, render::contact_sheet(moments, sheet));
 }
 
+Json report_of(const std::string& target, const ExportInput& performer) {
+  const PreparedCharacter& prepared = *performer.body.character;
+  return {{"target", target},
+          {"rig", kRigNames[static_cast<size_t>(performer.body.file.their_rig ? Rig::Own : Rig::Ours)]},
+          {"mapped", prepared.map.count()},
+          {"notes", prepared.notes}};
+}
+
 void report_cost(const ExportOptions& options, const Performance& done, const ExportCost& cost) {
-  const PreparedCharacter& prepared = *done.input.body.character;
   if (cost.measured)
     std::printf(
         "%s %lld bytes, differs from the viewport by %.3f mm on average, %.3f mm at most over %lld frames, "
@@ -268,10 +382,11 @@ void report_cost(const ExportOptions& options, const Performance& done, const Ex
                 static_cast<long long>(cost.frames));
   if (options.report.empty()) return;
   Json report = report_header(nn::weights_folder(network_options(options.how)));
-  report["target"] = done.target;
-  report["rig"] = kRigNames[static_cast<size_t>(done.input.body.file.their_rig ? Rig::Own : Rig::Ours)];
-  report["mapped"] = prepared.map.count();
-  report["notes"] = prepared.notes;
+  if (done.performers.size() == 1)
+    report.update(report_of(done.by, done.performers[0]));
+  else
+    for (size_t k = 0; k < done.performers.size(); ++k)
+      report["performers"].push_back(report_of(options.targets[k], done.performers[k]));
   report["cost"] = {{"frames", cost.frames}, {"keys", cost.keys}, {"bytes", cost.bytes}};
   if (cost.measured) {
     report["cost"]["mean_mm"] = cost.mean_mm;
@@ -281,10 +396,13 @@ void report_cost(const ExportOptions& options, const Performance& done, const Ex
 }
 
 int print_map(const ExportOptions& options) {
-  const Character character = read_character(options.target.path);
-  const BoneMap map = map_bones(character, bind_pose(character).nodes, options.target.bones);
-  std::printf("%s", to_table(map, character).c_str());
-  US_CHECK(map.usable(), options.target.path, ": too few of its bones were recognised to drive it");
+  US_CHECK(!options.targets.empty(), "--target is required: the character whose bones are printed");
+  for (const std::string& path : options.targets) {
+    const Character character = read_character(path);
+    const BoneMap map = map_bones(character, bind_pose(character).nodes, options.target.bones);
+    std::printf("%s", to_table(map, character).c_str());
+    US_CHECK(map.usable(), path, ": too few of its bones were recognised to drive it");
+  }
   return 0;
 }
 
@@ -304,9 +422,9 @@ int run_export(const ExportOptions& options) {
   for (const std::string& path : {options.preview, options.report}) check_writable(path);
   Performance done =
       options.document.empty() ? perform_sources(options, format) : perform_document(options, format);
-  done.input.body.file.progress = [](float) { check_interrupt("during the export"); };
+  done.performers[0].body.file.progress = [](float) { check_interrupt("during the export"); };
   const auto began = std::chrono::steady_clock::now();
-  const ExportCost cost = export_motion(options.out, format, done.input);
+  const ExportCost cost = export_motion(options.out, format, done.performers);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   std::fprintf(stderr, "written and measured in %.2f s\n", seconds);
   report_cost(options, done, cost);
@@ -368,8 +486,10 @@ Action declare_export(CLI::App& command) {
   command.add_flag("--all-takes", options->all_takes,
                    "a file of each take of the document, named after it, in the folder --out (default: GLB)");
   command.add_option("--source", options->sources, "motions to perform; each becomes a clip");
-  command.add_option("--target", options->target.path,
-                     "a character or an SMPL-format body: " + format_names(kTarget));
+  command.add_option("--target", options->targets,
+                     "a character or an SMPL-format body: " + format_names(kTarget) +
+                         "; several perform several people of the source at once, in one GLB or glTF file: "
+                         "--person all, or a list such as 1,3 with a person for each target");
   command.add_option("--out", options->out, "the file, or the folder of a sequence");
   command.add_flag("--print-map", options->print_map, "prints which bone is which joint, and stops");
   command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");

@@ -127,7 +127,7 @@ class CharacterOutput final : public MotionOutput {
   void push(const ExportFrame& frame) override { clip_.poses.push_back(frame.pose); }
   ExportCost finish() override {
     US_CHECK(!clip_.poses.empty(), path_, ": there is no motion to export");
-    return export_character(path_, *body_.character, *body_.screen, {clip_}, body_.file);
+    return export_character(path_, {{*body_.character, *body_.screen, {clip_}, body_.file}});
   }
 
  private:
@@ -243,6 +243,11 @@ void check_export_options(const std::string& path, const ExportFormat& format,
   US_CHECK(!(file.reduce_mm > 0), path, ": ", format.label, " holds every frame, so keys cannot be left out");
 }
 
+void check_performers(const std::string& path, const ExportFormat& format, size_t count) {
+  US_CHECK(count <= 1 || format.is_character, path, ": ", format.label, " holds one motion, not ", count,
+           " performers");
+}
+
 void check_own_bones(const std::string& path, const ExportFormat& format) {
   US_CHECK(format.own_bones, path, ": ", format.label, " cannot be on the character's own bones");
 }
@@ -253,13 +258,22 @@ std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportF
   return format.open(path, body, name, fps);
 }
 
-ExportCost export_motion(const std::string& path, const ExportFormat& format, const ExportInput& input) {
-  US_CHECK(!input.clips.empty(), path, ": there is no motion to export");
+ExportCost export_motion(const std::string& path, const ExportFormat& format,
+                         const std::vector<ExportInput>& performers) {
+  const auto has_motion = [](const ExportInput& one) { return !one.clips.empty(); };
+  US_CHECK(!performers.empty() && std::all_of(performers.begin(), performers.end(), has_motion), path,
+           ": there is no motion to export");
   if (format.is_character) {
     check_export(path, format);
-    check_export_options(path, format, input.body.file);
-    return export_character(path, *input.body.character, *input.body.screen, input.clips, input.body.file);
+    std::vector<CharacterPerformance> performances;
+    for (const ExportInput& one : performers) {
+      check_export_options(path, format, one.body.file);
+      performances.push_back({*one.body.character, *one.body.screen, one.clips, one.body.file, one.name});
+    }
+    return export_character(path, performances);
   }
+  check_performers(path, format, performers.size());
+  const ExportInput& input = performers[0];
   US_CHECK(input.clips.size() == 1, path, ": ", format.label, " holds one motion, not ", input.clips.size());
   const CharacterClip& clip = input.clips[0];
   const auto output = open_export(path, format, input.body, clip.name, clip.fps);

@@ -40,6 +40,9 @@ void check_export(const std::string& path, const ExportFormat& format);
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file);
 
+/// Throws Error where such a file cannot hold so many performers.
+void check_performers(const std::string& path, const ExportFormat& format, size_t count);
+
 /// Throws Error where such a file cannot be on the character's own bones.
 void check_own_bones(const std::string& path, const ExportFormat& format);
 
@@ -79,15 +82,19 @@ class MotionOutput {
 std::unique_ptr<MotionOutput> open_export(const std::string& path, const ExportFormat& format,
                                           const ExportBody& body, const std::string& name, double fps);
 
+/// What one performer performs.
 struct ExportInput {
   ExportBody body;
   std::vector<CharacterClip> clips;   ///< more than one only in glTF
   std::vector<Joints> source_joints;  ///< beside the poses of the only clip; may be empty
   Eigen::Matrix4d source_to_scan = Eigen::Matrix4d::Identity();  ///< from them to the source's file
+  std::string name{};                                            ///< of the performer, in a file of several
 };
 
-/// All of it. body.file.progress gets 0..1; what it throws ends the export, and what was there stays.
-ExportCost export_motion(const std::string& path, const ExportFormat& format, const ExportInput& input);
+/// All of it; several performers only in glTF, where their clips play at once (see animated_character). The
+/// first one's body.file.progress gets 0..1; what it throws ends the export, and what was there stays.
+ExportCost export_motion(const std::string& path, const ExportFormat& format,
+                         const std::vector<ExportInput>& performers);
 
 /// "differs from the viewport by 0.41 mm on average, 2.13 mm at most; 1.2 MB", for people.
 std::string sentence(const ExportCost& cost);

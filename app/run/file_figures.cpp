@@ -14,7 +14,7 @@ Metrics file_figures(const ExportBody& body, const CharacterClip& clip, const Tr
            "the ground truth has another number of frames than the file, or no vertices");
   const auto began = std::chrono::steady_clock::now();
   const std::string bytes =
-      gltf_bytes(animated_character(*body.character, *body.screen, {clip}, body.file), "evaluated.glb");
+      gltf_bytes(animated_character({{*body.character, *body.screen, {clip}, body.file}}), "evaluated.glb");
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   const Character written = parse_gltf_character(bytes, "evaluated.glb");
   const MergedSurface& surface = body.character->surface;

@@ -30,7 +30,7 @@ void run_export(Call& c) {
           control.check();
           control.progress(done);
         };
-        *cost = export_motion(path, format, *input);
+        *cost = export_motion(path, format, {*input});
       },
       [&studio = c.studio, path, cost] {
         studio.notify("Exported " + file_name(path) + ": " + sentence(*cost), false, showing(path));

@@ -215,7 +215,7 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
     return [input, path, &format](const std::function<void(float)>& progress) {
       check_export(path, format);
       input->body.file.progress = progress;
-      export_motion(path, format, *input);
+      export_motion(path, format, {*input});
     };
   });
 }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/character/gltf_character.hpp"
+#include "retarget/character/joined_characters.hpp"
 #include "retarget/character/own_bones.hpp"
 
 namespace understudy {
@@ -162,17 +164,6 @@ class TheirRig final : public Animator {
   std::vector<int> parent_;
 };
 
-/// One node above all, number 0.
-void add_root(Character& character, const CharacterNode& root) {
-  for (auto& node : character.nodes) ++node.parent;  // -1 becomes the root, number 0
-  character.nodes.insert(character.nodes.begin(), root);
-  for (auto& part : character.parts) ++part.node;
-  for (auto& skin : character.skins)
-    for (int& joint : skin.joints) ++joint;
-  for (auto& animation : character.animations)
-    for (auto& track : animation.tracks) ++track.node;
-}
-
 /// The file's world brought to metres, y up, facing +z.
 CharacterNode world_root(const Similarity& to_world) {
   CharacterNode root;
@@ -181,21 +172,6 @@ CharacterNode world_root(const Similarity& to_world) {
   root.local.rotation = Eigen::Quaternionf(to_world.R).normalized();
   root.local.translation = to_world.t;
   return root;
-}
-
-/// A skinned mesh goes where its bones are, whatever its node has: at the top, plain, no program is misled.
-void lift_skinned_nodes(Character& character) {
-  std::vector<bool> is_needed(character.nodes.size(), false);
-  for (const auto& node : character.nodes)
-    if (node.parent >= 0) is_needed[node.parent] = true;
-  for (const auto& skin : character.skins)
-    for (const int joint : skin.joints) is_needed[joint] = true;
-  for (const auto& part : character.parts) {
-    if (part.skin < 0 || is_needed[part.node]) continue;
-    CharacterNode& node = character.nodes[part.node];
-    node.parent = -1;
-    node.local = Transform();
-  }
 }
 
 Character TheirRig::still() {
@@ -359,24 +335,61 @@ Pose on_the_spot(Pose pose, const Vec3& rest) {
   return pose;
 }
 
-std::vector<CharacterClip> wanted_clips(const PreparedCharacter& character, std::vector<CharacterClip> clips,
-                                        const CharacterExportOptions& options) {
-  US_CHECK(!clips.empty(), character.character.called(), ": there is no motion to export");
-  const Joints joints = options.joints.value_or(character.target.joints);
-  for (auto& clip : clips) {
+Joints joints_of(const CharacterPerformance& performance) {
+  return performance.options.joints.value_or(performance.character.target.joints);
+}
+
+void check_clips(const CharacterPerformance& performance) {
+  US_CHECK(!performance.clips.empty(), performance.character.character.called(),
+           ": there is no motion to export");
+  for (const auto& clip : performance.clips) {
     US_CHECK(!clip.poses.empty() && clip.fps > 0, "the clip '", clip.name, "' is empty");
-    for (auto& pose : clip.poses) {
+    for (const auto& pose : clip.poses) {
       bool finite = pose.root.allFinite();
       for (const Mat3& R : pose.local) finite = finite && R.allFinite();
       US_CHECK(finite, "a pose of the clip '", clip.name, "' is not finite");
-      if (options.in_place) pose = on_the_spot(pose, joints.row(Pelvis).transpose());
     }
   }
-  if (!options.t_pose_clip) return clips;
-  CharacterClip rest{"T-pose", clips[0].fps, {Pose()}};
-  rest.poses[0].root = joints.row(Pelvis).transpose();
-  clips.insert(clips.begin(), rest);
-  return clips;
+}
+
+/// A performance as it is written.
+struct StagedPerformance {
+  const CharacterPerformance& of;
+  Joints rest;
+  Vec3 place = Vec3::Zero();         // on the floor
+  std::vector<CharacterClip> clips;  // as the options want them, from `place`
+
+  Vec3 root() const { return rest.row(Pelvis).transpose(); }
+  /// Where the pose is in the scene.
+  Pose in_scene(Pose pose) const {
+    pose.root += place;
+    return pose;
+  }
+};
+
+StagedPerformance staged(const CharacterPerformance& performance, bool has_own_place) {
+  check_clips(performance);
+  StagedPerformance out{performance, joints_of(performance), Vec3::Zero(), performance.clips};
+  if (has_own_place)
+    out.place = out.clips[0].poses[0].root - on_the_spot(out.clips[0].poses[0], out.root()).root;
+  for (auto& clip : out.clips)
+    for (auto& pose : clip.poses) {
+      pose.root -= out.place;
+      if (performance.options.in_place) pose = on_the_spot(pose, out.root());
+    }
+  if (!performance.options.t_pose_clip) return out;
+  CharacterClip rest{"T-pose", out.clips[0].fps, {Pose()}};
+  rest.poses[0].root = out.root();
+  out.clips.insert(out.clips.begin(), rest);
+  return out;
+}
+
+/// One alone performs where the scene has it; several each have a place, from which they start.
+std::vector<StagedPerformance> staged(const std::vector<CharacterPerformance>& performances) {
+  US_CHECK(!performances.empty(), "there is no motion to export");
+  std::vector<StagedPerformance> out;
+  for (const auto& one : performances) out.push_back(staged(one, performances.size() > 1));
+  return out;
 }
 
 /// The topmost bone that poses do not move, but all that they move is below it; -1: there is none.
@@ -448,12 +461,11 @@ std::function<void(float)> part_of(const std::function<void(float)>& progress, f
   return [&progress, from, to](float done) { progress(from + (to - from) * std::min(done, 1.0f)); };
 }
 
-CorrectiveShapes shapes_for(const Deformer& screen, const std::vector<CharacterClip>& clips,
-                            const CharacterExportOptions& options) {
-  if (options.shapes <= 0) return {};
+CorrectiveShapes shapes_for(const StagedPerformance& staged, const std::function<void(float)>& progress) {
+  if (staged.of.options.shapes <= 0) return {};
   std::vector<Pose> poses;
-  for (const auto& clip : clips) poses.insert(poses.end(), clip.poses.begin(), clip.poses.end());
-  return corrective_shapes(screen, poses, options.shapes, part_of(options.progress, 0, 0.6f));
+  for (const auto& clip : staged.clips) poses.insert(poses.end(), clip.poses.begin(), clip.poses.end());
+  return corrective_shapes(staged.of.screen, poses, staged.of.options.shapes, progress);
 }
 
 void add_shapes(const CorrectiveShapes& shapes, const Animator& animator, const PreparedCharacter& source,
@@ -525,49 +537,18 @@ void reduce_keys(const PreparedCharacter& source, float limit_mm, Character& out
   out = full;
 }
 
-ExportCost measure(const Character& written, const PreparedCharacter& source, const Deformer& screen,
-                   const std::vector<CharacterClip>& clips, const std::function<void(float)>& progress) {
-  ExportCost cost;
-  cost.measured = true;
-  double sum = 0, count = 0;
-  for (size_t a = 0; a < clips.size(); ++a) {
-    const auto& poses = clips[a].poses;
-    const size_t step = (poses.size() + kCompared - 1) / kCompared;
-    for (size_t i = 0; i < poses.size(); i += step, ++cost.frames) {
-      if (progress)
-        progress((static_cast<float>(a) + static_cast<float>(i) / static_cast<float>(poses.size())) /
-                 static_cast<float>(clips.size()));
-      const Points shown = screen.deform(poses[i]);
-      const Points seen = vertices_at(written, a, clips[a].seconds(i));
-      for (Eigen::Index v = 0; v < seen.rows(); ++v) {
-        const double mm =
-            1000.0 * static_cast<double>((seen.row(v) - shown.row(source.surface.map[v])).norm());
-        sum += mm;
-        ++count;
-        cost.largest_mm = std::max(cost.largest_mm, mm);
-      }
-    }
-  }
-  cost.mean_mm = sum / std::max(1.0, count);
-  for (const auto& animation : written.animations)
-    for (const auto& track : animation.tracks) cost.keys += ssize(track.times);
-  return cost;
-}
-
-}  // namespace
-
-Character animated_character(const PreparedCharacter& character, const Deformer& screen,
-                             const std::vector<CharacterClip>& asked, const CharacterExportOptions& options) {
-  const std::vector<CharacterClip> clips = wanted_clips(character, asked, options);
-  const auto animator = animator_for(character, screen, options);
+Character animated(const StagedPerformance& staged, const std::function<void(float)>& progress) {
+  const PreparedCharacter& character = staged.of.character;
+  const CharacterExportOptions& options = staged.of.options;
+  const auto animator = animator_for(character, staged.of.screen, options);
   Character out = animator->still();
   std::vector<CharacterAnimation> own = std::move(out.animations);
   out.animations.clear();
-  const CorrectiveShapes shapes = shapes_for(screen, clips, options);
+  const CorrectiveShapes shapes = shapes_for(staged, progress);
   if (!shapes.shapes.empty()) add_shapes(shapes, *animator, character, out);
-  const Vec3 rest = options.joints.value_or(character.target.joints).row(Pelvis).transpose();
+  const Vec3 rest = staged.root();
   size_t at = 0;
-  for (const auto& clip : clips) {
+  for (const auto& clip : staged.clips) {
     Sampled sampled;
     for (size_t i = 0; i < clip.poses.size(); ++i) {
       const Pose& pose = clip.poses[i];
@@ -578,7 +559,7 @@ Character animated_character(const PreparedCharacter& character, const Deformer&
     out.animations.push_back(
         animation_of(fresh_name(clip.name, out.animations), sampled, animator->moved(), out));
   }
-  if (options.root_motion) carry_path(clips, rest, animator->moved(), out, own);
+  if (options.root_motion) carry_path(staged.clips, rest, animator->moved(), out, own);
   if (options.reduce_mm > 0) reduce_keys(character, options.reduce_mm, out);
   if (options.keep_clips && options.their_rig)
     for (CharacterAnimation animation : own) {
@@ -589,14 +570,89 @@ Character animated_character(const PreparedCharacter& character, const Deformer&
   return out;
 }
 
-ExportCost export_character(const std::string& path, const PreparedCharacter& character,
-                            const Deformer& screen, const std::vector<CharacterClip>& clips,
-                            const CharacterExportOptions& options) {
-  const Character animated = animated_character(character, screen, clips, options);
-  const std::string bytes = gltf_bytes(animated, path);
-  const Character written = parse_gltf_character(bytes, path);
-  const auto wanted = wanted_clips(character, clips, options);
-  ExportCost cost = measure(written, character, screen, wanted, part_of(options.progress, 0.6f, 1));
+/// progress: gets `share` of 0..1 for each of them.
+Character animated(const std::vector<StagedPerformance>& cast, const std::function<void(float)>& progress) {
+  if (cast.size() == 1) return animated(cast[0], progress);
+  std::vector<CastMember> members;
+  for (const auto& one : cast) {
+    const auto count = static_cast<float>(cast.size()), at = static_cast<float>(members.size());
+    members.push_back({one.of.name, one.place, animated(one, part_of(progress, at / count, (at + 1) / count)),
+                       one.clips.size()});
+  }
+  return joined(std::move(members));
+}
+
+/// Millimetres between vertices in a file and on screen.
+struct Difference {
+  double sum = 0, count = 0, largest = 0;
+  void add(double mm) {
+    sum += mm;
+    ++count;
+    largest = std::max(largest, mm);
+  }
+};
+
+/// written: with the parts of this performer alone. Gives the number of frames that were compared.
+int64_t compare(const Character& written, const StagedPerformance& staged,
+                const std::function<void(float)>& progress, Difference& difference) {
+  int64_t frames = 0;
+  for (size_t a = 0; a < staged.clips.size(); ++a) {
+    const auto& poses = staged.clips[a].poses;
+    const size_t step = (poses.size() + kCompared - 1) / kCompared;
+    for (size_t i = 0; i < poses.size(); i += step, ++frames) {
+      if (progress)
+        progress((static_cast<float>(a) + static_cast<float>(i) / static_cast<float>(poses.size())) /
+                 static_cast<float>(staged.clips.size()));
+      const Points shown = staged.of.screen.deform(staged.in_scene(poses[i]));
+      const Points seen = vertices_at(written, a, staged.clips[a].seconds(i));
+      const auto& map = staged.of.character.surface.map;
+      for (Eigen::Index v = 0; v < seen.rows(); ++v)
+        difference.add(1000.0 * static_cast<double>((seen.row(v) - shown.row(map[v])).norm()));
+    }
+  }
+  return frames;
+}
+
+/// Takes the first of the parts that are left, up to so many vertices.
+std::vector<CharacterPart> take_parts(Eigen::Index vertices, std::vector<CharacterPart>& parts) {
+  size_t count = 0;
+  for (; vertices > 0 && count < parts.size(); ++count) vertices -= parts[count].vertices.rows();
+  const auto end = parts.begin() + static_cast<std::ptrdiff_t>(count);
+  std::vector<CharacterPart> out(std::make_move_iterator(parts.begin()), std::make_move_iterator(end));
+  parts.erase(parts.begin(), end);
+  return out;
+}
+
+ExportCost measure(Character written, const std::vector<StagedPerformance>& cast,
+                   const std::function<void(float)>& progress) {
+  ExportCost cost;
+  cost.measured = true;
+  Difference difference;
+  std::vector<CharacterPart> parts = std::move(written.parts);
+  for (size_t k = 0; k < cast.size(); ++k) {
+    written.parts = take_parts(cast[k].of.character.character.vertex_count(), parts);
+    const auto count = static_cast<float>(cast.size()), at = static_cast<float>(k);
+    cost.frames += compare(written, cast[k], part_of(progress, at / count, (at + 1) / count), difference);
+  }
+  cost.largest_mm = difference.largest;
+  cost.mean_mm = difference.sum / std::max(1.0, difference.count);
+  for (const auto& animation : written.animations)
+    for (const auto& track : animation.tracks) cost.keys += ssize(track.times);
+  return cost;
+}
+
+}  // namespace
+
+Character animated_character(const std::vector<CharacterPerformance>& performances) {
+  const std::vector<StagedPerformance> cast = staged(performances);
+  return animated(cast, performances[0].options.progress);
+}
+
+ExportCost export_character(const std::string& path, const std::vector<CharacterPerformance>& performances) {
+  const std::vector<StagedPerformance> cast = staged(performances);
+  const auto& progress = performances[0].options.progress;
+  const std::string bytes = gltf_bytes(animated(cast, part_of(progress, 0, 0.6f)), path);
+  ExportCost cost = measure(parse_gltf_character(bytes, path), cast, part_of(progress, 0.6f, 1));
   cost.bytes = static_cast<int64_t>(bytes.size());
   write_file(path, bytes);
   return cost;

@@ -34,11 +34,12 @@ struct CharacterExportOptions {
       progress;  ///< called with 0..1; what it throws ends the export, nothing is written
 };
 
-/// Size of the written file, and its difference from the vertices on screen over frames of all clips.
+/// Size of the written file, and its difference from the vertices on screen over frames of all clips of all
+/// performers.
 struct ExportCost {
   bool measured = false;  ///< false: the format holds no surface that could be compared
   double mean_mm = 0, largest_mm = 0;
-  int64_t frames = 0, keys = 0, bytes = 0;
+  int64_t frames = 0, keys = 0, bytes = 0;  ///< frames: that were compared, or written
 };
 
 /// Leaves out keys of a linear track that its neighbours give back within the tolerance: radians for
@@ -66,15 +67,25 @@ CorrectiveShapes corrective_shapes(const Deformer& deformer, const std::vector<P
 void apply_painted_weights(const PreparedCharacter& character, const RowMatrix& weights, int most,
                            Character& out);
 
-/// The animated character in memory. screen: bound to the character's target, as it deforms on screen.
-Character animated_character(const PreparedCharacter& character, const Deformer& screen,
-                             const std::vector<CharacterClip>& clips, const CharacterExportOptions& options);
+/// What one character performs. Refers to character and screen, which must outlive it.
+struct CharacterPerformance {
+  const PreparedCharacter& character;
+  const Deformer& screen;  ///< bound to the character's target, as it deforms on screen
+  std::vector<CharacterClip> clips;
+  CharacterExportOptions options;  ///< progress: the first performance's is called, for all of them
+  std::string name = {};           ///< of the performer, in a file of several
+};
+
+/// The animated character in memory; of several performances one document in which their clips play at once,
+/// the first ones of all together, and so on. One alone is as its file has it. Each of several is below a
+/// node with the performer's name, which stands on the floor where their first pose does: what a performance
+/// is without its path (in place, the T-pose) is there. Throws Error: no rig to drive, poses that are not
+/// finite.
+Character animated_character(const std::vector<CharacterPerformance>& performances);
 
 /// Reads what it is about to write and measures it, then writes it beside the path and renames. The suffix
-/// decides between GLB and glTF. Throws Error: no rig to drive, poses that are not finite, a file that cannot
-/// be written.
-ExportCost export_character(const std::string& path, const PreparedCharacter& character,
-                            const Deformer& screen, const std::vector<CharacterClip>& clips,
-                            const CharacterExportOptions& options);
+/// decides between GLB and glTF. Throws Error as animated_character does, and where the file cannot be
+/// written.
+ExportCost export_character(const std::string& path, const std::vector<CharacterPerformance>& performances);
 
 }  // namespace understudy

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -120,7 +121,7 @@ class EveryFormat : public testing::TestWithParam<ExportFormat> {
   std::string path_ = folder_.path(std::string("dance") + GetParam().suffix);
   ExportInput input_ = made_input();
 
-  void export_it() { export_motion(path_, GetParam(), input_); }
+  void export_it() { export_motion(path_, GetParam(), {input_}); }
   /// Of what is at the path: of a folder's first frame.
   std::string content() const {
     if (!fs::is_directory(path_)) return read_file(path_);
@@ -129,7 +130,7 @@ class EveryFormat : public testing::TestWithParam<ExportFormat> {
 };
 
 TEST_P(EveryFormat, IsWrittenWholeAndTheSameTwice) {
-  const ExportCost cost = export_motion(path_, GetParam(), input_);
+  const ExportCost cost = export_motion(path_, GetParam(), {input_});
   EXPECT_EQ(cost.frames, kFrames);
   EXPECT_GT(cost.bytes, 1000);
   EXPECT_LT(cost.largest_mm, 0.1);
@@ -204,10 +205,31 @@ TEST(Exports, FormatsThatHoldOneMotionSaySo) {
   const TempFolder folder;
   ExportInput input = made_input();
   input.clips.push_back(input.clips[0]);
-  EXPECT_TRUE(contains(
-      error_of([&] { export_motion(folder.path("a.bvh"), export_format("bvh", ""), input); }), "one motion"));
-  export_motion(folder.path("a.glb"), export_format("glb", ""), input);
+  EXPECT_TRUE(
+      contains(error_of([&] { export_motion(folder.path("a.bvh"), export_format("bvh", ""), {input}); }),
+               "one motion"));
+  export_motion(folder.path("a.glb"), export_format("glb", ""), {input});
   EXPECT_EQ(read_character(folder.path("a.glb")).animations.size(), 2u);
+}
+
+TEST(Exports, SeveralPerformersShareAGlbAndNothingElse) {
+  const TempFolder folder;
+  std::vector<ExportInput> performers = {made_input(), made_input()};
+  performers[0].name = "Ann", performers[1].name = "Bob";
+  EXPECT_EQ(error_of([&] { export_motion(folder.path("a.bvh"), export_format("bvh", ""), performers); }),
+            folder.path("a.bvh") + ": BVH holds one motion, not 2 performers");
+  const ExportCost cost = export_motion(folder.path("a.glb"), export_format("glb", ""), performers);
+  EXPECT_LT(cost.largest_mm, 0.1);
+  const Character file = read_character(folder.path("a.glb"));
+  EXPECT_EQ(file.animations.size(), 1u);
+  for (const char* name : {"Ann", "Bob"})
+    EXPECT_TRUE(std::any_of(file.nodes.begin(), file.nodes.end(), [&](const CharacterNode& node) {
+      return node.name == name;
+    })) << name;
+  performers[1].clips.clear();
+  EXPECT_TRUE(
+      contains(error_of([&] { export_motion(folder.path("a.glb"), export_format("glb", ""), performers); }),
+               "no motion"));
 }
 
 TEST(ExportPresets, EachIsKnownByItsOptionsAndCanBeWritten) {
@@ -235,8 +257,8 @@ TEST(Exports, SurfacesAreThoseOfTheScreenInTheFilesOrder) {
   const TempFolder folder;
   const ExportInput input = made_input();
   const PreparedCharacter& character = *input.body.character;
-  export_motion(folder.path("ply"), export_format("ply", ""), input);
-  export_motion(folder.path("obj"), export_format("obj", ""), input);
+  export_motion(folder.path("ply"), export_format("ply", ""), {input});
+  export_motion(folder.path("obj"), export_format("obj", ""), {input});
   const Points want = character.surface.in_file_order(input.body.screen->deform(input.clips[0].poses[6]));
   for (const char* name : {"ply/frame_00007.ply", "obj/frame_00007.obj"}) {
     const Mesh mesh = read_mesh(folder.path(name));
@@ -262,7 +284,7 @@ TEST(Exports, ABarePointCloudIsPointsInEveryFormat) {
   input.body.file.their_rig = false;
   input.clips = {{"walk", 25, tests::made_motion(3, character->target.joints)}};
   for (const ExportFormat& info : export_formats())
-    export_motion(folder.path(std::string("cloud_") + info.name + info.suffix), info, input);
+    export_motion(folder.path(std::string("cloud_") + info.name + info.suffix), info, {input});
   const Character glb = read_character(folder.path("cloud_glb.glb"));
   EXPECT_EQ(glb.parts[0].faces.rows(), 0);
   EXPECT_EQ(glb.parts[0].skin, 0);

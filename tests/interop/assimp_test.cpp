@@ -119,7 +119,7 @@ class Scene {
 };
 
 TEST(Assimp, ReadsEveryExportAsWeDo) {
-  for (const Exported& exported : all_exported()) {
+  for (const Exported& exported : all_played()) {
     if (needs_eight(exported)) continue;  // assimp 5.2 reads the first four and says nothing of the others
     Scene scene(exported);
     ASSERT_EQ(scene.clip_count(), exported.file.animations.size()) << exported.name;

@@ -126,7 +126,13 @@ std::shared_ptr<Deformer> with_largest(const Deformer& deformer, int count) {
   return deformer.with_weights(weights);
 }
 
-Exported export_it(const Plan& plan) {
+struct Ready {
+  std::shared_ptr<const PreparedCharacter> character;
+  std::shared_ptr<const Deformer> screen;
+  std::vector<Pose> poses;
+};
+
+Ready make_ready(const Plan& plan, const Vec3& from) {
   KnownExtractor before(made_joints(plan.made)), after(made_joints({}));
   const auto prepared =
       std::make_shared<PreparedCharacter>(prepare_character(character_for(plan), &before, &after));
@@ -139,29 +145,62 @@ Exported export_it(const Plan& plan) {
     screen->bind(character.target.mesh.vertices, character.target.joints);
   }
   std::vector<Pose> poses = made_motion(kPoses, character.target.joints);
-  if (plan.options.in_place)  // as the export does it
-    for (Pose& pose : poses) {
+  for (Pose& pose : poses) {
+    if (plan.options.in_place) {  // as the export does it
       pose.root.x() = character.target.joints(Pelvis, 0);
       pose.root.z() = character.target.joints(Pelvis, 2);
     }
+    pose.root += from;
+  }
+  return {prepared, screen, poses};
+}
+
+/// Several plans are several performers of one file; name, suffix and what is kept of one are the first's.
+Exported export_it(const std::vector<Plan>& cast) {
+  const Plan& plan = cast[0];
+  std::vector<Ready> ready;
+  for (const Plan& one : cast)
+    ready.push_back(make_ready(one, static_cast<float>(ready.size()) * Vec3(1.5f, 0, -0.7f)));
   Exported out;
   out.name = plan.name;
   out.options = plan.options;
-  out.prepared = prepared;
+  out.prepared = ready[0].character;
   out.path = path_for(plan.name + plan.suffix);
-  std::vector<CharacterClip> clips = {{"walk", out.fps, poses}};
-  if (plan.options.t_pose_clip) clips.push_back({"walk back", 30, {poses.rbegin(), poses.rend()}});
-  out.cost_mm = export_character(out.path, character, *screen, clips, plan.options).largest_mm;
+  std::vector<CharacterPerformance> performances;
+  for (size_t k = 0; k < cast.size(); ++k) {
+    const std::vector<Pose>& poses = ready[k].poses;
+    std::vector<CharacterClip> clips = {{"walk", out.fps, poses}};
+    if (plan.options.t_pose_clip) clips.push_back({"walk back", 30, {poses.rbegin(), poses.rend()}});
+    performances.push_back(
+        {*ready[k].character, *ready[k].screen, std::move(clips), cast[k].options, cast[k].name});
+  }
+  out.cost_mm = export_character(out.path, performances).largest_mm;
   out.file = read_character(out.path);
   out.clip = plan.options.t_pose_clip ? 1 : 0;
   for (size_t i = 0; i < kFramesShown; ++i) {
     const size_t frame = i * (kPoses - 1) / (kFramesShown - 1);
     out.times.push_back(static_cast<float>(static_cast<double>(frame) / out.fps));
-    out.poses.push_back(poses[frame]);
-    out.screen.push_back(of_all_parts(screen->deform(poses[frame]), character.surface.map));
+    out.poses.push_back(ready[0].poses[frame]);
+    Points shown(0, 3);
+    for (const Ready& one : ready) {
+      const Points own = of_all_parts(one.screen->deform(one.poses[frame]), one.character->surface.map);
+      shown.conservativeResize(shown.rows() + own.rows(), 3);
+      shown.bottomRows(own.rows()) = own;
+    }
+    out.screen.push_back(std::move(shown));
   }
   for (const double frame : {0.4, 17.7}) out.times.push_back(static_cast<float>(frame / out.fps));
   return out;
+}
+
+/// Two of one character and a third with shapes.
+std::vector<Plan> three_performers() {
+  const std::vector<Plan> all = plans();
+  const auto with_shapes =
+      std::find_if(all.begin(), all.end(), [](const Plan& plan) { return plan.options.shapes > 0; });
+  std::vector<Plan> cast = {all[0], all[0], *with_shapes};
+  cast[0].name = "three_performers";
+  return cast;
 }
 
 /// As an engine sees it that knows only the first few influences of each vertex.
@@ -188,7 +227,16 @@ PlayJob Exported::job(const std::string& program) const {
 const std::vector<Exported>& all_exported() {
   static const std::vector<Exported> all = [] {
     std::vector<Exported> out;
-    for (const Plan& plan : plans()) out.push_back(export_it(plan));
+    for (const Plan& plan : plans()) out.push_back(export_it({plan}));
+    return out;
+  }();
+  return all;
+}
+
+const std::vector<Exported>& all_played() {
+  static const std::vector<Exported> all = [] {
+    std::vector<Exported> out = all_exported();
+    out.push_back(export_it(three_performers()));
     return out;
   }();
   return all;

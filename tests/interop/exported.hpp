@@ -29,6 +29,8 @@ constexpr size_t kFramesShown = 5;
 
 /// All of them, made once, in a folder that goes away with the process.
 const std::vector<Exported>& all_exported();
+/// And one file of several performers, whose `poses` and `prepared` are those of the first.
+const std::vector<Exported>& all_played();
 /// Whether the engine that reads four influences sees all of this file.
 bool needs_eight(const Exported& exported);
 

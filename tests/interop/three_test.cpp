@@ -8,11 +8,11 @@ namespace {
 
 TEST(Three, PlaysAndDrawsEveryExportAsWeDo) {
   std::vector<PlayJob> jobs;
-  for (const Exported& exported : all_exported()) jobs.push_back(exported.job("three"));
+  for (const Exported& exported : all_played()) jobs.push_back(exported.job("three"));
   const auto said = run_script("three_play.mjs", {"chromium", write_jobs(jobs)});
   ASSERT_EQ(said.size(), jobs.size());
   for (size_t i = 0; i < jobs.size(); ++i) {
-    const Exported& exported = all_exported()[i];
+    const Exported& exported = all_played()[i];
     ASSERT_FALSE(said[i].contains("failed")) << exported.name << ": " << said[i]["failed"];
     EXPECT_EQ(said[i]["clips"].size(), exported.file.animations.size()) << exported.name;
     EXPECT_EQ(said[i]["clips"][static_cast<size_t>(exported.clip)], "walk") << exported.name;

@@ -1,12 +1,15 @@
 // `understudy export` of the shipped program: good and bad runs, without a window.
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/formats/npz.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/retarget/character/characters.hpp"
+#include "tests/retarget/scene/made_scene.hpp"
 
 namespace understudy::tests {
 namespace {
@@ -63,6 +66,86 @@ TEST_F(ExportCommand, TwoSourcesAreTwoClips) {
   const Finished done = run(character(), {"--source", scans(), "--out", out("a.glb"), "--reduce", "2"});
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(read_character(out("a.glb")).animations.size(), 2u);
+}
+
+/// Somebody who walks at x = -1, and somebody who dances at x = 1, on a ground.
+constexpr int kSceneFrames = 6;
+std::string write_scene(const std::string& path) {
+  test::Actor left, right;
+  left.place = {-1, 0, 0}, right.place = {1, 0, 0.3f};
+  left.points = right.points = 3000;
+  right.motion = "dance";
+  test::MadeScene scene({left, right});
+  scene.add_ground(2, 6000);
+  NpyArray points;
+  for (int t = 0; t < kSceneFrames; ++t) {
+    const Mesh scan = scene.frame(3 * t).scan;
+    points.shape = {kSceneFrames, static_cast<int64_t>(scan.vertices.rows()), 3};
+    points.values.insert(points.values.end(), scan.vertices.data(),
+                         scan.vertices.data() + scan.vertices.size());
+  }
+  write_npz(path, {{"points", points}});
+  return path;
+}
+
+/// Middle of the vertices [first, first + count) over the frames, x and z.
+Vec3 middle(const Character& file, Eigen::Index first, Eigen::Index count) {
+  Vec3 sum = Vec3::Zero();
+  for (int t = 0; t < kSceneFrames; ++t)
+    sum += vertices_at(file, 0, static_cast<float>(t) / 30)
+               .middleRows(first, count)
+               .colwise()
+               .mean()
+               .transpose();
+  return sum / kSceneFrames;
+}
+
+TEST_F(ExportCommand, SeveralTargetsPerformThePeopleOfASceneInOneFile) {
+  MadeCharacter made;
+  made.unit = 0.01f, made.arms_down_deg = 45;
+  const std::string scene = write_scene(scratch.path("scene.npz")), ann = character(made, "ann.glb");
+  const auto perform = [&](const std::string& person, const std::vector<std::string>& targets,
+                           const std::string& name) {
+    std::vector<std::string> arguments = {"export",   "--source", scene,   "--units", "m",
+                                          "--person", person,     "--out", name};
+    for (const std::string& target : targets) arguments.insert(arguments.end(), {"--target", target});
+    return run_program(arguments);
+  };
+  expect_clean_failure(perform("all", {ann, ann, ann}, out("a.glb")),
+                       "scene.npz: shows 2 people, too few for 3 targets");
+  expect_clean_failure(perform("1", {ann, target()}, out("a.glb")),
+                       "scene.npz: 2 targets perform as many of its people");
+  expect_clean_failure(perform("1,2,3", {ann, target()}, out("a.glb")),
+                       "--person 1,2,3 is 3 people, but there are 2 targets");
+  expect_clean_failure(perform("1,x", {ann, target()}, out("a.glb")), "--person x: must be a number");
+  expect_clean_failure(perform("all", {ann, target()}, out("a.bvh")),
+                       "BVH holds one motion, not 2 performers");
+  expect_clean_failure(perform("1,7", {ann, ann}, out("a.glb")), "there is no person 7 in it");
+
+  const Finished done = perform("all", {ann, target()}, out("both.glb"));
+  ASSERT_EQ(done.code, 0) << done.err;
+  const Character both = read_character(out("both.glb"));
+  ASSERT_EQ(both.animations.size(), 1u);
+  EXPECT_EQ(both.animations[0].name, "scene");
+  for (const char* name : {"ann", "target"})
+    EXPECT_EQ(std::count_if(both.nodes.begin(), both.nodes.end(),
+                            [&](const auto& node) { return node.name == name && node.parent < 0; }),
+              1)
+        << name;
+  const Eigen::Index first = make_character(made).vertex_count(), second = both.vertex_count() - first;
+  const Vec3 a = middle(both, 0, first), b = middle(both, first, second);
+  EXPECT_NEAR(std::abs(a.x()), 1, 0.4f);
+  EXPECT_NEAR(a.x() + b.x(), 0, 0.4f) << "each where their person is";
+  EXPECT_NEAR(a.y(), b.y(), 0.3f) << "both at the size of people";
+
+  ASSERT_EQ(perform("2,1", {ann, target()}, out("exchanged.glb")).code, 0);
+  const Character exchanged = read_character(out("exchanged.glb"));
+  EXPECT_NEAR(middle(exchanged, 0, first).x(), b.x(), 0.2f);
+  EXPECT_NEAR(middle(exchanged, first, second).x(), a.x(), 0.2f);
+
+  // For one target each is a clip; who has no target is left out.
+  ASSERT_EQ(perform("all", {ann}, out("clips.glb")).code, 0);
+  EXPECT_EQ(read_character(out("clips.glb")).animations.size(), 2u);
 }
 
 TEST_F(ExportCommand, ShowsTheMapAndTakesCorrections) {

@@ -29,10 +29,10 @@ void run_blender(const std::string& script, const std::vector<PlayJob>& jobs) {
 
 TEST(Blender, PlaysEveryExportAsWeDo) {
   std::vector<PlayJob> jobs;
-  for (const Exported& exported : all_exported()) jobs.push_back(exported.job("blender"));
+  for (const Exported& exported : all_played()) jobs.push_back(exported.job("blender"));
   ASSERT_NO_FATAL_FAILURE(run_blender("blender_play.py", jobs));
   for (size_t i = 0; i < jobs.size(); ++i) {
-    const Exported& exported = all_exported()[i];
+    const Exported& exported = all_played()[i];
     const auto theirs = read_positions(jobs[i], exported.file.vertex_count());
     const Agreement found = agreement(exported, theirs, 8);
     std::printf("%-40s against our reader %.4f mm, against the screen %.4f mm (stated: %.4f mm)\n",
@@ -55,7 +55,7 @@ TEST(Blender, MovesTheMeshByThePointCacheAsWeDo) {
   const std::vector<Pose> poses = made_motion(kFrames, character->target.joints);
   input.clips = {{"walk", 25, poses}};
   PlayJob job{folder.path("walk.pc2"), folder.path("walk.blender"), 0, 25, {}};
-  app::export_motion(job.file, app::export_format("pc2", ""), input);
+  app::export_motion(job.file, app::export_format("pc2", ""), {input});
   for (int i = 0; i < kTimes; ++i)
     job.times.push_back(static_cast<float>(i * (kFrames - 1) / (kTimes - 1)) / 25);
   ASSERT_NO_FATAL_FAILURE(run_blender("blender_cache.py", {job}));

@@ -40,7 +40,7 @@ Exported exported(const TempFolder& folder, const PreparedCharacter& character, 
                   const std::vector<Pose>& poses, const CharacterExportOptions& options = {}) {
   Exported out;
   out.path = folder.path("out.glb");
-  out.cost = export_character(out.path, character, screen, {{"walk", 25, poses}}, options);
+  out.cost = export_character(out.path, {{character, screen, {{"walk", 25, poses}}, options}});
   out.file = read_character(out.path);
   return out;
 }
@@ -330,7 +330,7 @@ TEST(CharacterExport, InPlaceStaysAndTheTPoseComesFirst) {
   CharacterExportOptions options;
   options.in_place = options.t_pose_clip = true;
   const std::string path = folder.path("two.gltf");
-  export_character(path, character, screen, {{"walk", 25, poses}, {"walk", 25, poses}}, options);
+  export_character(path, {{character, screen, {{"walk", 25, poses}, {"walk", 25, poses}}, options}});
   const Character file = read_character(path);
   ASSERT_EQ(file.animations.size(), 3u);
   EXPECT_EQ(file.animations[0].name, "T-pose");
@@ -434,7 +434,7 @@ TEST(CharacterExport, RotationsTurnTheShortWay) {
   CharacterClip spin{"spin", 25, std::vector<Pose>(60)};
   for (size_t i = 0; i < spin.poses.size(); ++i)
     spin.poses[i].local[Pelvis] = rotation_about_y(0.2f * static_cast<float>(i));
-  const Character out = animated_character(character, screen, {spin}, {});
+  const Character out = animated_character({{character, screen, {spin}, {}}});
   for (const auto& track : out.animations[0].tracks) {
     if (track.path != TrackPath::Rotation) continue;
     for (size_t i = 4; i < track.values.size(); i += 4)
@@ -552,7 +552,7 @@ TEST(CharacterExport, RefusesWhatItCannotDo) {
   auto poses = made_motion(3, character.target.joints);
   const auto complaint = [&](const std::string& path, const std::vector<CharacterClip>& clips,
                              const CharacterExportOptions& options = {}) {
-    return error_of([&] { export_character(path, character, screen, clips, options); });
+    return error_of([&] { export_character(path, {{character, screen, clips, options}}); });
   };
   EXPECT_TRUE(contains(complaint(folder.path("a.glb"), {}), "no motion"));
   EXPECT_TRUE(contains(complaint(folder.path("no/a.glb"), {{"walk", 25, poses}}), "cannot be written"));

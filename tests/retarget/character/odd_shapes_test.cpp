@@ -336,8 +336,8 @@ void expect_usable(const Character& character) {
   const TempFolder folder;
   CharacterExportOptions options;
   options.their_rig = false;
-  const ExportCost cost = export_character(folder.path("a.glb"), c, screen,
-                                           {{"walk", 30, made_motion(3, c.target.joints)}}, options);
+  const ExportCost cost = export_character(
+      folder.path("a.glb"), {{c, screen, {{"walk", 30, made_motion(3, c.target.joints)}}, options}});
   EXPECT_LT(cost.mean_mm, 30.0);  // four influences a vertex, the screen has more
   EXPECT_EQ(read_character(folder.path("a.glb")).vertex_count(), character.vertex_count());
 }

@@ -14,8 +14,9 @@ using test::TempFolder;
 ExportCost cost_of(const PreparedCharacter& character, const Deformer& screen,
                    const CharacterExportOptions& options = {}) {
   const TempFolder folder;
-  return export_character(folder.path("a.glb"), character, screen,
-                          {{"walk", 25, made_motion(20, character.target.joints)}}, options);
+  return export_character(
+      folder.path("a.glb"),
+      {{character, screen, {{"walk", 25, made_motion(20, character.target.joints)}}, options}});
 }
 
 /// Everything left of the middle goes with the head, by a quarter.

@@ -36,7 +36,7 @@ float largest_bone_mm(const PreparedCharacter& character, const Joints& rest,
   const RigDeformer screen(character, nullptr);
   CharacterExportOptions options;
   options.joints = rest;
-  export_character(folder.path("a.glb"), character, screen, {{"walk", kBonesRate, poses}}, options);
+  export_character(folder.path("a.glb"), {{character, screen, {{"walk", kBonesRate, poses}}, options}});
   OwnBonesBvh writer(folder.path("a.bvh"), std::make_shared<const PreparedCharacter>(character), rest,
                      kBonesRate);
   for (const Pose& pose : poses) writer.push(pose);

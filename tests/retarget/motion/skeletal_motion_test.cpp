@@ -199,7 +199,7 @@ struct RoundTrip {
     const RigDeformer rig(prepared, nullptr);
     const Deformer& screen = options.their_rig ? static_cast<const Deformer&>(rig) : plain;
     file = folder.path("out.glb");
-    export_character(file, prepared, screen, {{"walk", fps, truth.poses}}, options);
+    export_character(file, {{prepared, screen, {{"walk", fps, truth.poses}}, options}});
   }
   SkeletalMotion opened(const SkeletalMotionOptions& options = {}) const {
     return {*read_motion(file), options};
