@@ -143,9 +143,11 @@ TEST_F(ExportCommand, SeveralTargetsPerformThePeopleOfASceneInOneFile) {
   EXPECT_NEAR(middle(exchanged, 0, first).x(), b.x(), 0.2f);
   EXPECT_NEAR(middle(exchanged, first, second).x(), a.x(), 0.2f);
 
-  // For one target each is a clip; who has no target is left out.
+  // For one target each is a clip.
   ASSERT_EQ(perform("all", {ann}, out("clips.glb")).code, 0);
   EXPECT_EQ(read_character(out("clips.glb")).animations.size(), 2u);
+  ASSERT_EQ(perform("2,1", {ann}, out("listed.glb")).code, 0);
+  EXPECT_EQ(read_character(out("listed.glb")).animations.at(0).name, "scene person 2");
 }
 
 TEST_F(ExportCommand, ShowsTheMapAndTakesCorrections) {
