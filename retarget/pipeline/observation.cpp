@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/pipeline/unseen_limbs.hpp"
 
 namespace understudy {
@@ -30,7 +30,7 @@ std::string refusal(const Observation& seen) {
     return "the extracted skeleton has numbers that are not finite";
   const float confidence = mean_confidence(seen);
   if (confidence < kLeastConfidence)
-    return detail::join("the confidence in the skeleton is only ", confidence);
+    return "the confidence in the skeleton is only " + short_number(static_cast<double>(confidence));
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 
@@ -46,7 +47,8 @@ std::vector<std::string> warnings_about(const Mesh& mesh, const Joints& joints) 
     return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / kPi;
   };
   if (size.y() < 0.5f || size.y() > 3.0f)
-    result.push_back(detail::join("the target is ", size.y(), " m tall, which no person is"));
+    result.push_back("the target is " + short_number(static_cast<double>(size.y())) +
+                     " m tall, which no person is");
   if (std::max(off_deg(LeftShoulder, LeftElbow), off_deg(RightShoulder, RightElbow)) > 35)
     result.push_back("the target's arms are not stretched out sideways: it is not in T-pose");
   if (std::max(off_deg(LeftHip, LeftKnee), off_deg(RightHip, RightKnee)) > 35 || off_deg(Spine3, Neck) > 35)

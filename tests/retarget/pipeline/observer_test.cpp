@@ -50,6 +50,10 @@ TEST(Observer, TellsTheExtractorWhatItSawJustBefore) {
   EXPECT_FALSE(told[3].last);
 }
 
+TEST(Observer, SaysInThreeDigitsHowUnsureItIs) {
+  EXPECT_EQ(refusal(Watch().see(0, 0.0677433f)), "the confidence in the skeleton is only 0.068");
+}
+
 TEST(Observer, TellsNothingOfAFrameThatIsNotBelieved) {
   Watch watch;
   const Joints good = watch.see(0).joints;
