@@ -94,7 +94,12 @@ class ScanFiles final : public Source {
       return frame;
     }
     if (!decision_) {
-      decision_ = decide_import(frame->mesh, forced_, look_ ? feet_check(look_) : FeetCheck());
+      decision_ = decide_scan_import(frame->mesh, forced_, look_ ? feet_check(look_) : FeetCheck());
+      if (!decision_) {
+        frame->usable = false;
+        frame->problem = frame->path + ": shows a ground or walls, and nobody";
+        return frame;
+      }
       const bool grounded = !forced_.floor && stand_on_ground(*decision_, frame->mesh);
       if (grounded && decision_->again) decision_->again->floor.reset();  // it will be seen again
       set_import(decision_->again);

@@ -9,8 +9,8 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/room.hpp"
 #include "retarget/geometry/cells.hpp"
-#include "retarget/geometry/ground_finder.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -110,9 +110,7 @@ FloorSlab find_floor(const Points& points, int axis, const AxisView& view) {
   return {};
 }
 
-struct UpGuess {
-  int axis = 1;
-  bool negative = false;
+struct UpGuess : UpAxis {
   FloorSlab floor;
 };
 
@@ -123,22 +121,39 @@ UpGuess guess_up(const Points& points, const std::array<AxisView, 3>& views) {
   float best_score = -1;
   for (const int axis : {1, 2, 0}) {
     const FloorSlab floor = find_floor(points, axis, views[axis]);
-    if (floor.seen) return {axis, floor.at_high_end, floor};
+    if (floor.seen) return {{axis, floor.at_high_end}, floor};
     float score = 2.0f * views[axis].middle_half + views[axis].range.size();
     if (axis == 0) score *= 0.8f;
     if (std::abs(views[axis].range.low) < 0.03f * views[axis].range.size()) score *= 1.15f;  // stands on 0
     if (score > best_score) {
       best_score = score;
-      best = {axis, false, {}};
+      best = {{axis, false}, {}};
     }
   }
   return best;
 }
 
+// The rotation that takes the up axis to +y; x stays where it can.
+Mat3 to_y_up(const UpAxis& up) {
+  Mat3 R;
+  const float s = up.negative ? -1.0f : 1.0f;
+  if (up.axis == 0)
+    R << 0, -s, 0, s, 0, 0, 0, 0, 1;
+  else if (up.axis == 1)
+    R << 1, 0, 0, 0, s, 0, 0, 0, s;
+  else
+    R << 1, 0, 0, 0, 0, s, 0, -s, 0;
+  return R;
+}
+
+float longest(const std::array<AxisView, 3>& views) {
+  return std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
+}
+
 /// The points of the largest of several bodies that stand beside each other; none where there is one.
 /// Together they are wider than tall, and would be taken for somebody who lies.
 std::optional<Points> largest_body(const Points& points, const std::array<AxisView, 3>& views) {
-  const float extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
+  const float extent = longest(views);
   if (!(extent > 1e-20f) || extent > 1e30f) return std::nullopt;
   Mesh cloud;
   cloud.vertices = points * (1 / extent);
@@ -165,41 +180,10 @@ std::array<AxisView, 3> views_of(const Points& points) {
   return views;
 }
 
-// The rotation that takes the up axis to +y; x stays where it can.
-Mat3 to_y_up(const UpGuess& up) {
-  Mat3 R;
-  const float s = up.negative ? -1.0f : 1.0f;
-  if (up.axis == 0)
-    R << 0, -s, 0, s, 0, 0, 0, 0, 1;
-  else if (up.axis == 1)
-    R << 1, 0, 0, 0, s, 0, 0, 0, s;
-  else
-    R << 1, 0, 0, 0, 0, s, 0, -s, 0;
-  return R;
-}
-
-/// A wide ground that is tilted or noisy, in a scan that is in metres by its size.
-std::optional<UpGuess> ground_in_metres(const Points& points, const std::array<AxisView, 3>& views) {
-  constexpr float kSmallest = 1.5f, kLargest = 12;  // metres; square metres of ground
-  const float extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
-  if (extent < kSmallest || extent > kLargest) return std::nullopt;
-  for (const int axis : {1, 2}) {
-    UpGuess guess{axis, false, {}};
-    const Mesh upright{points * to_y_up(guess).transpose()};
-    const std::optional<Ground> ground = GroundFinder().push(Cells(upright, 0.05f));
-    if (!ground || ground->area_m2 < kSmallest) continue;
-    const Vec3 centre = upright.vertices.colwise().mean().transpose();
-    guess.floor = {true, false, centre.y() - ground->plane.above(centre)};
-    return guess;
-  }
-  return std::nullopt;
-}
-
 /// As the largest of several bodies has it, where all of them have the same height.
 UpGuess guess_up_among(const Points& points, const std::array<AxisView, 3>& views) {
   const UpGuess of_all = guess_up(points, views);
   if (of_all.floor.seen) return of_all;
-  if (const auto ground = ground_in_metres(points, views)) return *ground;
   const auto body = largest_body(points, views);
   if (!body || body->rows() < 32) return of_all;
   const std::array<AxisView, 3> own = views_of(*body);
@@ -209,14 +193,18 @@ UpGuess guess_up_among(const Points& points, const std::array<AxisView, 3>& view
   return is_whole && !of_one.floor.seen ? of_one : of_all;
 }
 
-UpGuess forced_up(const std::string& up, const Points& points, const std::array<AxisView, 3>& views) {
+UpAxis named_up(const std::string& up) {
   const bool negative = !up.empty() && up[0] == '-';
   const std::string letter = negative ? up.substr(1) : up;
   US_CHECK(letter == "x" || letter == "y" || letter == "z", "the up axis '", up,
            "' is not one of x, y, z, -x, -y, -z");
-  UpGuess guess{letter[0] - 'x', negative, {}};
+  return {letter[0] - 'x', negative};
+}
+
+UpGuess forced_up(const std::string& up, const Points& points, const std::array<AxisView, 3>& views) {
+  UpGuess guess{named_up(up), {}};
   const FloorSlab floor = find_floor(points, guess.axis, views[guess.axis]);
-  if (floor.seen && floor.at_high_end == negative) guess.floor = floor;
+  if (floor.seen && floor.at_high_end == guess.negative) guess.floor = floor;
   return guess;
 }
 
@@ -255,7 +243,14 @@ bool is_given(const std::string& option) {
 struct BodySize {
   float height = 0, extent = 0;  // of the scan, along up and along any axis
   std::optional<float> stature;  // of somebody whose feet are not in it
+  std::optional<Room> room;      // that the height is of somebody in
 };
+
+std::string from_room(const Room& room) {
+  if (room.people == 0) return " (from what is on the ground)";
+  return " (from " + std::string(room.people == 1 ? "a body" : std::to_string(room.people) + " bodies") +
+         " on the ground, " + short_number(room.height) + " tall)";
+}
 
 // Writes unit and scale into the decision; returns the words about it.
 std::string decide_size(const BodySize& size, const ImportOptions& options, ImportDecision& decision) {
@@ -264,7 +259,9 @@ std::string decide_size(const BodySize& size, const ImportOptions& options, Impo
   const bool guess = !is_given(forced);
   const Unit* unit = nullptr;
   for (const auto& candidate : kUnits)
-    if (guess ? height >= candidate.low && height < candidate.high : forced == candidate.name)
+    if (!guess      ? forced == candidate.name
+        : size.room ? size.room->metres == candidate.metres
+                    : height >= candidate.low && height < candidate.high)
       unit = &candidate;
   US_CHECK(guess || unit, "the unit '", forced, "' is not one of m, dm, cm, mm, in");
   if (options.height) return given_height(height, *options.height, decision);
@@ -273,6 +270,7 @@ std::string decide_size(const BodySize& size, const ImportOptions& options, Impo
   decision.scale = unit->metres;
   return std::string("units: ") + unit->plural +
          (!guess         ? " (given)"
+          : size.room    ? from_room(*size.room)
           : size.stature ? " (from a stature of " + short_number(height) + ", by what is seen)"
                          : " (from the height " + short_number(height) + ")");
 }
@@ -281,6 +279,7 @@ std::string decide_size(const BodySize& size, const ImportOptions& options, Impo
 class FirstView {
  public:
   FirstView(const Mesh& first, const std::string& up);
+  explicit FirstView(const Room& room);
   ImportDecision decided(const ImportOptions& forced, const std::optional<UnseenFeet>& cut) const;
   // What a check finds, in the file's units.
   std::optional<UnseenFeet> checked(const Mesh& first, const ImportOptions& forced,
@@ -303,7 +302,13 @@ FirstView::FirstView(const Mesh& first, const std::string& up) {
   const float high = up_.negative ? -range.low : range.high;
   if (up_.floor.seen) low_ = up_.negative ? -up_.floor.height : up_.floor.height;
   size_.height = high - low_;
-  size_.extent = std::max({views[0].range.size(), views[1].range.size(), views[2].range.size()});
+  size_.extent = longest(views);
+}
+
+FirstView::FirstView(const Room& room)
+    : up_{room.up, {true, room.up.negative, room.up.negative ? -room.floor : room.floor}}, low_(room.floor) {
+  size_.height = room.height;
+  size_.room = room;
 }
 
 std::optional<UnseenFeet> FirstView::checked(const Mesh& first, const ImportOptions& forced,
@@ -383,6 +388,25 @@ ImportDecision decide_import(const Mesh& first, const ImportOptions& forced, con
   ImportDecision decision = view.decided(forced, cut);
   if (!decision.warning.empty()) log::warn(decision.warning);
   return decision;
+}
+
+std::optional<ImportDecision> decide_scan_import(const Mesh& first, const ImportOptions& forced,
+                                                 const FeetCheck& check) {
+  const RoomView view = view_room(first);
+  std::vector<float> metres;
+  for (const char* name : {"m", "mm", "cm", "in", "dm"})
+    for (const Unit& unit : kUnits)
+      if (unit.name == std::string(name) && (!is_given(forced.units) || forced.units == name))
+        metres.push_back(unit.metres);
+  std::vector<UpAxis> ups = {{1, false}, {2, false}, {0, false}, {1, true}, {2, true}, {0, true}};
+  if (is_given(forced.up)) ups = {named_up(forced.up)};
+  if (const auto room = find_room(view, metres, ups)) return FirstView(*room).decided(forced, {});
+  const bool is_flat = 20 * view.rest.rows() < view.points.rows();
+  if (is_flat && !(is_given(forced.units) && is_given(forced.up))) return std::nullopt;
+  const bool is_walled = 2 * view.rest.rows() < view.points.rows();
+  if (is_walled && !is_flat)
+    return decide_import(Mesh{outside(view.planes, even_points(first))}, forced, check);
+  return decide_import(first, forced, check);
 }
 
 }  // namespace understudy

@@ -75,4 +75,11 @@ struct ImportDecision {
 /// Throws Error when the options are not among those named, or there is no finite point.
 ImportDecision decide_import(const Mesh& first, const ImportOptions& forced, const FeetCheck& check = {});
 
+/// The same from a scan that may show more than one body. Where bodies stand on a ground, that tells the way
+/// up and the floor, and as whose people are 0.8 to 2.3 m tall the units; nobody is asked then. A wall behind
+/// somebody is no ground. None where the scan shows only a ground or walls and not both units and up are
+/// given: a later frame tells.
+std::optional<ImportDecision> decide_scan_import(const Mesh& first, const ImportOptions& forced,
+                                                 const FeetCheck& check = {});
+
 }  // namespace understudy

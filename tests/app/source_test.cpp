@@ -200,6 +200,22 @@ TEST_F(SourceFiles, AFrameOfThreePointsDecidesNothing) {
   EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 1.7f, 0.02);
 }
 
+TEST_F(SourceFiles, AGroundAloneDecidesNothing) {
+  std::ofstream ground(scratch.path("frame_00000.xyz"));
+  for (int i = 0; i < 2500; ++i) ground << 8 * (i % 50) << ' ' << 8 * (i / 50) << " 0.1\n";
+  ground.close();
+  write_frame(1, 100);
+  const auto source = open_source(here());
+  const auto first = source->next();
+  EXPECT_FALSE(first->usable);
+  EXPECT_NE(first->problem.find("shows a ground or walls, and nobody"), std::string::npos) << first->problem;
+  EXPECT_EQ(source->decision(), "");
+  EXPECT_NEAR(source->next()->mesh.vertices.col(1).maxCoeff(), 1.7f, 0.02);
+  EXPECT_NE(source->decision().find("centimetres"), std::string::npos) << source->decision();
+  source->seek(0);
+  EXPECT_TRUE(source->next()->usable);  // what was decided stays
+}
+
 TEST_F(SourceFiles, ASoughtFrameIsTheSameAsInOrder) {
   std::ofstream(scratch.path("frame_00000.xyz")) << "0 0 0\n0 5000 0\n1 1 1\n";
   std::ofstream(scratch.path("frame_00001.xyz")) << "nan nan nan\n";

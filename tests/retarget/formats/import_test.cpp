@@ -325,5 +325,108 @@ TEST(Import, PeopleBesideEachOtherStandThoughTheyAreWiderThanTall) {
   }
 }
 
+// 6 m square, the ground first, then walls of 2.6 m.
+std::vector<Vec3> bare_room(int walls) {
+  Rng rng(5);
+  std::vector<Vec3> points;
+  const auto off = [&] { return 0.005f * rng.normal(); };
+  for (int i = 0; i < 6000; ++i) points.push_back({rng.uniform(-3, 3), off(), rng.uniform(-3, 3)});
+  for (int k = 0; k < walls; ++k)
+    for (int i = 0; i < 4000; ++i) {
+      const float along = rng.uniform(-3, 3), up = rng.uniform(0, 2.6f),
+                  side = (k < 2 ? -3.0f : 3.0f) + off();
+      points.push_back(k % 2 == 0 ? Vec3(along, up, side) : Vec3(side, up, along));
+    }
+  return points;
+}
+
+std::vector<Vec3> moved(std::vector<Vec3> points, const Vec3& by) {
+  for (Vec3& p : points) p += by;
+  return points;
+}
+
+std::vector<Vec3> operator+(std::vector<Vec3> a, const std::vector<Vec3>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(Import, ARoomIsAsItsPeopleStandInIt) {
+  const std::vector<std::pair<const char*, float>> units = {
+      {"m", 1}, {"cm", 100}, {"mm", 1000}, {"in", 1 / 0.0254f}};
+  for (const int walls : {0, 1, 4})
+    for (const int people : {1, 3})
+      for (const std::string up : {"y", "z", "x", "-y"})
+        for (const auto& [unit, scale] : units) {
+          std::vector<Vec3> room = bare_room(walls);
+          for (int k = 0; k < people; ++k)
+            room = room + moved(person(k == 1), {1.6f * static_cast<float>(k) - 1, 0, -0.7f});
+          const Mesh file = as_file(room, up, scale, file_axes(up) * Vec3(0, 0.4f, 0));
+          const auto decision = decide_scan_import(file, {});
+          ASSERT_TRUE(decision);
+          SCOPED_TRACE(decision->sentence + " of " + std::to_string(walls) + " walls");
+          EXPECT_EQ(decision->units, unit);
+          EXPECT_EQ(decision->up, up);
+          EXPECT_NEAR(decision->floor, 0.4f, 0.02f);
+          EXPECT_NEAR(decision->height, 1.7f, 0.04f);
+        }
+}
+
+TEST(Import, OnlyAGroundOrWallsDecideNothing) {
+  for (const int walls : {0, 2, 4}) {
+    const Mesh file = as_file(bare_room(walls), "z", 100);
+    EXPECT_FALSE(decide_scan_import(file, {})) << walls;
+    ImportOptions given;
+    given.units = "cm";
+    EXPECT_FALSE(decide_scan_import(file, given)) << walls;
+    given.up = "z";
+    const auto decision = decide_scan_import(file, given);
+    ASSERT_TRUE(decision) << walls;
+    EXPECT_EQ(decision->scale, 0.01f);
+  }
+}
+
+TEST(Import, AWallBehindSomebodyIsNoGround) {
+  std::vector<Vec3> wall = bare_room(1);
+  wall.erase(wall.begin(), wall.begin() + 6000);  // the ground
+  for (const std::string up : {"y", "z"}) {
+    const Mesh file = as_file(wall + moved(person(false), {0, 0, -1.5f}), up, 1000);
+    const auto decision = decide_scan_import(file, {});
+    ASSERT_TRUE(decision);
+    EXPECT_EQ(decision->up, up) << decision->sentence;
+    EXPECT_EQ(decision->units, "mm");
+    EXPECT_NEAR(decision->height, 1.7f, 0.04f);
+    EXPECT_NEAR(decision->floor, 0, 0.02f);
+  }
+}
+
+TEST(Import, OfARoomWhatIsGivenIsNotGuessed) {
+  const Mesh file = as_file(bare_room(2) + person(false), "z", 1000);
+  ImportOptions given;
+  given.units = "cm";
+  given.up = "z";
+  given.floor = 0.5f;
+  const auto decision = decide_scan_import(file, given);
+  ASSERT_TRUE(decision);
+  EXPECT_EQ(decision->scale, 0.01f);
+  EXPECT_EQ(decision->floor, 0.5f);
+  ImportOptions tall;
+  tall.height = 1.2f;
+  EXPECT_NEAR(decide_scan_import(file, tall)->scale, 1.2f / 1700, 2e-5f);
+}
+
+TEST(Import, APersonAloneIsDecidedAlikeWithoutARoom) {
+  for (const bool t_pose : {false, true})
+    for (const std::string up : {"y", "z"})
+      for (const float scale : {1.0f, 100.0f, 1000.0f, 209.0f}) {
+        Warnings warnings;
+        const Mesh file = as_file(person(t_pose), up, scale, {0.3f, 0.1f, 0.2f});
+        const ImportDecision plain = decide_import(file, {});
+        const auto decision = decide_scan_import(file, {});
+        ASSERT_TRUE(decision);
+        EXPECT_EQ(decision->sentence, plain.sentence);
+        EXPECT_EQ(decision->to_file(), plain.to_file());
+      }
+}
+
 }  // namespace
 }  // namespace understudy
