@@ -68,14 +68,15 @@ TEST_F(ExportCommand, TwoSourcesAreTwoClips) {
   EXPECT_EQ(read_character(out("a.glb")).animations.size(), 2u);
 }
 
-/// Somebody who walks at x = -1, and somebody who dances at x = 1, on a ground.
+/// Somebody who walks at x = -1, and somebody who dances at x = 1, on a ground; behind them a third one.
 constexpr int kSceneFrames = 6;
-std::string write_scene(const std::string& path) {
-  test::Actor left, right;
+std::string write_scene(const std::string& path, bool with_third = false) {
+  test::Actor left, right, third;
   left.place = {-1, 0, 0}, right.place = {1, 0, 0.3f};
   left.points = right.points = 3000;
   right.motion = "dance";
-  test::MadeScene scene({left, right});
+  third.place = {0.2f, 0, -1.5f}, third.points = 3000;
+  test::MadeScene scene(with_third ? std::vector{left, right, third} : std::vector{left, right});
   scene.add_ground(2, 6000);
   NpyArray points;
   for (int t = 0; t < kSceneFrames; ++t) {
@@ -148,6 +149,16 @@ TEST_F(ExportCommand, SeveralTargetsPerformThePeopleOfASceneInOneFile) {
   EXPECT_EQ(read_character(out("clips.glb")).animations.size(), 2u);
   ASSERT_EQ(perform("2,1", {ann}, out("listed.glb")).code, 0);
   EXPECT_EQ(read_character(out("listed.glb")).animations.at(0).name, "scene person 2");
+}
+
+TEST_F(ExportCommand, WhoHasNoTargetIsLeftOutAndNamed) {
+  const std::string scene = write_scene(scratch.path("scene.npz"), /*with_third=*/true);
+  const Finished all =
+      run_program({"export", "--source", scene, "--units", "m", "--person", "all", "--target", target(),
+                   "--target", target(), "--frames", "2", "--out", out("a.glb")});
+  ASSERT_EQ(all.code, 0) << all.err;
+  EXPECT_NE(all.err.find("scene person 3 is left out: there are 2 targets"), std::string::npos) << all.err;
+  EXPECT_EQ(read_character(out("a.glb")).skins.size(), 2u);
 }
 
 TEST_F(ExportCommand, ShowsTheMapAndTakesCorrections) {

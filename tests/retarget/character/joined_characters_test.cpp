@@ -244,8 +244,8 @@ TEST(SeveralPerformers, KeepTheirMaterialsAndShareEqualPictures) {
   Dancer ann = in_centimetres(2), bob = z_up(2);
   bob.character.character = in_two_pictures(bob.character.character);
   ann.character.character.extensions = {"KHR_texture_transform"};
-  ann.character.character.materials[0] =
-      R"({"pbrMetallicRoughness":{"baseColorTexture":{"extensions":{"KHR_texture_transform":{}},"index":0}}})";
+  ann.character.character.materials[0] = R"({"pbrMetallicRoughness":{"baseColorTexture":)"
+                                         R"({"extensions":{"KHR_texture_transform":{}},"index":0}}})";
   const Character file = written(folder, {ann.performing("Ann"), bob.performing("Bob")});
   const std::string common = made_picture() + R"({"wrapS":33071})";
   EXPECT_EQ(pictures(file), (std::vector<std::string>{common, "", common,
@@ -274,7 +274,7 @@ TEST(SeveralPerformers, PlayTheirClipsTogetherAndKeepTheirOwnApart) {
   const Character file = written(folder, {ann.performing("Ann", options), twice});
   std::vector<std::string> names;
   for (const auto& animation : file.animations) names.push_back(animation.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"dance", "encore", "nod", "Bob:nod"}));
+  ASSERT_EQ(names, (std::vector<std::string>{"dance", "encore", "nod", "Bob:nod"}));
   const int a = node_called(file, "Ann"), b = node_called(file, "Bob");
   const auto moves = [&](size_t animation, int top) {
     const auto& tracks = file.animations[animation].tracks;
