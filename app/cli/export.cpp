@@ -269,7 +269,9 @@ Performance perform_document(const ExportOptions& options, const ExportFormat& f
   const Session& session = studio->session();
   const std::vector<size_t> takes = chosen_takes(options, session.document, format);
   make_takes(options, *studio, takes[0]);
-  return {{export_input(session, takes, choice_of(options, format))}, session.document.takes[takes[0]].name};
+  Performance out{export_inputs(session, takes, choice_of(options, format)), ""};
+  for (const ExportInput& one : out.performers) append_item(out.by, one.name);
+  return out;
 }
 
 /// A file of each take into the folder --out; what goes wrong with one keeps no other out.
@@ -386,7 +388,8 @@ void report_cost(const ExportOptions& options, const Performance& done, const Ex
     report.update(report_of(done.by, done.performers[0]));
   else
     for (size_t k = 0; k < done.performers.size(); ++k)
-      report["performers"].push_back(report_of(options.targets[k], done.performers[k]));
+      report["performers"].push_back(report_of(
+          k < options.targets.size() ? options.targets[k] : done.performers[k].name, done.performers[k]));
   report["cost"] = {{"frames", cost.frames}, {"keys", cost.keys}, {"bytes", cost.bytes}};
   if (cost.measured) {
     report["cost"]["mean_mm"] = cost.mean_mm;

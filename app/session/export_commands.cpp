@@ -20,17 +20,17 @@ void run_export(Call& c) {
   const ExportFormat& format = *choice.format;
   US_CHECK(takes.size() == 1 || format.is_character, path, ": ", format.label, " holds one motion, not ",
            takes.size());
-  const auto input = std::make_shared<ExportInput>(export_input(c.session, takes, choice));
+  const auto performers = std::make_shared<std::vector<ExportInput>>(export_inputs(c.session, takes, choice));
   check_export(path, format);
   const auto cost = std::make_shared<ExportCost>();
   c.studio.jobs().start(
       "Exporting " + file_name(path),
-      [input, path, &format, cost](JobControl& control) {
-        input->body.file.progress = [&control](float done) {
+      [performers, path, &format, cost](JobControl& control) {
+        performers->front().body.file.progress = [&control](float done) {
           control.check();
           control.progress(done);
         };
-        *cost = export_motion(path, format, {*input});
+        *cost = export_motion(path, format, *performers);
       },
       [&studio = c.studio, path, cost] {
         studio.notify("Exported " + file_name(path) + ": " + sentence(*cost), false, showing(path));
@@ -107,7 +107,8 @@ void add_export_commands(Commands& commands) {
   commands.add({"export.run", "Export animation",
                 "TAKE PATH [format=NAME] [preset=" + names_of_presets() +
                     "] [bones=own|22] [influences=4|8] [morphs=COUNT] [reduce=MM] "
-                    "[in_place=on] [root_motion=on] [t_pose=on] [keep_clips=on] [take=NAME ...: more clips]"},
+                    "[in_place=on] [root_motion=on] [t_pose=on] [keep_clips=on] [take=NAME ...: clips of the "
+                    "same character, or others who perform at once]"},
                run_export);
   commands.add({"export.all", "Export all takes, a file each",
                 "FOLDER [format=NAME|csv] and the options of export.run"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "app/run/export_presets.hpp"
@@ -68,6 +69,32 @@ ExportChoice choice_for(const Session& session, size_t k, ExportChoice choice) {
   if (!own) choice.own_bones.reset();
   if (!own || !choice.own_bones.value_or(true)) choice.file.keep_clips = false;
   return choice;
+}
+
+bool are_one_body(const Take& a, const Take& b) {
+  return same(a.target, b.target) && same(a.target_edits, b.target_edits) &&
+         a.method.offsets == b.method.offsets;
+}
+
+/// Takes of one body.
+ExportInput input_of(const Session& session, const std::vector<size_t>& takes, const ExportChoice& choice) {
+  const Take& take = session.document.takes[takes[0]];
+  const TakeState& state = session.takes[takes[0]];
+  ExportInput out;
+  out.name = take.name;
+  for (const size_t k : takes) {
+    const std::string& name = session.document.takes[k].name;
+    US_CHECK(session.takes[k].problem.empty(), name, ": ", session.takes[k].problem);
+    US_CHECK(session.takes[k].ready && session.takes[k].character && !session.takes[k].shown.poses.empty(),
+             name, ": has no frames to export yet");
+    add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
+  }
+  out.body = {state.character, state.deformer, choice.file};
+  const bool own = on_their_rig(take.target, *state.character);
+  US_CHECK(own || !choice.own_bones.value_or(false), take.name, ": does not perform on bones of its own");
+  out.body.file.their_rig = choice.own_bones.value_or(own && choice.format->is_character);
+  out.body.file.joints = state.target->joints;
+  return out;
 }
 
 /// Makes a folder, and those above it that are missing.
@@ -146,41 +173,43 @@ size_t take_called(const Document& document, const std::string& name, int first)
   throw Error("there is no take '" + name + "'" + (all.empty() ? "" : ", only " + all));
 }
 
-std::vector<size_t> takes_of_one_body(const Document& document, size_t take) {
+std::vector<size_t> takes_of_one_file(const Document& document, size_t take) {
+  std::map<std::string, const Take*> characters;  // by whom they perform
+  characters[document.takes.at(take).person] = &document.takes[take];
   std::vector<size_t> out;
-  const Take& first = document.takes.at(take);
   for (size_t k = 0; k < document.takes.size(); ++k) {
-    const Take& other = document.takes[k];
-    if (other.person == first.person && same(other.target, first.target) &&
-        same(other.target_edits, first.target_edits) && other.method.offsets == first.method.offsets)
-      out.push_back(k);
+    const Take& one = document.takes[k];
+    if (are_one_body(one, *characters.emplace(one.person, &one).first->second)) out.push_back(k);
   }
   return out;
 }
 
-ExportInput export_input(const Session& session, const std::vector<size_t>& takes,
-                         const ExportChoice& choice) {
+std::vector<ExportInput> export_inputs(const Session& session, const std::vector<size_t>& takes,
+                                       const ExportChoice& choice) {
   US_CHECK(!takes.empty(), "no take was chosen for export");
-  const Take& take = session.document.takes.at(takes[0]);
-  const TakeState& state = session.takes[takes[0]];
-  const std::vector<size_t> one_body = takes_of_one_body(session.document, takes[0]);
-  ExportInput out;
+  std::vector<std::vector<size_t>> of_people;  // takes of the same person
   for (const size_t k : takes) {
-    const std::string& name = session.document.takes.at(k).name;
-    US_CHECK(std::find(one_body.begin(), one_body.end(), k) != one_body.end(), name, ": is no take of the ",
-             "same target as ", take.name,
-             ", with the same joints, weights and offsets: it cannot be a clip ", "of the same file");
-    US_CHECK(session.takes[k].problem.empty(), name, ": ", session.takes[k].problem);
-    US_CHECK(session.takes[k].ready && session.takes[k].character && !session.takes[k].shown.poses.empty(),
-             name, ": has no frames to export yet");
-    add_clip(out, session, k, takes.size() > 1 ? name : clip_name(session, take));
+    const Take& take = session.document.takes.at(k);
+    const auto same_person = [&](const auto& of) {
+      return session.document.takes[of[0]].person == take.person;
+    };
+    const auto found = std::find_if(of_people.begin(), of_people.end(), same_person);
+    if (found == of_people.end()) {
+      of_people.push_back({k});
+      continue;
+    }
+    const Take& first = session.document.takes[found->front()];
+    US_CHECK(
+        are_one_body(take, first), take.name, ": is no take of the same target as ", first.name,
+        ", with the same joints, weights and offsets, nor of another person: it cannot be in the same file");
+    found->push_back(k);
   }
-  out.body = {state.character, state.deformer, choice.file};
-  const bool own = on_their_rig(take.target, *state.character);
-  US_CHECK(own || !choice.own_bones.value_or(false), take.name, ": does not perform on bones of its own");
-  out.body.file.their_rig = choice.own_bones.value_or(own && choice.format->is_character);
-  out.body.file.joints = state.target->joints;
-  return out;
+  std::vector<ExportInput> inputs;
+  inputs.reserve(of_people.size());
+  for (const auto& of : of_people)
+    inputs.push_back(
+        input_of(session, of, of_people.size() > 1 ? choice_for(session, of[0], choice) : choice));
+  return inputs;
 }
 
 std::string safe_file_name(const std::string& name) {
@@ -210,12 +239,12 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
                                  const ExportChoice& choice) {
   const ExportFormat& format = *choice.format;
   return files_of(session, folder, format.suffix, [&](size_t k, const std::string& path) -> WriteTake {
-    const auto input =
-        std::make_shared<ExportInput>(export_input(session, {k}, choice_for(session, k, choice)));
-    return [input, path, &format](const std::function<void(float)>& progress) {
+    const auto performers = std::make_shared<std::vector<ExportInput>>(
+        export_inputs(session, {k}, choice_for(session, k, choice)));
+    return [performers, path, &format](const std::function<void(float)>& progress) {
       check_export(path, format);
-      input->body.file.progress = progress;
-      export_motion(path, format, {*input});
+      performers->front().body.file.progress = progress;
+      export_motion(path, format, *performers);
     };
   });
 }

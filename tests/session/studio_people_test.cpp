@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "retarget/character/read_character.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/retarget/scene/made_scene.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -157,6 +158,19 @@ TEST_F(PeopleTest, TwoTargetsPerformTwoOfTheScans) {
     const Joints& theirs = made_[0].joints[static_cast<size_t>((k == 0 ? first : other) - 1)];
     EXPECT_NEAR(place(k).x(), theirs(Pelvis, 0), 0.06f) << k;
     EXPECT_NEAR(place(k).z(), theirs(Pelvis, 2), 0.06f) << k;
+  }
+  studio.run("export.run", {"0", path("both.glb"), "take=1"});
+  studio.wait_idle();
+  ASSERT_TRUE(session.errors.empty()) << session.errors.front().text;
+  const Character both = read_character(path("both.glb"));
+  ASSERT_EQ(both.animations.size(), 1u) << "they perform at once";
+  const Points vertices = vertices_at(both, 0, 0);
+  for (const int who : {first, other}) {  // half of the vertices near each
+    const Vec3 theirs = made_[0].joints[static_cast<size_t>(who - 1)].row(Pelvis).transpose();
+    const auto away =
+        ((vertices.col(0).array() - theirs.x()).square() + (vertices.col(2).array() - theirs.z()).square())
+            .sqrt();
+    EXPECT_EQ((away < 0.8f).count(), vertices.rows() / 2) << who;
   }
   EXPECT_FALSE(session.takes[1].metrics.empty()) << "measured against their own part of the scans";
   const Joints before = session.source.frames[2].joints;

@@ -180,24 +180,24 @@ void draw_character_rows(Ui& ui, const app::TakeState& take, bool own_bones, Exp
              file.keep_clips);
 }
 
-/// How many takes can be clips of one file with the current one.
-size_t count_of_clips(const app::Session& session) {
+/// Those that can be in one file with the current one.
+std::vector<size_t> takes_that_fit(const app::Session& session) {
   const size_t selected = session.selected_take;
-  return selected < session.document.takes.size() ? takes_of_one_body(session.document, selected).size() : 0;
+  return selected < session.document.takes.size() ? takes_of_one_file(session.document, selected)
+                                                  : std::vector<size_t>();
 }
 
-bool are_clips(const app::Session& session, const ExportState& state) {
+bool are_in_one_file(const app::Session& session, const ExportState& state) {
   const app::ExportFormat* const format = format_of(state);
-  return state.takes == ExportTakes::Clips && format != nullptr && format->is_character &&
-         count_of_clips(session) > 1;
+  return state.takes == ExportTakes::OneFile && format != nullptr && format->is_character &&
+         takes_that_fit(session).size() > 1;
 }
 
-/// The takes that go into the file, one clip each.
-std::vector<size_t> clips_of(const app::Session& session, const ExportState& state) {
-  const size_t selected = session.selected_take;
-  if (!are_clips(session, state)) return {selected};
+/// The takes that go into the file.
+std::vector<size_t> takes_of_file(const app::Session& session, const ExportState& state) {
+  if (!are_in_one_file(session, state)) return {static_cast<size_t>(session.selected_take)};
   std::vector<size_t> takes;
-  for (const size_t k : takes_of_one_body(session.document, selected))
+  for (const size_t k : takes_that_fit(session))
     if (state.left_out.count(k) == 0) takes.push_back(k);
   return takes;
 }
@@ -217,9 +217,9 @@ std::string frames_words(const app::Session& session, size_t k) {
   return grouped(static_cast<int64_t>(frames)) + " frames";
 }
 
-/// Which of the takes that can be clips of the file are.
-void draw_clip_rows(const app::Session& session, Ui& ui, ExportState& state) {
-  for (const size_t k : takes_of_one_body(session.document, session.selected_take)) {
+/// Which of the takes are in the file.
+void draw_rows_of_file(const app::Session& session, Ui& ui, ExportState& state) {
+  for (const size_t k : takes_that_fit(session)) {
     bool in_file = state.left_out.count(k) == 0;
     const std::string words = session.document.takes[k].name + "  \u00b7  " + frames_words(session, k);
     ImGui::Indent(ui.px(16));
@@ -241,16 +241,16 @@ void draw_take_rows(const app::Session& session, PanelContext& context, ExportSt
   std::vector<std::string> takes;
   for (const app::Take& take : session.document.takes) takes.push_back(take.name);
   const app::ExportFormat* const format = format_of(state);
-  const bool can_be_clips = format != nullptr && format->is_character && count_of_clips(session) > 1;
+  const bool can_be_one = format != nullptr && format->is_character && takes_that_fit(session).size() > 1;
   if (takes.size() > 1) {
     std::vector<std::string> choices = {"This take", "One file per take"};
-    if (can_be_clips) choices.push_back("One file");
-    int which = state.takes == ExportTakes::Clips && !can_be_clips ? 0 : static_cast<int>(state.takes);
+    if (can_be_one) choices.push_back("One file");
+    int which = state.takes == ExportTakes::OneFile && !can_be_one ? 0 : static_cast<int>(state.takes);
     const std::string before = suffix_of(session, state);
     row(ui, "Takes", "Which takes are exported");
     if (dropdown(ui, "export.takes", choices, which,
                  {"The take below alone", "All takes, each in a file named after it",
-                  "All takes of this target, as clips of one file"}))
+                  "Takes of this target are its clips; targets of other people perform beside it, at once"}))
       state.takes = static_cast<ExportTakes>(which);
     follow_suffix(session, state, before);
   }
@@ -258,7 +258,7 @@ void draw_take_rows(const app::Session& session, PanelContext& context, ExportSt
   int chosen = session.selected_take;
   row(ui, "Take");
   if (dropdown(ui, "export.take", takes, chosen)) context.ask("target.select", {std::to_string(chosen)});
-  if (are_clips(session, state)) draw_clip_rows(session, ui, state);
+  if (are_in_one_file(session, state)) draw_rows_of_file(session, ui, state);
 }
 
 /// What becomes of the path across the floor: it is left out or carried by a bone, not both.
@@ -344,7 +344,7 @@ void ask_for_animation(const app::Session& session, PanelContext& context, Expor
     words.insert(words.begin(), state.path);
     return ask_noted(context, state, "export.all", words);
   }
-  const std::vector<size_t> takes = clips_of(session, state);
+  const std::vector<size_t> takes = takes_of_file(session, state);
   if (takes.empty()) return;
   words.insert(words.begin(), {std::to_string(takes[0]), state.path});
   for (size_t i = 1; i < takes.size(); ++i)
@@ -546,7 +546,7 @@ bool draw_export(const app::Session& session, PanelContext& context, ExportState
   ButtonRow buttons(2);
   ButtonOptions save;
   save.look = ButtonLook::Main, save.disabled = state.path.empty() || (state.kind == ExportKind::Animation &&
-                                                                       clips_of(session, state).empty());
+                                                                       takes_of_file(session, state).empty());
   bool stays = !buttons.add(ui, "export.cancel", "Cancel", {});
   const bool entered = path.entered || (enter_pressed() && !ImGui::GetIO().WantTextInput);
   if (buttons.add(ui, "export.save", "Save", save) ||

@@ -1,6 +1,6 @@
 // The export dialog: animations, figures, pictures, video.
 // Marks: export.preset, export.preset.words, export.format, export.takes (.0 the current one, .1 a file each,
-// .2 clips of one file), export.take, export.bones, export.influences, export.morphs, export.reduce,
+// .2 one file), export.take, export.bones, export.influences, export.morphs, export.reduce,
 // export.in_place, export.root_motion, export.t_pose, export.keep_clips, export.clip.TAKE, export.path,
 // export.browse, export.size, export.width, export.height, export.all, export.transparent, export.as,
 // export.save, export.cancel; export.overwrite.yes and .cancel.
@@ -19,8 +19,8 @@ enum class ExportKind { Animation, Picture, Video };
 /// Which takes an animation is of.
 enum class ExportTakes {
   Current,
-  Files,  ///< all of them, a file each
-  Clips   ///< those of the current one's target, clips of one file
+  Files,   ///< all of them, a file each
+  OneFile  ///< those that fit the current one, in one file
 };
 
 struct ExportState {
@@ -28,7 +28,7 @@ struct ExportState {
   int format = 0;            ///< of an animation: one of app::export_formats(), or behind them the figures
   app::ExportChoice choice;  ///< of an animation, kept for the next one; its format is not used
   ExportTakes takes = ExportTakes::Current;
-  std::set<size_t> left_out;  ///< of the clips
+  std::set<size_t> left_out;  ///< of the one file
   std::string path;           ///< whole, with its suffix; of a file each their folder
   bool typed = false;         ///< the path, or chosen; else it follows the take
   int width = 1920, height = 1080;
