@@ -27,6 +27,22 @@ double score_of(const PersonSeen& seen, bool largest, bool anyone_moves) {
   return (seen.is_sure ? 1.0 : 0.01) * still * seen.quality * std::sqrt(seen.points);
 }
 
+/// Who is surely a person by looks and does not move, as the end of a sentence; empty: all move.
+std::string still_people(const std::map<int, PersonSeen>& all) {
+  std::string who;
+  int count = 0;
+  for (const auto& [id, seen] : all) {
+    if (!seen.is_sure || seen.moved_m >= kMoves_m) continue;
+    append_item(who, std::to_string(id));
+    ++count;
+  }
+  if (count == 0) return {};
+  const bool one = count == 1;
+  return std::string("; ") + (one ? "person " : "people ") + who + (one ? " does" : " do") +
+         " not move in the first second: " +
+         (one ? "somebody who stands still, or a mannequin" : "they stand still, or are mannequins");
+}
+
 }  // namespace
 
 PersonCut::PersonCut(std::shared_ptr<SkeletonExtractor> extractor, const SourceOptions& options)
@@ -103,6 +119,7 @@ void PersonCut::look_ahead(const SourceFrame& frame, Source& source, int64_t nex
     if (later->usable) take_apart(*later, source, next - 1 + k);
   }
   choose(scene_now_);
+  if (moved) still_ = still_people(seen_);
   if (moved) source.seek(next);
   restart();
   take_apart(frame, source, next - 1);
@@ -122,7 +139,7 @@ void PersonCut::apply(SourceFrame& frame, Source& source, int64_t next) {
     log::warn(name_ + ": a crowd: " + std::to_string(People::kMost) + " people are followed, " +
               std::to_string(scene_now_.left_out) + " more are left out");
   if (scene_now_.owner.empty() && scene_now_.alone == person_) return;
-  frame.mesh = part_of(frame.mesh, scene_now_, person_);
+  frame.mesh = person_ > 0 ? part_of(frame.mesh, scene_now_, person_) : Mesh{};  // 0 is the scenery
   if (frame.mesh.vertices.rows() > 0) return;
   frame.usable = false;
   frame.problem =
@@ -141,7 +158,7 @@ void PersonCut::tell_choice() const {
                                                      : " is taken, who is seen best (--person chooses)";
   if (several > 1)
     log::info(name_ + ": " + std::to_string(several) + " people are seen; person " + std::to_string(person_) +
-              why);
+              why + still_);
   else if (scene_now_.owner.size() > 0)
     log::info(name_ + ": one person" + std::string(scene_now_.ground ? ", and a ground" : "") +
               ", which are told apart in each frame");

@@ -65,6 +65,7 @@ class PersonCut {
   std::vector<std::pair<int, int>> ids_;  // of those in the last frame: here, and in the scene
   std::map<int, PersonSeen> seen_;
   int person_ = 0;
+  std::string still_;  // who did not move in the first second, for a message
   bool is_sure_ = false, looked_ahead_ = false, told_crowd_ = false;
 };
 

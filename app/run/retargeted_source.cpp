@@ -44,6 +44,7 @@ std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints
   if (known) given.joints = *known;
   const Observation seen = known ? observer.observe(given, scan->mesh, dt) : observed(observer, *scan, dt);
   if (!known && scan->usable && !scan->skeleton) cut_.tell(seen);
+  if (!scan->usable) problem_ = scan->problem;
   if (!seen.warning.empty()) doubt_ = seen.warning;
   if (scan->usable && !scan->skeleton && !refusal(seen).empty()) ++unrecognised_;
   frame.result = retargeter_.push(seen, dt);
@@ -70,7 +71,8 @@ void RetargetedSource::check_used() const {
       std::string("; where a scan holds a floor or a second person, ") + kCleaning + " take them out";
   const std::string missing = frames_ > flagged_ ? "" : cut_.missing();
   US_CHECK(missing.empty(), name_, ": ", missing);
-  US_CHECK(frames_ > flagged_, name_, ": no frame in it could be used", unrecognised_ > 0 ? advice : "");
+  const std::string why = unrecognised_ > 0 ? "no person is recognised in it" + advice : problem_;
+  US_CHECK(frames_ > flagged_, name_, ": no frame in it could be used", why.empty() ? "" : ": ", why);
   if (unrecognised_ == 0 && doubt_.empty()) return;
   std::string sentence = name_ + ": ";
   if (unrecognised_ > 0)

@@ -56,7 +56,8 @@ class RetargetedSource {
   std::string name_;
   ScanEdits edits_;
   PersonCut cut_;
-  std::string doubt_;  // why the source may be no person; empty: nothing speaks against it
+  std::string doubt_;    // why the source may be no person; empty: nothing speaks against it
+  std::string problem_;  // of the last frame that could not be used
   int64_t frames_ = 0, flagged_ = 0, unrecognised_ = 0;
   std::array<int64_t, kFourLimbs.size()> seen_{};
   UnseenTold told_;

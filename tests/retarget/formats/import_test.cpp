@@ -428,5 +428,49 @@ TEST(Import, APersonAloneIsDecidedAlikeWithoutARoom) {
       }
 }
 
+TEST(Import, OnStairsUpIsWhereTheyLead) {
+  for (const std::string up : {"y", "z"}) {
+    Rng rng(2);
+    std::vector<Vec3> stairs;
+    for (int step = 0; step < 8; ++step)
+      for (int i = 0; i < 900; ++i) {
+        const float x = rng.uniform(-0.7f, 0.7f), at = rng.uniform(0, 0.48f), k = static_cast<float>(step);
+        stairs.push_back(at < 0.3f ? Vec3(x, 0.18f * k, 0.3f * k + at)
+                                   : Vec3(x, 0.18f * k + at - 0.3f, 0.3f * k + 0.3f));
+      }
+    const Mesh file = as_file(stairs + moved(person(false), {0, 0.54f, 1.05f}), up, 1000);
+    const auto decision = decide_scan_import(file, {});
+    ASSERT_TRUE(decision);
+    EXPECT_EQ(decision->units, "mm") << decision->sentence;
+    EXPECT_EQ(decision->up, up) << decision->sentence;
+  }
+}
+
+TEST(Import, PointsInOnePlaneDecideNothingHoweverItLies) {
+  Rng rng(2);
+  Mesh plane;
+  plane.vertices.resize(5000, 3);
+  for (auto row : plane.vertices.rowwise()) {
+    const float a = rng.uniform(-1, 1), b = rng.uniform(-1, 1);
+    row << a, 0.7f * a + b, 0.3f * b;
+  }
+  EXPECT_FALSE(decide_scan_import(plane, {}));
+}
+
+TEST(Import, FiveMillionPointsAreDecidedFrom) {
+  const std::vector<Vec3> room = bare_room(2) + person(false);
+  Mesh dense;
+  dense.vertices.resize(5000000, 3);
+  Rng rng(2);
+  for (auto row : dense.vertices.rowwise()) {
+    const Vec3& p = room[rng.below(static_cast<int>(room.size()))];
+    row << p.x() + rng.uniform(-0.02f, 0.02f), p.y(), p.z();
+  }
+  const auto decision = decide_scan_import(dense, {});
+  ASSERT_TRUE(decision);
+  EXPECT_EQ(decision->units + decision->up, "my") << decision->sentence;
+  EXPECT_NEAR(decision->height, 1.7f, 0.04f);
+}
+
 }  // namespace
 }  // namespace understudy
