@@ -18,9 +18,10 @@ int main(int argc, char** argv) {
     retargeter.set_target(read_mesh(argv[2]));
 
     ScanSource scans(argv[1]);
-    std::optional<ImportDecision> import;  // units, axes and floor: as the first frame says
+    std::optional<ImportDecision> import;  // units, axes and floor: as the first frame of somebody says
     while (auto scan = scans.next()) {
-      if (scan->usable && !import) import = decide_import(scan->mesh, {});
+      if (scan->usable && !import) import = decide_scan_import(scan->mesh, {});
+      if (!import) continue;
       if (scan->usable) import->apply(scan->mesh);
       const PerformedFrame frame = retargeter.push(scan->mesh, /*dt=*/1.0f / 30);
       const auto head = frame.joints.row(Head);
