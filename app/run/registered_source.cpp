@@ -22,7 +22,7 @@ bool same_topology(const Mesh& a, const Mesh& b) {
 /// Looks at the first two usable frames and goes back.
 bool starts_with_one_topology(Source& source) {
   const auto first = next_usable(source), second = first ? next_usable(source) : std::nullopt;
-  if (first) source.seek(0);
+  if (first || source.count().value_or(0) > 0) source.seek(0);  // frames that cannot be used count, too
   return second && !first->skeleton && !first->mesh.is_cloud() && same_topology(first->mesh, second->mesh);
 }
 

@@ -80,6 +80,18 @@ TEST_F(BadInput, OnlyAFrameWithThreePoints) {
   expect_clean_failure(retarget(scratch.path("three"), {"--out", out("a.glb")}), "three");
 }
 
+TEST_F(BadInput, AGroundWithoutAnybody) {
+  Rng rng(1);
+  Points ground(4000, 3);
+  for (auto row : ground.rowwise()) row << rng.uniform(-2, 2), 0.004f * rng.normal(), rng.uniform(-2, 2);
+  for (const int frame : {0, 1}) write_text(folder("ground") + "/" + frame_name(frame), ply("4000", ground));
+  const std::string says = "no frame in it could be used: " + scratch.path("ground");
+  expect_clean_failure(retarget(scratch.path("ground"), {"--out", out("a.glb")}), says);
+  expect_clean_failure(run_program({"measure", scratch.path("ground"), "--out", out("a.json")}), says);
+  expect_clean_failure(retarget(scratch.path("ground"), {"--units", "m", "--up", "y", "--out", out("a.glb")}),
+                       "no frame in it could be used: nobody is seen in it");
+}
+
 TEST_F(BadInput, AFrameOfNanAndInfinity) {
   Points points = person_points(2);
   points.topRows(1000).setConstant(std::numeric_limits<float>::quiet_NaN());
