@@ -30,15 +30,15 @@ ExportChoice export_choice(const std::string& path, const std::vector<std::strin
 /// when there is none or several have the name.
 size_t take_called(const Document& document, const std::string& name, int first = 0);
 
-/// Takes that can be in one file with this one, itself too: clips of one character are those in which the same
-/// person is performed by the same target with the same joints and weights, with or without offsets alike; a
-/// character of another person performs beside it.
+/// Takes that can be in one file with this one, itself too: clips of one character are those in which the
+/// same person is performed by the same target with the same joints and weights, with or without offsets
+/// alike; a character of another person performs beside it.
 std::vector<size_t> takes_of_one_file(const Document& document, size_t take);
 
 /// Copied for another thread: the shown motions without what trim and skip leave out, on the target with its
-/// moved joints and painted weights. Takes of one person are clips of one performer, several performers perform
-/// at once. A performer's only clip has the source's name, each of several that of its take. Throws Error when
-/// nothing has been performed yet, or the takes cannot be in one file.
+/// moved joints and painted weights. Takes of one person are clips of one performer, several performers
+/// perform at once. A performer's only clip has the source's name, each of several that of its take. Throws
+/// Error when nothing has been performed yet, or the takes cannot be in one file.
 std::vector<ExportInput> export_inputs(const Session& session, const std::vector<size_t>& takes,
                                        const ExportChoice& choice);
 
