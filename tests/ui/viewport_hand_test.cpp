@@ -630,6 +630,19 @@ TEST_F(ViewsTest, WithoutAJointNothingIsPainted) {
   EXPECT_EQ(count("edit.paint"), 0);
 }
 
+TEST_F(ViewsTest, AClickOnAnotherJointChoosesItToBePaintedAndPaintsNothing) {
+  stage.session.tool = app::Tool::Paint, stage.session.selected_joint = Spine2;
+  frame(3);
+  click(seen(1, take_joint(LeftElbow)));
+  EXPECT_EQ(stage.session.selected_joint, LeftElbow);
+  EXPECT_EQ(count("edit.paint"), 0);
+  click(seen(0, source_joint(RightKnee)));
+  EXPECT_EQ(stage.session.selected_joint, RightKnee) << "the source's, too";
+  EXPECT_EQ(count("edit.paint"), 0);
+  click(seen(1, take_joint(RightKnee)));
+  EXPECT_EQ(count("edit.paint"), 1) << "on the chosen one it paints";
+}
+
 TEST_F(ViewsTest, AHandleOfTheCropBoxMovesItsSideAlone) {
   stage.session.tool = app::Tool::Crop;
   stage.session.document.scan_edits.crop = Box{Vec3(-1, 0, -0.5f), Vec3(1, 2, 1)};

@@ -364,10 +364,24 @@ bool Hand::work_on_box(const HandPlace& place, const Pointer& pointer, app::Comm
   return true;
 }
 
+/// Another joint than the one that is painted, under the pointer; -1: none. A stroke goes on over them.
+int Hand::joint_to_paint(const HandPlace& place, const Pointer& pointer) const {
+  const app::Layers& layers = place.pane.source ? place.session.view.source : place.session.view.take;
+  const Joints* joints = app::pane_joints(place.session, place.pane.number, place.pictures.frame);
+  if (busy() || !layers.skeleton || joints == nullptr) return -1;
+  const int joint = point_at(place.view, *joints, pointer.at, kReach * place.scale);
+  return joint == place.session.selected_joint ? -1 : joint;
+}
+
 bool Hand::paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue) {
   brush_.reset();
-  hovered_ = -1;
   if (busy() && (pointer.released || !pointer.held)) grip_ = Grip::None;
+  hovered_ = joint_to_paint(place, pointer);
+  if (hovered_ >= 0) {
+    tip_ = "Click: paint its weights";
+    if (pointer.pressed) queue.push_back({"select.joint", {joint_name(hovered_)}});
+    return true;
+  }
   const auto hit = take_under(place.session, place.pane, place.pictures, place.view.ray(pointer.at));
   if (!hit) return busy();
   const Mesh& mesh = first_take(place.session, place.pane)->target->mesh;

@@ -68,6 +68,7 @@ class Hand {
   void finish(const HandPlace& place, app::CommandQueue& queue);
   bool work_on_box(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
   bool paint(const HandPlace& place, const Pointer& pointer, app::CommandQueue& queue);
+  int joint_to_paint(const HandPlace& place, const Pointer& pointer) const;
   /// The drag, or else the edit just pushed.
   Grip current() const { return busy() ? grip_ : settling_; }
   Joints moved_joints(const HandPlace& place) const;
