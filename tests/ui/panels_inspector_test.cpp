@@ -312,6 +312,17 @@ TEST_F(MetricsPanel, TheHistogramShowsTheStageChosen) {
   EXPECT_NEAR(state.durations[128], 2.1, 0.1);
 }
 
+TEST_F(MetricsPanel, NamesKeepTheirRoomHoweverManyTakesThereAre) {
+  for (int k = 0; k < 6; ++k) {
+    session.document.takes.push_back(session.document.takes[0]);
+    session.takes.push_back(session.takes[0]);
+  }
+  session.takes[0].metrics = {{"arm_buried_added", 0.01}};
+  frame(3);
+  EXPECT_LT(mark("metrics.figures.0.text").rect.height(), 4.5f * ImGui::GetTextLineHeight());
+  EXPECT_FALSE(shown("metrics.figures.title.7"));
+}
+
 TEST_F(MetricsPanel, NamesAreWholeAndPlainAndWhatNeedsTruthIsNamed) {
   session.takes[0].metrics = {{"arm_buried_added", 0.01}, {"new_in_2_0", 3}};
   frame(2);

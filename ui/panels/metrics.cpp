@@ -104,23 +104,49 @@ void draw_needing_truth(const app::Session& session, Ui& ui) {
   ui.mark("metrics.needs_truth");
 }
 
+/// Of a column beside its text, at scale 1.
+float padding(const Ui& ui) {
+  return (2 * ImGui::GetStyle().CellPadding.x + 1) / ui.scale();
+}
+
+/// What the names of the metrics leave, at scale 1.
+float room_for_takes(const Ui& ui) {
+  constexpr float kNames = 120;
+  return ImGui::GetContentRegionAvail().x / ui.scale() - kNames - padding(ui);
+}
+
+/// The current one and as many of the others, in their order, as the panel has room for.
+std::vector<size_t> takes_that_fit(const app::Session& session, const Ui& ui) {
+  constexpr float kLeast = 48;
+  const size_t count = std::min(session.takes.size(), session.document.takes.size()),
+               selected = session.selected_take;
+  const size_t fit = std::clamp<size_t>(std::max(1.0f, room_for_takes(ui) / (kLeast + padding(ui))), 1,
+                                        std::max<size_t>(count, 1));
+  std::vector<size_t> takes;
+  for (size_t k = 0; k < count; ++k)
+    if (k == selected || takes.size() + (selected > k ? 1 : 0) < fit) takes.push_back(k);
+  return takes;
+}
+
 void draw_figures(const app::Session& session, Ui& ui) {
   const std::vector<std::string> keys = figure_keys(session);
   if (keys.empty()) {
     hint(ui, session.working ? "Shown when all frames are processed." : "Nothing to compare yet.");
     return;
   }
+  const std::vector<size_t> takes = takes_that_fit(session, ui);
+  constexpr float kUsual = 72;
+  const float width = std::min(kUsual, (room_for_takes(ui) - padding(ui) * takes.size()) / takes.size());
   std::vector<Column> columns = {{"Metric", 0, false}};
-  for (size_t k = 0; k < session.takes.size() && k < session.document.takes.size(); ++k)
-    columns.push_back({session.document.takes[k].name, 72, true});
-  Table table(ui, "metrics.figures", columns);
-  if (!table.open()) return;
-  for (const std::string& key : keys) {
-    table.row(false, false);
-    table.whole_cell(words_of(key));
-    if (const std::string words = hint_of(key); !words.empty()) tooltip(ui, words);
-    for (size_t k = 0; k + 1 < columns.size(); ++k) table.cell(figure_of(session.takes[k].metrics, key));
-  }
+  for (const size_t k : takes) columns.push_back({session.document.takes[k].name, width, true});
+  if (Table table(ui, "metrics.figures", columns); table.open())
+    for (const std::string& key : keys) {
+      table.row(false, false);
+      table.whole_cell(words_of(key));
+      if (const std::string words = hint_of(key); !words.empty()) tooltip(ui, words);
+      for (const size_t k : takes) table.cell(figure_of(session.takes[k].metrics, key));
+    }
+  if (takes.size() < session.document.takes.size()) hint(ui, "A wider panel shows more takes.");
 }
 
 void draw_stages(const app::Latency& latency, Ui& ui) {
