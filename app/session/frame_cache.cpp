@@ -258,6 +258,7 @@ struct FrameCache::Impl {
   std::deque<Request> prefetches;  // made in their order
   std::optional<Request> making;
   bool making_demanded = false;
+  int64_t pictures_made = 0;
 
   SourceOptions source;
   ScanEdits edits;
@@ -380,7 +381,7 @@ Worker::Task FrameCache::Impl::next() {
     if (!problem.empty()) log::warn_once("a picture cannot be made: " + problem);
     const auto held = worker.lock();
     making.reset();
-    if (still_wanted(entry.of)) store.put(std::move(entry));
+    if (still_wanted(entry.of)) store.put(std::move(entry)), ++pictures_made;
   };
 }
 
@@ -454,6 +455,11 @@ void FrameCache::wait() const {
 int64_t FrameCache::bytes() const {
   const auto held = impl_->worker.lock();
   return impl_->store.bytes();
+}
+
+int64_t FrameCache::made() const {
+  const auto held = impl_->worker.lock();
+  return impl_->pictures_made;
 }
 
 bool FrameCache::busy() const {

@@ -62,6 +62,7 @@ class FrameCache {
   void wait() const;
 
   int64_t bytes() const;  ///< in use
+  int64_t made() const;   ///< pictures since the start
   bool busy() const;      ///< also while prefetching
 
  private:

@@ -185,7 +185,7 @@ bool Application::due() const {
   if (seconds_between(input_at_, now) < kTooltips && since_drawn > kLookingAround) return true;
   if (gui_->wants_text() && since_drawn > kBlink) return true;
   if (!session().jobs.empty() && since_drawn > kBarMoves) return true;
-  return fingerprint() != on_screen_;
+  return fingerprint(arrived()) != on_screen_;
 }
 
 /// How long nothing can happen but input, seconds.
@@ -199,13 +199,17 @@ double Application::patience_s() const {
   return gui_->wants_text() ? kBlink : kAsleep;
 }
 
+/// Pictures and looks that other threads have made.
+int64_t Application::arrived() const {
+  return studio_->cache().made() + views_->arrived();
+}
+
 /// Changes with all that a frame shows and that no command changed.
-std::string Application::fingerprint() const {
+std::string Application::fingerprint(int64_t arrived) const {
   const Session& s = session();
-  std::string key =
-      key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(), s.notices_made,
-             s.errors.size(), s.question.has_value(), s.working, s.log.size(), s.changed, s.truth != nullptr,
-             studio_->cache().bytes(), views_->arrived(), s.view);
+  std::string key = key_of(shown_frame(s), s.source.frames.size(), s.source.generation, s.notices.size(),
+                           s.notices_made, s.errors.size(), s.question.has_value(), s.working, s.log.size(),
+                           s.changed, s.truth != nullptr, arrived, s.view);
   for (const TakeState& take : s.takes)
     key += key_of(take.ready, take.problem, take.paint_problem, take.generation, take.shown.poses.size(),
                   take.performed.size(), take.series.size(), take.as_loaded != nullptr);
@@ -242,14 +246,15 @@ void Application::handle(const InputEvent& event) {
 }
 
 void Application::draw(double dt, const std::vector<InputEvent>& events) {
-  drawn_at_ = Clock::now();  // when it began: what takes long must not be waited for on top
+  drawn_at_ = Clock::now();                  // when it began: what takes long must not be waited for on top
+  const int64_t arrived_before = arrived();  // what comes while it is drawn may not be in it
   if (observer_) observer_->input(dt, events, session());
   for (const InputEvent& event : events) handle(event);
   frames_wanted_ = events.empty() ? std::max(0, frames_wanted_ - 1) : kSettling;
   take_log();
   const render::RenderTarget target = surface_->target();
   if (target.size.width > 0 && target.size.height > 0) draw_interface(dt, events);
-  on_screen_ = fingerprint();
+  on_screen_ = fingerprint(arrived_before);
   drawing_took_s_ = seconds_between(drawn_at_, Clock::now());
   run_queue();
   show_state();

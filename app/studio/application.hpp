@@ -87,7 +87,8 @@ class Application {
   double patience_s() const;
   double fastest_s() const;
   bool due() const;
-  std::string fingerprint() const;
+  int64_t arrived() const;
+  std::string fingerprint(int64_t arrived) const;
 
   ApplicationOptions options_;
   std::unique_ptr<Surface> surface_;

@@ -120,6 +120,7 @@ TEST(FrameCacheScans, AreMadeInTheBackgroundWithNormals) {
   ASSERT_EQ(picture->normals.rows(), 16);
   EXPECT_NEAR(std::abs(picture->normals(0, 1)), 1, 1e-5);  // the triangle lies flat
   EXPECT_EQ(probe.made, std::vector<int>{3});
+  EXPECT_EQ(cache.made(), 1);
   EXPECT_GT(cache.bytes(), 16 * 24);
 }
 
