@@ -268,6 +268,7 @@ Performance perform_document(const ExportOptions& options, const ExportFormat& f
   const auto studio = open_document(options);
   const Session& session = studio->session();
   const std::vector<size_t> takes = chosen_takes(options, session.document, format);
+  check_not_read(options.out, files_read_by(session.document));
   make_takes(options, *studio, takes[0]);
   Performance out{export_inputs(session, takes, choice_of(options, format)), ""};
   for (const ExportInput& one : out.performers) append_item(out.by, one.name);
@@ -416,6 +417,10 @@ int run_export(const ExportOptions& options) {
   const ExportFormat& format = export_format(options.format, options.out);
   US_CHECK(options.preview.empty() || format.is_character, options.preview,
            ": --preview needs a GLB or glTF file");
+  std::vector<std::string> read = options.sources;
+  read.insert(read.end(), options.targets.begin(), options.targets.end());
+  read.push_back(options.source.motion);
+  check_not_read(options.out, read);
   check_export(options.out, format);
   if (options.bones == "own") check_own_bones(options.out, format);
   CharacterExportOptions on_any_rig = options.file;

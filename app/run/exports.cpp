@@ -225,6 +225,17 @@ void check_export(const std::string& path, const ExportFormat& format) {
   const PartFolder made_and_removed(path);
 }
 
+bool is_one_of(const std::string& path, const std::vector<std::string>& files) {
+  return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
+    std::error_code is_none;
+    return !file.empty() && fs::equivalent(path, file, is_none);
+  });
+}
+
+void check_not_read(const std::string& path, const std::vector<std::string>& files) {
+  US_CHECK(!is_one_of(path, files), path, ": is read here, and would be lost; choose another name");
+}
+
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file) {
   US_CHECK(!format.is_character || file.their_rig || !file.keep_clips, path,

@@ -36,6 +36,11 @@ std::string export_suffixes();
 /// Throws Error at once when nothing could be written there, before hours of work are done for it.
 void check_export(const std::string& path, const ExportFormat& format);
 
+/// Whether writing there would replace one of these files; empty paths are none.
+bool is_one_of(const std::string& path, const std::vector<std::string>& files);
+/// Throws Error where it would: they are read, and would be lost.
+void check_not_read(const std::string& path, const std::vector<std::string>& files);
+
 /// Throws Error where an option asks for something that such a file cannot hold.
 void check_export_options(const std::string& path, const ExportFormat& format,
                           const CharacterExportOptions& file);

@@ -67,6 +67,13 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
   visit("takes", document.takes);
 }
 
+/// All that the document reads; some may be empty.
+inline std::vector<std::string> files_read_by(const Document& document) {
+  std::vector<std::string> files = {document.source.path, document.source.motion, document.truth};
+  for (const Take& take : document.takes) files.push_back(take.target.path);
+  return files;
+}
+
 /// Whether a take performs somebody else of the scans than the source's own person.
 inline bool performs_another(const Document& document, const Take& take) {
   return !take.person.empty() && take.person != document.source.person;

@@ -21,6 +21,7 @@ void run_export(Call& c) {
   US_CHECK(takes.size() == 1 || format.is_character, path, ": ", format.label, " holds one motion, not ",
            takes.size());
   const auto performers = std::make_shared<std::vector<ExportInput>>(export_inputs(c.session, takes, choice));
+  check_not_read(path, files_read_by(c.document));
   check_export(path, format);
   const auto cost = std::make_shared<ExportCost>();
   c.studio.jobs().start(

@@ -239,6 +239,7 @@ std::vector<TakeFile> take_files(const Session& session, const std::string& fold
                                  const ExportChoice& choice) {
   const ExportFormat& format = *choice.format;
   return files_of(session, folder, format.suffix, [&](size_t k, const std::string& path) -> WriteTake {
+    check_not_read(path, files_read_by(session.document));
     const auto performers = std::make_shared<std::vector<ExportInput>>(
         export_inputs(session, {k}, choice_for(session, k, choice)));
     return [performers, path, &format](const std::function<void(float)>& progress) {

@@ -388,6 +388,7 @@ StagedPerformance staged(const CharacterPerformance& performance, bool has_own_p
 std::vector<StagedPerformance> staged(const std::vector<CharacterPerformance>& performances) {
   US_CHECK(!performances.empty(), "there is no motion to export");
   std::vector<StagedPerformance> out;
+  out.reserve(performances.size());
   for (const auto& one : performances) out.push_back(staged(one, performances.size() > 1));
   return out;
 }

@@ -8,6 +8,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/read_character.hpp"
+#include "retarget/formats/bytes.hpp"
 #include "tests/retarget/character/characters.hpp"
 #include "tests/session/studio_fixture.hpp"
 
@@ -150,6 +151,19 @@ TEST_F(StudioCharacter, TakesOfOneTargetAreClipsOfOneFile) {
   studio.run("method.offsets", {"1", "off"});
   studio.wait_idle();
   EXPECT_NE(refused("take=1").find("offsets"), std::string::npos);
+}
+
+TEST_F(StudioCharacter, WhatTheDocumentReadsIsNeverWrittenOver) {
+  Studio studio(services());
+  open(studio);
+  const std::string before = read_file(path("made.glb"));
+  EXPECT_NE(refusal(studio, "export.run", {"0", path("made.glb")}).find("would be lost"), std::string::npos);
+  EXPECT_NE(refusal(studio, "export.run", {"0", path("scan.npz")}).find("would be lost"), std::string::npos);
+  studio.try_run("export.all", {path(""), "format=glb"});
+  studio.wait_idle();
+  ASSERT_EQ(studio.session().errors.size(), 1u);
+  EXPECT_NE(studio.session().errors[0].text.find("would be lost"), std::string::npos);
+  EXPECT_EQ(read_file(path("made.glb")), before);
 }
 
 TEST_F(StudioCharacter, AllTakesAreExportedAFileEachAndWhatFailsKeepsNoOtherOut) {

@@ -590,6 +590,16 @@ TEST_F(Exporting, TheFormatDecidesTheCommandAndTheSuffix) {
   EXPECT_EQ(take_log(), Lines{"export.csv 0 " + (folder / "adult.csv").string()});
 }
 
+TEST_F(Exporting, ProposesNoFileThatTheDocumentReads) {
+  const std::string read = (folder / "adult.glb").string();
+  std::ofstream(read) << "a character";
+  session.document.takes[0].target.path = read;
+  session.source.name = "walk.npz";
+  open("export");
+  click("export.save");
+  EXPECT_EQ(take_log(), Lines{"export.run 0 \"" + (folder / "adult walk.glb").string() + "\" format=glb"});
+}
+
 TEST_F(Exporting, SaysWhatTheAnimationIsToBe) {
   open("export");
   click("export.influences.1");

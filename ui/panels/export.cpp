@@ -69,7 +69,12 @@ std::string proposed_path(const app::Session& session, const ExportState& state)
   std::string name = take != nullptr && !many ? take->name : fs::path(session.source.name).stem().string();
   if (!is_of_take && !session.path.empty()) name = fs::path(session.path).stem().string();
   if (many) name += name.empty() ? "takes" : " takes";  // nothing else is called so
-  return (usual_folder(session) / (app::safe_file_name(name) + suffix_of(session, state))).string();
+  const auto path = [&] {
+    return (usual_folder(session) / (app::safe_file_name(name) + suffix_of(session, state))).string();
+  };
+  if (app::is_one_of(path(), files_read_by(session.document)))  // a character's own file is not written over
+    name += " " + fs::path(session.source.name).stem().string();
+  return path();
 }
 
 /// What was typed as a whole path: in the usual folder where it names none, with the suffix where that is
