@@ -133,6 +133,20 @@ TEST_F(KeysTest, AKeyThatFollowsTabAtOnceIsNotLost) {
   EXPECT_EQ(take_log(), Lines{"playback.frame 14"});
 }
 
+TEST_F(KeysTest, EscapeLeavesAToolAndNothingElse) {
+  key(Key::Escape);
+  EXPECT_EQ(take_log(), Lines{});
+  session.tool = app::Tool::Paint;
+  frame();
+  key(Key::Escape);
+  EXPECT_EQ(take_log(), Lines{"tool look"});
+  session.tool = app::Tool::Paint;
+  workspace.open_dialog(session, "settings");
+  frame(3);
+  key(Key::Escape);
+  EXPECT_EQ(take_log(), Lines{}) << "it closes the dialog";
+}
+
 TEST_F(KeysTest, ADialogKeepsTheRingToItself) {
   tab_to("tools.look");
   workspace.open_dialog(session, "settings");

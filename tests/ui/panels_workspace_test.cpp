@@ -920,6 +920,7 @@ TEST_F(Exporting, BrowsingComesBackWithThePath) {
 TEST_F(WorkspaceTest, ComparingAddsATakeWithWhatDiffers) {
   workspace.open_dialog(session, "compare");
   frame(3);
+  EXPECT_FALSE(mark("compare.apply").enabled) << "nothing would differ";
   click("compare.engine.1");
   click("compare.offsets");
   click("compare.apply");

@@ -103,6 +103,8 @@ void ask_for_keys(const app::Session& session, PanelContext& context) {
   if (!any || io.WantTextInput || !ImGui::GetCurrentContext()->OpenPopupStack.empty()) return;
   for (const Binding& binding : bindings(context.commands))
     if (pressed(binding.keys)) return ask_or_open(session, context, binding.command, binding.arguments);
+  const bool drags = ImGui::IsMouseDown(ImGuiMouseButton_Left);  // Escape ends the drag
+  if (session.tool != app::Tool::Look && !drags && pressed("Escape")) context.ask("tool", {"look"});
 }
 
 }  // namespace understudy::ui

@@ -27,6 +27,7 @@ std::string keys_of(const app::Commands& commands, const std::string& command,
 bool pressed(const std::string& keys);
 
 /// Pushes the commands of the keys pressed in this frame, unless the user is typing or a dialog is open.
+/// Escape goes back to looking around.
 void ask_for_keys(const app::Session& session, PanelContext& context);
 
 /// Pushes a command, or opens the dialog that asks for its missing path.

@@ -243,9 +243,11 @@ bool draw_compare(const app::Session& session, PanelContext& context, CompareSta
   ButtonRow buttons(2);
   ButtonOptions apply;
   apply.look = ButtonLook::Main;
+  app::Arguments arguments = differences(take->method, *state.method);
+  apply.disabled = arguments.empty();
+  apply.tooltip = arguments.empty() ? "Choose something else first: this is how it is made now" : "";
   bool stays = !buttons.add(ui, "compare.cancel", "Cancel", {});
   if (buttons.add(ui, "compare.apply", "Compare", apply)) {
-    app::Arguments arguments = differences(take->method, *state.method);
     arguments.insert(arguments.begin(), std::to_string(session.selected_take));
     context.ask("compare.add", arguments);
     stays = false;
