@@ -74,9 +74,13 @@ inline std::vector<std::string> files_read_by(const Document& document) {
   return files;
 }
 
-/// Whether a take performs somebody else of the scans than the source's own person.
+/// Who of the scans is performed by a take, as SourceOptions::person.
+inline const std::string& person_of(const Document& document, const Take& take) {
+  return take.person.empty() ? document.source.person : take.person;
+}
+/// Whether that is somebody else than the source's own person.
 inline bool performs_another(const Document& document, const Take& take) {
-  return !take.person.empty() && take.person != document.source.person;
+  return person_of(document, take) != document.source.person;
 }
 /// The first take of the source's own person, by which the source's skeletons are repaired and smoothed; as
 /// many as there are takes: none.

@@ -83,8 +83,8 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
   plan.skeleton_edits = document.skeleton_edits;
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const Take& take = document.takes[k];
-    plan.takes.push_back({take_ids[k], take.person.empty() ? document.source.person : take.person,
-                          take.target, take.method, take.target_edits.joints, take.target_edits.rest_pose});
+    plan.takes.push_back({take_ids[k], person_of(document, take), take.target, take.method,
+                          take.target_edits.joints, take.target_edits.rest_pose});
   }
   const size_t by = take_of_source(document);
   if (by < plan.takes.size()) plan.shown_by = take_ids[by];

@@ -175,11 +175,12 @@ size_t take_called(const Document& document, const std::string& name, int first)
 
 std::vector<size_t> takes_of_one_file(const Document& document, size_t take) {
   std::map<std::string, const Take*> characters;  // by whom they perform
-  characters[document.takes.at(take).person] = &document.takes[take];
+  characters[person_of(document, document.takes.at(take))] = &document.takes[take];
   std::vector<size_t> out;
   for (size_t k = 0; k < document.takes.size(); ++k) {
     const Take& one = document.takes[k];
-    if (are_one_body(one, *characters.emplace(one.person, &one).first->second)) out.push_back(k);
+    if (are_one_body(one, *characters.emplace(person_of(document, one), &one).first->second))
+      out.push_back(k);
   }
   return out;
 }
@@ -191,7 +192,8 @@ std::vector<ExportInput> export_inputs(const Session& session, const std::vector
   for (const size_t k : takes) {
     const Take& take = session.document.takes.at(k);
     const auto same_person = [&](const auto& of) {
-      return session.document.takes[of[0]].person == take.person;
+      const Document& document = session.document;
+      return person_of(document, document.takes[of[0]]) == person_of(document, take);
     };
     const auto found = std::find_if(of_people.begin(), of_people.end(), same_person);
     if (found == of_people.end()) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "app/session/take_export.hpp"
 #include "retarget/character/read_character.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/retarget/scene/made_scene.hpp"
@@ -172,6 +173,12 @@ TEST_F(PeopleTest, TwoTargetsPerformTwoOfTheScans) {
     EXPECT_NEAR(middle.x(), theirs.x(), 0.15f) << who;
     EXPECT_NEAR(middle.z(), theirs.z(), 0.15f) << who;
   }
+  EXPECT_EQ(takes_of_one_file(session.document, 0), (std::vector<size_t>{0, 1}));
+  Document named = session.document;
+  named.source.person = two;  // by whom the other is the source's own, whether named or not
+  named.takes[0].person.clear();
+  named.takes[1].target.betas = {1};
+  EXPECT_EQ(takes_of_one_file(named, 0), std::vector<size_t>{0}) << "two bodies of one person";
   EXPECT_FALSE(session.takes[1].metrics.empty()) << "measured against their own part of the scans";
   const Joints before = session.source.frames[2].joints;
   studio.run("take.person", {"0", two});
