@@ -74,6 +74,7 @@ std::string PersonCheck::push(const Extraction& seen) {
 Observer::Observer(std::shared_ptr<SkeletonExtractor> extractor) : extractor_(std::move(extractor)) {}
 
 void Observer::restart() {
+  surface_.restart();
   recent_ = {};
   looked_.reset();
   unseen_s_ = 0;
@@ -82,7 +83,9 @@ void Observer::restart() {
 
 void Observer::pass(float dt) {
   unseen_s_ += dt;
-  if (unseen_s_ > kPast_s) recent_ = {};
+  if (unseen_s_ <= kPast_s) return;
+  recent_ = {};
+  surface_.restart();
 }
 
 Observation Observer::observe(const Mesh& scan, float dt) {
@@ -94,12 +97,15 @@ Observation Observer::observe(const Mesh& scan, float dt) {
     const Eigen::Index usable = finite_count(scan.vertices);
     US_CHECK(usable >= kFewestPoints, "the scan has ", usable, " usable points");
     static_cast<Extraction&>(seen) = extracted(scan);
+    if (refusal(seen).empty()) {
+      recent_.push(seen.joints);
+      static_cast<Extraction&>(seen) = surface_.follow(seen, scan);
+    }
     look_around(seen, scan);
   } catch (const Error& error) {
     seen = without_skeleton(error.what());
   }
   if (refusal(seen).empty()) {
-    recent_.push(seen.joints);
     unseen_s_ = 0;
     seen.warning = person_.push(seen);
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "retarget/pipeline/observation.hpp"
+#include "retarget/pipeline/surface_tracker.hpp"
 
 namespace understudy {
 
@@ -63,6 +64,7 @@ class Observer {
     Extraction seen;
   };
   std::optional<Look> looked_;  // before the first frame
+  SurfaceTracker surface_;
   RecentJoints recent_;
   float unseen_s_ = 0;  // since the last of them
   PersonCheck person_;
