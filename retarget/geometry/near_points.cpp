@@ -38,24 +38,34 @@ NearPoints::NearPoints(const Points& points, const Vec3& low, const Vec3& high, 
     if (cube_of[i] >= 0) sorted_[next[cube_of[i]]++] = points.row(i);
 }
 
-/// All points in the 27 cubes about a place: runs of three along x lie one after the other.
+/// The points in the 27 cubes about a place, nearest rows first: runs of three cubes along x lie one after the
+/// other. `reach2`, squared metres, may shrink on the way; rows beyond it are left out.
 template <typename Visit>
-void NearPoints::visit(const Vec3& at, Visit&& visit) const {
-  if (!at.allFinite() || ((at - low_) * inverse_).cwiseAbs().maxCoeff() > 2 * kMostCubes) return;
-  const Place first = (place_of(at).array() - 1).max(0),
-              last = (place_of(at).array() + 1).min(counts_.array() - 1);
-  if ((first.array() > last.array()).any()) return;
-  for (int z = first.z(); z <= last.z(); ++z)
-    for (int y = first.y(); y <= last.y(); ++y) {
-      const int end = begin_[cube({last.x(), y, z}) + 1];
-      for (int i = begin_[cube({first.x(), y, z})]; i < end; ++i) visit(sorted_[i]);
+void NearPoints::visit(const Vec3& at, const float& reach2, Visit&& visit) const {
+  const Vec3 scaled = (at - low_) * inverse_;
+  if (!(scaled.cwiseAbs().maxCoeff() < 2 * kMostCubes)) return;  // NaN, too
+  const Place middle = scaled.array().floor().cast<int>();
+  const int first = std::max(0, middle.x() - 1), last = std::min(counts_.x() - 1, middle.x() + 1);
+  if (first > last) return;
+  constexpr int kSteps[] = {0, -1, 1};
+  const auto gap = [&](int axis, int step) {  // to the cubes a step away
+    const float inside = scaled[axis] - static_cast<float>(middle[axis]);
+    return (step == 0 ? 0 : step < 0 ? inside : 1 - inside) / inverse_;
+  };
+  for (const int dz : kSteps)
+    for (const int dy : kSteps) {
+      const int y = middle.y() + dy, z = middle.z() + dz;
+      if (y < 0 || z < 0 || y >= counts_.y() || z >= counts_.z()) continue;
+      if (gap(1, dy) * gap(1, dy) + gap(2, dz) * gap(2, dz) > reach2) continue;
+      const int end = begin_[cube({last, y, z}) + 1];
+      for (int i = begin_[cube({first, y, z})]; i < end; ++i) visit(sorted_[i]);
     }
 }
 
 std::optional<Vec3> NearPoints::nearest(const Vec3& at) const {
   float least = reach_ * reach_;
   const Vec3* found = nullptr;
-  visit(at, [&](const Vec3& point) {
+  visit(at, least, [&](const Vec3& point) {
     const float d = (point - at).squaredNorm();
     if (d >= least) return;
     least = d;
@@ -67,7 +77,7 @@ std::optional<Vec3> NearPoints::nearest(const Vec3& at) const {
 void NearPoints::within(const Vec3& at, float radius, std::vector<Vec3>& found) const {
   found.clear();
   const float most = std::min(radius, reach_) * std::min(radius, reach_);
-  visit(at, [&](const Vec3& point) {
+  visit(at, most, [&](const Vec3& point) {
     if ((point - at).squaredNorm() <= most) found.push_back(point);
   });
 }

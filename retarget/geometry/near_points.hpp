@@ -33,7 +33,7 @@ class NearPoints {
     return (static_cast<size_t>(place.z()) * counts_.y() + place.y()) * counts_.x() + place.x();
   }
   template <typename Visit>
-  void visit(const Vec3& at, Visit&& visit) const;
+  void visit(const Vec3& at, const float& reach2, Visit&& visit) const;
 
   Vec3 low_;
   float reach_, inverse_;
