@@ -119,6 +119,7 @@ std::vector<SurfaceTracker::Match> SurfaceTracker::matches(int bone, const Bones
 void SurfaceTracker::settle(int bone, const std::vector<Match>& matches) {
   if (matches.size() < kFewestMatches) return;
   std::vector<float> off;
+  off.reserve(matches.size());
   for (const Match& match : matches) off.push_back(std::abs(match.off));
   const auto middle = off.begin() + static_cast<long>(off.size() / 2);
   std::nth_element(off.begin(), middle, off.end());
@@ -253,7 +254,7 @@ void SurfaceTracker::renew_marks(const Extraction& seen, const NearPoints& surfa
   std::vector<Vec3> around;
   const int looks = std::min(surface.size(), frames_ == 0 ? 5 * kCandidates : kCandidates);
   for (int look = 0; look < looks; ++look) {
-    const Vec3 at = surface[rng_.below(surface.size())];
+    const Vec3& at = surface[rng_.below(surface.size())];
     const int b = bone_of(at, axes);
     if (b < 0 || wanted[b] <= 0) continue;
     surface.within(at, radius, around);
