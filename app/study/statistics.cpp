@@ -197,7 +197,7 @@ FactorialData collapsed(const FactorialData& data, Effect effect) {
   return one;
 }
 
-std::vector<Comparison> tukey_comparisons(const FactorialData& one_factor) {
+std::vector<PairTest> tukey_comparisons(const FactorialData& one_factor) {
   US_CHECK(one_factor.levels.size() == 1, "comparisons want one factor, here are ", one_factor.levels.size());
   check(one_factor, 1);
   const auto n = static_cast<double>(one_factor.values.rows());
@@ -209,10 +209,10 @@ std::vector<Comparison> tukey_comparisons(const FactorialData& one_factor) {
   const double ss_error = (parts.rowwise() - parts.colwise().mean()).squaredNorm();
   const double error = ss_error > tiny ? std::sqrt(2 * ss_error / df / n) : 0;  // of a difference
 
-  std::vector<Comparison> all;
+  std::vector<PairTest> all;
   for (int a = 0; a < k; ++a)
     for (int b = a + 1; b < k; ++b) {
-      Comparison one{a, b, mean[a] - mean[b], 0, df, 1};
+      PairTest one{a, b, mean[a] - mean[b], 0, df, 1};
       const bool equal = std::abs(one.difference) <= std::sqrt(tiny / n);
       one.t = error == 0 && equal ? kNaN : one.difference / error;
       one.p = studentised_range_upper_tail(std::abs(one.t) * M_SQRT2, k, df);
@@ -221,7 +221,7 @@ std::vector<Comparison> tukey_comparisons(const FactorialData& one_factor) {
   return all;
 }
 
-std::vector<Comparison> art_contrasts(const FactorialData& data, Effect effect) {
+std::vector<PairTest> art_contrasts(const FactorialData& data, Effect effect) {
   check(data, effect);
   return tukey_comparisons(
       collapsed(ranked(data, means_over_others(data.values.colwise().mean(), data.levels, effect)), effect));
@@ -238,8 +238,8 @@ double studentised_range_upper_tail(double q, int k, double df) {
   if (std::isnan(q)) return kNaN;
   if (q <= 0) return 1;
   if (std::isinf(q)) return 0;
-  // s: the error's estimate over its true value. The integrand is s's density times a tail that falls about as
-  // exp(-(q s)^2 / 4): it lies between the peak of both together and that of the density alone.
+  // s: the error's estimate over its true value. The integrand is s's density times a tail that falls about
+  // as exp(-(q s)^2 / 4): it lies between the peak of both together and that of the density alone.
   const double log_scale = std::log(2.0) + df / 2 * std::log(df / 2) - std::lgamma(df / 2);
   const double steep = df + q * q / 2;
   const double peak = std::sqrt(std::max(df - 1, 0.0) / steep), width = 1 / std::sqrt(2 * steep);

@@ -26,8 +26,8 @@ int level_count(const std::vector<int>& levels, Effect effect);
 /// multiple of 1e-8 are equal (ARTool's rule: alignment leaves rounding errors where ties were).
 Eigen::MatrixXd average_ranks(const Eigen::MatrixXd& values);
 
-/// The test of one effect. F and p are NaN where nothing varies; F is infinite and p 0 where participants agree
-/// exactly.
+/// The test of one effect. F and p are NaN where nothing varies; F is infinite and p 0 where participants
+/// agree exactly.
 struct EffectTest {
   double F = 0, df1 = 0, df2 = 0, p = 1;
   double eta2p = 0;  ///< partial eta squared: SS effect / (SS effect + SS error)
@@ -46,7 +46,7 @@ FactorialData aligned_ranks(const FactorialData& data, Effect effect);
 EffectTest art_anova(const FactorialData& data, Effect effect);
 
 /// Two levels compared; for an interaction, two combinations of levels.
-struct Comparison {
+struct PairTest {
   int a = 0, b = 0;
   double difference = 0;  ///< mean of a - mean of b, of what was compared (values or ranks)
   double t = 0, df = 0;
@@ -57,10 +57,10 @@ struct Comparison {
 FactorialData collapsed(const FactorialData& data, Effect effect);
 /// All pairs of levels of a one-factor design, with the error of its repeated-measures ANOVA: Tukey's
 /// honestly significant difference, as R's TukeyHSD(aov(y ~ condition + participant), "condition").
-std::vector<Comparison> tukey_comparisons(const FactorialData& one_factor);
+std::vector<PairTest> tukey_comparisons(const FactorialData& one_factor);
 /// Contrasts after the aligned rank transform (ART-C: Elkin, Kay, Higgins, Wobbrock, UIST 2021): the effect's
 /// factors become one, values are aligned for its levels and ranked, and its pairs compared as above.
-std::vector<Comparison> art_contrasts(const FactorialData& data, Effect effect);
+std::vector<PairTest> art_contrasts(const FactorialData& data, Effect effect);
 
 /// P(F' >= F) of the F distribution; NaN stays NaN.
 double f_upper_tail(double F, double df1, double df2);

@@ -138,7 +138,7 @@ TEST(KnownEffect, IsFoundWithThirtyParticipants) {
   SimulatedStudy study{30, {3, 3}, 5, {0.6, -0.4, 0}, 0.8, 0.4, 1.2};
   const FactorialData answers = simulated_answers(study, 1);
   EXPECT_LT(art_anova(answers, 1).p, 1e-6);
-  for (const Comparison& one : art_contrasts(answers, 1)) EXPECT_LT(one.p, 0.05) << one.a << one.b;
+  for (const PairTest& one : art_contrasts(answers, 1)) EXPECT_LT(one.p, 0.05) << one.a << one.b;
   EXPECT_GT(detection_rate(study, 1, 200, 1), 0.99);
   study.repetitions = 1;
   study.participants = 5;

@@ -29,8 +29,8 @@ motions <- c("walk", "hip-hop", "throw")
 set.seed(41)
 for (i in 1:12) {
   design <- shuffled(expand.grid(method = methods, motion = motions[1:2], stringsAsFactors = FALSE))
-  score <- 50 + rnorm(1, 0, 10) + 6 * better[design$method] + ifelse(design$motion == "walk", 4, 0) +
-    ifelse(design$motion == "walk" & design$method == "TST", 7, 0) + rnorm(6, 0, 9)
+  score <- 45 + rnorm(1, 0, 8) + 6 * better[design$method] + ifelse(design$motion == "walk", 4, 0) +
+    ifelse(design$motion == "walk" & design$method == "TST", 7, 0) + rnorm(6, 0, 8)
   write_answers("slider", sprintf("S%02d", i), answered(design, "naturalness", round(score, 3)))
 }
 
