@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int64_t kMostCells = 4096;
+constexpr const char *kRepetition = "repetition", *kPractice = "practice";
 
 /// The chosen factors of the answers and their levels.
 struct Design {
@@ -53,6 +54,20 @@ struct Design {
     return name;
   }
 };
+
+/// Without the answers whose factor "practice" is 1.
+StudyAnswers without_practice(StudyAnswers answers) {
+  const auto at = std::find(answers.factors.begin(), answers.factors.end(), kPractice);
+  if (at == answers.factors.end()) return answers;
+  const auto column = static_cast<size_t>(at - answers.factors.begin());
+  for (auto& participant : answers.participants) {
+    auto& list = participant.answers;
+    list.erase(
+        std::remove_if(list.begin(), list.end(), [&](const auto& one) { return one.levels[column] == "1"; }),
+        list.end());
+  }
+  return answers;
+}
 
 size_t column_of(const StudyAnswers& answers, const std::string& factor) {
   const auto at = std::find(answers.factors.begin(), answers.factors.end(), factor);
@@ -102,6 +117,7 @@ Design design_of(const StudyAnswers& answers, const std::vector<RatedQuestion>& 
   Design design;
   int64_t cells = 1;
   for (const std::string& name : wanted.empty() ? answers.factors : wanted) {
+    if (wanted.empty() && (name == kRepetition || name == kPractice)) continue;
     const size_t column = column_of(answers, name);
     std::vector<std::string> levels = levels_of(answers, questions, column);
     US_CHECK(levels.size() >= 2 || wanted.empty(), "all answers are of one ", name, ", \"", levels.front(),
@@ -205,7 +221,12 @@ LevelSummary summary_of(std::string level, const std::vector<double>& values) {
   one.third_quartile = percentile(values, 75);
   for (const double value : values) one.mean += value / one.count;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  one.least = *least, one.most = *most;
+  one.least = one.high_whisker = *least, one.most = one.low_whisker = *most;
+  const double reach = 1.5 * (one.third_quartile - one.first_quartile);
+  for (const double value : values) {
+    if (value >= one.first_quartile - reach) one.low_whisker = std::min(one.low_whisker, value);
+    if (value <= one.third_quartile + reach) one.high_whisker = std::max(one.high_whisker, value);
+  }
   return one;
 }
 
@@ -313,7 +334,8 @@ void check_left(const StudyReport& report) {
 
 }  // namespace
 
-StudyReport analyse(const StudyAnswers& answers, const AnalysisOptions& options) {
+StudyReport analyse(const StudyAnswers& all_answers, const AnalysisOptions& options) {
+  const StudyAnswers answers = without_practice(all_answers);
   const std::vector<RatedQuestion> questions = questions_of(answers, options);
   const Design design = design_of(answers, questions, options.factors);
   std::vector<std::vector<Given>> everybody;  // [participant][question]

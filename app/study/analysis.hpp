@@ -48,6 +48,8 @@ struct LevelSummary {
   std::string level;
   double median = 0, first_quartile = 0, third_quartile = 0, mean = 0;
   double least = 0, most = 0;
+  double low_whisker = 0,
+         high_whisker = 0;  ///< the last answers within 1.5 times the quartiles' distance of them
   int count = 0;
 };
 
@@ -85,10 +87,10 @@ struct StudyReport {
   int analysed = 0;                             ///< participants
 };
 
-/// The whole analysis. Excluded is who answered the question of attention wrong too often, and who has
-/// missing answers: an empty one, fewer than most participants, or none in a cell of the design. Throws
-/// Error: an answer outside its scale (naming file and line), an unknown question or factor, one participant,
-/// one condition.
+/// The whole analysis. Answers whose factor "practice" is 1 do not count. Excluded is who answered the
+/// question of attention wrong too often, and who has missing answers: an empty one, fewer than most
+/// participants, or none in a cell of the design. Throws Error: an answer outside its scale (naming file and
+/// line), an unknown question or factor, one participant, one condition.
 StudyReport analyse(const StudyAnswers& answers, const AnalysisOptions& options);
 
 /// {"excluded": [PARTICIPANT], "exclusion_reasons": {PARTICIPANT: SENTENCE}, "participants", "factors",

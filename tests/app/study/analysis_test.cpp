@@ -237,6 +237,32 @@ TEST(Analysis, DropsWhoHasFewerTrialsOrAnEmptyCell) {
   EXPECT_EQ(report.excluded[1].reason, "has no answer to \"motion\" for m0, c0");
 }
 
+TEST(Analysis, LeavesPracticeAndRepetitionsOut) {
+  StudyAnswers answers = made_answers(4, 2, 1, 4);
+  answers.factors = {"method", "practice", "repetition"};
+  for (auto& participant : answers.participants)
+    for (size_t t = 0; t < participant.answers.size(); ++t)
+      participant.answers[t].levels = {t % 2 == 0 ? "a" : "b", t < 2 ? "1" : "0", std::to_string(t / 2)};
+  const auto medians = [&] { return analyse(answers, {}).questions[0].effects[0].summaries; };
+  ASSERT_EQ(analyse(answers, {}).factors, std::vector<std::string>{"method"});
+  EXPECT_EQ(medians()[0].count, 12);
+}
+
+TEST(Analysis, HasWhiskersThatEndBeforeOutliers) {
+  StudyAnswers answers = made_answers(2, 2, 1, 5);
+  const std::vector<std::string> first = {"3", "4", "4", "5", "5"}, second = {"3", "4", "4", "5", "7"};
+  for (size_t t = 0; t < 10; ++t) {
+    answers.participants[0].answers[t].answer = first[t / 2];
+    answers.participants[1].answers[t].answer = second[t / 2];
+  }
+  const LevelSummary box = analyse(answers, {}).questions[0].effects[0].summaries[0];
+  EXPECT_EQ(box.first_quartile, 4);
+  EXPECT_EQ(box.third_quartile, 5);
+  EXPECT_EQ(box.low_whisker, 3);
+  EXPECT_EQ(box.high_whisker, 5);
+  EXPECT_EQ(box.most, 7);
+}
+
 TEST(Analysis, TakesChoicesAsShares) {
   StudyAnswers answers = made_answers(4, 2, 1, 4);
   for (auto& participant : answers.participants)
