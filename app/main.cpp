@@ -31,6 +31,7 @@ constexpr Subcommand kSubcommands[] = {
     {"sample", "writes the bundled samples as files", declare_sample},
     {"doctor", "reports BLAS, threads, OpenGL and weights", declare_doctor},
     {"bench", "measures time, memory and work of a frame", declare_bench},
+    {"study", "perceptual studies: designs, trials, statistics", declare_study},
     {"demo", "the bundled scan onto the bundled targets", declare_demo},
     {"import-worker", "reads a file in a process of its own", declare_import_worker},
 };

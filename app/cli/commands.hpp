@@ -27,5 +27,6 @@ Action declare_bench(CLI::App& command);
 Action declare_demo(CLI::App& command);
 Action declare_studio(CLI::App& command);
 Action declare_play(CLI::App& command);
+Action declare_study(CLI::App& command);
 
 }  // namespace understudy::app

@@ -1,0 +1,15 @@
+#include <CLI/CLI.hpp>
+
+#include "app/cli/commands.hpp"
+#include "app/cli/study_analyse.hpp"
+
+namespace understudy::app {
+
+Action declare_study(CLI::App& command) {
+  const auto chosen = std::make_shared<Action>();
+  command.require_subcommand(1);
+  add_study_analyse(command, chosen);
+  return [chosen] { return (*chosen)(); };
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,70 @@
+#include "app/cli/study_analyse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "retarget/base/error.hpp"
+#include "tests/app/program.hpp"
+
+namespace understudy::app {
+namespace {
+
+const std::string kData = US_SOURCE_DIR "/tests/data/study/";
+
+class StudyAnalyse : public testing::Test {
+ protected:
+  /// Runs `study analyse` with these words.
+  static int run(const std::vector<std::string>& words) {
+    CLI::App study;
+    const auto chosen = std::make_shared<Action>();
+    add_study_analyse(study, chosen);
+    std::vector<std::string> line(words.rbegin(), words.rend());  // CLI11 takes them from the back
+    line.emplace_back("analyse");
+    study.parse(line);
+    return (*chosen)();
+  }
+  static std::string complaint_of(const std::vector<std::string>& words) {
+    return failure_of([&] { run(words); });
+  }
+  std::string out(const std::string& name) const { return scratch_.path(name); }
+  tests::ScratchFolder scratch_;
+};
+
+TEST_F(StudyAnalyse, WritesReportAndPage) {
+  ASSERT_EQ(run({"--answers", kData + "exclusions", "--attention", "action=@motion", "--out",
+                 out("report.json"), "--page", out("page")}),
+            0);
+  const auto report = nlohmann::json::parse(tests::read_bytes(out("report.json")));
+  EXPECT_EQ(report["excluded"], (nlohmann::json{"E04", "E07", "E11"}));
+  EXPECT_NEAR(report["questions"]["shape"]["anova"]["method"]["F"], 14.29060125, 1e-6);
+  EXPECT_NE(tests::read_bytes(out("page/index.html")).find("<svg"), std::string::npos);
+  EXPECT_NE(tests::read_bytes(out("page/anova.csv")).find("shape,method:motion,"), std::string::npos);
+}
+
+TEST_F(StudyAnalyse, TakesScalesFactorsAndTheShareOfAttention) {
+  ASSERT_EQ(run({"--answers", kData + "exclusions", "--attention", "action=@motion", "--least-attention",
+                 "60", "--question", "shape=1..9", "--factor", "method", "--out", out("report.json")}),
+            0);
+  const auto report = nlohmann::json::parse(tests::read_bytes(out("report.json")));
+  EXPECT_EQ(report["excluded"].size(), 4u);  // E02 too: 5 of 9 right
+  EXPECT_EQ(report["factors"], nlohmann::json{"method"});
+  EXPECT_EQ(complaint_of({"--answers", kData + "slider", "--question", "naturalness=0..100"}), "");
+}
+
+TEST_F(StudyAnalyse, RefusesWhatItCannotRead) {
+  EXPECT_NE(complaint_of({"--answers", kData + "slider"}).find("S01.csv: line 2: \""), std::string::npos);
+  EXPECT_NE(complaint_of({"--answers", out("none")}).find("is not a folder of answers"), std::string::npos);
+  for (const char* question :
+       {"naturalness", "naturalness=7", "naturalness=7..1", "naturalness=a..b", "=1..7"})
+    EXPECT_NE(complaint_of({"--answers", kData + "slider", "--question", question}).find("--question"),
+              std::string::npos)
+        << question;
+  EXPECT_NE(complaint_of({"--answers", kData + "slider", "--attention", "action"}).find("--attention"),
+            std::string::npos);
+  EXPECT_THROW(run({"--out", out("report.json")}), CLI::ParseError);
+}
+
+}  // namespace
+}  // namespace understudy::app
