@@ -9,6 +9,7 @@ Action declare_study(CLI::App& command) {
   const auto chosen = std::make_shared<Action>();
   command.require_subcommand(1);
   add_study_analyse(command, chosen);
+  add_study_power(command, chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -1,4 +1,4 @@
-// `study analyse`: the statistics of a study's answers.
+// `study analyse` and `study power`: the statistics of a study, after and before it.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,8 @@
 
 namespace understudy::app {
 
-/// Adds the subcommand to `study`; when it is chosen, `chosen` becomes its action.
+/// Each adds its subcommand to `study`; when it is chosen, `chosen` becomes its action.
 void add_study_analyse(CLI::App& study, const std::shared_ptr<Action>& chosen);
+void add_study_power(CLI::App& study, const std::shared_ptr<Action>& chosen);
 
 }  // namespace understudy::app

@@ -314,6 +314,8 @@ ParticipantReport participant_report(const ParticipantAnswers& participant, cons
 /// Why a participant is excluded; empty: not at all.
 std::string reason_against(const ParticipantReport& participant, const AnalysisOptions& options,
                            const std::string& missing) {
+  if (options.attention && std::isnan(participant.attention))
+    return "has no answer to \"" + options.attention->question + "\"";
   if (options.attention && participant.attention < options.attention->least_share)
     return printed("answered %.0f %% of the attention questions right, less than %.0f %%",
                    100 * participant.attention, 100 * options.attention->least_share);

@@ -274,6 +274,10 @@ FactorialData simulated_answers(const SimulatedStudy& study, uint64_t seed) {
   US_CHECK(study.shifts.empty() || static_cast<int>(study.shifts.size()) == study.levels[0],
            "a simulated study has ", study.levels[0], " levels of the first factor and ", study.shifts.size(),
            " shifts");
+  US_CHECK(study.levels.size() <= kMostFactors, "a simulated study has at most ", kMostFactors, " factors");
+  double answers = static_cast<double>(study.participants) * study.repetitions;
+  for (const int levels : study.levels) answers *= levels;
+  US_CHECK(answers <= 1e7, "a simulated study has at most ten million answers, this one ", answers);
   Rng rng(seed);
   FactorialData data;
   data.levels = study.levels;

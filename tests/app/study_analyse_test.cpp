@@ -13,18 +13,21 @@ namespace {
 
 const std::string kData = US_SOURCE_DIR "/tests/data/study/";
 
+/// Runs `study COMMAND` with these words.
+int run_study(const char* command, const std::vector<std::string>& words) {
+  CLI::App study;
+  const auto chosen = std::make_shared<Action>();
+  add_study_analyse(study, chosen);
+  add_study_power(study, chosen);
+  std::vector<std::string> line(words.rbegin(), words.rend());  // CLI11 takes them from the back
+  line.emplace_back(command);
+  study.parse(line);
+  return (*chosen)();
+}
+
 class StudyAnalyse : public testing::Test {
  protected:
-  /// Runs `study analyse` with these words.
-  static int run(const std::vector<std::string>& words) {
-    CLI::App study;
-    const auto chosen = std::make_shared<Action>();
-    add_study_analyse(study, chosen);
-    std::vector<std::string> line(words.rbegin(), words.rend());  // CLI11 takes them from the back
-    line.emplace_back("analyse");
-    study.parse(line);
-    return (*chosen)();
-  }
+  static int run(const std::vector<std::string>& words) { return run_study("analyse", words); }
   static std::string complaint_of(const std::vector<std::string>& words) {
     return failure_of([&] { run(words); });
   }
@@ -64,6 +67,30 @@ TEST_F(StudyAnalyse, RefusesWhatItCannotRead) {
   EXPECT_NE(complaint_of({"--answers", kData + "slider", "--attention", "action"}).find("--attention"),
             std::string::npos);
   EXPECT_THROW(run({"--out", out("report.json")}), CLI::ParseError);
+}
+
+std::string power(const std::vector<std::string>& words) {
+  testing::internal::CaptureStdout();
+  const int code = run_study("power", words);
+  return std::to_string(code) + " " + testing::internal::GetCapturedStdout();
+}
+
+TEST(StudyPower, IsHighForALargeEffectAndTheLevelForNone) {
+  const std::string large = power({"--levels", "3", "3", "--shifts", "1", "0", "-1", "--simulations", "50"});
+  EXPECT_EQ(large.substr(0, 26), "0 found in 100.0 % of 50 s") << large;
+  const std::string none = power({"--levels", "3", "--simulations", "200", "--level", "0.5"});
+  const double share = std::stod(none.substr(std::string("0 found in ").size()));
+  EXPECT_GT(share, 35);
+  EXPECT_LT(share, 65);
+}
+
+TEST(StudyPower, RefusesADesignThatHasNone) {
+  EXPECT_NE(failure_of([] {
+              run_study("power", {"--levels", "3", "--shifts", "1", "2"});
+            }).find("shifts"),
+            std::string::npos);
+  EXPECT_THROW(run_study("power", {"--levels", "1"}), CLI::ParseError);
+  EXPECT_THROW(run_study("power", {"--participants", "1"}), CLI::ParseError);
 }
 
 }  // namespace

@@ -297,6 +297,10 @@ TEST(Analysis, ComparesWithTheRightAnswerOfALevel) {
   options.attention->right_of_level = {{"c0", "jumping"}};
   options.attention->least_share = 1;
   EXPECT_TRUE(analyse(answers, options).excluded.empty());
+  StudyAnswers never_asked = answers;
+  never_asked.participants[3].answers.resize(4);
+  ASSERT_EQ(analyse(never_asked, options).excluded.size(), 1u);
+  EXPECT_EQ(analyse(never_asked, options).excluded[0].reason, "has no answer to \"action\"");
   options.attention->right_of_level.clear();
   EXPECT_NE(complaint_of(answers, options).find("answered 50 % of the attention questions right"),
             std::string::npos);

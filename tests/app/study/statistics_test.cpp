@@ -134,6 +134,13 @@ TEST_P(NullEffect, IsFoundInOneOfTwentySimulations) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, NullEffect, testing::Values(1, 2, 3));
 
+TEST(SimulatedStudy, HasBounds) {
+  EXPECT_THROW(simulated_answers({30, {1000, 1000, 1000, 1000}, 1, {}}, 1), Error);
+  EXPECT_THROW(simulated_answers({30, std::vector<int>(9, 2), 1, {}}, 1), Error);
+  EXPECT_THROW(simulated_answers({30, {}, 1, {}}, 1), Error);
+  EXPECT_THROW(simulated_answers({30, {3}, 1, {1, 2}}, 1), Error);
+}
+
 TEST(KnownEffect, IsFoundWithThirtyParticipants) {
   SimulatedStudy study{30, {3, 3}, 5, {0.6, -0.4, 0}, 0.8, 0.4, 1.2};
   const FactorialData answers = simulated_answers(study, 1);
