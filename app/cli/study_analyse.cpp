@@ -18,8 +18,8 @@ namespace understudy::app {
 namespace {
 
 struct StudyAnalyseOptions {
-  std::string answers, out, page, attention;
-  std::vector<std::string> questions, factors;
+  std::string answers, out, page;
+  std::vector<std::string> questions, factors, attention;
   double least_attention = 50;  ///< per cent
 };
 
@@ -48,12 +48,11 @@ RatedQuestion question_from(const std::string& text) {
 }
 
 /// QUESTION=RIGHT, or QUESTION=@FACTOR.
-AttentionCheck attention_from(const std::string& text, double least_percent) {
+AttentionCheck attention_from(const std::string& text) {
   AttentionCheck check;
   const auto [name, right] = sides("attention", text);
   check.question = name;
   (right[0] == '@' ? check.column : check.right) = right[0] == '@' ? right.substr(1) : right;
-  check.least_share = least_percent / 100;
   return check;
 }
 
@@ -61,8 +60,8 @@ AnalysisOptions analysis_options(const StudyAnalyseOptions& options) {
   AnalysisOptions analysis;
   for (const std::string& one : options.questions) analysis.questions.push_back(question_from(one));
   analysis.factors = options.factors;
-  if (!options.attention.empty())
-    analysis.attention = attention_from(options.attention, options.least_attention);
+  for (const std::string& one : options.attention) analysis.attention.push_back(attention_from(one));
+  analysis.least_attention = options.least_attention / 100;
   return analysis;
 }
 
@@ -105,10 +104,9 @@ void add_study_analyse(CLI::App& study, const std::shared_ptr<Action>& chosen) {
       "a question and its scale, NAME=1..7, or its options, NAME=adult|child (default: all, 1..7)");
   command.add_option("--factor", options->factors,
                      "a factor to analyse (default: all columns with two levels or more, but repetition)");
-  command.add_option(
-      "--attention", options->attention,
-      "the question of attention and its right answer, NAME=ANSWER, or NAME=@FACTOR where it is "
-      "the trial's level of that factor");
+  command.add_option("--attention", options->attention,
+                     "a question of attention and its right answer, NAME=ANSWER, or NAME=@FACTOR where it is "
+                     "the trial's level of that factor");
   command
       .add_option("--least-attention", options->least_attention,
                   "excludes who has fewer right answers than this, per cent (default: 50)")

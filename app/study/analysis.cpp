@@ -90,13 +90,16 @@ std::vector<RatedQuestion> questions_of(const StudyAnswers& answers, const Analy
   const auto is_asked = [&](const std::string& name) {
     return std::find(asked.begin(), asked.end(), name) != asked.end();
   };
-  if (options.attention)
-    US_CHECK(is_asked(options.attention->question), "nobody answered the question of attention, \"",
-             options.attention->question, "\"");
+  for (const AttentionCheck& one : options.attention)
+    US_CHECK(is_asked(one.question), "nobody answered the question of attention, \"", one.question, "\"");
+  const auto is_check = [&](const std::string& name) {
+    return std::any_of(options.attention.begin(), options.attention.end(),
+                       [&](const auto& one) { return one.question == name; });
+  };
   std::vector<RatedQuestion> questions = options.questions;
   if (questions.empty())
     for (const std::string& name : asked)
-      if (!options.attention || options.attention->question != name) questions.push_back({name});
+      if (!is_check(name)) questions.push_back({name});
   US_CHECK(!questions.empty(), "the answers have no question to analyse");
   for (const RatedQuestion& one : questions)
     US_CHECK(is_asked(one.name), "nobody answered the question \"", one.name, "\"");
@@ -196,19 +199,25 @@ std::string missing(const Given& given, int usual, const RatedQuestion& question
          design.level_name(static_cast<int>(cell - given.cells.begin()), whole);
 }
 
-/// Right answers of those asked; NaN where none was.
+/// What would have been right.
+std::string right_answer(const StudyAnswers& answers, const StudyAnswer& answer,
+                         const AttentionCheck& check) {
+  if (!check.right.empty()) return check.right;
+  const std::string& level = answer.levels[column_of(answers, check.column)];
+  const auto named = check.right_of_level.find(level);
+  return named == check.right_of_level.end() ? level : named->second;
+}
+
+/// Share of right answers to all questions of attention; NaN where none was asked.
 double attention_of(const StudyAnswers& answers, const ParticipantAnswers& participant,
-                    const AttentionCheck& check) {
-  const size_t column = check.right.empty() ? column_of(answers, check.column) : 0;
+                    const std::vector<AttentionCheck>& checks) {
   int asked = 0, right = 0;
-  for (const StudyAnswer& one : participant.answers) {
-    if (one.question != check.question) continue;
-    const std::string level = check.right.empty() ? one.levels[column] : check.right;
-    const auto named = check.right_of_level.find(level);
-    const std::string& wanted = named == check.right_of_level.end() ? level : named->second;
-    ++asked;
-    if (lower_case(one.answer) == lower_case(wanted)) ++right;
-  }
+  for (const StudyAnswer& one : participant.answers)
+    for (const AttentionCheck& check : checks) {
+      if (one.question != check.question) continue;
+      ++asked;
+      if (lower_case(one.answer) == lower_case(right_answer(answers, one, check))) ++right;
+    }
   return asked > 0 ? static_cast<double>(right) / asked : kUnknown;
 }
 
@@ -314,11 +323,12 @@ ParticipantReport participant_report(const ParticipantAnswers& participant, cons
 /// Why a participant is excluded; empty: not at all.
 std::string reason_against(const ParticipantReport& participant, const AnalysisOptions& options,
                            const std::string& missing) {
-  if (options.attention && std::isnan(participant.attention))
-    return "has no answer to \"" + options.attention->question + "\"";
-  if (options.attention && participant.attention < options.attention->least_share)
-    return printed("answered %.0f %% of the attention questions right, less than %.0f %%",
-                   100 * participant.attention, 100 * options.attention->least_share);
+  if (options.attention.empty()) return missing;
+  const double share = participant.attention, least = options.least_attention;
+  if (std::isnan(share)) return "has no answer to \"" + options.attention.front().question + "\"";
+  if (share < least || (options.must_exceed && share <= least))
+    return printed("answered %.0f %% of the attention questions right, %s %.0f %%", 100 * share,
+                   options.must_exceed ? "not more than" : "less than", 100 * least);
   return missing;
 }
 
@@ -354,8 +364,7 @@ StudyReport analyse(const StudyAnswers& all_answers, const AnalysisOptions& opti
     for (size_t q = 0; q < questions.size() && lacking.empty(); ++q)
       lacking = missing(everybody[i][q], usual_count(everybody, q), questions[q], design);
     ParticipantReport one = participant_report(answers.participants[i], everybody[i]);
-    one.attention =
-        options.attention ? attention_of(answers, answers.participants[i], *options.attention) : kUnknown;
+    one.attention = attention_of(answers, answers.participants[i], options.attention);
     const std::string reason = reason_against(one, options, lacking);
     one.is_excluded = !reason.empty();
     if (one.is_excluded) report.excluded.push_back({one.participant, reason});

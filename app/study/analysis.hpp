@@ -3,7 +3,6 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,20 +21,20 @@ struct RatedQuestion {
   std::vector<std::string> choices{};
 };
 
-/// The question that shows who paid attention.
+/// A question that shows who paid attention.
 struct AttentionCheck {
   std::string question;
   std::string right;   ///< the right answer; empty: by the trial's level of the factor `column`
   std::string column;  ///< a factor, in the analysis or not
-  std::map<std::string, std::string>
-      right_of_level{};      ///< level -> answer; a level that is not here is its own
-  double least_share = 0.5;  ///< whoever is right less often is excluded
+  std::map<std::string, std::string> right_of_level{};  ///< level -> answer; a level not here is its own
 };
 
 struct AnalysisOptions {
   std::vector<RatedQuestion> questions;  ///< empty: all but that of attention, on a scale from 1 to 7
   std::vector<std::string> factors;      ///< empty: all that have two levels or more
-  std::optional<AttentionCheck> attention{};
+  std::vector<AttentionCheck> attention;
+  double least_attention = 0.5;   ///< who has a smaller share of right answers to all of these is excluded
+  bool must_exceed = false;       ///< so is who has exactly this share
   int most_contrast_levels = 16;  ///< interactions with more combinations of levels get no contrasts
 };
 

@@ -30,7 +30,7 @@ TEST(BoxPlot, HasABoxForEachLevel) {
 TEST(StudyPage, ShowsQuestionsTestsAndWhoIsExcluded) {
   AnalysisOptions options;
   options.factors = {"method", "motion"};
-  options.attention = AttentionCheck{"action", "", "motion"};
+  options.attention = {AttentionCheck{"action", "", "motion"}};
   const std::string folder = US_SOURCE_DIR "/tests/data/study/exclusions";
   std::map<std::string, std::string> files;
   for (auto& [name, text] : page_files(analyse(read_answers(folder), options))) files[name] = text;

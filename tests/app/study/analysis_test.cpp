@@ -29,7 +29,7 @@ StudyReport report_of(const std::string& set) {
   options.factors = {"method", "motion"};
   if (set == "likert") options.factors.emplace_back("shape");
   if (set == "slider") options.questions = {{"naturalness", 0, 100}};
-  if (set == "exclusions") options.attention = action_is_motion();
+  if (set == "exclusions") options.attention = {action_is_motion()};
   return analyse(read_answers(kData + set), options);
 }
 
@@ -131,6 +131,20 @@ TEST(Analysis, ExcludesWhoWasNotAttentiveOrLeftAnAnswerOut) {
   EXPECT_TRUE(report.participants[3].is_excluded);
 }
 
+TEST(Analysis, MayWantMoreThanTheShareOfAttention) {
+  AnalysisOptions options;
+  options.factors = {"method"};
+  options.attention = {action_is_motion()};
+  options.least_attention = 5.0 / 9;
+  const StudyAnswers answers = read_answers(kData + "exclusions");
+  EXPECT_EQ(analyse(answers, options).excluded.size(), 3u);
+  options.must_exceed = true;
+  const StudyReport report = analyse(answers, options);
+  ASSERT_EQ(report.excluded.size(), 4u);
+  EXPECT_EQ(report.excluded[0].participant, "E02");
+  EXPECT_EQ(report.excluded[0].reason, "answered 56 % of the attention questions right, not more than 56 %");
+}
+
 TEST(Analysis, BecomesJsonAndTables) {
   const auto json = to_json(report_of("exclusions"));
   EXPECT_EQ(json["excluded"], (nlohmann::ordered_json{"E04", "E07", "E11"}));
@@ -223,7 +237,7 @@ TEST(Analysis, RefusesNamesThatAreNotThere) {
   options.questions = {{"beauty"}};
   EXPECT_EQ(complaint_of(answers, options), "nobody answered the question \"beauty\"");
   options.questions.clear();
-  options.attention = action_is_motion();
+  options.attention = {action_is_motion()};
   EXPECT_EQ(complaint_of(answers, options), "nobody answered the question of attention, \"action\"");
 }
 
@@ -293,15 +307,15 @@ TEST(Analysis, ComparesWithTheRightAnswerOfALevel) {
       participant.answers.push_back(asked);
     }
   AnalysisOptions options;
-  options.attention = action_is_motion();
-  options.attention->right_of_level = {{"c0", "jumping"}};
-  options.attention->least_share = 1;
+  options.attention = {action_is_motion()};
+  options.attention[0].right_of_level = {{"c0", "jumping"}};
+  options.least_attention = 1;
   EXPECT_TRUE(analyse(answers, options).excluded.empty());
   StudyAnswers never_asked = answers;
   never_asked.participants[3].answers.resize(4);
   ASSERT_EQ(analyse(never_asked, options).excluded.size(), 1u);
   EXPECT_EQ(analyse(never_asked, options).excluded[0].reason, "has no answer to \"action\"");
-  options.attention->right_of_level.clear();
+  options.attention[0].right_of_level.clear();
   EXPECT_NE(complaint_of(answers, options).find("answered 50 % of the attention questions right"),
             std::string::npos);
 }
