@@ -129,7 +129,7 @@ void write_autosave(const std::string& folder, const SavedDocument& saved, const
                   {"document_path", document_path},
                   {"time", local_time()},
                   {"document", to_json(saved, "")}};
-  write_file((fs::path(folder) / copy_name(myself())).string(), document_text(json));
+  write_file((fs::path(folder) / copy_name(myself())).string(), json_text(json));
 }
 
 void remove_autosave(const std::string& folder) {
@@ -150,7 +150,7 @@ std::vector<Autosave> found_autosaves(const std::string& folder) {
     if (ends_with(name, ".part")) fs::remove(path, error);  // died while it was written
     if (!ends_with(name, kSuffix)) continue;
     try {
-      const Json copy = read_document_json(path.string());
+      const Json copy = read_json(path.string());
       if (is_newer(copy)) continue;
       document_in(copy, path.string());  // throws when it cannot be recovered
       found.push_back({path.string(), text_in(copy, "document_path"), text_in(copy, "time")});
@@ -163,7 +163,7 @@ std::vector<Autosave> found_autosaves(const std::string& folder) {
 }
 
 SavedDocument read_autosave(const Autosave& autosave) {
-  return document_in(read_document_json(autosave.file), autosave.file);
+  return document_in(read_json(autosave.file), autosave.file);
 }
 
 void discard(const Autosave& autosave) {

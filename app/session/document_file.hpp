@@ -1,11 +1,11 @@
 // Documents on disk: .understudy, one JSON file with paths relative to it.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/run/fields_json.hpp"
 #include "app/session/document.hpp"
 #include "app/session/playback.hpp"
 #include "app/session/view.hpp"
@@ -32,23 +32,15 @@ FieldsOf<S, SavedDocument> fields(V& visit, S& saved) {
   visit("selected_take", saved.selected_take, kFrameNumbers);
 }
 
-nlohmann::ordered_json to_json(const SavedDocument& saved, const std::string& folder);
+Json to_json(const SavedDocument& saved, const std::string& folder);
 /// Throws Error naming `path` and the member that is wrong.
-SavedDocument from_json(const nlohmann::ordered_json& json, const std::string& folder,
-                        const std::string& path);
+SavedDocument from_json(const Json& json, const std::string& folder, const std::string& path);
 
 /// Writes beside the file, then renames: when the disk is full the old document survives. Throws Error naming
 /// the path.
 void write_document(const std::string& path, const SavedDocument& saved);
 /// Throws Error when the file is missing, no document, damaged or from a newer version.
 SavedDocument read_document(const std::string& path);
-
-/// JSON as text: indented, but for lists of numbers.
-std::string document_text(const nlohmann::ordered_json& json);
-/// Throws Error, one sentence that names `path`: empty, damaged.
-nlohmann::ordered_json parse_document(const std::string& text, const std::string& path);
-/// Throws Error, one sentence: no such file, too large, damaged.
-nlohmann::ordered_json read_document_json(const std::string& path);
 
 /// Files and folders that the document names and that are missing.
 std::vector<std::string> missing_files(const Document& document);

@@ -342,10 +342,10 @@ void worker_words(const std::string& bytes) {
 
 void document(const std::string& bytes) {
   const app::SavedDocument saved =
-      app::from_json(app::parse_document(bytes, "x.understudy"), "/nonexistent-folder", "x.understudy");
-  const std::string text = app::document_text(app::to_json(saved, "/nonexistent-folder"));
+      app::from_json(app::parse_json(bytes, "x.understudy"), "/nonexistent-folder", "x.understudy");
+  const std::string text = app::json_text(app::to_json(saved, "/nonexistent-folder"));
   const app::SavedDocument again =
-      app::from_json(app::parse_document(text, "again"), "/nonexistent-folder", "again");
+      app::from_json(app::parse_json(text, "again"), "/nonexistent-folder", "again");
   must(same(saved.document, again.document), "what was read can be written and read again");
 }
 

@@ -100,7 +100,7 @@ std::string replaced(std::string text, const std::string& before, const std::str
 /// look and of hand contacts: those were on. Targets were not asked whether they are persons.
 TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   const std::string text = read_bytes(US_SOURCE_DIR "/tests/session/saved_before.understudy");
-  const SavedDocument read = from_json(parse_document(text, "doc"), "/a/documents", "doc");
+  const SavedDocument read = from_json(parse_json(text, "doc"), "/a/documents", "doc");
   Document wanted = full_document("/a").document;
   wanted.source.import.height.reset();
   wanted.source = without_people(wanted.source);
@@ -132,7 +132,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   for (const char* layers : {"source", "take"})
     for (const char* added : {"wireframe", "scene"}) view[layers].erase(added);
   for (const char* added : {"person", "people"}) written["source"].erase(added);
-  EXPECT_EQ(document_text(written), without);
+  EXPECT_EQ(json_text(written), without);
 }
 
 /// Each member of what is saved but not undone: none is forgotten on one of both ways.
@@ -339,7 +339,7 @@ TEST(DocumentFile, WhatIsNoDocumentSaysSo) {
 /// True for a document.
 bool survives(const std::string& bytes) {
   try {
-    to_json(from_json(parse_document(bytes, "a.understudy"), "/a", "a.understudy"), "/a");
+    to_json(from_json(parse_json(bytes, "a.understudy"), "/a", "a.understudy"), "/a");
     return true;
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()).substr(0, 14), "a.understudy: ") << error.what();
@@ -360,7 +360,7 @@ TEST(DocumentFile, ATruncatedFileIsAnError) {
 }
 
 TEST(DocumentFile, SurvivesMutations) {
-  const std::string bytes = document_text(to_json(full_document("/a"), "/a"));
+  const std::string bytes = json_text(to_json(full_document("/a"), "/a"));
   const std::string inserts[] = {"9999999999", "-",  "[",   "]",       "{",    "}",
                                  "null",       "\"", "e99", "\\u0000", "\xff", ","};
   Rng rng(5);
