@@ -2,12 +2,15 @@
 
 #include "app/cli/commands.hpp"
 #include "app/cli/study_analyse.hpp"
+#include "app/cli/study_design.hpp"
 
 namespace understudy::app {
 
 Action declare_study(CLI::App& command) {
   const auto chosen = std::make_shared<Action>();
   command.require_subcommand(1);
+  add_study_new(command, chosen);
+  add_study_trials(command, chosen);
   add_study_analyse(command, chosen);
   add_study_power(command, chosen);
   return [chosen] { return (*chosen)(); };

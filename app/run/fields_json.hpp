@@ -80,7 +80,7 @@ class FieldsWriter {
   Json json_of(Number value, const std::string&, const Clamped<Number>& range) {
     return fields_json::shortest(value >= range.low ? std::min(value, range.high) : range.low);  // NaN too
   }
-  template <class Enum, size_t N>
+  template <class Enum, size_t N, class = std::enable_if_t<std::is_enum_v<Enum>>>
   Json json_of(Enum value, const std::string&, const Names<N>& names) {
     return names[static_cast<size_t>(value)];
   }
@@ -175,7 +175,7 @@ class FieldsReader {
     value = static_cast<Number>(
         std::clamp(number, static_cast<double>(range.low), static_cast<double>(range.high)));
   }
-  template <class Enum, size_t N>
+  template <class Enum, size_t N, class = std::enable_if_t<std::is_enum_v<Enum>>>
   void read(const Json& json, Enum& value, const std::string& where, const Names<N>& names) {
     std::string text, all = names[0];
     read(json, text, where);

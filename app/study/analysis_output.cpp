@@ -2,13 +2,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "app/run/fields_json.hpp"
 #include "app/study/analysis.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const EffectTest& test) {
   return {{"F", test.F}, {"df1", test.df1}, {"df2", test.df2}, {"p", test.p}, {"eta2p", test.eta2p}};

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "retarget/base/checksum.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
@@ -22,13 +23,6 @@ struct Written {
   fs::path folder;
   std::vector<std::pair<std::string, uint64_t>> files;
 };
-
-constexpr uint64_t kFnvStart = 0xcbf29ce484222325ull;
-
-uint64_t fnv1a(const std::string& bytes, uint64_t hash = kFnvStart) {
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return hash;
-}
 
 void make_folder(const fs::path& folder) {
   std::error_code failed;

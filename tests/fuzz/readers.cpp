@@ -16,6 +16,7 @@
 #include "app/session/document_file.hpp"
 #include "app/session/settings.hpp"
 #include "app/studio/event_text.hpp"
+#include "app/study/trials.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
@@ -349,6 +350,19 @@ void document(const std::string& bytes) {
   must(same(saved.document, again.document), "what was read can be written and read again");
 }
 
+void study(const std::string& bytes) {
+  const auto read = [](const std::string& text) {
+    return app::study_from_json(app::parse_json(text, "x.study"), "/nonexistent-folder", "x.study");
+  };
+  const app::Study saved = read(bytes);
+  must(same(read(app::json_text(app::to_json(saved, "/nonexistent-folder"))), saved),
+       "what was read can be written and read again");
+  must(app::changes_since(app::digest_of(saved, "/"), saved, "/").empty(), "nothing changed");
+  const auto trials = app::trials_of(saved, "1");
+  must(trials.size() == static_cast<size_t>(app::trial_count(saved) + saved.plan.practice),
+       "all trials are there");
+}
+
 // Each line's words as the lines of scripts use them.
 void script(const std::string& bytes) {
   std::istringstream lines(bytes);
@@ -408,6 +422,7 @@ std::vector<Reader> all_readers() {
                              {"weights", weights, text_size},
                              {"worker_words", worker_words, bytes_size},
                              {"document", document, text_size},
+                             {"study", study, text_size},
                              {"script", script, text_size},
                              {"bone_map", bone_choices, text_size},
                              {"scan_list", scan_list, text_size},

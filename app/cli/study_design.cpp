@@ -1,0 +1,102 @@
+#include "app/cli/study_design.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "app/cli/options.hpp"
+#include "app/study/presets.hpp"
+#include "app/study/trial_exports.hpp"
+#include "retarget/base/log.hpp"
+#include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
+
+namespace understudy::app {
+namespace {
+
+struct NewOptions {
+  std::string preset, out;
+};
+
+std::string size_of(const Study& study) {
+  std::string text = std::to_string(trial_count(study)) + " trials";
+  if (study.plan.practice > 0) text += printed(" and %d of practice", study.plan.practice);
+  return text + printed(", about %.0f minutes a participant", minutes_of(study));
+}
+
+int make_study(const NewOptions& options) {
+  const Study study = study_preset(options.preset).make(samples_folder());
+  write_study(options.out, study);
+  std::printf("%s: %s\n", options.out.c_str(), size_of(study).c_str());
+  return 0;
+}
+
+struct TrialsOptions {
+  std::string study, participant, format = "table", out;
+  bool without_files = false;
+};
+
+struct TrialFormat {
+  const char* name;
+  std::string (*text)(const Study& study, const std::vector<Trial>& trials);
+};
+constexpr TrialFormat kTrialFormats[] = {{"table", trials_as_table},
+                                         {"csv", trials_as_csv},
+                                         {"jspsych", trials_for_jspsych},
+                                         {"psychopy", trials_for_psychopy}};
+
+int list_trials(const TrialsOptions& options) {
+  check_writable(options.out);
+  const Study study = read_study(options.study);
+  if (!options.without_files) {
+    check_files(study);
+    check_lengths(study);
+  }
+  const std::vector<Trial> trials =
+      options.participant.empty() ? all_trials(study) : trials_of(study, options.participant);
+  std::string text;
+  for (const TrialFormat& format : kTrialFormats)
+    if (options.format == format.name) text = format.text(study, trials);
+  if (options.out.empty())
+    std::fputs(text.c_str(), stdout);
+  else
+    write_file(options.out, text);
+  log::info(options.study + ": " + size_of(study));
+  return 0;
+}
+
+}  // namespace
+
+void add_study_new(CLI::App& study, const std::shared_ptr<Action>& chosen) {
+  const auto options = std::make_shared<NewOptions>();
+  CLI::App& command = *study.add_subcommand("new", "writes a study of a paper, with the bundled samples");
+  std::vector<std::string> names;
+  std::string help;
+  for (const StudyPreset& preset : study_presets()) {
+    names.emplace_back(preset.name);
+    append_item(help, std::string(preset.name) + ": " + preset.label + ", " + preset.sentence, "; ");
+  }
+  command.add_option("--preset", options->preset, help)->required()->check(CLI::IsMember(names));
+  command.add_option("--out", options->out, "the .study file")->required();
+  command.callback([options, chosen] { *chosen = [options] { return make_study(*options); }; });
+}
+
+void add_study_trials(CLI::App& study, const std::shared_ptr<Action>& chosen) {
+  const auto options = std::make_shared<TrialsOptions>();
+  CLI::App& command = *study.add_subcommand("trials", "lists the trials of a study, for any runner");
+  command.add_option("study", options->study, "the .study file")->required();
+  command.add_option("--participant", options->participant,
+                     "whose trials, in their order (default: all of the design); names that end in "
+                     "consecutive numbers are balanced against each other");
+  std::vector<std::string> names;
+  for (const TrialFormat& format : kTrialFormats) names.emplace_back(format.name);
+  command
+      .add_option("--format", options->format,
+                  "table, csv, jspsych (a timeline as JSON) or psychopy (a conditions file)")
+      ->check(CLI::IsMember(names));
+  command.add_option("--out", options->out, "file that is written (default: standard output)");
+  command.add_flag("--without-files", options->without_files,
+                   "lists them although sources, targets or animations are gone or of other lengths");
+  command.callback([options, chosen] { *chosen = [options] { return list_trials(*options); }; });
+}
+
+}  // namespace understudy::app

@@ -1,0 +1,25 @@
+// Lists of trials as text: for people, for spreadsheets, and for other programs that run studies.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/study/trials.hpp"
+
+namespace understudy::app {
+
+/// Where other runners look for the clip of a trial: "clips/NAME.mp4" beside the list.
+std::string clip_path(const Study& study, const Trial& trial);
+
+/// Columns for reading, one line a trial.
+std::string trials_as_table(const Study& study, const std::vector<Trial>& trials);
+/// position, trial, practice (1 or 0), every factor, the clip, and the questions that are asked.
+std::string trials_as_csv(const Study& study, const std::vector<Trial>& trials);
+/// A conditions file of PsychoPy: the same factors, and for each question columns q1_name, q1_ask, q1_kind
+/// ...
+std::string trials_for_psychopy(const Study& study, const std::vector<Trial>& trials);
+/// A timeline as jsPsych reads it, after its plug-ins have been put in place of their names: a video a trial,
+/// then its questions; "data" of each has the trial, its factors and the right answer.
+std::string trials_for_jspsych(const Study& study, const std::vector<Trial>& trials);
+
+}  // namespace understudy::app
