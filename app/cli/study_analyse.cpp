@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/run/report.hpp"
 #include "app/study/analysis.hpp"
 #include "app/study/analysis_page.hpp"
+#include "app/study/study_analysis.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
@@ -18,9 +20,9 @@ namespace understudy::app {
 namespace {
 
 struct StudyAnalyseOptions {
-  std::string answers, out, page;
+  std::string study, answers, out, page;
   std::vector<std::string> questions, factors, attention;
-  double least_attention = 50;  ///< per cent
+  std::optional<double> least_attention;  ///< per cent
 };
 
 /// The two sides of NAME=REST. Throws Error where there is no "=".
@@ -56,12 +58,20 @@ AttentionCheck attention_from(const std::string& text) {
   return check;
 }
 
-AnalysisOptions analysis_options(const StudyAnalyseOptions& options) {
+/// What the study says, but for what the command line says.
+AnalysisOptions options_for(const StudyAnswers& answers, const StudyAnalyseOptions& options) {
   AnalysisOptions analysis;
+  if (!options.study.empty()) {
+    const Study study = read_study(options.study);
+    check_answers(answers, study);
+    analysis = analysis_options(study);
+  }
+  if (!options.questions.empty()) analysis.questions.clear();
   for (const std::string& one : options.questions) analysis.questions.push_back(question_from(one));
-  analysis.factors = options.factors;
+  if (!options.factors.empty()) analysis.factors = options.factors;
+  if (!options.attention.empty()) analysis.attention.clear();
   for (const std::string& one : options.attention) analysis.attention.push_back(attention_from(one));
-  analysis.least_attention = options.least_attention / 100;
+  if (options.least_attention) analysis.least_attention = *options.least_attention / 100;
   return analysis;
 }
 
@@ -78,7 +88,8 @@ void print(const StudyReport& report) {
 
 int study_analyse(const StudyAnalyseOptions& options) {
   check_writable(options.out);
-  const StudyReport report = analyse(read_answers(options.answers), analysis_options(options));
+  const StudyAnswers answers = read_answers(options.answers);
+  const StudyReport report = analyse(answers, options_for(answers, options));
   if (!options.page.empty()) {
     std::error_code failed;
     std::filesystem::create_directories(options.page, failed);
@@ -96,6 +107,9 @@ void add_study_analyse(CLI::App& study, const std::shared_ptr<Action>& chosen) {
   const auto options = std::make_shared<StudyAnalyseOptions>();
   CLI::App& command =
       *study.add_subcommand("analyse", "statistics of the answers: aligned ranks, contrasts, medians");
+  command.add_option(
+      "study", options->study,
+      "the .study file: questions, scales, factors and the rule of exclusion (default: as told by options)");
   command.add_option("--answers", options->answers, "folder of CSV files, one a participant")->required();
   command.add_option("--out", options->out, "report as JSON");
   command.add_option("--page", options->page, "folder for a page with box plots, and tables as CSV");

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "app/study/answers.hpp"
+#include "app/study/trials.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "tests/app/program.hpp"
+#include "tests/app/study/made_study.hpp"
 
 namespace understudy::app {
 namespace {
@@ -54,6 +59,47 @@ TEST_F(StudyAnalyse, TakesScalesFactorsAndTheShareOfAttention) {
   EXPECT_EQ(report["excluded"].size(), 4u);  // E02 too: 5 of 9 right
   EXPECT_EQ(report["factors"], nlohmann::json{"method"});
   EXPECT_EQ(complaint_of({"--answers", kData + "slider", "--question", "naturalness=0..100"}), "");
+}
+
+/// A participant's file: "guest" is liked best, "walk" is taken for anything.
+std::string answers_to(const Study& study, const std::string& participant) {
+  std::string text =
+      "participant,trial,question,answer,rt_ms,replays,shown_at,condition,motion,target,practice\n";
+  for (const Trial& trial : trials_of(study, participant))
+    for (const int q : trial.questions) {
+      const char* const answers[] = {trial.condition == 2 ? "6"
+                                     : trial.motion == 0  ? "3"
+                                                          : "2",
+                                     "Child", "walk"};
+      for (const std::string& cell :
+           {participant, trial.id, study.questions[q].name, std::string(answers[q]), std::string("900"),
+            std::string("0"), std::string(), study.conditions[trial.condition].name,
+            study.motions[trial.motion].name, study.targets[trial.target].name})
+        text += csv_cell(cell) + ",";
+      text += trial.is_practice ? "1\n" : "0\n";
+    }
+  return text;
+}
+
+TEST_F(StudyAnalyse, TakesAllFromTheStudyFile) {
+  Study study = tests::made_study(out("files"));
+  study.plan.least_right = 0;
+  write_study(out("small.study"), study);
+  std::filesystem::create_directory(out("answers"));
+  for (const std::string name : {"P1", "P2", "P3"})
+    write_file(out("answers/" + name + ".csv"), answers_to(study, name));
+  ASSERT_EQ(run({out("small.study"), "--answers", out("answers"), "--out", out("report.json")}), 0);
+  const auto report = nlohmann::json::parse(tests::read_bytes(out("report.json")));
+  EXPECT_EQ(report["factors"], (nlohmann::json{"condition", "motion", "target"}));
+  EXPECT_EQ(report["questions"]["natural"]["medians"]["condition"]["guest"], 6);
+  EXPECT_TRUE(report["questions"].contains("age"));
+  EXPECT_FALSE(report["questions"].contains("action"));
+
+  EXPECT_NE(complaint_of({out("small.study"), "--answers", kData + "slider"}).find("no column \"condition\""),
+            std::string::npos);
+  EXPECT_NE(complaint_of({out("small.study"), "--answers", out("answers"), "--least-attention", "90"})
+                .find("no participant is left"),
+            std::string::npos);
 }
 
 TEST_F(StudyAnalyse, RefusesWhatItCannotRead) {

@@ -1,0 +1,19 @@
+// What a study file says of the analysis of its answers.
+#pragma once
+
+#include "app/study/analysis.hpp"
+#include "app/study/study.hpp"
+
+namespace understudy::app {
+
+/// The questions with their scales, those of attention, the rule of exclusion, and the factors of the design
+/// that have several levels: condition, motion, target. Where participants see a subset of the trials, or
+/// rate only every nth, the conditions alone are compared. Left out are choices between more than two
+/// options, which have no order. Throws Error where trials show two results: those are not analysed.
+AnalysisOptions analysis_options(const Study& study);
+
+/// Throws Error naming file and line where an answer is of a condition, motion, target or question that the
+/// study does not have, or where the answers have no such column.
+void check_answers(const StudyAnswers& answers, const Study& study);
+
+}  // namespace understudy::app

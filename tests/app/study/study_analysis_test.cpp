@@ -1,0 +1,107 @@
+#include "app/study/study_analysis.hpp"
+
+#include <gtest/gtest.h>
+
+#include "app/study/trials.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/rng.hpp"
+#include "tests/app/study/made_study.hpp"
+
+namespace understudy::app {
+namespace {
+
+Study made_study() {
+  return tests::made_study("/nowhere");
+}
+
+/// Answers of participants who see their trials and like "guest" best; they know what they see.
+StudyAnswers answers_to(const Study& study, int participants) {
+  StudyAnswers all;
+  all.factors = {"practice", "condition", "other", "motion", "target", "repetition"};
+  Rng rng(8);
+  for (int i = 1; i <= participants; ++i) {
+    ParticipantAnswers one{"P" + std::to_string(i), "P" + std::to_string(i) + ".csv", {}};
+    for (const Trial& trial : trials_of(study, one.participant))
+      for (const int q : trial.questions) {
+        const StudyMotion& motion = study.motions[trial.motion];
+        const double rating = 3.5 + (trial.condition == 2 ? 1.5 : 0) + rng.normal();
+        StudyAnswer answer;
+        answer.trial = trial.id, answer.question = study.questions[q].name;
+        answer.answer = q == 0   ? std::to_string(std::clamp(static_cast<int>(rating), 1, 7))
+                        : q == 1 ? rng.chance(0.5f) ? "Adult" : "Child"
+                                 : right_answer(study.questions[q], motion);
+        answer.levels = {
+            trial.is_practice ? "1" : "0",    study.conditions[trial.condition].name, "", motion.name,
+            study.targets[trial.target].name, std::to_string(trial.repetition)};
+        answer.line = one.answers.size() + 2;
+        one.answers.push_back(answer);
+      }
+    all.participants.push_back(std::move(one));
+  }
+  return all;
+}
+
+TEST(StudyAnalysis, FollowsTheStudyFile) {
+  Study study = made_study();
+  study.plan.must_exceed = true;
+  const AnalysisOptions options = analysis_options(study);
+  EXPECT_EQ(options.factors, (std::vector<std::string>{"condition", "motion", "target"}));
+  ASSERT_EQ(options.questions.size(), 2u);
+  EXPECT_EQ(options.questions[0].high, 7);
+  EXPECT_EQ(options.questions[1].choices, (std::vector<std::string>{"Adult", "Child"}));
+  ASSERT_EQ(options.attention.size(), 1u);
+  EXPECT_TRUE(options.must_exceed);
+
+  const StudyAnswers answers = answers_to(study, 12);
+  check_answers(answers, study);
+  const StudyReport report = analyse(answers, options);
+  EXPECT_EQ(report.analysed, 12);
+  EXPECT_EQ(report.participants[0].attention, 1);
+  EXPECT_LT(report.questions[0].effects[0].art.p, 1e-4);
+  EXPECT_EQ(report.questions[0].effects[0].levels, (std::vector<std::string>{"copy", "guest", "no offsets"}));
+}
+
+TEST(StudyAnalysis, KnowsTheActionOfAMotion) {
+  Study study = made_study();
+  study.motions[1].action = "leap";
+  study.questions[2].options = {"walk", "leap"};
+  StudyAnswers answers = answers_to(study, 4);
+  EXPECT_TRUE(analyse(answers, analysis_options(study)).excluded.empty());
+  for (StudyAnswer& one : answers.participants[2].answers)
+    if (one.question == "action") one.answer = "jump";
+  study.plan.least_right = 0.9f;
+  EXPECT_EQ(analyse(answers, analysis_options(study)).excluded.size(), 1u);
+}
+
+TEST(StudyAnalysis, OfASubsetComparesTheConditionsAlone) {
+  Study study = made_study();
+  study.plan.trials_per_participant = 9;
+  EXPECT_EQ(analysis_options(study).factors, std::vector<std::string>{"condition"});
+  EXPECT_EQ(analyse(answers_to(study, 6), analysis_options(study)).analysed, 6);
+}
+
+TEST(StudyAnalysis, RefusesAnswersOfAnotherStudy) {
+  const Study study = made_study();
+  const auto complaint = [&](const StudyAnswers& answers) {
+    return failure_of([&] { check_answers(answers, study); });
+  };
+  StudyAnswers answers = answers_to(study, 2);
+  EXPECT_EQ(complaint(answers), "");
+  answers.participants[1].answers[3].levels[1] = "TST";
+  EXPECT_EQ(complaint(answers), "P2.csv: line 5: the study has no condition \"TST\"");
+  answers = answers_to(study, 2);
+  answers.participants[0].answers[0].question = "beauty";
+  EXPECT_EQ(complaint(answers), "P1.csv: line 2: the study has no question \"beauty\"");
+  answers.factors[4] = "shape";
+  answers.participants[0].answers[0].question = "natural";
+  EXPECT_EQ(complaint(answers), "the answers have no column \"target\"");
+}
+
+TEST(StudyAnalysis, RefusesPairs) {
+  Study study = made_study();
+  study.layout.results = TrialResults::Pair;
+  EXPECT_THROW(analysis_options(study), Error);
+}
+
+}  // namespace
+}  // namespace understudy::app
