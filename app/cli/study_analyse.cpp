@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/run/report.hpp"
@@ -58,14 +59,9 @@ AttentionCheck attention_from(const std::string& text) {
   return check;
 }
 
-/// What the study says, but for what the command line says.
-AnalysisOptions options_for(const StudyAnswers& answers, const StudyAnalyseOptions& options) {
-  AnalysisOptions analysis;
-  if (!options.study.empty()) {
-    const Study study = read_study(options.study);
-    check_answers(answers, study);
-    analysis = analysis_options(study);
-  }
+/// What the study says, if there is one, but for what the command line says.
+AnalysisOptions options_for(const std::optional<Study>& study, const StudyAnalyseOptions& options) {
+  AnalysisOptions analysis = study ? analysis_options(*study) : AnalysisOptions();
   if (!options.questions.empty()) analysis.questions.clear();
   for (const std::string& one : options.questions) analysis.questions.push_back(question_from(one));
   if (!options.factors.empty()) analysis.factors = options.factors;
@@ -88,8 +84,12 @@ void print(const StudyReport& report) {
 
 int study_analyse(const StudyAnalyseOptions& options) {
   check_writable(options.out);
-  const StudyAnswers answers = read_answers(options.answers);
-  const StudyReport report = analyse(answers, options_for(answers, options));
+  std::optional<Study> study;
+  if (!options.study.empty()) study = read_study(options.study);
+  const AnalysisOptions how = options_for(study, options);
+  StudyAnswers answers = read_answers(options.answers);
+  if (study) answers = counted_answers(std::move(answers), *study);
+  const StudyReport report = analyse(answers, how);
   if (!options.page.empty()) {
     std::error_code failed;
     std::filesystem::create_directories(options.page, failed);

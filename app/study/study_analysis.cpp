@@ -1,9 +1,12 @@
 #include "app/study/study_analysis.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/study/trials.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 
@@ -43,6 +46,20 @@ void check_known(const std::vector<std::string>& known, const std::string& name,
            " \"", excerpt(name), "\"");
 }
 
+void check_answers(const StudyAnswers& answers, const Study& study) {
+  const std::vector<std::string> questions = names_of(study.questions);
+  for (const auto& [factor, levels] : factors_of(study)) {
+    const auto at = std::find(answers.factors.begin(), answers.factors.end(), factor);
+    US_CHECK(at != answers.factors.end(), "the answers have no column \"", factor, "\"");
+    const auto column = static_cast<size_t>(at - answers.factors.begin());
+    for (const ParticipantAnswers& participant : answers.participants)
+      for (const StudyAnswer& one : participant.answers) {
+        check_known(questions, one.question, "question", place_of(participant, one));
+        check_known(levels, one.levels[column], factor.c_str(), place_of(participant, one));
+      }
+  }
+}
+
 }  // namespace
 
 AnalysisOptions analysis_options(const Study& study) {
@@ -67,18 +84,18 @@ AnalysisOptions analysis_options(const Study& study) {
   return options;
 }
 
-void check_answers(const StudyAnswers& answers, const Study& study) {
-  const std::vector<std::string> questions = names_of(study.questions);
-  for (const auto& [factor, levels] : factors_of(study)) {
-    const auto at = std::find(answers.factors.begin(), answers.factors.end(), factor);
-    US_CHECK(at != answers.factors.end(), "the answers have no column \"", factor, "\"");
-    const auto column = static_cast<size_t>(at - answers.factors.begin());
-    for (const ParticipantAnswers& participant : answers.participants)
-      for (const StudyAnswer& one : participant.answers) {
-        check_known(questions, one.question, "question", place_of(participant, one));
-        check_known(levels, one.levels[column], factor.c_str(), place_of(participant, one));
-      }
+StudyAnswers counted_answers(StudyAnswers answers, const Study& study) {
+  check_answers(answers, study);
+  for (ParticipantAnswers& participant : answers.participants) {
+    std::set<std::string> practice;
+    for (const Trial& trial : trials_of(study, participant.participant))
+      if (trial.is_practice) practice.insert(trial.id);
+    auto& list = participant.answers;
+    list.erase(std::remove_if(list.begin(), list.end(),
+                              [&](const StudyAnswer& one) { return practice.count(one.trial) > 0; }),
+               list.end());
   }
+  return answers;
 }
 
 }  // namespace understudy::app

@@ -12,8 +12,9 @@ namespace understudy::app {
 /// options, which have no order. Throws Error where trials show two results: those are not analysed.
 AnalysisOptions analysis_options(const Study& study);
 
-/// Throws Error naming file and line where an answer is of a condition, motion, target or question that the
-/// study does not have, or where the answers have no such column.
-void check_answers(const StudyAnswers& answers, const Study& study);
+/// The answers that count: those of practice trials are left out. Throws Error naming file and line where an
+/// answer is of a condition, motion, target or question that the study does not have, or where the answers
+/// have no such column.
+StudyAnswers counted_answers(StudyAnswers answers, const Study& study);
 
 }  // namespace understudy::app

@@ -53,12 +53,24 @@ TEST(StudyAnalysis, FollowsTheStudyFile) {
   EXPECT_TRUE(options.must_exceed);
 
   const StudyAnswers answers = answers_to(study, 12);
-  check_answers(answers, study);
-  const StudyReport report = analyse(answers, options);
+  const StudyReport report = analyse(counted_answers(answers, study), options);
   EXPECT_EQ(report.analysed, 12);
   EXPECT_EQ(report.participants[0].attention, 1);
   EXPECT_LT(report.questions[0].effects[0].art.p, 1e-4);
   EXPECT_EQ(report.questions[0].effects[0].levels, (std::vector<std::string>{"copy", "guest", "no offsets"}));
+}
+
+TEST(StudyAnalysis, LeavesPracticeOutByItsTrials) {
+  const Study study = made_study();
+  StudyAnswers answers = answers_to(study, 3);
+  answers.factors[0] = "hand";  // nobody says which trials were practice
+  const auto count = [](const StudyAnswers& all) {
+    return analyse(all, {{{"natural"}}, {"condition"}, {}}).participants[0].answers;
+  };
+  const int all = count(answers);
+  const StudyAnswers counted = counted_answers(answers, study);
+  EXPECT_LT(count(counted), all);
+  for (const StudyAnswer& one : counted.participants[0].answers) EXPECT_EQ(one.trial[0], 't');
 }
 
 TEST(StudyAnalysis, KnowsTheActionOfAMotion) {
@@ -83,7 +95,7 @@ TEST(StudyAnalysis, OfASubsetComparesTheConditionsAlone) {
 TEST(StudyAnalysis, RefusesAnswersOfAnotherStudy) {
   const Study study = made_study();
   const auto complaint = [&](const StudyAnswers& answers) {
-    return failure_of([&] { check_answers(answers, study); });
+    return failure_of([&] { counted_answers(answers, study); });
   };
   StudyAnswers answers = answers_to(study, 2);
   EXPECT_EQ(complaint(answers), "");
