@@ -114,6 +114,13 @@ Json video_json(const Study& study, const Trial& trial) {
           {"data", data}};
 }
 
+Json break_json() {
+  return {{"type", "html-button-response"},
+          {"stimulus", "Time for a break."},
+          {"choices", Json::array({"Continue"})},
+          {"data", {{"part", "break"}}}};
+}
+
 Json question_json(const Study& study, const Trial& trial, const StudyQuestion& one) {
   Json data = data_of(study, trial);
   data["part"] = "question";
@@ -170,7 +177,11 @@ std::string trials_for_psychopy(const Study& study, const std::vector<Trial>& tr
 
 std::string trials_for_jspsych(const Study& study, const std::vector<Trial>& trials) {
   Json timeline = Json::array();
+  int done = 0;
   for (const Trial& trial : trials) {
+    const int every = study.plan.break_every;
+    if (every > 0 && done > 0 && done % every == 0) timeline.push_back(break_json());
+    if (!trial.is_practice) ++done;
     timeline.push_back(video_json(study, trial));
     for (const int q : trial.questions) timeline.push_back(question_json(study, trial, study.questions[q]));
   }

@@ -19,7 +19,8 @@ std::string trials_as_csv(const Study& study, const std::vector<Trial>& trials);
 /// ...
 std::string trials_for_psychopy(const Study& study, const std::vector<Trial>& trials);
 /// A timeline as jsPsych reads it, after its plug-ins have been put in place of their names: a video a trial,
-/// then its questions; "data" of each has the trial, its factors and the right answer.
+/// then its questions, and the breaks; "data" of each has the trial, its factors and the right answer.
+/// jsPsych counts the points of a scale from 0: an answer is its number plus 1.
 std::string trials_for_jspsych(const Study& study, const std::vector<Trial>& trials);
 
 }  // namespace understudy::app

@@ -198,6 +198,7 @@ std::vector<Trial> practice_trials(const Study& study, Rng& random) {
 std::vector<std::vector<int>> balanced_latin_square(int count) {
   US_CHECK(count >= 2, "a Latin square needs two conditions, not ", count);
   std::vector<std::vector<int>> rows;
+  rows.reserve(latin_rows(count));
   for (int number = 0; number < latin_rows(count); ++number) rows.push_back(latin_row(count, number));
   return rows;
 }

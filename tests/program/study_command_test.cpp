@@ -34,7 +34,7 @@ TEST_F(StudyCommand, WritesAParticipantsTrialsForOtherRunners) {
   EXPECT_EQ(line_count(read_bytes(out("table"))), 53);
   EXPECT_EQ(read_bytes(out("csv")).rfind("position,trial,practice,", 0), 0u);
   EXPECT_EQ(read_bytes(out("psychopy")).rfind("trial,practice,clip,", 0), 0u);
-  EXPECT_EQ(Json::parse(read_bytes(out("jspsych")))["timeline"].size(), 52u * 4);
+  EXPECT_EQ(Json::parse(read_bytes(out("jspsych")))["timeline"].size(), 52u * 4 + 4);
   const Finished again = run_program({"study", "trials", file, "--participant", "P3", "--format", "csv"});
   EXPECT_EQ(again.out, read_bytes(out("csv")));
   const Finished other = run_program({"study", "trials", file, "--participant", "P4", "--format", "csv"});

@@ -263,5 +263,19 @@ TEST(TrialExports, GiveJsPsychAVideoAndItsQuestions) {
   EXPECT_EQ(at, json["timeline"].size());
 }
 
+TEST(TrialExports, GiveJsPsychItsBreaksAfterTrialsThatCount) {
+  Study study = made_study("/a");
+  study.plan.break_every = 6;
+  const std::vector<Trial> trials = trials_of(study, "1");
+  const Json json = Json::parse(trials_for_jspsych(study, trials));
+  std::vector<int> breaks;
+  int clips = 0;
+  for (const Json& one : json["timeline"]) {
+    if (one["data"]["part"] == "clip") ++clips;
+    if (one["data"]["part"] == "break") breaks.push_back(clips - study.plan.practice);
+  }
+  EXPECT_EQ(breaks, (std::vector<int>{6, 12}));  // none after the last
+}
+
 }  // namespace
 }  // namespace understudy::app
