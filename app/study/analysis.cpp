@@ -270,6 +270,7 @@ std::vector<LevelSummary> summaries(const QuestionData& question, const Design& 
     all.insert(all.end(), question.cells[c].begin(), question.cells[c].end());
   }
   std::vector<LevelSummary> list;
+  list.reserve(levels.size());
   for (const std::string& level : levels) list.push_back(summary_of(level, values.at(level)));
   return list;
 }
@@ -376,6 +377,7 @@ StudyReport analyse(const StudyAnswers& all_answers, const AnalysisOptions& opti
 
   for (size_t q = 0; q < questions.size(); ++q) {
     std::vector<const Given*> of_question;
+    of_question.reserve(kept.size());
     for (const size_t i : kept) of_question.push_back(&everybody[i][q]);
     const QuestionData data = data_of(of_question, design);
     QuestionReport one;
