@@ -1,5 +1,5 @@
-// A checksum that is the same on every machine: to tell files and texts apart, not to keep anybody from making
-// equal ones.
+// A checksum that is the same on every machine: to tell files and texts apart, not to keep anybody
+// from making equal ones.
 #pragma once
 
 #include <cstdint>

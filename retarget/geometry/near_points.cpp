@@ -38,8 +38,8 @@ NearPoints::NearPoints(const Points& points, const Vec3& low, const Vec3& high, 
     if (cube_of[i] >= 0) sorted_[next[cube_of[i]]++] = points.row(i);
 }
 
-/// The points in the 27 cubes about a place, nearest rows first: runs of three cubes along x lie one after the
-/// other. `reach2`, squared metres, may shrink on the way; rows beyond it are left out.
+/// The points in the 27 cubes about a place, nearest rows first: runs of three cubes along x lie one after
+/// the other. `reach2`, squared metres, may shrink on the way; rows beyond it are left out.
 template <typename Visit>
 void NearPoints::visit(const Vec3& at, const float& reach2, Visit&& visit) const {
   const Vec3 scaled = (at - low_) * inverse_;

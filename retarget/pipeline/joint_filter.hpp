@@ -17,7 +17,7 @@ struct JointFilterOptions {
   float weak_noise_m = 0.1f;   ///< the same at confidence 0
   float acceleration = 12.0f;  ///< m/s^2, how hard joints are expected to accelerate relative to the pelvis
   float root_acceleration = 14.0f;  ///< m/s^2, the same of the pelvis in the world
-  float turn_noise = 0.025f;         ///< standard deviation of a seen rotation at confidence 1, radians
+  float turn_noise = 0.025f;        ///< standard deviation of a seen rotation at confidence 1, radians
   float weak_turn_noise = 0.25f;    ///< the same at confidence 0
   float turn_acceleration = 40.0f;  ///< rad/s^2, how hard bones are expected to begin to turn
   float swap_confidence = 0.75f;    ///< sides of limbs whose mean confidence is above this are believed

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kWatched = 40, kSettled = 16;
 
-/// The built-in person, dancing: scans in which no point has a fellow in the next, and an extractor's skeletons
-/// that err anew in each frame but the first.
+/// The built-in person, dancing: scans in which no point has a fellow in the next, and an extractor's
+/// skeletons that err anew in each frame but the first.
 class Dancer {
  public:
   PosedSkeleton truth(int frame) const {
