@@ -6,6 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -15,14 +16,6 @@ template <class Number>
 void append(std::string& text, Number value) {
   char digits[32];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-}
-
-/// In quotes where a comma, a quote or a line's end is in it.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
 }
 
 }  // namespace
@@ -39,7 +32,7 @@ void write_csv(const std::string& path, const std::vector<Series>& series, doubl
   std::string text = "frame,seconds";
   for (const Series& one : series) {
     frames = std::max(frames, one.values.size());
-    text += ',' + cell(one.key);
+    text += ',' + csv_cell(one.key);
   }
   text += '\n';
   for (size_t frame = 0; frame < frames; ++frame) {

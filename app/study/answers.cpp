@@ -87,35 +87,6 @@ StudyAnswer answer_from(std::vector<std::string> cells, const Lines& lines) {
 
 }  // namespace
 
-std::vector<std::string> csv_cells(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back() += line[++i];
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  if (quoted) throw std::invalid_argument("a quote is not closed");
-  return cells;
-}
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string cell = "\"";
-  for (const char c : text) {
-    if (c == '"') cell += c;
-    cell += c;
-  }
-  return cell + '"';
-}
-
 std::string place_of(const ParticipantAnswers& participant, const StudyAnswer& answer) {
   return participant.path + ": line " + std::to_string(answer.line);
 }

@@ -43,9 +43,4 @@ StudyAnswers read_answers(const std::string& folder);
 /// "FOLDER/P03.csv: line 12", for messages.
 std::string place_of(const ParticipantAnswers& participant, const StudyAnswer& answer);
 
-/// A text as one cell of a CSV line, in quotes where it must be.
-std::string csv_cell(const std::string& text);
-/// The cells of one CSV line. Throws std::invalid_argument where a quote is not closed.
-std::vector<std::string> csv_cells(const std::string& line);
-
 }  // namespace understudy::app

@@ -33,6 +33,11 @@ void append_item(std::string& list, std::string_view item, std::string_view sepa
 /// The beginning of a text for use in a message: at most 40 printable characters.
 std::string excerpt(std::string_view text);
 
+/// A text as one cell of a CSV line, in quotes where it must be.
+std::string csv_cell(const std::string& text);
+/// The cells of one CSV line. Throws std::invalid_argument where a quote is not closed.
+std::vector<std::string> csv_cells(const std::string& line);
+
 /// As std::snprintf prints it, of any length.
 std::string printed(const char* format, ...) __attribute__((format(printf, 1, 2)));
 /// 12345 as "12,345".

@@ -1,7 +1,6 @@
 // What lies near a place, among points in cubes.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/segment.hpp"
 
 namespace understudy {
 namespace {
@@ -49,18 +50,12 @@ std::vector<Segment> segments(const Joints& joints) {
   return all;
 }
 
-float squared_distance(const Vec3& point, const Segment& segment) {
-  const Vec3 along = segment.to - segment.from, from = point - segment.from;
-  const float t = std::clamp(from.dot(along) / std::max(along.squaredNorm(), 1e-9f), 0.0f, 1.0f);
-  return (from - t * along).squaredNorm();
-}
-
 /// The bone whose axis is nearest; -1: none is near.
 int bone_of(const Vec3& point, const std::vector<Segment>& segments) {
   float least = kCarried * kCarried;
   int bone = -1;
   for (const Segment& segment : segments) {
-    const float d = squared_distance(point, segment);
+    const float d = from_segment(point, segment.from, segment.to).squaredNorm();
     if (d >= least) continue;
     least = d;
     bone = segment.bone;
@@ -100,6 +95,7 @@ void SurfaceTracker::restart() {
   rng_ = Rng(0);
   for (std::vector<Mark>& marks : marks_) marks.clear();
   variance_.fill(kUnfitted * kUnfitted);
+  offsets_.setZero();
   frames_ = 0;
 }
 
@@ -230,7 +226,6 @@ void SurfaceTracker::remember_offsets(const Bones& bones) {
   for (int b = 1; b < kJointCount; ++b) {
     const Vec3 beside = (bones.joints.row(b) - bones.joints.row(kParents[b])).transpose();
     const Vec3 offset = bones.turns[kParents[b]].transpose() * beside;
-    if (frames_ == 0) offsets_.row(b) = offset.transpose();
     offsets_.row(b) += share * (offset.transpose() - offsets_.row(b));
   }
 }

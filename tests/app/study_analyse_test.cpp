@@ -10,6 +10,7 @@
 #include "app/study/trials.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 #include "tests/app/program.hpp"
 #include "tests/app/study/made_study.hpp"
 

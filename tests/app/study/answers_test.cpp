@@ -8,6 +8,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
 #include "tests/app/program.hpp"
 
 namespace understudy::app {
