@@ -16,6 +16,14 @@ namespace understudy::app {
 
 constexpr int kStudyVersion = 1;
 
+/// What participants read first, unless the study says something else.
+constexpr const char* kConsent =
+    "You will see short clips of computer-animated people and answer questions about them.\n"
+    "Taking part is voluntary: you may stop at any time, without giving a reason.\n"
+    "Recorded are your answers, how long each took, and how often you played a clip again, under the "
+    "participant name that you were given. They stay on this computer until the file of answers is handed "
+    "over.";
+
 /// An animation that somebody else made for a condition.
 struct StimulusFile {
   std::string motion, target;  ///< names; empty: of all of them
@@ -209,7 +217,8 @@ FieldsOf<S, StudyPlan> fields(V& visit, S& plan) {
 /// Paths are absolute in memory.
 struct Study {
   std::string name;
-  std::string note;  ///< for those who run it
+  std::string note;                ///< for those who run it
+  std::string consent = kConsent;  ///< what participants agree to before they begin; empty: nothing
   std::vector<Condition> conditions;
   std::vector<StudyMotion> motions;
   std::vector<StudyTarget> targets;
@@ -223,6 +232,7 @@ template <class V, class S>
 FieldsOf<S, Study> fields(V& visit, S& study) {
   visit("name", study.name);
   visit("note", study.note);
+  visit("consent", study.consent);
   visit("conditions", study.conditions);
   visit("motions", study.motions);
   visit("targets", study.targets);
@@ -258,8 +268,8 @@ void write_study(const std::string& path, const Study& study);
 Study read_study(const std::string& path);
 
 /// What the answers of a study depend on, as text for their files: a checksum of each part of the design,
-/// paths relative to `folder`, so that a study moved with its files stays the same. Name, note, breaks, the
-/// number of participants and the rule of exclusion may change at any time.
+/// paths relative to `folder`, so that a study moved with its files stays the same. Name, note, consent,
+/// breaks, the number of participants and the rule of exclusion may change at any time.
 std::string digest_of(const Study& study, const std::string& folder);
 /// What changed since: "condition 'H4D', motion 'walk' is new, clip"; empty: nothing. Throws Error when the
 /// text is no digest.

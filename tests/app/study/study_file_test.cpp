@@ -53,6 +53,7 @@ TEST(StudyFile, GivesBackAllThatWasSaved) {
   const std::string path = scratch.path("my study ö.study");
   Study study = made_study(scratch.path("data"));
   study.note = "two lines\nof it";
+  study.consent = "I agree\nto this.";
   study.layout.panes = {StudyPane::Result, StudyPane::Source};
   study.layout.results = TrialResults::Pair;
   study.clip = {8, "Again", 0.5f, 2};
@@ -62,6 +63,14 @@ TEST(StudyFile, GivesBackAllThatWasSaved) {
   write_study(path, study);
   EXPECT_TRUE(same(read_study(path), study));
   EXPECT_EQ(scratch.files().size(), 1u);
+}
+
+TEST(StudyFile, WithoutAConsentHasTheUsualOne) {
+  Json json = to_json(made_study("/a"), "/a");
+  json.erase("consent");
+  EXPECT_EQ(study_from_json(json, "/a", "s.study").consent, kConsent);
+  json["consent"] = "";
+  EXPECT_EQ(study_from_json(json, "/a", "s.study").consent, "");
 }
 
 TEST(StudyFile, MovesWithItsFiles) {
@@ -287,7 +296,7 @@ TEST(StudyDigest, SaysWhatChanged) {
 TEST(StudyDigest, AllowsWhatAnswersDoNotDependOn) {
   const Study before = made_study("/a/data");
   Study now = before;
-  now.name = "other", now.note = "more";
+  now.name = "other", now.note = "more", now.consent = "I agree.";
   now.plan.participants = 60, now.plan.break_every = 5, now.plan.least_right = 0.8f;
   EXPECT_EQ(changes_since(digest_of(before, "/a"), now, "/a"), "");
 }
