@@ -88,7 +88,7 @@ int study_analyse(const StudyAnalyseOptions& options) {
   if (!options.study.empty()) study = read_study(options.study);
   const AnalysisOptions how = options_for(study, options);
   StudyAnswers answers = read_answers(options.answers);
-  if (study) answers = counted_answers(std::move(answers), *study);
+  if (study) answers = counted_answers(std::move(answers), *study, folder_of_file(options.study));
   const StudyReport report = analyse(answers, how);
   if (!options.page.empty()) {
     std::error_code failed;

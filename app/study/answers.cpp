@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array kColumns{"participant", "trial", "question", "answer", "rt_ms", "replays", "shown_at"};
+constexpr const char* kDesign = "design";
 constexpr uint64_t kMostBytes = uint64_t{64} << 20;
 
 /// The file's lines with their numbers, for messages.
@@ -96,7 +97,9 @@ ParticipantAnswers read_participant(const std::string& path, std::vector<std::st
   ParticipantAnswers read;
   read.path = path;
   factors = factors_in(lines.cells(), path);
-  const size_t columns = kColumns.size() + factors.size();
+  const bool has_design = !factors.empty() && factors.back() == kDesign;
+  if (has_design) factors.pop_back();
+  const size_t columns = kColumns.size() + factors.size() + has_design;
   std::map<std::pair<std::string, std::string>, size_t> seen;
   while (!lines.at_end()) {
     std::vector<std::string> cells = lines.cells();
@@ -107,6 +110,10 @@ ParticipantAnswers read_participant(const std::string& path, std::vector<std::st
     if (read.participant.empty()) read.participant = cells[0];
     US_CHECK(cells[0] == read.participant, lines.where(), " is of participant \"", excerpt(cells[0]),
              "\" in the file of \"", excerpt(read.participant), "\"");
+    if (has_design) {
+      if (read.answers.empty()) read.design = cells.back();
+      cells.pop_back();
+    }
     StudyAnswer one = answer_from(std::move(cells), lines);
     const auto [before, is_new] = seen.emplace(std::make_pair(one.trial, one.question), one.line);
     US_CHECK(is_new, lines.where(), " answers \"", excerpt(one.question), "\" of trial ", excerpt(one.trial),

@@ -3,7 +3,8 @@
 // The first line names the columns: participant,trial,question,answer,rt_ms,replays,shown_at and then the
 // factors of the trial, any number of them under any names (method, motion, ...). One line an answer, each
 // with its line end. A text with a comma or a quote stands in quotes, a quote in it is doubled. rt_ms,
-// replays and shown_at may be empty; an empty answer is a missing one.
+// replays and shown_at may be empty; an empty answer is a missing one. The last column may be "design": the
+// digest of the study that was shown (see digest_of), on the first line of answers alone.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +27,7 @@ struct StudyAnswer {
 struct ParticipantAnswers {
   std::string participant, path;
   std::vector<StudyAnswer> answers;
+  std::string design{};  ///< digest of the study that they saw; empty: not known
 };
 
 struct StudyAnswers {

@@ -85,7 +85,18 @@ AnalysisOptions analysis_options(const Study& study) {
   return options;
 }
 
-StudyAnswers counted_answers(StudyAnswers answers, const Study& study) {
+void check_design(const std::string& path, const std::string& design, const Study& study,
+                  const std::string& folder) {
+  if (design.empty()) return;
+  std::string changes;
+  const std::string problem = failure_of([&] { changes = changes_since(design, study, folder); });
+  US_CHECK(problem.empty(), path, ": line 2: ", problem);
+  US_CHECK(changes.empty(), path, ": these answers are not to this study; it has changed since: ", changes);
+}
+
+StudyAnswers counted_answers(StudyAnswers answers, const Study& study, const std::string& folder) {
+  for (const ParticipantAnswers& one : answers.participants)
+    check_design(one.path, one.design, study, folder);
   check_answers(answers, study);
   for (ParticipantAnswers& participant : answers.participants) {
     std::set<std::string> practice;

@@ -12,9 +12,15 @@ namespace understudy::app {
 /// options, which have no order. Throws Error where trials show two results: those are not analysed.
 AnalysisOptions analysis_options(const Study& study);
 
-/// The answers that count: those of practice trials are left out. Throws Error naming file and line where an
-/// answer is of a condition, motion, target or question that the study does not have, or where the answers
-/// have no such column.
-StudyAnswers counted_answers(StudyAnswers answers, const Study& study);
+/// The answers that count: those of practice trials are left out. `folder`: of the study's file. Throws Error
+/// naming the file where its answers are of another design, and what has changed since; naming file and line
+/// where an answer is of a condition, motion, target or question that the study does not have; where the
+/// answers have no such column.
+StudyAnswers counted_answers(StudyAnswers answers, const Study& study, const std::string& folder);
+
+/// Throws Error naming `path` where answers to this design, as the file says, are not answers to the study as
+/// it is now.
+void check_design(const std::string& path, const std::string& design, const Study& study,
+                  const std::string& folder);
 
 }  // namespace understudy::app

@@ -141,6 +141,15 @@ Json question_json(const Study& study, const Trial& trial, const StudyQuestion& 
 
 }  // namespace
 
+const std::vector<std::string>& trial_factor_names() {
+  static const std::vector<std::string> names = joined(kFactorNames, {"practice"});
+  return names;
+}
+
+std::vector<std::string> trial_factors(const Study& study, const Trial& trial) {
+  return joined(factors_of(study, trial), {trial.is_practice ? "1" : "0"});
+}
+
 std::string clip_path(const Study& study, const Trial& trial) {
   return "clips/" + clip_name(study, trial) + ".mp4";
 }

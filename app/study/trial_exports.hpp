@@ -8,6 +8,12 @@
 
 namespace understudy::app {
 
+/// condition, other, motion, target, repetition, practice: the columns of an answers file after those of the
+/// answer.
+const std::vector<std::string>& trial_factor_names();
+/// Their values; of a single result `other` is empty, practice is 1 or 0.
+std::vector<std::string> trial_factors(const Study& study, const Trial& trial);
+
 /// Where other runners look for the clip of a trial: "clips/NAME.mp4" beside the list.
 std::string clip_path(const Study& study, const Trial& trial);
 

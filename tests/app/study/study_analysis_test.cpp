@@ -53,7 +53,7 @@ TEST(StudyAnalysis, FollowsTheStudyFile) {
   EXPECT_TRUE(options.must_exceed);
 
   const StudyAnswers answers = answers_to(study, 12);
-  const StudyReport report = analyse(counted_answers(answers, study), options);
+  const StudyReport report = analyse(counted_answers(answers, study, "/nowhere"), options);
   EXPECT_EQ(report.analysed, 12);
   EXPECT_EQ(report.participants[0].attention, 1);
   EXPECT_LT(report.questions[0].effects[0].art.p, 1e-4);
@@ -68,7 +68,7 @@ TEST(StudyAnalysis, LeavesPracticeOutByItsTrials) {
     return analyse(all, {{{"natural"}}, {"condition"}, {}}).participants[0].answers;
   };
   const int all = count(answers);
-  const StudyAnswers counted = counted_answers(answers, study);
+  const StudyAnswers counted = counted_answers(answers, study, "/nowhere");
   EXPECT_LT(count(counted), all);
   for (const StudyAnswer& one : counted.participants[0].answers) EXPECT_EQ(one.trial[0], 't');
 }
@@ -95,7 +95,7 @@ TEST(StudyAnalysis, OfASubsetComparesTheConditionsAlone) {
 TEST(StudyAnalysis, RefusesAnswersOfAnotherStudy) {
   const Study study = made_study();
   const auto complaint = [&](const StudyAnswers& answers) {
-    return failure_of([&] { counted_answers(answers, study); });
+    return failure_of([&] { counted_answers(answers, study, "/nowhere"); });
   };
   StudyAnswers answers = answers_to(study, 2);
   EXPECT_EQ(complaint(answers), "");
