@@ -5,12 +5,10 @@
 #include <filesystem>
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
 
+#include "render/libav.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
@@ -27,26 +25,6 @@ class VideoWriter::Sink {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string words_of(int code) {
-  char words[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(code, words, sizeof words);
-  return words;
-}
-
-/// Owners of libav's things.
-struct Free {
-  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
-  void operator()(AVFrame* p) const { av_frame_free(&p); }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
-  void operator()(AVFormatContext* p) const {
-    if (p->pb != nullptr) avio_closep(&p->pb);
-    avformat_free_context(p);
-  }
-};
-template <class T>
-using Owned = std::unique_ptr<T, Free>;
 
 class Mp4 final : public VideoWriter::Sink {
  public:

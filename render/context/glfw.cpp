@@ -43,8 +43,11 @@ GLFWwindow* opened(const WindowOptions& options) {
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "understudy");
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "understudy");
-  GLFWwindow* window =
-      glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+  GLFWmonitor* const monitor = options.full_screen ? glfwGetPrimaryMonitor() : nullptr;
+  const GLFWvidmode* const mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+  const int width = mode != nullptr ? mode->width : options.width;
+  const int height = mode != nullptr ? mode->height : options.height;
+  GLFWwindow* window = glfwCreateWindow(width, height, options.title.c_str(), monitor, nullptr);
   US_CHECK(window != nullptr, "the graphics driver has no OpenGL 3.3", last_words(),
            "; try the software renderer: --software, or LIBGL_ALWAYS_SOFTWARE=1 in the environment");
   return window;

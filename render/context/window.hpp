@@ -30,6 +30,7 @@ struct WindowOptions {
   gl::DebugMode debug = gl::DebugMode::Off;
   bool vsync = true;
   bool visible = true;
+  bool full_screen = false;  ///< all of the main screen, whatever width and height say
   /// Mesa's software renderer in place of the graphics driver. Decided by the first window of a process.
   bool software = false;
 };

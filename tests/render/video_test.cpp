@@ -1,4 +1,4 @@
-// Films are decoded again by libav: how many pictures, how large, which colours.
+// Films are written and read again: how many pictures, how large, which colours.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -7,12 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libswscale/swscale.h>
-}
-
+#include "render/video_reader.hpp"
 #include "render/video_writer.hpp"
 #include "retarget/base/error.hpp"
 
@@ -23,53 +18,20 @@ namespace fs = std::filesystem;
 
 struct Film {
   int width = 0, height = 0;
-  double fps = 0, seconds = 0;
+  double fps = 0;
   std::vector<Vec3> means;  ///< of each picture, 0..255
 };
 
-Vec3 mean_of(const AVFrame& frame) {
-  SwsContext* scale =
-      sws_getContext(frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width,
-                     frame.height, AV_PIX_FMT_RGB24, SWS_BICUBIC, nullptr, nullptr, nullptr);
-  sws_setColorspaceDetails(scale, sws_getCoefficients(SWS_CS_ITU709), 0, sws_getCoefficients(SWS_CS_ITU709),
-                           1, 0, 1 << 16, 1 << 16);
-  std::vector<uint8_t> rgb(static_cast<size_t>(frame.width) * frame.height * 3 + 64);
-  uint8_t* rows[] = {rgb.data()};
-  const int strides[] = {3 * frame.width};
-  sws_scale(scale, frame.data, frame.linesize, 0, frame.height, rows, strides);
-  sws_freeContext(scale);
+Vec3 mean_of(const Image& image) {
   Vec3 sum = Vec3::Zero();
-  const int count = frame.width * frame.height;
-  for (int i = 0; i < 3 * count; ++i) sum[i % 3] += rgb[static_cast<size_t>(i)];
-  return sum / static_cast<float>(count);
+  for (size_t i = 0; i < image.pixels.size(); ++i) sum[static_cast<int>(i % 3)] += image.pixels[i];
+  return sum / static_cast<float>(image.width * image.height);
 }
 
 Film decoded(const std::string& path) {
-  Film film;
-  AVFormatContext* format = nullptr;
-  if (avformat_open_input(&format, path.c_str(), nullptr, nullptr) < 0) return film;
-  avformat_find_stream_info(format, nullptr);
-  const AVStream& stream = *format->streams[0];
-  AVCodecContext* decoder = avcodec_alloc_context3(avcodec_find_decoder(stream.codecpar->codec_id));
-  avcodec_parameters_to_context(decoder, stream.codecpar);
-  avcodec_open2(decoder, nullptr, nullptr);
-  film.width = stream.codecpar->width;
-  film.height = stream.codecpar->height;
-  film.fps = av_q2d(stream.avg_frame_rate);
-  film.seconds = static_cast<double>(format->duration) / AV_TIME_BASE;
-  AVPacket* packet = av_packet_alloc();
-  AVFrame* frame = av_frame_alloc();
-  bool more = true;
-  while (more) {
-    more = av_read_frame(format, packet) >= 0;
-    avcodec_send_packet(decoder, more ? packet : nullptr);
-    while (avcodec_receive_frame(decoder, frame) >= 0) film.means.push_back(mean_of(*frame));
-    av_packet_unref(packet);
-  }
-  av_frame_free(&frame);
-  av_packet_free(&packet);
-  avcodec_free_context(&decoder);
-  avformat_close_input(&format);
+  VideoReader reader(path);
+  Film film{reader.width(), reader.height(), reader.fps(), {}};
+  while (reader.next()) film.means.push_back(mean_of(reader.picture()));
   return film;
 }
 
@@ -102,7 +64,6 @@ TEST_F(VideoFile, HasAllPicturesInTheirColours) {
   EXPECT_EQ(film.width, 64);
   EXPECT_EQ(film.height, 48);
   EXPECT_DOUBLE_EQ(film.fps, 25);
-  EXPECT_NEAR(film.seconds, 12 / 25., 0.02);
   ASSERT_EQ(film.means.size(), 12u);
   for (int i = 0; i < 12; ++i) EXPECT_LT((film.means[i] - 255 * color_at(i)).norm(), 6) << i;
 }
@@ -167,6 +128,30 @@ TEST_F(VideoFile, RefusesInASentence) {
   writer.push(Image(32, 32));
   writer.finish();
   EXPECT_THROW(writer.push(Image(32, 32)), Error);
+}
+
+TEST_F(VideoFile, IsReadAgainFromItsBeginning) {
+  write_film(path("a.mp4"), {64, 48, 25}, 12);
+  VideoReader reader(path("a.mp4"));
+  for (int round = 0; round < 2; ++round) {
+    int count = 0;
+    while (reader.next())
+      if (count++ == 3) EXPECT_LT((mean_of(reader.picture()) - 255 * color_at(3)).norm(), 6);
+    EXPECT_EQ(count, 12);
+    reader.restart();
+  }
+}
+
+TEST_F(VideoFile, IsRefusedInASentenceWhenItIsNone) {
+  const auto complaint = [](const std::string& file) {
+    return failure_of([&] { VideoReader reader(file); });
+  };
+  EXPECT_NE(complaint(path("gone.mp4")).find("gone.mp4: "), std::string::npos);
+  std::ofstream(path("text.mp4")) << "no video";
+  EXPECT_NE(complaint(path("text.mp4")).find("text.mp4: is not a video, "), std::string::npos);
+  write_film(path("a.mp4"), {64, 48, 25}, 40);
+  fs::resize_file(path("a.mp4"), fs::file_size(path("a.mp4")) / 2);
+  EXPECT_NE(failure_of([&] { decoded(path("a.mp4")); }).find("a.mp4: "), std::string::npos);
 }
 
 TEST(VideoDisk, SaysThatItIsFull) {
