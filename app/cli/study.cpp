@@ -3,6 +3,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/study_analyse.hpp"
 #include "app/cli/study_design.hpp"
+#include "app/cli/study_run.hpp"
 
 namespace understudy::app {
 
@@ -11,6 +12,7 @@ Action declare_study(CLI::App& command) {
   command.require_subcommand(1);
   add_study_new(command, chosen);
   add_study_trials(command, chosen);
+  add_study_run(command, chosen);
   add_study_analyse(command, chosen);
   add_study_power(command, chosen);
   return [chosen] { return (*chosen)(); };
