@@ -57,6 +57,7 @@ StudyPlayer::StudyPlayer(StudyRun& run, std::string stimuli, std::unique_ptr<Sur
     : run_(run), stimuli_(std::move(stimuli)), surface_(std::move(surface)) {
   check_clips(run_, stimuli_);
   surface_->set_title("Understudy");
+  unsettled_ = kToRest;
 }
 StudyPlayer::~StudyPlayer() = default;
 
