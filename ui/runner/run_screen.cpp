@@ -81,25 +81,22 @@ void draw_welcome(const Screen& s) {
   const StudyRun& run = s.run();
   title(s.ui, run.is_resumed() ? "Welcome back" : "Welcome");
   const float room = s.ui.px(kColumn);
+  const std::string& consent = run.study().consent;
   std::string words =
-      "You will see short clips of moving people. Watch each to its end, then answer what is asked about it. "
-      "There are no right or wrong impressions.";
+      "Watch each clip to its end, then answer what is asked about it. There are no right or wrong "
+      "impressions.";
   if (run.trial().is_practice) words += " The first clips are for practice; they do not count.";
   if (run.is_resumed()) words = "You go on where you left off: " + of_count(run) + ".";
+  if (!run.is_resumed() && !consent.empty()) {
+    centred(consent, room);
+    gap(s.ui, kTall);
+  }
   centred(words, room);
   gap(s.ui, kTall);
   {
     const ColorScope dim(ImGuiCol_Text, s.ui.theme().text_dim);
-    centred(
-        "Answer with the mouse, or with the number keys. Enter goes on, R shows the clip again, Escape "
-        "leaves.",
-        room);
+    centred("Mouse or number keys answer, Enter goes on, R shows the clip again, Escape leaves.", room);
     centred("Participant " + run.participant(), room);
-  }
-  const std::string& consent = run.study().consent;
-  if (!run.is_resumed() && !consent.empty()) {
-    gap(s.ui, kTall);
-    centred(consent, room);
   }
   gap(s.ui, 2 * kTall);
   const char* const on = run.is_resumed() ? "Go on" : consent.empty() ? "Begin" : "I agree, begin";
@@ -187,28 +184,37 @@ void draw_ends(Ui& ui, const StudyQuestion& question, float left, float width) {
   ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
 }
 
+/// A button that is seen on any grey.
+bool answer_button(const Screen& s, const std::string& name, const std::string& label, float width,
+                   bool chosen) {
+  ButtonOptions options;
+  options.width = width;
+  options.look = chosen ? ButtonLook::Main : ButtonLook::Plain;
+  const bool clicked = button(s.ui, name, label, options);
+  ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                      color(s.ui.theme().text_faint), s.ui.px(4));
+  return clicked;
+}
+
+/// In columns of one width, as many as the words leave room for.
 void draw_answers(const Screen& s, int index, const StudyQuestion& question, float left) {
-  Ui& ui = s.ui;
   const std::vector<std::string> offered = app::offered_answers(question);
-  const bool is_scale = question.kind == QuestionKind::Likert;
-  const float space = ui.px(8), room = ui.px(kColumn), count = static_cast<float>(offered.size());
-  float width = std::floor((room - (count - 1) * space) / count);
+  const float space = s.ui.px(8), room = s.ui.px(kColumn);
+  float widest = s.ui.px(40);
   for (const std::string& one : offered)
-    width = std::max(width, ImGui::CalcTextSize(one.c_str()).x + ui.px(24));
-  float x = left;
-  for (size_t i = 0; i < offered.size(); ++i) {
-    const bool fits = x + width <= left + room + 1;
-    if (!fits) x = left;
-    if (i > 0 && fits) ImGui::SameLine(0, 0);
-    ImGui::SetCursorPosX(x);
-    x += width + space;
-    ButtonOptions options;
-    options.width = width;
-    options.look = s.run().chosen()[index] == offered[i] ? ButtonLook::Main : ButtonLook::Plain;
-    const std::string name = printed("run.question.%d.%zu", index + 1, i + 1);
-    if (button(ui, name, offered[i], options)) choose(s, index, offered[i]);
+    widest = std::max(widest, ImGui::CalcTextSize(one.c_str()).x + s.ui.px(24));
+  const int most = std::max(1, static_cast<int>((room + space) / (widest + space)));
+  const int count = static_cast<int>(offered.size()), rows = (count + most - 1) / most;
+  const int columns = (count + rows - 1) / rows;
+  const float step = (room + space) / static_cast<float>(columns);
+  for (int i = 0; i < count; ++i) {
+    if (i % columns != 0) ImGui::SameLine(0, 0);
+    ImGui::SetCursorPosX(left + static_cast<float>(i % columns) * step);
+    const std::string name = printed("run.question.%d.%d", index + 1, i + 1);
+    const bool chosen = s.run().chosen()[index] == offered[i];
+    if (answer_button(s, name, offered[i], step - space, chosen)) choose(s, index, offered[i]);
   }
-  if (is_scale) draw_ends(ui, question, left, room);
+  if (question.kind == QuestionKind::Likert) draw_ends(s.ui, question, left, room);
 }
 
 void draw_question(const Screen& s, int index) {
@@ -315,10 +321,12 @@ void draw_run_screen(Ui& ui, RunScreenState& state, const RunFrame& frame) {
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   ImGui::Begin("##run", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoNav);
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(3);
   const Screen screen{ui, state, frame};
   if (key_pressed(Key::Escape, false)) {
     if (frame.run.screen() == RunScreen::End) state.leaves = true;
