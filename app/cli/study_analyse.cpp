@@ -80,6 +80,11 @@ void print(const StudyReport& report) {
       std::printf("%s, %s: F(%g, %g) = %.2f, p = %.2g, partial eta2 = %.2f\n", question.name.c_str(),
                   effect.name.c_str(), effect.art.df1, effect.art.df2, effect.art.F, effect.art.p,
                   effect.art.eta2p);
+  for (const PreferenceReport& preference : report.preferences)
+    for (const PairPreference& pair : preference.pairs)
+      std::printf("%s: %s is chosen %d times, %s %d times; %d and %d participants prefer it, p = %.2g\n",
+                  preference.name.c_str(), pair.a.c_str(), pair.answers_a, pair.b.c_str(), pair.answers_b,
+                  pair.participants_a, pair.participants_b, pair.p);
 }
 
 int study_analyse(const StudyAnalyseOptions& options) {

@@ -1,6 +1,7 @@
 #include "app/study/analysis.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int64_t kMostCells = 4096;
+constexpr char kBetween = '\x1f';  // no name has it
 constexpr const char *kRepetition = "repetition", *kPractice = "practice";
 
 /// The chosen factors of the answers and their levels.
@@ -69,12 +71,6 @@ StudyAnswers without_practice(StudyAnswers answers) {
   return answers;
 }
 
-size_t column_of(const StudyAnswers& answers, const std::string& factor) {
-  const auto at = std::find(answers.factors.begin(), answers.factors.end(), factor);
-  US_CHECK(at != answers.factors.end(), "the answers have no factor \"", factor, "\"");
-  return static_cast<size_t>(at - answers.factors.begin());
-}
-
 const RatedQuestion* find(const std::vector<RatedQuestion>& questions, const std::string& name) {
   for (const RatedQuestion& one : questions)
     if (one.name == name) return &one;
@@ -115,17 +111,18 @@ std::vector<std::string> levels_of(const StudyAnswers& answers, const std::vecto
   return {levels.begin(), levels.end()};
 }
 
+/// least: levels that a factor which is asked for must have.
 Design design_of(const StudyAnswers& answers, const std::vector<RatedQuestion>& questions,
-                 const std::vector<std::string>& wanted) {
+                 const std::vector<std::string>& wanted, int64_t least = 2) {
   Design design;
   int64_t cells = 1;
   for (const std::string& name : wanted.empty() ? answers.factors : wanted) {
     if (wanted.empty() && (name == kRepetition || name == kPractice)) continue;
     const size_t column = column_of(answers, name);
     std::vector<std::string> levels = levels_of(answers, questions, column);
-    US_CHECK(levels.size() >= 2 || wanted.empty(), "all answers are of one ", name, ", \"", levels.front(),
-             "\": there is nothing to compare");
-    if (levels.size() < 2) continue;
+    US_CHECK(ssize(levels) >= least || wanted.empty(), "all answers are of one ", name, ", \"",
+             levels.front(), "\": there is nothing to compare");
+    if (ssize(levels) < least) continue;
     design.names.push_back(name);
     design.columns.push_back(column);
     design.counts.push_back(static_cast<int>(levels.size()));
@@ -303,6 +300,60 @@ EffectReport effect_report(const QuestionData& question, const Design& design, E
   return report;
 }
 
+/// Two-sided, of as many heads and tails.
+double sign_test(int heads, int tails) {
+  const int all = heads + tails;
+  if (all == 0) return 1;
+  const boost::math::binomial_distribution<double> fair(all, 0.5);
+  return std::min(1.0, 2 * boost::math::cdf(fair, std::min(heads, tails)));
+}
+
+/// Holm's step-down: the least p counts for all pairs, the next for one less, and none is less than one before.
+void adjust(std::vector<PairPreference>& pairs) {
+  std::vector<PairPreference*> by_p;
+  for (PairPreference& pair : pairs) by_p.push_back(&pair);
+  std::stable_sort(by_p.begin(), by_p.end(), [](auto* a, auto* b) { return a->p < b->p; });
+  double so_far = 0;
+  for (size_t i = 0; i < by_p.size(); ++i) {
+    so_far = std::max(so_far, std::min(1.0, static_cast<double>(by_p.size() - i) * by_p[i]->p));
+    by_p[i]->p = so_far;
+  }
+}
+
+/// Cells are pairs, a value of 1 is a choice of the second condition.
+PairPreference preference_of(const std::vector<const Given*>& kept, size_t cell, const std::string& level) {
+  const size_t at = level.find(kBetween);
+  PairPreference pair{level.substr(0, at), level.substr(at + 1)};
+  for (const Given* one : kept) {
+    const auto& values = one->cells[cell];
+    const int all = static_cast<int>(values.size());
+    const int second = static_cast<int>(std::count(values.begin(), values.end(), 1.0)), first = all - second;
+    pair.answers_a += first, pair.answers_b += second;
+    pair.participants_a += first > second, pair.participants_b += second > first;
+  }
+  pair.p = sign_test(pair.participants_a, pair.participants_b);
+  return pair;
+}
+
+PreferenceReport preference_report(const std::vector<const Given*>& kept, const Design& design,
+                                   const std::string& name) {
+  PreferenceReport report;
+  report.name = name;
+  std::map<std::string, std::pair<int, int>> chosen;  // how often, of how many
+  for (size_t cell = 0; cell < design.levels[0].size(); ++cell) {
+    const PairPreference pair = preference_of(kept, cell, design.levels[0][cell]);
+    const int all = pair.answers_a + pair.answers_b;
+    for (const auto& [condition, count] :
+         {std::pair(pair.a, pair.answers_a), std::pair(pair.b, pair.answers_b)})
+      chosen[condition].first += count, chosen[condition].second += all;
+    report.pairs.push_back(pair);
+  }
+  adjust(report.pairs);
+  for (const auto& [condition, count] : chosen)
+    report.shares.emplace_back(condition, static_cast<double>(count.first) / count.second);
+  return report;
+}
+
 ParticipantReport participant_report(const ParticipantAnswers& participant, const std::vector<Given>& given) {
   ParticipantReport report;
   report.participant = participant.participant;
@@ -347,10 +398,14 @@ void check_left(const StudyReport& report) {
 
 }  // namespace
 
+std::string paired(const std::string& first, const std::string& second) {
+  return first + kBetween + second;
+}
+
 StudyReport analyse(const StudyAnswers& all_answers, const AnalysisOptions& options) {
   const StudyAnswers answers = without_practice(all_answers);
   const std::vector<RatedQuestion> questions = questions_of(answers, options);
-  const Design design = design_of(answers, questions, options.factors);
+  const Design design = design_of(answers, questions, options.factors, options.pairs ? 1 : 2);
   std::vector<std::vector<Given>> everybody;  // [participant][question]
   for (const auto& participant : answers.participants) {
     everybody.emplace_back();
@@ -379,6 +434,10 @@ StudyReport analyse(const StudyAnswers& all_answers, const AnalysisOptions& opti
     std::vector<const Given*> of_question;
     of_question.reserve(kept.size());
     for (const size_t i : kept) of_question.push_back(&everybody[i][q]);
+    if (options.pairs) {
+      report.preferences.push_back(preference_report(of_question, design, questions[q].name));
+      continue;
+    }
     const QuestionData data = data_of(of_question, design);
     QuestionReport one;
     one.name = questions[q].name;

@@ -33,8 +33,11 @@ struct AnalysisOptions {
   std::vector<RatedQuestion> questions;  ///< empty: all but that of attention, on a scale from 1 to 7
   std::vector<std::string> factors;      ///< empty: all that have two levels or more
   std::vector<AttentionCheck> attention;
-  double least_attention = 0.5;   ///< who has a smaller share of right answers to all of these is excluded
-  bool must_exceed = false;       ///< so is who has exactly this share
+  double least_attention = 0.5;  ///< who has a smaller share of right answers to all of these is excluded
+  bool must_exceed = false;      ///< so is who has exactly this share
+  /// Each trial showed two conditions: answers name the one that was chosen as paired() says, and the only
+  /// factor is kPairFactor.
+  bool pairs = false;
   int most_contrast_levels = 16;  ///< interactions with more combinations of levels get no contrasts
 };
 
@@ -69,6 +72,20 @@ struct QuestionReport {
   double agreement = 0;  ///< ICC(2,1) between participants, over the cells of the design
 };
 
+/// Two conditions that were shown side by side, in one question.
+struct PairPreference {
+  std::string a, b;
+  int answers_a = 0, answers_b = 0;            ///< that chose it
+  int participants_a = 0, participants_b = 0;  ///< who chose it more often than the other
+  double p = 1;  ///< two-sided exact sign test of these participants, adjusted for all pairs (Holm 1979)
+};
+struct PreferenceReport {
+  std::string name;  ///< of the question
+  std::vector<PairPreference> pairs;
+  std::vector<std::pair<std::string, double>>
+      shares;  ///< how often a condition was chosen where it was shown
+};
+
 struct ParticipantReport {
   std::string participant;
   int answers = 0, replays = 0;
@@ -82,9 +99,14 @@ struct StudyReport {
   std::vector<std::string> factors;
   std::vector<Exclusion> excluded;
   std::vector<QuestionReport> questions;
+  std::vector<PreferenceReport> preferences;    ///< in place of questions, where trials showed two conditions
   std::vector<ParticipantReport> participants;  ///< everybody
   int analysed = 0;                             ///< participants
 };
+
+constexpr const char* kPairFactor = "pair";
+/// The level of kPairFactor for two conditions, and what the answers "first" and "second" are about.
+std::string paired(const std::string& first, const std::string& second);
 
 /// The whole analysis. Answers whose factor "practice" is 1 do not count. Excluded is who answered the
 /// question of attention wrong too often, and who has missing answers: an empty one, fewer than most
@@ -96,9 +118,10 @@ StudyReport analyse(const StudyAnswers& answers, const AnalysisOptions& options)
 /// "questions": {NAME: {"anova": {EFFECT: {"F", "df1", "df2", "p", "eta2p"}}, "contrasts": [{"effect", "a",
 /// "b", "t", "df", "p"}], "medians": {EFFECT: {LEVEL: median}}, "quartiles": {EFFECT: {LEVEL: [first,
 /// third]}}, "one_way": {FACTOR: {"F", ..., "tukey": [{"a", "b", "difference", "t", "df", "p"}]}}, "icc":
-/// agreement}}, "per_participant": [...]}. NaN and infinity are null.
+/// agreement}}, "preferences": {NAME: {"shares": {CONDITION: share}, "pairs": [{"a", "b", "answers_a",
+/// "answers_b", "participants_a", "participants_b", "p"}]}}, "per_participant": [...]}. NaN and infinity are null.
 nlohmann::ordered_json to_json(const StudyReport& report);
-/// File names and their text: anova.csv, contrasts.csv, tukey.csv, medians.csv, participants.csv.
+/// File names and their text: anova.csv, contrasts.csv, tukey.csv, medians.csv, participants.csv; preferences.csv where there are any.
 std::vector<std::pair<std::string, std::string>> csv_tables(const StudyReport& report);
 
 }  // namespace understudy::app

@@ -51,6 +51,20 @@ Json json_of(const QuestionReport& question) {
   return json;
 }
 
+Json json_of(const PreferenceReport& preference) {
+  Json json = {{"shares", Json::object()}, {"pairs", Json::array()}};
+  for (const auto& [condition, share] : preference.shares) json["shares"][condition] = share;
+  for (const PairPreference& pair : preference.pairs)
+    json["pairs"].push_back({{"a", pair.a},
+                             {"b", pair.b},
+                             {"answers_a", pair.answers_a},
+                             {"answers_b", pair.answers_b},
+                             {"participants_a", pair.participants_a},
+                             {"participants_b", pair.participants_b},
+                             {"p", pair.p}});
+  return json;
+}
+
 /// Lines of cells.
 class Table {
  public:
@@ -121,6 +135,16 @@ std::string medians_table(const StudyReport& report) {
   return table.text();
 }
 
+std::string preferences_table(const StudyReport& report) {
+  Table table({"question", "a", "b", "answers_a", "answers_b", "participants_a", "participants_b", "p"});
+  for (const PreferenceReport& preference : report.preferences)
+    for (const PairPreference& pair : preference.pairs) {
+      table.add(preference.name).add(pair.a).add(pair.b).add(pair.answers_a).add(pair.answers_b);
+      table.add(pair.participants_a).add(pair.participants_b).add(pair.p).end_line();
+    }
+  return table.text();
+}
+
 std::string reason_of(const StudyReport& report, const std::string& participant) {
   for (const Exclusion& one : report.excluded)
     if (one.participant == participant) return one.reason;
@@ -130,12 +154,14 @@ std::string reason_of(const StudyReport& report, const std::string& participant)
 std::string participants_table(const StudyReport& report) {
   std::vector<std::string> header = {"participant", "excluded",     "answers",
                                      "attention",   "median_rt_ms", "replays"};
-  for (const QuestionReport& question : report.questions) header.push_back("median " + question.name);
+  if (report.preferences.empty())
+    for (const QuestionReport& question : report.questions) header.push_back("median " + question.name);
   Table table(header);
   for (const ParticipantReport& one : report.participants) {
     table.add(one.participant).add(reason_of(report, one.participant)).add(one.answers).add(one.attention);
     table.add(one.median_rt_ms).add(one.replays);
-    for (const double median : one.medians) table.add(median);
+    if (report.preferences.empty())
+      for (const double median : one.medians) table.add(median);
     table.end_line();
   }
   return table.text();
@@ -164,12 +190,16 @@ Json to_json(const StudyReport& report) {
   }
   for (const QuestionReport& question : report.questions)
     json["questions"][question.name] = json_of(question);
+  for (const PreferenceReport& preference : report.preferences)
+    json["preferences"][preference.name] = json_of(preference);
   for (const ParticipantReport& one : report.participants)
     json["per_participant"].push_back(json_of(one, report));
   return json;
 }
 
 std::vector<std::pair<std::string, std::string>> csv_tables(const StudyReport& report) {
+  if (!report.preferences.empty())
+    return {{"preferences.csv", preferences_table(report)}, {"participants.csv", participants_table(report)}};
   return {{"anova.csv", anova_table(report)},
           {"contrasts.csv", pairs_table(report, &EffectReport::contrasts)},
           {"tukey.csv", pairs_table(report, &EffectReport::tukey)},

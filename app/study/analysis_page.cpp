@@ -112,6 +112,19 @@ std::string pair_table(const QuestionReport& question) {
   return table + "</table>\n";
 }
 
+std::string preference_tables(const PreferenceReport& preference) {
+  std::string page = "<h2>" + escaped(preference.name) + "</h2>\n<table>\n" +
+                     row_of({"condition", "chosen where it was shown"}, "th");
+  for (const auto& [condition, share] : preference.shares)
+    page += row_of({condition, printed("%.0f %%", 100 * share)});
+  page += "</table>\n<h3>Pairs</h3>\n<table>\n" +
+          row_of({"", "", "answers", "participants who prefer it", "p"}, "th");
+  for (const PairPreference& pair : preference.pairs)
+    page += row_of({pair.a, pair.b, printed("%d : %d", pair.answers_a, pair.answers_b),
+                    printed("%d : %d", pair.participants_a, pair.participants_b), probability(pair.p)});
+  return page + "</table>\n";
+}
+
 std::string exclusions(const StudyReport& report) {
   if (report.excluded.empty()) return "<p>Nobody is excluded.</p>\n";
   std::string text = "<ul>\n";
@@ -127,6 +140,10 @@ constexpr const char* kHead =
     "table { border-collapse: collapse; margin: 1em 0; }\n"
     "td, th { border-bottom: 1px solid #ccd; padding: 0.2em 0.8em; text-align: left; }\n"
     "svg { margin-right: 1em; }\n</style>\n</head>\n<body>\n";
+constexpr const char* kPairNotes =
+    "<p>Participants prefer the condition that they chose more often; those who chose both equally often "
+    "count for neither. p: exact two-sided sign test of the participants, adjusted for all pairs of a "
+    "question (Holm 1979).</p>\n";
 constexpr const char* kNotes =
     "<p>Effects: analysis of variance of aligned ranks (Wobbrock et al. 2011), each effect against its "
     "interaction with the participants, without sphericity correction. Contrasts: ART-C (Elkin et al. 2021), "
@@ -183,7 +200,9 @@ std::vector<std::pair<std::string, std::string>> page_files(const StudyReport& r
     page += "</div>\n" + test_table(question) + pair_table(question);
     page += "<p>Agreement between participants, ICC(2,1): " + figure(question.agreement) + ".</p>\n";
   }
-  files.emplace_back("index.html", page + kNotes + "</body>\n</html>\n");
+  for (const PreferenceReport& preference : report.preferences) page += preference_tables(preference);
+  page += report.preferences.empty() ? kNotes : kPairNotes;
+  files.emplace_back("index.html", page + "</body>\n</html>\n");
   return files;
 }
 

@@ -88,6 +88,12 @@ StudyAnswer answer_from(std::vector<std::string> cells, const Lines& lines) {
 
 }  // namespace
 
+size_t column_of(const StudyAnswers& answers, const std::string& factor) {
+  const auto at = std::find(answers.factors.begin(), answers.factors.end(), factor);
+  US_CHECK(at != answers.factors.end(), "the answers have no column \"", factor, "\"");
+  return static_cast<size_t>(at - answers.factors.begin());
+}
+
 std::string place_of(const ParticipantAnswers& participant, const StudyAnswer& answer) {
   return participant.path + ": line " + std::to_string(answer.line);
 }

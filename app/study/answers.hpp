@@ -42,6 +42,9 @@ ParticipantAnswers read_participant(const std::string& path, std::vector<std::st
 /// participant, or where files have other factors than the first.
 StudyAnswers read_answers(const std::string& folder);
 
+/// Where a factor's level stands in StudyAnswer::levels. Throws Error where the answers do not have it.
+size_t column_of(const StudyAnswers& answers, const std::string& factor);
+
 /// "FOLDER/P03.csv: line 12", for messages.
 std::string place_of(const ParticipantAnswers& participant, const StudyAnswer& answer);
 

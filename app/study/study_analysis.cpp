@@ -50,9 +50,7 @@ void check_known(const std::vector<std::string>& known, const std::string& name,
 void check_answers(const StudyAnswers& answers, const Study& study) {
   const std::vector<std::string> questions = names_of(study.questions);
   for (const auto& [factor, levels] : factors_of(study)) {
-    const auto at = std::find(answers.factors.begin(), answers.factors.end(), factor);
-    US_CHECK(at != answers.factors.end(), "the answers have no column \"", factor, "\"");
-    const auto column = static_cast<size_t>(at - answers.factors.begin());
+    const size_t column = column_of(answers, factor);
     for (const ParticipantAnswers& participant : answers.participants)
       for (const StudyAnswer& one : participant.answers) {
         check_known(questions, one.question, "question", place_of(participant, one));
@@ -61,25 +59,67 @@ void check_answers(const StudyAnswers& answers, const Study& study) {
   }
 }
 
+constexpr const char *kFirst = "first", *kSecond = "second";
+
+bool shows_pairs(const Study& study) {
+  return study.layout.results == TrialResults::Pair;
+}
+
+bool is_compared(const StudyQuestion& question, const Study& study) {
+  if (question.kind == QuestionKind::Likert) return !shows_pairs(study);
+  return question.kind == QuestionKind::Choice && question.options.size() == 2;
+}
+
+/// The conditions alone, unless everybody answers everything in all of the design.
+std::vector<std::string> compared_factors(const Study& study, bool is_whole) {
+  std::vector<std::string> factors;
+  for (const auto& [name, levels] : factors_of(study))
+    if (name == "condition" || (is_whole && levels.size() >= 2)) factors.push_back(name);
+  return factors;
+}
+
+/// What an answer about the left or the right result says of the two in the study's order.
+void name_choice(StudyAnswer& answer, const Study& study, const std::string& left, const std::string& right) {
+  const std::vector<std::string> names = names_of(study.conditions);
+  const bool is_left_first =
+      std::find(names.begin(), names.end(), left) < std::find(names.begin(), names.end(), right);
+  answer.levels.push_back(is_left_first ? paired(left, right) : paired(right, left));
+  for (const StudyQuestion& question : study.questions) {
+    if (question.name != answer.question || !is_compared(question, study)) continue;
+    for (const bool is_left : {true, false})
+      if (answer.answer == question.options[is_left ? 0 : 1])
+        return void(answer.answer = is_left == is_left_first ? kFirst : kSecond);
+  }
+}
+
+StudyAnswers with_pairs(StudyAnswers answers, const Study& study) {
+  const size_t condition = column_of(answers, "condition"), other = column_of(answers, "other");
+  const std::vector<std::string> conditions = names_of(study.conditions);
+  answers.factors.emplace_back(kPairFactor);
+  for (ParticipantAnswers& participant : answers.participants)
+    for (StudyAnswer& one : participant.answers) {
+      check_known(conditions, one.levels[other], "condition", place_of(participant, one));
+      name_choice(one, study, one.levels[condition], one.levels[other]);
+    }
+  return answers;
+}
+
 }  // namespace
 
 AnalysisOptions analysis_options(const Study& study) {
-  US_CHECK(study.layout.results == TrialResults::One,
-           "the trials of this study show two results; only ratings of one are analysed");
   AnalysisOptions options;
+  options.pairs = shows_pairs(study);
   bool is_whole = study.plan.trials_per_participant == 0;
   for (const StudyQuestion& question : study.questions) {
-    if (question.kind == QuestionKind::Attention) {
+    if (question.kind == QuestionKind::Attention)
       options.attention.push_back(attention_check(question, study));
-      continue;
-    }
-    if (question.kind == QuestionKind::Choice && question.options.size() > 2) continue;
+    if (!is_compared(question, study)) continue;
     is_whole = is_whole && question.every == 1;
     options.questions.push_back(rated(question));
+    if (options.pairs) options.questions.back().choices = {kFirst, kSecond};
   }
   US_CHECK(!options.questions.empty(), "the study asks nothing that can be compared");
-  for (const auto& [name, levels] : factors_of(study))
-    if (name == "condition" || (is_whole && levels.size() >= 2)) options.factors.push_back(name);
+  options.factors = options.pairs ? std::vector<std::string>{kPairFactor} : compared_factors(study, is_whole);
   options.least_attention = static_cast<double>(study.plan.least_right);
   options.must_exceed = study.plan.must_exceed;
   return options;
@@ -107,7 +147,7 @@ StudyAnswers counted_answers(StudyAnswers answers, const Study& study, const std
                               [&](const StudyAnswer& one) { return practice.count(one.trial) > 0; }),
                list.end());
   }
-  return answers;
+  return shows_pairs(study) ? with_pairs(std::move(answers), study) : answers;
 }
 
 }  // namespace understudy::app

@@ -232,7 +232,7 @@ TEST(Analysis, RefusesNamesThatAreNotThere) {
   const StudyAnswers answers = made_answers(3, 2, 2, 1);
   AnalysisOptions options;
   options.factors = {"shape"};
-  EXPECT_EQ(complaint_of(answers, options), "the answers have no factor \"shape\"");
+  EXPECT_EQ(complaint_of(answers, options), "the answers have no column \"shape\"");
   options.factors.clear();
   options.questions = {{"beauty"}};
   EXPECT_EQ(complaint_of(answers, options), "nobody answered the question \"beauty\"");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "app/study/trials.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/rng.hpp"
@@ -109,10 +111,62 @@ TEST(StudyAnalysis, RefusesAnswersOfAnotherStudy) {
   EXPECT_EQ(complaint(answers), "the answers have no column \"target\"");
 }
 
-TEST(StudyAnalysis, RefusesPairs) {
+/// A study of pairs; so many people answer, and each chooses by `likes` (condition, other: the left one?).
+StudyReport report_of_pairs(Study study, int people, const std::function<bool(int, int)>& likes_left) {
+  study.layout.results = TrialResults::Pair;
+  study.questions[1].options = {"Left", "Right"};
+  StudyAnswers all;
+  all.factors = {"practice", "condition", "other", "motion", "target", "repetition"};
+  for (int i = 1; i <= people; ++i) {
+    ParticipantAnswers one{"P" + std::to_string(i), "P" + std::to_string(i) + ".csv", {}};
+    for (const Trial& trial : trials_of(study, one.participant)) {
+      StudyAnswer answer;
+      answer.trial = trial.id, answer.question = "age";
+      answer.answer = likes_left(trial.condition, trial.other) ? "Left" : "Right";
+      answer.levels = {trial.is_practice ? "1" : "0",      study.conditions[trial.condition].name,
+                       study.conditions[trial.other].name, study.motions[trial.motion].name,
+                       study.targets[trial.target].name,   "1"};
+      one.answers.push_back(answer);
+    }
+    all.participants.push_back(std::move(one));
+  }
+  AnalysisOptions options = analysis_options(study);
+  options.attention.clear();
+  return analyse(counted_answers(all, study, "/nowhere"), options);
+}
+
+TEST(StudyAnalysis, OfPairsCountsWhoPrefersWhat) {
+  // "guest" always wins, and "copy" over "no offsets".
+  const StudyReport report = report_of_pairs(
+      made_study(), 10, [&](int left, int right) { return left == 2 || (right != 2 && left == 0); });
+  ASSERT_EQ(report.preferences.size(), 1u);
+  EXPECT_TRUE(report.questions.empty());
+  const PreferenceReport& age = report.preferences[0];
+  EXPECT_EQ(age.name, "age");
+  ASSERT_EQ(age.pairs.size(), 3u);
+  for (const PairPreference& pair : age.pairs) {
+    const bool is_guests = pair.b == "guest";
+    EXPECT_EQ(pair.answers_a + pair.answers_b, 60);  // 10 people, 2 motions, 3 targets
+    EXPECT_EQ(pair.participants_b, is_guests ? 10 : 0) << pair.a << pair.b;
+    EXPECT_NEAR(pair.p, 3 * 2 / 1024., 1e-12);  // R: p.adjust(rep(binom.test(10, 10)$p.value, 3), "holm")
+  }
+  for (const auto& [condition, share] : age.shares)
+    EXPECT_EQ(share, condition == "guest" ? 1 : condition == "copy" ? 0.5 : 0) << condition;
+}
+
+TEST(StudyAnalysis, OfPairsFindsNothingWhereSidesDecide) {
+  const StudyReport report = report_of_pairs(made_study(), 12, [](int, int) { return true; });
+  for (const PairPreference& pair : report.preferences[0].pairs) {
+    EXPECT_EQ(pair.answers_a, pair.answers_b);  // each is left as often as right
+    EXPECT_GT(pair.p, 0.3);
+  }
+}
+
+TEST(StudyAnalysis, OfPairsNeedsAChoiceOfTwo) {
   Study study = made_study();
   study.layout.results = TrialResults::Pair;
-  EXPECT_THROW(analysis_options(study), Error);
+  study.questions.erase(study.questions.begin() + 1);
+  EXPECT_EQ(failure_of([&] { analysis_options(study); }), "the study asks nothing that can be compared");
 }
 
 }  // namespace
