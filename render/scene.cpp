@@ -1,10 +1,25 @@
 #include "render/scene.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "retarget/geometry/cloud_normals.hpp"
 
 namespace understudy::render {
+
+LightView turned_light(float turn_deg, float height_deg, float brightness) {
+  LightView light;
+  for (Vec3* const part : {&light.key, &light.fill, &light.sky, &light.floor}) *part *= brightness;
+  if (turn_deg == 0 && height_deg == 0) return light;
+  const Vec3& from = light.key_direction;
+  const float degree = kPi / 180, most = 89 * degree;
+  const float turn = std::atan2(from.x(), from.z()) + turn_deg * degree;
+  const float height = std::asin(from.y() / from.norm()) + height_deg * degree;
+  const float up = std::clamp(height, -most, most);
+  light.key_direction = {std::sin(turn) * std::cos(up), std::sin(up), std::cos(turn) * std::cos(up)};
+  return light;
+}
 
 SkeletonView skeleton_view(const Joints& joints) {
   SkeletonView view;

@@ -31,6 +31,21 @@ Points vertex_normals(const Points& vertices, const Faces& faces) {
   return normals;
 }
 
+bool is_closed(const Faces& faces) {
+  std::vector<uint64_t> edges;
+  edges.reserve(faces.size());
+  for (Eigen::Index f = 0; f < faces.rows(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const auto a = static_cast<uint64_t>(faces(f, k)), b = static_cast<uint64_t>(faces(f, (k + 1) % 3));
+      edges.push_back(std::min(a, b) << 32 | std::max(a, b));
+    }
+  std::sort(edges.begin(), edges.end());
+  const size_t n = edges.size();
+  for (size_t i = 0; i < n; i += 2)  // each edge twice, never four times
+    if (i + 1 == n || edges[i] != edges[i + 1] || (i + 2 < n && edges[i] == edges[i + 2])) return false;
+  return n > 0;
+}
+
 SurfaceSampler::SurfaceSampler(const Points& vertices, const Faces& faces) : cumulative_area_(faces.rows()) {
   double total = 0;
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {

@@ -19,6 +19,9 @@ struct Mesh {
 /// Area-weighted vertex normals, [V, 3], unit length (zero where no face touches).
 Points vertex_normals(const Points& vertices, const Faces& faces);
 
+/// Whether every edge has a face on either side, so that the inside cannot be seen.
+bool is_closed(const Faces& faces);
+
 /// Picks points on a surface uniformly by area. Build once per mesh, then sample as often as wanted.
 class SurfaceSampler {
  public:

@@ -461,16 +461,7 @@ Points face_centres(const Box& box) {
 }
 
 render::LightView light_of(const app::LightLook& look) {
-  render::LightView light;
-  for (Vec3* const part : {&light.key, &light.fill, &light.sky, &light.floor}) *part *= look.brightness;
-  if (look.turn_deg == 0 && look.height_deg == 0) return light;
-  const Vec3& from = light.key_direction;
-  const float degree = kPi / 180, most = 89 * degree;
-  const float turn = std::atan2(from.x(), from.z()) + look.turn_deg * degree;
-  const float height = std::asin(from.y() / from.norm()) + look.height_deg * degree;
-  const float up = std::clamp(height, -most, most);
-  light.key_direction = {std::sin(turn) * std::cos(up), std::sin(up), std::cos(turn) * std::cos(up)};
-  return light;
+  return render::turned_light(look.turn_deg, look.height_deg, look.brightness);
 }
 
 render::BackgroundView background_of(ThemeKind theme) {

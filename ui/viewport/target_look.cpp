@@ -58,21 +58,6 @@ bool is_ready(const std::future<Look>& look) {
 
 }  // namespace
 
-bool is_closed(const Faces& faces) {
-  std::vector<uint64_t> edges;
-  edges.reserve(faces.size());
-  for (Eigen::Index f = 0; f < faces.rows(); ++f)
-    for (int k = 0; k < 3; ++k) {
-      const auto a = static_cast<uint64_t>(faces(f, k)), b = static_cast<uint64_t>(faces(f, (k + 1) % 3));
-      edges.push_back(std::min(a, b) << 32 | std::max(a, b));
-    }
-  std::sort(edges.begin(), edges.end());
-  const size_t n = edges.size();
-  for (size_t i = 0; i < n; i += 2)  // each edge twice, never four times
-    if (i + 1 == n || edges[i] != edges[i + 1] || (i + 2 < n && edges[i] == edges[i + 2])) return false;
-  return n > 0;
-}
-
 bool same_surface(const Target* a, const Target* b) {
   if (a == nullptr || b == nullptr) return a == b;
   const Faces &f = a->mesh.faces, &g = b->mesh.faces;

@@ -18,9 +18,6 @@ struct TargetLook {
   std::shared_ptr<const app::PosedPicture> rest;  ///< the T-pose as a picture
 };
 
-/// Whether every edge has a face on either side, so that the inside cannot be seen.
-bool is_closed(const Faces& faces);
-
 /// Whether a picture of one can be shown as the other: vertices of one number and order, the same faces.
 bool same_surface(const Target* a, const Target* b);
 
