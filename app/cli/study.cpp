@@ -4,6 +4,7 @@
 #include "app/cli/study_analyse.hpp"
 #include "app/cli/study_design.hpp"
 #include "app/cli/study_run.hpp"
+#include "app/cli/study_stimuli.hpp"
 
 namespace understudy::app {
 
@@ -12,6 +13,7 @@ Action declare_study(CLI::App& command) {
   command.require_subcommand(1);
   add_study_new(command, chosen);
   add_study_trials(command, chosen);
+  add_study_stimuli(command, chosen);
   add_study_run(command, chosen);
   add_study_analyse(command, chosen);
   add_study_power(command, chosen);

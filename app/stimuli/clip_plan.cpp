@@ -18,7 +18,7 @@ ClipPlan::ClipPlan(const StudyClip& clip, int fps, double motion_s)
       card_(frames_in(clip.card_s, fps)),
       step_s_(static_cast<double>(clip.speed) / fps) {
   // One more for each card that at least half a second of motion follows, or all of a shorter one.
-  const int least = card_ + std::min(run_, std::max(1, fps / 2));
+  const int least = card_ == 0 ? 1 : card_ + std::min(run_, std::max(1, fps / 2));
   const int left = frames_ - run_;
   runs_ = 1 + left / (run_ + card_) + (left % (run_ + card_) >= least ? 1 : 0);
 }

@@ -48,10 +48,29 @@ Mesh with_faces_of(const PreparedCharacter& character, Mesh mesh) {
   return {std::move(mesh.vertices), target.faces, target.colors};
 }
 
+SeenExtent no_extent(const StudyPicture& picture) {
+  return SeenExtent(picture.yaw_deg * kPi / 180, picture.pitch_deg * kPi / 180);
+}
+
 SeenExtent extent_of(const MovingSurface& surface, const StudyPicture& picture) {
-  SeenExtent extent(picture.yaw_deg * kPi / 180, picture.pitch_deg * kPi / 180);
+  SeenExtent extent = no_extent(picture);
   for (const SurfaceFrame& frame : surface.frames) extent.add(seen_points(frame));
   return extent;
+}
+
+/// Of a scan the points that are somebody's: a stray or a piece of floor must not make everybody small.
+Points body_points(const SurfaceFrame& frame, const Observation& seen) {
+  constexpr float kReach = 0.35f;  // metres from a joint to fingertips, toes and hair
+  Points points = seen_points(frame);
+  if (!seen.problem.empty() || !seen.joints.allFinite()) return points;
+  Eigen::ArrayXf nearest = Eigen::ArrayXf::Constant(points.rows(), 1e9f);
+  for (int j = 0; j < kJointCount; ++j)
+    nearest = nearest.min((points.rowwise() - seen.joints.row(j)).rowwise().squaredNorm().array());
+  Eigen::Index kept = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (nearest[i] <= kReach * kReach) points.row(kept++) = points.row(i);
+  points.conservativeResize(kept, 3);
+  return points;
 }
 
 bool is_bones_alone(const SourceOptions& options) {
@@ -67,6 +86,7 @@ struct StageMaker::Watched {
   MovingSurface source;           // from `first` on
   std::vector<Observation> seen;  // of all frames
   size_t first = 0;               // that is shown
+  SeenExtent extent;              // of who is in it, strays apart
 };
 
 StageMaker::StageMaker(Study study, StimulusServices services)
@@ -117,6 +137,7 @@ StageMaker::Watched StageMaker::watched(const StudyMotion& motion, const Method&
   out.source.fps = fps, out.source.color = kScanColor;
   out.first = static_cast<size_t>(std::lround(motion.from_s * fps));
   const size_t end = out.first + static_cast<size_t>(std::max(1L, std::lround(shown_s * fps)));
+  out.extent = no_extent(study_.picture);
   SurfaceFrame last;
   while (out.seen.size() < end) {
     const auto frame = frames.next();
@@ -128,6 +149,7 @@ StageMaker::Watched StageMaker::watched(const StudyMotion& motion, const Method&
     if (bones_alone && frame->scan.skeleton) last.skeleton = frame->scan.skeleton->joints;
     share_faces(last, out.source);
     out.source.frames.push_back(last);
+    out.extent.add(body_points(last, out.seen.back()));
   }
   US_CHECK(!out.source.frames.empty(), "it starts at ", motion.from_s, " s, its source lasts ",
            printed("%.2f", static_cast<double>(out.seen.size()) / fps), " s");
@@ -224,7 +246,10 @@ std::shared_ptr<const Stage> StageMaker::stage(int motion, int target) {
   const std::string where = "', motion '" + of.name + "', target '" + on.name + "'";
   Stage stage;
   stage.motion = motion, stage.target = target;
-  stage.source = watch(motion, first_method()).source;
+  const Watched& seen = watch(motion, first_method());
+  stage.source = seen.source;
+  stage.extents.source = seen.extent;
+  stage.extents.result = no_extent(study_.picture);
   stage.motion_s = static_cast<double>(stage.source.frames.size()) / stage.source.fps;
   std::map<std::string, Body> bodies;  // by extraction_key(): the extractor may have found their joints
   const auto body_for = [&](const Method& method) -> const Body& {
@@ -234,9 +259,7 @@ std::shared_ptr<const Stage> StageMaker::stage(int motion, int target) {
   };
   const Body& body = body_for(first_method());
   stage.standing = body.surface;
-  const SeenExtent nothing = extent_of({}, study_.picture);
-  stage.extents = {extent_of(stage.source, study_.picture), extent_of(stage.standing, study_.picture),
-                   nothing};
+  stage.extents.target = extent_of(stage.standing, study_.picture);
   for (const Condition& condition : study_.conditions) {
     stage.results.push_back(naming("condition '" + condition.name + where, [&] {
       if (condition.kind == ConditionKind::Method)

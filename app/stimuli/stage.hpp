@@ -28,7 +28,7 @@ struct Stage {
   MovingSurface source;                ///< the scan as it is retargeted; of bones alone the skeleton
   MovingSurface standing;              ///< the target in T-pose, one frame
   std::vector<MovingSurface> results;  ///< of each condition
-  StageExtents extents;                ///< over all frames, of all conditions
+  StageExtents extents;                ///< over all frames, of all conditions; of a scan without its strays
 };
 
 /// Makes stages of a study. Keeps what the next one may need: the networks, the last motion's source and what

@@ -40,7 +40,9 @@ StagePainter::StagePainter(const Study& study, std::shared_ptr<const Stage> stag
       renderer_(renderer),
       font_(render::Font::system()),
       panes_(frame_panes(study, stage_->extents, size)),
-      frame_(size.width, size.height, study.picture.background) {
+      frame_(size.width, size.height, study.picture.background),
+      border_(std::max(1, size.height / 360), size.height,
+              0.82f * study.picture.background + 0.18f * ink(study.picture.background)) {
   const int strip = label_height(study, size);
   if (strip == 0) return;
   const float letters = 0.52f * static_cast<float>(strip);
@@ -132,6 +134,8 @@ render::Image StagePainter::picture(const Trial& trial, const ClipMoment& moment
   render::Image whole = frame_;
   for (size_t p = 0; p < panes_.size(); ++p)
     render::paste(whole, *drawn_pane(trial, p, moment), panes_[p].x, panes_[p].y);
+  for (size_t p = 1; p < panes_.size(); ++p)
+    render::paste(whole, border_, panes_[p].x - border_.width / 2, 0);
   return whole;
 }
 

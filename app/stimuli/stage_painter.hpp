@@ -54,6 +54,7 @@ class StagePainter {
   render::Font font_;
   std::vector<PaneView> panes_;
   render::Image frame_;                             // background and labels
+  render::Image border_;                            // between two panes
   std::map<std::pair<int, size_t>, Picture> kept_;  // by subject and its frame
   int64_t kept_bytes_ = 0, drawn_ = 0;
 };

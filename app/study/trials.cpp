@@ -223,6 +223,18 @@ std::vector<Trial> all_trials(const Study& study) {
   return trials;
 }
 
+std::vector<Trial> clip_trials(const Study& study) {
+  std::vector<Trial> trials;
+  for (Trial& trial : all_trials(study)) {
+    if (trial.repetition > 1) break;
+    trials.push_back(trial);
+    if (trial.other < 0) continue;
+    std::swap(trial.condition, trial.other);
+    trials.push_back(std::move(trial));
+  }
+  return trials;
+}
+
 std::vector<Trial> trials_of(const Study& study, const std::string& participant) {
   US_CHECK(!participant.empty(), "a participant needs a name or a number");
   trial_count(study);  // checks

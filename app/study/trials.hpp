@@ -37,6 +37,10 @@ std::vector<Trial> all_trials(const Study& study);
 /// and as all_trials().
 std::vector<Trial> trials_of(const Study& study, const std::string& participant);
 
+/// One trial for each clip: all of the design without repetitions, pairs both ways round; those of one motion
+/// on one target one after the other. Throws Error as all_trials().
+std::vector<Trial> clip_trials(const Study& study);
+
 /// How many trials a participant sees, practice left out. Throws Error as all_trials().
 int trial_count(const Study& study);
 /// How long a participant is busy: clips, answers (5 s a question), breaks (60 s), practice too. Throws Error
