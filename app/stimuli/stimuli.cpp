@@ -55,12 +55,11 @@ std::string pane_path(const std::string& clip, const std::string& pane) {
 }
 
 PaneRecord record_of(const PaneView& view, const Study& study) {
-  constexpr float kDegrees = 180 / kPi;
   PaneRecord record;
   record.pane = word_of(view, study);
   record.x = view.x, record.y = view.y, record.width = view.size.width, record.height = view.size.height;
-  record.yaw_deg = kDegrees * view.camera.yaw, record.pitch_deg = kDegrees * view.camera.pitch;
-  record.fov_deg = kDegrees * view.camera.fov, record.distance_m = view.camera.distance;
+  record.yaw_deg = study.picture.yaw_deg, record.pitch_deg = study.picture.pitch_deg;
+  record.fov_deg = study.picture.fov_deg, record.distance_m = view.camera.distance;
   record.looks_at = view.camera.target;
   return record;
 }
@@ -180,7 +179,7 @@ void Maker::make_clip(const Trial& trial, StagePainter& painter, const ClipPlan&
   }
   writer.finish();
   record.checksum = checksum_of_file(in_out(record.file));
-  record.bytes = static_cast<double>(fs::file_size(in_out(record.file)));
+  record.bytes = static_cast<int64_t>(fs::file_size(in_out(record.file)));
   for (PaneRecord& pane : record.panes)
     if (!pane.file.empty()) pane.checksum = checksum_of_file(in_out(pane.file));
   made_.add(record, made_from(trial));

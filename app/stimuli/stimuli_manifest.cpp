@@ -34,7 +34,7 @@ std::string csv_of(const std::vector<ClipRecord>& clips) {
                                     clip.target,
                                     clip.file,
                                     clip.checksum,
-                                    number(clip.bytes),
+                                    std::to_string(clip.bytes),
                                     number(clip.width),
                                     number(clip.height),
                                     number(clip.frames),

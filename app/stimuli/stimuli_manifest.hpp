@@ -42,7 +42,7 @@ struct ClipRecord {
   std::string condition, other, motion, action, target;
   std::string file;      ///< relative to the folder
   std::string checksum;  ///< FNV-1a of its bytes, 16 hexadecimal digits
-  double bytes = 0;
+  int64_t bytes = 0;
   int width = 0, height = 0, frames = 0, fps = 0;
   float seconds = 0;
   int runs = 0;        ///< how often the motion begins
@@ -59,7 +59,7 @@ FieldsOf<S, ClipRecord> fields(V& visit, S& clip) {
   visit("target", clip.target);
   visit("file", clip.file);
   visit("checksum", clip.checksum);
-  visit("bytes", clip.bytes, Within<double>{0, 1e15});
+  visit("bytes", clip.bytes, Within<int64_t>{0, int64_t{1} << 50});
   visit("width", clip.width, kFrameNumbers);
   visit("height", clip.height, kFrameNumbers);
   visit("frames", clip.frames, kFrameNumbers);
