@@ -1,7 +1,7 @@
 #!/bin/bash
 # package_test.sh [BUILD]: makes the Debian package of a build folder and installs it, with what it says it depends on
 # and nothing else, into a clean root that mmdebstrap makes from this machine's own apt sources. There the program must
-# run as a plain user, from any place: the demo, the doctor, a script of the studio, the man page.
+# run as a plain user, from any place: the demo, the doctor, a script of the studio, a study for browsers, the man page.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 build=$(readlink -f "${1:-build}")
@@ -24,6 +24,11 @@ cd /tmp/user
 understudy doctor
 understudy play script.us --out out
 understudy demo --out out
+understudy study new --preset dong --out a.study
+mkdir clips
+for clip in $(understudy study trials a.study --format csv | grep -o 'clips/[0-9a-f]*\.mp4'); do echo film >"$clip"; done
+understudy study web a.study --clips . --out web
+test -s web/index.html
 for made in installed.png target_adult.glb target_adult.png target_child.json; do test -s out/$made; done
 zcat /usr/share/man/man1/understudy.1.gz | grep -q '^.SH "understudy retarget"'
 test -s /usr/share/applications/understudy.desktop

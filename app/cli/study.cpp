@@ -5,6 +5,7 @@
 #include "app/cli/study_design.hpp"
 #include "app/cli/study_run.hpp"
 #include "app/cli/study_stimuli.hpp"
+#include "app/cli/study_web.hpp"
 
 namespace understudy::app {
 
@@ -15,6 +16,7 @@ Action declare_study(CLI::App& command) {
   add_study_trials(command, chosen);
   add_study_stimuli(command, chosen);
   add_study_run(command, chosen);
+  add_study_web(command, chosen);
   add_study_analyse(command, chosen);
   add_study_power(command, chosen);
   return [chosen] { return (*chosen)(); };

@@ -10,9 +10,11 @@
 
 namespace understudy::tests {
 
-/// Runs a script of tests/interop with node; the first argument that it gets is where the packages are. Gives
-/// the JSON that it printed. Throws Error in a sentence: node or the packages are missing, or the script
-/// failed.
+/// Runs a script of tests/interop with node and gives the JSON that it printed. Throws Error in a sentence:
+/// node is missing, or the script failed.
+nlohmann::json run_node(const std::string& script, const std::vector<std::string>& arguments);
+/// The same of a script that gets as its first argument where the npm packages are. Throws Error also where
+/// these are missing.
 nlohmann::json run_script(const std::string& script, const std::vector<std::string>& arguments);
 
 /// What Khronos' glTF-Validator says of each file: {"errors", "warnings", "messages": [...]}.

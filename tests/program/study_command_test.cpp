@@ -41,6 +41,29 @@ TEST_F(StudyCommand, WritesAParticipantsTrialsForOtherRunners) {
   EXPECT_NE(other.out, again.out);
 }
 
+TEST_F(StudyCommand, WritesAFolderForBrowsers) {
+  const std::string file = scratch.path("a.study"), made = scratch.path("made");
+  ASSERT_EQ(run_program({"study", "new", "--preset", "dong", "--out", file}).code, 0);
+  const std::vector<std::string> command = {"study", "web",   file,       "--clips",
+                                            made,    "--out", out("web"), "--participants"};
+  const auto web = [&](const std::string& participants) {
+    std::vector<std::string> all = command;
+    all.push_back(participants);
+    return run_program(all);
+  };
+  expect_clean_failure(web("2"), "make the clips with understudy study stimuli " + file + " --out " + made);
+  EXPECT_EQ(web("0").code, 2);
+  const Finished listed = run_program({"study", "trials", file, "--format", "csv"});
+  std::filesystem::create_directories(made + "/clips");
+  for (size_t at = 0; (at = listed.out.find("clips/", at)) != std::string::npos; ++at)
+    write_text(made + "/" + listed.out.substr(at, std::string("clips/0123456789abcdef.mp4").size()), "film");
+  const Finished run = web("12");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, out("web") + "/index.html: participants P01 to P12, 50 trials each\n");
+  for (const char* name : {"/index.html", "/study.js", "/study.css", "/data.js"})
+    EXPECT_GT(read_bytes(out("web") + name).size(), 0u) << name;
+}
+
 TEST_F(StudyCommand, RefusesWhatIsNoStudyOrHasLostAFile) {
   const std::string file = scratch.path("a.study");
   write_text(file, "{\"format\": \"understudy document\"}");
