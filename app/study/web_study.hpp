@@ -28,8 +28,8 @@ std::string web_data(const Study& study, const std::string& path, int participan
 std::vector<std::string> web_clips(const Study& study, int participants);
 
 /// Writes the folder; the same study gives the same bytes. Throws Error, one sentence: a clip is not there,
-/// with the command that makes it; a folder or file cannot be written. data.js is written last: without it the
-/// page says that it is not complete.
+/// or is of the study before it was changed, with the command that makes it; a folder or file cannot be
+/// written. data.js is written last: without it the page says that it is not complete.
 void write_web_study(const Study& study, const std::string& path, const WebStudyOptions& options);
 
 }  // namespace understudy::app

@@ -297,12 +297,21 @@ function number_of(text) {
   return number <= study.participants.length ? number : 0;
 }
 
-function remembered_name(name) {
+/// Of this tab, for a reload.
+function remembered_name() {
   try {
-    if (name) sessionStorage.setItem(`${kStore}participant`, name);
     return sessionStorage.getItem(`${kStore}participant`) ?? '';
   } catch {
-    return name ?? '';
+    return '';
+  }
+}
+
+/// An empty name: the next one who sits there is asked.
+function remember_name(name) {
+  try {
+    sessionStorage.setItem(`${kStore}participant`, name);
+  } catch {
+    // there is no store
   }
 }
 
@@ -456,6 +465,11 @@ class Stage {
     this.loading.setAttribute('role', 'status');
     this.node = box('stage', this.video, this.loading);
   }
+  /// Browsers allow only so many players at a time.
+  release() {
+    this.video.removeAttribute('src');
+    this.video.load();
+  }
   /// Returns when the clip has been seen to its end.
   async play() {
     for (;;) {
@@ -467,6 +481,7 @@ class Stage {
       }
       await this.wait_for_click(`This clip cannot be played (${this.path}). Please tell the experimenter.`,
                                 'Try again');
+      this.release();
       const fresh = clips.loading(this.path).video;
       this.video.replaceWith(fresh);
       this.video = fresh;
@@ -621,6 +636,7 @@ async function run_trial(trial, next, answers) {
     stage.node.hidden = true;
     questions.open();
   } while (await questions.decision() === 'replay');
+  stage.release();
   return questions.list.map(
       one => [answers.participant, trial.id, one.question.name, one.answer, Math.round(one.answered_ms),
               answers.starts - 1, questions.shown_at, ...trial.factors]);
@@ -644,6 +660,7 @@ async function run_trials(trials, answers) {
 }
 
 async function finished(answers, is_new) {
+  remember_name('');
   if (is_new) download(answers);
   element('place').textContent = 'The end';
   element('download').hidden = true;
@@ -660,7 +677,7 @@ async function finished(answers, is_new) {
 async function run() {
   document.title = study.name;
   const number = await participant(), name = name_of(number);
-  remembered_name(name);
+  remember_name(name);
   element('who').textContent = name;
   show();
   if (!await take_seat(name)) return tell_of_other_tab();
@@ -676,7 +693,13 @@ async function run() {
     keep(answers);
   } else if (is_new) {
     const where = `You go on at: ${trials[answers.position].place}.`;
-    await told('Welcome back', [paragraph(where), key_list()], ['Continue']);
+    const pressed = await told('Welcome back', [paragraph(where), key_list()],
+                               ['Continue', `I am not ${name}`]);
+    if (pressed !== 'Continue') {
+      remember_name('');
+      location.replace(this_place());
+      return;
+    }
   }
   await run_trials(trials, answers);
   await finished(answers, is_new);

@@ -139,6 +139,21 @@ TEST_F(WebStudy, NamesAClipThatIsMissingAndWhatMakesIt) {
   EXPECT_FALSE(fs::exists(options.out));
 }
 
+TEST_F(WebStudy, RefusesClipsOfTheStudyBeforeItWasChanged) {
+  const Json manifest = {{"design", Json::parse(digest_of(study, scratch.path("")))}};
+  write_file(options.clips + "/manifest.json", json_text(manifest));
+  study.questions.pop_back();
+  study.plan.repetitions = 2;
+  EXPECT_EQ(failure(), "");  // the clips are the same
+  study.motions[0].from_s = 1;
+  study.picture.yaw_deg = 0;
+  EXPECT_EQ(failure(),
+            options.clips + " has clips of the study before it was changed (motion 'walk', picture)" +
+                ": make the clips with understudy study stimuli " + path() + " --out " + options.clips);
+  write_file(options.clips + "/manifest.json", "[]");
+  EXPECT_EQ(failure().find(options.clips + "/manifest.json: is not of clips: make"), 0u) << failure();
+}
+
 TEST_F(WebStudy, NamesAFolderThatCannotBeWritten) {
   write_file(scratch.path("file"), "x");
   options.out = scratch.path("file/out");

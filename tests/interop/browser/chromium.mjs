@@ -137,10 +137,10 @@ class Page {
     }
   }
   text() {
-    return this.evaluate('document.body.innerText');
+    return this.evaluate('document.body?.innerText');
   }
   says(text) {
-    return this.until(`document.body.innerText.includes(${JSON.stringify(text)})`);
+    return this.until(`document.body?.innerText.includes(${JSON.stringify(text)})`);
   }
   async press(key) {
     const known = kKeys[key] ?? {code: `Digit${key}`, text: key, windowsVirtualKeyCode: key.charCodeAt(0)};

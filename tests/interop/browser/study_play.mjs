@@ -15,6 +15,8 @@ const kAsking = 'document.querySelector(".questions:not([hidden])") !== null';
 const kPlace = 'document.getElementById("place").textContent';
 const kHeading = '(document.querySelector(".card:not([hidden]) h1")?.innerText ?? "")';
 
+let asked_for;  // of the web server, where there is one
+
 const address_in = folder => pathToFileURL(join(folder, 'index.html')).href;
 
 async function downloaded(name) {
@@ -89,6 +91,7 @@ async function take_trial(page, index, place, seen) {
   const by_keys = index % 2 === 0 || index % 4 === 1, began = Date.now();
   const clip = await page.evaluate('document.querySelector("video").getAttribute("src")');
   const trial = {place, clip, replays: 0};
+  if (seen.asked_for_before && !seen.asked_for_before.has(clip)) seen.late_clips.push(clip);
   if (await page.evaluate(kAsking)) throw new Error('questions are shown before the clip has ended');
   await page.press('Enter');  // skips nothing
   await page.until(kAsking);
@@ -109,6 +112,7 @@ async function take_trial(page, index, place, seen) {
   }
   trial.answers = await answer(page, index, by_keys);
   trial.asked_ms = Date.now() - began;
+  if (asked_for) seen.asked_for_before = new Set(asked_for);
   if (by_keys) await page.press('Enter');
   else await page.click_button('Continue');
   return trial;
@@ -127,8 +131,9 @@ async function take_trials(page, seen, most = Infinity) {
   return place;
 }
 
-const nothing_seen =
-    () => ({errors: [], trials: [], breaks: 0, names_of_conditions_seen: false, reloaded_in: -1});
+const nothing_seen = () => ({
+  errors: [], trials: [], breaks: 0, names_of_conditions_seen: false, reloaded_in: -1, late_clips: [],
+});
 
 async function second_tab_is_refused(browser, address) {
   const page = await browser.open(address);
@@ -147,12 +152,21 @@ async function whole(browser, start, name) {
   seen.reloaded_in = 7;
   await take_trials(page, seen);
   await downloaded(`${name}.csv`);
+  seen.first_download = await readFile(join(downloads, `${name}.csv`), 'utf8');
+  await rm(join(downloads, `${name}.csv`));
+  await page.reload();
+  await page.says('Thank you');
+  await page.click_button('Download answers');
+  await downloaded(`${name}.csv`);
+  seen.second_download = await readFile(join(downloads, `${name}.csv`), 'utf8');
   return seen;
 }
 
 async function served(browser, start, name) {
+  asked_for = new Set();
   const server = createServer(async (request, response) => {
     const path = new URL(request.url, 'http://x').pathname;
+    asked_for.add(path.slice(1));
     try {
       const bytes = await readFile(join(web, path));
       response.setHeader('Content-Type', kTypes[path.split('.').pop()]);
@@ -189,6 +203,10 @@ async function changed(browser, start, other_folder) {
   await page.click_button('Delete them');
   await enter(page);
   seen.after_deletion = await next_place(page, '', seen);
+  await page.go(address_in(other_folder));  // without a name: this tab knows it
+  await page.says('Welcome back');
+  await page.click_button('I am not P01');
+  await page.says('Participant name');
   seen.errors.push(...page.errors);
   return seen;
 }

@@ -118,6 +118,7 @@ TEST_F(StudyInABrowser, IsAnsweredFromFirstToLastWithAReloadBetween) {
   EXPECT_EQ(saw["places"].back(), "Trial 12 of 12");
   EXPECT_EQ(saw["resumed_at"], saw["trials"][saw["reloaded_in"].get<size_t>()]["place"]);
   EXPECT_EQ(saw["names_of_conditions_seen"], false);
+  EXPECT_EQ(saw["second_download"], saw["first_download"]);
   const StudyAnswers counted =
       counted_answers(read_answers(scratch.path("downloads")), study, scratch.path(""));
   ASSERT_EQ(counted.participants.size(), 1u);
@@ -127,6 +128,7 @@ TEST_F(StudyInABrowser, IsAnsweredFromFirstToLastWithAReloadBetween) {
 TEST_F(StudyInABrowser, IsServedByAWebServerToo) {
   const auto saw = played("served", {"P03"});
   expect_answers("P03.csv", "P03", saw);
+  EXPECT_TRUE(saw["late_clips"].empty()) << saw["late_clips"];
   EXPECT_EQ(saw["second_tab"], true);
 }
 
