@@ -13,7 +13,7 @@ struct VideoReader::Parts {
   Owned<AVFormatContext> format;
   Owned<AVCodecContext> decoder;
   Owned<AVPacket> packet;
-  Owned<AVFrame> picture;
+  Owned<AVFrame> picture, received;
   Owned<SwsContext> scale;
   int stream = 0;
   double fps = 0;
@@ -66,7 +66,9 @@ VideoReader::VideoReader(const std::string& path) : parts_(std::make_unique<Part
   parts_->open_decoder();
   parts_->packet.reset(av_packet_alloc());
   parts_->picture.reset(av_frame_alloc());
-  US_CHECK(parts_->packet != nullptr && parts_->picture != nullptr, path, ": no memory for a video");
+  parts_->received.reset(av_frame_alloc());
+  US_CHECK(parts_->packet != nullptr && parts_->picture != nullptr && parts_->received != nullptr, path,
+           ": no memory for a video");
 }
 VideoReader::~VideoReader() = default;
 VideoReader::VideoReader(VideoReader&&) noexcept = default;
@@ -84,10 +86,12 @@ double VideoReader::fps() const {
 
 bool VideoReader::next() {
   for (;;) {
-    const int got = avcodec_receive_frame(parts_->decoder.get(), parts_->picture.get());
+    const int got = avcodec_receive_frame(parts_->decoder.get(), parts_->received.get());
     if (got == AVERROR_EOF) return false;
     if (got != AVERROR(EAGAIN)) {
       parts_->check(got, "is damaged");
+      av_frame_unref(parts_->picture.get());
+      av_frame_move_ref(parts_->picture.get(), parts_->received.get());
       return true;
     }
     parts_->feed();

@@ -23,7 +23,7 @@ class VideoReader {
 
   /// Goes on by one picture; false after the last one. Throws Error naming the path where it is damaged.
   bool next();
-  /// The picture that next() came to.
+  /// The picture that next() came to last; after the end that is the last one.
   Image picture();
   /// To before the first picture again.
   void restart();

@@ -138,6 +138,7 @@ TEST_F(VideoFile, IsReadAgainFromItsBeginning) {
     while (reader.next())
       if (count++ == 3) EXPECT_LT((mean_of(reader.picture()) - 255 * color_at(3)).norm(), 6);
     EXPECT_EQ(count, 12);
+    EXPECT_LT((mean_of(reader.picture()) - 255 * color_at(11)).norm(), 6);
     reader.restart();
   }
 }

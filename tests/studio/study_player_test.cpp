@@ -164,6 +164,14 @@ TEST_F(StudyPlayerTest, PlaysTheClipInItsOwnTimeAndAgain) {
   EXPECT_EQ(saved()[0].replays, 1);
 }
 
+TEST_F(StudyPlayerTest, OnASlowMachinePassesPicturesOver) {
+  open();
+  key(Key::Enter);
+  for (int i = 0; i < 3; ++i) player_->frame(now_s_ += 0.7, 0);
+  step(4);
+  EXPECT_EQ(run_->screen(), RunScreen::Questions);
+}
+
 TEST_F(StudyPlayerTest, IsLeftAndTakenUpAgain) {
   open();
   key(Key::Enter);

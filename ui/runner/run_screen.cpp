@@ -49,6 +49,15 @@ void title(Ui& ui, const std::string& text) {
   gap(ui, kTall);
 }
 
+/// A button that is seen on any grey.
+bool outlined_button(Ui& ui, const std::string& name, const std::string& label,
+                     const ButtonOptions& options) {
+  const bool clicked = button(ui, name, label, options);
+  ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                      color(ui.theme().text_faint), ui.px(4));
+  return clicked;
+}
+
 bool centred_button(Ui& ui, const std::string& name, const std::string& label, const std::string& key) {
   ButtonOptions options;
   options.look = ButtonLook::Main, options.shortcut = key, options.width = ui.px(180);
@@ -95,7 +104,7 @@ void draw_welcome(const Screen& s) {
   gap(s.ui, kTall);
   {
     const ColorScope dim(ImGuiCol_Text, s.ui.theme().text_dim);
-    centred("Mouse or number keys answer, Enter goes on, R shows the clip again, Escape leaves.", room);
+    centred("Mouse or number keys answer, Enter goes on, R plays the clip again, Escape leaves.", room);
     centred("Participant " + run.participant(), room);
   }
   gap(s.ui, 2 * kTall);
@@ -184,18 +193,6 @@ void draw_ends(Ui& ui, const StudyQuestion& question, float left, float width) {
   ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
 }
 
-/// A button that is seen on any grey.
-bool answer_button(const Screen& s, const std::string& name, const std::string& label, float width,
-                   bool chosen) {
-  ButtonOptions options;
-  options.width = width;
-  options.look = chosen ? ButtonLook::Main : ButtonLook::Plain;
-  const bool clicked = button(s.ui, name, label, options);
-  ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
-                                      color(s.ui.theme().text_faint), s.ui.px(4));
-  return clicked;
-}
-
 /// In columns of one width, as many as the words leave room for.
 void draw_answers(const Screen& s, int index, const StudyQuestion& question, float left) {
   const std::vector<std::string> offered = app::offered_answers(question);
@@ -211,8 +208,10 @@ void draw_answers(const Screen& s, int index, const StudyQuestion& question, flo
     if (i % columns != 0) ImGui::SameLine(0, 0);
     ImGui::SetCursorPosX(left + static_cast<float>(i % columns) * step);
     const std::string name = printed("run.question.%d.%d", index + 1, i + 1);
-    const bool chosen = s.run().chosen()[index] == offered[i];
-    if (answer_button(s, name, offered[i], step - space, chosen)) choose(s, index, offered[i]);
+    ButtonOptions options;
+    options.width = step - space;
+    options.look = s.run().chosen()[index] == offered[i] ? ButtonLook::Main : ButtonLook::Plain;
+    if (outlined_button(s.ui, name, offered[i], options)) choose(s, index, offered[i]);
   }
   if (question.kind == QuestionKind::Likert) draw_ends(s.ui, question, left, room);
 }
@@ -268,7 +267,7 @@ void draw_questions(const Screen& s) {
     again.shortcut = "R", again.width = on.width = ui.px(160);
     on.shortcut = "Enter", on.look = ButtonLook::Main, on.disabled = !s.run().is_complete();
     to_middle(again.width + on.width + ui.px(12));
-    const bool replays = button(ui, "run.replay", "Show again", again) || key_pressed(Key::R, false);
+    const bool replays = outlined_button(ui, "run.replay", "Play again", again) || key_pressed(Key::R, false);
     ImGui::SameLine(0, ui.px(12));
     const bool goes_on = button(ui, "run.continue", "Continue", on) || key_pressed(Key::Enter, false);
     if (replays)
@@ -288,7 +287,7 @@ void ask_to_leave(const Screen& s) {
   to_middle(2 * stay.width + s.ui.px(12));
   if (button(s.ui, "run.stay", "Stay", stay)) s.state.asks_to_leave = false;
   ImGui::SameLine(0, s.ui.px(12));
-  if (button(s.ui, "run.leave", "Leave", leave)) s.state.leaves = true;
+  if (outlined_button(s.ui, "run.leave", "Leave", leave)) s.state.leaves = true;
 }
 
 void draw_current(const Screen& s) {
