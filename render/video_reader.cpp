@@ -1,6 +1,8 @@
 #include "render/video_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "render/libav.hpp"
 #include "retarget/base/error.hpp"
@@ -109,10 +111,15 @@ Image VideoReader::picture() {
     sws_setColorspaceDetails(parts_->scale.get(), sws_getCoefficients(SWS_CS_ITU709), 0,
                              sws_getCoefficients(SWS_CS_ITU709), 1, 0, 1 << 16, 1 << 16);
   }
-  Image image(width(), height());
-  uint8_t* rows[] = {image.pixels.data()};
-  const int strides[] = {3 * width()};
+  // libswscale writes some pixels more than a row has where its width is no multiple of 16.
+  const size_t row = 3 * static_cast<size_t>(width()), stride = (row + 127) / 64 * 64;
+  std::vector<uint8_t> padded(stride * static_cast<size_t>(height()));
+  uint8_t* rows[] = {padded.data()};
+  const int strides[] = {static_cast<int>(stride)};
   sws_scale(parts_->scale.get(), from.data, from.linesize, 0, height(), rows, strides);
+  Image image(width(), height());
+  for (int y = 0; y < height(); ++y)
+    std::copy_n(padded.data() + static_cast<size_t>(y) * stride, row, image.at(0, y));
   return image;
 }
 

@@ -74,10 +74,14 @@ class Mp4 final : public VideoWriter::Sink {
     encoder_->color_primaries = AVCOL_PRI_BT709;
     encoder_->color_trc = AVCOL_TRC_BT709;
     encoder_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // MP4 keeps it apart
-    encoder_->thread_count = options.threads;
     av_opt_set_int(encoder_->priv_data, "crf", options.quality, 0);
     // A fifth of the time of "medium" at the same quality; files are some tenths larger.
     av_opt_set(encoder_->priv_data, "preset", "veryfast", 0);
+    if (options.repeatable) {
+      encoder_->thread_count = 1;
+      // Its AVX-512 code reads memory that nobody has written: bits differ from run to run.
+      av_opt_set_int(encoder_->priv_data, "mbtree", 0, 0);
+    }
     const int opened = avcodec_open2(encoder_.get(), codec, nullptr);
     US_CHECK(opened >= 0, path_, ": the H.264 encoder takes no ", width_, " x ", height_, " pixels at ",
              options.fps, " frames/s, ", words_of(opened));

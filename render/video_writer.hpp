@@ -12,8 +12,8 @@ struct VideoOptions {
   int width = 1280,
       height = 720;  ///< pixels; MP4 needs even sides: an odd one gains a pixel that repeats its edge
   double fps = 30;
-  int quality = 18;  ///< of MP4, x264's constant rate factor: 0 lossless .. 51 worst
-  int threads = 0;   ///< of MP4's encoder; 0: as the machine has. Their number changes the bytes
+  int quality = 18;         ///< of MP4, x264's constant rate factor: 0 lossless .. 51 worst
+  bool repeatable = false;  ///< the same pictures give the same bytes of MP4, in one thread
 };
 
 /// One film, picture by picture. A path that ends in .mp4 is a file; any other is a folder of PNGs,

@@ -154,7 +154,7 @@ ClipRecord Maker::record_of_clip(const Trial& trial, const StagePainter& painter
 std::vector<ClipWriter::Film> Maker::films_of(const ClipRecord& record) const {
   render::VideoOptions options;
   options.fps = record.fps, options.quality = kQuality;
-  options.threads = 1;  // the same bytes whatever the machine has, and the drawing has the others
+  options.repeatable = true;
   options.width = record.width, options.height = record.height;
   std::vector<ClipWriter::Film> films = {{in_out(record.file), options}};
   for (const PaneRecord& pane : record.panes) {

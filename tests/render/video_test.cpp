@@ -1,15 +1,18 @@
 // Films are written and read again: how many pictures, how large, which colours.
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "render/video_reader.hpp"
 #include "render/video_writer.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/file.hpp"
 
 namespace understudy::render {
 namespace {
@@ -106,6 +109,34 @@ TEST_F(VideoFile, AnOldFilmStaysUntilTheNewOneIsWhole) {
   EXPECT_EQ(fs::file_size(path("a.mp4")), 3u);
   write_film(path("a.mp4"), {32, 32, 30}, 2);
   EXPECT_EQ(decoded(path("a.mp4")).means.size(), 2u);
+}
+
+/// What new memory holds is the library's business: here it is filled with a byte.
+TEST_F(VideoFile, ARepeatableFilmHasTheSameBytesWhateverIsInMemory) {
+  VideoOptions options{208, 110, 30};
+  options.repeatable = true;
+  std::set<std::string> films;
+  for (const int filling : {0, 85, 170}) {
+    mallopt(M_PERTURB, filling);
+    VideoWriter writer(path("a.mp4"), options);
+    Image image(options.width, options.height);
+    for (int i = 0; i < 12; ++i) {
+      for (size_t k = 0; k < image.pixels.size(); ++k)
+        image.pixels[k] = static_cast<uint8_t>(k * (31 + static_cast<size_t>(i)) % 89);
+      writer.push(image);
+    }
+    writer.finish();
+    films.insert(read_file(path("a.mp4")));
+  }
+  mallopt(M_PERTURB, 0);
+  EXPECT_EQ(films.size(), 1u);
+}
+
+TEST_F(VideoFile, FilmsOfAnyWidthAreReadWithinTheirMemory) {
+  for (int width = 18; width < 66; width += 2) {
+    write_film(path("a.mp4"), {width, 22, 25}, 2);
+    EXPECT_EQ(decoded(path("a.mp4")).means.size(), 2u) << width;
+  }
 }
 
 TEST_F(VideoFile, AFolderGetsPictures) {
