@@ -561,9 +561,9 @@ class Questions {
   }
   open() {
     this.node.hidden = false;
+    (this.marked ?? this.node).focus();
     this.began_ms ??= performance.now();
     this.shown_at ??= new Date().toISOString();
-    (this.marked ?? this.node).focus();
   }
   close() {
     this.node.hidden = true;

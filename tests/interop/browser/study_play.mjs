@@ -59,13 +59,23 @@ function questions_on(page) {
 const radio = (question, answer) => `document.querySelectorAll('.questions fieldset')[${question}]
     .querySelectorAll('input')[${answer}]`;
 
+/// From now on, `opened` is when the questions could first be answered.
+function note_opening(page) {
+  return page.evaluate(`window.opened = undefined; new MutationObserver(() => {
+    if (${kAsking}) window.opened ??= performance.now();
+  }).observe(document.getElementById('main'), {subtree: true, attributes: true, childList: true}); 0`);
+}
+
+const since_opening = page => page.evaluate('performance.now() - window.opened');
+
 async function answer(page, index, by_keys) {
   const questions = await questions_on(page), given = [];
   for (let q = 0; q < questions.length; ++q) {
     const count = questions[q].answers.length;
     let chosen = (3 * index + q) % count;
+    if (!by_keys && index % 3 === 0) await page.click(radio(q, (chosen + 1) % count));  // changes its mind
+    const after_ms = await since_opening(page);
     if (!by_keys) {
-      if (index % 3 === 0) await page.click(radio(q, (chosen + 1) % count));  // changes its mind
       await page.click(`${radio(q, chosen)}.closest('label')`);
     } else if (q === 1 && index % 2 === 1) {
       await page.press('ArrowRight');  // from the first to the second
@@ -75,7 +85,8 @@ async function answer(page, index, by_keys) {
     }
     if (by_keys && q === 1 && index % 2 === 1 && q + 1 < questions.length) await page.press('Tab');
     if (by_keys && q === 0 && q + 1 < questions.length) await page.press('Enter');  // too early
-    given.push({text: questions[q].text, answer: questions[q].answers[chosen]});
+    given.push({text: questions[q].text, answer: questions[q].answers[chosen], after_ms,
+                before_ms: await since_opening(page)});
   }
   return given;
 }
@@ -88,12 +99,14 @@ async function replay(page, by_keys) {
 }
 
 async function take_trial(page, index, place, seen) {
-  const by_keys = index % 2 === 0 || index % 4 === 1, began = Date.now();
+  const by_keys = index % 2 === 0 || index % 4 === 1;
   const clip = await page.evaluate('document.querySelector("video").getAttribute("src")');
   const trial = {place, clip, replays: 0};
   if (seen.asked_for_before && !seen.asked_for_before.has(clip)) seen.late_clips.push(clip);
   if (await page.evaluate(kAsking)) throw new Error('questions are shown before the clip has ended');
+  await note_opening(page);
   await page.press('Enter');  // skips nothing
+  trial.shown_after = new Date().toISOString();
   await page.until(kAsking);
   seen.names_of_conditions_seen ||= await page.evaluate(
       'understudyStudy.conditions.some(name => document.body.textContent.includes(name))');
@@ -102,16 +115,19 @@ async function take_trial(page, index, place, seen) {
     await page.reload();
     await page.says('Welcome back');
     seen.resumed_at = /You go on at: (.*)\./.exec(await page.text())[1];
+    trial.shown_after = new Date().toISOString();
     await page.press('Enter');
+    await page.until(kPlaying);
+    await note_opening(page);
     await page.until(kAsking);
     ++trial.replays;
   }
+  trial.shown_before = new Date().toISOString();
   if (index % 5 === 2 || index % 5 === 3) {
     await replay(page, index % 5 === 2);
     ++trial.replays;
   }
   trial.answers = await answer(page, index, by_keys);
-  trial.asked_ms = Date.now() - began;
   if (asked_for) seen.asked_for_before = new Set(asked_for);
   if (by_keys) await page.press('Enter');
   else await page.click_button('Continue');
