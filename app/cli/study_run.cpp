@@ -5,6 +5,8 @@
 
 #include "app/run/fields_json.hpp"
 #include "app/studio/study_player.hpp"
+#include "app/study/clip_check.hpp"
+#include "app/study/trial_exports.hpp"
 
 namespace understudy::app {
 namespace {
@@ -17,7 +19,9 @@ struct RunOptions {
 int run_study(const RunOptions& options) {
   const std::string folder = folder_of_file(options.study);
   StudyRun run(read_study(options.study), folder, options.participant, options.answers);
-  check_clips(run, options.clips);
+  std::vector<std::string> clips;
+  for (const Trial& trial : run.trials()) clips.push_back(clip_path(run.study(), trial));
+  check_clips(clips, run.study(), options.study, options.clips);
   render::WindowOptions window;
   window.full_screen = !options.in_window;
   window.software = options.software;

@@ -18,8 +18,8 @@ namespace gl = render::gl;
 using Kind = render::InputEvent::Kind;
 
 constexpr double kResting = 0.25, kPlaying = 0.004;  // seconds between looks at what happens
-constexpr double kLongestFrame = 0.25;                    // seconds that one frame of the interface may be
-constexpr int kToRest = 4;                         // frames that widgets take to come to rest
+constexpr double kLongestFrame = 0.25;               // seconds that one frame of the interface may be
+constexpr int kToRest = 4;                           // frames that widgets take to come to rest
 constexpr float kDesignHeight = 640;                 // pixels of the interface at scale 1
 
 std::string clip_file(const StudyRun& run, const std::string& stimuli, const Trial& trial) {
@@ -45,17 +45,8 @@ struct StudyPlayer::Clip {
   bool has_ended = false;
 };
 
-void check_clips(const StudyRun& run, const std::string& stimuli) {
-  for (const Trial& trial : run.trials()) {
-    const std::string file = clip_file(run, stimuli, trial);
-    US_CHECK(std::filesystem::is_regular_file(file), file,
-             ": the clip of a trial is not there; `understudy study stimuli` makes it");
-  }
-}
-
 StudyPlayer::StudyPlayer(StudyRun& run, std::string stimuli, std::unique_ptr<Surface> surface)
     : run_(run), stimuli_(std::move(stimuli)), surface_(std::move(surface)) {
-  check_clips(run_, stimuli_);
   surface_->set_title("Understudy");
   unsettled_ = kToRest;
 }

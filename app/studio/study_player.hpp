@@ -14,13 +14,10 @@
 
 namespace understudy::app {
 
-/// Throws Error where one of the participant's clips is not in the folder, and says how it is made.
-void check_clips(const StudyRun& run, const std::string& stimuli);
-
 /// Use from one thread.
 class StudyPlayer {
  public:
-  /// stimuli: the folder with clips/. Throws Error as check_clips().
+  /// stimuli: the folder with clips/, as check_clips() wants it.
   StudyPlayer(StudyRun& run, std::string stimuli, std::unique_ptr<Surface> surface);
   ~StudyPlayer();
 
