@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kQuality = 18;  // x264's constant rate factor: no difference is seen
+constexpr int kDrawing = 1;   // to be raised where the same study gives other pictures than before
 
 /// Changes when the file, or one in the folder, does.
 std::string stamp_of(const std::string& path) {
@@ -110,7 +111,8 @@ class Maker {
 std::string Maker::made_from(const Trial& trial) const {
   const StudyMotion& motion = study_.motions[static_cast<size_t>(trial.motion)];
   const StudyTarget& target = study_.targets[static_cast<size_t>(trial.target)];
-  Json all{{"program", kProgram}, {"made_by", options_.made_by}, {"quality", kQuality}};
+  Json all{
+      {"program", kProgram}, {"made_by", options_.made_by}, {"quality", kQuality}, {"drawing", kDrawing}};
   for (const char* part : {"conditions", "layout", "clip", "picture"}) all[part] = json_.at(part);
   all["motion"] = json_.at("motions").at(static_cast<size_t>(trial.motion));
   all["target"] = json_.at("targets").at(static_cast<size_t>(trial.target));
