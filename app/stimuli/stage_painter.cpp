@@ -28,16 +28,19 @@ void draw_centred(render::Image& image, const render::Font& font, const std::str
 
 }  // namespace
 
-render::RendererOptions clip_renderer_options() {
-  return {4, render::Quality::Interactive};
+render::Renderer& ClipRenderers::of(size_t pane) {
+  while (all_.size() <= pane)
+    all_.push_back(
+        std::make_unique<render::Renderer>(render::RendererOptions{4, render::Quality::Interactive}));
+  return *all_[pane];
 }
 
 StagePainter::StagePainter(const Study& study, std::shared_ptr<const Stage> stage, render::PixelSize size,
-                           render::Renderer& renderer)
+                           ClipRenderers& renderers)
     : study_(study),
       stage_(std::move(stage)),
       size_(size),
-      renderer_(renderer),
+      renderers_(renderers),
       font_(render::Font::system()),
       panes_(frame_panes(study, stage_->extents, size)),
       frame_(size.width, size.height, study.picture.background),
@@ -105,7 +108,7 @@ StagePainter::Picture StagePainter::drawn_pane(const Trial& trial, size_t pane, 
   if (known != kept_.end()) return known->second;
   const PaneView& view = panes_[pane];
   const auto made = std::make_shared<const render::Image>(
-      renderer_.render_image(scene(trial, pane, moment), view.camera, view.size));
+      renderers_.of(pane).render_image(scene(trial, pane, moment), view.camera, view.size));
   ++drawn_;
   const int64_t bytes = ssize(made->pixels);
   if (kept_bytes_ + bytes > kMostKept) forget_others(trial);

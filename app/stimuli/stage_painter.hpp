@@ -14,17 +14,24 @@
 
 namespace understudy::app {
 
-/// How clips are drawn: best edges for the time that software OpenGL takes.
-render::RendererOptions clip_renderer_options();
+/// A renderer for each pane: one that draws in many sizes by turns makes its buffers anew each time. Make, use
+/// and destroy it with one context current.
+class ClipRenderers {
+ public:
+  render::Renderer& of(size_t pane);
+
+ private:
+  std::vector<std::unique_ptr<render::Renderer>> all_;
+};
 
 /// Pictures of one stage. Keeps what several of them share: source and target are drawn once for all
 /// conditions, and a run of a motion once for all its repetitions, as far as there is room. On the thread of
-/// the renderer's context, which must outlive this.
+/// the renderers' context, which must outlive this.
 class StagePainter {
  public:
   /// size: of a whole picture.
   StagePainter(const Study& study, std::shared_ptr<const Stage> stage, render::PixelSize size,
-               render::Renderer& renderer);
+               ClipRenderers& renderers);
 
   /// The whole picture: panes, their labels, or the card.
   render::Image picture(const Trial& trial, const ClipMoment& moment);
@@ -50,7 +57,7 @@ class StagePainter {
   Study study_;
   std::shared_ptr<const Stage> stage_;
   render::PixelSize size_;
-  render::Renderer& renderer_;
+  ClipRenderers& renderers_;
   render::Font font_;
   std::vector<PaneView> panes_;
   render::Image frame_;                             // background and labels

@@ -102,7 +102,7 @@ class Maker {
   MadeClips made_;
   std::unique_ptr<StageMaker> stages_;
   std::unique_ptr<render::Context> context_;
-  std::unique_ptr<render::Renderer> renderer_;
+  ClipRenderers renderers_;
   int finished_ = 0;
   StimuliReport report_;
 };
@@ -196,11 +196,8 @@ void Maker::make_stage(const std::vector<Trial>& trials) {
   const auto stage = stages_->stage(trials[0].motion, trials[0].target);
   report_.stage_s += ms_since(began) / 1000;
   began = std::chrono::steady_clock::now();
-  if (renderer_ == nullptr) {
-    context_ = render::make_offscreen_context();
-    renderer_ = std::make_unique<render::Renderer>(clip_renderer_options());
-  }
-  StagePainter painter(study_, stage, {study_.picture.width, study_.picture.height}, *renderer_);
+  if (context_ == nullptr) context_ = render::make_offscreen_context();
+  StagePainter painter(study_, stage, {study_.picture.width, study_.picture.height}, renderers_);
   const ClipPlan plan(study_.clip, study_.picture.fps, stage->motion_s);
   for (const Trial& trial : trials) make_clip(trial, painter, plan, *stage);
   report_.render_s += ms_since(began) / 1000;

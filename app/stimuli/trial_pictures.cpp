@@ -32,9 +32,8 @@ render::Image TrialPictures::picture(const Study& study, const Trial& trial, flo
     kept_->stage = nullptr;
     kept_->stage = kept_->maker->stage(trial.motion, trial.target);
   }
-  if (renderer_ == nullptr) renderer_ = std::make_unique<render::Renderer>(clip_renderer_options());
   if (kept_->painter == nullptr || !same(kept_->size, size)) {
-    kept_->painter = std::make_unique<StagePainter>(study, kept_->stage, size, *renderer_);
+    kept_->painter = std::make_unique<StagePainter>(study, kept_->stage, size, renderers_);
     kept_->size = size;
   }
   const ClipPlan plan(study.clip, study.picture.fps, kept_->stage->motion_s);

@@ -22,7 +22,7 @@ class TrialPictures {
  private:
   struct Kept;
   StimulusServices services_;
-  std::unique_ptr<render::Renderer> renderer_;
+  ClipRenderers renderers_;
   std::unique_ptr<Kept> kept_;
 };
 

@@ -15,20 +15,20 @@ class StagePictures : public SmallStudy {
   void SetUp() override {
     SmallStudy::SetUp();
     context_ = render::make_offscreen_context();
-    renderer_.emplace(clip_renderer_options());
+    renderers_.emplace();
   }
   void TearDown() override {
-    renderer_.reset();
+    renderers_.reset();
     SmallStudy::TearDown();
   }
   std::shared_ptr<const Stage> stage(int motion) {
     return StageMaker(study_, {services().networks, {}}).stage(motion, 0);
   }
   StagePainter painter(const std::shared_ptr<const Stage>& stage) {
-    return {study_, stage, {study_.picture.width, study_.picture.height}, *renderer_};
+    return {study_, stage, {study_.picture.width, study_.picture.height}, *renderers_};
   }
   std::unique_ptr<render::Context> context_;
-  std::optional<render::Renderer> renderer_;
+  std::optional<ClipRenderers> renderers_;
 };
 
 /// What is drawn at all, and of it at the picture's edges.
@@ -72,8 +72,8 @@ TEST_F(StagePictures, NothingIsCutOffInAnyFrameOfAnyCondition) {
             }
             if (frame % 4 != 0) continue;
             scene.ground.visible = false;
-            const Drawn seen =
-                drawn(renderer_->render_image(scene, view.camera, view.size), study_.picture.background);
+            const Drawn seen = drawn(renderers_->of(pane).render_image(scene, view.camera, view.size),
+                                     study_.picture.background);
             EXPECT_GT(seen.pixels, 50) << paint.label(pane);
             EXPECT_EQ(seen.at_edges, 0) << paint.label(pane) << " frame " << frame;
           }
