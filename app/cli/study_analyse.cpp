@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -95,12 +94,7 @@ int study_analyse(const StudyAnalyseOptions& options) {
   StudyAnswers answers = read_answers(options.answers);
   if (study) answers = counted_answers(std::move(answers), *study, folder_of_file(options.study));
   const StudyReport report = analyse(answers, how);
-  if (!options.page.empty()) {
-    std::error_code failed;
-    std::filesystem::create_directories(options.page, failed);
-    US_CHECK(!failed, options.page, ": cannot be made (", failed.message(), ")");
-    for (const auto& [name, text] : page_files(report)) write_file(options.page + "/" + name, text);
-  }
+  if (!options.page.empty()) write_page(options.page, report);
   if (!options.out.empty()) write_json(options.out, to_json(report));
   print(report);
   return 0;

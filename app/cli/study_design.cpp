@@ -17,16 +17,10 @@ struct NewOptions {
   std::string preset, out;
 };
 
-std::string size_of(const Study& study) {
-  std::string text = std::to_string(trial_count(study)) + " trials";
-  if (study.plan.practice > 0) text += printed(" and %d of practice", study.plan.practice);
-  return text + printed(", about %.0f minutes a participant", minutes_of(study));
-}
-
 int make_study(const NewOptions& options) {
   const Study study = study_preset(options.preset).make(samples_folder());
   write_study(options.out, study);
-  std::printf("%s: %s\n", options.out.c_str(), size_of(study).c_str());
+  std::printf("%s: %s\n", options.out.c_str(), size_in_words(study).c_str());
   return 0;
 }
 
@@ -34,15 +28,6 @@ struct TrialsOptions {
   std::string study, participant, format = "table", out;
   bool without_files = false;
 };
-
-struct TrialFormat {
-  const char* name;
-  std::string (*text)(const Study& study, const std::vector<Trial>& trials);
-};
-constexpr TrialFormat kTrialFormats[] = {{"table", trials_as_table},
-                                         {"csv", trials_as_csv},
-                                         {"jspsych", trials_for_jspsych},
-                                         {"psychopy", trials_for_psychopy}};
 
 int list_trials(const TrialsOptions& options) {
   check_writable(options.out);
@@ -53,14 +38,12 @@ int list_trials(const TrialsOptions& options) {
   }
   const std::vector<Trial> trials =
       options.participant.empty() ? all_trials(study) : trials_of(study, options.participant);
-  std::string text;
-  for (const TrialFormat& format : kTrialFormats)
-    if (options.format == format.name) text = format.text(study, trials);
+  const std::string text = trial_format(options.format).text(study, trials);
   if (options.out.empty())
     std::fputs(text.c_str(), stdout);
   else
     write_file(options.out, text);
-  log::info(options.study + ": " + size_of(study));
+  log::info(options.study + ": " + size_in_words(study));
   return 0;
 }
 
@@ -88,7 +71,7 @@ void add_study_trials(CLI::App& study, const std::shared_ptr<Action>& chosen) {
                      "whose trials, in their order (default: all of the design); names that end in "
                      "consecutive numbers are balanced against each other");
   std::vector<std::string> names;
-  for (const TrialFormat& format : kTrialFormats) names.emplace_back(format.name);
+  for (const TrialFormat& format : trial_formats()) names.emplace_back(format.name);
   command
       .add_option("--format", options->format,
                   "table, csv, jspsych (a timeline as JSON) or psychopy (a conditions file)")

@@ -105,6 +105,7 @@ void add_all_commands(Commands& commands) {
   add_view_commands(commands);
   add_edit_commands(commands);
   add_export_commands(commands);
+  add_study_commands(commands);
   add_program_commands(commands);
 }
 

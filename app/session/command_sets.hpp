@@ -13,6 +13,7 @@ void add_playback_commands(Commands& commands);
 void add_view_commands(Commands& commands);
 void add_edit_commands(Commands& commands);
 void add_export_commands(Commands& commands);
+void add_study_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 
@@ -75,6 +76,11 @@ class Call : public ArgumentReader {
   Document& document;
   std::string label;  ///< of this run, for undo: "Remove adult"; empty: the command's
 };
+
+/// Whether the open study is saved, or none is open. If not, asks first and goes on with `then`.
+bool no_unsaved_study(Studio& studio, const std::string& then);
+/// Saves the open study. It may be one that cannot be run yet. Throws Error naming the path.
+void save_study(Studio& studio, const std::string& path);
 
 /// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
 void remember_folder(Studio& studio, const std::string& path);

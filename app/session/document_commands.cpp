@@ -65,15 +65,18 @@ void answer(Call& c) {
   Session& session = c.session;
   US_CHECK(session.question, "there is no question to answer");
   const Question question = *session.question;
+  const bool is_of_study = question.kind == Question::Kind::UnsavedStudy;
   if (how == "save") {
-    US_CHECK(!session.path.empty(), "the document has no file yet: save it under a name first");
-    save_document(c.studio, session.path);
+    const std::string& path = is_of_study ? session.study.path : session.path;
+    US_CHECK(!path.empty(), is_of_study ? "the study" : "the document",
+             " has no file yet: save it under a name first");
+    is_of_study ? save_study(c.studio, path) : save_document(c.studio, path);
   }
   session.question.reset();
   if (question.kind == Question::Kind::NotAPerson && question.take < ssize(session.takes))
     c.studio.take_back_target(question.take);
-  if (how == "cancel" || question.kind != Question::Kind::UnsavedChanges) return;
-  session.changed = false;
+  if (how == "cancel" || (question.kind != Question::Kind::UnsavedChanges && !is_of_study)) return;
+  (is_of_study ? session.study.changed : session.changed) = false;
   const Arguments words = split_line(question.then);
   c.studio.run(words.front(), {words.begin() + 1, words.end()});
 }
@@ -109,7 +112,7 @@ void add_files(Commands& commands) {
     const std::string& path = c.word(0, "path");
     save_document(c.studio, can_be(path, kDocument) ? path : path + ".understudy");
   });
-  commands.add({"open", "Open", "PATH ...: a scan, target, document or case"}, open_all);
+  commands.add({"open", "Open", "PATH ...: a scan, target, document, study or case"}, open_all);
 }
 
 void recover(Call& c) {
@@ -152,7 +155,7 @@ void add_recovery(Commands& commands) {
 constexpr uint64_t kGlance = 1 << 20;  // bytes of a glTF that may be read before the UI thread draws on
 
 /// Gltf: a motion or a mesh; which of them, only more than a glance shows.
-enum class Kind { Document, Case, Scans, Body, Motion, Mesh, Gltf };
+enum class Kind { Document, Study, Case, Scans, Body, Motion, Mesh, Gltf };
 
 Kind kind_of_npz(const std::string& path) {
   const std::vector<std::string> names = npz_names(path);
@@ -173,11 +176,12 @@ Kind kind_of(const Document& document, const std::string& path) {
   if (fs::is_directory(path, failed))
     return fs::exists(fs::path(path) / "case.json") ? Kind::Case : Kind::Scans;
   if (can_be(path, kDocument)) return Kind::Document;
+  if (can_be(path, kStudy)) return Kind::Study;
   if (fs::path(path).filename() == "case.json") return Kind::Case;
   if (can_be(path, kBody)) return kind_of_npz(path);
   if (format_of_file(path, kTarget) == nullptr) {
     US_CHECK(can_be(path, kMotion | kScanSequence), path,
-             ": is neither a scan, a target, a motion nor a document");
+             ": is neither a scan, a target, a motion, a document nor a study");
     return Kind::Scans;
   }
   if (!wants_motion(document)) return Kind::Mesh;
@@ -246,10 +250,13 @@ void Studio::replace_document(SavedDocument saved, const std::string& path) {
 void Studio::open(const std::string& path) {
   const std::string whole = fs::absolute(path).lexically_normal().string();
   Settings& settings = session_.settings;
-  const auto lists = {&settings.recent, &settings.recent_sources, &settings.recent_targets};
+  const auto lists = {&settings.recent, &settings.recent_sources, &settings.recent_targets,
+                      &settings.recent_studies};
   switch (opened(lists, whole, [&] { return kind_of(session_.document, whole); })) {
     case Kind::Document:
       return run("document.open", {whole});
+    case Kind::Study:
+      return run("study.open", {whole});
     case Kind::Case:
       if (nothing_unsaved(*this, join_line("open", {whole}))) open_case(*this, whole);
       return;

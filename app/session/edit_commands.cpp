@@ -446,12 +446,23 @@ void choose_returned(Session& session, const std::vector<Take>& before) {
   choose_take(session, static_cast<int>(returned - now.begin()));
 }
 
+void step_study(Call& c, bool back) {
+  StudyState& state = c.session.study;
+  state.study = back ? state.history.undo(*state.study) : state.history.redo(*state.study);
+  state.changed = true;
+  follow_design(state);
+}
+
 void add_history(Commands& commands) {
   const auto step = [](Call& c, bool back) {
-    History& history = c.session.history;
-    const std::string label = back ? history.undo_label() : history.redo_label();
+    const std::string label = back ? undo_label(c.session) : redo_label(c.session);
     US_CHECK(c.arguments.empty() || c.arguments[0] == label, "'", c.word(0, "step"),
              "' is no longer the last step");
+    if (back ? undoes_study(c.session) : redoes_study(c.session)) {
+      step_study(c, back);
+      return c.studio.notify((back ? "Undone: " : "Redone: ") + label);
+    }
+    History& history = c.session.history;
     const std::vector<Take> before = c.document.takes;
     const bool cropped = c.document.scan_edits.crop.has_value();
     c.document = back ? history.undo(c.document) : history.redo(c.document);

@@ -11,19 +11,23 @@ constexpr std::chrono::seconds kMergeWithin{1};
 
 }  // namespace
 
-void History::clear() {
+template <class State>
+void HistoryOf<State>::clear() {
   past_.clear();
   future_.clear();
   merge_.clear();
 }
 
-void History::set_depth(int depth) {
+template <class State>
+void HistoryOf<State>::set_depth(int depth) {
   depth_ = std::max(depth, 1);
   const size_t most = depth_;
   if (past_.size() > most) past_.erase(past_.begin(), past_.end() - depth_);
 }
 
-void History::add(const Document& before, const std::string& label, const std::string& merge, Time now) {
+template <class State>
+void HistoryOf<State>::add(const State& before, const std::string& label, const std::string& merge,
+                           Time now) {
   future_.clear();
   const bool merges = !merge.empty() && merge == merge_ && !past_.empty() && now - merged_at_ <= kMergeWithin;
   merge_ = merge;
@@ -32,44 +36,62 @@ void History::add(const Document& before, const std::string& label, const std::s
     past_.back().label = label;
     return;
   }
-  past_.push_back({before, label});
+  past_.push_back({before, label, now});
   set_depth(depth_);
 }
 
-void History::change_all(const std::function<void(Document&)>& change, const Document& now) {
-  for (Step& step : past_) change(step.document);
+template <class State>
+void HistoryOf<State>::change_all(const std::function<void(State&)>& change, const State& now) {
+  for (Step& step : past_) change(step.state);
   for (size_t i = past_.size(); i-- > 0;) {
-    const Document& after = i + 1 < past_.size() ? past_[i + 1].document : now;
-    if (same(past_[i].document, after)) past_.erase(past_.begin() + static_cast<std::ptrdiff_t>(i));
+    const State& after = i + 1 < past_.size() ? past_[i + 1].state : now;
+    if (same(past_[i].state, after)) past_.erase(past_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   future_.clear();
   merge_.clear();
 }
 
-std::string History::undo_label() const {
+template <class State>
+std::string HistoryOf<State>::undo_label() const {
   return past_.empty() ? "" : past_.back().label;
 }
 
-std::string History::redo_label() const {
+template <class State>
+std::string HistoryOf<State>::redo_label() const {
   return future_.empty() ? "" : future_.back().label;
 }
 
-Document History::undo(const Document& now) {
+template <class State>
+auto HistoryOf<State>::undo_time() const -> std::optional<Time> {
+  return past_.empty() ? std::nullopt : std::optional(past_.back().made);
+}
+
+template <class State>
+auto HistoryOf<State>::redo_time() const -> std::optional<Time> {
+  return future_.empty() ? std::nullopt : std::optional(future_.back().made);
+}
+
+template <class State>
+State HistoryOf<State>::undo(const State& now) {
   US_CHECK(can_undo(), "there is nothing to undo");
   Step step = std::move(past_.back());
   past_.pop_back();
-  future_.push_back({now, step.label});
+  future_.push_back({now, step.label, step.made});
   merge_.clear();
-  return std::move(step.document);
+  return std::move(step.state);
 }
 
-Document History::redo(const Document& now) {
+template <class State>
+State HistoryOf<State>::redo(const State& now) {
   US_CHECK(can_redo(), "there is nothing to redo");
   Step step = std::move(future_.back());
   future_.pop_back();
-  past_.push_back({now, step.label});
+  past_.push_back({now, step.label, step.made});
   merge_.clear();
-  return std::move(step.document);
+  return std::move(step.state);
 }
+
+template class HistoryOf<Document>;
+template class HistoryOf<Study>;
 
 }  // namespace understudy::app

@@ -95,10 +95,12 @@ void add_work(Commands& commands) {
                   notices.end());
   });
   commands.add({"app.quit", "Quit", "", "Ctrl+Q"}, [](Call& c) {
-    c.session.quit = !c.session.changed;
-    if (c.session.quit) return;
-    c.session.question =
-        Question{Question::Kind::UnsavedChanges, "Save the changes before you quit?", "app.quit"};
+    c.session.quit = !c.session.changed && !c.session.study.changed;
+    if (c.session.changed)
+      c.session.question =
+          Question{Question::Kind::UnsavedChanges, "Save the changes before you quit?", "app.quit"};
+    else
+      no_unsaved_study(c.studio, "app.quit");
   });
 }
 

@@ -97,6 +97,24 @@ bool has_several_people(const Session& session) {
   return std::count_if(people.begin(), people.end(), [](const PersonSeen& one) { return one.is_sure; }) > 1;
 }
 
+bool undoes_study(const Session& session) {
+  const auto of_study = session.study.history.undo_time(), of_document = session.history.undo_time();
+  return of_study && (!of_document || *of_study > *of_document);
+}
+
+bool redoes_study(const Session& session) {
+  const auto of_study = session.study.history.redo_time(), of_document = session.history.redo_time();
+  return of_study && (!of_document || *of_study < *of_document);
+}
+
+std::string undo_label(const Session& session) {
+  return undoes_study(session) ? session.study.history.undo_label() : session.history.undo_label();
+}
+
+std::string redo_label(const Session& session) {
+  return redoes_study(session) ? session.study.history.redo_label() : session.history.redo_label();
+}
+
 void choose_take(Session& session, int take) {
   session.selected_take = take;
   session.view.active_pane = take + 1;

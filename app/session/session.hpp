@@ -20,6 +20,7 @@
 #include "app/session/series.hpp"
 #include "app/session/settings.hpp"
 #include "app/session/shared_frames.hpp"
+#include "app/session/study_state.hpp"
 #include "app/session/view.hpp"
 #include "retarget/character/careful_deformer.hpp"
 
@@ -135,7 +136,7 @@ struct Failure {
 
 /// A question that the user must answer before the studio continues.
 struct Question {
-  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit, NotAPerson };
+  enum class Kind { UnsavedChanges, Recover, MissingFiles, PaintMisfit, NotAPerson, UnsavedStudy };
   Kind kind = Kind::UnsavedChanges;
   std::string text{};
   std::string then{};                  ///< the command to continue with ("app.quit", "document.open PATH")
@@ -162,6 +163,7 @@ struct Session {
   bool changed = false;  ///< since it was last saved
   std::string weights;   ///< checksums of the networks here; empty: not known yet
   History history;
+  StudyState study;
   View view;
   Playback playback;
   Settings settings;
@@ -201,6 +203,13 @@ struct Session {
 SourceOptions source_as_read(const Session& session);
 /// Whether people are told apart by their colours: there is more than one.
 bool has_several_people(const Session& session);
+/// Whether the step to be undone, or redone, is one of the study: steps of document and study are undone in the
+/// order in which they were made.
+bool undoes_study(const Session& session);
+bool redoes_study(const Session& session);
+/// That step; "" for none.
+std::string undo_label(const Session& session);
+std::string redo_label(const Session& session);
 /// Makes a take the current one and its view the active one. The take must be in the document, or come with
 /// the command that runs.
 void choose_take(Session& session, int take);

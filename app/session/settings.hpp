@@ -23,6 +23,7 @@ struct Settings {
   int undo_depth = 200;             ///< 10 .. 1000
   std::vector<std::string> recent;  ///< documents, the newest first, 12 at most
   std::vector<std::string> recent_sources, recent_targets;  ///< of sources see recent_source
+  std::vector<std::string> recent_studies;
   std::map<std::string, bool> panels;  ///< shown or not, by name; missing: as the window has it
   std::string last_folder;    ///< that something was opened from or saved in: where the browser starts
   std::string export_format;  ///< the last one used, by name; "csv": figures; empty: none yet
@@ -43,6 +44,7 @@ FieldsOf<S, Settings> fields(V& visit, S& settings) {
   visit("recent", settings.recent);
   visit("recent_sources", settings.recent_sources);
   visit("recent_targets", settings.recent_targets);
+  visit("recent_studies", settings.recent_studies);
   visit("panels", settings.panels);
   visit("last_folder", settings.last_folder);
   visit("export_format", settings.export_format);

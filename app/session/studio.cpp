@@ -48,6 +48,7 @@ Studio::Studio(StudioServices services)
       !services_.settings_file.empty() && !std::filesystem::exists(services_.settings_file, ignored);
   if (services_.greets_newcomers && is_first) session_.settings.getting_started = 1;
   session_.history = History(session_.settings.undo_depth);
+  session_.study.history = StudyHistory(session_.settings.undo_depth);
   cache_.set_limit(session_.settings.cache_mb);
   add_all_commands(commands_);
   ask_about_autosaves();
@@ -101,22 +102,36 @@ void Studio::run(const std::string& name, const Arguments& arguments) {
     return mend(session_, name);
   }
   const Document before = session_.document;
+  const std::optional<Study> study_before = session_.study.study;
   const std::vector<int64_t> ids_before = background_->take_ids;
   const bool changed_before = session_.changed;
+  const bool merges = command->undo == Command::Undo::Merged;
+  const std::string merge = merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
+  const auto label = [&] { return call.label.empty() ? command->label : call.label; };
   try {
     command->run(call);
     mend(session_, name);
+    if (study_before && session_.study.study && !same(*study_before, *session_.study.study))
+      keep_study_step(*study_before, label(), merge);
     if (same(before, session_.document)) return;
     follow_document();
   } catch (...) {
     session_.document = before;  // a command does all of its work or nothing
+    session_.study.study = study_before;
     throw;
   }
-  const bool merges = command->undo == Command::Undo::Merged;
-  const std::string merge = merges ? name + (arguments.empty() ? "" : " " + arguments[0]) : "";
-  session_.history.add(before, call.label.empty() ? command->label : call.label, merge);
+  session_.history.add(before, label(), merge);
+  session_.study.history.forget_redo();
   session_.changed = true;
   note_openings(before, ids_before, changed_before);
+}
+
+void Studio::keep_study_step(const Study& before, const std::string& label, const std::string& merge) {
+  StudyState& state = session_.study;
+  state.history.add(before, label, merge);
+  session_.history.forget_redo();
+  state.changed = true;
+  follow_design(state);
 }
 
 void Studio::try_run(const std::string& name, const Arguments& arguments) {

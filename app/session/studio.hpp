@@ -83,6 +83,7 @@ class Studio {
 
  private:
   struct Background;
+  void keep_study_step(const Study& before, const std::string& label, const std::string& merge);
   void ask_about_autosaves();
   void load_weights_name();
   void follow_document();

@@ -307,7 +307,7 @@ void Application::take_log() {
 void Application::show_state() {
   const Session& s = session();
   const std::string name = s.path.empty() ? "Untitled" : std::filesystem::path(s.path).stem().string();
-  surface_->set_title((s.changed ? "● " : "") + name + " — Understudy");
+  surface_->set_title((s.changed || s.study.changed ? "● " : "") + name + " — Understudy");
   if (!options_.marks_file.empty()) write_marks();
 }
 

@@ -14,7 +14,7 @@ std::string yes_no(bool yes) {
 }
 
 const char* question_name(const Session& session) {
-  constexpr Names<5> kNames{"unsaved", "recover", "missing", "paint", "not-a-person"};
+  constexpr Names<6> kNames{"unsaved", "recover", "missing", "paint", "not-a-person", "unsaved-study"};
   return session.question ? kNames[static_cast<size_t>(session.question->kind)] : "none";
 }
 
@@ -51,8 +51,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"working", yes_no(session.working)},
       {"changed", yes_no(session.changed)},
       {"path", session.path},
-      {"undo_label", session.history.undo_label()},
-      {"redo_label", session.history.redo_label()},
+      {"undo_label", undo_label(session)},
+      {"redo_label", redo_label(session)},
       {"skeleton_edits", count(session.document.skeleton_edits.size())},
       {"layout", kLayoutNames[static_cast<size_t>(session.view.layout)]},
       {"active_pane", std::to_string(session.view.active_pane)},
@@ -66,6 +66,12 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"question", question_name(session)},
       {"jobs", count(session.jobs.size())},
       {"bad_frames", count(bad_frames(session).size())},
+      {"study", session.study.study ? session.study.study->name : ""},
+      {"study_path", session.study.path},
+      {"study_changed", yes_no(session.study.changed)},
+      {"study_trials", std::to_string(session.study.count)},  // of a participant, practice left out
+      {"study_minutes", printed("%.2f", session.study.minutes)},
+      {"study_problem", session.study.problem},
   };
 }
 

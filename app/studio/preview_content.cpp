@@ -6,6 +6,7 @@
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"
 #include "app/session/document_file.hpp"
+#include "app/study/trials.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/character/vertex_colors.hpp"
@@ -142,6 +143,13 @@ PreviewContent of_document(const std::string& path) {
   return content;
 }
 
+std::string study_in_words(const std::string& path) {
+  const Study study = read_draft(path);
+  std::string words;
+  const std::string problem = failure_of([&] { words = size_in_words(study); });
+  return study.name + ": " + (problem.empty() ? words : problem);
+}
+
 PreviewContent of_folder(const std::string& path) {
   try {
     return of_source(fs::exists(fs::path(path) / "case.json") ? path + "/source" : path);
@@ -166,6 +174,7 @@ PreviewContent of_file(const std::string& path) {
 PreviewContent preview_content(const std::string& path) {
   try {
     if (can_be(path, kDocument)) return of_document(path);
+    if (can_be(path, kStudy)) return {{}, std::nullopt, study_in_words(path)};
     return fs::is_directory(path) ? of_folder(path) : of_file(path);
   } catch (const std::exception& error) {
     return {{}, std::nullopt, error.what()};  // shown beside the file: it is only looked at

@@ -161,20 +161,25 @@ void save_video(Call& c) {
       });
 }
 
+/// With the program that the system has for it.
+void open_with_system(const std::string& path) {
+  constexpr const char* kScript =
+      "command -v xdg-open >/dev/null || exit 1; xdg-open \"$1\" </dev/null >/dev/null 2>&1 &";
+  const char* const arguments[] = {"sh", "-c", kScript, "sh", path.c_str(), nullptr};
+  pid_t pid = 0;
+  int status = 1;
+  const bool began =
+      ::posix_spawn(&pid, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(arguments), environ) == 0;
+  US_CHECK(began && ::waitpid(pid, &status, 0) == pid && status == 0, path,
+           ": cannot be shown, xdg-open is not installed");
+}
+
 /// Opens the folder of a file in the system's file manager.
 void show_file(Call& c) {
   const fs::path path = c.path(0);
   const std::string folder = path.parent_path().string();
   US_CHECK(fs::is_directory(folder), folder, ": there is no such folder");
-  constexpr const char* kScript =
-      "command -v xdg-open >/dev/null || exit 1; xdg-open \"$1\" </dev/null >/dev/null 2>&1 &";
-  const char* const arguments[] = {"sh", "-c", kScript, "sh", folder.c_str(), nullptr};
-  pid_t pid = 0;
-  int status = 1;
-  const bool began =
-      ::posix_spawn(&pid, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(arguments), environ) == 0;
-  US_CHECK(began && ::waitpid(pid, &status, 0) == pid && status == 0, folder,
-           ": cannot be shown, xdg-open is not installed");
+  open_with_system(folder);
   c.studio.notify(file_name(c.path(0)) + " is in " + folder);  // xdg-open may know no program for folders
 }
 
@@ -183,7 +188,9 @@ void show_file(Call& c) {
 void add_window_commands(Commands& commands, ui::Workspace& workspace) {
   commands.add({"dialog.open", "Open dialog",
                 "open|open_source|open_target|replace_target|open_document|save_as|export|csv|picture|"
-                "video|compare|settings|about|keys|here|none"},
+                "video|compare|settings|about|keys|here|open_study|save_study|study_files|study_animation|"
+                "study_motion|"
+                "study_target|study_answers|study_table|study_csv|study_jspsych|study_psychopy|none"},
                [&workspace](Call& c) {
                  US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
                  workspace.open_dialog(c.session, c.arguments[0]);
@@ -192,13 +199,18 @@ void add_window_commands(Commands& commands, ui::Workspace& workspace) {
     const bool shown = ui::panel_shown(c.session, c.word(0, "panel"));
     workspace.show_panel(c.session.settings, c.arguments[0], c.switched(1, shown));
   });
-  commands.add({"menu.open", "Menus", "[file|edit|view|target|tools|window|help]"}, [&workspace](Call& c) {
-    workspace.open_menu(c.session, c.arguments.empty() ? "" : c.arguments[0]);
-  });
+  commands.add(
+      {"menu.open", "Menus", "[file|edit|view|target|tools|study|window|help]"},
+      [&workspace](Call& c) { workspace.open_menu(c.session, c.arguments.empty() ? "" : c.arguments[0]); });
   commands.add({"help.keys", "Help"}, [&workspace](Call& c) { workspace.open_dialog(c.session, "keys"); });
   commands.add({"help.here", "Help for what the pointer is on"},
                [&workspace](Call& c) { workspace.open_dialog(c.session, "here"); });
   commands.add({"file.show", "Show in folder", "PATH"}, show_file);
+  commands.add({"file.open", "Open with its program", "PATH"}, [](Call& c) {
+    const std::string path = c.path(0);
+    US_CHECK(fs::exists(path), path, ": there is no such file");
+    open_with_system(path);
+  });
   commands.add({"picture.save", "Save picture", "PATH.png [WIDTH HEIGHT] [transparent] [view|all]"},
                save_picture);
   commands.add({"video.save", "Save video", "PATH.mp4 or FOLDER [WIDTH HEIGHT] [view|all]"}, save_video);

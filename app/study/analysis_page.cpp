@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
@@ -204,6 +207,13 @@ std::vector<std::pair<std::string, std::string>> page_files(const StudyReport& r
   page += report.preferences.empty() ? kNotes : kPairNotes;
   files.emplace_back("index.html", page + "</body>\n</html>\n");
   return files;
+}
+
+void write_page(const std::string& folder, const StudyReport& report) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  US_CHECK(!failed, folder, ": cannot be made (", failed.message(), ")");
+  for (const auto& [name, text] : page_files(report)) write_file(folder + "/" + name, text);
 }
 
 }  // namespace understudy::app

@@ -16,5 +16,7 @@ std::string box_plot(const std::string& title, const EffectReport& effect);
 /// Files of a folder and their text: index.html, which needs no other file, the box plots as boxes_*.svg, and
 /// csv_tables().
 std::vector<std::pair<std::string, std::string>> page_files(const StudyReport& report);
+/// Writes them, and makes the folder where there is none. Throws Error naming what cannot be written.
+void write_page(const std::string& folder, const StudyReport& report);
 
 }  // namespace understudy::app

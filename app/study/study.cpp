@@ -105,6 +105,12 @@ bool is_there(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
+/// As check(), the sentence begins with the path.
+void check_at(const std::string& path, const Study& study) {
+  const std::string problem = failure_of([&] { check(study); });
+  US_CHECK(problem.empty(), path, ": ", problem);
+}
+
 void check_there(const std::string& who, const std::string& path) {
   US_CHECK(path.empty() || is_there(path), who, ": ", path, " is gone");
 }
@@ -169,7 +175,7 @@ Json to_json(const Study& study, const std::string& folder) {
   return json;
 }
 
-Study study_from_json(const Json& json, const std::string& folder, const std::string& path) {
+Study draft_from_json(const Json& json, const std::string& folder, const std::string& path) {
   check_kind(json, path, kKind);
   FieldsReader reader(json, folder, path + ": ", UnknownMembers::Refused);
   reader.know("format");
@@ -177,15 +183,26 @@ Study study_from_json(const Json& json, const std::string& folder, const std::st
   Study study;
   fields(reader, study);
   reader.finish();
-  const std::string problem = failure_of([&] { check(study); });
-  US_CHECK(problem.empty(), path, ": ", problem);
   return study;
 }
 
-void write_study(const std::string& path, const Study& study) {
-  const std::string problem = failure_of([&] { check(study); });
-  US_CHECK(problem.empty(), path, ": ", problem);
+Study study_from_json(const Json& json, const std::string& folder, const std::string& path) {
+  Study study = draft_from_json(json, folder, path);
+  check_at(path, study);
+  return study;
+}
+
+void write_draft(const std::string& path, const Study& study) {
   write_file(path, json_text(to_json(study, folder_of_file(path))));
+}
+
+void write_study(const std::string& path, const Study& study) {
+  check_at(path, study);
+  write_draft(path, study);
+}
+
+Study read_draft(const std::string& path) {
+  return draft_from_json(read_json(path), folder_of_file(path), path);
 }
 
 Study read_study(const std::string& path) {

@@ -266,6 +266,12 @@ void write_study(const std::string& path, const Study& study);
 /// Throws Error when the file is missing, no study, damaged, from a newer version or one that check()
 /// refuses.
 Study read_study(const std::string& path);
+/// The same for a study that is still being designed: check() is not asked. Throws Error as the others, but
+/// for that.
+void write_draft(const std::string& path, const Study& study);
+Study read_draft(const std::string& path);
+/// As study_from_json(), but for check().
+Study draft_from_json(const Json& json, const std::string& folder, const std::string& path);
 
 /// What the answers of a study depend on, as text for their files: a checksum of each part of the design,
 /// paths relative to `folder`, so that a study moved with its files stays the same. Name, note, consent,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/study/answers.hpp"
+#include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
@@ -195,6 +196,24 @@ std::string trials_for_jspsych(const Study& study, const std::vector<Trial>& tri
     for (const int q : trial.questions) timeline.push_back(question_json(study, trial, study.questions[q]));
   }
   return json_text({{"study", study.name}, {"timeline", timeline}});
+}
+
+const std::vector<TrialFormat>& trial_formats() {
+  static const std::vector<TrialFormat> all = {
+      {"table", "Table", ".txt", trials_as_table},
+      {"csv", "CSV", ".csv", trials_as_csv},
+      {"jspsych", "jsPsych timeline", ".json", trials_for_jspsych},
+      {"psychopy", "PsychoPy conditions", ".csv", trials_for_psychopy}};
+  return all;
+}
+
+const TrialFormat& trial_format(const std::string& name) {
+  std::string names;
+  for (const TrialFormat& format : trial_formats()) {
+    if (name == format.name) return format;
+    append_item(names, format.name);
+  }
+  throw Error("there is no format '" + name + "' for trials: " + names);
 }
 
 }  // namespace understudy::app

@@ -29,4 +29,14 @@ std::string trials_for_psychopy(const Study& study, const std::vector<Trial>& tr
 /// jsPsych counts the points of a scale from 0: an answer is its number plus 1.
 std::string trials_for_jspsych(const Study& study, const std::vector<Trial>& trials);
 
+/// One of them, for those who choose.
+struct TrialFormat {
+  const char *name, *label;  ///< "jspsych" in commands and options, "jsPsych timeline" on the screen
+  const char* suffix;        ///< of its file
+  std::string (*text)(const Study& study, const std::vector<Trial>& trials);
+};
+const std::vector<TrialFormat>& trial_formats();
+/// Throws Error with the names that there are.
+const TrialFormat& trial_format(const std::string& name);
+
 }  // namespace understudy::app

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numeric>
 
 #include "retarget/base/checksum.hpp"
@@ -257,6 +258,14 @@ double minutes_of(const Study& study) {
   const int trials = trial_count(study), every = study.plan.break_every;
   const int breaks = every > 0 ? (trials - 1) / every : 0;
   return (trials * trial_s + study.plan.practice * practice_s + breaks * kBreak_s) / 60;
+}
+
+std::string size_in_words(const Study& study) {
+  const int trials = trial_count(study);
+  const double minutes = std::max(1.0, std::round(minutes_of(study)));
+  std::string text = std::to_string(trials) + (trials == 1 ? " trial" : " trials");
+  if (study.plan.practice > 0) text += printed(" and %d of practice", study.plan.practice);
+  return text + printed(", about %.0f %s a participant", minutes, minutes > 1 ? "minutes" : "minute");
 }
 
 std::string clip_name(const Study& study, const Trial& trial) {

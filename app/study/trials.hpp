@@ -46,6 +46,8 @@ int trial_count(const Study& study);
 /// How long a participant is busy: clips, answers (5 s a question), breaks (60 s), practice too. Throws Error
 /// as all_trials().
 double minutes_of(const Study& study);
+/// Both: "45 trials and 3 of practice, about 21 minutes a participant".
+std::string size_in_words(const Study& study);
 
 /// Of the clip of a trial: 16 hexadecimal digits that tell nothing of the condition; repetitions share it.
 std::string clip_name(const Study& study, const Trial& trial);

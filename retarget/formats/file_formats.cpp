@@ -68,6 +68,7 @@ const std::vector<FileFormat>& file_formats() {
       {"NPZ", {".npz"}, kScanSequence | kTarget | kMotion | kBody, nullptr, nullptr, false, npz_frames},
       {"list", {".lst", ".txt"}, kScanSequence, nullptr, nullptr, false, listed_frames},
       {"document", {".understudy"}, kDocument},
+      {"study", {".study"}, kStudy},
       {"case", {".json"}, kCase}};
   return formats;
 }

@@ -20,6 +20,7 @@ enum FileUse : unsigned {
   kBody = 16,         ///< an SMPL-format body
   kDocument = 32,
   kCase = 64,
+  kStudy = 128,  ///< a perceptual study
 };
 
 /// One row. Readers of characters and motions are in read_character.cpp and read_motion.cpp, by name.

@@ -116,12 +116,12 @@ TEST_F(WorkspaceTest, ASmallWindowKeepsTheViewsAndThePlayButton) {
 }
 
 /// The widget of each tab that no other has, in the order of the tabs.
-const Lines kOfTabs = {"inspector.source", "layers.source.surface", "edit.scan", "metrics.curves"};
+const Lines kOfTabs = {"inspector.source", "layers.source.surface", "edit.scan", "metrics.curves", "study.new"};
 
 TEST_F(WorkspaceTest, EveryClickAtATabShowsThatTabAlone) {
   session.settings.panels = {{"inspector", true}, {"layers", true}, {"metrics", true}};  // kept from long ago
   for (int turn = 0; turn < 2; ++turn)
-    for (const size_t clicked : {1u, 0u, 2u, 3u, 2u, 1u, 3u, 0u}) {
+    for (const size_t clicked : {1u, 0u, 4u, 2u, 3u, 2u, 1u, 3u, 4u, 0u}) {
       click("side.tab." + std::to_string(clicked));
       frame(5);  // and it stays so
       for (size_t i = 0; i < kTabs.size(); ++i) {

@@ -38,6 +38,8 @@ bool same_or_toggles(const app::Arguments& keys, const app::Arguments& asked) {
 /// The dialog that asks for what a command without arguments misses; null where nothing is missing.
 const char* dialog_for(const app::Session& session, const std::string& command) {
   if (command == "document.save") return session.path.empty() ? "save_as" : nullptr;
+  if (command == "study.save") return session.study.path.empty() ? "save_study" : nullptr;
+  if (command == "study.save_as") return "save_study";
   if (command == "export.run") return "export";
   if (command == "picture.save") return "picture";
   if (command == "video.save") return "video";

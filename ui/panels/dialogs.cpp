@@ -15,11 +15,13 @@ void draw_unsaved(const app::Session& session, PanelContext& context, FilesState
   QuestionWords question;
   question.title = "Unsaved changes";
   question.sentence = session.question->text.empty() ? "Save the changes first?" : session.question->text;
-  question.yes = session.path.empty() ? "Save\u2026" : "Save", question.no = "Don't save";
+  const bool is_study = session.question->kind == app::Question::Kind::UnsavedStudy;
+  const bool is_new = (is_study ? session.study.path : session.path).empty();
+  question.yes = is_new ? "Save\u2026" : "Save", question.no = "Don't save";
   const Answer answer = ask(context.ui, "unsaved", question);
   if (answer == Answer::None) return;
-  if (answer == Answer::Yes && session.path.empty())
-    return choose_file(session, files, FilePurpose::SaveDocument);
+  if (answer == Answer::Yes && is_new)
+    return choose_file(session, files, is_study ? FilePurpose::SaveStudy : FilePurpose::SaveDocument);
   const char* const word = answer == Answer::Yes ? "save" : answer == Answer::No ? "discard" : "cancel";
   context.ask("question.answer", {word});
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/session/take_export.hpp"
+#include "app/study/trial_exports.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/body/body.hpp"
 
@@ -12,7 +14,7 @@ namespace {
 
 struct FileDialog {
   const char* name;     ///< for dialog.open; empty: only the window opens it
-  const char* command;  ///< gets the path as its last argument
+  const char* command;  ///< as a line of a script; gets the path as its last argument
   const char *title, *accept;
   FileKind files;
   bool save = false;
@@ -28,10 +30,36 @@ constexpr FileDialog kDialogs[] = {
     {"open_document", "document.open", "Open document", "Open", FileKind::Document},
     {"save_as", "document.save_as", "Save document", "Save", FileKind::Document, true},
     {"", "document.relocate", "Find ", "Use this file", FileKind::Any},
+    {"open_study", "study.open", "Open study", "Open", FileKind::Study},
+    {"save_study", "study.save_as", "Save study", "Save", FileKind::Study, true},
+    {"study_files", "study.add_files", "Add a condition of an animation", "Add", FileKind::Source},
+    {"study_animation", "study.add_file", "Add animation", "Add", FileKind::Source},
+    {"study_motion", "study.add_motion", "Add motion", "Add", FileKind::Source},
+    {"study_target", "study.add_target", "Add target", "Add", FileKind::Target},
+    {"study_answers", "study.analyse", "Choose one of the answers", "Analyse", FileKind::Answers},
+    {"study_table", "study.export table", "Export trials", "Export", FileKind::Any, true},
+    {"study_csv", "study.export csv", "Export trials", "Export", FileKind::Any, true},
+    {"study_jspsych", "study.export jspsych", "Export trials for jsPsych", "Export", FileKind::Any, true},
+    {"study_psychopy", "study.export psychopy", "Export trials for PsychoPy", "Export", FileKind::Any, true},
     {"", "", "Where to", "Choose", FileKind::Any, true}};
 
 const FileDialog& dialog_of(FilePurpose purpose) {
   return kDialogs[static_cast<size_t>(purpose)];
+}
+
+/// "mine.study" or "mine trials.csv", beside the study.
+std::string study_name(const app::Session& session, FilePurpose purpose) {
+  const app::StudyState& state = session.study;
+  if (purpose == FilePurpose::SaveStudy && !state.path.empty()) return state.path;
+  const std::string title = state.study ? app::safe_file_name(state.study->name) : "";
+  fs::path stem = state.path.empty() ? fs::path(title) : fs::path(state.path).replace_extension();
+  if (purpose == FilePurpose::SaveStudy) return stem.string() + ".study";
+  const auto format = static_cast<size_t>(purpose) - static_cast<size_t>(FilePurpose::TrialsTable);
+  return stem.string() + " trials" + app::trial_formats()[format].suffix;
+}
+
+bool is_of_study(FilePurpose purpose) {
+  return purpose == FilePurpose::SaveStudy || purpose >= FilePurpose::TrialsTable;
 }
 
 std::string document_name(const app::Session& session) {
@@ -63,7 +91,10 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
   if (purpose == FilePurpose::Relocate || purpose == FilePurpose::BodyMotion)
     state.first = name, request.title += file_name(name);
   if (dialog.save) {
-    const fs::path proposed = name.empty() ? fs::path(document_name(session)) : fs::path(name);
+    const std::string usual = purpose == FilePurpose::Export ? ""
+                              : is_of_study(purpose)         ? study_name(session, purpose)
+                                                             : document_name(session);
+    const fs::path proposed = name.empty() ? usual : name;
     request.name = proposed.filename().string();
     request.folder = proposed.parent_path().string();
   } else if (dialog.files != FileKind::Any) {
@@ -82,14 +113,21 @@ std::optional<std::string> draw_files(const app::Session& session, PanelContext&
     context.ui.focus().await_dialog();
     return std::nullopt;
   }
-  app::Arguments arguments = {*path};
+  app::Arguments arguments = {*path}, words = app::split_line(dialog_of(state.purpose).command);
   if (state.purpose == FilePurpose::ReplaceTarget)
     arguments.insert(arguments.begin(), std::to_string(session.selected_take));
   if (state.purpose == FilePurpose::BodyMotion || state.purpose == FilePurpose::Relocate)
     arguments.insert(arguments.begin(), state.first);
-  context.ask(dialog_of(state.purpose).command, arguments);
-  const bool waits = session.question && session.question->kind == app::Question::Kind::UnsavedChanges;
-  if (state.purpose == FilePurpose::SaveDocument && waits) context.ask("question.answer", {"save"});
+  if (state.purpose == FilePurpose::StudyAnimation)
+    arguments.insert(arguments.begin(),
+                     std::to_string(app::chosen(session.study, app::StudyList::Condition)));
+  arguments.insert(arguments.begin(), words.begin() + 1, words.end());
+  context.ask(words.front(), arguments);
+  using Kind = app::Question::Kind;
+  const auto waits = [&](Kind kind) { return session.question && session.question->kind == kind; };
+  if ((state.purpose == FilePurpose::SaveDocument && waits(Kind::UnsavedChanges)) ||
+      (state.purpose == FilePurpose::SaveStudy && waits(Kind::UnsavedStudy)))
+    context.ask("question.answer", {"save"});
   return std::nullopt;
 }
 

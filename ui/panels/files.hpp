@@ -19,6 +19,17 @@ enum class FilePurpose {
   Document,
   SaveDocument,  ///< answers the question about unsaved changes where one waits
   Relocate,
+  OpenStudy,
+  SaveStudy,       ///< as SaveDocument
+  StudyFiles,      ///< a condition of its own
+  StudyAnimation,  ///< of the chosen condition
+  StudyMotion,
+  StudyTarget,
+  StudyAnswers,
+  TrialsTable,  ///< and those after it: the list of trials
+  TrialsCsv,
+  TrialsJsPsych,
+  TrialsPsychoPy,
   Export  ///< comes back to the export dialog
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "app/study/presets.hpp"
+#include "app/study/trial_exports.hpp"
 #include "retarget/base/text.hpp"
 #include "ui/panels/panels.hpp"
 
@@ -51,7 +53,7 @@ Items file_menu(const app::Session& session) {
 }
 
 Items edit_menu(const app::Session& session) {
-  const std::string undo = session.history.undo_label(), redo = session.history.redo_label();
+  const std::string undo = app::undo_label(session), redo = app::redo_label(session);
   const std::string k = std::to_string(session.selected_take);
   return {{undo.empty() ? "Undo" : "Undo " + undo, "edit.undo"},
           {redo.empty() ? "Redo" : "Redo " + redo, "edit.redo"},
@@ -128,6 +130,33 @@ Items tools_menu(const app::Session& session) {
   return items;
 }
 
+MenuItem new_study() {
+  Items items = {{"From the open takes", "study.new", {"takes"}}};
+  for (const app::StudyPreset& preset : app::study_presets())
+    items.push_back({preset.label, "study.new", {preset.name}});
+  return group("New", items);
+}
+
+MenuItem export_trials() {
+  Items items;
+  for (const app::TrialFormat& format : app::trial_formats())
+    items.push_back(
+        {std::string(format.label) + "\u2026", "dialog.open", {std::string("study_") + format.name}});
+  return group("Export trials", items);
+}
+
+Items study_menu(const app::Session& session) {
+  return {new_study(),
+          {"Open\u2026", "study.open"},
+          kLine,
+          {session.study.path.empty() ? "Save\u2026" : "Save", "study.save"},
+          {"Save as\u2026", "study.save_as"},
+          {"Close", "study.close"},
+          kLine,
+          export_trials(),
+          {"Analyse answers\u2026", "dialog.open", {"study_answers"}}};
+}
+
 Items window_menu(const app::Session& session) {
   Items items;
   for (const Panel& panel : panels())
@@ -163,10 +192,10 @@ struct MenuRow {
   char letter;
   Items (*items)(const app::Session&);
 };
-constexpr MenuRow kMenus[] = {{"file", "File", 'F', file_menu},    {"edit", "Edit", 'E', edit_menu},
-                              {"view", "View", 'V', view_menu},    {"target", "Target", 'a', target_menu},
-                              {"tools", "Tools", 'o', tools_menu}, {"window", "Window", 'W', window_menu},
-                              {"help", "Help", 'H', help_menu}};
+constexpr MenuRow kMenus[] = {{"file", "File", 'F', file_menu},       {"edit", "Edit", 'E', edit_menu},
+                              {"view", "View", 'V', view_menu},       {"target", "Target", 'a', target_menu},
+                              {"tools", "Tools", 'o', tools_menu},    {"study", "Study", 'S', study_menu},
+                              {"window", "Window", 'W', window_menu}, {"help", "Help", 'H', help_menu}};
 
 }  // namespace
 
@@ -229,6 +258,8 @@ bool possible(const app::Session& session, const MenuItem& item) {
   if (item.command.empty()) return !item.inside.empty();
   if (item.command != "dialog.open") return possible(session, item.command);
   const std::string& which = item.arguments.front();
+  if (starts_with(which, "study_"))  // what a study that is not complete yet cannot do
+    return session.study.study.has_value() && session.study.problem.empty();
   if (which == "export" || which == "compare" || which == "replace_target")
     return selected_take(session) != nullptr;
   if (which == "save_as" || which == "picture") return has_document(session);

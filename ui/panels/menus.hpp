@@ -25,7 +25,7 @@ struct Menu {
 
 extern const std::vector<std::string> kLayoutLabels;  ///< in the order of app::Layout
 
-/// File, Edit, View, Target, Tools, Window, Help.
+/// File, Edit, View, Target, Tools, Study, Window, Help.
 std::vector<Menu> menus(const app::Session& session);
 
 /// The keys that open each of them.

@@ -100,8 +100,8 @@ bool possible(const app::Session& session, const std::string& command) {
   const bool source = !session.document.source.path.empty();
   const bool take = selected_take(session) != nullptr;
   const bool frames = app::frame_count(session) > 0;
-  if (command == "edit.undo") return session.history.can_undo();
-  if (command == "edit.redo") return session.history.can_redo();
+  if (command == "edit.undo") return !app::undo_label(session).empty();
+  if (command == "edit.redo") return !app::redo_label(session).empty();
   if (command == "work.pause") return session.working && !session.paused;
   if (command == "work.resume") return session.paused;
   if (command == "work.restart") return source && take;
@@ -110,6 +110,8 @@ bool possible(const app::Session& session, const std::string& command) {
     return has_document(session);
   if (command == "edit.remove" || command == "edit.move") return has_document(session);
   if (command == "document.save" || command == "document.save_as") return has_document(session);
+  if (starts_with(command, "study."))
+    return command == "study.open" || command == "study.new" || session.study.study.has_value();
   for (const char* of_source :
        {"source.", "edit.crop", "edit.floor_removal", "edit.cluster", "edit.clean_up"})
     if (starts_with(command, of_source)) return source;

@@ -8,7 +8,8 @@ namespace understudy::ui {
 
 // Each in the file of its name.
 using DrawPanel = void(const app::Session&, PanelContext&);
-DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_timeline, draw_log, draw_bad_frames;
+DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_study, draw_timeline, draw_log,
+    draw_bad_frames;
 
 const std::vector<Panel>& panels() {
   using Dock = Panel::Dock;
@@ -22,6 +23,10 @@ const std::vector<Panel>& panels() {
        draw_edit},
       {"metrics", "Metrics", "Alt+4", Dock::Side, false,
        "How good the current take is, over time and as a whole, and how long each stage took.", draw_metrics},
+      {"study", "Study", "Alt+5", Dock::Side, false,
+       "A perceptual study: which methods are compared on which motions and targets, what people are asked, "
+       "and in which order they see the clips.",
+       draw_study},
       {"timeline", "Timeline", "Alt+T", Dock::Timeline, true,
        "The frames and the edits made at them. Thin bars show when the left and the right foot are held on "
        "the floor. Red frames cannot be trusted: rest the pointer on one to read why.",

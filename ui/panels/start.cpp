@@ -134,6 +134,7 @@ void draw_start(const app::Session& session, PanelContext& context, const std::v
   }
   const app::Settings& settings = session.settings;
   draw_recent({"Recent", "start.recent", "document.open", settings.recent}, context);
+  draw_recent({"Recent studies", "start.recent_study", "study.open", settings.recent_studies}, context);
   draw_recent({"Recent scans and motions", "start.recent_source", "open", settings.recent_sources}, context);
   draw_recent({"Recent targets", "start.recent_target", "open", settings.recent_targets}, context);
   ImGui::EndChild();

@@ -96,7 +96,7 @@ void draw_tools(const app::Session& session, PanelContext& context, ImVec2 at) {
     if (icon_at(ui, at, name, icon, options)) context.ask(command);
     at.x += ui.px(31);
   };
-  const std::string undo = session.history.undo_label(), redo = session.history.redo_label();
+  const std::string undo = app::undo_label(session), redo = app::redo_label(session);
   history("top.undo", "edit.undo", Icon::Undo, undo.empty() ? "Nothing to undo" : "Undo " + undo);
   history("top.redo", "edit.redo", Icon::Redo, redo.empty() ? "Nothing to redo" : "Redo " + redo);
 }

@@ -60,7 +60,7 @@ void close_forgotten_dialog(bool any_drawn) {
 void Workspace::draw(const app::Session& session, PanelContext& context, float frame_rate) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   const bool open = has_document(session), narrow = is_narrow(display.x, context.ui.scale());
-  parts_.side = open && panel_shown(session, narrow ? "side_over" : "side");
+  parts_.side = (open || session.study.study) && panel_shown(session, narrow ? "side_over" : "side");
   parts_.timeline = open && panel_shown(session, "timeline");
   parts_.below = !panels_in(Panel::Dock::Below, session).empty();
   places_ = arrange(display, context.ui.scale(), parts_);

@@ -139,6 +139,20 @@ void draw_bar(Ui& ui, const Rect& rect, float fraction) {
          t.accent, corner);
 }
 
+/// Of choices beside each other: all alike, but where a word needs more and others less each has its own.
+std::vector<float> segment_widths(const std::vector<std::string>& choices, float width, float around) {
+  std::vector<float> widths;
+  float needed = 0, widest = 0;
+  for (const std::string& choice : choices) {
+    widths.push_back(ImGui::CalcTextSize(choice.c_str()).x + around);
+    needed += widths.back(), widest = std::max(widest, widths.back());
+  }
+  const float count = static_cast<float>(choices.size()), each = width / count;
+  const bool alike = widest <= each || needed > width;
+  for (float& one : widths) one = alike ? each : one + (width - needed) / count;
+  return widths;
+}
+
 /// The text with "\u2026" for as few bytes as possible; `front` says how many of the kept ones are before it.
 template <class Front>
 std::string longest_cut(const std::string& text, float width, Front front) {
@@ -227,8 +241,11 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
   const Rect all{at, {at.x + width, at.y + height}};
   fill(all, t.field, rounding());
   bool changed = false;
+  const std::vector<float> widths =
+      segment_widths(choices, width, 2 * inset + ImGui::GetStyle().FramePadding.x);
+  float left = at.x;
   for (int i = 0; i < ssize(choices); ++i) {
-    const float each = width / static_cast<float>(choices.size()), left = at.x + each * static_cast<float>(i);
+    const float each = widths[i];
     ImGui::SetCursorScreenPos({left, at.y});
     const Press p = press(ui, std::to_string(i), {each, height}, name + "." + std::to_string(i));
     if (p.clicked && chosen != i) chosen = i, changed = true;
@@ -238,6 +255,7 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
     const bool on = chosen == i;
     if (on || p.hovered) fill(inner, on ? t.accent : t.field_hover, rounding() * 0.75f);
     write_centered(inner, choices[i], on ? t.on_accent : p.hovered ? t.text : t.text_dim);
+    left += each;
   }
   ui.mark(name, all);
   return changed;

@@ -43,7 +43,7 @@ Icon icon_of(const FolderEntry& entry) {
   if (entry.is_case) return Icon::Check;
   if (entry.is_folder) return Icon::Folder;
   if (const FileFormat* const known = format_of_suffix(entry.name, ~0u); known && !known->is_plain_text) {
-    if (known->uses & kDocument) return Icon::Layers;
+    if (known->uses & (kDocument | kStudy)) return Icon::Layers;
     if (known->uses == kMotion) return Icon::Skeleton;
     if (known->uses & kTarget && !known->open) return Icon::Mesh;
   }
@@ -79,11 +79,13 @@ bool FileFilter::passes(const std::string& name) const {
 }
 
 FileFilter filter_of(FileKind kind) {
-  static const std::array<FileFilter, 6> kFilters = {{
+  static const std::array<FileFilter, 8> kFilters = {{
       {"Scans and motions", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
       {"Targets", format_suffixes(kTarget)},
       {"AMASS-format motions", format_suffixes(kBody)},  // both are .npz
       {"Understudy documents", format_suffixes(kDocument)},
+      {"Perceptual studies", format_suffixes(kStudy)},
+      {"Answers", {".csv"}},
       {"All supported files", format_suffixes(~0u), true},
       {"All files", {}, true},
   }};

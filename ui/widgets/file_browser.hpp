@@ -21,7 +21,7 @@ struct FileFilter {
   bool passes(const std::string& name) const;
 };
 /// Source: all that moves. BodyMotion: what an SMPL-format body performs. Known: all that opens.
-enum class FileKind { Source, Target, BodyMotion, Document, Known, Any };
+enum class FileKind { Source, Target, BodyMotion, Document, Study, Answers, Known, Any };
 FileFilter filter_of(FileKind kind);
 
 struct Place {

@@ -1,0 +1,77 @@
+// The trials of a study: all of them, or those of a participant in their order, and the chosen one.
+#include <algorithm>
+
+#include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
+#include "ui/panels/rows.hpp"
+#include "ui/panels/study.hpp"
+#include "ui/widgets/lists.hpp"
+
+namespace understudy::ui {
+namespace {
+
+using app::StudyList;
+using app::Trial;
+
+constexpr int kMostRows = 1000;
+
+/// What a trial shows of the factor that is studied: "Copy", or "Copy, Paper".
+std::string conditions_of(const app::Study& study, const Trial& trial) {
+  std::string names = study.conditions[static_cast<size_t>(trial.condition)].name;
+  if (trial.other >= 0) append_item(names, study.conditions[static_cast<size_t>(trial.other)].name);
+  return names;
+}
+
+void draw_table(const app::StudyState& state, PanelContext& context) {
+  Ui& ui = context.ui;
+  const app::Study& study = *state.study;
+  const int count = static_cast<int>(std::min<std::ptrdiff_t>(ssize(state.trials), kMostRows));
+  const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+  const float height = line * (static_cast<float>(std::min(count, 8)) + 1.5f);
+  if (Table table(ui, "study.trial", {{"Trial", 42}, {"Condition"}, {"Motion"}, {"Target"}}, height);
+      table.open())
+    for (int i = 0; i < count; ++i) {
+      const Trial& trial = state.trials[static_cast<size_t>(i)];
+      const bool is_chosen = i == app::chosen(state, StudyList::Trial);
+      if (table.row(is_chosen)) context.ask("study.choose", {"trial", std::to_string(i)});
+      table.cell(trial.id);
+      table.cell(conditions_of(study, trial));
+      table.cell(study.motions[static_cast<size_t>(trial.motion)].name);
+      table.cell(study.targets[static_cast<size_t>(trial.target)].name);
+    }
+  if (ssize(state.trials) > count)
+    hint(ui, "The first " + grouped(count) + " of " + grouped(ssize(state.trials)) + " trials.");
+}
+
+void draw_chosen(const app::StudyState& state, PanelContext& context) {
+  const int i = app::chosen(state, StudyList::Trial);
+  if (i < 0) return;
+  Ui& ui = context.ui;
+  const app::Study& study = *state.study;
+  const Trial& trial = state.trials[static_cast<size_t>(i)];
+  row_text(ui, "Shows", conditions_of(study, trial));
+  row_text(ui, "Motion", study.motions[static_cast<size_t>(trial.motion)].name);
+  row_text(ui, "Target", study.targets[static_cast<size_t>(trial.target)].name);
+  std::string questions;
+  for (const int q : trial.questions) append_item(questions, study.questions[static_cast<size_t>(q)].name);
+  row_text(ui, "Asks", questions);
+  if (trial.is_practice) hint(ui, "A trial of practice: its answers do not count.");
+}
+
+}  // namespace
+
+void draw_study_trials(const app::Session& session, PanelContext& context) {
+  const app::StudyState& state = session.study;
+  const std::string count = state.problem.empty() ? " (" + grouped(ssize(state.trials)) + ")" : "";
+  if (!section(context.ui, "study.trials", "Trials" + count)) return;
+  const auto name =
+      text_row(context.ui, {"study.participant", "Participant", "In whose order the trials are listed"},
+               state.participant, "all, as designed");
+  if (name && name->empty()) context.ask("study.participant");
+  if (name && !name->empty()) context.ask("study.participant", {*name});
+  if (!state.problem.empty()) return hint(context.ui, "The list comes when the study can be run.");
+  draw_table(state, context);
+  draw_chosen(state, context);
+}
+
+}  // namespace understudy::ui
