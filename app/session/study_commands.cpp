@@ -252,12 +252,14 @@ void analyse_answers(Call& c) {
   US_CHECK(c.session.study.problem.empty(), c.session.study.problem);
   const std::string answers = folder_argument(c, 0);
   const std::string page = c.arguments.size() > 1 ? c.path(1) : answers + " report";
+  const std::string& file = c.session.study.path;
+  const std::string folder = file.empty() ? "" : folder_of_file(file);
   const auto outcome = std::make_shared<std::string>();
   c.studio.jobs().start(
       "Analysing " + file_name(answers),
-      [study, answers, page, outcome](JobControl&) {
+      [study, answers, page, outcome, folder](JobControl&) {
         const AnalysisOptions options = analysis_options(study);
-        const StudyReport report = analyse(counted_answers(read_answers(answers), study), options);
+        const StudyReport report = analyse(counted_answers(read_answers(answers), study, folder), options);
         write_page(page, report);
         *outcome = printed("Analysed %d of %zu participants", report.analysed, report.participants.size());
       },

@@ -125,6 +125,7 @@ const std::vector<StudyField>& study_fields() {
   static const std::vector<StudyField> all = {
       {"name", "Name", "Of the study"},
       {"note", "Note", "For those who run the study; participants never see it"},
+      {"consent", "Consent", "What participants agree to before they begin; empty: nothing"},
       {"conditions.name", "Name", "In answers and reports; participants never see it"},
       {"conditions.kind", "Results", "Where the results of this condition come from"},
       {"conditions.method.engine", "Transfer", "The method that transfers the motion to the target"},

@@ -5,10 +5,13 @@
 // question and trial; study.LIST.up, .down, .copy, .remove of the chosen one; study.add_conditions, .add_files,
 // .add_source, .add_motion, .add_targets, .add_target, .add_likert, .add_choice, .add_attention;
 // study.add_animation, study.file.K.remove; study.camera; study.participant, study.picture. Sections:
-// study.conditions, .motions, .targets, .questions, .options (of a method), .layout, .clip, .picture_section, .plan, .notes, .trials.
+// study.conditions, .motions, .targets, .questions, .options (of a method), .layout, .clip, .picture_section, .plan, .words, .trials.
 #include "ui/panels/study.hpp"
 
+#include <imgui_stdlib.h>
+
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "app/session/study_edits.hpp"
@@ -102,10 +105,33 @@ void draw_outputs(const app::StudyState& state, PanelContext& context) {
       whole);
 }
 
-void draw_note(const std::string& note, PanelContext& context) {
-  if (!section(context.ui, "study.notes", "Note", false)) return;
-  study_text(context, "note", note, "for those who run it");
-  if (!note.empty()) hint(context.ui, note);
+struct Writing {
+  bool active = false;
+  std::string text;
+};
+
+/// Several lines, and below how they are read, since a field does not break them.
+void draw_paragraphs(PanelContext& context, const std::string& setting, const std::string& value) {
+  Ui& ui = context.ui;
+  const Control control = control_of(setting);
+  auto& writing = ui.state<Writing>(ImGui::GetID((control.name + ".writing").c_str()));
+  if (!writing.active) writing.text = value;
+  row(ui, control.label, control.explanation);
+  ImGui::NewLine();
+  const float height = 4 * ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().FramePadding.y;
+  ImGui::InputTextMultiline(("##" + control.name).c_str(), &writing.text, {-FLT_MIN, height});
+  ui.mark(control.name);
+  ui.stop(control.name, true);
+  writing.active = ImGui::IsItemActive();
+  if (ImGui::IsItemDeactivatedAfterEdit() && writing.text != value)
+    context.ask("study.set", {setting, writing.text});
+  if (!value.empty()) hint(ui, value);
+}
+
+void draw_words(const app::Study& study, PanelContext& context) {
+  if (!section(context.ui, "study.words", "Note and consent", false)) return;
+  draw_paragraphs(context, "note", study.note);
+  draw_paragraphs(context, "consent", study.consent);
 }
 
 /// Every order of panes that has the result in it.
@@ -279,7 +305,7 @@ void draw_study(const app::Session& session, PanelContext& context) {
   draw_clip(state.study->clip, context);
   draw_picture(session, context);
   draw_plan(state.study->plan, context);
-  draw_note(state.study->note, context);
+  draw_words(*state.study, context);
   draw_study_trials(session, context);
 }
 
