@@ -95,6 +95,7 @@ Application::Application(StudioServices services, std::unique_ptr<Surface> surfa
   pass_ = std::make_unique<ui::DrawPass>();
   views_ = std::make_unique<ui::Views>();
   previews_ = std::make_unique<Previews>();
+  study_pictures_ = std::make_unique<StudyPictures>(studio_->services().networks);
   workspace_ = make_workspace();
   add_window_commands(studio_->commands(), *workspace_);
   ticked_at_ = drawn_at_ = input_at_ = Clock::now();
@@ -193,7 +194,7 @@ double Application::patience_s() const {
   const Clock::time_point now = Clock::now();
   if (frames_wanted_ > 0 || gui_->pending()) return std::max(0.0, kFastest - seconds_between(drawn_at_, now));
   const Session& s = session();
-  if (s.playback.playing || s.view.turntable_deg_s != 0 || !studio_->idle())
+  if (s.playback.playing || s.view.turntable_deg_s != 0 || !studio_->idle() || study_pictures_->busy())
     return std::clamp(fastest_s() - seconds_between(drawn_at_, now), kBriefest, kListening);
   if (seconds_between(input_at_, now) < kTooltips) return kLookingAround;
   return gui_->wants_text() ? kBlink : kAsleep;
@@ -201,7 +202,7 @@ double Application::patience_s() const {
 
 /// Pictures and looks that other threads have made.
 int64_t Application::arrived() const {
-  return studio_->cache().made() + views_->arrived();
+  return studio_->cache().made() + views_->arrived() + study_pictures_->made();
 }
 
 /// Changes with all that a frame shows and that no command changed.
@@ -219,7 +220,7 @@ std::string Application::fingerprint(int64_t arrived) const {
 }
 
 bool Application::waiting() const {
-  return views_->waiting() || previews_->busy() || gui_->pending();
+  return views_->waiting() || previews_->busy() || study_pictures_->busy() || gui_->pending();
 }
 
 bool Application::shows_take(int k) const {
@@ -234,7 +235,15 @@ void Application::show_previews() {
       card.picture = previews_->of(card.paths, kCardPicture, session().settings.dark).texture;
     }
   }
-  if (previews_->update()) frames_wanted_ = kSettling;
+  const bool is_file = previews_->update(), is_trial = study_pictures_->update();
+  if (is_file || is_trial) frames_wanted_ = kSettling;
+}
+
+ui::TrialPicture Application::trial_picture(float share) {
+  const StudyState& state = session().study;
+  const int i = chosen(state, StudyList::Trial);
+  if (i < 0 || !studio_->services().networks) return {};
+  return study_pictures_->of(*state.study, state.trials[static_cast<size_t>(i)], share);
 }
 
 void Application::handle(const InputEvent& event) {
@@ -274,6 +283,7 @@ void Application::draw_interface(double dt, const std::vector<InputEvent>& event
   if (!ui::has_document(s)) views_->forget();
   gui_->begin_frame(input, events);
   ui::PanelContext context{gui_->ui(), queue_, studio_->commands()};
+  context.trial_picture = [this](float share) { return trial_picture(share); };
   workspace_->draw(s, context, frame_rate_);
   const ImDrawData& data = gui_->end_frame();
   pass_->present(data, gui_->atlas(), target, gui_->ui().theme().backdrop);

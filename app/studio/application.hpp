@@ -10,6 +10,7 @@
 
 #include "app/session/studio.hpp"
 #include "app/studio/previews.hpp"
+#include "app/studio/study_pictures.hpp"
 #include "app/studio/surface.hpp"
 #include "ui/gui/draw_pass.hpp"
 #include "ui/gui/gui.hpp"
@@ -80,6 +81,7 @@ class Application {
   void handle(const render::InputEvent& event);
   void draw_interface(double dt, const std::vector<render::InputEvent>& events);
   void show_previews();
+  ui::TrialPicture trial_picture(float share);
   std::unique_ptr<ui::Workspace> make_workspace();
   void run_queue();
   void show_state();
@@ -98,6 +100,7 @@ class Application {
   std::unique_ptr<ui::DrawPass> pass_;
   std::unique_ptr<ui::Views> views_;
   std::unique_ptr<Previews> previews_;
+  std::unique_ptr<StudyPictures> study_pictures_;
   std::unique_ptr<ui::Workspace> workspace_;
   CommandQueue queue_;
   InputListener* observer_ = nullptr;

@@ -41,6 +41,7 @@ constexpr FileDialog kDialogs[] = {
     {"study_csv", "study.export csv", "Export trials", "Export", FileKind::Any, true},
     {"study_jspsych", "study.export jspsych", "Export trials for jsPsych", "Export", FileKind::Any, true},
     {"study_psychopy", "study.export psychopy", "Export trials for PsychoPy", "Export", FileKind::Any, true},
+    {"study_stimuli", "study.render", "Render stimuli into a folder", "Render", FileKind::Any, true},
     {"", "", "Where to", "Choose", FileKind::Any, true}};
 
 const FileDialog& dialog_of(FilePurpose purpose) {
@@ -54,6 +55,7 @@ std::string study_name(const app::Session& session, FilePurpose purpose) {
   const std::string title = state.study ? app::safe_file_name(state.study->name) : "";
   fs::path stem = state.path.empty() ? fs::path(title) : fs::path(state.path).replace_extension();
   if (purpose == FilePurpose::SaveStudy) return stem.string() + ".study";
+  if (purpose == FilePurpose::Stimuli) return stem.string() + " stimuli";
   const auto format = static_cast<size_t>(purpose) - static_cast<size_t>(FilePurpose::TrialsTable);
   return stem.string() + " trials" + app::trial_formats()[format].suffix;
 }

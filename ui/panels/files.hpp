@@ -30,6 +30,7 @@ enum class FilePurpose {
   TrialsCsv,
   TrialsJsPsych,
   TrialsPsychoPy,
+  Stimuli,
   Export  ///< comes back to the export dialog
 };
 

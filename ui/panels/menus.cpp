@@ -153,6 +153,7 @@ Items study_menu(const app::Session& session) {
           {"Save as\u2026", "study.save_as"},
           {"Close", "study.close"},
           kLine,
+          {"Render stimuli\u2026", "dialog.open", {"study_stimuli"}},
           export_trials(),
           {"Analyse answers\u2026", "dialog.open", {"study_answers"}}};
 }

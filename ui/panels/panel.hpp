@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,11 +14,20 @@
 
 namespace understudy::ui {
 
+/// What a clip of a study shows.
+struct TrialPicture {
+  ImTextureID texture = nullptr;  ///< null: no picture (yet)
+  float width = 0, height = 0;    ///< of the texture
+  std::string text{};             ///< why there is none
+};
+
 /// A panel reads the session, draws, and pushes commands that run after the frame.
 struct PanelContext {
   Ui& ui;
   app::CommandQueue& queue;
   const app::Commands& commands;  ///< labels and shortcuts
+  /// The chosen trial of the open study at a share (0..1) of its clip; must not wait. Empty: there are none.
+  std::function<TrialPicture(float share)> trial_picture = {};
   void ask(const std::string& name, app::Arguments arguments = {}) {
     queue.emplace_back(name, std::move(arguments));
   }

@@ -1,8 +1,10 @@
 // The trials of a study: all of them, or those of a participant in their order, and the chosen one.
 #include <algorithm>
+#include <cmath>
 
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
 #include "ui/panels/study.hpp"
 #include "ui/widgets/lists.hpp"
@@ -43,6 +45,42 @@ void draw_table(const app::StudyState& state, PanelContext& context) {
     hint(ui, "The first " + grouped(count) + " of " + grouped(ssize(state.trials)) + " trials.");
 }
 
+/// Which moment of clips the picture shows.
+struct Moment {
+  float percent = 30;
+};
+
+/// The chosen trial as participants see it.
+void draw_picture(const app::StudyState& state, PanelContext& context) {
+  if (!context.trial_picture || app::chosen(state, StudyList::Trial) < 0) return;
+  Ui& ui = context.ui;
+  auto& moment = panel_state<Moment>(context).percent;
+  const TrialPicture picture = context.trial_picture(std::round(moment) / 100);
+  const app::StudyPicture& shape = state.study->picture;
+  const float width = std::floor(ImGui::GetContentRegionAvail().x);
+  const float height = std::round(
+      std::min(width * static_cast<float>(shape.height) / static_cast<float>(shape.width), 1.5f * width));
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const Rect place{at, {at.x + width, at.y + height}};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(place.min, place.max, color(ui.theme().backdrop), ui.px(4));
+  if (picture.texture != nullptr) {
+    const float across = std::min(width, height * picture.width / picture.height),
+                left = (width - across) / 2;
+    list.AddImageRounded(picture.texture, {at.x + left, at.y}, {at.x + left + across, place.max.y}, {0, 0},
+                         {1, 1}, IM_COL32_WHITE, ui.px(4));
+  } else {
+    const std::string words = in_lines(picture.text, width - ui.px(24));
+    const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+    list.AddText({std::floor(at.x + (width - size.x) / 2), std::floor(at.y + (height - size.y) / 2)},
+                 color(ui.theme().text_dim), words.c_str());
+  }
+  ImGui::Dummy({width, height});
+  ui.mark("study.picture");
+  row(ui, "Moment", "Of the clip that the picture shows");
+  number(ui, "study.moment", moment, {0, 100, 0.5f, "%.0f %%"});
+}
+
 void draw_chosen(const app::StudyState& state, PanelContext& context) {
   const int i = app::chosen(state, StudyList::Trial);
   if (i < 0) return;
@@ -71,6 +109,7 @@ void draw_study_trials(const app::Session& session, PanelContext& context) {
   if (name && !name->empty()) context.ask("study.participant", {*name});
   if (!state.problem.empty()) return hint(context.ui, "The list comes when the study can be run.");
   draw_table(state, context);
+  draw_picture(state, context);
   draw_chosen(state, context);
 }
 
