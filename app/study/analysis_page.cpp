@@ -11,7 +11,7 @@
 namespace understudy::app {
 namespace {
 
-constexpr double kLeft = 56, kTop = 40, kHeight = 240, kStep = 96, kBox = 44;
+constexpr double kLeft = 56, kTop = 40, kHeight = 240, kLeastStep = 96, kLetter = 7.4, kBox = 44;
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -166,7 +166,10 @@ std::string counted(const StudyReport& report) {
 
 std::string box_plot(const std::string& title, const EffectReport& effect) {
   const ValueAxis axis = axis_of(effect.summaries);
-  const double width = kLeft + kStep * static_cast<double>(effect.summaries.size()) + 16;
+  double step = kLeastStep;
+  for (const LevelSummary& one : effect.summaries)
+    step = std::max(step, kLetter * static_cast<double>(one.level.size()) + 16);
+  const double width = kLeft + step * static_cast<double>(effect.summaries.size()) + 16;
   std::string svg = printed(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" font-family=\"sans-serif\" "
       "font-size=\"13\">\n",
@@ -179,7 +182,7 @@ std::string box_plot(const std::string& title, const EffectReport& effect) {
                    axis.y(value) + 4, value);
   }
   for (size_t i = 0; i < effect.summaries.size(); ++i) {
-    const double x = kLeft + kStep * (static_cast<double>(i) + 0.5);
+    const double x = kLeft + step * (static_cast<double>(i) + 0.5);
     svg += box(effect.summaries[i], x, axis);
     svg += printed("<text x=\"%.1f\" y=\"%.0f\" text-anchor=\"middle\">", x, kTop + kHeight + 24) +
            escaped(effect.summaries[i].level) + "</text>\n";
