@@ -19,6 +19,10 @@ std::string quoted(const char* what, const std::string& name) {
   return std::string(what) + " '" + name + "'";
 }
 
+bool is_plain(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; });
+}
+
 /// Throws Error unless there are any, all have names, and no two the same.
 template <class Named>
 void check_names(const std::vector<Named>& all, const char* what) {
@@ -26,9 +30,8 @@ void check_names(const std::vector<Named>& all, const char* what) {
   std::set<std::string> names;
   for (const Named& one : all) {
     US_CHECK(!one.name.empty(), "a ", what, " has no name");
-    const bool is_plain =
-        std::none_of(one.name.begin(), one.name.end(), [](char c) { return c >= 0 && c < ' '; });
-    US_CHECK(is_plain, quoted(what, excerpt(one.name)), " has a line end or another control character");
+    US_CHECK(is_plain(one.name), quoted(what, excerpt(one.name)),
+             " has a line end or another control character");
     US_CHECK(names.insert(one.name).second, "there are two of ", quoted(what, one.name));
   }
 }
@@ -75,6 +78,8 @@ void check_question(const StudyQuestion& question, const Study& study) {
   US_CHECK(options.size() >= 2, name, " needs at least two options");
   US_CHECK(std::set<std::string>(options.begin(), options.end()).size() == options.size(), name,
            " has an option twice");
+  US_CHECK(std::all_of(options.begin(), options.end(), is_plain), name,
+           " has an option with a line end or another control character");
   if (question.kind != QuestionKind::Attention) return;
   for (const StudyMotion& motion : study.motions) {
     const std::string& right = right_answer(question, motion);

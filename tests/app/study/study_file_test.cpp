@@ -164,6 +164,12 @@ TEST(StudyCheck, WantsNamesOnce) {
   EXPECT_NE(problem_of(study).find("control character"), std::string::npos);
 }
 
+TEST(StudyCheck, WantsOptionsOnOneLine) {
+  Study study = made_study("/a");
+  study.questions[1].options = {"Adult", "Child\n"};
+  EXPECT_EQ(problem_of(study), "question 'age' has an option with a line end or another control character");
+}
+
 TEST(StudyCheck, WantsAFileForEveryTrialOfACondition) {
   Study study = made_study("/a");
   study.conditions[2].files.pop_back();
