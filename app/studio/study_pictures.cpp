@@ -13,9 +13,9 @@ namespace understudy::app {
 namespace gl = render::gl;
 namespace {
 
-constexpr size_t kKeptTrials = 48;   // pictures
-constexpr int kWidth = 640;    // pixels
-constexpr int kHighest = 960;  // of upright pictures
+constexpr size_t kKeptTrials = 48;  // pictures
+constexpr int kWidth = 640;         // pixels
+constexpr int kHighest = 960;       // of upright pictures
 
 render::PixelSize size_of(const StudyPicture& picture) {
   const double height = static_cast<double>(kWidth) * picture.height / picture.width;
@@ -82,8 +82,8 @@ render::Image StudyPictures::draw(const Wanted& wanted) {
     stage_ = maker_->stage(trial.motion, trial.target);
   }
   const auto context = render::make_offscreen_context();
-  render::Renderer renderer(clip_renderer_options());
-  StagePainter painter(wanted.study, stage_, size_of(wanted.study.picture), renderer);
+  ClipRenderers renderers;
+  StagePainter painter(wanted.study, stage_, size_of(wanted.study.picture), renderers);
   const ClipPlan plan(wanted.study.clip, wanted.study.picture.fps, stage_->motion_s);
   const int frame = static_cast<int>(wanted.share * static_cast<float>(plan.frames()));
   return painter.picture(trial, plan.at(std::clamp(frame, 0, plan.frames() - 1)));
