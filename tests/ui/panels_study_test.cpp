@@ -134,6 +134,30 @@ TEST_F(StudyPanel, TrialsAreListedAndChosen) {
   EXPECT_FALSE(shown("study.size"));
 }
 
+TEST_F(StudyPanel, ThePictureOfTheChosenTrialIsShownOnceItIsThere) {
+  EXPECT_FALSE(shown("study.no_picture")) << "there are no pictures without a window";
+  float share = -1;
+  TrialPicture picture{nullptr, 0, 0, "Retargeting"};
+  context.trial_picture = [&](float at) {
+    share = at;
+    return picture;
+  };
+  frame(2);
+  EXPECT_TRUE(shown("study.no_picture"));
+  EXPECT_FALSE(shown("study.picture"));
+  EXPECT_NEAR(static_cast<double>(share), 0.3, 1e-6);
+  int some = 0;
+  picture = {&some, 640, 360, ""};
+  frame(2);
+  EXPECT_TRUE(shown("study.picture"));
+  const Rect place = mark("study.picture").rect;
+  EXPECT_NEAR(static_cast<double>(place.height() / place.width()), 720.0 / 1280, 0.01);
+  const ImVec2 at = mark("study.moment").rect.at(0.5f, 0.5f);
+  drag(at, {at.x + 60, at.y});
+  frame(2);
+  EXPECT_GT(share, 0.4f);
+}
+
 TEST_F(StudyPanel, SeveralLinesAreWrittenAsOneText) {
   click("study.consent");
   key(render::Key::End, {false, true});

@@ -4,7 +4,7 @@
 // file ("study.plan.seed", "study.questions.0.text"); study.LIST.K, the rows of condition, motion, target,
 // question and trial; study.LIST.up, .down, .copy, .remove of the chosen one; study.add_conditions, .add_files,
 // .add_source, .add_motion, .add_targets, .add_target, .add_likert, .add_choice, .add_attention;
-// study.add_animation, study.file.K.remove; study.camera; study.participant, study.picture, study.moment. Sections:
+// study.add_animation, study.file.K.remove; study.camera; study.participant, study.picture (study.no_picture until there is one), study.moment. Sections:
 // study.conditions, .motions, .targets, .questions, .options (of a method), .layout, .clip, .picture_section, .plan, .words, .trials.
 #include "ui/panels/study.hpp"
 

@@ -30,16 +30,19 @@ void draw_table(const app::StudyState& state, PanelContext& context) {
   const int count = static_cast<int>(std::min<std::ptrdiff_t>(ssize(state.trials), kMostRows));
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
   const float height = line * (static_cast<float>(std::min(count, 8)) + 1.5f);
-  if (Table table(ui, "study.trial", {{"Trial", 42}, {"Condition"}, {"Motion"}, {"Target"}}, height);
-      table.open())
+  const bool motions = study.motions.size() > 1, targets = study.targets.size() > 1;  // else all are alike
+  std::vector<Column> columns = {{"Trial", 42}, {"Condition"}};
+  if (motions) columns.push_back({"Motion"});
+  if (targets) columns.push_back({"Target"});
+  if (Table table(ui, "study.trial", columns, height); table.open())
     for (int i = 0; i < count; ++i) {
       const Trial& trial = state.trials[static_cast<size_t>(i)];
       const bool is_chosen = i == app::chosen(state, StudyList::Trial);
       if (table.row(is_chosen)) context.ask("study.choose", {"trial", std::to_string(i)});
       table.cell(trial.id);
       table.cell(conditions_of(study, trial));
-      table.cell(study.motions[static_cast<size_t>(trial.motion)].name);
-      table.cell(study.targets[static_cast<size_t>(trial.target)].name);
+      if (motions) table.cell(study.motions[static_cast<size_t>(trial.motion)].name);
+      if (targets) table.cell(study.targets[static_cast<size_t>(trial.target)].name);
     }
   if (ssize(state.trials) > count)
     hint(ui, "The first " + grouped(count) + " of " + grouped(ssize(state.trials)) + " trials.");
@@ -76,7 +79,7 @@ void draw_picture(const app::StudyState& state, PanelContext& context) {
                  color(ui.theme().text_dim), words.c_str());
   }
   ImGui::Dummy({width, height});
-  ui.mark("study.picture");
+  ui.mark(picture.texture != nullptr ? "study.picture" : "study.no_picture");
   row(ui, "Moment", "Of the clip that the picture shows");
   number(ui, "study.moment", moment, {0, 100, 0.5f, "%.0f %%"});
 }
