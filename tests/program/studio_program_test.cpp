@@ -52,6 +52,20 @@ size_t colours(const render::Image& image) {
 constexpr const char* kWalk =
     "open samples/walk samples/target_child.glb\nwait\nexpect_value frames 45\nplayback.frame 20\n";
 
+TEST_F(StudioProgram, AStudyOfTheOpenTakesIsLookedAtAndRendered) {
+  const Finished run =
+      play(std::string(kWalk) +
+               "compare.add 0 engine=paper\nwait\nstudy.new takes\nstudy.add_question likert\n"
+               "study.set clip.seconds 0.5\nstudy.set picture.width 192\n"
+               "study.set picture.height 108\nframes 3\nwait\nframes 3\nexpect study.picture\n"
+               "screenshot panel.png\nstudy.render out/stimuli\nwait\n"
+               "expect_text \"Rendered 2 clips\"\n",
+           {"--context", "egl", "--size", "1280x2000"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(fs::exists(scratch.path("out/stimuli/manifest.json")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(scratch.path("out/stimuli/clips")), {}), 2);
+}
+
 TEST_F(StudioProgram, PlaysTheSameScriptOnEveryContext) {
   for (const char* context : {"null", "egl", "osmesa"}) {
     const std::string text = std::string(kWalk) +

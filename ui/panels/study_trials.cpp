@@ -50,7 +50,7 @@ void draw_table(const app::StudyState& state, PanelContext& context) {
 
 /// Which moment of clips the picture shows.
 struct Moment {
-  float percent = 30;
+  float percent = 10;
 };
 
 /// The chosen trial as participants see it.
