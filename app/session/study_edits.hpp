@@ -24,8 +24,8 @@ const StudyField* study_field(const std::string& name);
 /// Throws Error: there is no such setting, or it cannot have that value.
 Study with_value(const Study& study, const std::string& name, const std::vector<std::string>& values);
 
-/// Of lists that commands name as kStudyListNames do, all but the trials. Throw Error where the list has no such item. What is removed takes along the files of conditions that are
-/// only for it.
+/// Of lists that commands name as kStudyListNames do, all but the trials. Throw Error where the list has no
+/// such item. What is removed takes along the files of conditions that are only for it.
 void remove_item(Study& study, const std::string& list, size_t i);
 void move_item(Study& study, const std::string& list, size_t from, size_t to);
 void copy_item(Study& study, const std::string& list, size_t i);
