@@ -33,6 +33,7 @@ class FollowedFolder : public ScanSource::Frames {
   }
 
   std::optional<ScanFrame> next() override {
+    if (!ready_.empty()) return next_ready();
     while (!ended_) {
       if (options_.cancelled && options_.cancelled()) break;
       if (auto frame = look()) return frame;
@@ -94,7 +95,7 @@ class FollowedFolder : public ScanSource::Frames {
 
   bool skips_a_number(const std::string& name) const {
     const auto number = frame_number(name);
-    return number && number_ && step_ && *number > *number_ + *step_;
+    return number && number_ && step_ && missing_between(*number - *number_, *step_) > 0;
   }
 
   // A file that does not parse may still be growing, unless the writer has gone on.
@@ -112,13 +113,23 @@ class FollowedFolder : public ScanSource::Frames {
     last_name_ = name;
     last_news_ = Clock::now();
     ++handed_out_;
+    ready_.push_back(std::move(frame));
+    return next_ready();
+  }
+
+  ScanFrame next_ready() {
+    ScanFrame frame = std::move(ready_.front());
+    ready_.pop_front();
     return frame;
   }
 
   void note_gap(const std::string& name) {
     if (!skips_a_number(name)) return;
-    gaps.push_back({*number_ + *step_, *frame_number(name) - *step_});
+    const int64_t count = missing_between(*frame_number(name) - *number_, *step_);
+    gaps.push_back({*number_ + *step_, *number_ + count * *step_});
     log::warn(folder_ + ": frames are missing before " + name);
+    for (int64_t i = 1; i <= count && count <= kLongestGap; ++i)
+      ready_.push_back(missing_frame(folder_, *number_ + i * *step_));
   }
 
   static constexpr double kPatienceForGap = 0.5;  // seconds that a frame may come after its successor
@@ -127,6 +138,7 @@ class FollowedFolder : public ScanSource::Frames {
   ScanSourceOptions options_;
   const FileFormat* format_ = nullptr;  // of the first frame
   std::deque<std::string> waiting_;
+  std::deque<ScanFrame> ready_;  // missing ones and the one after them
   std::string last_name_, watched_;
   FileState state_;
   std::optional<int64_t> number_, step_;

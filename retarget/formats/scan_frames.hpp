@@ -8,6 +8,15 @@ namespace understudy {
 /// The file as a frame; a problem is written into it, not thrown.
 ScanFrame load_frame(const std::string& path, int64_t number);
 
+/// A frame that the sequence's numbers leave out: time passes, and nothing is there.
+ScanFrame missing_frame(const std::string& sequence, int64_t number);
+/// How many frames are missing between two numbers that lie so far apart, where `usual` apart is usual.
+inline int64_t missing_between(int64_t step, int64_t usual) {
+  return (step + usual / 2) / usual - 1;
+}
+/// So many that are missing in one place are believed; more, and the numbers count something else.
+constexpr int64_t kLongestGap = 1000;
+
 /// The last run of digits in a file's name without its suffix; none when there is none or it is too long.
 std::optional<int64_t> frame_number(const std::string& path);
 

@@ -43,17 +43,13 @@ std::vector<int64_t> frame_numbers(const std::vector<std::string>& files) {
   return numbers;
 }
 
-// Where the step between numbers is larger than the most frequent step.
-std::vector<FrameGap> find_gaps(const std::vector<int64_t>& numbers) {
+// The most frequent step between numbers.
+int64_t usual_step(const std::vector<int64_t>& numbers) {
   std::map<int64_t, size_t> steps;
   for (size_t i = 1; i < numbers.size(); ++i) ++steps[numbers[i] - numbers[i - 1]];
   const auto rarer = [](const auto& a, const auto& b) { return a.second < b.second; };
   const auto most = std::max_element(steps.begin(), steps.end(), rarer);
-  const int64_t usual = most == steps.end() ? 1 : most->first;
-  std::vector<FrameGap> gaps;
-  for (size_t i = 1; i < numbers.size(); ++i)
-    if (numbers[i] - numbers[i - 1] > usual) gaps.push_back({numbers[i - 1] + usual, numbers[i] - usual});
-  return gaps;
+  return most == steps.end() ? 1 : most->first;
 }
 
 void report_gaps(const std::string& source, const std::vector<FrameGap>& gaps) {
@@ -70,32 +66,47 @@ constexpr int kHopeless = 100;  // unreadable frames from the first on, after wh
 
 class FileFrames : public ScanSource::Frames {
  public:
-  FileFrames(std::vector<std::string> files, const std::string& source)
-      : files_(std::move(files)), source_(source) {
-    numbers_ = frame_numbers(files_);
-    gaps = find_gaps(numbers_);
+  FileFrames(const std::vector<std::string>& files, const std::string& source) : source_(source) {
+    const std::vector<int64_t> numbers = frame_numbers(files);
+    const int64_t usual = usual_step(numbers);
+    for (size_t i = 0; i < files.size(); ++i) {
+      if (i > 0) add_missing(numbers[i - 1], numbers[i], usual);
+      frames_.push_back({files[i], numbers[i]});
+    }
     report_gaps(source, gaps);
   }
 
   std::optional<ScanFrame> next() override {
-    if (at_ == files_.size()) return {};
-    ScanFrame frame = load_frame(files_[at_], numbers_[at_]);
-    US_CHECK(frame.usable || files_.size() > 1, frame.problem);
+    if (at_ == frames_.size()) return {};
+    const auto& [file, number] = frames_[at_];
+    if (file.empty()) return ++at_, missing_frame(source_, number);
+    ScanFrame frame = load_frame(file, number);
+    US_CHECK(frame.usable || frames_.size() > 1, frame.problem);
     read_any_ |= frame.usable || frame.is_empty;
     US_CHECK(read_any_ || ++unreadable_ < kHopeless, source_, ": none of its first ", kHopeless,
              " frames can be read; ", frame.problem);
     ++at_;
     return frame;
   }
-  std::optional<int64_t> count() const override { return static_cast<int64_t>(files_.size()); }
+  std::optional<int64_t> count() const override { return static_cast<int64_t>(frames_.size()); }
   void seek(int64_t frame) override {
-    US_CHECK(frame >= 0 && frame < *count(), "there is no frame ", frame, " among ", files_.size());
+    US_CHECK(frame >= 0 && frame < *count(), "there is no frame ", frame, " among ", frames_.size());
     at_ = static_cast<size_t>(frame);
   }
 
  private:
-  std::vector<std::string> files_;
-  std::vector<int64_t> numbers_;
+  struct Place {
+    std::string file;  // empty: missing
+    int64_t number;
+  };
+  void add_missing(int64_t before, int64_t after, int64_t usual) {
+    const int64_t count = missing_between(after - before, usual);
+    if (count == 0) return;
+    gaps.push_back({before + usual, before + count * usual});
+    for (int64_t i = 1; i <= count && count <= kLongestGap; ++i) frames_.push_back({"", before + i * usual});
+  }
+
+  std::vector<Place> frames_;
   std::string source_;
   size_t at_ = 0;
   bool read_any_ = false;
@@ -190,6 +201,14 @@ ScanFrame load_frame(const std::string& path, int64_t number) {
     frame.usable = false;
     frame.problem = path + ": is too large for this machine's memory";
   }
+  return frame;
+}
+
+ScanFrame missing_frame(const std::string& sequence, int64_t number) {
+  ScanFrame frame;
+  frame.number = number;
+  frame.usable = false;
+  frame.problem = sequence + ": frame " + std::to_string(number) + " is missing";
   return frame;
 }
 

@@ -15,8 +15,8 @@ namespace understudy {
 /// One frame as it came, in the file's own units and axes.
 struct ScanFrame {
   Mesh mesh;
-  int64_t number = 0;  ///< from the file's name; the position in the sequence where names have none
-  std::string path;
+  int64_t number = 0;     ///< from the file's name; the position in the sequence where names have none
+  std::string path;       ///< empty: its number is missing in the sequence
   bool usable = true;     ///< false: it could not be read or has no finite point, `mesh` may be empty
   std::string problem;    ///< why it is not usable, one sentence
   bool is_empty = false;  ///< it was read, but has no finite point
@@ -35,7 +35,8 @@ struct FrameGap {
 };
 
 /// Hands out the frames of a sequence in order, one in memory at a time; frame i never depends on a later
-/// one.
+/// one. A number that is missing is a frame that cannot be used, so that a gap takes as long as it took; only
+/// gaps of more than a thousand frames are left out.
 ///
 /// A folder: the files of its most frequent mesh format, by the numbers in their names (frame_2 before
 /// frame_10); other files are left out, other mesh formats with a warning. A list: a .txt or .lst with a path
@@ -70,7 +71,7 @@ class ScanSource {
 
   /// How many frames there are; none while a folder is followed.
   std::optional<int64_t> count() const { return frames_->count(); }
-  /// Missing numbers found so far: all of them from the start, but for a followed folder.
+  /// Missing numbers found so far, those left out, too: all from the start, but for a followed folder.
   const std::vector<FrameGap>& gaps() const { return frames_->gaps; }
 
  private:

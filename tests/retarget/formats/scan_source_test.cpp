@@ -37,13 +37,38 @@ TEST(ScanSource, SortsFrameNumbersAndReportsGaps) {
   for (const int i : {1, 2, 10, 11, 100}) folder.write("frame_" + std::to_string(i) + ".off", cloud(i));
   Warnings warnings;
   ScanSource source(folder.path());
-  EXPECT_EQ(source.count(), 5);
+  EXPECT_EQ(source.count(), 100);
   ASSERT_EQ(source.gaps().size(), 2u);
   EXPECT_EQ(source.gaps()[0].first, 3);
   EXPECT_EQ(source.gaps()[0].last, 9);
   EXPECT_TRUE(warnings.contain("frames are missing: 3-9, 12-99"));
-  EXPECT_EQ(numbers_of(source), (std::vector<int64_t>{1, 2, 10, 11, 100}));
+  for (int64_t number = 1; number <= 100; ++number) {
+    const auto frame = source.next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->number, number);
+    EXPECT_EQ(frame->usable, number <= 2 || number == 10 || number == 11 || number == 100) << number;
+    if (number == 7) EXPECT_EQ(frame->problem, folder.path() + ": frame 7 is missing");
+  }
   EXPECT_FALSE(source.next());
+  source.seek(9);
+  EXPECT_TRUE(source.next()->usable);
+}
+
+TEST(ScanSource, NumbersThatAreNearlyEvenlyApartAreNoGaps) {
+  const TempFolder folder;
+  for (const int ms : {1000, 1033, 1067, 1100, 1133, 1233})
+    folder.write("f" + std::to_string(ms) + ".off", cloud(1));
+  ScanSource source(folder.path());
+  EXPECT_EQ(numbers_of(source), (std::vector<int64_t>{1000, 1033, 1067, 1100, 1133, 1166, 1199, 1233}));
+}
+
+TEST(ScanSource, AGapOfThousandsIsLeftOut) {
+  const TempFolder folder;
+  for (const int i : {1, 2, 3, 5000}) folder.write("f" + std::to_string(i) + ".off", cloud(i));
+  Warnings warnings;
+  ScanSource source(folder.path());
+  EXPECT_EQ(source.count(), 4);
+  EXPECT_TRUE(warnings.contain("frames are missing: 4-4999"));
 }
 
 TEST(ScanSource, AListOfWhichNothingCanBeReadIsRefusedInOneSentence) {
@@ -323,7 +348,7 @@ TEST(ScanSource, FollowFlagsAFrameThatStayedBrokenAndReportsGaps) {
   ScanSource source(folder.path(), follow_for(2));
   std::string usable;
   while (const auto frame = source.next()) usable += frame->usable ? '1' : '0';
-  EXPECT_EQ(usable, "1011");
+  EXPECT_EQ(usable, "101001");
   ASSERT_EQ(source.gaps().size(), 1u);
   EXPECT_EQ(source.gaps()[0].first, 3);
   EXPECT_EQ(source.gaps()[0].last, 4);
