@@ -129,7 +129,7 @@ void turn(const TurnEdit& edit, Motion& motion) {
 }  // namespace
 
 bool PoseEdits::empty() const {
-  return rotate.empty() && !smooth && !raise && !pin && !turn && !trim && skip.empty();
+  return fill.empty() && rotate.empty() && !smooth && !raise && !pin && !turn && !trim && skip.empty();
 }
 
 EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_joints) {
@@ -149,6 +149,7 @@ Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose) {
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
   check(motion);
   Motion result = motion;
+  for (const FillEdit& one : edits.fill) fill_frames(one, body.rest, result);
   rotate(edits.rotate, body.rest, result);
   if (edits.smooth) smooth(*edits.smooth, result);
   if (edits.raise)

@@ -1,4 +1,4 @@
-// Edits of the result: rotated bones, smoothing, raise, pinned feet, turn, trim.
+// Edits of the result: filled frames, rotated bones, smoothing, raise, pinned feet, turn, trim.
 #pragma once
 
 #include <optional>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "retarget/base/fields.hpp"
+#include "retarget/editing/pose_fill.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/skeleton/foot_contact.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -92,6 +93,7 @@ FieldsOf<S, Trim> fields(V& visit, S& trim) {
 }
 
 struct PoseEdits {
+  std::vector<FillEdit> fill;
   std::vector<RotateEdit> rotate;
   std::optional<SmoothEdit> smooth;
   std::optional<RaiseEdit> raise;
@@ -103,6 +105,7 @@ struct PoseEdits {
 };
 template <class V, class S>
 FieldsOf<S, PoseEdits> fields(V& visit, S& edits) {
+  visit("fill", edits.fill);
   visit("rotate", edits.rotate);
   visit("smooth", edits.smooth);
   visit(MemberName("raise", "floor"), edits.raise);
@@ -119,12 +122,12 @@ struct EditedBody {
   static EditedBody from(const Points& rest_vertices, const Joints& rest_joints);
 };
 
-/// All edits in this order, whatever order they were made in: rotate (as listed), smooth, raise, pin, turn.
+/// All edits in this order, whatever order they were made in: fill, rotate (both as listed), smooth, raise, pin, turn.
 /// So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are always the
 /// original ones: frames that trim and skip leave out stay, for a timeline that still shows them.
 /// Deterministic. Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where
 /// it is held; a foot that was turned away from where it stood does not.
-/// Throws Error for unknown joints or a strength outside 0..1.
+/// Throws Error for unknown joints, frames to fill that the motion does not have, or a strength outside 0..1.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
 /// A frame's pose after the rotations alone. Throws Error for an unknown joint.
 Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose);

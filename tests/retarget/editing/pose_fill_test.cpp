@@ -1,0 +1,140 @@
+#include "retarget/editing/pose_fill.hpp"
+
+#include <gtest/gtest.h>
+
+#include "retarget/base/error.hpp"
+#include "retarget/body/builtin_motion.hpp"
+#include "retarget/body/builtin_person.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+struct FilledWalk {
+  Joints rest = builtin_person().joints;
+  Motion walk = builtin_motion("walk", rest);
+
+  Motion filled(int first, int last) const {
+    Motion motion = walk;
+    fill_frames({first, last}, rest, motion);
+    return motion;
+  }
+  /// Mean distance of joints from the truth in these frames, metres.
+  double error(const Motion& motion, int first, int last) const {
+    double sum = 0;
+    for (int t = first; t <= last; ++t)
+      sum += static_cast<double>(
+          (forward_kinematics(rest, motion.poses[t]).joints - forward_kinematics(rest, walk.poses[t]).joints)
+              .rowwise()
+              .norm()
+              .mean());
+    return sum / (last - first + 1);
+  }
+};
+
+const FilledWalk& stage() {
+  static const FilledWalk made;
+  return made;
+}
+
+bool same(const Pose& a, const Pose& b) {
+  return a.local == b.local && a.root == b.root;
+}
+
+TEST(PoseFill, LeavesKnownFramesAsTheyAre) {
+  const Motion motion = stage().filled(20, 26);
+  for (int t = 0; t < static_cast<int>(motion.poses.size()); ++t)
+    EXPECT_EQ(same(motion.poses[t], stage().walk.poses[t]), t < 20 || t > 26) << t;
+}
+
+TEST(PoseFill, ComesNearToAWalk) {
+  EXPECT_LT(stage().error(stage().filled(20, 24), 20, 24), 0.01);
+  Motion held = stage().walk;
+  for (int t = 20; t <= 24; ++t) held.poses[t] = held.poses[19];
+  EXPECT_GT(stage().error(held, 20, 24), 0.05);
+}
+
+TEST(PoseFill, KeepsTheSpeedAtBothEnds) {
+  const Motion motion = stage().filled(20, 29);
+  const auto speed = [&](const Motion& m, int t) -> Vec3 { return m.poses[t + 1].root - m.poses[t].root; };
+  for (const int t : {19, 29})
+    EXPECT_LT((speed(motion, t) - speed(stage().walk, t == 19 ? 18 : 30)).norm(), 0.006f) << t;
+}
+
+TEST(PoseFill, TurnsAndMirrorsWithWhatIsKnown) {
+  const Motion filled = stage().filled(20, 29);
+  Motion turned = stage().walk, mirror = stage().walk;
+  const Mat3 R = rotation_about_y(2);
+  for (Pose& pose : turned.poses) pose.root = R * pose.root, pose.local[Pelvis] = R * pose.local[Pelvis];
+  for (Pose& pose : mirror.poses) pose = mirrored(pose);
+  fill_frames({20, 29}, stage().rest, turned);
+  fill_frames({20, 29}, stage().rest, mirror);
+  for (int t = 20; t <= 29; ++t) {
+    EXPECT_LT((R * filled.poses[t].root - turned.poses[t].root).norm(), 1e-3f);
+    const Pose other = mirrored(filled.poses[t]);
+    EXPECT_LT((other.root - mirror.poses[t].root).norm(), 1e-3f);
+    for (int j = 0; j < kJointCount; ++j)
+      EXPECT_LT(geodesic_angle(other.local[j], mirror.poses[t].local[j]), 2e-3f);
+  }
+}
+
+TEST(PoseFill, ATurnOfMoreThanHalfACircleGoesTheShortWay) {
+  Motion spin;
+  spin.poses.resize(12);
+  for (int t = 0; t < 12; ++t) spin.poses[t].local[Pelvis] = rotation_about_y(0.28f * static_cast<float>(t));
+  const Motion truth = spin;
+  fill_frames({2, 9}, stage().rest, spin);
+  for (int t = 2; t <= 9; ++t)
+    EXPECT_LT(geodesic_angle(spin.poses[t].local[Pelvis], truth.poses[t].local[Pelvis]), 0.02f) << t;
+}
+
+TEST(PoseFill, HoldsAFootThatStandsOnBothSides) {
+  Motion motion = stage().walk;
+  motion.standing.assign(motion.poses.size(), {false, false});
+  // The frames in which the left ankle moves least.
+  const auto ankle = [&](const Motion& m, int t) -> Vec3 {
+    return forward_kinematics(stage().rest, m.poses[t]).joints.row(LeftAnkle).transpose();
+  };
+  int still = 2;
+  for (int t = 2; t + 10 < static_cast<int>(motion.poses.size()); ++t)
+    if ((ankle(motion, t + 8) - ankle(motion, t)).norm() <
+        (ankle(motion, still + 8) - ankle(motion, still)).norm())
+      still = t;
+  ASSERT_LT((ankle(motion, still + 8) - ankle(motion, still)).norm(), 0.04f);
+  for (int t = still; t <= still + 8; ++t) motion.standing[t][0] = true;
+  const Vec3 from = ankle(motion, still), to = ankle(motion, still + 8);
+  fill_frames({still + 1, still + 7}, stage().rest, motion);
+  for (int t = still + 1; t < still + 8; ++t) {
+    const float share = static_cast<float>(t - still) / 8;
+    EXPECT_LT((ankle(motion, t) - (from + share * (to - from))).norm(), 2e-3f) << t;
+    EXPECT_TRUE(motion.standing[t][0]);
+    EXPECT_FALSE(motion.standing[t][1]);
+  }
+}
+
+TEST(PoseFill, PredictsAtTheEnds) {
+  const int count = static_cast<int>(stage().walk.poses.size());
+  const Motion on = stage().filled(count - 3, count - 1);
+  EXPECT_LT(stage().error(on, count - 3, count - 1), 0.04);
+  const auto speed = [&](const Motion& m, int t) { return (m.poses[t + 1].root - m.poses[t].root).norm(); };
+  EXPECT_GT(speed(on, count - 4), 0.5f * speed(stage().walk, count - 5));
+  const Motion before = stage().filled(0, 2);
+  EXPECT_LT(stage().error(before, 0, 2), 0.04);
+  const Motion rest = stage().filled(10, count - 1);
+  EXPECT_LT(speed(rest, count - 2), 0.05f * speed(stage().walk, 8));  // it has come to rest
+}
+
+TEST(PoseFill, RefusesFramesThatAreNotThere) {
+  const int count = static_cast<int>(stage().walk.poses.size());
+  Motion motion = stage().walk;
+  EXPECT_EQ(failure_of([&] {
+              fill_frames({0, count - 1}, stage().rest, motion);
+            }),
+            "all frames are to be filled: none is left that is known");
+  EXPECT_THROW(fill_frames({5, count}, stage().rest, motion), Error);
+  EXPECT_THROW(fill_frames({5, 4}, stage().rest, motion), Error);
+  EXPECT_THROW(fill_frames({-1, 4}, stage().rest, motion), Error);
+}
+
+}  // namespace
+}  // namespace understudy
