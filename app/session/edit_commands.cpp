@@ -261,9 +261,9 @@ void remove_limb_move(Call& c) {
 }
 
 void remove_edit(Call& c) {
-  const size_t kind = c.choice(
-      0, "kind",
-      {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of", "rotations_of", "limb", "people"});
+  const size_t kind = c.choice(0, "kind",
+                               {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of",
+                                "rotations_of", "limb", "people", "fill"});
   if (kind == 8) return remove_at(c.document.source.people, c, 1);
   if (kind == 5) return remove_drags_of(c, c.joint(1));
   if (kind == 6) return remove_rotations_of(c, c.joint(2));
@@ -272,6 +272,7 @@ void remove_edit(Call& c) {
   if (kind == 1) return remove_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"));
   Take& take = c.take(1);
   if (kind == 2) return remove_at(take.pose_edits.rotate, c, 2);
+  if (kind == 9) return remove_at(take.pose_edits.fill, c, 2);
   if (kind == 3) return remove_all_at(take.pose_edits.rotate, c.number<int>(2, "frame"));
   remove_at(take.target_edits.joints, c, 2);
 }
@@ -319,8 +320,19 @@ void move_skips(Call& c) {
   skip.insert(frames.begin(), frames.end());
 }
 
+void move_fill(Call& c) {
+  auto& fills = c.take(1).pose_edits.fill;
+  const int index = c.number<int>(2, "edit");
+  US_CHECK(index >= 0 && index < ssize(fills), "there is no edit ", index, " among ", fills.size());
+  const FillEdit before = fills[static_cast<size_t>(index)];
+  const Trim to = frames_to(c, 3, before.last - before.first);
+  fills.erase(fills.begin() + index);
+  add_fill({to.first, to.last}, fills);
+}
+
 void move_edit(Call& c) {
-  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people"});
+  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people", "fill"});
+  if (kind == 5) return move_fill(c);
   if (kind == 0)
     return move_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"), frame_argument(c, 2));
   if (kind == 1) return move_swap(c);
@@ -333,16 +345,73 @@ void add_rearrangement(Commands& commands) {
   commands.add_edit(
       {"edit.remove", "Remove an edit",
        "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
-       "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX | people INDEX"},
+       "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX | people INDEX | fill TAKE INDEX"},
       remove_edit);
   commands.add_edit(
       {"edit.move", "Move an edit in time",
        "drags FRAME TO | swap INDEX TO [LAST] | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO [LAST] | "
-       "people INDEX TO [LAST]"},
+       "people INDEX TO [LAST] | fill TAKE INDEX TO [LAST]"},
       move_edit);
 }
 
+/// Runs of frames that could not be used, of who is performed by a take.
+std::vector<FillEdit> unusable_runs(const Session& session, size_t take) {
+  const auto& frames = performed_by(session, take);
+  std::vector<FillEdit> runs;
+  for (int t = 0; t < ssize(frames); ++t) {
+    if (!frames[t].flagged) continue;
+    if (runs.empty() || runs.back().last + 1 < t) runs.push_back({t, t});
+    runs.back().last = t;
+  }
+  return runs;
+}
+
+/// What is to be filled without being told: what is between the loop marks, else the run of unusable frames
+/// under the playhead, else all of them.
+std::vector<FillEdit> wanted_fills(const Session& session, size_t take) {
+  const FrameRange marked = play_range(session.playback, frame_count(session));
+  if (!marked.empty() && (session.playback.in >= 0 || session.playback.out >= 0))
+    return {{marked.first, marked.last}};
+  std::vector<FillEdit> runs = unusable_runs(session, take);
+  US_CHECK(!runs.empty(), "all frames could be used: set the loop marks around those that are to be filled");
+  const int now = shown_frame(session);
+  for (const FillEdit& run : runs)
+    if (run.first <= now && now <= run.last) return {run};
+  return runs;
+}
+
+/// Fills that touch it become one with it.
+void add_fill(FillEdit fill, std::vector<FillEdit>& all) {
+  for (auto at = all.begin(); at != all.end();) {
+    const bool apart = at->last + 1 < fill.first || at->first > fill.last + 1;
+    if (!apart) fill = {std::min(fill.first, at->first), std::max(fill.last, at->last)};
+    at = apart ? at + 1 : all.erase(at);
+  }
+  all.push_back(fill);
+}
+
+void fill(Call& c) {
+  const size_t take = c.arguments.empty() ? static_cast<size_t>(c.session.selected_take) : c.take_number();
+  US_CHECK(take < c.document.takes.size(), "add a target first");
+  const bool told = c.arguments.size() > 1;
+  const std::vector<FillEdit> wanted =
+      told ? std::vector<FillEdit>{frame_range<FillEdit>(c, 1)} : wanted_fills(c.session, take);
+  auto& fills = c.document.takes[take].pose_edits.fill;
+  for (const FillEdit& one : wanted) add_fill(one, fills);
+  const int last = static_cast<int>(c.session.takes[take].performed.size()) - 1;
+  for (const FillEdit& one : fills)
+    US_CHECK(one.first > 0 || one.last < last, "all frames would be filled: none is left that is known");
+  c.label = wanted.size() == 1
+                ? "Fill frames " + std::to_string(wanted[0].first) + " to " + std::to_string(wanted[0].last)
+                : "Fill all unusable frames";
+}
+
 void add_pose_ranges(Commands& commands) {
+  commands.add_edit({"edit.fill", "Fill frames",
+                     "[TAKE [FIRST LAST]]: between the loop marks, else the unusable frames here, else all "
+                     "unusable ones",
+                     "G"},
+                    fill);
   commands.add_edit({"edit.trim", "Trim", "TAKE FIRST LAST | TAKE off"}, [](Call& c) {
     auto& trim = c.take().pose_edits.trim;
     trim.reset();

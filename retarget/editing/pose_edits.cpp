@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -149,7 +150,8 @@ Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose) {
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
   check(motion);
   Motion result = motion;
-  for (const FillEdit& one : edits.fill) fill_frames(one, body.rest, result);
+  for (const FillEdit& one : edits.fill)
+    if (one.last < ssize(result.poses)) fill_frames(one, body.rest, result);
   rotate(edits.rotate, body.rest, result);
   if (edits.smooth) smooth(*edits.smooth, result);
   if (edits.raise)

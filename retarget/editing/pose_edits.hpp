@@ -127,7 +127,8 @@ struct EditedBody {
 /// original ones: frames that trim and skip leave out stay, for a timeline that still shows them.
 /// Deterministic. Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where
 /// it is held; a foot that was turned away from where it stood does not.
-/// Throws Error for unknown joints, frames to fill that the motion does not have, or a strength outside 0..1.
+/// Frames that are to be filled beyond the motion's end, which may still be made, are left.
+/// Throws Error for unknown joints or a strength outside 0..1.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
 /// A frame's pose after the rotations alone. Throws Error for an unknown joint.
 Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose);

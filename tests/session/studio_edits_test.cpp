@@ -1,14 +1,21 @@
 #include <cmath>
+#include <fstream>
+#include <set>
 
 #include "app/session/command_sets.hpp"
 #include "app/session/follow.hpp"
 #include "app/session/source_drag.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/formats/scan_source.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/session/studio_fixture.hpp"
 
 namespace understudy::app {
 namespace {
+
+bool same(const Pose& a, const Pose& b) {
+  return a.local == b.local && a.root == b.root;
+}
 
 TEST_F(StudioTest, OneEditIsRemovedAndTheOthersStay) {
   Studio studio(services());
@@ -61,6 +68,72 @@ TEST_F(StudioTest, EditsOfAFrameAreMovedInTimeAndRemovedTogether) {
   EXPECT_EQ(edits.skip, (std::set<int>{4, 5, 6}));
   studio.run("edit.skip", {"0", "4", "5", "off"});
   EXPECT_EQ(edits.skip, (std::set<int>{6}));
+}
+
+/// The frames of a sequence as files, but for some.
+void write_folder_without(const std::string& scans, const std::set<int>& missing, const std::string& folder) {
+  fs::create_directories(folder);
+  ScanSource source(scans);
+  for (int t = 0; const auto frame = source.next(); ++t) {
+    if (missing.count(t) > 0) continue;
+    std::ofstream file(folder + "/f" + std::to_string(t) + ".xyz");
+    file << frame->mesh.vertices << '\n';
+  }
+}
+
+TEST_F(StudioTest, AGapIsShownInItsTimeAndFilled) {
+  write_folder_without(path("scan.npz"), {9, 10, 11, 17}, path("gaps"));
+  Studio studio(services());
+  studio.run("open", {path("gaps")});
+  studio.run("open", {path("target.obj")});
+  studio.wait_idle();
+  const TakeState& take = studio.session().takes[0];
+  ASSERT_EQ(take.shown.poses.size(), static_cast<size_t>(kFrames));
+  EXPECT_TRUE(studio.session().source.frames[10].flagged);
+  EXPECT_TRUE(same(take.shown.poses[11], take.shown.poses[8])) << "it stands still";
+  const Motion before = take.shown;
+  const auto& fills = studio.session().document.takes[0].pose_edits.fill;
+
+  studio.run("playback.frame", {"10"});
+  studio.run("edit.fill");
+  studio.wait_idle();
+  ASSERT_EQ(fills.size(), 1u);
+  EXPECT_EQ(studio.session().history.undo_label(), "Fill frames 9 to 11");
+  for (int t = 0; t < kFrames; ++t)
+    EXPECT_EQ(same(take.shown.poses[t], before.poses[t]), t < 9 || t > 11) << t;
+
+  studio.run("playback.frame", {"0"});
+  studio.run("edit.fill", {"0"});
+  EXPECT_EQ(fills.size(), 2u) << "all of them, none twice";
+  studio.run("edit.undo");
+  EXPECT_EQ(fills.size(), 1u);
+  studio.run("edit.remove", {"fill", "0", "0"});
+  studio.wait_idle();
+  EXPECT_TRUE(same(take.shown.poses[10], before.poses[10]));
+}
+
+TEST_F(StudioTest, FramesBetweenTheLoopMarksAreFilled) {
+  Studio studio(services());
+  const auto refused = [&](const Arguments& arguments) {
+    return failure_of([&] { studio.run("edit.fill", arguments); });
+  };
+  EXPECT_EQ(refused({}), "add a target first");
+  open_both(studio);
+  EXPECT_NE(refused({}).find("all frames could be used"), std::string::npos);
+  studio.run("playback.in", {"4"});
+  studio.run("playback.out", {"7"});
+  studio.run("edit.fill");
+  auto& fills = studio.session().document.takes[0].pose_edits.fill;
+  studio.run("edit.fill", {"0", "8", "9"});
+  ASSERT_EQ(fills.size(), 1u) << "neighbours become one";
+  EXPECT_EQ(fills[0].first, 4);
+  EXPECT_EQ(fills[0].last, 9);
+  studio.run("edit.move", {"fill", "0", "0", "6"});
+  EXPECT_EQ(fills[0].first, 6);
+  EXPECT_EQ(fills[0].last, 11);
+  EXPECT_NE(refused({"0", "0", "23"}).find("none is left that is known"), std::string::npos);
+  EXPECT_EQ(fills.size(), 1u) << "what was refused changed nothing";
+  EXPECT_NE(refused({"0", "5", "40"}), "");
 }
 
 TEST_F(StudioTest, EditsOfARangeGetOtherFramesInOneStep) {

@@ -84,6 +84,11 @@ TEST_F(EditPanel, OfTheResult) {
   expect_click("edit.trim", {"edit.trim 0 5 30"});
   expect_click("edit.trim_off", {"edit.trim 0 off"});
   expect_click("edit.skip", {"edit.skip 0 20 on"});
+  expect_click("edit.fill", {"edit.fill 0"});
+  session.document.takes[0].pose_edits.fill = {{7, 9}};
+  frame(2);
+  expect_click("edit.filled.0", {"playback.frame 7"});
+  expect_click("edit.filled.0.remove", {"edit.remove fill 0 0"});
   expect_click("edit.rotation.0", {"playback.frame 12"});
   expect_click("edit.rotation.0.remove", {"edit.remove rotation 0 0"});
   expect_click("edit.poses_clear", {"edit.poses_clear 0"});

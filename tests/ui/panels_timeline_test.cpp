@@ -193,6 +193,7 @@ TEST_F(Timeline, ThePointerShowsWhatIsDraggedSideways) {
 
 TEST_F(Timeline, DeleteRemovesTheEditThatWasClickedAndNothingElse) {
   session.document.takes[0].pose_edits.skip = {22, 23, 24};
+  session.document.takes[0].pose_edits.fill = {{30, 33}};
   frame();
   const auto deleted = [&](const std::string& name) {
     click("timeline.track." + name);
@@ -204,6 +205,7 @@ TEST_F(Timeline, DeleteRemovesTheEditThatWasClickedAndNothingElse) {
   EXPECT_EQ(deleted("swap.1"), Lines{"edit.remove skeleton 1"});
   EXPECT_EQ(deleted("rotations.12"), Lines{"edit.remove rotations 0 12"});
   EXPECT_EQ(deleted("skip.22"), Lines{"edit.skip 0 22 24 off"});
+  EXPECT_EQ(deleted("made.0"), Lines{"edit.remove fill 0 0"});
   EXPECT_EQ(deleted("fill.20"), Lines{});
   click("timeline.track.drags.4");
   click(mark("timeline.track").rect.at(0.9f, 0.3f));

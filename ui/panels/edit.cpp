@@ -4,8 +4,8 @@
 // edit.cluster; edit.people.first, .last, .person, .how, .other, .apply, edit.people.K (one made before),
 // edit.people_clear; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
 // edit.skeleton.K (one made before), edit.skeleton_clear; edit.bones_tool, edit.bone_falloff, edit.pin,
-// edit.smooth, edit.raise, edit.turn, edit.trim, edit.trim_off, edit.skip, edit.rotation.K,
-// edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
+// edit.smooth, edit.raise, edit.turn, edit.trim, edit.trim_off, edit.skip, edit.fill, edit.filled.K,
+// edit.rotation.K, edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
 // edit.brush_radius, edit.brush_strength, edit.brush_mode, edit.weights_mirror.left, .right,
 // edit.weights_smooth, edit.weights_clear.
 #include <algorithm>
@@ -302,6 +302,19 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
              edits.skip.count(frame) > 0);
 }
 
+void draw_fills(PanelContext& context, const std::vector<FillEdit>& fills, const std::string& k) {
+  ButtonOptions options;
+  options.width = -1, options.shortcut = keys_of(context.commands, "edit.fill");
+  options.tooltip =
+      "Makes frames anew from those around them: between the loop marks, else the unusable frames here, else "
+      "all unusable ones";
+  if (button(context.ui, "edit.fill", "Fill frames", options)) context.ask("edit.fill", {k});
+  for (size_t i = 0; i < fills.size(); ++i)
+    edit_line(context, "edit.filled." + std::to_string(i),
+              printed("Frames %d to %d filled", fills[i].first, fills[i].last), fills[i].first,
+              {"fill", k, std::to_string(i)});
+}
+
 struct ListedEdit {
   size_t first = 0;  ///< among the rotations
   std::string words;
@@ -347,6 +360,7 @@ void draw_result(const app::Session& session, PanelContext& context) {
   draw_amounts(edits, context, k);
   draw_cost(selected_state(session), ui);
   draw_trim(session, context, edits, k);
+  draw_fills(context, edits.fill, k);
   const std::vector<ListedEdit> listed = listed_rotations(edits.rotate, k);
   for (size_t i = listed.size() > 50 ? listed.size() - 50 : 0; i < listed.size(); ++i)
     edit_line(context, "edit.rotation." + std::to_string(listed[i].first), listed[i].words, listed[i].frame,

@@ -10,7 +10,7 @@
 namespace understudy::ui {
 namespace {
 
-enum : int { kBlue, kOrange, kGreen, kPink };  // of Theme::series
+enum : int { kBlue, kOrange, kGreen, kPink, kViolet };  // of Theme::series
 
 /// The edits of one frame, which move together.
 struct KeyFrame {
@@ -84,6 +84,16 @@ void add_source_edits(std::vector<EditMark>& all, const app::Session& session) {
   add_diamonds(all, drags, {"drags"}, 0);
 }
 
+void add_fills(std::vector<EditMark>& all, const std::vector<FillEdit>& fills, const std::string& take) {
+  for (size_t i = 0; i < fills.size(); ++i) {
+    const std::string number = std::to_string(i);
+    all.push_back({{"made." + number, "Filled: " + frames_text(fills[i].first, fills[i].last), fills[i].first,
+                    fills[i].last, false, 0, 1, kViolet},
+                   {"fill", take, number},
+                   "edit.remove fill " + take + " " + number});
+  }
+}
+
 void add_skips(std::vector<EditMark>& all, const std::set<int>& skip, const std::string& take) {
   for (auto at = skip.begin(); at != skip.end();) {
     const int first = *at;
@@ -128,7 +138,7 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
   for (const TimelineState::Fill& fill : fills)
     all.push_back(
         {{"fill." + std::to_string(fill.first),
-          "Filled from the last good frame: " + frames_text(fill.first, fill.last) + ", " + fill.why,
+          "Stands still as in the last good frame: " + frames_text(fill.first, fill.last) + ", " + fill.why,
           fill.first, fill.last, false, 0, 0, kBlue, true},
          {},
          ""});
@@ -137,6 +147,7 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
   const app::Take* take = selected_take(session);
   if (take == nullptr) return all;
   const std::string k = std::to_string(session.selected_take);
+  add_fills(all, take->pose_edits.fill, k);
   add_skips(all, take->pose_edits.skip, k);
   KeyFrames rotations;
   for (const RotateEdit& edit : take->pose_edits.rotate)

@@ -66,7 +66,7 @@ struct EditMark {
   std::string remove;   ///< a command with its arguments, as a line of a script
 };
 /// All edits over time of the source and of the selected take: people put right, dragged joints, exchanged
-/// ranges and fills in row 0, rotated bones and skips in row 1.
+/// ranges and frames that stand still in row 0, rotated bones, fills and skips in row 1.
 std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills);
 
 /// In which frames of the selected take each foot is held on the floor: two bands, left and right; none where
