@@ -129,7 +129,8 @@ FieldsOf<S, LightView> fields(V& visit, S& l) {
   unnamed(visit, l.key_direction, l.fill_direction, l.key, l.fill, l.sky, l.floor, l.shine);
 }
 
-/// The usual light turned to the right and upwards, degrees, at most to 89 above or below; all of it so bright.
+/// The usual light turned to the right and upwards, degrees, at most to 89 above or below; all of it so
+/// bright.
 LightView turned_light(float turn_deg, float height_deg, float brightness);
 
 struct BackgroundView {

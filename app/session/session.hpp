@@ -203,8 +203,8 @@ struct Session {
 SourceOptions source_as_read(const Session& session);
 /// Whether people are told apart by their colours: there is more than one.
 bool has_several_people(const Session& session);
-/// Whether the step to be undone, or redone, is one of the study: steps of document and study are undone in the
-/// order in which they were made.
+/// Whether the step to be undone, or redone, is one of the study: steps of document and study are undone in
+/// the order in which they were made.
 bool undoes_study(const Session& session);
 bool redoes_study(const Session& session);
 /// That step; "" for none.

@@ -14,8 +14,8 @@
 
 namespace understudy::app {
 
-/// A renderer for each pane: one that draws in many sizes by turns makes its buffers anew each time. Make, use
-/// and destroy it with one context current.
+/// A renderer for each pane: one that draws in many sizes by turns makes its buffers anew each time. Make,
+/// use and destroy it with one context current.
 class ClipRenderers {
  public:
   render::Renderer& of(size_t pane);

@@ -308,7 +308,8 @@ double sign_test(int heads, int tails) {
   return std::min(1.0, 2 * boost::math::cdf(fair, std::min(heads, tails)));
 }
 
-/// Holm's step-down: the least p counts for all pairs, the next for one less, and none is less than one before.
+/// Holm's step-down: the least p counts for all pairs, the next for one less, and none is less than one
+/// before.
 void adjust(std::vector<PairPreference>& pairs) {
   std::vector<PairPreference*> by_p;
   for (PairPreference& pair : pairs) by_p.push_back(&pair);

@@ -119,9 +119,11 @@ StudyReport analyse(const StudyAnswers& answers, const AnalysisOptions& options)
 /// "b", "t", "df", "p"}], "medians": {EFFECT: {LEVEL: median}}, "quartiles": {EFFECT: {LEVEL: [first,
 /// third]}}, "one_way": {FACTOR: {"F", ..., "tukey": [{"a", "b", "difference", "t", "df", "p"}]}}, "icc":
 /// agreement}}, "preferences": {NAME: {"shares": {CONDITION: share}, "pairs": [{"a", "b", "answers_a",
-/// "answers_b", "participants_a", "participants_b", "p"}]}}, "per_participant": [...]}. NaN and infinity are null.
+/// "answers_b", "participants_a", "participants_b", "p"}]}}, "per_participant": [...]}. NaN and infinity are
+/// null.
 nlohmann::ordered_json to_json(const StudyReport& report);
-/// File names and their text: anova.csv, contrasts.csv, tukey.csv, medians.csv, participants.csv; preferences.csv where there are any.
+/// File names and their text: anova.csv, contrasts.csv, tukey.csv, medians.csv, participants.csv;
+/// preferences.csv where there are any.
 std::vector<std::pair<std::string, std::string>> csv_tables(const StudyReport& report);
 
 }  // namespace understudy::app

@@ -122,13 +122,13 @@ struct EditedBody {
   static EditedBody from(const Points& rest_vertices, const Joints& rest_joints);
 };
 
-/// All edits in this order, whatever order they were made in: fill, rotate (both as listed), smooth, raise, pin, turn.
-/// So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are always the
-/// original ones: frames that trim and skip leave out stay, for a timeline that still shows them.
+/// All edits in this order, whatever order they were made in: fill, rotate (both as listed), smooth, raise,
+/// pin, turn. So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are
+/// always the original ones: frames that trim and skip leave out stay, for a timeline that still shows them.
 /// Deterministic. Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where
-/// it is held; a foot that was turned away from where it stood does not.
-/// Frames that are to be filled beyond the motion's end, which may still be made, are left.
-/// Throws Error for unknown joints or a strength outside 0..1.
+/// it is held; a foot that was turned away from where it stood does not. Frames that are to be filled beyond
+/// the motion's end, which may still be made, are left. Throws Error for unknown joints or a strength outside
+/// 0..1.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
 /// A frame's pose after the rotations alone. Throws Error for an unknown joint.
 Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose);

@@ -1,7 +1,7 @@
 // The bars at the top (menus, tools, layout) and at the bottom (jobs and their progress, the last message,
 // frames per second).
-// Marks: menu.NAME (file, edit, view, target, tools, study, window, help; "menu" where they are one), entries as
-// mark_of(MenuItem); tools.look ... tools.crop; top.undo, top.redo, top.layout(.0 to .3), top.side;
+// Marks: menu.NAME (file, edit, view, target, tools, study, window, help; "menu" where they are one), entries
+// as mark_of(MenuItem); tools.look ... tools.crop; top.undo, top.redo, top.layout(.0 to .3), top.side;
 // status.job (with status.job.cancel), status.more_jobs, status.message (opens the log), status.mouse,
 // status.document, status.rate.
 #pragma once

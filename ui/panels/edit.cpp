@@ -5,9 +5,9 @@
 // edit.people_clear; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
 // edit.skeleton.K (one made before), edit.skeleton_clear; edit.bones_tool, edit.bone_falloff, edit.pin,
 // edit.smooth, edit.raise, edit.turn, edit.trim, edit.trim_off, edit.skip, edit.fill, edit.filled.K,
-// edit.rotation.K, edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
-// edit.brush_radius, edit.brush_strength, edit.brush_mode, edit.weights_mirror.left, .right,
-// edit.weights_smooth, edit.weights_clear.
+// edit.rotation.K, edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear;
+// edit.paint_tool, edit.joint, edit.brush_radius, edit.brush_strength, edit.brush_mode,
+// edit.weights_mirror.left, .right, edit.weights_smooth, edit.weights_clear.
 #include <algorithm>
 #include <cmath>
 
