@@ -320,6 +320,16 @@ void move_skips(Call& c) {
   skip.insert(frames.begin(), frames.end());
 }
 
+/// Fills that touch it become one with it.
+void add_fill(FillEdit fill, std::vector<FillEdit>& all) {
+  for (auto at = all.begin(); at != all.end();) {
+    const bool apart = at->last + 1 < fill.first || at->first > fill.last + 1;
+    if (!apart) fill = {std::min(fill.first, at->first), std::max(fill.last, at->last)};
+    at = apart ? at + 1 : all.erase(at);
+  }
+  all.push_back(fill);
+}
+
 void move_fill(Call& c) {
   auto& fills = c.take(1).pose_edits.fill;
   const int index = c.number<int>(2, "edit");
@@ -378,16 +388,6 @@ std::vector<FillEdit> wanted_fills(const Session& session, size_t take) {
   for (const FillEdit& run : runs)
     if (run.first <= now && now <= run.last) return {run};
   return runs;
-}
-
-/// Fills that touch it become one with it.
-void add_fill(FillEdit fill, std::vector<FillEdit>& all) {
-  for (auto at = all.begin(); at != all.end();) {
-    const bool apart = at->last + 1 < fill.first || at->first > fill.last + 1;
-    if (!apart) fill = {std::min(fill.first, at->first), std::max(fill.last, at->last)};
-    at = apart ? at + 1 : all.erase(at);
-  }
-  all.push_back(fill);
 }
 
 void fill(Call& c) {

@@ -136,6 +136,9 @@ const Changes& document_changes() {
        [](SavedDocument& s) {
          change_weights(s, [](WeightRows& rows) { rows = placed(rows, Points::Random(101, 3)); });
        }},
+      POSES(fill.pop_back()),
+      POSES(fill[0].first = 1),
+      POSES(fill[0].last = 17),
       POSES(rotate.pop_back()),
       POSES(rotate[0].frame = 1),
       POSES(rotate[0].joint = 1),
@@ -189,7 +192,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [turned_joint, axis_angle] = BoneTurn();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
-  [[maybe_unused]] const auto& [rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();
+  [[maybe_unused]] const auto& [fill, rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();
+  [[maybe_unused]] const auto& [fill_first, fill_last] = FillEdit();
   [[maybe_unused]] const auto& [frame, joint, turn, falloff, limb] = RotateEdit();
   [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();
   [[maybe_unused]] const auto& [begin_height, end_height, begin_speed, end_speed] = FootContactOptions();

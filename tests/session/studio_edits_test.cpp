@@ -13,7 +13,7 @@
 namespace understudy::app {
 namespace {
 
-bool same(const Pose& a, const Pose& b) {
+bool same_pose(const Pose& a, const Pose& b) {
   return a.local == b.local && a.root == b.root;
 }
 
@@ -90,7 +90,7 @@ TEST_F(StudioTest, AGapIsShownInItsTimeAndFilled) {
   const TakeState& take = studio.session().takes[0];
   ASSERT_EQ(take.shown.poses.size(), static_cast<size_t>(kFrames));
   EXPECT_TRUE(studio.session().source.frames[10].flagged);
-  EXPECT_TRUE(same(take.shown.poses[11], take.shown.poses[8])) << "it stands still";
+  EXPECT_TRUE(same_pose(take.shown.poses[11], take.shown.poses[8])) << "it stands still";
   const Motion before = take.shown;
   const auto& fills = studio.session().document.takes[0].pose_edits.fill;
 
@@ -100,7 +100,7 @@ TEST_F(StudioTest, AGapIsShownInItsTimeAndFilled) {
   ASSERT_EQ(fills.size(), 1u);
   EXPECT_EQ(studio.session().history.undo_label(), "Fill frames 9 to 11");
   for (int t = 0; t < kFrames; ++t)
-    EXPECT_EQ(same(take.shown.poses[t], before.poses[t]), t < 9 || t > 11) << t;
+    EXPECT_EQ(same_pose(take.shown.poses[t], before.poses[t]), t < 9 || t > 11) << t;
 
   studio.run("playback.frame", {"0"});
   studio.run("edit.fill", {"0"});
@@ -109,7 +109,7 @@ TEST_F(StudioTest, AGapIsShownInItsTimeAndFilled) {
   EXPECT_EQ(fills.size(), 1u);
   studio.run("edit.remove", {"fill", "0", "0"});
   studio.wait_idle();
-  EXPECT_TRUE(same(take.shown.poses[10], before.poses[10]));
+  EXPECT_TRUE(same_pose(take.shown.poses[10], before.poses[10]));
 }
 
 TEST_F(StudioTest, FramesBetweenTheLoopMarksAreFilled) {
