@@ -59,7 +59,7 @@ void report_gaps(const std::string& source, const std::vector<FrameGap>& gaps) {
     text += (i ? ", " : "") + std::to_string(gaps[i].first);
     if (gaps[i].last > gaps[i].first) text += "-" + std::to_string(gaps[i].last);
   }
-  log::warn(source + ": frames are missing: " + text + (gaps.size() > 5 ? " and more" : ""));
+  log::warn_once(source + ": frames are missing: " + text + (gaps.size() > 5 ? " and more" : ""));
 }
 
 constexpr int kHopeless = 100;  // unreadable frames from the first on, after which a sequence is given up

@@ -87,29 +87,28 @@ TEST_F(StudioTest, AGapIsShownInItsTimeAndFilled) {
   studio.run("open", {path("gaps")});
   studio.run("open", {path("target.obj")});
   studio.wait_idle();
-  const TakeState& take = studio.session().takes[0];
-  ASSERT_EQ(take.shown.poses.size(), static_cast<size_t>(kFrames));
+  const auto poses = [&]() -> const std::vector<Pose>& { return studio.session().takes[0].shown.poses; };
+  ASSERT_EQ(poses().size(), static_cast<size_t>(kFrames));
   EXPECT_TRUE(studio.session().source.frames[10].flagged);
-  EXPECT_TRUE(same_pose(take.shown.poses[11], take.shown.poses[8])) << "it stands still";
-  const Motion before = take.shown;
-  const auto& fills = studio.session().document.takes[0].pose_edits.fill;
+  EXPECT_TRUE(same_pose(poses()[11], poses()[8])) << "it stands still";
+  const std::vector<Pose> before = poses();
+  const auto fills = [&] { return studio.session().document.takes[0].pose_edits.fill.size(); };
 
   studio.run("playback.frame", {"10"});
   studio.run("edit.fill");
   studio.wait_idle();
-  ASSERT_EQ(fills.size(), 1u);
+  ASSERT_EQ(fills(), 1u);
   EXPECT_EQ(studio.session().history.undo_label(), "Fill frames 9 to 11");
-  for (int t = 0; t < kFrames; ++t)
-    EXPECT_EQ(same_pose(take.shown.poses[t], before.poses[t]), t < 9 || t > 11) << t;
+  for (int t = 0; t < kFrames; ++t) EXPECT_EQ(same_pose(poses()[t], before[t]), t < 9 || t > 11) << t;
 
   studio.run("playback.frame", {"0"});
   studio.run("edit.fill", {"0"});
-  EXPECT_EQ(fills.size(), 2u) << "all of them, none twice";
+  EXPECT_EQ(fills(), 2u) << "all of them, none twice";
   studio.run("edit.undo");
-  EXPECT_EQ(fills.size(), 1u);
+  EXPECT_EQ(fills(), 1u);
   studio.run("edit.remove", {"fill", "0", "0"});
   studio.wait_idle();
-  EXPECT_TRUE(same_pose(take.shown.poses[10], before.poses[10]));
+  EXPECT_TRUE(same_pose(poses()[10], before[10]));
 }
 
 TEST_F(StudioTest, FramesBetweenTheLoopMarksAreFilled) {
