@@ -108,6 +108,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take.method.part_refiner = take.method.hand_contacts = true;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
     take.target_edits.rest_pose.clear();
+    take.pose_edits.fill.clear();
     for (RotateEdit& edit : take.pose_edits.rotate) edit.limb.reset();
     take.target.import.height.reset();
     take.target.not_a_person = NotAPerson::RefuseClear;
@@ -126,6 +127,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     for (const Proportion& one : kProportions) take["method"].erase(one.name);
     take["target"].erase("not_a_person"), take.erase("person");
     take["target_edits"].erase("rest_pose");
+    take["pose_edits"].erase("fill");
   }
   auto& view = written["view"];
   for (const char* added : {"cube", "overlay", "light", "background", "background_color"}) view.erase(added);
