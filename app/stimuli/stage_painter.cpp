@@ -107,7 +107,7 @@ StagePainter::Picture StagePainter::drawn_pane(const Trial& trial, size_t pane, 
   const auto known = kept_.find(key);
   if (known != kept_.end()) return known->second;
   const PaneView& view = panes_[pane];
-  const auto made = std::make_shared<const render::Image>(
+  auto made = std::make_shared<const render::Image>(
       renderers_.of(pane).render_image(scene(trial, pane, moment), view.camera, view.size));
   ++drawn_;
   const int64_t bytes = ssize(made->pixels);

@@ -43,7 +43,7 @@ std::string stamp_of(const std::string& path) {
 }
 
 std::string word_of(const PaneView& view, const Study& study) {
-  const std::string word = kStudyPaneNames[static_cast<size_t>(view.pane)];
+  std::string word = kStudyPaneNames[static_cast<size_t>(view.pane)];
   if (view.pane != StudyPane::Result || study.layout.results == TrialResults::One) return word;
   return word + (view.side == 0 ? " A" : " B");
 }

@@ -312,6 +312,7 @@ double sign_test(int heads, int tails) {
 /// before.
 void adjust(std::vector<PairPreference>& pairs) {
   std::vector<PairPreference*> by_p;
+  by_p.reserve(pairs.size());
   for (PairPreference& pair : pairs) by_p.push_back(&pair);
   std::stable_sort(by_p.begin(), by_p.end(), [](auto* a, auto* b) { return a->p < b->p; });
   double so_far = 0;

@@ -18,6 +18,13 @@ struct Line {
   std::string note;  ///< grey, on the right
 };
 
+template <class Item, class Write>
+std::vector<Line> lines_of(const std::vector<Item>& items, Write write) {
+  std::vector<Line> lines(items.size());
+  std::transform(items.begin(), items.end(), lines.begin(), write);
+  return lines;
+}
+
 std::string name_of(StudyList list) {
   return app::kStudyListNames[static_cast<size_t>(list)];
 }
@@ -220,9 +227,10 @@ void draw_study_conditions(const app::Session& session, PanelContext& context) {
   const app::Study& study = *session.study.study;
   const auto& all = study.conditions;
   if (!section(context.ui, "study.conditions", counted_title("Conditions", ssize(all)))) return;
-  std::vector<Line> lines;
-  for (const app::Condition& one : all) lines.push_back({one.name, note_of(one)});
-  const int i = draw_list(session, context, StudyList::Condition, lines);
+  const int i =
+      draw_list(session, context, StudyList::Condition, lines_of(all, [](const app::Condition& one) {
+                  return Line{one.name, note_of(one)};
+                }));
   if (i >= 0) {
     const app::Condition& condition = all[static_cast<size_t>(i)];
     study_text(context, item("conditions", i, "name"), condition.name);
@@ -249,10 +257,9 @@ void draw_study_conditions(const app::Session& session, PanelContext& context) {
 void draw_study_motions(const app::Session& session, PanelContext& context) {
   const auto& all = session.study.study->motions;
   if (!section(context.ui, "study.motions", counted_title("Motions", ssize(all)), false)) return;
-  std::vector<Line> lines;
-  for (const app::StudyMotion& one : all)
-    lines.push_back({one.name, app::action_of(one) == one.name ? "" : one.action});
-  const int i = draw_list(session, context, StudyList::Motion, lines);
+  const int i = draw_list(session, context, StudyList::Motion, lines_of(all, [](const app::StudyMotion& one) {
+                            return Line{one.name, app::action_of(one) == one.name ? "" : one.action};
+                          }));
   if (i >= 0) {
     const app::StudyMotion& motion = all[static_cast<size_t>(i)];
     study_text(context, item("motions", i, "name"), motion.name);
@@ -275,9 +282,9 @@ void draw_study_motions(const app::Session& session, PanelContext& context) {
 void draw_study_targets(const app::Session& session, PanelContext& context) {
   const auto& all = session.study.study->targets;
   if (!section(context.ui, "study.targets", counted_title("Targets", ssize(all)), false)) return;
-  std::vector<Line> lines;
-  for (const app::StudyTarget& one : all) lines.push_back({one.name, file_name(one.target.path)});
-  const int i = draw_list(session, context, StudyList::Target, lines);
+  const int i = draw_list(session, context, StudyList::Target, lines_of(all, [](const app::StudyTarget& one) {
+                            return Line{one.name, file_name(one.target.path)};
+                          }));
   if (i >= 0) {
     const app::StudyTarget& target = all[static_cast<size_t>(i)];
     study_text(context, item("targets", i, "name"), target.name);
@@ -296,9 +303,10 @@ void draw_study_questions(const app::Session& session, PanelContext& context) {
   const app::Study& study = *session.study.study;
   const auto& all = study.questions;
   if (!section(context.ui, "study.questions", counted_title("Questions", ssize(all)))) return;
-  std::vector<Line> lines;
-  for (const app::StudyQuestion& one : all) lines.push_back({one.name, note_of(one)});
-  const int i = draw_list(session, context, StudyList::Question, lines);
+  const int i =
+      draw_list(session, context, StudyList::Question, lines_of(all, [](const app::StudyQuestion& one) {
+                  return Line{one.name, note_of(one)};
+                }));
   if (i >= 0) {
     const app::StudyQuestion& question = all[static_cast<size_t>(i)];
     study_text(context, item("questions", i, "name"), question.name);
