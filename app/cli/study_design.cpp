@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 
 #include "app/cli/options.hpp"
 #include "app/study/presets.hpp"
 #include "app/study/trial_exports.hpp"
+#include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
@@ -18,6 +20,8 @@ struct NewOptions {
 };
 
 int make_study(const NewOptions& options) {
+  std::error_code ignored;
+  US_CHECK(!std::filesystem::exists(options.out, ignored), options.out, ": is there already");
   const Study study = study_preset(options.preset).make(samples_folder());
   write_study(options.out, study);
   std::printf("%s: %s\n", options.out.c_str(), size_in_words(study).c_str());

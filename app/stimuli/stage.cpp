@@ -58,19 +58,18 @@ SeenExtent extent_of(const MovingSurface& surface, const StudyPicture& picture) 
   return extent;
 }
 
-/// Of a scan the points that are somebody's: a stray or a piece of floor must not make everybody small.
-Points body_points(const SurfaceFrame& frame, const Observation& seen) {
-  constexpr float kReach = 0.35f;  // metres from a joint to fingertips, toes and hair
-  Points points = seen_points(frame);
-  if (!seen.problem.empty() || !seen.joints.allFinite()) return points;
-  Eigen::ArrayXf nearest = Eigen::ArrayXf::Constant(points.rows(), 1e9f);
+/// Of a scan what is somebody's: a stray or a piece of floor must neither make everybody small nor be cut off
+/// at an edge.
+Mesh body_part(const Mesh& scan, const Observation& seen) {
+  constexpr float kReach = 0.5f;  // metres from a joint to fingertips, toes, hair and hems
+  if (!seen.problem.empty() || !seen.joints.allFinite()) return scan;
+  Eigen::ArrayXf nearest = Eigen::ArrayXf::Constant(scan.vertices.rows(), 1e9f);
   for (int j = 0; j < kJointCount; ++j)
-    nearest = nearest.min((points.rowwise() - seen.joints.row(j)).rowwise().squaredNorm().array());
-  Eigen::Index kept = 0;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (nearest[i] <= kReach * kReach) points.row(kept++) = points.row(i);
-  points.conservativeResize(kept, 3);
-  return points;
+    nearest = nearest.min((scan.vertices.rowwise() - seen.joints.row(j)).rowwise().squaredNorm().array());
+  std::vector<char> kept(static_cast<size_t>(scan.vertices.rows()));
+  for (Eigen::Index v = 0; v < scan.vertices.rows(); ++v)
+    kept[static_cast<size_t>(v)] = nearest[v] <= kReach * kReach ? 1 : 0;
+  return kept_part(scan, kept);
 }
 
 bool is_bones_alone(const SourceOptions& options) {
@@ -86,7 +85,7 @@ struct StageMaker::Watched {
   MovingSurface source;           // from `first` on
   std::vector<Observation> seen;  // of all frames
   size_t first = 0;               // that is shown
-  SeenExtent extent;              // of who is in it, strays apart
+  SeenExtent extent;              // of who is in it
 };
 
 StageMaker::StageMaker(Study study, StimulusServices services)
@@ -145,11 +144,11 @@ StageMaker::Watched StageMaker::watched(const StudyMotion& motion, const Method&
     out.seen.push_back(frame->result.observed);
     tell("motion '" + motion.name + "'", ssize(out.seen), static_cast<int64_t>(end));
     if (out.seen.size() <= out.first) continue;
-    if (frame->scan.usable) last = surface_frame(frame->scan.mesh);
+    if (frame->scan.usable) last = surface_frame(body_part(frame->scan.mesh, out.seen.back()));
     if (bones_alone && frame->scan.skeleton) last.skeleton = frame->scan.skeleton->joints;
     share_faces(last, out.source);
     out.source.frames.push_back(last);
-    out.extent.add(body_points(last, out.seen.back()));
+    out.extent.add(seen_points(last));
   }
   US_CHECK(!out.source.frames.empty(), "it starts at ", motion.from_s, " s, its source lasts ",
            printed("%.2f", static_cast<double>(out.seen.size()) / fps), " s");

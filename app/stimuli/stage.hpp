@@ -25,10 +25,10 @@ struct StimulusServices {
 struct Stage {
   int motion = 0, target = 0;          ///< indices into the study's lists
   double motion_s = 0;                 ///< of the motion at speed 1, as far as a clip can show it
-  MovingSurface source;                ///< the scan as it is retargeted; of bones alone the skeleton
+  MovingSurface source;                ///< who is in the scan; of bones alone the skeleton
   MovingSurface standing;              ///< the target in T-pose, one frame
   std::vector<MovingSurface> results;  ///< of each condition
-  StageExtents extents;                ///< over all frames, of all conditions; of a scan without its strays
+  StageExtents extents;                ///< over all frames, of all conditions
 };
 
 /// Makes stages of a study. Keeps what the next one may need: the networks, the last motion's source and what

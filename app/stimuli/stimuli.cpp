@@ -121,7 +121,7 @@ std::string Maker::made_from(const Trial& trial) const {
     text += stamp_of(path) + '\n';
   for (const Condition& condition : study_.conditions)
     if (condition.kind != ConditionKind::Method) text += stamp_of(file_for(condition, motion, target)->path);
-  return printed("%016llx", static_cast<unsigned long long>(fnv1a(text)));
+  return checksum_text(fnv1a(text));
 }
 
 const ClipRecord* Maker::find(const Trial& trial) const {

@@ -61,12 +61,6 @@ Json json_of(const ClipRecord& clip) {
 
 }  // namespace
 
-std::string checksum_of_file(const std::string& path) {
-  std::string bytes;
-  if (!failure_of([&] { bytes = read_file(path); }).empty()) return {};
-  return printed("%016llx", static_cast<unsigned long long>(fnv1a(bytes)));
-}
-
 void write_manifest(const std::string& folder, const std::string& name, const std::string& study,
                     const std::vector<ClipRecord>& clips) {
   Json json{{"format", "understudy-stimuli"},

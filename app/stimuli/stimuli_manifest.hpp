@@ -95,7 +95,4 @@ class MadeClips {
   std::map<std::string, Made> made_;
 };
 
-/// FNV-1a of a file, 16 hexadecimal digits; empty where it cannot be read.
-std::string checksum_of_file(const std::string& path);
-
 }  // namespace understudy::app

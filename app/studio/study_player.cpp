@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/run/interrupt.hpp"
 #include "app/study/trial_exports.hpp"
 #include "render/gl/functions.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 
 namespace understudy::app {
 namespace {
@@ -27,12 +29,14 @@ std::string clip_file(const StudyRun& run, const std::string& stimuli, const Tri
 }
 
 std::string time_of_day() {
-  const std::time_t now = std::time(nullptr);
+  using std::chrono::system_clock, std::chrono::milliseconds;
+  const auto since = std::chrono::duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+  const auto now = static_cast<std::time_t>(since / 1000);
   std::tm utc{};
   gmtime_r(&now, &utc);
   char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
+  return text + printed(".%03dZ", static_cast<int>(since % 1000));
 }
 
 }  // namespace
@@ -139,7 +143,8 @@ double StudyPlayer::patience_s() const {
 void StudyPlayer::run() {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();
-  while (!is_over()) frame(std::chrono::duration<double>(Clock::now() - began).count(), patience_s());
+  while (!is_over() && !interrupted())
+    frame(std::chrono::duration<double>(Clock::now() - began).count(), patience_s());
 }
 
 }  // namespace understudy::app

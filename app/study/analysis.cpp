@@ -415,6 +415,7 @@ StudyReport analyse(const StudyAnswers& all_answers, const AnalysisOptions& opti
   }
 
   StudyReport report;
+  report.study = options.study;
   report.factors = design.names;
   std::vector<size_t> kept;
   for (size_t i = 0; i < everybody.size(); ++i) {

@@ -39,6 +39,7 @@ struct AnalysisOptions {
   /// factor is kPairFactor.
   bool pairs = false;
   int most_contrast_levels = 16;  ///< interactions with more combinations of levels get no contrasts
+  std::string study{};            ///< its name, for the report
 };
 
 struct Exclusion {
@@ -96,6 +97,7 @@ struct ParticipantReport {
 };
 
 struct StudyReport {
+  std::string study;  ///< its name; empty: not known
   std::vector<std::string> factors;
   std::vector<Exclusion> excluded;
   std::vector<QuestionReport> questions;
@@ -114,7 +116,7 @@ std::string paired(const std::string& first, const std::string& second);
 /// line), an unknown question or factor, one participant, one condition.
 StudyReport analyse(const StudyAnswers& answers, const AnalysisOptions& options);
 
-/// {"excluded": [PARTICIPANT], "exclusion_reasons": {PARTICIPANT: SENTENCE}, "participants", "factors",
+/// {"study": NAME, "excluded": [PARTICIPANT], "exclusion_reasons": {PARTICIPANT: SENTENCE}, "participants", "factors",
 /// "questions": {NAME: {"anova": {EFFECT: {"F", "df1", "df2", "p", "eta2p"}}, "contrasts": [{"effect", "a",
 /// "b", "t", "df", "p"}], "medians": {EFFECT: {LEVEL: median}}, "quartiles": {EFFECT: {LEVEL: [first,
 /// third]}}, "one_way": {FACTOR: {"F", ..., "tukey": [{"a", "b", "difference", "t", "df", "p"}]}}, "icc":

@@ -179,11 +179,9 @@ Json json_of(const ParticipantReport& participant, const StudyReport& report) {
 }  // namespace
 
 Json to_json(const StudyReport& report) {
-  Json json = {{"excluded", Json::array()},
-               {"exclusion_reasons", Json::object()},
-               {"participants", report.analysed},
-               {"factors", report.factors},
-               {"questions", Json::object()}};
+  Json json = {
+      {"study", report.study},           {"excluded", Json::array()}, {"exclusion_reasons", Json::object()},
+      {"participants", report.analysed}, {"factors", report.factors}, {"questions", Json::object()}};
   for (const Exclusion& one : report.excluded) {
     json["excluded"].push_back(one.participant);
     json["exclusion_reasons"][one.participant] = one.reason;

@@ -92,12 +92,23 @@ void AnswerFile::read(const Study& study, const std::string& study_folder) {
   answers_ = std::move(before.answers);
 }
 
-bool AnswerFile::has(const Trial& trial, const Study& study) const {
-  return std::all_of(trial.questions.begin(), trial.questions.end(), [&](int question) {
-    return std::any_of(answers_.begin(), answers_.end(), [&](const StudyAnswer& one) {
-      return one.trial == trial.id && one.question == study.questions[question].name;
+std::vector<StudyAnswer> AnswerFile::answers_to(const Trial& trial, const Study& study) const {
+  std::vector<StudyAnswer> given;
+  for (const int question : trial.questions) {
+    const std::string& name = study.questions[question].name;
+    const auto at = std::find_if(answers_.begin(), answers_.end(), [&](const StudyAnswer& one) {
+      return one.trial == trial.id && one.question == name;
     });
-  });
+    StudyAnswer none;
+    none.trial = trial.id, none.question = name;
+    given.push_back(at != answers_.end() ? *at : none);
+  }
+  return given;
+}
+
+bool AnswerFile::has(const Trial& trial, const Study& study) const {
+  const std::vector<StudyAnswer> given = answers_to(trial, study);
+  return std::none_of(given.begin(), given.end(), [](const StudyAnswer& one) { return one.answer.empty(); });
 }
 
 void AnswerFile::save(const Trial& trial, const Study& study, std::vector<StudyAnswer> answers) {

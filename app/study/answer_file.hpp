@@ -1,4 +1,4 @@
-// The answers of one participant as they come: saved after each trial, taken up again later.
+// The answers of one participant as they come: saved after each, taken up again later.
 #pragma once
 
 #include <memory>
@@ -26,6 +26,8 @@ class AnswerFile {
   const std::string& path() const { return path_; }
   /// All that was answered, in the order of the file.
   const std::vector<StudyAnswer>& answers() const { return answers_; }
+  /// Those to the trial's questions, in their order; of one that is not there, an empty answer.
+  std::vector<StudyAnswer> answers_to(const Trial& trial, const Study& study) const;
   /// Whether each question that the trial asks has been answered.
   bool has(const Trial& trial, const Study& study) const;
   /// Saves a trial's answers, in place of earlier ones to the same trial. Their factors are filled in. Throws

@@ -1,7 +1,9 @@
 #include "app/study/clip_check.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
+#include "retarget/base/checksum.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 
@@ -20,6 +22,16 @@ std::string changes_of_clips(const Json& before, const Json& now) {
   return changes;
 }
 
+/// Each file as long and of the sum that the manifest says; one that it does not name is somebody's own.
+void check_whole(const std::vector<std::string>& clips, const Json& manifest, const std::string& folder,
+                 const std::string& advice) {
+  for (const Json& made : manifest["clips"]) {
+    const std::string file = made.value("file", ""), sum = made.value("checksum", "");
+    if (std::find(clips.begin(), clips.end(), file) == clips.end()) continue;
+    US_CHECK(checksum_of_file(folder + "/" + file) == sum, folder, "/", file, " is damaged", advice);
+  }
+}
+
 }  // namespace
 
 void check_clips(const std::vector<std::string>& clips, const Study& study, const std::string& path,
@@ -33,11 +45,13 @@ void check_clips(const std::vector<std::string>& clips, const Study& study, cons
   const std::string manifest = folder + "/manifest.json";
   if (std::error_code ignored; !fs::exists(manifest, ignored)) return;
   const Json made = read_json(manifest);
-  const bool is_manifest = made.is_object() && made.contains("design") && made["design"].is_object();
+  const bool is_manifest = made.is_object() && made.contains("design") && made["design"].is_object() &&
+                           made.contains("clips") && made["clips"].is_array();
   US_CHECK(is_manifest, manifest, ": is not of clips", advice);
   const std::string changes =
       changes_of_clips(made["design"], Json::parse(digest_of(study, folder_of_file(path))));
   US_CHECK(changes.empty(), folder, " has clips of the study before it was changed (", changes, ")", advice);
+  check_whole(clips, made, folder, advice);
 }
 
 }  // namespace understudy::app

@@ -9,8 +9,8 @@
 namespace understudy::app {
 
 /// `clips`: "clips/NAME.mp4", each; `path`: the study's file; `folder`: that `study stimuli` wrote. Throws
-/// Error, one sentence that says how clips are made: one is not there, or they are of the study before it was
-/// changed, as the folder's manifest says.
+/// Error, one sentence that says how clips are made: one is not there or, as the folder's manifest says, is
+/// damaged, or they are of the study before it was changed.
 void check_clips(const std::vector<std::string>& clips, const Study& study, const std::string& path,
                  const std::string& folder);
 

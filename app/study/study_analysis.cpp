@@ -108,6 +108,7 @@ StudyAnswers with_pairs(StudyAnswers answers, const Study& study) {
 
 AnalysisOptions analysis_options(const Study& study) {
   AnalysisOptions options;
+  options.study = study.name;
   options.pairs = shows_pairs(study);
   bool is_whole = study.plan.trials_per_participant == 0;
   for (const StudyQuestion& question : study.questions) {

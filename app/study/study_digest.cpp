@@ -11,7 +11,7 @@ std::string text_of(const Json& json) {
 }
 
 std::string checksum_of(const Json& json) {
-  return printed("%016llx", static_cast<unsigned long long>(fnv1a(text_of(json))));
+  return checksum_text(fnv1a(text_of(json)));
 }
 
 /// The parts of the design by their names, in the order of the study.

@@ -1,6 +1,7 @@
 #include "app/study/study_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "retarget/base/error.hpp"
@@ -50,18 +51,24 @@ void StudyRun::begin() {
 
 void StudyRun::show_next() {
   screen_ = RunScreen::Clip;
-  chosen_.assign(trial().questions.size(), "");
-  took_s_.assign(trial().questions.size(), 0);
+  chosen_.clear(), took_s_.clear(), shown_at_.clear();
   replays_ = 0;
-  shown_at_.clear();
+  is_asked_ = false;
+  for (const StudyAnswer& before : file_.answers_to(trial(), study_)) {
+    chosen_.push_back(before.answer);
+    took_s_.push_back(before.answer.empty() ? 0 : before.rt_ms / 1000);
+    if (before.shown_at.empty()) continue;
+    shown_at_ = before.shown_at;  // it was left in the middle: the clip is seen once more
+    replays_ = before.replays + 1;
+  }
 }
 
 void StudyRun::clip_ended(double now_s, const std::string& shown_at) {
   if (screen_ != RunScreen::Clip) return;
   screen_ = RunScreen::Questions;
-  if (!shown_at_.empty()) return;  // it was played again: the time runs on
-  asked_at_s_ = now_s;
-  shown_at_ = shown_at;
+  if (!std::exchange(is_asked_, true)) asked_at_s_ = now_s;  // played again, the time runs on
+  if (shown_at_.empty()) shown_at_ = shown_at;
+  static_cast<void>(failure_of([this] { save(); }));  // the first answer tells
 }
 
 void StudyRun::choose(int index, const std::string& answer, double now_s) {
@@ -73,6 +80,7 @@ void StudyRun::choose(int index, const std::string& answer, double now_s) {
            "\" is no answer to \"", excerpt(question.name), "\"");
   chosen_[index] = answer;
   took_s_[index] = now_s - asked_at_s_;
+  save();
 }
 
 void StudyRun::replay() {
@@ -81,17 +89,23 @@ void StudyRun::replay() {
   screen_ = RunScreen::Clip;
 }
 
-void StudyRun::confirm() {
-  if (screen_ != RunScreen::Questions || !is_complete()) return;
+void StudyRun::save() {
+  is_saved_ = false;
   std::vector<StudyAnswer> answers(chosen_.size());
   for (size_t i = 0; i < answers.size(); ++i) {
     answers[i].question = study_.questions[trial().questions[i]].name;
     answers[i].answer = chosen_[i];
-    answers[i].rt_ms = 1000 * took_s_[i];
+    answers[i].rt_ms = chosen_[i].empty() ? std::nan("") : 1000 * took_s_[i];
     answers[i].replays = replays_;
     answers[i].shown_at = shown_at_;
   }
   file_.save(trial(), study_, std::move(answers));
+  is_saved_ = true;
+}
+
+void StudyRun::confirm() {
+  if (screen_ != RunScreen::Questions || !is_complete()) return;
+  if (!is_saved_) save();
   const bool was_practice = trial().is_practice;
   skip_answered();
   if (at_ == trials_.size()) {

@@ -46,20 +46,22 @@ class StudyRun {
   /// Goes on from Welcome and Pause.
   void begin();
   /// The clip has been shown to its end. now_s: seconds of any clock that never jumps; shown_at: the time of
-  /// day (ISO 8601), as it is saved.
+  /// day (ISO 8601), as it is saved. That it was shown is saved at once, if that can be.
   void clip_ended(double now_s, const std::string& shown_at);
-  /// Chooses an answer to question `index` of the trial's; it may be chosen anew. Throws Error where it is
-  /// none of the question's.
+  /// Chooses an answer to question `index` of the trial's, and saves it; it may be chosen anew. Throws Error
+  /// where it is none of the question's, and where it cannot be saved: then it is chosen all the same.
   void choose(int index, const std::string& answer, double now_s);
   /// Shows the clip again; answers chosen so far stay.
   void replay();
-  /// Saves the answers and goes on to the next trial, a pause or the end. Throws Error where they cannot be
-  /// saved: then the screen stays, and nothing is lost. Does nothing until is_complete().
+  /// Goes on to the next trial, a pause or the end; saves the answers that could not be saved before. Throws
+  /// Error where they still cannot: then the screen stays, and nothing is lost. Does nothing until
+  /// is_complete().
   void confirm();
 
  private:
   void skip_answered();
   void show_next();
+  void save();
 
   Study study_;
   std::string participant_;
@@ -71,6 +73,8 @@ class StudyRun {
   std::vector<std::string> chosen_;
   std::vector<double> took_s_;  // of each question, from when it could be answered to its last choice
   double asked_at_s_ = 0;
+  bool is_asked_ = false;  // the clip has been shown to its end since this began
+  bool is_saved_ = false;
   std::string shown_at_;
   int replays_ = 0;
 };

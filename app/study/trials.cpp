@@ -275,7 +275,7 @@ std::string clip_name(const Study& study, const Trial& trial) {
   if (trial.other >= 0) add(study.conditions[trial.other].name);
   add(study.motions[trial.motion].name);
   add(study.targets[trial.target].name);
-  return printed("%016llx", static_cast<unsigned long long>(hash));
+  return checksum_text(hash);
 }
 
 }  // namespace understudy::app

@@ -114,7 +114,7 @@ std::string web_data(const Study& study, const std::string& path, int participan
   Json json = {{"name", study.name},
                {"consent", study.consent},
                {"design", design},
-               {"key", printed("%016llx", static_cast<unsigned long long>(fnv1a(design)))},
+               {"key", checksum_text(fnv1a(design))},
                {"minutes", std::ceil(minutes_of(study))},
                {"background", colour_text(study.picture.background)},
                {"break_every", study.plan.break_every},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace understudy {
@@ -14,5 +15,10 @@ constexpr uint64_t fnv1a(std::string_view bytes, uint64_t hash = kFnvStart) {
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
   return hash;
 }
+
+/// 16 hexadecimal digits.
+std::string checksum_text(uint64_t checksum);
+/// FNV-1a of a file's bytes as text; empty where it cannot be read.
+std::string checksum_of_file(const std::string& path);
 
 }  // namespace understudy

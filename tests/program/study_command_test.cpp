@@ -15,6 +15,8 @@ TEST_F(StudyCommand, MakesThePresetsAndListsTheirTrials) {
     const Finished made = run_program({"study", "new", "--preset", preset, "--out", file});
     ASSERT_EQ(made.code, 0) << made.err;
     EXPECT_NE(made.out.find(std::to_string(trials) + " trials and"), std::string::npos) << made.out;
+    expect_clean_failure(run_program({"study", "new", "--preset", preset, "--out", file}),
+                         file + ": is there already");
     const Finished listed = run_program({"study", "trials", file});
     ASSERT_EQ(listed.code, 0) << listed.err;
     EXPECT_EQ(line_count(listed.out), trials + 1) << listed.out;
@@ -68,6 +70,7 @@ TEST_F(StudyCommand, RefusesWhatIsNoStudyOrHasLostAFile) {
   const std::string file = scratch.path("a.study");
   write_text(file, "{\"format\": \"understudy document\"}");
   expect_clean_failure(run_program({"study", "trials", file}), "is not an Understudy study");
+  std::filesystem::remove(file);
   ASSERT_EQ(run_program({"study", "new", "--preset", "rekik", "--out", file}).code, 0);
   Json json = Json::parse(read_bytes(file));
   json["conditions"][1] = {{"name", "H4D"},

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <set>
 
+#include "app/run/interrupt.hpp"
 #include "app/study/answers.hpp"
 #include "app/study/trial_exports.hpp"
 #include "render/video_writer.hpp"
@@ -164,6 +166,20 @@ TEST_F(StudyPlayerTest, PlaysTheClipInItsOwnTimeAndAgain) {
   EXPECT_EQ(saved()[0].replays, 1);
 }
 
+TEST_F(StudyPlayerTest, AsksForEachAnswerAndChangesNone) {
+  open();
+  key(Key::Enter);
+  watch_clip();
+  ASSERT_GE(run_->chosen().size(), 2u);
+  const auto without_hint = surface_->picture().pixels;
+  key(Key::Digit3);
+  key(Key::Enter);
+  EXPECT_NE(surface_->picture().pixels, without_hint);
+  key(Key::Digit1);
+  EXPECT_EQ(run_->chosen()[0], "3");
+  EXPECT_EQ(run_->chosen()[1], offered_answers(study_.questions[run_->trial().questions[1]])[0]);
+}
+
 TEST_F(StudyPlayerTest, OnASlowMachinePassesPicturesOver) {
   open();
   key(Key::Enter);
@@ -179,6 +195,9 @@ TEST_F(StudyPlayerTest, IsLeftAndTakenUpAgain) {
   key(Key::Escape);
   const size_t before = saved().size();
   step(40);  // the clip stands still
+  key(Key::Enter);
+  EXPECT_EQ(run_->screen(), RunScreen::Clip);
+  key(Key::Escape);
   click("run.stay");
   EXPECT_EQ(run_->screen(), RunScreen::Clip);
   key(Key::Escape);
@@ -190,6 +209,15 @@ TEST_F(StudyPlayerTest, IsLeftAndTakenUpAgain) {
   key(Key::Enter);
   answer(true);
   EXPECT_GT(saved().size(), before);
+}
+
+/// Last: the request stays.
+TEST_F(StudyPlayerTest, EndsWhenItIsAskedTo) {
+  catch_interrupts();
+  open();
+  std::raise(SIGTERM);
+  player_->run();
+  EXPECT_EQ(run_->screen(), RunScreen::Welcome);
 }
 
 }  // namespace

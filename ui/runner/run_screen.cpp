@@ -160,15 +160,16 @@ void draw_progress(const Screen& s) {
   centred(of_count(run), width);
 }
 
+/// The first question that is not answered; `otherwise` where all are.
+int first_open(const StudyRun& run, int otherwise) {
+  const std::vector<std::string>& chosen = run.chosen();
+  const auto at = std::find(chosen.begin(), chosen.end(), "");
+  return at == chosen.end() ? otherwise : static_cast<int>(at - chosen.begin());
+}
+
 void choose(const Screen& s, int question, const std::string& answer) {
-  s.run().choose(question, answer, s.frame.now_s);
-  const std::vector<std::string>& chosen = s.run().chosen();
-  s.state.marked = question;
-  for (size_t i = 0; i < chosen.size(); ++i)
-    if (chosen[i].empty()) {
-      s.state.marked = static_cast<int>(i);
-      return;
-    }
+  s.state.problem = failure_of([&] { s.run().choose(question, answer, s.frame.now_s); });
+  s.state.marked = first_open(s.run(), question);
 }
 
 /// A bar beside the question that the keys are about.
@@ -232,8 +233,25 @@ void draw_question(const Screen& s, int index) {
 }
 
 void confirm(const Screen& s) {
+  s.state.wants_all = !s.run().is_complete();
+  if (s.state.wants_all) {
+    s.state.marked = first_open(s.run(), 0);
+    return;
+  }
   s.state.problem = failure_of([&] { s.run().confirm(); });
   if (s.state.problem.empty()) s.state.marked = 0;
+}
+
+/// What keeps the participant here, if anything does.
+void draw_obstacle(const Screen& s) {
+  const bool is_unsaved = !s.state.problem.empty();
+  if (!is_unsaved && (!s.state.wants_all || s.run().is_complete())) return;
+  const ColorScope danger(ImGuiCol_Text, s.ui.theme().danger);
+  centred(is_unsaved ? "Your answers could not be saved: " + s.state.problem +
+                           ". They are kept here; tell the experimenter, then continue."
+                     : "Please answer every question.",
+          s.ui.px(kColumn));
+  gap(s.ui, kTall);
 }
 
 void take_keys(const Screen& s) {
@@ -256,13 +274,7 @@ void draw_questions(const Screen& s) {
   {
     const MiddleScope middle(ui, "questions");
     for (size_t i = 0; i < s.run().chosen().size(); ++i) draw_question(s, static_cast<int>(i));
-    if (!s.state.problem.empty()) {
-      const ColorScope danger(ImGuiCol_Text, ui.theme().danger);
-      centred("Your answers could not be saved: " + s.state.problem +
-                  ". They are kept here; tell the experimenter, then continue.",
-              ui.px(kColumn));
-      gap(ui, kTall);
-    }
+    draw_obstacle(s);
     ButtonOptions again, on;
     again.shortcut = "R", again.width = on.width = ui.px(160);
     on.shortcut = "Enter", on.look = ButtonLook::Main, on.disabled = !s.run().is_complete();
@@ -283,9 +295,9 @@ void ask_to_leave(const Screen& s) {
   centred("What you have answered is saved. You can go on later with this trial.", s.ui.px(kColumn));
   gap(s.ui, 2 * kTall);
   ButtonOptions stay, leave;
-  stay.look = ButtonLook::Main, stay.width = leave.width = s.ui.px(140), stay.shortcut = "Escape";
+  stay.look = ButtonLook::Main, stay.width = leave.width = s.ui.px(140), stay.shortcut = "Enter";
   to_middle(2 * stay.width + s.ui.px(12));
-  if (button(s.ui, "run.stay", "Stay", stay)) s.state.asks_to_leave = false;
+  if (button(s.ui, "run.stay", "Stay", stay) || key_pressed(Key::Enter, false)) s.state.asks_to_leave = false;
   ImGui::SameLine(0, s.ui.px(12));
   if (outlined_button(s.ui, "run.leave", "Leave", leave)) s.state.leaves = true;
 }

@@ -25,14 +25,16 @@ struct RunFrame {
 
 /// Between frames.
 struct RunScreenState {
-  int marked = 0;       ///< the question that the number keys are about
-  std::string problem;  ///< why answers could not be saved, until they are; empty: nothing
+  int marked = 0;          ///< the question that the number keys are about
+  std::string problem;     ///< why answers could not be saved, until they are; empty: nothing
+  bool wants_all = false;  ///< the participant would go on, and a question is not answered
   bool asks_to_leave = false;
   bool leaves = false;  ///< the participant is done here, or has left
 };
 
 /// Draws the screen and does what mouse and keys ask: 1 .. 9 choose at the marked question, the arrows mark
-/// another, Enter goes on, R plays the clip again, Escape asks whether to leave. Marks: "run.begin",
+/// another, Enter goes on once all is answered,
+/// R plays the clip again, Escape asks whether to leave. Marks: "run.begin",
 /// "run.question.N.M", "run.replay", "run.continue", "run.leave", "run.stay". In a frame of the Gui.
 void draw_run_screen(Ui& ui, RunScreenState& state, const RunFrame& frame);
 

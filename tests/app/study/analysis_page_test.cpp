@@ -29,6 +29,7 @@ TEST(BoxPlot, HasABoxForEachLevel) {
 
 TEST(StudyPage, ShowsQuestionsTestsAndWhoIsExcluded) {
   AnalysisOptions options;
+  options.study = "a & b";
   options.factors = {"method", "motion"};
   options.attention = {AttentionCheck{"action", "", "motion"}};
   const std::string folder = US_SOURCE_DIR "/tests/data/study/exclusions";
@@ -36,6 +37,9 @@ TEST(StudyPage, ShowsQuestionsTestsAndWhoIsExcluded) {
   for (auto& [name, text] : page_files(analyse(read_answers(folder), options))) files[name] = text;
   const std::string& page = files["index.html"];
   EXPECT_EQ(count(page, "<svg"), 2);
+  EXPECT_EQ(count(page, "Results: a &amp; b"), 2);  // title and heading
+  EXPECT_EQ(count(page, "<td>E07 (excluded)</td><td>18</td>"), 1) << page;
+  EXPECT_EQ(count(page, "href=\"medians.csv\""), 1);
   EXPECT_EQ(count(page, "11 of 14 participants are analysed"), 1);
   EXPECT_EQ(count(page, "E07 is excluded: has 8 of 9 answers to &quot;shape&quot;"), 1);
   EXPECT_EQ(count(page, "<td>method</td><td>F(2, 20)</td><td>14.29</td><td>0.0001</td>"), 1) << page;

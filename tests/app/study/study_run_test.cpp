@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -99,7 +100,8 @@ TEST_F(StudyRunTest, WaitsForEachAnswer) {
   run.choose(0, "7", 101);
   run.confirm();
   EXPECT_EQ(run.screen(), RunScreen::Questions);
-  EXPECT_FALSE(fs::exists(file()));
+  EXPECT_EQ(saved()[0].answer, "7");  // at once
+  EXPECT_EQ(saved()[1].answer, "");
   EXPECT_EQ(failure_of([&] { run.choose(0, "8", 101); }), "\"8\" is no answer to \"natural\"");
   EXPECT_THROW(run.choose(3, "1", 101), Error);
 }
@@ -129,8 +131,10 @@ TEST_F(StudyRunTest, GoesOnAfterACrash) {
     StudyRun run = start();
     answer_all(run, 7);
     run.begin();
-    run.clip_ended(100, "now");
-    run.choose(0, "5", 101);
+    run.clip_ended(100, "before");
+    run.replay();
+    run.clip_ended(110, "again");
+    run.choose(0, "5", 111);
     _exit(0);  // nothing is closed
   }
   int status = 1;
@@ -144,6 +148,22 @@ TEST_F(StudyRunTest, GoesOnAfterACrash) {
     EXPECT_EQ(run.screen(), RunScreen::Welcome);
     EXPECT_EQ(run.trial().id, trials_of(study_, "P1")[7].id);
     EXPECT_EQ(run.number(), 6);  // two were practice
+    run.begin();
+    EXPECT_EQ(run.screen(), RunScreen::Clip);
+    EXPECT_EQ(run.chosen()[0], "5");
+    EXPECT_EQ(run.chosen()[1], "");
+    run.clip_ended(50, "after");
+    run.choose(1, offered_answers(study_.questions[run.trial().questions[1]])[0], 52);
+    const std::vector<StudyAnswer> all = saved();
+    const auto first = std::find_if(all.begin(), all.end(),
+                                    [&](const StudyAnswer& one) { return one.trial == run.trial().id; });
+    ASSERT_GE(all.end() - first, 2);
+    const StudyAnswer &kept = *first, &added = *(first + 1);
+    EXPECT_EQ(kept.answer, "5");
+    EXPECT_EQ(kept.rt_ms, 11000);
+    EXPECT_EQ(added.rt_ms, 2000);
+    EXPECT_EQ(added.replays, 2);  // one by hand, one after the crash
+    EXPECT_EQ(added.shown_at, "before");
     answer_all(run);
   }
   EXPECT_GT(saved().size(), before);
@@ -163,11 +183,14 @@ TEST_F(StudyRunTest, KeepsAnswersThatCannotBeSaved) {
   answer_all(run, 3);
   const std::string before = tests::read_bytes(file());
   run.begin();
-  run.clip_ended(100, "now");
-  for (size_t i = 0; i < run.chosen().size(); ++i)
-    run.choose(static_cast<int>(i), offered_answers(study_.questions[run.trial().questions[i]])[0], 101);
   {
     const test::FullDisk disk(100);
+    run.clip_ended(100, "now");
+    for (size_t i = 0; i < run.chosen().size(); ++i) {
+      const std::string first = offered_answers(study_.questions[run.trial().questions[i]])[0];
+      EXPECT_NE(failure_of([&] { run.choose(static_cast<int>(i), first, 101); }).find(file()),
+                std::string::npos);
+    }
     EXPECT_NE(failure_of([&] { run.confirm(); }).find(file()), std::string::npos);
   }
   EXPECT_EQ(run.screen(), RunScreen::Questions);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/study/trial_exports.hpp"
+#include "retarget/base/checksum.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/part_file.hpp"
 #include "tests/app/program.hpp"
@@ -140,7 +141,8 @@ TEST_F(WebStudy, NamesAClipThatIsMissingAndWhatMakesIt) {
 }
 
 TEST_F(WebStudy, RefusesClipsOfTheStudyBeforeItWasChanged) {
-  const Json manifest = {{"design", Json::parse(digest_of(study, scratch.path("")))}};
+  const Json manifest = {{"design", Json::parse(digest_of(study, scratch.path("")))},
+                         {"clips", Json::array()}};
   write_file(options.clips + "/manifest.json", json_text(manifest));
   study.questions.pop_back();
   study.plan.repetitions = 2;
@@ -152,6 +154,16 @@ TEST_F(WebStudy, RefusesClipsOfTheStudyBeforeItWasChanged) {
                 ": make the clips with understudy study stimuli " + path() + " --out " + options.clips);
   write_file(options.clips + "/manifest.json", "[]");
   EXPECT_EQ(failure().find(options.clips + "/manifest.json: is not of clips: make"), 0u) << failure();
+}
+
+TEST_F(WebStudy, RefusesADamagedClip) {
+  const std::string clip = web_clips(study, 3)[0], path = options.clips + "/" + clip;
+  const Json made = {{"file", clip}, {"checksum", checksum_of_file(path)}};
+  const Json manifest = {{"design", Json::parse(digest_of(study, scratch.path("")))}, {"clips", {made}}};
+  write_file(options.clips + "/manifest.json", json_text(manifest));
+  EXPECT_EQ(failure(), "");
+  write_file(path, "cut");
+  EXPECT_EQ(failure().find(path + " is damaged: make the clips with"), 0u) << failure();
 }
 
 TEST_F(WebStudy, NamesAFolderThatCannotBeWritten) {

@@ -6,6 +6,7 @@
 #include "app/stimuli/stimuli_manifest.hpp"
 #include "app/study/trial_exports.hpp"
 #include "render/video_reader.hpp"
+#include "retarget/base/checksum.hpp"
 #include "retarget/base/file.hpp"
 #include "retarget/base/text.hpp"
 #include "tests/app/stimuli/gl/small_study.hpp"
