@@ -179,12 +179,11 @@ constexpr const char* kPairNotes =
 constexpr const char* kNotes =
     "<p>Effects: analysis of variance of aligned ranks (Wobbrock et al. 2011), each effect against its "
     "interaction with the participants, without sphericity correction. Contrasts: ART-C (Elkin et al. 2021), "
-    "and "
-    "Tukey's honestly significant difference of the participants' means; both adjusted for all pairs. On "
-    "scales "
-    "of few points aligned ranks find effects that are not there a little more often than they should: at "
-    "the 5 % level in 5 to 7 % of simulated designs of this kind. Boxes: quartiles and median of single "
-    "answers, whiskers to 1.5 times the quartiles' distance.</p>\n";
+    "and Tukey's honestly significant difference of the participants' means; both adjusted for all pairs. Of "
+    "answers on scales of few points aligned ranks find effects that are not there more often than they "
+    "should: in 5 to 8 % of simulated designs at the 5 % level, most often with one answer to each "
+    "combination. Boxes: quartiles and median of single answers, whiskers to 1.5 times the quartiles' "
+    "distance.</p>\n";
 
 std::string counted(const StudyReport& report) {
   std::string factors;
@@ -236,7 +235,7 @@ std::vector<std::pair<std::string, std::string>> page_files(const StudyReport& r
       page += svg;
       files.emplace_back(printed("boxes_%zu_%zu.svg", q + 1, f + 1), std::move(svg));
     }
-    page += "</div>\n" + summary_table(report, question) + test_table(question) + pair_table(question);
+    page += "</div>\n" + test_table(question) + pair_table(question) + summary_table(report, question);
     page += "<p>Agreement between participants, ICC(2,1): " + figure(question.agreement) + ".</p>\n";
   }
   for (const PreferenceReport& preference : report.preferences) page += preference_tables(preference);
