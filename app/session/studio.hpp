@@ -19,6 +19,7 @@ struct StudioServices {
   std::function<Networks(const Method&, const NetworkParts&)> networks;  ///< called off the UI thread
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
   std::string samples;                   ///< folder of the bundled samples; empty: none
+  std::string program;                   ///< that shows a study; empty: this one, once more
   std::string settings_file;             ///< empty: settings are not kept
   bool greets_newcomers = false;         ///< without a settings file yet the cards of Getting started come
   std::string autosave_folder;           ///< empty: no autosave

@@ -4,6 +4,7 @@
 
 #include "app/session/command_sets.hpp"
 #include "app/session/study_edits.hpp"
+#include "app/session/study_showing.hpp"
 #include "app/study/analysis_page.hpp"
 #include "app/study/presets.hpp"
 #include "app/study/study_analysis.hpp"
@@ -29,13 +30,15 @@ void show_panel(Studio& studio) {
   if (studio.commands().find("panel.show") != nullptr) studio.run("panel.show", {"study", "on"});
 }
 
-/// In place of the open one, of which nothing is kept.
+/// In place of the open one, of which nothing is kept but its folders.
 void replace_study(Studio& studio, std::optional<Study> study, const std::string& path) {
   StudyState fresh;
   fresh.history = StudyHistory(studio.session().settings.undo_depth);
   fresh.study = std::move(study);
   fresh.path = path;
   StudyState& state = studio.session().study;
+  fresh.folders = std::move(state.folders);
+  fresh.folders.erase("");
   state = std::move(fresh);
   follow_design(state);
   if (state.study) show_panel(studio);
@@ -296,6 +299,8 @@ void save_study(Studio& studio, const std::string& path) {
   US_CHECK(state.study, "no study is open");
   const std::string whole = fs::absolute(path).lexically_normal().string();
   write_draft(whole, *state.study);
+  state.folders[whole] = state.folders[state.path];
+  if (state.path.empty()) state.folders.erase(state.path);
   state.path = whole;
   state.changed = false;
   remember(studio.session().settings.recent_studies, whole);
@@ -310,6 +315,7 @@ void add_study_commands(Commands& commands) {
   add_condition_files(commands);
   add_design(commands);
   add_outputs(commands);
+  add_study_showing(commands);
 }
 
 }  // namespace understudy::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,12 +17,18 @@ namespace understudy::app {
 enum class StudyList { Condition, Motion, Target, Question, Trial };
 constexpr Names<5> kStudyListNames{"condition", "motion", "target", "question", "trial"};
 
+/// Of a study, used since the program started; empty: not yet.
+struct StudyFolders {
+  std::string clips, answers;
+};
+
 struct StudyState {
   std::optional<Study> study;  ///< none: no study is open; it may be one that check() refuses
   std::string path;            ///< of the .study file; empty: not saved yet
   bool changed = false;
   StudyHistory history;
   std::string participant;  ///< in whose order the trials are listed; empty: all of the design, in its order
+  std::map<std::string, StudyFolders> folders;  ///< of each study, by its path
   std::array<int, 5> chosen{};  ///< of each list, in the order of StudyList; past its end where it is empty
 
   // What follows from the design.

@@ -33,6 +33,7 @@ void render_stimuli(Call& c) {
   options.out = c.path(0, "folder");
   options.study_folder = state.path.empty() ? "" : folder_of_file(state.path);
   options.separate = c.has("separate", 1);
+  c.session.study.folders[state.path].clips = options.out;
   const auto report = std::make_shared<StimuliReport>();
   c.studio.jobs().start(
       "Rendering " + state.study->name,

@@ -1,8 +1,10 @@
 // The study that is open beside the document: its edits, undo, files, and the questions before it is lost.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include "app/session/study_edits.hpp"
 #include "app/study/presets.hpp"
+#include "app/study/web_study.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -16,6 +18,7 @@ class StudyInStudio : public StudioTest {
     StudioTest::SetUp();
     StudioServices all = services();
     all.samples = folder_.string();
+    all.program = path("runner");
     studio_ = std::make_unique<Studio>(all);
   }
   void run(const std::string& line) {
@@ -37,6 +40,21 @@ class StudyInStudio : public StudioTest {
     run("study.new takes");
     run("study.add_question likert");
   }
+
+  /// A study that is saved as mine.study, and its clips in `films`.
+  void make_shown() {
+    make_whole();
+    run("study.save_as mine");
+    fs::create_directories(path("films/clips"));
+    for (const std::string& clip : web_clips(study(), study().plan.participants))
+      std::ofstream(path("films/" + clip)) << clip;
+  }
+  /// What is started in place of the program itself.
+  void write_runner(const std::string& script) {
+    std::ofstream(path("runner")) << "#!/bin/sh\n" << script;
+    fs::permissions(path("runner"), fs::perms::owner_all);
+  }
+  std::string last_notice() { return session().notices.empty() ? "" : session().notices.back().text; }
 
   std::unique_ptr<Studio> studio_;
 };
@@ -278,6 +296,81 @@ TEST_F(StudyInStudio, AnalysesAFolderOfAnswers) {
   ASSERT_FALSE(session().notices.empty());
   EXPECT_EQ(session().notices.back().text, "Analysed 4 of 4 participants");
   EXPECT_NE(session().notices.back().offer.command.find("index.html"), std::string::npos);
+}
+
+TEST_F(StudyInStudio, MakesTheFolderForBrowsers) {
+  make_shown();
+  EXPECT_EQ(refusal("study.web web"), "the folder of clips is not known: render the stimuli, or name it");
+  run("study.web web films");
+  studio_->wait_idle();
+  ASSERT_TRUE(session().errors.empty()) << session().errors.front().text;
+  EXPECT_NE(read_file(path("web/data.js")).find("understudyStudy"), std::string::npos);
+  EXPECT_TRUE(fs::exists(path("web/index.html")));
+  EXPECT_NE(session().notices.back().offer.command.find("web/index.html"), std::string::npos);
+  run("study.web other");
+  studio_->wait_idle();
+  EXPECT_TRUE(session().errors.empty()) << "the clips used last are known";
+  EXPECT_EQ(read_file(path("other/data.js")), read_file(path("web/data.js")));
+  run("study.web third nowhere");
+  studio_->wait_idle();
+  ASSERT_FALSE(session().errors.empty());
+  EXPECT_NE(session().errors.front().text.find("study stimuli"), std::string::npos);
+}
+
+TEST_F(StudyInStudio, IsSavedBeforeParticipantsSeeIt) {
+  make_whole();
+  for (const char* line : {"study.web web films", "study.run P01 films answers"})
+    EXPECT_EQ(refusal(line), "the study has no file yet: save it under a name");
+  run("study.save_as mine");
+  run("study.set plan.seed 5");
+  for (const char* line : {"study.web web films", "study.run P01 films answers"})
+    EXPECT_EQ(refusal(line), "the study is not saved: participants see what is in its file");
+  EXPECT_FALSE(studio_->jobs().running());
+}
+
+TEST_F(StudyInStudio, RunsAParticipantBesideItself) {
+  make_shown();
+  fs::create_directories(path("mine answers"));
+  std::ofstream(path("mine answers/P01.csv")) << "participant\n";
+  write_runner(
+      "printf '%s\\n' \"$@\" >words\nwhile [ ! -e go ]; do sleep 0.02; done\n"
+      "echo '/a: b/P02.csv: all trials are answered'\n");
+  run("study.run \"\" films");
+  ASSERT_EQ(session().notices.size(), 1u) << "of saving";
+  studio_->tick(0.1);
+  EXPECT_TRUE(studio_->jobs().running());
+  run("study.set plan.seed 5");  // meanwhile
+  std::ofstream(path("go")) << "go";
+  studio_->wait_idle();
+  ASSERT_TRUE(session().errors.empty()) << session().errors.front().text;
+  EXPECT_EQ(last_notice(), "P02: all trials are answered");
+  EXPECT_EQ(read_file(path("words")), "study\nrun\n" + path("mine.study") + "\n--participant=P02\n--clips=" +
+                                          path("films") + "\n--answers=" + path("mine answers") + "\n");
+}
+
+TEST_F(StudyInStudio, SaysWhyARunFailed) {
+  make_shown();
+  EXPECT_NE(refusal("study.run P01 films").find("runner: cannot be started"), std::string::npos);
+  write_runner("echo warning >&2\necho 'understudy: P01 is being written' >&2\nexit 1\n");
+  run("study.run P01 films");
+  studio_->wait_idle();
+  ASSERT_FALSE(session().errors.empty());
+  EXPECT_EQ(session().errors.back().text, "P01 is being written");
+  write_runner("kill -9 $$\n");
+  run("study.run P01 films");
+  studio_->wait_idle();
+  EXPECT_NE(session().errors.back().text.find("the run of P01 has crashed"), std::string::npos);
+}
+
+TEST_F(StudyInStudio, ARunThatIsCancelledEnds) {
+  make_shown();
+  write_runner("trap '' TERM\necho $$ >id\nwhile true; do sleep 0.02; done\n");
+  run("study.run P01 films");
+  while (!fs::exists(path("id")) || fs::file_size(path("id")) == 0) studio_->tick(0.01);
+  studio_->jobs().cancel(studio_->jobs().views().front().id);
+  studio_->wait_idle();
+  EXPECT_TRUE(session().errors.empty());
+  EXPECT_NE(::kill(std::stoi(read_file(path("id"))), 0), 0);
 }
 
 TEST_F(StudyInStudio, TakesTheCameraOfTheView) {

@@ -112,6 +112,7 @@ TEST_F(StudyPanel, OfFilesAndOutputs) {
   state().study->conditions.back().files.clear();
   app::follow_design(state());
   frame(2);
+  EXPECT_FALSE(mark("study.run").enabled);
   EXPECT_FALSE(mark("study.export").enabled) << "not every trial has an animation of \"theirs\"";
   state().study->conditions.pop_back();
   app::follow_design(state());
@@ -119,6 +120,8 @@ TEST_F(StudyPanel, OfFilesAndOutputs) {
   frame(2);
   expect_click("study.save", {"study.save"});
   expect_click("study.export", {"dialog.open study_jspsych"});
+  expect_click("study.web", {"dialog.open study_web"});
+  expect_click("study.run", {"dialog.open study_run"});
   expect_click("study.analyse", {"dialog.open study_answers"});
   expect_click("study.close", {"study.close"});
 }
@@ -132,6 +135,16 @@ TEST_F(StudyPanel, TrialsAreListedAndChosen) {
   EXPECT_FALSE(shown("study.trial.4"));
   EXPECT_TRUE(shown("study.problem"));
   EXPECT_FALSE(shown("study.size"));
+}
+
+TEST_F(StudyPanel, ACutNameInTheListOfTrialsIsWholeInItsTooltip) {
+  state().study->conditions[0].name =
+      "Short arms and legs, of a much longer name than any column has room for";
+  app::follow_design(state());
+  frame(2);
+  hover("study.trial.0", 1.8f);  // of its first cell: in the second
+  ASSERT_TRUE(shown("tooltip"));
+  EXPECT_GT(mark("tooltip").rect.width(), 300);
 }
 
 TEST_F(StudyPanel, ThePictureOfTheChosenTrialIsShownOnceItIsThere) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <set>
 
+#include "app/study/presets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/ui/support/panels_test.hpp"
@@ -46,10 +47,11 @@ TEST_F(WorkspaceTest, DrawsAtAnySizeWithAndWithoutAnythingOpen) {
 }
 
 TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
+  session.study.study = app::study_preset("rekik").make("/samples");
   for (const auto& [size, scale] : kSizes)
     for (const char* name :
          {"open", "open_source", "open_target", "replace_target", "open_document", "save_as", "export", "csv",
-          "picture", "video", "compare", "settings", "about", "keys", "here"}) {
+          "picture", "video", "compare", "settings", "about", "keys", "here", "study_web", "study_run"}) {
       input.size = size, input.scale = scale;
       workspace.open_dialog(session, name);
       frame(3);
@@ -145,6 +147,103 @@ TEST_F(WorkspaceTest, KeysAndMenuChooseTabsAsClicksDo) {
   frame(2);
   EXPECT_NE(gui.find(kOfTabs[3]), nullptr);
   EXPECT_EQ(gui.find(kOfTabs[2]), nullptr);
+}
+
+TEST_F(WorkspaceTest, APanelThatIsAskedForComesOnTheStartScreenToo) {
+  session = app::Session();
+  for (const auto& [size, scale] : {std::pair(render::PixelSize{1280, 800}, 1.f), {{1024, 640}, 1.5f}}) {
+    input.size = size, input.scale = scale;
+    frame(3);
+    EXPECT_FALSE(shown("side.tab"));
+    key(Key::Digit5, {false, false, true});
+    frame(3);
+    EXPECT_TRUE(shown("study.new.rekik")) << size.width;
+    click("top.side");
+    frame(3);
+    EXPECT_FALSE(shown("study.new.rekik"));
+    EXPECT_TRUE(shown("start.open_source"));
+    click("top.side");
+    frame(3);
+    EXPECT_TRUE(shown("study.new.rekik"));
+    click("top.side");
+  }
+}
+
+/// As study.open does before the first frame, or in the frame in which the scale changes.
+TEST_F(WorkspaceTest, ATabIsShownThoughTheWindowBecomesNarrowMeanwhile) {
+  session = app::Session();
+  session.study.study = app::study_preset("rekik").make("/samples");
+  workspace.show_panel(session.settings, "study", true);
+  input.size = {1024, 640}, input.scale = 1.5f;
+  frame(3);
+  EXPECT_TRUE(shown("study.problem") || shown("study.size"));
+  click("top.side");
+  frame(5);
+  EXPECT_FALSE(shown("side.tab")) << "and hidden it stays so";
+}
+
+/// A study that can be run, saved in a folder with answers and clips.
+class StudyForms : public WorkspaceTest {
+ protected:
+  StudyForms() {
+    std::filesystem::create_directories(folder + "/mine answers");
+    std::filesystem::create_directories(folder + "/films/clips");
+    std::ofstream(folder + "/mine answers/P01.csv") << "participant\n";
+    session.study.study = app::study_preset("rekik").make("/samples");
+    app::follow_design(session.study);
+    session.study.path = folder + "/mine.study";
+    session.study.folders[session.study.path].clips = folder + "/films";
+  }
+  ~StudyForms() override { std::filesystem::remove_all(folder); }
+  void choose(const std::string& entry) {
+    click("menu.study");
+    frame(2);
+    click("menu." + entry);
+    frame(3);
+    take_log();
+  }
+  const std::string folder = testing::TempDir() + "understudy_study_forms";
+};
+
+TEST_F(StudyForms, OfARunOffersTheNextParticipantAndTheFoldersUsedLast) {
+  choose("study.run");
+  click("study_form.apply");
+  EXPECT_EQ(take_log(),
+            Lines{app::join_line("study.run", {"P02", folder + "/films", folder + "/mine answers"})});
+  frame(2);
+  EXPECT_EQ(workspace.dialog(), "");
+}
+
+TEST_F(StudyForms, OfARunTakesAnotherNameAndAFolderThatIsChosen) {
+  choose("study.run");
+  write_into("study_form.participant", "Ada");
+  click("study_form.clips.browse");
+  frame(3);
+  click("browser.accept");  // the folder that is shown
+  frame(3);
+  click("study_form.apply");
+  EXPECT_EQ(take_log().back(),
+            app::join_line("study.run", {"Ada", folder + "/films", folder + "/mine answers"}));
+}
+
+TEST_F(StudyForms, OfAWebPageAsksForTheClipsThatAreNotKnown) {
+  session.study.folders.clear();
+  choose("study.web");
+  EXPECT_FALSE(mark("study_form.apply").enabled);
+  write_into("study_form.clips", folder + "/films");
+  click("study_form.apply");
+  EXPECT_EQ(take_log(), Lines{app::join_line("study.web", {folder + "/mine web", folder + "/films"})});
+}
+
+TEST_F(StudyForms, SayWhyAStudyThatIsNotSavedCannotBeShown) {
+  session.study.changed = true;
+  choose("study.run");
+  EXPECT_TRUE(shown("study_form.problem"));
+  EXPECT_FALSE(mark("study_form.apply").enabled);
+  session.study.changed = false;
+  frame(2);
+  EXPECT_FALSE(shown("study_form.problem"));
+  EXPECT_TRUE(mark("study_form.apply").enabled);
 }
 
 TEST_F(WorkspaceTest, TabsAndPanelsFollowTheirCommands) {

@@ -18,8 +18,13 @@ struct MenuKeys {
   std::string next;    ///< the one that Left or Right leads to
 };
 
+struct TopBar {
+  Rect area;
+  bool side = false;  ///< whether the side panel is on
+};
+
 /// In the area given, as one window. Where the keys' menu, or any other, is open already, it closes.
-void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area, MenuKeys& keys);
+void draw_top_bar(const app::Session& session, PanelContext& context, const TopBar& bar, MenuKeys& keys);
 
 /// Fills the current window. `frame_rate`: of the window, frames per second; 0: not known.
 void draw_status(const app::Session& session, PanelContext& context, float frame_rate);

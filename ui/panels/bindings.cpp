@@ -40,6 +40,8 @@ const char* dialog_for(const app::Session& session, const std::string& command) 
   if (command == "document.save") return session.path.empty() ? "save_as" : nullptr;
   if (command == "study.save") return session.study.path.empty() ? "save_study" : nullptr;
   if (command == "study.save_as") return "save_study";
+  if (command == "study.web") return "study_web";
+  if (command == "study.run") return "study_run";
   if (command == "export.run") return "export";
   if (command == "picture.save") return "picture";
   if (command == "video.save") return "video";

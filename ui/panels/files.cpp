@@ -42,6 +42,7 @@ constexpr FileDialog kDialogs[] = {
     {"study_jspsych", "study.export jspsych", "Export trials for jsPsych", "Export", FileKind::Any, true},
     {"study_psychopy", "study.export psychopy", "Export trials for PsychoPy", "Export", FileKind::Any, true},
     {"study_stimuli", "study.render", "Render stimuli into a folder", "Render", FileKind::Any, true},
+    {"", "", "Choose the folder", "Use it", FileKind::Folder},
     {"", "", "Where to", "Choose", FileKind::Any, true}};
 
 const FileDialog& dialog_of(FilePurpose purpose) {
@@ -90,6 +91,7 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
   const FileDialog& dialog = dialog_of(purpose);
   BrowseRequest request{dialog.title, dialog.accept, dialog.save, {filter_of(dialog.files)}, "", ""};
   state.purpose = purpose;
+  if (purpose == FilePurpose::StudyFolder) request.folder = name;
   if (purpose == FilePurpose::Relocate || purpose == FilePurpose::BodyMotion)
     state.first = name, request.title += file_name(name);
   if (dialog.save) {
@@ -99,7 +101,7 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
     const fs::path proposed = name.empty() ? usual : name;
     request.name = proposed.filename().string();
     request.folder = proposed.parent_path().string();
-  } else if (dialog.files != FileKind::Any) {
+  } else if (dialog.files != FileKind::Any && dialog.files != FileKind::Folder) {
     request.filters.push_back(filter_of(FileKind::Any));
   }
   const bool first_time = state.browser.folder().empty();
@@ -109,7 +111,8 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
 
 std::optional<std::string> draw_files(const app::Session& session, PanelContext& context, FilesState& state) {
   std::optional<std::string> path = state.browser.draw(context.ui);
-  if (!path || state.purpose == FilePurpose::Export) return path;
+  const bool comes_back = state.purpose == FilePurpose::Export || state.purpose == FilePurpose::StudyFolder;
+  if (!path || comes_back) return path;
   if (state.purpose == FilePurpose::Source && is_smpl_body(*path)) {
     choose_file(session, state, FilePurpose::BodyMotion, *path);
     context.ui.focus().await_dialog();

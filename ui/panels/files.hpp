@@ -31,7 +31,8 @@ enum class FilePurpose {
   TrialsJsPsych,
   TrialsPsychoPy,
   Stimuli,
-  Export  ///< comes back to the export dialog
+  StudyFolder,  ///< comes back to the dialog that shows the study; one of its files stands for it
+  Export        ///< comes back to the export dialog
 };
 
 struct FilesState {

@@ -154,6 +154,8 @@ Items study_menu(const app::Session& session) {
           {"Close", "study.close"},
           kLine,
           {"Render stimuli\u2026", "dialog.open", {"study_stimuli"}},
+          {"Web page\u2026", "study.web"},
+          {"Run\u2026", "study.run"},
           export_trials(),
           {"Analyse answers\u2026", "dialog.open", {"study_answers"}}};
 }

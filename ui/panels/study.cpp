@@ -1,6 +1,6 @@
 // A perceptual study: what is shown to whom, and what they are asked.
 // Marks: study.new, study.new.PRESET, study.open (without a study); study.size, study.problem, study.gone;
-// study.save, study.close, study.format, study.render, study.export, study.analyse; study.SETTING, a name as
+// study.save, study.close, study.format, study.render, study.web, study.run, study.export, study.analyse; study.SETTING, a name as
 // in the file ("study.plan.seed", "study.questions.0.text"); study.LIST.K, the rows of condition, motion,
 // target, question and trial; study.LIST.up, .down, .copy, .remove of the chosen one; study.add_conditions,
 // .add_files, .add_source, .add_motion, .add_targets, .add_target, .add_likert, .add_choice, .add_attention;
@@ -86,11 +86,20 @@ void draw_outputs(const app::StudyState& state, PanelContext& context) {
   Ui& ui = context.ui;
   const bool whole = state.problem.empty();
   const std::string wrong = "Complete the study first";
-  ask_button(context,
-             {"study.render", "Render stimuli\u2026",
-              whole ? "Every clip of the study, as videos in a folder; what is there already stays" : wrong,
-              "dialog.open study_stimuli"},
-             whole);
+  ButtonRow showing(3);
+  showing.ask(context,
+              {"study.render", "Render\u2026",
+               whole ? "Every clip of the study, as videos in a folder; what is there already stays" : wrong,
+               "dialog.open study_stimuli"},
+              whole);
+  showing.ask(context,
+              {"study.web", "Web page\u2026", whole ? "A folder that runs the study in any browser" : wrong,
+               "dialog.open study_web"},
+              whole);
+  showing.ask(context,
+              {"study.run", "Run\u2026", whole ? "Shows it to a participant, on the whole screen" : wrong,
+               "dialog.open study_run"},
+              whole);
   auto& format = panel_state<TrialsFormat>(context).chosen;
   std::vector<std::string> labels;
   for (const app::TrialFormat& one : app::trial_formats()) labels.emplace_back(one.label);

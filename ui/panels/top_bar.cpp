@@ -101,10 +101,9 @@ void draw_tools(const app::Session& session, PanelContext& context, ImVec2 at) {
   history("top.redo", "edit.redo", Icon::Redo, redo.empty() ? "Nothing to redo" : "Redo " + redo);
 }
 
-void draw_side_switch(const app::Session& session, PanelContext& context, const Rect& bar) {
-  const char* side = is_narrow(bar.width(), context.ui.scale()) ? "side_over" : "side";
-  const bool shown = panel_shown(session, side);
-  const ImVec2 at(bar.max.x - context.ui.px(36), bar.at(0, 0.5f).y);
+void draw_side_switch(PanelContext& context, const Rect& area, bool shown) {
+  const char* side = is_narrow(area.width(), context.ui.scale()) ? "side_over" : "side";
+  const ImVec2 at(area.max.x - context.ui.px(36), area.at(0, 0.5f).y);
   if (icon_at(context.ui, at, "top.side", Icon::Layers,
               {shown ? "Hide the side panel" : "Show the side panel", ""}))
     context.ask("panel.show", {side, on_off(!shown)});
@@ -142,7 +141,8 @@ void draw_menu_bar(const app::Session& session, PanelContext& context, bool as_o
 
 }  // namespace
 
-void draw_top_bar(const app::Session& session, PanelContext& context, const Rect& area, MenuKeys& keys) {
+void draw_top_bar(const app::Session& session, PanelContext& context, const TopBar& bar, MenuKeys& keys) {
+  const Rect& area = bar.area;
   if (!keys.wanted.empty() && Focus::in_menu()) {
     keys.wanted.clear();
     ImGui::ClosePopupToLevel(0, true);
@@ -169,7 +169,7 @@ void draw_top_bar(const app::Session& session, PanelContext& context, const Rect
   const float left = as_one ? area.min.x + ui.px(42) : std::round(area.at(0.5f, 0).x - tools / 2);
   if (wide >= 345) draw_tools(session, context, {left, area.at(0, 0.5f).y});
   if (wide >= 500) draw_layouts(session, context, {{right - layouts, area.min.y}, {right, area.max.y}});
-  if (wide >= 90) draw_side_switch(session, context, area);
+  if (wide >= 90) draw_side_switch(context, area, bar.side);
   ImGui::PopClipRect();
   ImGui::End();
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 #include "ui/gui/gui.hpp"
@@ -57,17 +58,26 @@ void close_forgotten_dialog(bool any_drawn) {
 
 }  // namespace
 
-void Workspace::draw(const app::Session& session, PanelContext& context, float frame_rate) {
+/// A tab that was asked for is shown whatever the window's width has become meanwhile.
+void Workspace::place_parts(const app::Session& session, PanelContext& context) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const bool open = has_document(session), narrow = is_narrow(display.x, context.ui.scale());
-  parts_.side = (open || session.study.study) && panel_shown(session, narrow ? "side_over" : "side");
+  const bool open = has_document(session);
+  const char* const side = is_narrow(display.x, context.ui.scale()) ? "side_over" : "side";
+  if (std::exchange(tab_asked_, false) && !panel_shown(session, side))
+    context.ask("panel.show", {side, "on"});
+  if (open || session.study.study) side_on_start_ = false;
+  parts_.side = (open || session.study.study || side_on_start_) && panel_shown(session, side);
   parts_.timeline = open && panel_shown(session, "timeline");
   parts_.below = !panels_in(Panel::Dock::Below, session).empty();
   places_ = arrange(display, context.ui.scale(), parts_);
+}
+
+void Workspace::draw(const app::Session& session, PanelContext& context, float frame_rate) {
+  place_parts(session, context);
   if (places_.top.empty())
     menu_keys_ = {};  // no menu will open
   else
-    draw_top_bar(session, context, places_.top, menu_keys_);
+    draw_top_bar(session, context, {places_.top, parts_.side}, menu_keys_);
   draw_centre(session, context);
   draw_below(session, context);
   draw_bottom(session, context, frame_rate);
@@ -167,8 +177,12 @@ void Workspace::draw_bottom(const app::Session& session, PanelContext& context, 
   draw_status(session, context, frame_rate);
 }
 
-void Workspace::show_panel(app::Settings& settings, const std::string& name, bool on) const {
-  if (name != "side" && name != "side_over" && panel_of(name).dock == Panel::Dock::Side && on) {
+void Workspace::show_panel(app::Settings& settings, const std::string& name, bool on) {
+  const bool is_side = name == "side" || name == "side_over";
+  const bool tab = !is_side && panel_of(name).dock == Panel::Dock::Side && on;
+  if (is_side || tab) side_on_start_ = on;
+  if (tab) {
+    tab_asked_ = true;
     for (const Panel& panel : panels())
       if (panel.dock == Panel::Dock::Side) settings.panels.erase(panel.name);
     settings.panels[places_.narrow ? "side_over" : "side"] = true;
@@ -183,11 +197,12 @@ std::string Workspace::dialog() const {
 void Workspace::open_dialog(const app::Session& session, const std::string& name) {
   if (const auto purpose = purpose_of(name)) return choose_file(session, files_, *purpose);
   const bool exports = begin_export(session, export_, name);
+  const bool shows_study = begin_study_form(session, study_form_, name);
   if (name == "about" && services_.about) about_ = services_.about();
   const auto known = {"compare", "settings", "about", "keys", "here", "none"};
-  US_CHECK(exports || std::find(known.begin(), known.end(), name) != known.end(), "there is no dialog ",
-           name);
-  dialog_ = exports ? "export" : name == "none" ? "" : name;
+  US_CHECK(exports || shows_study || std::find(known.begin(), known.end(), name) != known.end(),
+           "there is no dialog ", name);
+  dialog_ = exports ? "export" : shows_study ? "study_form" : name == "none" ? "" : name;
   here_.reset();
 }
 
@@ -198,12 +213,14 @@ void Workspace::draw_dialog(const app::Session& session, PanelContext& context) 
     // One after the other: what else is open comes back when the error was read.
   } else if (files_.browser.is_open()) {
     const auto path = draw_files(session, context, files_);
-    if (path) choose_path(export_, *path);
+    if (path && files_.purpose == FilePurpose::Export) choose_path(export_, *path);
+    if (path && files_.purpose == FilePurpose::StudyFolder) choose_study_folder(study_form_, *path);
   } else if (session.question) {
     draw_question(session, context, files_);
   } else {
     bool stays = true;
     if (dialog_ == "export") stays = draw_export(session, context, export_, files_);
+    if (dialog_ == "study_form") stays = draw_study_form(session, context, study_form_, files_);
     if (dialog_ == "settings") stays = draw_settings(session, context);
     if (dialog_ == "about") stays = draw_about(context, about_);
     if (dialog_ == "keys") stays = draw_keys(session, context);

@@ -14,6 +14,7 @@
 #include "ui/panels/files.hpp"
 #include "ui/panels/getting_started.hpp"
 #include "ui/panels/start.hpp"
+#include "ui/panels/study_forms.hpp"
 
 namespace understudy::ui {
 
@@ -42,8 +43,8 @@ class Workspace {
   /// Throws Error for another name.
   void open_menu(const app::Session& session, const std::string& name);
   /// Shows or hides a panel, "side" or "side_over". A tab of the side panel replaces the one that was on, and
-  /// the side panel comes with it. Throws Error for another name.
-  void show_panel(app::Settings& settings, const std::string& name, bool on) const;
+  /// the side panel comes with it, on the start screen too. Throws Error for another name.
+  void show_panel(app::Settings& settings, const std::string& name, bool on);
   /// The dialog that is open, or ""; the file browser is "files".
   std::string dialog() const;
 
@@ -55,14 +56,18 @@ class Workspace {
   void draw_centre(const app::Session& session, PanelContext& context);
   void draw_side(const app::Session& session, PanelContext& context);
   void draw_below(const app::Session& session, PanelContext& context);
+  void place_parts(const app::Session& session, PanelContext& context);
   void draw_bottom(const app::Session& session, PanelContext& context, float frame_rate);
   void draw_dialog(const app::Session& session, PanelContext& context);
 
   WorkspaceServices services_;
   Arrangement places_;
   Parts parts_;
+  bool side_on_start_ = false;  ///< asked for while nothing is open
+  bool tab_asked_ = false;      ///< since the last frame
   std::string dialog_, about_;
   ExportState export_;
+  StudyFormState study_form_;
   CompareState compare_;
   FilesState files_;
   NoticesState notices_;

@@ -79,7 +79,7 @@ bool FileFilter::passes(const std::string& name) const {
 }
 
 FileFilter filter_of(FileKind kind) {
-  static const std::array<FileFilter, 8> kFilters = {{
+  static const std::array<FileFilter, 9> kFilters = {{
       {"Scans and motions", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
       {"Targets", format_suffixes(kTarget)},
       {"AMASS-format motions", format_suffixes(kBody)},  // both are .npz
@@ -88,6 +88,7 @@ FileFilter filter_of(FileKind kind) {
       {"Answers", {".csv"}},
       {"All supported files", format_suffixes(~0u), true},
       {"All files", {}, true},
+      {"Folders", {}, false, true},
   }};
   return kFilters[static_cast<size_t>(kind)];
 }
@@ -131,7 +132,8 @@ bool FileBrowser::can_choose(const FolderEntry& entry) const {
 
 /// Whether the folder that is shown can itself be opened.
 bool FileBrowser::can_choose_folder() const {
-  return !request_.save && filter().folders && (contents_->frames > 0 || contents_->is_case);
+  if (request_.save) return false;
+  return filter().any_folder || (filter().folders && (contents_->frames > 0 || contents_->is_case));
 }
 
 std::string FileBrowser::path_of(const FolderEntry& entry) const {

@@ -18,10 +18,11 @@ struct FileFilter {
   std::string label;
   std::vector<std::string> suffixes;  ///< lower case, with the dot; none: every file
   bool folders = false;               ///< a folder of scan frames, or a case, may be chosen
+  bool any_folder = false;            ///< the folder that is shown may be chosen, whatever is in it
   bool passes(const std::string& name) const;
 };
 /// Source: all that moves. BodyMotion: what an SMPL-format body performs. Known: all that opens.
-enum class FileKind { Source, Target, BodyMotion, Document, Study, Answers, Known, Any };
+enum class FileKind { Source, Target, BodyMotion, Document, Study, Answers, Known, Any, Folder };
 FileFilter filter_of(FileKind kind);
 
 struct Place {
