@@ -116,13 +116,13 @@ std::string paired(const std::string& first, const std::string& second);
 /// line), an unknown question or factor, one participant, one condition.
 StudyReport analyse(const StudyAnswers& answers, const AnalysisOptions& options);
 
-/// {"study": NAME, "excluded": [PARTICIPANT], "exclusion_reasons": {PARTICIPANT: SENTENCE}, "participants", "factors",
-/// "questions": {NAME: {"anova": {EFFECT: {"F", "df1", "df2", "p", "eta2p"}}, "contrasts": [{"effect", "a",
-/// "b", "t", "df", "p"}], "medians": {EFFECT: {LEVEL: median}}, "quartiles": {EFFECT: {LEVEL: [first,
-/// third]}}, "one_way": {FACTOR: {"F", ..., "tukey": [{"a", "b", "difference", "t", "df", "p"}]}}, "icc":
-/// agreement}}, "preferences": {NAME: {"shares": {CONDITION: share}, "pairs": [{"a", "b", "answers_a",
-/// "answers_b", "participants_a", "participants_b", "p"}]}}, "per_participant": [...]}. NaN and infinity are
-/// null.
+/// {"study": NAME, "excluded": [PARTICIPANT], "exclusion_reasons": {PARTICIPANT: SENTENCE}, "participants",
+/// "factors", "questions": {NAME: {"anova": {EFFECT: {"F", "df1", "df2", "p", "eta2p"}}, "contrasts":
+/// [{"effect", "a", "b", "t", "df", "p"}], "medians": {EFFECT: {LEVEL: median}}, "quartiles": {EFFECT:
+/// {LEVEL: [first, third]}}, "one_way": {FACTOR: {"F", ..., "tukey": [{"a", "b", "difference", "t", "df",
+/// "p"}]}}, "icc": agreement}}, "preferences": {NAME: {"shares": {CONDITION: share}, "pairs": [{"a", "b",
+/// "answers_a", "answers_b", "participants_a", "participants_b", "p"}]}}, "per_participant": [...]}. NaN and
+/// infinity are null.
 nlohmann::ordered_json to_json(const StudyReport& report);
 /// File names and their text: anova.csv, contrasts.csv, tukey.csv, medians.csv, participants.csv;
 /// preferences.csv where there are any.

@@ -1,12 +1,12 @@
 // A perceptual study: what is shown to whom, and what they are asked.
 // Marks: study.new, study.new.PRESET, study.open (without a study); study.size, study.problem, study.gone;
-// study.save, study.close, study.format, study.render, study.web, study.run, study.export, study.analyse; study.SETTING, a name as
-// in the file ("study.plan.seed", "study.questions.0.text"); study.LIST.K, the rows of condition, motion,
-// target, question and trial; study.LIST.up, .down, .copy, .remove of the chosen one; study.add_conditions,
-// .add_files, .add_source, .add_motion, .add_targets, .add_target, .add_likert, .add_choice, .add_attention;
-// study.add_animation, study.file.K.remove; study.camera; study.participant, study.picture (study.no_picture
-// until there is one), study.moment. Sections: study.conditions, .motions, .targets, .questions, .options (of
-// a method), .layout, .clip, .picture_section, .plan, .words, .trials.
+// study.save, study.close, study.format, study.render, study.web, study.run, study.export, study.analyse;
+// study.SETTING, a name as in the file ("study.plan.seed", "study.questions.0.text"); study.LIST.K, the rows
+// of condition, motion, target, question and trial; study.LIST.up, .down, .copy, .remove of the chosen one;
+// study.add_conditions, .add_files, .add_source, .add_motion, .add_targets, .add_target, .add_likert,
+// .add_choice, .add_attention; study.add_animation, study.file.K.remove; study.camera; study.participant,
+// study.picture (study.no_picture until there is one), study.moment. Sections: study.conditions, .motions,
+// .targets, .questions, .options (of a method), .layout, .clip, .picture_section, .plan, .words, .trials.
 #include "ui/panels/study.hpp"
 
 #include <imgui_stdlib.h>
