@@ -120,14 +120,22 @@ class Mp4 final : public VideoWriter::Sink {
                              sws_getCoefficients(SWS_CS_ITU709), 0, 0, 1 << 16, 1 << 16);
   }
 
-  /// With even sides, over white.
+  /// With even sides, over white, and some bytes more: libswscale reads beyond the last row where its width is
+  /// no multiple of 16.
   std::vector<uint8_t> padded(const Image& image) const {
-    if (image.alpha.empty() && width_ == encoder_->width && height_ == encoder_->height) return image.pixels;
-    Image opaque(width_, height_), even(encoder_->width, encoder_->height);
-    paste(opaque, image, 0, 0);
-    for (const int dy : {height_ % 2, 0})  // the picture last, over the repeated edges
-      for (const int dx : {width_ % 2, 0}) paste(even, opaque, dx, dy);
-    return even.pixels;
+    constexpr size_t kBeyond = 64;
+    std::vector<uint8_t> pixels;
+    if (image.alpha.empty() && width_ == encoder_->width && height_ == encoder_->height) {
+      pixels = image.pixels;
+    } else {
+      Image opaque(width_, height_), even(encoder_->width, encoder_->height);
+      paste(opaque, image, 0, 0);
+      for (const int dy : {height_ % 2, 0})  // the picture last, over the repeated edges
+        for (const int dx : {width_ % 2, 0}) paste(even, opaque, dx, dy);
+      pixels = std::move(even.pixels);
+    }
+    pixels.resize(pixels.size() + kBeyond);
+    return pixels;
   }
 
   /// Hands a picture (null: no more) to the encoder and writes what it gives back.
