@@ -26,7 +26,7 @@ const Study& shown_study(const StudyState& state) {
 /// The folder of clips that the call names, else the one that is known.
 std::string clips_of(const Call& c, size_t i) {
   if (c.arguments.size() > i) return c.path(i);
-  const std::string known = folders_of(c.session.study).clips;
+  std::string known = folders_of(c.session.study).clips;
   US_CHECK(!known.empty(), "the folder of clips is not known: render the stimuli, or name it");
   return known;
 }
