@@ -13,6 +13,7 @@ class StudyStimuli : public ShippedProgram {
   /// Two methods, one motion of a few scans, one target, 96 x 64.
   std::string study(const std::function<void(Json&)>& change = nullptr) {
     const std::string file = scratch.path("a.study");
+    std::filesystem::remove(file);
     EXPECT_EQ(run_program({"study", "new", "--preset", "rekik", "--out", file}).code, 0);
     Json json = Json::parse(read_bytes(file));
     for (const char* list : {"motions", "targets"}) json[list] = Json::array({json[list][0]});
