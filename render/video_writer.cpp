@@ -121,8 +121,8 @@ class Mp4 final : public VideoWriter::Sink {
                              sws_getCoefficients(SWS_CS_ITU709), 0, 0, 1 << 16, 1 << 16);
   }
 
-  /// With even sides, over white, and some bytes more: libswscale reads beyond the last row where its width is
-  /// no multiple of 16.
+  /// With even sides, over white, and some bytes more: libswscale reads beyond the last row where its width
+  /// is no multiple of 16.
   std::vector<uint8_t> padded(const Image& image) const {
     constexpr size_t kBeyond = 64;
     std::vector<uint8_t> pixels;
