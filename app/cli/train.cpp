@@ -48,6 +48,7 @@ void add_own(CLI::App& command, nn::MotionTrainOptions& options) {
 
 void add_own(CLI::App&, nn::PartTrainOptions&) {}
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
+void add_own(CLI::App&, nn::MotionSpaceTrainOptions&) {}
 
 /// A subcommand of `train`: a network with the options that all have and its own.
 template <class Options>
@@ -71,6 +72,7 @@ Action declare_train(CLI::App& command) {
   add_network<nn::PartTrainOptions>(command, "the part refiner: arms, hands, legs, feet, head", chosen);
   add_network<nn::MotionTrainOptions>(command, "motion transfer of paper 1", chosen);
   add_network<nn::DeformationTrainOptions>(command, "skin weights and pose-corrective offsets", chosen);
+  add_network<nn::MotionSpaceTrainOptions>(command, "what lies between known frames", chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -44,8 +44,12 @@ struct DeformationTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "deformation";
 };
 
-using AnyTrainOptions =
-    std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions, DeformationTrainOptions>;
+struct MotionSpaceTrainOptions : TrainOptions {
+  static constexpr const char* kNetwork = "motion-space";
+};
+
+using AnyTrainOptions = std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions,
+                                     DeformationTrainOptions, MotionSpaceTrainOptions>;
 
 /// Trains until the minutes or samples are used up, going on from the checkpoint where there is one. 0 when
 /// it came to the end, 1 when it was cancelled. Throws Error.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy::training {
@@ -11,7 +12,6 @@ namespace {
 
 constexpr int kStretch = 60;   // frames of a clip that belong to one body
 constexpr int kShortest = 17;  // frames: 30 frames at 60 per second of a clip of 30 per second, and one more
-constexpr float kClipRate = 30;  // frames/s
 
 /// How far off extracted joints are, against the mean over joints: limbs' ends more than the trunk.
 constexpr std::array<float, kJointCount> kErrorShare = {0.7f, 0.8f, 0.8f, 0.7f, 0.9f, 0.9f, 0.7f, 1.1f,
@@ -74,33 +74,20 @@ std::vector<float> mean_leg_lengths(const std::vector<Joints>& joints) {
   return means;
 }
 
-MotionData::MotionData(const TrainingData& data) {
+MotionData::MotionData(const TrainingData& data) : clips_(data.clips), of_clip_(data.clips.size()) {
   for (const auto& betas : data.betas) bodies_.push_back(data.body.shaped(betas).joints);
   for (const auto& dressed : data.dressed) bodies_.push_back(dressed.joints);
   US_CHECK(bodies_.size() >= 2, "motion transfer is learnt from at least two bodies");
   for (Joints& rest : bodies_) rest.rowwise() -= Eigen::RowVector3f(rest.row(Pelvis));
 
   Rng who(20240321);  // the same stretch has the same body in every run
-  for (size_t c = 0; c < data.clips.size(); ++c) {
-    const Clip& clip = data.clips[c];
-    std::vector<int> mine;
-    for (size_t i = 0; i < clip.good.size();) {
-      size_t end = i + 1;
-      while (end < clip.good.size() && end - i < kStretch && clip.good[end] == clip.good[end - 1] + 1) ++end;
-      if (end - i >= kShortest) {
-        mine.push_back(stretches_.size());
-        stretches_.push_back(
-            {static_cast<int>(c), clip.good[i], static_cast<int>(end - i), who.below(bodies_.size())});
-      }
-      i = end;
-    }
-    if (!mine.empty()) of_clip_.push_back(std::move(mine));
-    auto& frames = clips_.emplace_back();
-    for (const Pose& pose : clip.motion.poses) {
-      auto& q = frames.emplace_back();
-      for (int j = 0; j < kJointCount; ++j) q[j] = Eigen::Quaternionf(pose.local[j]);
-    }
+  for (const ClipRun& run : good_runs(data.clips, kShortest, kStretch)) {
+    of_clip_[run.clip].push_back(ssize(stretches_));
+    stretches_.push_back({run, who.below(ssize(bodies_))});
   }
+  of_clip_.erase(
+      std::remove_if(of_clip_.begin(), of_clip_.end(), [](const auto& mine) { return mine.empty(); }),
+      of_clip_.end());
   US_CHECK(!stretches_.empty(), "no clip has ", kShortest, " good frames in a row");
 }
 
@@ -111,21 +98,6 @@ const MotionData::Stretch& MotionData::random_stretch(Rng& rng) const {
   return stretches_[mine[rng.below(mine.size())]];
 }
 
-Rotations MotionData::rotations_at(const Stretch& stretch, float frame) const {
-  const int before = std::min(static_cast<int>(frame), stretch.count - 2);
-  const auto& a = clips_[stretch.clip][stretch.first + before];
-  const auto& b = clips_[stretch.clip][stretch.first + before + 1];
-  const float w = frame - static_cast<float>(before);
-  Rotations local;
-  for (int j = 0; j < kJointCount;
-       ++j) {  // a straight line will do between frames, and is much faster than slerp
-    const float side = a[j].dot(b[j]) < 0 ? -w : w;
-    local[j] =
-        Eigen::Quaternionf((1 - w) * a[j].coeffs() + side * b[j].coeffs()).normalized().toRotationMatrix();
-  }
-  return local;
-}
-
 MotionData::Sequence MotionData::sequence(const Stretch& stretch, int frames, float step, Rng& rng) const {
   const float start =
       rng.uniform() * (static_cast<float>(stretch.count - 1) - step * static_cast<float>(frames - 1));
@@ -134,7 +106,9 @@ MotionData::Sequence MotionData::sequence(const Stretch& stretch, int frames, fl
   Sequence made;
   for (int t = 0; t < frames; ++t) {
     Pose pose;
-    pose.local = rotations_at(stretch, start + step * static_cast<float>(t));
+    pose.local =
+        clips_.at(stretch.clip, static_cast<float>(stretch.first) + start + step * static_cast<float>(t))
+            .local;
     if (mirror) pose = mirrored(pose);
     pose.local[Pelvis] = yaw * pose.local[Pelvis];
     made.joints.push_back(forward_kinematics(bodies_[stretch.body], pose).joints);

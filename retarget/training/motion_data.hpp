@@ -4,11 +4,9 @@
 
 #include <torch/torch.h>
 
-#include <Eigen/Geometry>
-#include <array>
 #include <vector>
 
-#include "retarget/training/training_data.hpp"
+#include "retarget/training/clip_poses.hpp"
 
 namespace understudy::training {
 
@@ -42,9 +40,8 @@ class MotionData {
   size_t stretches() const { return stretches_.size(); }
 
  private:
-  struct Stretch {
-    int clip, first, count;  // frames first .. first + count - 1 of the clip, none of them flagged
-    int body;
+  struct Stretch : ClipRun {
+    int body = 0;
   };
   struct Sequence {
     std::vector<Rotations> local;
@@ -55,9 +52,8 @@ class MotionData {
   /// `frames` frames, `step` frames of the clip apart.
   Sequence sequence(const Stretch& stretch, int frames, float step, Rng& rng) const;
   void fill(MotionBatch& batch, int64_t row, const MotionBatchOptions& options, Rng& rng) const;
-  Rotations rotations_at(const Stretch& stretch, float frame) const;
 
-  std::vector<std::vector<std::array<Eigen::Quaternionf, kJointCount>>> clips_;
+  ClipPoses clips_;
   std::vector<Joints> bodies_;  // T-pose joints
   std::vector<Stretch> stretches_;
   std::vector<std::vector<int>> of_clip_;  // stretches of each clip that has one

@@ -134,5 +134,6 @@ int train(const nn::SkeletonTrainOptions& options);
 int train(const nn::PartTrainOptions& options);
 int train(const nn::MotionTrainOptions& options);
 int train(const nn::DeformationTrainOptions& options);
+int train(const nn::MotionSpaceTrainOptions& options);
 
 }  // namespace understudy::training
