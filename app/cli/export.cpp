@@ -225,8 +225,10 @@ std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& d
 std::unique_ptr<Studio> open_document(const ExportOptions& options) {
   US_CHECK(options.not_of_documents.empty(), options.document, ": a document has its own source and target, ",
            options.not_of_documents, " cannot be combined with it");
+  const StudioServices program = studio_services(options.how.weights);
   StudioServices services;
-  services.networks = studio_services(options.how.weights).networks;
+  services.networks = program.networks;
+  services.motion_space = program.motion_space;
   auto studio = std::make_unique<Studio>(std::move(services));
   studio->run("document.open", {options.document});
   const Document& document = studio->session().document;

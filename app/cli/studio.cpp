@@ -20,6 +20,11 @@ StudioServices studio_services(const std::string& weights) {
   services.networks = [weights](const Method& method, const NetworkParts& parts) {
     return nn::load_networks(network_options({method, weights, {}, {}, {}}), parts);
   };
+  services.motion_space = [weights]() -> std::shared_ptr<MotionSpace> {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_motion_space(nn::weights_folder(options));
+  };
   services.weights = [weights] {
     nn::NetworkOptions options;
     options.weights = weights;

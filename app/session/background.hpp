@@ -12,7 +12,8 @@
 namespace understudy::app {
 
 struct Studio::Background {
-  explicit Background(Engine::NetworksOf networks) : engine(std::move(networks)) {}
+  Background(Engine::NetworksOf networks, LoadSpace motion_space)
+      : engine(std::move(networks)), refiner(std::move(motion_space)) {}
 
   /// The inputs from which a take in the session was made.
   struct Applied {

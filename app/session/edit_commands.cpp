@@ -324,20 +324,25 @@ void move_skips(Call& c) {
 void add_fill(FillEdit fill, std::vector<FillEdit>& all) {
   for (auto at = all.begin(); at != all.end();) {
     const bool apart = at->last + 1 < fill.first || at->first > fill.last + 1;
-    if (!apart) fill = {std::min(fill.first, at->first), std::max(fill.last, at->last)};
+    if (!apart) fill = {std::min(fill.first, at->first), std::max(fill.last, at->last), fill.learned};
     at = apart ? at + 1 : all.erase(at);
   }
   all.push_back(fill);
 }
 
+FillEdit& fill_argument(Call& c, size_t i) {
+  auto& fills = c.take(i).pose_edits.fill;
+  const int index = c.number<int>(i + 1, "edit");
+  US_CHECK(index >= 0 && index < ssize(fills), "there is no edit ", index, " among ", fills.size());
+  return fills[static_cast<size_t>(index)];
+}
+
 void move_fill(Call& c) {
   auto& fills = c.take(1).pose_edits.fill;
-  const int index = c.number<int>(2, "edit");
-  US_CHECK(index >= 0 && index < ssize(fills), "there is no edit ", index, " among ", fills.size());
-  const FillEdit before = fills[static_cast<size_t>(index)];
+  const FillEdit before = fill_argument(c, 1);
   const Trim to = frames_to(c, 3, before.last - before.first);
-  fills.erase(fills.begin() + index);
-  add_fill({to.first, to.last}, fills);
+  fills.erase(fills.begin() + c.number<int>(2, "edit"));
+  add_fill({to.first, to.last, before.learned}, fills);
 }
 
 void move_edit(Call& c) {
@@ -412,6 +417,9 @@ void add_pose_ranges(Commands& commands) {
                      "unusable ones",
                      "G"},
                     fill);
+  commands.add_slider({"edit.fill_learned", "Plain or learned",
+                       "TAKE EDIT SHARE: 0 the smooth curve to 1 the motion space's answer"},
+                      [](Call& c) { fill_argument(c, 0).learned = c.clamped(2, "share", 0.f, 1.f); });
   commands.add_edit({"edit.trim", "Trim", "TAKE FIRST LAST | TAKE off"}, [](Call& c) {
     auto& trim = c.take().pose_edits.trim;
     trim.reset();

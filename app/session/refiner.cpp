@@ -6,6 +6,7 @@
 
 #include "app/session/frame_figures.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/base/worker.hpp"
 
 namespace understudy::app {
@@ -28,7 +29,7 @@ Motion motion_of(const SharedFrames<KeptFrame>& frames, float fps) {
 
 }  // namespace
 
-Refined refine(const RefineRequest& request) {
+Refined refine(const RefineRequest& request, MotionSpace* space) {
   const Motion performed = motion_of(request.performed, request.fps);
   Refined result;
   result.take_id = request.take_id;
@@ -36,7 +37,7 @@ Refined refine(const RefineRequest& request) {
   if (!request.edits.empty() && !performed.poses.empty()) {
     try {
       const EditedBody body = EditedBody::from(request.target->mesh.vertices, request.target->joints);
-      result.shown = apply_poses(request.edits, performed, body);
+      result.shown = apply_poses(request.edits, performed, body, space);
       result.cost = edit_cost(performed, result.shown, request.target->joints);
     } catch (const Error& error) {
       result.shown = performed;
@@ -53,6 +54,10 @@ Refined refine(const RefineRequest& request) {
 }
 
 struct Refiner::Impl {
+  explicit Impl(LoadSpace load) : load_space(std::move(load)) {}
+
+  LoadSpace load_space;  // empty once it was called
+  std::shared_ptr<MotionSpace> space;
   std::vector<RefineRequest> waiting;
   std::vector<Refined> finished;
   Worker worker{"refining", [this] { return next(); }};
@@ -62,16 +67,25 @@ struct Refiner::Impl {
     const auto request = std::make_shared<const RefineRequest>(std::move(waiting.front()));
     waiting.erase(waiting.begin());
     return [this, request] {
-      Refined result;
-      const std::string problem = failure_of([&] { result = refine(*request); });
-      if (!problem.empty()) result = {}, result.take_id = request->take_id, result.problem = problem;
-      const auto held = worker.lock();
-      finished.push_back(std::move(result));
+      const bool waits = load_space && need_space(request->edits.fill);
+      answer(*request);
+      if (!waits) return;
+      const std::string problem = failure_of([&] { space = std::exchange(load_space, nullptr)(); });
+      if (!problem.empty()) log::warn(problem + ": filled frames follow smooth curves");
+      if (space) answer(*request);
     };
+  }
+
+  void answer(const RefineRequest& request) {
+    Refined result;
+    const std::string problem = failure_of([&] { result = refine(request, space.get()); });
+    if (!problem.empty()) result = {}, result.take_id = request.take_id, result.problem = problem;
+    const auto held = worker.lock();
+    finished.push_back(std::move(result));
   }
 };
 
-Refiner::Refiner() : impl_(std::make_unique<Impl>()) {}
+Refiner::Refiner(LoadSpace load_space) : impl_(std::make_unique<Impl>(std::move(load_space))) {}
 Refiner::~Refiner() = default;
 
 void Refiner::request(RefineRequest request) {

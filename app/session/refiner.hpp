@@ -1,6 +1,7 @@
 // Applies the user's edits to a result and measures it, in the background: a take's newest request wins.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,12 +28,17 @@ struct Refined {
   std::string problem;  ///< why the edits cannot be applied; the motion is then unedited
 };
 
-/// The same on this thread.
-Refined refine(const RefineRequest& request);
+/// The same on this thread. `space` makes what is filled; null: smooth curves do.
+Refined refine(const RefineRequest& request, MotionSpace* space);
+
+/// Loads the motion space; may be empty, then there is none.
+using LoadSpace = std::function<std::shared_ptr<MotionSpace>()>;
 
 class Refiner {
  public:
-  Refiner();
+  /// The motion space is loaded when an edit first needs it, on the refiner's own thread; what is filled
+  /// follows smooth curves meanwhile, or for good where it cannot be loaded, which is logged.
+  explicit Refiner(LoadSpace load_space);
   ~Refiner();
   /// Never waits; replaces a request of the same take that has not begun.
   void request(RefineRequest request);

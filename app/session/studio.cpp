@@ -41,7 +41,7 @@ std::vector<int> matched_takes(const std::vector<Take>& before, const std::vecto
 Studio::Studio(StudioServices services)
     : services_(std::move(services)),
       cache_(512),
-      background_(std::make_unique<Background>(services_.networks)) {
+      background_(std::make_unique<Background>(services_.networks, services_.motion_space)) {
   if (!services_.settings_file.empty()) session_.settings = read_settings(services_.settings_file);
   std::error_code ignored;
   const bool is_first =

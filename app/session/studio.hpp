@@ -17,6 +17,7 @@ struct SourceFrames;
 /// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
   std::function<Networks(const Method&, const NetworkParts&)> networks;  ///< called off the UI thread
+  std::function<std::shared_ptr<MotionSpace>()> motion_space;  ///< what fills gaps; called off the UI thread
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
   std::string samples;                   ///< folder of the bundled samples; empty: none
   std::string program;                   ///< that shows a study; empty: this one, once more

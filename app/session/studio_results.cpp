@@ -38,6 +38,7 @@ void append_shown(TakeState& take, int first, double fps) {
   take.shown.poses.resize(count);
   take.shown.flags.resize(count);
   take.shown.standing.resize(count);
+  if (!take.shown.doubt_m.empty()) take.shown.doubt_m.resize(count);
   take.joints.resize(count);
   for (size_t t = first; t < count; ++t) {
     take.shown.poses[t] = take.performed[t].pose;
@@ -297,6 +298,8 @@ void Studio::take_in_refined() {
       replace_first(take->shown.poses, std::move(refined.shown.poses));
       replace_first(take->shown.standing, std::move(refined.shown.standing));
       replace_first(take->joints, std::move(refined.joints));
+      take->shown.doubt_m = std::move(refined.shown.doubt_m);
+      if (!take->shown.doubt_m.empty()) take->shown.doubt_m.resize(take->shown.poses.size());
       ++take->generation;
     }
     take->cost = refined.cost;

@@ -147,11 +147,13 @@ Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose) {
   return pose;
 }
 
-Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body) {
+Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body, MotionSpace* space) {
   check(motion);
   Motion result = motion;
-  for (const FillEdit& one : edits.fill)
-    if (one.last < ssize(result.poses)) fill_frames(one, body.rest, result);
+  std::vector<FillEdit> fills = edits.fill;
+  const auto not_there = [&](const FillEdit& one) { return one.last >= ssize(result.poses); };
+  fills.erase(std::remove_if(fills.begin(), fills.end(), not_there), fills.end());
+  fill_frames(fills, body.rest, space, result);
   rotate(edits.rotate, body.rest, result);
   if (edits.smooth) smooth(*edits.smooth, result);
   if (edits.raise)

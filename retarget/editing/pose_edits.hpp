@@ -128,8 +128,9 @@ struct EditedBody {
 /// Deterministic. Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where
 /// it is held; a foot that was turned away from where it stood does not. Frames that are to be filled beyond
 /// the motion's end, which may still be made, are left. Throws Error for unknown joints or a strength outside
-/// 0..1.
-Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body);
+/// 0..1. `space` makes what is filled; null: smooth curves do.
+Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body,
+                   MotionSpace* space = nullptr);
 /// A frame's pose after the rotations alone. Throws Error for an unknown joint.
 Pose rotated(const std::vector<RotateEdit>& edits, int frame, Pose pose);
 /// Original numbers of the frames that trim and skip leave of `count`.

@@ -1,48 +1,85 @@
 #include "retarget/editing/pose_fill.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
-#include "retarget/skeleton/limb_ik.hpp"
-#include "retarget/skeleton/pose_curve.hpp"
+#include "retarget/skeleton/curve_doubt.hpp"
+#include "retarget/skeleton/foot_hold.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr float kSamePlace_m = 0.05f;  // that the ankle of a standing foot moves at most, leg 0.8 m
+constexpr float kSamePlace_m = 0.05f;  // that the ball of a standing foot moves at most, leg 0.8 m
 
-void hold_foot(int side, int before, int after, const Joints& rest, Motion& motion) {
-  const int ankle = Leg::of(side).ankle;
-  const auto ankle_at = [&](int t) -> Vec3 {
-    return forward_kinematics(rest, motion.poses[t]).joints.row(ankle).transpose();
-  };
-  const Vec3 from = ankle_at(before), to = ankle_at(after);
-  if ((to - from).norm() > kSamePlace_m * leg_length(rest) / 0.8f) return;
-  for (int t = before + 1; t < after; ++t) {
-    const float share = static_cast<float>(t - before) / static_cast<float>(after - before);
-    place_ankle(rest, side, from + share * (to - from), motion.poses[t]);
-    motion.standing[t][side] = true;
+/// A foot that stands before and after, at one place, stands meanwhile.
+void hold_feet(const FillEdit& fill, const Joints& rest, Motion& motion) {
+  const int before = fill.first - 1, after = fill.last + 1;
+  if (motion.standing.empty() || before < 0 || after >= ssize(motion.poses)) return;
+  const Joints from = forward_kinematics(rest, motion.poses[before]).joints,
+               to = forward_kinematics(rest, motion.poses[after]).joints;
+  for (int side = 0; side < 2; ++side) {
+    const float apart = (to.row(LeftFoot + side) - from.row(LeftFoot + side)).norm();
+    if (!motion.standing[before][side] || !motion.standing[after][side]) continue;
+    if (apart > kSamePlace_m * leg_length(rest) / 0.8f) continue;
+    for (int t = fill.first; t <= fill.last; ++t) motion.standing[t][side] = true;
+  }
+  hold_standing(rest, fill.first, fill.last, motion);
+}
+
+Pose between(const Pose& a, const Pose& b, float share) {
+  if (share >= 1) return b;
+  Pose pose;
+  pose.root = a.root + share * (b.root - a.root);
+  for (int j = 0; j < kJointCount; ++j)
+    pose.local[j] =
+        Eigen::Quaternionf(a.local[j]).slerp(share, Eigen::Quaternionf(b.local[j])).toRotationMatrix();
+  return pose;
+}
+
+Motion curve_through(const KnownMotion& question, const std::vector<FillEdit>& fills) {
+  Motion motion = question.motion;
+  fill_curves(question.known, 0, ssize(motion.poses) - 1, motion);
+  motion.doubt_m = curve_doubt(question.known, motion, question.rest);
+  for (const FillEdit& fill : fills) hold_feet(fill, question.rest, motion);
+  return motion;
+}
+
+/// The learned answer, as far as it is wanted, in place of the curve.
+void put_learned(const FillEdit& fill, const Completion& made, Motion& motion) {
+  for (int t = fill.first; t <= fill.last; ++t) {
+    motion.poses[t] = between(motion.poses[t], made.motion.poses[t], fill.learned);
+    motion.doubt_m[t] += fill.learned * (made.doubt_m[t] - motion.doubt_m[t]);
+    if (!motion.standing.empty() && fill.learned >= 0.5f) motion.standing[t] = made.motion.standing[t];
   }
 }
 
 }  // namespace
 
-void fill_frames(const FillEdit& fill, const Joints& rest, Motion& motion) {
-  const int count = ssize(motion.poses), before = fill.first - 1, after = fill.last + 1;
-  US_CHECK(fill.first >= 0 && fill.first <= fill.last && fill.last < count, "frames ", fill.first, " to ",
-           fill.last, " cannot be filled: the motion has frames 0 to ", count - 1);
-  US_CHECK(before >= 0 || after < count, "all frames are to be filled: none is left that is known");
-  if (!motion.standing.empty())
-    for (int t = fill.first; t <= fill.last; ++t) motion.standing[t] = {};
-  std::vector<KnownParts> known(motion.poses.size(), all_parts(true));
-  std::fill(known.begin() + fill.first, known.begin() + after, all_parts(false));
-  fill_curves(known, fill.first, fill.last, motion);
-  if (motion.standing.empty() || before < 0 || after >= count) return;
-  for (int side = 0; side < 2; ++side)
-    if (motion.standing[before][side] && motion.standing[after][side])
-      hold_foot(side, before, after, rest, motion);
+bool need_space(const std::vector<FillEdit>& fills) {
+  return std::any_of(fills.begin(), fills.end(), [](const FillEdit& fill) { return fill.learned > 0; });
+}
+
+void fill_frames(const std::vector<FillEdit>& fills, const Joints& rest, MotionSpace* space, Motion& motion) {
+  if (fills.empty()) return;
+  const int count = ssize(motion.poses);
+  KnownMotion question{motion, std::vector<KnownParts>(motion.poses.size(), all_parts(true)), rest};
+  for (const FillEdit& fill : fills) {
+    US_CHECK(fill.first >= 0 && fill.first <= fill.last && fill.last < count, "frames ", fill.first, " to ",
+             fill.last, " cannot be filled: the motion has frames 0 to ", count - 1);
+    for (int t = fill.first; t <= fill.last; ++t) {
+      question.known[t] = all_parts(false);
+      if (!motion.standing.empty()) question.motion.standing[t] = {};
+    }
+  }
+  US_CHECK(std::any_of(question.known.begin(), question.known.end(),
+                       [](const KnownParts& parts) { return parts == all_parts(true); }),
+           "all frames are to be filled: none is left that is known");
+  motion = curve_through(question, fills);
+  if (space == nullptr || !need_space(fills)) return;
+  const Completion made = space->complete(question);
+  for (const FillEdit& fill : fills)
+    if (fill.learned > 0) put_learned(fill, made, motion);
 }
 
 }  // namespace understudy

@@ -1,26 +1,34 @@
-// What lies between known frames, where it was not seen: a smooth curve through both ends.
+// What lies between known frames, where it was not seen: a smooth curve through both ends, or what the motion
+// space makes of it.
 #pragma once
 
+#include <vector>
+
 #include "retarget/base/fields.hpp"
-#include "retarget/skeleton/skeleton.hpp"
+#include "retarget/pipeline/motion_space.hpp"
 
 namespace understudy {
 
 /// Frames that are made from those around them; both inside, numbers before any edit.
 struct FillEdit {
   int first = 0, last = 0;
+  float learned = 1;  ///< 0 the smooth curve .. 1 the motion space's answer
 };
 template <class V, class S>
 FieldsOf<S, FillEdit> fields(V& visit, S& fill) {
   visit("first", fill.first, kFrameNumbers);
   visit("last", fill.last, kFrameNumbers);
+  visit("learned", fill.learned, Within<float>{0, 1});
 }
 
-/// Makes the frames first .. last anew, the others stay as they are to the bit: each joint's rotation and the
-/// root follow the cubic Hermite curve through the frames beside, with their velocities (rotations by their
-/// logarithm, seen from the first end). A foot that stands before and after, at one place, stands meanwhile.
-/// At the motion's start or end it is a prediction: the motion goes on and comes to rest within half a
-/// second. Throws Error for frames that the motion does not have, or where none is left that is known.
-void fill_frames(const FillEdit& fill, const Joints& rest, Motion& motion);
+/// Whether the motion space is asked for one of them.
+bool need_space(const std::vector<FillEdit>& fills);
+
+/// Makes these frames anew, the others stay as they are to the bit. The smooth curve: each joint's rotation
+/// and the root follow the cubic Hermite curve through the frames beside, with their velocities (fill_curves);
+/// a foot that stands before and after, at one place, stands meanwhile. At the motion's start or end it is a
+/// prediction. What was made tells its doubt (Motion::doubt_m). Without a motion space all follow the curve.
+/// Throws Error for frames that the motion does not have, or where none is left that is known.
+void fill_frames(const std::vector<FillEdit>& fills, const Joints& rest, MotionSpace* space, Motion& motion);
 
 }  // namespace understudy

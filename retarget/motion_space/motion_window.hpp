@@ -17,15 +17,30 @@ struct Outlook {
 
   static Outlook of(const Pose& pose);
   Pose seen(Pose pose) const;
-  Pose back(Pose pose) const;
+  std::vector<Pose> seen(std::vector<Pose> poses) const;
 };
 
-constexpr float kFarFrames = 120;  ///< as far as a known frame is told apart from none
+constexpr float kWindowRate = 30;    ///< samples/s
+constexpr int kLongestWindow = 110;  ///< samples
 
-/// Of each frame and part the frames since the last known one and until the next, at most kFarFrames; 0, 0
-/// where the part is known.
-using KnownDistance = std::array<std::array<float, 2>, kPartCount>;
-std::vector<KnownDistance> known_distances(const std::vector<KnownParts>& known);
+/// A stretch of a motion, sampled at kWindowRate: a smooth curve through what is known.
+struct MotionWindow {
+  Joints rest = Joints::Zero();         ///< T-pose joints, metres
+  Outlook outlook;                      ///< where it is seen from
+  float first = 0, step = 1;            ///< sample i is of frame first + i step of the motion
+  std::vector<int> gap_frames;          ///< frames of the motion that are to be made by it
+  std::vector<Pose> curve;              ///< of each sample, seen from the outlook
+  std::vector<KnownDistance> distance;  ///< of each sample, in samples
+};
+
+/// As many windows as all gaps (frames that are not wholly known) need, each with a dozen known samples on
+/// both sides, or twice as many where there is but one side. `curve`: the motion with its gaps filled by
+/// fill_curves. A gap that does not fit into a window has none.
+std::vector<MotionWindow> windows_of(const std::vector<KnownParts>& known, const Motion& curve,
+                                     const Joints& rest);
+
+/// The same in a mirror.
+MotionWindow mirrored(const MotionWindow& window);
 
 /// The frame that a window is looked at from: the last that is wholly known before the first that is not, or
 /// the first that is wholly known; 0 where none is.

@@ -141,6 +141,10 @@ Networks load_networks(const NetworkOptions& options, const NetworkParts& parts)
   return networks;
 }
 
+std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder) {
+  return plugin().load_motion_space(folder + "/motion_space.weights");
+}
+
 RuntimeReport runtime_report() {
   RuntimeReport report = plugin().report();
   const auto cores = std::thread::hardware_concurrency();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/motion_space.hpp"
 
 namespace understudy::nn {
 
@@ -27,6 +28,9 @@ struct NetworkOptions {
 /// The networks with trained weights, as many as asked for; which extractor has none for T-poses leaves that
 /// one null. Throws Error when weights are missing or of another version.
 Networks load_networks(const NetworkOptions& options, const NetworkParts& parts = NetworkParts::all());
+
+/// What fills gaps, with the weights in that folder. Throws Error when they are missing or of another version.
+std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder);
 
 /// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);

@@ -7,13 +7,14 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 8;
+constexpr int kPluginVersion = 9;
 
 struct PluginApi {
   int version;
   /// Messages of the plug-in's own copy of the log go to this function of the program from now on.
   void (*send_log_to)(void (*sink)(log::Level, const std::string&));
   Networks (*load)(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts);
+  std::unique_ptr<MotionSpace> (*load_motion_space)(const std::string& path);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);
 };

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/motion_space.hpp"
 
 namespace understudy::nn {
 
@@ -15,5 +16,8 @@ std::unique_ptr<SkeletonExtractor> load_paper_extractor(const std::string& path)
 /// Motion transfer by the recurrent network of paper 1, section 3.1: the engine `paper`. Its push() throws
 /// Error when joints are not finite or the network's answer is not.
 std::unique_ptr<MotionTransfer> load_paper_transfer(const std::string& path);
+
+/// Fills gaps by the network that corrects smooth curves (InbetweenNet): the motion space `space`.
+std::unique_ptr<MotionSpace> load_inbetween_space(const std::string& path);
 
 }  // namespace understudy::nn

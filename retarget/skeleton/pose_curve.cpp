@@ -1,5 +1,6 @@
 #include "retarget/skeleton/pose_curve.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "retarget/base/index.hpp"
@@ -121,6 +122,23 @@ class PartCurve {
 };
 
 }  // namespace
+
+std::vector<KnownDistance> known_distances(const std::vector<KnownParts>& known) {
+  const int count = ssize(known);
+  std::vector<KnownDistance> distances(known.size());
+  for (size_t part = 0; part < kPartCount; ++part) {
+    float since = kFarFrames, until = kFarFrames;
+    for (int t = 0; t < count; ++t) {
+      since = known[t][part] ? 0 : std::min(since + 1, kFarFrames);
+      distances[t][part][0] = since;
+    }
+    for (int t = count - 1; t >= 0; --t) {
+      until = known[t][part] ? 0 : std::min(until + 1, kFarFrames);
+      distances[t][part][1] = until;
+    }
+  }
+  return distances;
+}
 
 void fill_curves(const std::vector<KnownParts>& known, int first, int last, Motion& motion) {
   for (int part = 0; part < kPartCount; ++part) PartCurve(known, part, motion).fill(first, last);

@@ -19,6 +19,13 @@ constexpr KnownParts all_parts(bool known) {
   return parts;
 }
 
+constexpr float kFarFrames = 120;  ///< as far as a known frame is told apart from none
+
+/// Of each frame and part the frames since the last known one and until the next, at most kFarFrames; 0, 0
+/// where the part is known.
+using KnownDistance = std::array<std::array<float, 2>, kPartCount>;
+std::vector<KnownDistance> known_distances(const std::vector<KnownParts>& known);
+
 /// Fills, in frames first .. last, the parts that are not known; what is known stays as it is to the bit.
 /// `known` has an entry for each frame of the motion. Between known frames a part follows the cubic Hermite
 /// curve through both (rotations by their logarithm, seen from the first), as fast at each end as the known

@@ -77,6 +77,9 @@ struct Motion {
   std::vector<Pose> poses;
   std::vector<uint8_t> flags;        ///< per frame, 0 = good; empty = all good
   std::vector<Standing> standing{};  ///< per frame, the feet that are held on the floor; empty: not known
+  /// Per frame how far its joints are expected to be off on average, metres, where it was made and not seen;
+  /// 0 where it was seen; empty: all was.
+  std::vector<float> doubt_m{};
 };
 
 /// A pose in the world.

@@ -6,6 +6,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/nn/modules/inbetween_input.hpp"
 
 namespace understudy::training {
 namespace {
@@ -64,18 +65,6 @@ void add_errors(Motion& motion, Rng& rng) {
     for (int j = 0; j < kJointCount; ++j)
       pose.local[j] = pose.local[j] * rotation_from_axis_angle(constant[j] + random_vector(0.3f * size));
     pose.root += 0.2f * (constant[kRootPart] + random_vector(0.3f * size));
-  }
-}
-
-void copy_poses(const std::vector<Pose>& poses, const Outlook& outlook, int64_t row, torch::Tensor& rotations,
-                torch::Tensor& root) {
-  float* R = rotations.data_ptr<float>() + row * rotations.stride(0);
-  float* place = root.data_ptr<float>() + row * root.stride(0);
-  for (const Pose& in_world : poses) {
-    const Pose pose = outlook.seen(in_world);
-    for (const Mat3& local : pose.local)
-      for (int i = 0; i < 9; ++i) *R++ = local(i / 3, i % 3);
-    place = std::copy(pose.root.data(), pose.root.data() + 3, place);
   }
 }
 
@@ -139,24 +128,18 @@ InbetweenBatch InbetweenData::batch_of(const std::vector<Window>& windows) const
   InbetweenBatch batch;
   batch.rotations = torch::empty({count, frames, kJointCount, 3, 3});
   batch.root = torch::empty({count, frames, 3});
-  batch.input.rotations = torch::empty_like(batch.rotations);
-  batch.input.root = torch::empty_like(batch.root);
-  batch.input.distance = torch::empty({count, frames, kPartCount, 2});
-  batch.input.rest = torch::from_blob(const_cast<float*>(rest_.data()), {1, kJointCount, 3})
-                         .clone()
-                         .expand({count, kJointCount, 3});
-  for (int64_t row = 0; row < count; ++row) {
-    const Window& window = windows[static_cast<size_t>(row)];
+  std::vector<MotionWindow> seen;
+  for (const Window& window : windows) {
     Motion curve = window.shown;
     fill_curves(window.known, 0, static_cast<int>(frames) - 1, curve);
-    const Outlook outlook = Outlook::of(curve.poses[static_cast<size_t>(outlook_frame(window.known))]);
-    copy_poses(window.truth.poses, outlook, row, batch.rotations, batch.root);
-    copy_poses(curve.poses, outlook, row, batch.input.rotations, batch.input.root);
-    const auto distances = known_distances(window.known);
-    float* to = batch.input.distance.data_ptr<float>() + row * batch.input.distance.stride(0);
-    for (const KnownDistance& frame : distances)
-      for (const auto& part : frame) to = std::copy(part.begin(), part.end(), to);
+    MotionWindow& to = seen.emplace_back();
+    to.rest = rest_;
+    to.outlook = Outlook::of(curve.poses[static_cast<size_t>(outlook_frame(window.known))]);
+    to.curve = to.outlook.seen(std::move(curve.poses));
+    to.distance = known_distances(window.known);
+    nn::put_poses(to.outlook.seen(window.truth.poses), ssize(seen) - 1, batch.rotations, batch.root);
   }
+  batch.input = nn::input_of(seen);
   return batch;
 }
 

@@ -302,6 +302,16 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
              edits.skip.count(frame) > 0);
 }
 
+void draw_fill(PanelContext& context, const FillEdit& fill, const std::string& k, const std::string& i) {
+  edit_line(context, "edit.filled." + i, printed("Frames %d to %d filled", fill.first, fill.last), fill.first,
+            {"fill", k, i});
+  ask_number(context,
+             {"edit.fill_learned." + i, "Plain - learned",
+              "0: the smooth curve through the frames beside; 1: what the motion space has learned of people",
+              "edit.fill_learned " + k + " " + i},
+             fill.learned, {0, 1, 0.01f, "%.2f", 1, true});
+}
+
 void draw_fills(PanelContext& context, const std::vector<FillEdit>& fills, const std::string& k) {
   ButtonOptions options;
   options.width = -1, options.shortcut = keys_of(context.commands, "edit.fill");
@@ -309,10 +319,7 @@ void draw_fills(PanelContext& context, const std::vector<FillEdit>& fills, const
       "Makes frames anew from those around them: between the loop marks, else the unusable frames here, else "
       "all unusable ones";
   if (button(context.ui, "edit.fill", "Fill frames", options)) context.ask("edit.fill", {k});
-  for (size_t i = 0; i < fills.size(); ++i)
-    edit_line(context, "edit.filled." + std::to_string(i),
-              printed("Frames %d to %d filled", fills[i].first, fills[i].last), fills[i].first,
-              {"fill", k, std::to_string(i)});
+  for (size_t i = 0; i < fills.size(); ++i) draw_fill(context, fills[i], k, std::to_string(i));
 }
 
 struct ListedEdit {

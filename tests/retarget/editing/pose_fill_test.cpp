@@ -16,7 +16,7 @@ struct FilledWalk {
 
   Motion filled(int first, int last) const {
     Motion motion = walk;
-    fill_frames({first, last}, rest, motion);
+    fill_frames({{first, last}}, rest, nullptr, motion);
     return motion;
   }
   /// Mean distance of joints from the truth in these frames, metres.
@@ -67,8 +67,8 @@ TEST(PoseFill, TurnsAndMirrorsWithWhatIsKnown) {
   const Mat3 R = rotation_about_y(2);
   for (Pose& pose : turned.poses) pose.root = R * pose.root, pose.local[Pelvis] = R * pose.local[Pelvis];
   for (Pose& pose : mirror.poses) pose = mirrored(pose);
-  fill_frames({20, 29}, stage().rest, turned);
-  fill_frames({20, 29}, stage().rest, mirror);
+  fill_frames({{20, 29}}, stage().rest, nullptr, turned);
+  fill_frames({{20, 29}}, stage().rest, nullptr, mirror);
   for (int t = 20; t <= 29; ++t) {
     EXPECT_LT((R * filled.poses[t].root - turned.poses[t].root).norm(), 1e-3f);
     const Pose other = mirrored(filled.poses[t]);
@@ -83,7 +83,7 @@ TEST(PoseFill, ATurnOfMoreThanHalfACircleGoesTheShortWay) {
   spin.poses.resize(12);
   for (int t = 0; t < 12; ++t) spin.poses[t].local[Pelvis] = rotation_about_y(0.28f * static_cast<float>(t));
   const Motion truth = spin;
-  fill_frames({2, 9}, stage().rest, spin);
+  fill_frames({{2, 9}}, stage().rest, nullptr, spin);
   for (int t = 2; t <= 9; ++t)
     EXPECT_LT(geodesic_angle(spin.poses[t].local[Pelvis], truth.poses[t].local[Pelvis]), 0.02f) << t;
 }
@@ -103,7 +103,7 @@ TEST(PoseFill, HoldsAFootThatStandsOnBothSides) {
   ASSERT_LT((ankle(motion, still + 8) - ankle(motion, still)).norm(), 0.04f);
   for (int t = still; t <= still + 8; ++t) motion.standing[t][0] = true;
   const Vec3 from = ankle(motion, still), to = ankle(motion, still + 8);
-  fill_frames({still + 1, still + 7}, stage().rest, motion);
+  fill_frames({{still + 1, still + 7}}, stage().rest, nullptr, motion);
   for (int t = still + 1; t < still + 8; ++t) {
     const float share = static_cast<float>(t - still) / 8;
     EXPECT_LT((ankle(motion, t) - (from + share * (to - from))).norm(), 2e-3f) << t;
@@ -128,12 +128,12 @@ TEST(PoseFill, RefusesFramesThatAreNotThere) {
   const int count = static_cast<int>(stage().walk.poses.size());
   Motion motion = stage().walk;
   EXPECT_EQ(failure_of([&] {
-              fill_frames({0, count - 1}, stage().rest, motion);
+              fill_frames({{0, count - 1}}, stage().rest, nullptr, motion);
             }),
             "all frames are to be filled: none is left that is known");
-  EXPECT_THROW(fill_frames({5, count}, stage().rest, motion), Error);
-  EXPECT_THROW(fill_frames({5, 4}, stage().rest, motion), Error);
-  EXPECT_THROW(fill_frames({-1, 4}, stage().rest, motion), Error);
+  EXPECT_THROW(fill_frames({{5, count}}, stage().rest, nullptr, motion), Error);
+  EXPECT_THROW(fill_frames({{5, 4}}, stage().rest, nullptr, motion), Error);
+  EXPECT_THROW(fill_frames({{-1, 4}}, stage().rest, nullptr, motion), Error);
 }
 
 }  // namespace

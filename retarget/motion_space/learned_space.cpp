@@ -1,0 +1,127 @@
+#include "retarget/motion_space/learned_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/skeleton/curve_doubt.hpp"
+#include "retarget/skeleton/foot_hold.hpp"
+
+namespace understudy {
+namespace {
+
+/// What is added to a pose of the curve: turns in the joints' own frames, and a way of the root.
+using Change = std::array<Vec3, kPartCount>;
+
+Change change_from(const Pose& curve, const Pose& made) {
+  Change change;
+  for (int j = 0; j < kJointCount; ++j)
+    change[j] = rotation_to_axis_angle(curve.local[j].transpose() * made.local[j]);
+  change[kRootPart] = made.root - curve.root;
+  return change;
+}
+
+/// What is known of a sample of a window, or what was made of it by a network and its mirror image.
+struct Sample {
+  Change change{};
+  std::array<float, 2> standing{};
+  float doubt_m = 0;
+};
+
+std::vector<Sample> samples_of(const MotionWindow& window, const WindowAnswer& direct,
+                               const WindowAnswer& mirror) {
+  std::vector<Sample> samples(window.curve.size());
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const Change one = change_from(window.curve[i], direct.poses[i]),
+                 other = change_from(window.curve[i], mirrored(mirror.poses[i]));
+    for (size_t part = 0; part < kPartCount; ++part)
+      samples[i].change[part] = 0.5f * (one[part] + other[part]);
+    for (size_t side = 0; side < 2; ++side)
+      samples[i].standing[side] = 0.5f * (direct.standing[i][side] + mirror.standing[i][1 - side]);
+    samples[i].doubt_m = 0.5f * (direct.doubt_m[i] + mirror.doubt_m[i]);
+  }
+  return samples;
+}
+
+/// Between four values in a row, `share` of the way from b to c (Catmull and Rom): through all of them.
+template <class Value>
+Value between(const Value& a, const Value& b, const Value& c, const Value& d, float share) {
+  const float s = share, s2 = s * s, s3 = s2 * s;
+  return 0.5f *
+         ((2 * s2 - s - s3) * a + (2 - 5 * s2 + 3 * s3) * b + (s + 4 * s2 - 3 * s3) * c + (s3 - s2) * d);
+}
+
+/// At any moment, in samples.
+Sample at(const std::vector<Sample>& samples, float when) {
+  const int last = ssize(samples) - 1, now = std::clamp(static_cast<int>(when + 1e-3f), 0, last);
+  const float share = std::clamp(when - static_cast<float>(now), 0.0f, 1.0f);
+  const Sample &b = samples[now], &c = samples[std::min(now + 1, last)];
+  if (share < 1e-3f) return b;
+  const Sample &a = samples[std::max(now - 1, 0)], &d = samples[std::min(now + 2, last)];
+  Sample made;
+  for (size_t part = 0; part < kPartCount; ++part)
+    made.change[part] = between(a.change[part], b.change[part], c.change[part], d.change[part], share);
+  for (size_t side = 0; side < 2; ++side)
+    made.standing[side] = b.standing[side] + share * (c.standing[side] - b.standing[side]);
+  made.doubt_m = b.doubt_m + share * (c.doubt_m - b.doubt_m);
+  return made;
+}
+
+void change(const Sample& sample, const KnownParts& known, const Mat3& heading, Pose& pose) {
+  for (int j = 0; j < kJointCount; ++j)
+    if (!known[j]) pose.local[j] = pose.local[j] * rotation_from_axis_angle(sample.change[j]);
+  if (!known[kRootPart]) pose.root += heading * sample.change[kRootPart];
+}
+
+void check(const KnownMotion& question) {
+  const size_t count = question.motion.poses.size();
+  US_CHECK(question.known.size() == count, "a motion of ", count, " frames has ", question.known.size(),
+           " that say what is known of it");
+  US_CHECK(std::any_of(question.known.begin(), question.known.end(),
+                       [](const KnownParts& parts) { return parts == all_parts(true); }),
+           "no frame of the motion is known");
+}
+
+/// Only where the legs are to be made, too: what is known of them stays.
+void hold_made(const KnownMotion& question, const std::vector<MotionWindow>& windows, Motion& motion) {
+  for (const MotionWindow& window : windows)
+    for (size_t i = 0; i < window.gap_frames.size();) {
+      const size_t first = i++;
+      while (i < window.gap_frames.size() && window.gap_frames[i] == window.gap_frames[i - 1] + 1) ++i;
+      const auto gap = question.known.begin() + window.gap_frames[first];
+      const bool whole = std::all_of(gap, gap + static_cast<std::ptrdiff_t>(i - first),
+                                     [](const KnownParts& parts) { return parts == all_parts(false); });
+      if (whole) hold_standing(question.rest, window.gap_frames[first], window.gap_frames[i - 1], motion);
+    }
+}
+
+}  // namespace
+
+Completion LearnedSpace::complete(const KnownMotion& question) {
+  check(question);
+  Completion made;
+  Motion& motion = made.motion = question.motion;
+  const int count = ssize(motion.poses);
+  fill_curves(question.known, 0, count - 1, motion);
+  made.doubt_m = curve_doubt(question.known, motion, question.rest);
+  const bool standing_known = !motion.standing.empty();
+  motion.standing.resize(question.known.size());
+  const std::vector<MotionWindow> windows = windows_of(question.known, motion, question.rest);
+  for (const MotionWindow& window : windows) {
+    const auto answers = network_->answer({window, mirrored(window)});
+    const std::vector<Sample> samples = samples_of(window, answers[0], answers[1]);
+    for (const int t : window.gap_frames) {
+      const Sample sample = at(samples, (static_cast<float>(t) - window.first) / window.step);
+      change(sample, question.known[t], window.outlook.heading, motion.poses[t]);
+      made.doubt_m[t] = sample.doubt_m;
+      for (size_t side = 0; side < 2; ++side) motion.standing[t][side] = sample.standing[side] > 0.5f;
+    }
+  }
+  hold_made(question, windows, motion);
+  if (!standing_known) motion.standing.clear();
+  return made;
+}
+
+}  // namespace understudy

@@ -1,0 +1,39 @@
+// A motion space that corrects smooth curves by what a network says of their windows.
+#pragma once
+
+#include <memory>
+
+#include "retarget/motion_space/motion_window.hpp"
+#include "retarget/pipeline/motion_space.hpp"
+
+namespace understudy {
+
+/// What a network makes of a window, sample by sample.
+struct WindowAnswer {
+  std::vector<Pose> poses;                     ///< seen from the window's outlook
+  std::vector<std::array<float, 2>> standing;  ///< 0..1, that the left and the right foot stand
+  std::vector<float> doubt_m;                  ///< the error that is expected of the joints, metres
+};
+
+class WindowNetwork {
+ public:
+  virtual ~WindowNetwork() = default;
+  /// Of windows with equally many samples. Throws Error where an answer is not finite.
+  virtual std::vector<WindowAnswer> answer(const std::vector<MotionWindow>& windows) = 0;
+};
+
+/// Fills by the curve (fill_curves), then adds what the network changes of it. The network is asked of the
+/// mirror image, too, and what is taken is the mean of both answers: so the mirrored question has the
+/// mirrored answer. Feet that it lets stand are held (hold_standing); known ones are as
+/// KnownMotion::motion.standing says. Gaps that fit into no window (of some three seconds) stay the curve.
+class LearnedSpace final : public MotionSpace {
+ public:
+  explicit LearnedSpace(std::unique_ptr<WindowNetwork> network) : network_(std::move(network)) {}
+  Completion complete(const KnownMotion& question) override;
+  std::string name() const override { return "space"; }
+
+ private:
+  std::unique_ptr<WindowNetwork> network_;
+};
+
+}  // namespace understudy

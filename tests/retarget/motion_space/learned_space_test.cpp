@@ -1,0 +1,189 @@
+// What surrounds the network of the motion space: here a stand-in of it that turns one elbow.
+#include "retarget/motion_space/learned_space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/body/builtin_motion.hpp"
+#include "retarget/body/builtin_person.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+/// Turns the left elbow, and less the right knee; the farther from what is known, the more.
+class ElbowNetwork final : public WindowNetwork {
+ public:
+  explicit ElbowNetwork(float angle, float stands = 0) : angle_(angle), stands_(stands) {}
+  std::vector<WindowAnswer> answer(const std::vector<MotionWindow>& windows) override {
+    std::vector<WindowAnswer> answers;
+    for (const MotionWindow& window : windows) {
+      WindowAnswer& answer = answers.emplace_back();
+      for (size_t i = 0; i < window.curve.size(); ++i) {
+        Pose pose = window.curve[i];
+        const auto& distance = window.distance[i][LeftElbow];
+        const float away = std::min(1.0f, std::min(distance[0], distance[1]) / 4);
+        pose.local[LeftElbow] = pose.local[LeftElbow] * rotation_from_axis_angle({0, away * angle_, 0});
+        pose.local[RightKnee] =
+            pose.local[RightKnee] * rotation_from_axis_angle({0.3f * away * angle_, 0, 0});
+        pose.root += Vec3(0.1f * away * angle_, 0, 0.05f * away * angle_);
+        answer.poses.push_back(pose);
+        answer.standing.push_back({stands_, 0});
+        answer.doubt_m.push_back(0.01f * away);
+      }
+    }
+    return answers;
+  }
+
+ private:
+  float angle_, stands_;
+};
+
+struct Question : KnownMotion {
+  Question(int first, int last) {
+    rest = builtin_person().joints;
+    motion = builtin_motion("walk", rest);
+    known.assign(motion.poses.size(), all_parts(true));
+    for (int t = first; t <= last; ++t) known[t] = all_parts(false);
+  }
+};
+
+Completion completed(const KnownMotion& question, float angle, float stands = 0) {
+  return LearnedSpace(std::make_unique<ElbowNetwork>(angle, stands)).complete(question);
+}
+
+bool is_same(const Pose& a, const Pose& b) {
+  return a.local == b.local && a.root == b.root;
+}
+
+TEST(LearnedSpace, WithoutACorrectionItIsTheCurve) {
+  const Question question(20, 29);
+  Motion curve = question.motion;
+  fill_curves(question.known, 0, ssize(curve.poses) - 1, curve);
+  const Completion made = completed(question, 0);
+  for (size_t t = 0; t < curve.poses.size(); ++t) {
+    EXPECT_LT((made.motion.poses[t].root - curve.poses[t].root).norm(), 1e-6f);
+    for (int j = 0; j < kJointCount; ++j)
+      EXPECT_LT(geodesic_angle(made.motion.poses[t].local[j], curve.poses[t].local[j]), 1e-3f);
+  }
+}
+
+TEST(LearnedSpace, WhatIsKnownStaysToTheBit) {
+  Question question(20, 29);
+  question.known[24] = all_parts(true);
+  for (int t = 20; t < 24; ++t) question.known[t][LeftShoulder] = true;
+  const Completion made = completed(question, 0.8f);
+  for (int t = 0; t < ssize(question.known); ++t) {
+    const Pose &was = question.motion.poses[t], &is = made.motion.poses[t];
+    EXPECT_EQ(is_same(was, is), t < 20 || t > 29 || t == 24) << t;
+    EXPECT_EQ(made.doubt_m[t] == 0, question.known[t] == all_parts(true)) << t;
+    if (t < 24) EXPECT_EQ(was.local[LeftShoulder], is.local[LeftShoulder]);
+  }
+}
+
+TEST(LearnedSpace, TakesTheMeanWithTheMirrorImage) {
+  const Question question(20, 29);
+  const Completion curve = completed(question, 0), made = completed(question, 0.8f);
+  const Pose &a = curve.motion.poses[25], &b = made.motion.poses[25];
+  EXPECT_NEAR(geodesic_angle(a.local[LeftElbow], b.local[LeftElbow]), 0.4f, 1e-3f);
+  EXPECT_NEAR(geodesic_angle(a.local[RightElbow], b.local[RightElbow]), 0.4f, 1e-3f);
+}
+
+TEST(LearnedSpace, TurnsAndMirrorsWithWhatIsKnown) {
+  const Question question(20, 29);
+  Question turned = question, mirror = question;
+  const Mat3 R = rotation_about_y(2);
+  for (Pose& pose : turned.motion.poses)
+    pose.root = R * pose.root, pose.local[Pelvis] = R * pose.local[Pelvis];
+  for (Pose& pose : mirror.motion.poses) pose = mirrored(pose);
+  const Completion made = completed(question, 0.8f), other = completed(turned, 0.8f),
+                   seen = completed(mirror, 0.8f);
+  for (int t = 20; t <= 29; ++t) {
+    EXPECT_LT((R * made.motion.poses[t].root - other.motion.poses[t].root).norm(), 1e-3f);
+    const Pose same = mirrored(made.motion.poses[t]);
+    EXPECT_LT((same.root - seen.motion.poses[t].root).norm(), 1e-3f);
+    for (int j = 0; j < kJointCount; ++j) {
+      EXPECT_LT(geodesic_angle(same.local[j], seen.motion.poses[t].local[j]), 2e-3f);
+      if (j != Pelvis)
+        EXPECT_LT(geodesic_angle(made.motion.poses[t].local[j], other.motion.poses[t].local[j]), 2e-3f);
+    }
+  }
+}
+
+TEST(LearnedSpace, CorrectsAlikeAtAnyRate) {
+  for (const int times : {2, 4}) {
+    Question slow(20, 29);
+    Question fast(0, -1);
+    fast.motion.fps = slow.motion.fps * static_cast<float>(times);
+    fast.motion.poses.clear();
+    fast.known.clear();
+    for (int t = 0; t + 1 < ssize(slow.motion.poses); ++t)
+      for (int i = 0; i < times; ++i) {
+        fast.motion.poses.push_back(slow.motion.poses[t]);  // as good as any curve
+        fast.known.push_back(all_parts(t < 20 || (t == 29 && i > 0) || t > 29));
+      }
+    const Completion plain = completed(fast, 0), made = completed(fast, 0.8f);
+    float largest = 0, before = 0;
+    for (int t = 0; t < ssize(fast.known); ++t) {
+      const float turn =
+          geodesic_angle(plain.motion.poses[t].local[LeftElbow], made.motion.poses[t].local[LeftElbow]);
+      largest = std::max(largest, turn);
+      EXPECT_LT(std::abs(turn - before), 0.25f / static_cast<float>(times)) << t;  // no steps at 30 a second
+      before = turn;
+    }
+    EXPECT_NEAR(largest, 0.4f, 0.03f);
+  }
+}
+
+TEST(LearnedSpace, HoldsAFootThatItSaysStands) {
+  Question question(20, 29);
+  question.motion.standing.resize(question.known.size());
+  const auto slid = [&](const Motion& motion) {
+    float way = 0;
+    for (int t = 21; t <= 29; ++t) {
+      const auto ball = [&](int frame) -> Vec3 {
+        return forward_kinematics(question.rest, motion.poses[frame]).joints.row(LeftFoot).transpose();
+      };
+      way += (ball(t) - ball(t - 1)).norm();
+    }
+    return way;
+  };
+  // Somebody who stands on both feet and sways.
+  for (int t = 0; t < ssize(question.known); ++t) {
+    Pose pose;
+    pose.root =
+        question.rest.row(Pelvis).transpose() + Vec3(0.02f * std::sin(0.4f * static_cast<float>(t)), 0, 0);
+    question.motion.poses[t] = pose;
+  }
+  const Completion free = completed(question, 0.3f, 0), held = completed(question, 0.3f, 1);
+  EXPECT_GT(slid(free.motion), 0.02f);
+  EXPECT_LT(slid(held.motion), 0.2f * slid(free.motion));
+  EXPECT_TRUE(held.motion.standing[25][0]);
+  EXPECT_FALSE(free.motion.standing[25][0]);
+}
+
+TEST(LearnedSpace, ALongGapStaysTheCurve) {
+  Question question(10, 30);
+  const Pose last = question.motion.poses.back();
+  question.motion.poses.resize(200, last);
+  question.known.resize(200, all_parts(true));
+  for (int t = 10; t < 150; ++t) question.known[t] = all_parts(false);
+  const Completion curve = completed(question, 0), made = completed(question, 0.8f);
+  for (int t = 10; t < 150; ++t) EXPECT_TRUE(is_same(curve.motion.poses[t], made.motion.poses[t])) << t;
+  EXPECT_GT(made.doubt_m[80], made.doubt_m[12]);
+}
+
+TEST(LearnedSpace, RefusesQuestionsWithoutAnAnswer) {
+  Question none(0, -1);
+  none.known.assign(none.known.size(), all_parts(false));
+  EXPECT_THROW(completed(none, 0), Error);
+  Question shorter(20, 29);
+  shorter.known.pop_back();
+  EXPECT_THROW(completed(shorter, 0), Error);
+}
+
+}  // namespace
+}  // namespace understudy
