@@ -34,20 +34,4 @@ Pose ClipPoses::at(int clip, float frame) const {
   return pose;
 }
 
-std::vector<ClipRun> good_runs(const std::vector<Clip>& clips, int shortest, int longest) {
-  std::vector<ClipRun> runs;
-  for (int c = 0; c < ssize(clips); ++c) {
-    const std::vector<int>& good = clips[c].good;
-    for (size_t i = 0; i < good.size();) {
-      size_t end = i + 1;
-      while (end < good.size() && static_cast<int>(end - i) < longest && good[end] == good[end - 1] + 1)
-        ++end;
-      const int count = static_cast<int>(end - i);
-      if (count >= shortest) runs.push_back({c, good[i], count});
-      i = end;
-    }
-  }
-  return runs;
-}
-
 }  // namespace understudy::training

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "retarget/training/training_data.hpp"
+#include "retarget/body/clips.hpp"
 
 namespace understudy::training {
 
@@ -26,12 +26,5 @@ class ClipPoses {
   };
   std::vector<std::vector<Frame>> clips_;
 };
-
-/// Frames first .. first + count - 1 of a clip, none of them flagged.
-struct ClipRun {
-  int clip = 0, first = 0, count = 0;
-};
-/// All runs of at least `shortest` frames, as long as they are but for `longest`.
-std::vector<ClipRun> good_runs(const std::vector<Clip>& clips, int shortest, int longest);
 
 }  // namespace understudy::training

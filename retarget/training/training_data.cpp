@@ -1,31 +1,10 @@
 #include "retarget/training/training_data.hpp"
 
-#include <algorithm>
-#include <filesystem>
-
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/base/text.hpp"
 
 namespace understudy::training {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::vector<Clip> read_clips(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (file_suffix(entry.path().string()) == ".npz") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  std::vector<Clip> clips;
-  for (const auto& file : files) {
-    Clip clip{read_amass_motion(file.string()), {}};
-    for (int t = 0; t < static_cast<int>(clip.motion.poses.size()); ++t)
-      if (clip.motion.flags.empty() || clip.motion.flags[t] == 0) clip.good.push_back(t);
-    if (!clip.good.empty()) clips.push_back(std::move(clip));
-  }
-  return clips;
-}
 
 void find_hands(TrainingData& data, const std::string& file) {
   data.dressed_hands.resize(data.dressed.size());

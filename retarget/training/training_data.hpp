@@ -7,17 +7,13 @@
 #include <vector>
 
 #include "retarget/base/rng.hpp"
+#include "retarget/body/clips.hpp"
 #include "retarget/body/data_folder.hpp"
 #include "retarget/body/hand_poses.hpp"
 
 namespace understudy::training {
 
 enum class Split { Train, Dev };
-
-struct Clip {
-  Motion motion;
-  std::vector<int> good;  ///< frames without a flag
-};
 
 struct TrainingData {
   Body body;

@@ -81,7 +81,7 @@ training::TrainingData octahedron_data() {
   training::TrainingData data;
   data.body = octahedron_body();
   for (float size : {-1.f, 0.f, 1.f}) data.betas.push_back(Eigen::VectorXf::Constant(1, size));
-  training::Clip clip{test_motion(), {}};
+  Clip clip{test_motion(), {}};
   for (int t = 0; t < static_cast<int>(clip.motion.poses.size()); ++t) clip.good.push_back(t);
   data.good_frames = static_cast<int64_t>(clip.good.size());
   data.clips.push_back(std::move(clip));
