@@ -1,0 +1,169 @@
+#include "retarget/motion_space/plain_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr float kUsualSpeed = 0.5f, kStill = 0.1f;  // m/s
+
+void check_question(const KnownMotion& question) {
+  US_CHECK(question.known.size() == question.motion.poses.size(), "what is known is told of ",
+           question.known.size(), " frames, the motion has ", question.motion.poses.size());
+  US_CHECK(std::any_of(question.known.begin(), question.known.end(),
+                       [](const KnownParts& frame) { return frame != all_parts(false); }),
+           "no frame of the motion is known");
+}
+
+/// The frames of which all is known.
+std::vector<int> whole_frames(const std::vector<KnownParts>& known) {
+  std::vector<int> frames;
+  for (int t = 0; t < ssize(known); ++t)
+    if (known[t] == all_parts(true)) frames.push_back(t);
+  return frames;
+}
+
+void copy_part(const Pose& from, int part, Pose& to) {
+  if (part == kRootPart)
+    to.root = from.root;
+  else
+    to.local[part] = from.local[part];
+}
+
+void mix_part(const Pose& a, const Pose& b, float share, int part, Pose& to) {
+  if (part == kRootPart) {
+    to.root = a.root + share * (b.root - a.root);
+    return;
+  }
+  const Vec3 turn = rotation_to_axis_angle(a.local[part].transpose() * b.local[part]);
+  to.local[part] = a.local[part] * rotation_from_axis_angle(share * turn);
+}
+
+/// Calls put(before, t, after) for each frame t whose part is not known; -1 where no frame before or after it
+/// knows the part.
+template <class Put>
+void each_unknown(const std::vector<KnownParts>& known, int part, Put&& put) {
+  int before = -1, after = -1;
+  for (int t = 0; t < ssize(known); ++t) {
+    if (known[t][part]) {
+      before = t;
+      continue;
+    }
+    if (after < t)
+      for (after = t + 1; after < ssize(known) && !known[after][part];) ++after;
+    put(before, t, after < ssize(known) ? after : -1);
+  }
+}
+
+class HoldSpace final : public PlainSpace {
+ public:
+  HoldSpace() : PlainSpace({1.12f, 0.78f, 1.46f}) {}
+  std::string name() const override { return "hold"; }
+
+ private:
+  void fill(const KnownMotion& question, Motion& motion) override {
+    for (int part = 0; part < kPartCount; ++part)
+      each_unknown(question.known, part, [&](int before, int t, int after) {
+        const int from = before >= 0 ? before : after;
+        if (from >= 0) copy_part(question.motion.poses[from], part, motion.poses[t]);
+      });
+  }
+};
+
+class SlerpSpace final : public PlainSpace {
+ public:
+  SlerpSpace() : PlainSpace({0.72f, 1.2f, 1.16f}) {}
+  std::string name() const override { return "slerp"; }
+
+ private:
+  void fill(const KnownMotion& question, Motion& motion) override {
+    const auto& poses = question.motion.poses;
+    for (int part = 0; part < kPartCount; ++part)
+      each_unknown(question.known, part, [&](int before, int t, int after) {
+        if (before >= 0 && after >= 0)
+          mix_part(poses[before], poses[after],
+                   static_cast<float>(t - before) / static_cast<float>(after - before), part,
+                   motion.poses[t]);
+        else if (const int from = std::max(before, after); from >= 0)
+          copy_part(poses[from], part, motion.poses[t]);
+      });
+  }
+};
+
+class HermiteSpace final : public PlainSpace {
+ public:
+  HermiteSpace() : PlainSpace({0.58f, 1.34f, 0.94f}) {}
+  std::string name() const override { return "hermite"; }
+
+ private:
+  void fill(const KnownMotion& question, Motion& motion) override {
+    fill_curves(question.known, 0, static_cast<int>(ssize(motion.poses)) - 1, motion);
+  }
+};
+
+}  // namespace
+
+float DoubtLaw::metres(float seconds, float speed) const {
+  return size * std::pow(seconds, by_time) * std::pow(speed + kStill, by_speed);
+}
+
+std::vector<float> known_speeds(const KnownMotion& question) {
+  const std::vector<int> frames = whole_frames(question.known);
+  std::vector<float> speeds(question.known.size(), kUsualSpeed);
+  if (frames.size() < 2) return speeds;
+  const auto joints_at = [&](int i) {
+    return forward_kinematics(question.rest, question.motion.poses[frames[i]]).joints;
+  };
+  std::vector<float> steps;  // from each known frame to the next
+  Joints here = joints_at(0);
+  for (int i = 0; i + 1 < ssize(frames); ++i) {
+    const Joints next = joints_at(i + 1);
+    const float seconds = static_cast<float>(frames[i + 1] - frames[i]) / question.motion.fps;
+    steps.push_back((next - here).rowwise().norm().mean() / seconds);
+    here = next;
+  }
+  for (int t = 0; t < ssize(speeds); ++t) {
+    const auto after = std::upper_bound(frames.begin(), frames.end(), t) - frames.begin();
+    float sum = 0;
+    int count = 0;
+    for (auto i = after - 2; i <= after; ++i)
+      if (i >= 0 && i < ssize(steps)) sum += steps[i], ++count;
+    speeds[t] = sum / static_cast<float>(count);
+  }
+  return speeds;
+}
+
+Completion PlainSpace::complete(const KnownMotion& question) {
+  check_question(question);
+  Completion made{question.motion, std::vector<float>(question.known.size())};
+  fill(question, made.motion);
+  const std::vector<KnownDistance> distances = known_distances(question.known);
+  const std::vector<float> speeds = known_speeds(question);
+  for (size_t t = 0; t < question.known.size(); ++t)
+    for (int part = 0; part < kPartCount; ++part) {
+      if (question.known[t][part]) {
+        copy_part(question.motion.poses[t], part, made.motion.poses[t]);
+        continue;
+      }
+      const auto& [since, until] = distances[t][part];
+      made.doubt_m[t] += doubt_.metres(std::min(since, until) / question.motion.fps, speeds[t]) / kPartCount;
+    }
+  return made;
+}
+
+std::unique_ptr<MotionSpace> make_hold_space() {
+  return std::make_unique<HoldSpace>();
+}
+std::unique_ptr<MotionSpace> make_slerp_space() {
+  return std::make_unique<SlerpSpace>();
+}
+std::unique_ptr<MotionSpace> make_hermite_space() {
+  return std::make_unique<HermiteSpace>();
+}
+
+}  // namespace understudy

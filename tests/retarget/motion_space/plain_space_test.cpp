@@ -1,0 +1,177 @@
+#include "retarget/motion_space/plain_space.hpp"
+
+#include <gtest/gtest.h>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/rng.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/metrics/confidence.hpp"
+#include "retarget/motion_space/nearest_space.hpp"
+#include "tests/retarget/motion_space/known_walk.hpp"
+
+namespace understudy {
+namespace {
+
+using tests::KnownWalk;
+
+const KnownWalk& dance() {
+  static const KnownWalk made;
+  return made;
+}
+
+/// Each of them answers the question.
+class MotionSpaces : public testing::TestWithParam<const char*> {
+ protected:
+  std::unique_ptr<MotionSpace> space = made(GetParam());
+
+ private:
+  static std::unique_ptr<MotionSpace> made(const std::string& name) {
+    if (name == "hold") return make_hold_space();
+    if (name == "slerp") return make_slerp_space();
+    if (name == "hermite") return make_hermite_space();
+    static const KnownWalk walk("walk");
+    Clip clip{walk.motion, {}};
+    for (size_t t = 0; t < clip.motion.poses.size(); ++t) clip.good.push_back(static_cast<int>(t));
+    return std::make_unique<NearestSpace>(std::vector<Clip>{clip});
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, MotionSpaces, testing::Values("hold", "slerp", "hermite", "nearest"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST_P(MotionSpaces, HasItsName) {
+  EXPECT_EQ(space->name(), GetParam());
+}
+
+TEST_P(MotionSpaces, KeepsWhatIsKnownToTheBitWhateverThatIs) {
+  Rng rng(1);
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    KnownMotion question = dance().question(20, 40, 1, 0);
+    for (KnownParts& frame : question.known)
+      if (rng.chance(0.6f))
+        for (bool& part : frame) part = rng.chance(0.3f);
+    const Completion answer = space->complete(question);
+    ASSERT_EQ(answer.motion.poses.size(), 40u);
+    ASSERT_EQ(answer.doubt_m.size(), 40u);
+    for (size_t t = 0; t < 40; ++t) {
+      for (int part = 0; part < kPartCount; ++part)
+        if (question.known[t][part])
+          EXPECT_TRUE(tests::same_part(answer.motion.poses[t], question.motion.poses[t], part)) << t;
+      EXPECT_EQ(answer.doubt_m[t] == 0, question.known[t] == all_parts(true)) << t;
+    }
+  }
+}
+
+TEST_P(MotionSpaces, FillsBeforeTheFirstKnownFrameAndAfterTheLast) {
+  for (const auto& [first, last] : {std::pair(0, 9), std::pair(30, 39), std::pair(10, 29)}) {
+    const KnownMotion question = dance().question(20, 40, first, last);  // what is not known is NaN
+    const Completion answer = space->complete(question);
+    for (int t = 0; t < 40; ++t) EXPECT_LT(dance().error(answer.motion, 20, t), 1) << first << ": " << t;
+  }
+}
+
+TEST_P(MotionSpaces, TurnedQuestionsHaveTurnedAnswers) {
+  const KnownMotion question = dance().question(20, 40, 10, 29);
+  const Mat3 turn = rotation_about_y(2.1f);
+  const Vec3 way(3, 0.5f, -2);
+  const Completion straight = space->complete(question),
+                   answer = space->complete(tests::turned(question, turn, way));
+  EXPECT_LT(tests::farthest(question.rest, answer.motion, tests::turned(straight.motion, turn, way)), 1e-3f);
+  for (size_t t = 0; t < 40; ++t) EXPECT_NEAR(answer.doubt_m[t], straight.doubt_m[t], 1e-3f);
+}
+
+TEST_P(MotionSpaces, MirroredQuestionsHaveMirroredAnswers) {
+  KnownMotion question = dance().question(20, 40, 10, 29);
+  if (std::string(GetParam()) != "nearest")
+    for (int t = 10; t < 30; ++t) {  // some parts are known
+      question.known[t][LeftElbow] = true;
+      question.motion.poses[t].local[LeftElbow] = dance().motion.poses[20 + t].local[LeftElbow];
+    }
+  const Completion straight = space->complete(question), answer = space->complete(tests::mirrored(question));
+  EXPECT_LT(tests::farthest(question.rest, answer.motion, tests::mirrored(straight.motion)), 1e-3f);
+  EXPECT_GT(tests::farthest(question.rest, answer.motion, straight.motion), 0.1f);
+}
+
+TEST_P(MotionSpaces, DoubtGrowsWithTheDistanceToWhatIsKnownAndWithSpeed) {
+  const KnownMotion question = dance().question(20, 40, 10, 29);
+  const std::vector<float> doubt = space->complete(question).doubt_m;
+  for (size_t t = 10; t < 19; ++t) EXPECT_LT(doubt[t], doubt[t + 1]) << t;
+  for (size_t t = 20; t < 29; ++t) EXPECT_GT(doubt[t], doubt[t + 1]) << t;
+  KnownMotion faster = question;
+  for (Pose& pose : faster.motion.poses)
+    pose.root.x() += 0.1f * static_cast<float>(&pose - &faster.motion.poses[0]);
+  EXPECT_GT(space->complete(faster).doubt_m[15], 1.2f * doubt[15]);
+}
+
+TEST_P(MotionSpaces, RefuseWhatIsNoQuestion) {
+  KnownMotion question = dance().question(20, 40, 0, 39);
+  EXPECT_THROW(space->complete(question), Error);
+  question.known.pop_back();
+  EXPECT_THROW(space->complete(question), Error);
+}
+
+TEST(PlainSpaces, HoldKeepsTheLastKnownPoseAndTheFirstBeforeIt) {
+  KnownMotion question = dance().question(20, 40, 10, 29);
+  for (int t = 0; t < 5; ++t) question.known[t] = all_parts(false);
+  const Completion answer = make_hold_space()->complete(question);
+  for (int part = 0; part < kPartCount; ++part)
+    for (int t = 0; t < 30; ++t)
+      if (t < 5 || t > 9)
+        EXPECT_TRUE(tests::same_part(answer.motion.poses[t], question.motion.poses[t < 5 ? 5 : 9], part))
+            << t;
+}
+
+TEST(PlainSpaces, SlerpGoesHalfTheShortestTurnInHalfTheTime) {
+  KnownMotion question = dance().question(20, 9, 1, 7);
+  auto &first = question.motion.poses.front(), &last = question.motion.poses.back();
+  first = last = Pose();
+  last.local[LeftKnee] = rotation_from_axis_angle(Vec3(2, 0, 0));
+  last.root = Vec3(0.8f, 0, 0);
+  const Pose middle = make_slerp_space()->complete(question).motion.poses[4];
+  EXPECT_TRUE(middle.local[LeftKnee].isApprox(rotation_from_axis_angle(Vec3(1, 0, 0)), 1e-5f));
+  EXPECT_TRUE(middle.root.isApprox(Vec3(0.4f, 0, 0), 1e-5f));
+}
+
+TEST(PlainSpaces, CurvesAreNearerThanSlerpAndThatThanHolding) {
+  const KnownMotion question = dance().question(20, 30, 10, 19);
+  const auto error = [&](MotionSpace& space) {
+    const Completion answer = space.complete(question);
+    double sum = 0;
+    for (int t = 10; t < 20; ++t) sum += dance().error(answer.motion, 20, t) / 10;
+    return sum;
+  };
+  EXPECT_LT(error(*make_hermite_space()), 0.7 * error(*make_slerp_space()));
+  EXPECT_LT(error(*make_slerp_space()), 0.7 * error(*make_hold_space()));
+}
+
+TEST(PlainSpaces, DoubtTellsTheErrorAndItsSize) {
+  const auto space = make_hermite_space();
+  std::vector<double> doubt, error;
+  double doubt_sum = 0, error_sum = 0;
+  for (int start = 0; start + 35 <= static_cast<int>(dance().motion.poses.size()); start += 7) {
+    const Completion answer = space->complete(dance().question(start, 35, 10, 24));
+    for (int t = 10; t < 25; ++t) {
+      doubt_sum += doubt.emplace_back(static_cast<double>(answer.doubt_m[t]));
+      error_sum += error.emplace_back(dance().error(answer.motion, start, t));
+    }
+  }
+  EXPECT_GT(rank_correlation(doubt, error), 0.4);
+  EXPECT_GT(doubt_sum, error_sum / 4);
+  EXPECT_LT(doubt_sum, error_sum * 4);
+}
+
+TEST(KnownSpeeds, AreThoseOfKnownFramesAlone) {
+  KnownMotion question{
+      {30, std::vector<Pose>(9), {}}, std::vector<KnownParts>(9, all_parts(true)), dance().rest};
+  for (int t = 0; t < 9; ++t) question.motion.poses[t].root.x() = 0.1f * static_cast<float>(t);
+  for (int t = 3; t < 6; ++t) {
+    question.known[t] = all_parts(false);
+    question.motion.poses[t].root.x() = 100;
+  }
+  for (const float speed : known_speeds(question)) EXPECT_NEAR(speed, 3, 1e-4f);
+  question.known.assign(9, all_parts(false));
+  question.known[2] = all_parts(true);
+  EXPECT_EQ(known_speeds(question), std::vector<float>(9, 0.5f));
+}
+
+}  // namespace
+}  // namespace understudy
