@@ -116,9 +116,10 @@ void Evaluator::push_bends(const Points& vertices, const Points& true_vertices) 
 }
 
 Metrics Evaluator::metrics() const {
-  US_CHECK(frames_ > 0, "there are no frames to evaluate");
-  US_CHECK(!truth_ || frames_ == truth_->frames, "the source has ", frames_, " frames, the truth ",
-           truth_ ? truth_->frames : 0);
+  const bool gaps_alone = frames_ == 0 && !gaps_.empty();
+  US_CHECK(frames_ > 0 || gaps_alone, "there are no frames to evaluate");
+  US_CHECK(!truth_ || gaps_alone || frames_ == truth_->frames, "the source has ", frames_,
+           " frames, the truth ", truth_ ? truth_->frames : 0);
   const auto of_surfaces = surface_figures();
   Metrics result;
   for (const Metric& metric : metric_table()) {
@@ -134,6 +135,7 @@ Metrics Evaluator::metrics() const {
 
 std::map<std::string, double> Evaluator::surface_figures() const {
   std::map<std::string, double> figures = scene_.figures();
+  figures.merge(gaps_.figures());
   for (const auto& [key, mean] : means_)
     if (mean.count > 0) figures[key] = mean.value();
   if (figures.count("floor_mm")) figures["floor_worst_mm"] = 1000 * floor_worst_;

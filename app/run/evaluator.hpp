@@ -10,6 +10,7 @@
 
 #include "app/run/case_folder.hpp"
 #include "retarget/metrics/bent_volume.hpp"
+#include "retarget/metrics/gap_score.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/metric_table.hpp"
 #include "retarget/metrics/registered_truth.hpp"
@@ -49,7 +50,7 @@ struct EvaluatedFrame {
 ///
 /// bent_volume is the volume about elbows, knees, shoulders and hips over that in T-pose, in frames in which
 /// they are turned by more than 90 degrees; bent_volume_true is the truth's. hand_stretch and head_stretch
-/// are PartStretch's, ..._true the truth's.
+/// are PartStretch's, ..._true the truth's. Figures of gaps are GapScore's.
 ///
 /// lowest_gap_mm is the median over frames of |the target's lowest vertex less the scan's|: a shoe that
 /// floats is seen in its shadow. registered_rot_deg and registered_const_mm are RegisteredTruth's means, of
@@ -61,6 +62,8 @@ class Evaluator {
   void push(const EvaluatedFrame& frame);
   /// Somebody of a frame of a scene that was pushed, as extracted from a scan of them alone.
   void push_alone(size_t frame, size_t person, const Joints& joints);
+  /// Frames that were not known, filled. A sequence of which gaps alone are pushed has their figures alone.
+  void push_gap(const FilledGap& gap) { gaps_.push(gap, fps_); }
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
   /// Figures of the last frame's surface, by the metric's key; those not measured are left out.
@@ -73,6 +76,7 @@ class Evaluator {
   const std::vector<Rotations>& rotations() const { return seen_.rotations; }
   const std::vector<Confidence>& confidence() const { return confidence_; }
   const RegisteredTruth& registered() const { return registered_; }
+  const GapScore& gaps() const { return gaps_; }
 
  private:
   struct Mean {
@@ -98,6 +102,7 @@ class Evaluator {
   std::optional<PartStretch> parts_;  // of the target
   ContactsKept contacts_;
   SceneScore scene_;
+  GapScore gaps_;
   int64_t frames_ = 0, without_legs_ = 0;
   MetricSequence seen_, true_;
   std::vector<Confidence> confidence_;

@@ -138,6 +138,20 @@ std::vector<Metric> rows_of_scenes() {
        kNeedsScene}};
 }
 
+std::vector<Metric> rows_of_gaps() {
+  const Better lower = Better::Lower, higher = Better::Higher, neither = Better::Neither;
+  const bool whole = false;
+  const char* const per_frame2 = "m/frame\xC2\xB2";
+  return {{"gap_mpjpe_m", "MPJPE in gaps", "m", 4, whole, lower, kNeedsGaps},
+          {"gap_rel_mpjpe_m", "MPJPE in gaps, less the pelvis", "m", 4, whole, lower, kNeedsGaps},
+          {"mve_m", "Mean vertex error in gaps", "m", 4, whole, lower, kNeedsGaps},
+          {"gap_foot_skate", "Foot skate in gaps", "m/s", 3, whole, lower, kNeedsGaps},
+          {"gap_foot_skate_true", "Foot skate in gaps, truth", "m/s", 3, whole, neither, kNeedsGaps},
+          {"gap_acc", "Acceleration error in gaps", per_frame2, 4, whole, lower, kNeedsGaps},
+          {"seam_m", "Acceleration error at the ends of gaps", "m", 4, whole, lower, kNeedsGaps},
+          {"spread", "Correlation of doubt and error in gaps", "", 2, whole, higher, kNeedsGaps}};
+}
+
 std::vector<Metric> rows_of_one() {
   using S = const Sequence&;
   const Better lower = Better::Lower, higher = Better::Higher, neither = Better::Neither;
@@ -204,6 +218,7 @@ const std::vector<Metric>& metric_table() {
   static const std::vector<Metric> table = [] {
     std::vector<Metric> all = rows_of_one();
     for (const Metric& row : rows_of_scenes()) all.push_back(row);
+    for (const Metric& row : rows_of_gaps()) all.push_back(row);
     return all;
   }();
   return table;

@@ -31,6 +31,7 @@ enum MetricNeeds : unsigned {
   kNeedsVisibility = 64,
   kNeedsScene = 128,  ///< the truth of a scene: who is in it, and whose each point is
   kNeedsLegs = 256,   ///< seen
+  kNeedsGaps = 512,   ///< frames that were not known, and their truth
 };
 
 enum class Better { Lower, Higher, Neither };
