@@ -32,7 +32,8 @@ const std::vector<MotionSpaceChoice>& motion_spaces() {
       {"hermite", "Hermite curves", "smooth curves that keep the speed of the known poses", nullptr, false,
        made<make_hermite_space>},
       {"nearest", "Nearest", "the most similar of known motions, bent to what is known", nullptr, true,
-       make_nearest_space}};
+       make_nearest_space},
+      {"space", "Learned", "the motion space's network corrects the smooth curves", "motion_space.weights"}};
   return all;
 }
 
@@ -59,7 +60,7 @@ std::unique_ptr<MotionSpace> make_motion_space(const std::string& name, const st
   const MotionSpaceChoice& choice = motion_space_named(name);
   US_CHECK(!choice.needs_clips || !data.empty(), "'", name,
            "' looks for like motions in a data folder: --data names it");
-  US_CHECK(choice.make, "'", name, "' has a network: the plug-in makes it");
+  US_CHECK(choice.make, "'", name, "' has a network, which is loaded from its weights");
   return choice.make(data);
 }
 

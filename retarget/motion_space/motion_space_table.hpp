@@ -16,7 +16,7 @@ struct MotionSpaceChoice {
   const char* weights;       ///< its file in the folder of weights; null: it has no network
   bool needs_clips = false;  ///< it looks into a folder of people and motions: for comparisons
   /// One without a network. `data`: the folder (retarget/body/data_folder.hpp) where it needs clips, whose
-  /// split "train" it looks into. The plug-in makes the others.
+  /// split "train" it looks into. Null: it has a network (nn::load_motion_space).
   std::unique_ptr<MotionSpace> (*make)(const std::string& data) = nullptr;
 };
 
