@@ -12,7 +12,7 @@ Action declare_cases(CLI::App& command) {
   command.add_option("--suite", options->suite, "the suite to make")
       ->required()
       ->check(CLI::IsMember({"naked", "clothed", "captured", "hands", "bends", "extraction", "occluded",
-                             "partial", "sensors", "scenes"}));
+                             "partial", "sensors", "scenes", "inbetween"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split, "split of splits.json (default: dev)");
   command.add_option("--body", options->body, "an SMPL-format body in place of the folder's own");
@@ -21,8 +21,13 @@ Action declare_cases(CLI::App& command) {
       .add_option("--frames", options->frames,
                   "frames per case, at most (default: 90; fewer where a suite is shorter)")
       ->check(CLI::Range(1, 100000));
-  command.add_option("--points", options->points, "points per scan, roughly (default: 8000)")
-      ->check(CLI::Range(100, 10000000));
+  command
+      .add_option("--points", options->points,
+                  "points per scan, roughly (default: 8000); 0, of inbetween: no scans, clips whole")
+      ->check(CLI::Range(0, 10000000));
+  command.add_option("--gap", options->gap, "frames that are not known (inbetween)")
+      ->check(CLI::Range(1, 1000));
+  command.add_flag("--walks", options->walks, "walks and runs only, a window every 3 frames (inbetween)");
   command.add_option("--seed", options->seed, "seed of the random numbers");
   return [options] {
     const int count = make_suite(*options, [](const std::string& name) {

@@ -15,10 +15,11 @@ std::string one_line(const CaseResult& result) {
   if (!result.error.empty()) return result.name + ": ERROR " + result.error;
   std::string line = result.name + ": " + std::to_string(result.frames) + " frames";
   if (result.flagged > 0) line += ", " + std::to_string(result.flagged) + " flagged";
-  for (const char* key : {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "file_medl_mm",
-                          "extraction_mpjpe_mm", "extraction_swap_rate", "extraction_seen_mm",
-                          "visibility_right", "points_owner_right", "identities_exchanged", "people_missed",
-                          "people_mm", "people_alone_mm", "hand_contact_kept", "arm_buried_added"})
+  for (const char* key :
+       {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "file_medl_mm", "extraction_mpjpe_mm",
+        "extraction_swap_rate", "extraction_seen_mm", "visibility_right", "points_owner_right",
+        "identities_exchanged", "people_missed", "people_mm", "people_alone_mm", "hand_contact_kept",
+        "arm_buried_added", "gap_mpjpe_m", "seam_m", "spread"})
     for (const auto& [name, value] : result.metrics)
       if (name == key) line += printed(", %s %.4g", key, value);
   return line;
@@ -67,6 +68,13 @@ Action declare_eval(CLI::App& command) {
                   "evaluates the exported GLB, too, with this many morph targets: file_medl_mm, ...")
       ->check(CLI::Range(0, 64));
   command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");
+  command
+      .add_option("--fill", options->fill,
+                  "what makes the frames in a case's gaps. " + motion_space_help() +
+                      " (default: " + kDefaultMotionSpace + ")")
+      ->check([](const std::string& name) { return failure_of([&] { motion_space_named(name); }); });
+  command.add_option("--data", options->data,
+                     "the folder of people and motions that --fill nearest looks into");
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
       ->check(CLI::Range(0, 10000));
   command.add_option("--pictures", files->pictures, "folder for pictures of the worst frames");

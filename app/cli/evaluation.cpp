@@ -1,8 +1,10 @@
 #include "app/cli/evaluation.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 
+#include "app/cli/gap_evaluation.hpp"
 #include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/retargeted_source.hpp"
@@ -197,11 +199,33 @@ void evaluate_deformation(const Truth& truth, const Mesh& target, Deformer& defo
 /// What evaluates all cases alike.
 struct Bench {
   const EvalOptions& options;
-  std::shared_ptr<const FitBody> fit;  // null: no baseline
+  std::shared_ptr<const FitBody> fit = {};  // null: no baseline
+  std::shared_ptr<MotionSpace> space = {};  // made for the first case with gaps
+
+  MotionSpace& filling() {
+    if (space) return *space;
+    const bool plain = motion_space_named(options.fill).make;
+    space = plain ? make_motion_space(options.fill, options.data)
+                  : nn::load_motion_space(nn::weights_folder(network_options(options.how)));
+    return *space;
+  }
 };
+
+/// The same of a case with gaps.
+void check_gap_options(const EvalOptions& options, const Case& c) {
+  US_CHECK(options.oracle.empty() || options.oracle == "pose", c.name,
+           ": of frames that are to be made no skeleton is known: --oracle ", options.oracle,
+           " does not apply");
+  US_CHECK(!options.file_shapes && options.restart_every == 0, c.name,
+           ": only frames that are not known are evaluated: --file and --restart-every do not apply");
+  US_CHECK(!c.truth.empty(), c.name, ": frames that are to be made need a ground truth");
+  US_CHECK(options.oracle == "pose" || (!c.source.empty() && !c.target.empty()), c.name, ": it has no ",
+           c.source.empty() ? "scans" : "target", ": only --oracle pose can evaluate it");
+}
 
 /// What is asked of a case must mean something there.
 void check_options(const EvalOptions& options, const Case& c) {
+  if (c.gaps) return check_gap_options(options, c);
   const bool performed = !c.target.empty();
   US_CHECK(performed || (options.oracle.empty() && !options.file_shapes && options.restart_every == 0),
            c.name, ": it has no target: --oracle, --file and --restart-every do not apply");
@@ -210,10 +234,81 @@ void check_options(const EvalOptions& options, const Case& c) {
            "--oracle pose uses the true poses: --baseline, --file and --restart-every do not apply");
 }
 
-void evaluate_case(const Bench& bench, const std::string& folder, const Case& c, CaseResult& result,
+/// The poses that the known frames of a case are performed with.
+KnownMotion performed_motion(const Case& c, const EvalOptions& options, Retargeter& retargeter,
+                             const Joints& rest, CaseResult& result) {
+  SourceOptions from = case_source(c);
+  from.edits = options.edits;
+  const auto source = open_source(from);
+  const std::vector<bool> known = known_frames(*c.gaps);
+  KnownMotion performed{{static_cast<float>(c.fps), std::vector<Pose>(known.size()), {}},
+                        std::vector<KnownParts>(known.size(), all_parts(false)),
+                        rest};
+  RetargetedSource retargeted(*source, retargeter, from);
+  while (const auto frame = retargeted.next()) {
+    check_interrupt("in case " + c.name);
+    const int64_t t = frame->scan.number;
+    US_CHECK(t >= 0 && t < c.gaps->frames, c.source, ": has a frame ", t, ", case.json says ", c.gaps->frames,
+             " frames");
+    if (!known[static_cast<size_t>(t)]) continue;
+    result.latency.add(frame->times);
+    result.flagged += frame->result.flagged;
+    performed.motion.poses[static_cast<size_t>(t)] = frame->result.pose;
+    if (!frame->result.flagged) performed.known[static_cast<size_t>(t)] = all_parts(true);
+  }
+  retargeted.check_used();
+  return performed;
+}
+
+/// A case of which the frames in gaps are evaluated, by true poses beside them.
+void evaluate_true_gap_case(Bench& bench, const Case& c, const Truth& truth, CaseFigures& to) {
+  GapCase of{c, truth, bench.filling(), {}};
+  if (!c.target.empty() && truth.target_joints) {
+    const std::shared_ptr<Deformer> deformer =
+        nn::load_networks(network_options(bench.options.how), {false, false, false, true}).deformer;
+    deformer->bind(read_mesh(c.target).vertices, *truth.target_joints);
+    of.target = [deformer](const Pose& pose) { return deformer->deform(pose); };
+  }
+  for (const double ms : evaluate_true_gaps(of, to.evaluator)) {
+    FrameTimes times;
+    times.total = ms;
+    to.result.latency.add(times);
+  }
+}
+
+/// The same by poses performed from scans.
+void evaluate_performed_gap_case(Bench& bench, const Case& c, const Truth& truth, CaseFigures& to) {
+  Networks networks = nn::load_networks(network_options(bench.options.how), {true, true, true, true});
+  const std::shared_ptr<const PreparedCharacter> character = open_target(case_target(c), networks);
+  if (bench.fit) networks.extractor = std::make_shared<BodyFit>(bench.fit);
+  Retargeter retargeter(std::move(networks), retarget_options(bench.options.how));
+  retargeter.set_target(character->target);
+  const KnownMotion performed =
+      performed_motion(c, bench.options, retargeter, character->target.joints, to.result);
+  const auto surface = [&](const Pose& pose) {
+    return character->surface.in_file_order(retargeter.performer().deformer()->deform(pose));
+  };
+  evaluate_performed_gaps({c, truth, bench.filling(), surface}, performed, to.evaluator);
+}
+
+void evaluate_gap_case(Bench& bench, const Case& c, CaseResult& result) {
+  const Truth truth = read_truth(c.truth);
+  Evaluator evaluator(c.fps, &truth, nullptr);
+  CaseFigures to{evaluator, result, &truth, {}};
+  if (bench.options.oracle == "pose")
+    evaluate_true_gap_case(bench, c, truth, to);
+  else
+    evaluate_performed_gap_case(bench, c, truth, to);
+  result.frames = static_cast<int64_t>(window_starts(*c.gaps).size()) * c.gaps->gap;
+  result.metrics = evaluator.metrics();
+  result.gaps = evaluator.gaps();
+}
+
+void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseResult& result,
                    Breakdown& breakdown) {
   const EvalOptions& options = bench.options;
   check_options(options, c);
+  if (c.gaps) return evaluate_gap_case(bench, c, result);
   std::optional<Truth> truth;
   if (!c.truth.empty()) truth = read_truth(c.truth);
   US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle needs a ground truth");
@@ -274,10 +369,19 @@ std::vector<std::string> chosen_cases(const EvalOptions& options) {
   return chosen;
 }
 
+/// A gap counts as much in a long clip as in a short one.
+void set_gap_means(Evaluation& evaluation) {
+  GapScore all;
+  for (const CaseResult& result : evaluation.results) all.append(result.gaps);
+  for (const auto& [key, value] : all.figures())
+    for (auto& [name, mean] : evaluation.mean)
+      if (name == key) mean = value;
+}
+
 }  // namespace
 
 Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& on_result) {
-  Bench bench{options, nullptr};
+  Bench bench{options};
   if (options.baseline == "fit") {
     US_CHECK(!options.body.empty(), "the baseline \"fit\" needs --body, an SMPL-format body");
     bench.fit = std::make_shared<const FitBody>(read_smpl_body(options.body));
@@ -304,6 +408,7 @@ Evaluation evaluate(const EvalOptions& options, const std::function<void(const C
     evaluation.results.push_back(std::move(result));
   }
   evaluation.mean = mean_metrics(metrics);
+  set_gap_means(evaluation);
   return evaluation;
 }
 
@@ -315,6 +420,9 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   if (options.edits.largest_cluster) report["largest_part"] = true;
   if (options.edits.crop) report["crop"] = true;
   if (!options.baseline.empty()) report["baseline"] = options.baseline;
+  const auto has_gaps = [](const CaseResult& result) { return !result.gaps.empty(); };
+  if (std::any_of(evaluation.results.begin(), evaluation.results.end(), has_gaps))
+    report["fill"] = options.fill;
   const Method& method = options.how.method;
   if (!method.offsets) report["offsets"] = false;
   for (const MethodSwitch& one : kSwitches)

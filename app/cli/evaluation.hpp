@@ -10,6 +10,7 @@
 #include "app/run/breakdown.hpp"
 #include "app/run/latency.hpp"
 #include "app/run/source.hpp"
+#include "retarget/motion_space/motion_space_table.hpp"
 
 namespace understudy::app {
 
@@ -20,8 +21,10 @@ struct EvalOptions {
   std::string baseline;   ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
   std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
   std::string body;                ///< SMPL-format, of the baseline "fit"
-  int worst = 20;                  ///< frames listed as the worst
-  ScanEdits edits;                 ///< of each scan, before anybody is looked for
+  std::string fill = kDefaultMotionSpace;  ///< of cases with gaps: one of motion_spaces()
+  std::string data;                        ///< a data folder for those that need clips
+  int worst = 20;                          ///< frames listed as the worst
+  ScanEdits edits;                         ///< of each scan, before anybody is looked for
   MethodOptions how;
 };
 
@@ -31,12 +34,13 @@ struct CaseResult {
   int64_t frames = 0, flagged = 0;
   Metrics metrics;
   Latency latency;
+  GapScore gaps = {};
 };
 
 struct Evaluation {
   std::vector<CaseResult> results;
   Breakdown breakdown;
-  Metrics mean;
+  Metrics mean;  ///< over cases; what GapScore has is of all their gaps alike
   Latency latency;
   bool failed = false;  ///< some case
 };

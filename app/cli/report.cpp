@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTables[] = {"baselines", "seen", "contexts", "rotation", "extraction", "offsets"};
+constexpr const char* kTables[] = {"baselines",  "seen",    "contexts", "rotation",
+                                   "extraction", "offsets", "inbetween"};
 
 /// Calls visit(key, member) for all that the file may have of a row and that its results follow from as it
 /// is.
@@ -35,6 +36,7 @@ void each_result_key(Row& row, Visit visit) {
   for (const MethodSwitch& one : kSwitches) visit(MemberName(one.name, one.old_name), method.*one.on);
   visit("oracle", row.eval.oracle);
   visit("baseline", row.eval.baseline);
+  visit("fill", row.eval.fill);
   visit("context", row.eval.restart_every);
   visit("limit", row.eval.limit);
 }
@@ -69,6 +71,7 @@ ReportRow row_from(const Json& json, const fs::path& folder) {
   MethodOptions& how = row.eval.how;
   engine_named(how.method.engine);  // throw where there is none
   extractor_named(how.method.extractor);
+  motion_space_named(row.eval.fill);
   for (std::string* path : {&how.weights, &how.engine_file, &how.extractor_file})
     if (!path->empty()) *path = (folder / *path).lexically_normal().string();
   return row;
@@ -94,7 +97,7 @@ ReportPlan read_report_plan(const std::string& path) {
 namespace {
 
 struct ReportOptions {
-  std::string cases, out, rows, weights, body;
+  std::string cases, out, rows, weights, body, data;
   std::vector<std::string> tables;
   int limit = 0;       ///< cases a row; 0: as in the rows
   bool again = false;  ///< evaluate also what was evaluated before
@@ -123,7 +126,8 @@ nlohmann::json identity(const ReportRow& row) {
                           {"made", made(e.cases)},
                           {"weights", report_header(nn::weights_folder(network_options(e.how)))["weights"]},
                           {"files", {marked(e.how.engine_file), marked(e.how.extractor_file)}},
-                          {"body", e.baseline == "fit" ? marked(e.body) : ""}};
+                          {"body", e.baseline == "fit" ? marked(e.body) : ""},
+                          {"data", motion_space_named(e.fill).needs_clips ? e.data : ""}};
   each_result_key(row, [&](const char* key, const auto& member) { known[key] = member; });
   return known;
 }
@@ -179,6 +183,7 @@ ReportPlan chosen_rows(const ReportOptions& options) {
     if (!wanted) continue;
     row.eval.cases = (fs::path(options.cases) / row.suite).string();
     row.eval.body = options.body;
+    row.eval.data = options.data;
     if (row.eval.how.weights.empty()) row.eval.how.weights = options.weights;
     if (options.limit > 0)
       row.eval.limit = row.eval.limit > 0 ? std::min(row.eval.limit, options.limit) : options.limit;
@@ -192,6 +197,7 @@ std::string command_of(const ReportOptions& options) {
   std::string command = "understudy report --cases CASES --out OUT";
   if (!options.rows.empty()) command += " --rows " + fs::path(options.rows).filename().string();
   if (!options.body.empty()) command += " --body BODY.npz";
+  if (!options.data.empty()) command += " --data DATA";
   for (const std::string& table : options.tables)
     command += (&table == &options.tables[0] ? " --tables " : ",") + table;
   if (options.limit > 0) command += " --limit " + std::to_string(options.limit);
@@ -231,10 +237,12 @@ Action declare_report(CLI::App& command) {
                      "JSON that lists the rows (default: comparison.json beside the weights)");
   command
       .add_option("--tables", options->tables,
-                  "only these tables: baselines, seen, contexts, rotation, extraction, offsets")
+                  "only these tables: baselines, seen, contexts, rotation, extraction, offsets, inbetween")
       ->delimiter(',');
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
   command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");
+  command.add_option("--data", options->data,
+                     "the folder of people and motions that rows filled by \"nearest\" look into");
   command.add_option("--limit", options->limit, "limit of cases per row")->check(CLI::NonNegativeNumber);
   command.add_flag("--again", options->again, "evaluates rows again that already have figures");
   return [options] { return report(*options); };

@@ -9,7 +9,7 @@
 namespace understudy::app {
 
 struct ReportRow {
-  std::string table;       ///< baselines, seen, contexts, rotation, extraction or offsets
+  std::string table;       ///< baselines, seen, contexts, rotation, extraction, offsets or inbetween
   std::string name;        ///< of the row
   std::string suite;       ///< folder of cases
   std::string budget;      ///< what its networks were trained with, in words
@@ -23,7 +23,7 @@ struct ReportPlan {
 };
 
 /// {"note", "rows": [{"table", "name", "suite", "budget", "engine", "extractor", "weights", "engine_weights",
-/// "extractor_weights", "offsets", "oracle", "baseline", "context", "limit", "breakdown", and kSwitches by
+/// "extractor_weights", "offsets", "oracle", "baseline", "fill", "context", "limit", "breakdown", and kSwitches by
 /// their names, now or before}]}; all but a row's first three may be missing. "context": frames after which
 /// the past is forgotten. Paths are from the file's folder.
 /// Throws Error naming the file and what it does not know.

@@ -117,8 +117,9 @@ Case read_case(const std::string& folder) {
   };
   Case result;
   result.name = file_name(fs::absolute(root).lexically_normal().string());
+  result.gaps = gap_plan(json, path);
   result.source = text("source");
-  US_CHECK(!result.source.empty(), path, ": has no \"source\"");
+  US_CHECK(!result.source.empty() || result.gaps, path, ": has no \"source\"");
   result.target = text("target");
   if (json.contains("alone")) {
     US_CHECK(json["alone"].is_array(), path, ": \"alone\" is not a list of paths");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/gap_plan.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/metrics/hand_contact.hpp"
 #include "retarget/metrics/scene_score.hpp"
@@ -15,11 +16,12 @@ namespace understudy::app {
 struct Case {
   std::string name;
   double fps = 30;
-  std::string source;              ///< path
+  std::string source;              ///< path; empty: no scans, only gaps in the truth's motion
   std::string target;              ///< path; empty: only the extraction is evaluated
   std::string truth;               ///< path; empty: none
   std::vector<std::string> alone;  ///< paths: each person of a scene, scanned alone by the same sensors
   std::vector<std::string> tags;
+  std::optional<GapPlan> gaps = {};  ///< frames are to be made: these alone are evaluated
 };
 
 /// The ground truth of a case; parts may be missing (empty).

@@ -10,6 +10,7 @@
 
 #include "app/run/capture_suites.hpp"
 #include "app/run/case_writer.hpp"
+#include "app/run/inbetween_suite.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
 #include "retarget/base/error.hpp"
@@ -168,29 +169,6 @@ std::vector<CasePlan> performance_plans(const Workshop& shop) {
   return plans;
 }
 
-/// Points drawn evenly on a surface.
-Points64 surface(NumpyRandom& random, const Points64& vertices, const Faces& faces, int64_t count) {
-  std::vector<double> share(faces.rows());
-  double all = 0;
-  const auto corner = [&](int64_t f, int c) { return Vector3d(vertices.row(faces(f, c))); };
-  for (int64_t f = 0; f < faces.rows(); ++f)
-    share[f] = all += (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm();
-  US_CHECK(all > 0, "a person without surface cannot be scanned");
-  for (double& s : share) s /= all;
-  std::vector<int64_t> drawn(count);
-  for (int64_t& f : drawn)
-    f = std::upper_bound(share.begin(), share.end() - 1, random.random()) - share.begin();
-  Eigen::VectorXd u(count), w(count);
-  for (double& x : u) x = std::sqrt(random.random());
-  for (double& x : w) x = random.random();
-  Points64 points(count, 3);
-  for (int64_t i = 0; i < count; ++i) {
-    const int64_t f = drawn[i];
-    points.row(i) = (1 - u[i]) * corner(f, 0) + u[i] * (1 - w[i]) * corner(f, 1) + u[i] * w[i] * corner(f, 2);
-  }
-  return points;
-}
-
 Points64 picked_rows(const Points64& points, const std::vector<int64_t>& rows) {
   Points64 picked(rows.size(), 3);
   for (size_t i = 0; i < rows.size(); ++i) picked.row(i) = points.row(rows[i]);
@@ -220,7 +198,7 @@ Points64 seen(NumpyRandom& random, const Points64& points) {
 
 /// Points as a multi-view rig gives them: density by view, holes, noise, outliers, a bit of floor.
 Points64 captured(NumpyRandom& random, const Points64& vertices, const Faces& faces, int64_t count) {
-  Points64 points = seen(random, surface(random, vertices, faces, 2 * count));
+  Points64 points = seen(random, points_on_surface(random, vertices, faces, 2 * count));
   const auto most = static_cast<int64_t>(static_cast<double>(count) * random.uniform(0.6, 1.0));
   points.conservativeResize(std::min<int64_t>(points.rows(), most), 3);
   for (int64_t i = 0; i < points.size(); ++i) points.data()[i] += 0.004 * random.normal();
@@ -250,13 +228,6 @@ Points64 occluded(const CasePlan& plan, const Points64& points, const Joints64& 
   Rng same(case_seed(plan.name));
   kOcclusions[plan.occlusion].put(cloud, truth, same);
   return cloud.points.cast<double>();
-}
-
-void write_target(const std::string& path, const ExactPerson& person) {
-  std::string text;
-  for (const auto& v : person.vertices.rowwise()) text += printed("v %.6f %.6f %.6f\n", v[0], v[1], v[2]);
-  for (const auto& f : person.faces.rowwise()) text += printed("f %d %d %d\n", f[0] + 1, f[1] + 1, f[2] + 1);
-  write_file(path, text, /*synced=*/false);
 }
 
 /// Elbows, shoulders, knees and both hips, one after the other bent by 120 degrees and straightened, arms
@@ -384,7 +355,7 @@ void make_case(Workshop& shop, const CasePlan& plan) {
   }
   for (size_t t = 0; t < shown.vertices.size(); ++t) {
     const auto count = static_cast<int64_t>(shop.options.points * shop.random.uniform(0.8, 1.2));
-    const auto scan = shop.options.suite == "captured" ? captured : surface;
+    const auto scan = shop.options.suite == "captured" ? captured : points_on_surface;
     Points64 points = scan(shop.random, shown.vertices[t], source.faces, count);
     if (shop.options.suite == "occluded") points = occluded(plan, points, shown.joints[t], motion.local[t]);
     const Points64 shuffled = picked_rows(points, shop.random.permutation(points.rows()));
@@ -415,8 +386,10 @@ std::vector<EvaluatedMotion> motions_of(const DataSplit& split) {
 
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string&)>& done) {
   DataSplit split = read_split(options.data, options.split);
+  if (options.suite == "inbetween") return make_inbetween_suite(options, split, done);
   split.motions = motions_of(split);
   US_CHECK(!split.motions.empty(), options.data, ": the split \"", options.split, "\" names no motion");
+  US_CHECK(options.points >= 100, "a scan of ", options.points, " points shows nobody: at least 100");
   if (is_capture_suite(options.suite)) return make_capture_suite(options, std::move(split), done);
   const bool dressed = options.suite == "clothed" || options.suite == "captured";
   US_CHECK(!dressed || !split.clothed.empty(), options.data, ": the split \"", options.split,

@@ -15,9 +15,11 @@ struct SuiteOptions {
   std::string body;  ///< SMPL-format; empty: the data folder's own
   int frames =
       90;  ///< of a case; extraction and occluded have 12, of hands, scenes, partial and sensors fewer
-  int points = 8000;  ///< of a scan, roughly
-  int cases = 0;      ///< at most this many; 0: all
-  uint32_t seed = 0;  ///< the same options give the same files
+  int points = 8000;   ///< of a scan, roughly
+  int cases = 0;       ///< at most this many; 0: all
+  int gap = 0;         ///< of inbetween: frames that are not known
+  bool walks = false;  ///< of inbetween: walks and runs alone, with windows of their own
+  uint32_t seed = 0;   ///< the same options give the same files
 };
 
 /// Writes the cases of a suite; reports each name as it is done. Returns their number. Truth is the same
@@ -40,6 +42,9 @@ struct SuiteOptions {
 ///     ball: apart, crossing, shaking hands, leaving and coming back; at most 40 frames; `points` are for one
 ///     person, half as many more for each other. Truths hold the joints of each, and whose each point is;
 ///     each person is scanned alone, too
+///   inbetween: each clip, with gaps (gap_plan.hpp) between 10 known frames on each side, a window every 15
+///     frames; of `walks` 5 and every 3. Without points the truth is the source: the clip whole. With points
+///     at most `frames` frames, gap after gap; the known frames have scans, the others' numbers are missing
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 
 }  // namespace understudy::app

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "retarget/base/numpy_random.hpp"
+#include "retarget/body/exact_body.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -37,6 +39,12 @@ NpyArray rotations_array(const std::vector<Turns>& frames) {
 void make_scan_folder(const std::filesystem::path& folder);
 /// FOLDER/frame_00000.ply ...
 void write_scan(const std::filesystem::path& folder, size_t frame, const Points& points);
+
+/// The person's T-pose as an OBJ file.
+void write_target(const std::string& path, const ExactPerson& person);
+
+/// Points drawn evenly on a surface. Throws Error where it has no area.
+Points64 points_on_surface(NumpyRandom& random, const Points64& vertices, const Faces& faces, int64_t count);
 
 /// Of a case's random numbers.
 uint64_t case_seed(const std::string& name, uint64_t seed = 0);

@@ -81,6 +81,37 @@ TEST_F(Measuring, ReportWritesAPageAndSaysWhatIsLeftOut) {
   EXPECT_NE(page.find("absent.weights"), std::string::npos) << page;
 }
 
+TEST_F(Measuring, GapsAreFilledFromScansAndFromTruePoses) {
+  test::write_training_folder(scratch.path("data"));
+  const std::string cases = scratch.path("cases/inbetween_5");
+  const Finished made = run_program({"cases", scratch.path("data"), "--suite", "inbetween", "--gap", "5",
+                                     "--frames", "40", "--points", "2000", "--out", cases});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Finished run = run_program({"eval", cases, "--out", out("scans.json"), "--fill", "slerp"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json scans = Json::parse(read_bytes(out("scans.json")));
+  ASSERT_EQ(run_program({"eval", cases, "--out", out("true.json"), "--oracle", "pose"}).code, 0);
+  const Json poses = Json::parse(read_bytes(out("true.json")));
+  EXPECT_EQ(scans["fill"], "slerp");
+  EXPECT_EQ(poses["fill"], "hermite");
+  for (const Json& report : {scans, poses}) {
+    EXPECT_EQ(report["cases"][0]["frames"], 5);  // 6 to 35 hold one window
+    for (const char* key : {"gap_mpjpe_m", "gap_rel_mpjpe_m", "mve_m", "gap_acc", "seam_m", "spread"})
+      EXPECT_TRUE(report["mean"].contains(key)) << key;
+    EXPECT_FALSE(report["mean"].contains("mpjpe_m"));
+  }
+  EXPECT_LT(poses["mean"]["gap_mpjpe_m"], 0.05);
+  EXPECT_LT(poses["mean"]["gap_mpjpe_m"], scans["mean"]["gap_mpjpe_m"]);
+  write_text(scratch.path("rows.json"),
+             R"({"rows": [{"table": "inbetween", "name": "hold", "suite": "inbetween_5", "oracle": "pose",
+                           "fill": "hold"}]})");
+  ASSERT_EQ(run_program({"report", "--cases", scratch.path("cases"), "--rows", scratch.path("rows.json"),
+                         "--out", out("page")})
+                .code,
+            0);
+  EXPECT_NE(read_bytes(out("page/report.md")).find("| inbetween_5 | hold |"), std::string::npos);
+}
+
 TEST_F(Measuring, ReportRefusesRowsThatItDoesNotKnow) {
   std::filesystem::create_directories(scratch.path("cases"));
   write_text(scratch.path("rows.json"),
