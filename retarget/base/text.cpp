@@ -83,7 +83,7 @@ void append_item(std::string& list, std::string_view item, std::string_view sepa
   list += item;
 }
 
-std::vector<std::string> csv_cells(const std::string& line) {
+std::vector<std::string> csv_cells(const std::string& line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
   for (size_t i = 0; i < line.size(); ++i) {
@@ -92,7 +92,7 @@ std::vector<std::string> csv_cells(const std::string& line) {
       cells.back() += line[++i];
     } else if (c == '"') {
       quoted = !quoted;
-    } else if (c == ',' && !quoted) {
+    } else if (c == separator && !quoted) {
       cells.emplace_back();
     } else {
       cells.back() += c;

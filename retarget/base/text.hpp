@@ -36,7 +36,7 @@ std::string excerpt(std::string_view text);
 /// A text as one cell of a CSV line, in quotes where it must be.
 std::string csv_cell(const std::string& text);
 /// The cells of one CSV line. Throws std::invalid_argument where a quote is not closed.
-std::vector<std::string> csv_cells(const std::string& line);
+std::vector<std::string> csv_cells(const std::string& line, char separator = ',');
 
 /// As std::snprintf prints it, of any length.
 std::string printed(const char* format, ...) __attribute__((format(printf, 1, 2)));

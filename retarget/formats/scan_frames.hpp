@@ -24,6 +24,11 @@ std::optional<int64_t> frame_number(const std::string& path);
 std::unique_ptr<ScanSource::Frames> follow_folder(const std::string& folder,
                                                   const ScanSourceOptions& options);
 
+/// The scans as `table` says when they were taken; see scan_times.hpp. Throws Error.
+std::unique_ptr<ScanSource::Frames> clock_frames(std::unique_ptr<ScanSource::Frames> scans,
+                                                 const std::string& source, const std::string& table,
+                                                 double fps);
+
 /// Names of the files in a folder, unsorted, hidden ones left out. Throws Error.
 std::vector<std::string> folder_files(const std::string& folder);
 /// The file names of the folder's most frequent mesh format, naturally sorted; warns about those left out.

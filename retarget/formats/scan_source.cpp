@@ -73,7 +73,6 @@ class FileFrames : public ScanSource::Frames {
       if (i > 0) add_missing(numbers[i - 1], numbers[i], usual);
       frames_.push_back({files[i], numbers[i]});
     }
-    report_gaps(source, gaps);
   }
 
   std::optional<ScanFrame> next() override {
@@ -93,12 +92,12 @@ class FileFrames : public ScanSource::Frames {
     US_CHECK(frame >= 0 && frame < *count(), "there is no frame ", frame, " among ", frames_.size());
     at_ = static_cast<size_t>(frame);
   }
+  std::optional<ScanName> scan(int64_t frame) const override {
+    const ScanName& name = frames_[static_cast<size_t>(frame)];
+    return name.path.empty() ? std::nullopt : std::make_optional(name);
+  }
 
  private:
-  struct Place {
-    std::string file;  // empty: missing
-    int64_t number;
-  };
   void add_missing(int64_t before, int64_t after, int64_t usual) {
     const int64_t count = missing_between(after - before, usual);
     if (count == 0) return;
@@ -106,7 +105,7 @@ class FileFrames : public ScanSource::Frames {
     for (int64_t i = 1; i <= count && count <= kLongestGap; ++i) frames_.push_back({"", before + i * usual});
   }
 
-  std::vector<Place> frames_;
+  std::vector<ScanName> frames_;  // without a path: missing
   std::string source_;
   size_t at_ = 0;
   bool read_any_ = false;
@@ -256,21 +255,28 @@ ScanSource::ScanSource(const std::string& path, const ScanSourceOptions& options
   US_CHECK(!error, path, ": cannot be opened (", error.message(), ")");
   if (fs::is_directory(status)) {
     if (options.follow) {
+      US_CHECK(options.times.empty(), path, ": is still being written, its scans have no times yet (",
+               options.times, ")");
       frames_ = follow_folder(path, options);
       return;
     }
     const auto names = frame_files(path, folder_files(path));
     US_CHECK(!names.empty(), path, ": holds no frames (", format_names(kScanFrame), " files)");
     frames_ = std::make_unique<FileFrames>(under(path, names), path);
-    return;
+  } else {
+    US_CHECK(!options.follow, path, ": is a file, only a folder can be followed");
+    frames_ = open_file(path);
   }
-  US_CHECK(!options.follow, path, ": is a file, only a folder can be followed");
-  frames_ = open_file(path);
+  if (options.times.empty())
+    report_gaps(path, frames_->gaps);
+  else
+    frames_ = clock_frames(std::move(frames_), path, options.times, options.fps);
 }
 
 ScanSource::ScanSource(const std::vector<std::string>& files) {
   US_CHECK(!files.empty(), "the list of scans is empty");
   frames_ = std::make_unique<FileFrames>(files, "the list of scans");
+  report_gaps("the list of scans", frames_->gaps);
 }
 
 }  // namespace understudy

@@ -27,6 +27,20 @@ struct ScanSourceOptions {
   double timeout_s = 10;            ///< follow: give up when no new frame came for so long
   double poll_s = 0.03;             ///< follow: time between two looks
   std::function<bool()> cancelled;  ///< follow: asked at every look; true ends the sequence
+  std::string times;                ///< CSV of when each scan was taken (see scan_times.hpp); empty: none
+  double fps = 0;                   ///< times: frames per second of the clock; 0: as the times tell
+};
+
+/// What one scan of a sequence is called.
+struct ScanName {
+  std::string path;    ///< its file; empty: one file holds them all
+  int64_t number = 0;  ///< as ScanFrame's
+};
+
+/// The regular clock on whose frames scans lie that have times of their own.
+struct ScanClock {
+  double fps = 0;
+  std::string sentence;  ///< "times.csv: 37 scans in 1.48 s, 25 frames/s"
 };
 
 /// Numbers that are missing between two frames, both ends included.
@@ -36,7 +50,8 @@ struct FrameGap {
 
 /// Hands out the frames of a sequence in order, one in memory at a time; frame i never depends on a later
 /// one. A number that is missing is a frame that cannot be used, so that a gap takes as long as it took; only
-/// gaps of more than a thousand frames are left out.
+/// gaps of more than a thousand frames are left out. With a table of times these alone tell: each scan is on
+/// the nearest frame of a regular clock, and the others are gaps; frames then have the clock's numbers.
 ///
 /// A folder: the files of its most frequent mesh format, by the numbers in their names (frame_2 before
 /// frame_10); other files are left out, other mesh formats with a warning. A list: a .txt or .lst with a path
@@ -52,11 +67,14 @@ class ScanSource {
     virtual std::optional<ScanFrame> next() = 0;
     virtual std::optional<int64_t> count() const = 0;
     virtual void seek(int64_t frame) = 0;
+    /// None: the frame is missing. `frame` is below count().
+    virtual std::optional<ScanName> scan(int64_t frame) const { return ScanName{"", frame}; }
     std::vector<FrameGap> gaps;
+    std::optional<ScanClock> clock;
   };
 
-  /// Throws Error, one sentence, when there is no such path, no permission, no frame in it, or two formats
-  /// are equally frequent.
+  /// Throws Error, one sentence, when there is no such path, no permission, no frame in it, two formats are
+  /// equally frequent, or the times cannot be those of the scans.
   explicit ScanSource(const std::string& path, const ScanSourceOptions& options = {});
   explicit ScanSource(const std::vector<std::string>& files);
 
@@ -73,6 +91,8 @@ class ScanSource {
   std::optional<int64_t> count() const { return frames_->count(); }
   /// Missing numbers found so far, those left out, too: all from the start, but for a followed folder.
   const std::vector<FrameGap>& gaps() const { return frames_->gaps; }
+  /// None without times.
+  const std::optional<ScanClock>& clock() const { return frames_->clock; }
 
  private:
   std::unique_ptr<Frames> frames_;

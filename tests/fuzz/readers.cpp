@@ -30,6 +30,7 @@
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/formats/scan_source.hpp"
+#include "retarget/formats/scan_times.hpp"
 #include "retarget/motion/bvh.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/networks/weights_layout.hpp"
@@ -66,6 +67,12 @@ size_t text_size(const std::string& bytes) {
 
 size_t bytes_size(const std::string& bytes) {
   return kOfBytes * bytes.size();
+}
+
+// A line of a table: a row with a text of its own, which is listed once more where it names nothing.
+size_t declared_by_table(const std::string& bytes) {
+  constexpr size_t kRow = 160;
+  return text_size(bytes) + kRow * static_cast<size_t>(std::count(bytes.begin(), bytes.end(), '\n'));
 }
 
 /// A file in a folder of this process, for readers that want a path.
@@ -334,6 +341,18 @@ void scan_list(const std::string& bytes) {
   frames_of(ScratchFile("x.lst", bytes).path());
 }
 
+// Of three scans; the corpus names them and others.
+void scan_times(const std::string& bytes) {
+  const ScratchFile table("times.csv", bytes);
+  const ScanPlaces placed = place_scans(table.path(), {{"a1.ply", 1}, {"b/a2.ply", 2}, {"a3.ply", 3}}, 0);
+  must(placed.frames > 0 && placed.frames <= kMostClockFrames, "the clock has frames");
+  int64_t before = -1;
+  for (const ScanPlaces::Place& place : placed.places) {
+    must(place.frame > before && place.frame < placed.frames, "places rise");
+    before = place.frame;
+  }
+}
+
 // What the process that reads FBX and DAE says when it fails; what it makes is a GLB, and read as any other.
 void worker_words(const std::string& bytes) {
   const std::string words = last_words(bytes);
@@ -426,6 +445,7 @@ std::vector<Reader> all_readers() {
                              {"script", script, text_size},
                              {"bone_map", bone_choices, text_size},
                              {"scan_list", scan_list, text_size},
+                             {"scan_times", scan_times, declared_by_table},
                              {"case", test_case, text_size},
                              {"splits", splits, text_size},
                              {"report_rows", report_rows, text_size},
