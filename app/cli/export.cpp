@@ -175,6 +175,8 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   US_CHECK(!options.targets.empty(), "--target is required: the character that performs it");
   US_CHECK(options.sources.size() == 1 || format.is_character, options.out, ": ", format.label,
            " holds one motion, not ", options.sources.size());
+  US_CHECK(options.sources.size() == 1 || options.source.times.empty(), options.source.times,
+           ": --times is of one source, not of ", options.sources.size());
   check_cast(options, format);
   Performance out;
   std::vector<std::vector<Role>> roles;  // of each source
@@ -422,6 +424,7 @@ int run_export(const ExportOptions& options) {
   std::vector<std::string> read = options.sources;
   read.insert(read.end(), options.targets.begin(), options.targets.end());
   read.push_back(options.source.motion);
+  read.push_back(options.source.times);
   check_not_read(options.out, read);
   check_export(options.out, format);
   if (options.bones == "own") check_own_bones(options.out, format);

@@ -138,7 +138,8 @@ std::string path_of_person(const std::string& path, int id) {
 }  // namespace
 
 void run_job(const JobOptions& options) {
-  check_not_read(options.out, {options.source.path, options.source.motion, options.target.path});
+  check_not_read(options.out,
+                 {options.source.path, options.source.motion, options.source.times, options.target.path});
   if (!options.out.empty()) check_export(options.out, export_format("", options.out));
   for (const std::string& path : {options.report, options.preview, options.skeletons}) check_writable(path);
   Running job = start(options);

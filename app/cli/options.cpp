@@ -76,6 +76,10 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
   command
       .add_option("--fps", source.fps, "frames per second of the source (default: the motion's own, or 30)")
       ->check(CLI::Range(1.0, 1000.0));
+  command.add_option(
+      "--times", source.times,
+      "CSV of when each scan was taken: its file or number, seconds; --fps is then the rate of "
+      "the result (default: the usual interval's)");
   command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
   command.add_option("--height", source.import.height,

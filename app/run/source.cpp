@@ -73,13 +73,7 @@ FeetCheck feet_check(const std::function<Extraction(const Mesh&)>& look) {
 class ScanFiles final : public Source {
  public:
   explicit ScanFiles(const SourceOptions& options)
-      : Source(options.fps > 0 ? options.fps : 30),
-        scans_(options.path, scan_options(options)),
-        forced_(options.import),
-        quiet_(options.quiet) {
-    if (options.quiet) return;
-    log::info(options.path + ": " + in_words(fps()) + (options.fps > 0 ? "" : " assumed (--fps changes it)"));
-  }
+      : ScanFiles(options, ScanSource(options.path, scan_options(options))) {}
 
   std::optional<SourceFrame> next() override {
     std::optional<ScanFrame> scan = scans_.next();
@@ -123,9 +117,24 @@ class ScanFiles final : public Source {
   void set_look(const std::function<Extraction(const Mesh&)>& look) override { look_ = look; }
 
  private:
+  ScanFiles(const SourceOptions& options, ScanSource scans)
+      : Source(rate_of(scans, options)),
+        scans_(std::move(scans)),
+        forced_(options.import),
+        quiet_(options.quiet) {
+    if (options.quiet) return;
+    const char* const source = options.fps > 0 ? "" : " assumed (--fps changes it)";
+    log::info(scans_.clock() ? scans_.clock()->sentence : options.path + ": " + in_words(fps()) + source);
+  }
+  static double rate_of(const ScanSource& scans, const SourceOptions& options) {
+    if (scans.clock()) return scans.clock()->fps;
+    return options.fps > 0 ? options.fps : 30;
+  }
   static ScanSourceOptions scan_options(const SourceOptions& options) {
     ScanSourceOptions result;
     result.follow = options.follow;
+    result.times = options.times;
+    result.fps = options.fps;
     result.cancelled = interrupted;
     return result;
   }
@@ -324,6 +333,8 @@ class ScannedCharacter final : public AnimatedSource {
   std::optional<SkeletalMotion> bones_;  // none: nobody asked
 };
 
+constexpr const char* kTimesAreFor = "a table of times (--times) is for scans";
+
 /// What asks for bones or animations of a source that has none would go unheard.
 void check_no_skeleton(const SourceOptions& options, const char* is) {
   US_CHECK(options.bones.empty(), options.path, ": ", is,
@@ -335,6 +346,8 @@ void check_scan_options(const SourceOptions& options) {
   check_no_skeleton(options, "is a scan");
   US_CHECK(options.betas.empty(), options.path,
            ": is a scan, only an SMPL-format body that performs a --motion takes --source-betas");
+  US_CHECK(options.times.empty() || !options.follow, options.path,
+           ": is still being written (--follow), its scans have no times yet (--times)");
 }
 
 void check_body_options(const SourceOptions& options) {
@@ -348,6 +361,7 @@ void check_body_options(const SourceOptions& options) {
            ": is a body that performs a motion, only a folder of scans can be followed");
   US_CHECK(options.person.empty(), options.path,
            ": is a body that performs a motion, only scans may hold several people (--person)");
+  US_CHECK(options.times.empty(), options.path, ": is a body that performs a motion, ", kTimesAreFor);
 }
 
 void check_skeletal_options(const SourceOptions& options) {
@@ -358,6 +372,7 @@ void check_skeletal_options(const SourceOptions& options) {
   US_CHECK(!options.follow, options.path, ": is a skeletal motion, only a folder of scans can be followed");
   US_CHECK(options.person.empty(), options.path,
            ": is a skeletal motion, only scans may hold several people (--person)");
+  US_CHECK(options.times.empty(), options.path, ": is a skeletal motion, ", kTimesAreFor);
 }
 
 std::unique_ptr<Source> as_scan(Character character, const SourceOptions& options) {

@@ -24,7 +24,7 @@ struct SourceOptions {
   std::string path;          ///< scans, a skeletal motion, or an SMPL-format body where `motion` is given
   std::string motion;        ///< AMASS-format .npz that the body performs; empty: there is no body
   std::vector<float> betas;  ///< of the performing body; empty: those in the motion's file
-  double fps = 0;            ///< 0: the motion's own, or 30
+  double fps = 0;            ///< 0: the motion's own, as `times` tell, or 30
   ImportOptions import;
   bool follow = false;   ///< the folder is still being written
   bool as_scan = false;  ///< a skeletal motion's surface is sampled as a scan
@@ -33,6 +33,7 @@ struct SourceOptions {
   bool quiet = false;    ///< log nothing: another source has logged it all
   bool truth = false;    ///< of scans made from a body the bones come along, to be judged by
   std::string person{};  ///< who of a scan: a number, "largest", "all"; empty or "best": who is seen best
+  std::string times{};   ///< of scans: CSV of when each was taken (see scan_times.hpp); empty: evenly
   std::vector<PersonEdit> people{};  ///< who is who, where it was not seen rightly
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
@@ -44,6 +45,7 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("motion", source.motion, FilePath{});
   visit("betas", source.betas);
   visit("fps", source.fps, Within<double>{0, 1e6});
+  visit("times", source.times, FilePath{});
   visit("import", source.import);
   visit("as_scan", source.as_scan);
   visit("clip", source.clip);

@@ -69,7 +69,8 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
 
 /// All that the document reads; some may be empty.
 inline std::vector<std::string> files_read_by(const Document& document) {
-  std::vector<std::string> files = {document.source.path, document.source.motion, document.truth};
+  std::vector<std::string> files = {document.source.path, document.source.motion, document.source.times,
+                                    document.truth};
   for (const Take& take : document.takes) files.push_back(take.target.path);
   return files;
 }

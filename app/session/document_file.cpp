@@ -20,6 +20,7 @@ template <class Document, class Visit>
 void visit_paths(Document& document, Visit visit) {
   visit(document.source.path);
   visit(document.source.motion);
+  visit(document.source.times);
   visit(document.truth);
   for (auto& take : document.takes) visit(take.target.path);
 }

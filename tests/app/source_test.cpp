@@ -7,9 +7,11 @@
 #include <fstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/motion/bvh.hpp"
 #include "retarget/pipeline/human_rest.hpp"
 #include "tests/app/program.hpp"
 #include "tests/retarget/motion/made_motion.hpp"
@@ -180,6 +182,52 @@ TEST_F(SourceFiles, SkeletalMotionsAreNotFollowedNorShaped) {
   options.follow = false;
   options.betas = {1};
   EXPECT_NE(refusal(options).find("--source-betas"), std::string::npos) << refusal(options);
+}
+
+TEST_F(SourceFiles, LieOnTheClockThatTheirTimesTell) {
+  for (int t = 0; t < 4; ++t) write_frame(t, 1);
+  tests::ScratchFolder beside;
+  SourceOptions options = here();
+  options.times = beside.path("times.csv");
+  std::ofstream(options.times) << "file,seconds\n0,0\n1,0.04\n2,0.08\nframe_00003.xyz,0.2\n";
+  std::string said;
+  const log::Sink before = log::set_sink([&](log::Level, const std::string& line) { said += line + "\n"; });
+  const auto source = open_source(options);
+  log::set_sink(before);
+  EXPECT_NE(said.find("times.csv: 4 scans in 0.24 s, 25 frames/s, 2 frames without a scan\n"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("assumed"), std::string::npos) << said;
+  EXPECT_EQ(source->fps(), 25);
+  EXPECT_EQ(source->count(), 6);
+  std::string usable;
+  while (const auto frame = source->next()) usable += frame->usable ? 'x' : '-';
+  EXPECT_EQ(usable, "xxx--x");
+  options.fps = 50;
+  EXPECT_EQ(open_source(options)->fps(), 50);
+  EXPECT_EQ(open_source(options)->count(), 11);
+}
+
+TEST_F(SourceFiles, ThatAreNoScansOrAreStillBeingWrittenHaveNoTimes) {
+  write_frame(0, 1);
+  SourceOptions followed = here(), skeletal, animated, body;
+  followed.follow = true;
+  skeletal.path = scratch.path("walk.bvh");
+  const Joints rest = tests::made_joints({});
+  const Character moving = parse_bvh(tests::made_bvh({}, rest, tests::made_motion(5, rest)), "walk");
+  std::ofstream(skeletal.path) << tests::made_bvh({}, rest, tests::made_motion(5, rest));
+  animated.path = scratch.path("walk.glb");
+  write_gltf_character(animated.path, moving);
+  body.path = scratch.path("body.npz"), body.motion = scratch.path("walk.npz");
+  const char* const kScansAlone = "a table of times (--times) is for scans";
+  for (const auto& [options, says] :
+       {std::make_pair(followed, "is still being written (--follow)"), std::make_pair(skeletal, kScansAlone),
+        std::make_pair(animated, kScansAlone), std::make_pair(body, kScansAlone)}) {
+    SourceOptions timed = options;
+    timed.times = scratch.path("times.csv");
+    EXPECT_NE(refusal(timed).find(says), std::string::npos) << options.path << ": " << refusal(timed);
+  }
+  EXPECT_EQ(refusal(animated), "");
 }
 
 TEST_F(SourceFiles, PassABadFrameOn) {

@@ -104,6 +104,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   Document wanted = full_document("/a").document;
   wanted.source.import.height.reset();
   wanted.source = without_people(wanted.source);
+  wanted.source.times.clear();
   for (Take& take : wanted.takes) {
     take.method.part_refiner = take.method.hand_contacts = true;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
@@ -133,7 +134,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   for (const char* added : {"cube", "overlay", "light", "background", "background_color"}) view.erase(added);
   for (const char* layers : {"source", "take"})
     for (const char* added : {"wireframe", "scene"}) view[layers].erase(added);
-  for (const char* added : {"person", "people"}) written["source"].erase(added);
+  for (const char* added : {"person", "people", "times"}) written["source"].erase(added);
   EXPECT_EQ(json_text(written), without);
 }
 
@@ -157,6 +158,7 @@ TEST(DocumentFile, PathsAreRelativeToIt) {
   fs::rename(scratch.path("old"), scratch.path("new/moved"));
   const SavedDocument read = read_document(scratch.path("new/moved/docs/a.understudy"));
   EXPECT_EQ(read.document.truth, scratch.path("new/moved/data/truth.npz"));
+  EXPECT_EQ(read.document.source.times, scratch.path("new/moved/data/scans/times.csv"));
   EXPECT_EQ(read.document.takes[1].target.path, scratch.path("new/moved/data/b.glb"));
 }
 
@@ -511,17 +513,20 @@ TEST(MissingFiles, AreNamedOnce) {
   write(scratch.path("there.obj"), "");
   Document document;
   document.source.path = scratch.path("scans");
+  document.source.times = scratch.path("times.csv");
   document.takes.resize(3);
   document.takes[0].target.path = scratch.path("there.obj");
   document.takes[1].target.path = document.takes[2].target.path = scratch.path("gone.obj");
-  EXPECT_EQ(missing_files(document),
-            (std::vector<std::string>{scratch.path("scans"), scratch.path("gone.obj")}));
+  EXPECT_EQ(
+      missing_files(document),
+      (std::vector<std::string>{scratch.path("scans"), scratch.path("times.csv"), scratch.path("gone.obj")}));
   EXPECT_TRUE(missing_files({}).empty());
 }
 
 TEST(Relocated, MovesWhatIsBelowAndLeavesTheRest) {
   Document document;
   document.source.path = "/data/old/scans";
+  document.source.times = "/data/old/times.csv";
   document.truth = "/data/older/truth.npz";
   document.takes.resize(2);
   document.takes[0].target.path = "/data/old";
@@ -529,6 +534,7 @@ TEST(Relocated, MovesWhatIsBelowAndLeavesTheRest) {
   for (const char* slash : {"", "/"}) {
     const Document moved = relocated(document, std::string("/data/old") + slash, std::string("/new") + slash);
     EXPECT_EQ(moved.source.path, "/new/scans");
+    EXPECT_EQ(moved.source.times, "/new/times.csv");
     EXPECT_EQ(moved.truth, "/data/older/truth.npz");
     EXPECT_EQ(moved.takes[0].target.path, "/new");
     EXPECT_EQ(moved.takes[1].target.path, "/new/bodies/a b.obj");

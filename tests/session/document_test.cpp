@@ -49,6 +49,7 @@ const Changes& document_changes() {
       CHANGE(source.betas[0] += 1),
       CHANGE(source.betas.pop_back()),
       CHANGE(source.fps = 30),
+      CHANGE(source.times.clear()),
       CHANGE(source.import.units = "m"),
       CHANGE(source.import.up = "y"),
       CHANGE(source.import.turn_deg += 1),
@@ -174,7 +175,7 @@ const Changes& document_changes() {
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
-                                with_truth, person, people, edits] = SourceOptions();
+                                with_truth, person, times, people, edits] = SourceOptions();
   [[maybe_unused]] const auto& [how, edit_first, edit_last, whose, other] = PersonEdit();
   [[maybe_unused]] const auto& [units, up, yaw, floor, body_height] = ImportOptions();
   [[maybe_unused]] const auto& [crop, cut, cluster, gap] = ScanEdits();

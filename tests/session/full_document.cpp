@@ -100,6 +100,7 @@ SavedDocument full_document(const std::string& folder) {
                            /*quiet=*/false,
                            /*edits=*/{}};
   saved.document.source.person = "2";
+  saved.document.source.times = folder + "/scans/times.csv";
   saved.document.source.people = {{PersonEdit::How::Join, 3, 9, 1, 4}};
   saved.document.truth = folder + "/truth.npz";
   saved.document.scan_edits = scan_edits();
