@@ -67,6 +67,29 @@ void set_options(Call& c, SourceOptions source) {
   c.document.source = std::move(source);
 }
 
+/// What cannot be the times of these scans is refused at once.
+void add_times(Commands& commands) {
+  commands.add_edit(
+      {"source.times", "Times of the scans", "FILE|off: a CSV of scan or frame number, and seconds"},
+      [](Call& c) {
+        SourceOptions source = c.document.source;
+        const bool is_off = c.word(0, "file of times") == "off";
+        source.times = is_off ? "" : c.path(0, "file of times");
+        if (is_off) c.label = "No times of the scans";
+        US_CHECK(is_off || !source.path.empty(), "no scans are open that have times");
+        US_CHECK(is_off || c.session.source.clips.empty(), source.path,
+                 ": is a skeletal motion, a table of times is for scans");
+        check_source_options(source);
+        if (!is_off) {
+          remember_folder(c.studio, source.times);
+          ScanSourceOptions options;
+          options.times = source.times, options.fps = source.fps;
+          ScanSource{source.path, options};
+        }
+        set_options(c, std::move(source));
+      });
+}
+
 void add_import(Commands& commands) {
   commands.add_edit({"source.units", "Units of the scan", "auto|m|dm|cm|mm|in"},
                     [](Call& c) { c.document.source.import.units = c.one_of(0, "unit", kUnitNames); });
@@ -142,6 +165,7 @@ void add_skeletal(Commands& commands) {
 
 void add_source_commands(Commands& commands) {
   add_opening(commands);
+  add_times(commands);
   add_skeletal(commands);
   add_import(commands);
 }

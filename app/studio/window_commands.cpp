@@ -188,11 +188,10 @@ void show_file(Call& c) {
 
 void add_window_commands(Commands& commands, ui::Workspace& workspace) {
   commands.add({"dialog.open", "Open dialog",
-                "open|open_source|open_target|replace_target|open_document|save_as|export|csv|picture|"
-                "video|compare|settings|about|keys|here|open_study|save_study|study_files|study_animation|"
-                "study_motion|"
-                "study_target|study_answers|study_table|study_csv|study_jspsych|study_psychopy|study_stimuli|"
-                "study_web|study_run|none"},
+                "open|open_source|source_times|open_target|replace_target|open_document|save_as|export|csv|"
+                "picture|video|compare|settings|about|keys|here|open_study|save_study|study_files|"
+                "study_animation|study_motion|study_target|study_answers|study_table|study_csv|study_jspsych|"
+                "study_psychopy|study_stimuli|study_web|study_run|none"},
                [&workspace](Call& c) {
                  US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
                  workspace.open_dialog(c.session, c.arguments[0]);

@@ -1,5 +1,6 @@
 #include "app/session/document_file.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/formats/npz.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
 #include "tests/session/studio_fixture.hpp"
@@ -26,6 +27,78 @@ TEST_F(StudioTest, ASavedDocumentGivesTheSameResult) {
   ASSERT_TRUE(studio.session().errors.empty());
   EXPECT_TRUE(same_poses(studio.session().takes[0].shown, before));
   EXPECT_EQ(studio.session().document.takes[0].pose_edits.skip.count(3), 1u);
+}
+
+/// The dance with two scans a second left out after its fourth.
+std::string times_with_a_gap(int scans) {
+  std::string text = "frame,seconds\n";
+  for (int i = 0; i < scans; ++i) text += printed("%d,%.3f\n", i, 0.05 * (i < 4 ? i : i + 2));
+  return text;
+}
+
+TEST_F(StudioTest, TimesOfTheScansMakeGapsCanBeUndoneAndAreSaved) {
+  std::ofstream(path("times.csv")) << times_with_a_gap(kFrames);
+  {
+    Studio studio(services());
+    const Session& session = studio.session();
+    open_both(studio);
+    studio.run("source.times", {"times.csv"});
+    studio.wait_idle();
+    EXPECT_EQ(session.document.source.times, path("times.csv"));
+    EXPECT_EQ(session.source.fps, 20);
+    ASSERT_EQ(frame_count(session), kFrames + 2);
+    for (int t = 0; t < kFrames + 2; ++t) EXPECT_EQ(session.source.frames[t].flagged, t == 4 || t == 5) << t;
+    EXPECT_NE(session.source.frames[4].reason.find("frame 4 is missing"), std::string::npos);
+    EXPECT_EQ(session.history.undo_label(), "Times of the scans");
+    studio.run("edit.undo");
+    studio.wait_idle();
+    EXPECT_EQ(frame_count(session), kFrames);
+    EXPECT_EQ(session.source.fps, 30);
+    studio.run("edit.redo");
+    studio.run("source.times", {"off"});
+    EXPECT_EQ(session.document.source.times, "");
+    studio.run("edit.undo");
+    studio.run("document.save_as", {path("dance")});
+  }
+  fs::create_directory(path("elsewhere"));
+  for (const char* file : {"times.csv", "scan.npz", "target.obj", "dance.understudy"})
+    fs::rename(path(file), path(std::string("elsewhere/") + file));
+  Studio studio(services());
+  studio.run("document.open", {path("elsewhere/dance.understudy")});
+  studio.wait_idle();
+  EXPECT_EQ(studio.session().document.source.times, path("elsewhere/times.csv"));
+  EXPECT_EQ(frame_count(studio.session()), kFrames + 2);
+  EXPECT_EQ(studio.session().source.fps, 20);
+}
+
+TEST_F(StudioTest, TimesThatAreNotThoseOfTheScansAreRefusedAtOnce) {
+  std::ofstream(path("few.csv")) << "0,0\n1,0.1\n";
+  std::ofstream(path("falls.csv")) << times_with_a_gap(kFrames - 1) << kFrames - 1 << ",0\n";
+  Studio studio(services());
+  const auto refused = [&](const char* file) {
+    try {
+      studio.run("source.times", {file});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused("few.csv").find("no scans are open"), std::string::npos);
+  open_both(studio);
+  EXPECT_NE(refused("few.csv").find("few.csv: has no time for frame 2"), std::string::npos);
+  EXPECT_NE(refused("falls.csv").find("falls.csv: line 25: the time falls"), std::string::npos);
+  EXPECT_NE(refused("gone.csv").find("gone.csv"), std::string::npos);
+  EXPECT_EQ(studio.session().document.source.times, "");
+}
+
+TEST_F(StudioTest, AnotherSourceHasNoTimes) {
+  std::ofstream(path("times.csv")) << times_with_a_gap(kFrames);
+  fs::copy_file(path("scan.npz"), path("other.npz"));
+  Studio studio(services());
+  open_both(studio);
+  studio.run("source.times", {"times.csv"});
+  studio.run("source.open", {path("other.npz")});
+  EXPECT_EQ(studio.session().document.source.times, "");
 }
 
 /// The view that is framed and the take that commands act on: one, before and after.

@@ -54,6 +54,34 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_typed("take.name", "the adult", {"take.rename 0 \"the adult\""});
 }
 
+TEST_F(Inspector, TheTableOfTimesIsTypedChosenOrPutAway) {
+  EXPECT_FALSE(shown("source.times.reset"));
+  expect_click("source.times.browse", {"dialog.open source_times"});
+  expect_typed("source.times", "/data/times.csv", {"source.times /data/times.csv"});
+  expect_typed("source.times", "off", {});  // there was none
+  session.document.source.times = "/data/my times.csv";
+  frame(2);
+  expect_typed("source.times", "/data/other times.csv", {"source.times \"/data/other times.csv\""});
+  expect_typed("source.times", "off", {"source.times off"});
+  write_into("source.times", "");
+  key(render::Key::Delete);
+  key(render::Key::Enter);
+  EXPECT_EQ(asked(), Lines{"source.times off"});
+  expect_click("source.times.reset", {"source.times off"});
+  expect_click("source.times.browse", {"dialog.open source_times"});
+}
+
+TEST_F(Inspector, WhatIsNoScanHasNoTimes) {
+  EXPECT_TRUE(shown("source.times"));
+  session.source.clips = {{"walk", 2}};
+  frame(3);
+  EXPECT_FALSE(shown("source.times"));
+  session.source.clips.clear();
+  session.document.source.motion = "/data/walk.npz";
+  frame(3);
+  EXPECT_FALSE(shown("source.times"));
+}
+
 TEST_F(Inspector, PeopleAreListedAndAClickChoosesOne) {
   session.source.people = {{1, true, 48}};
   session.source.person = 1;

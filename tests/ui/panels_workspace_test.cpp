@@ -49,9 +49,9 @@ TEST_F(WorkspaceTest, DrawsAtAnySizeWithAndWithoutAnythingOpen) {
 TEST_F(WorkspaceTest, EveryDialogDrawsAtAnySize) {
   session.study.study = app::study_preset("rekik").make("/samples");
   for (const auto& [size, scale] : kSizes)
-    for (const char* name :
-         {"open", "open_source", "open_target", "replace_target", "open_document", "save_as", "export", "csv",
-          "picture", "video", "compare", "settings", "about", "keys", "here", "study_web", "study_run"}) {
+    for (const char* name : {"open", "open_source", "source_times", "open_target", "replace_target",
+                             "open_document", "save_as", "export", "csv", "picture", "video", "compare",
+                             "settings", "about", "keys", "here", "study_web", "study_run"}) {
       input.size = size, input.scale = scale;
       workspace.open_dialog(session, name);
       frame(3);
@@ -373,6 +373,30 @@ TEST_F(WorkspaceTest, OneDialogOpensAllThatMovesAndABodyAsksForItsMotion) {
   workspace.open_dialog(session, "open_source");
   choose(motion);  // a motion that needs no body
   EXPECT_EQ(take_log(), Lines{"source.open " + motion});
+  std::filesystem::remove_all(folder);
+}
+
+TEST_F(WorkspaceTest, ATableOfTimesIsChosenWithTheKeysAmongTablesAlone) {
+  const auto folder = std::filesystem::temp_directory_path() / "understudy_panels_times";
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"0.ply", "times.csv"}) std::ofstream(folder / name) << "1,0\n";
+  session.settings.last_folder = folder.string();
+  session.settings.panels["inspector"] = true;
+  frame(3);
+  gui.ui().reveal("source.times.browse");
+  frame(3);
+  click("source.times.browse");
+  frame(3);
+  EXPECT_EQ(workspace.dialog(), "files");
+  for (int i = 0; i < 1000 && !shown("browser.entry.times.csv"); ++i) frame(1);  // the folder is read beside
+  ASSERT_TRUE(shown("browser.entry.times.csv"));
+  EXPECT_FALSE(shown("browser.entry.0.ply"));
+  key(Key::End);
+  key(Key::Enter);
+  frame(3);
+  EXPECT_EQ(take_log(),
+            (Lines{"dialog.open source_times", "source.times " + (folder / "times.csv").string()}));
+  EXPECT_EQ(workspace.dialog(), "");
   std::filesystem::remove_all(folder);
 }
 

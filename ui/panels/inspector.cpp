@@ -1,11 +1,12 @@
 // What is open and how it is done: the source, the takes, their target and method.
-// Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.units, source.up,
-// source.height(.reset), source.turn, source.floor, source.extractor, source.people.K (a row of who is
-// there), source.person, source.open, source.motion; take.K (its row), take.name, take.remove, take.add,
-// take.replace; target.units, target.height(.reset), target.up, target.turn, target.betas, target.stride,
-// target.hip_height, target.arm_reach, target.rest_pose, target.rest_mirror, edit.rest_pose_clear;
-// method.engine, method.extractor, method.offsets, method.path, method.repair_swaps, method.smooth_joints,
-// method.fix_lengths, method.compare, work.pause, work.resume, work.restart.
+// Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.times(.browse, .reset),
+// source.units, source.up, source.height(.reset), source.turn, source.floor, source.extractor,
+// source.people.K (a row of who is there), source.person, source.open, source.motion; take.K (its row),
+// take.name, take.remove, take.add, take.replace; target.units, target.height(.reset), target.up,
+// target.turn, target.betas, target.stride, target.hip_height, target.arm_reach, target.rest_pose,
+// target.rest_mirror, edit.rest_pose_clear; method.engine, method.extractor, method.offsets, method.path,
+// method.repair_swaps, method.smooth_joints, method.fix_lengths, method.compare, work.pause, work.resume,
+// work.restart.
 #include <algorithm>
 #include <sstream>
 
@@ -157,12 +158,39 @@ void draw_animation_fields(const app::SourceState& state, const app::SourceOptio
   ask_toggle(context, {"source.as_scan", "As a scan", "Uses its surface, not its skeleton"}, source.as_scan);
 }
 
+/// The table of a scan's times: typed or chosen, and a way back to none.
+void draw_times(const app::SourceOptions& source, PanelContext& context) {
+  Ui& ui = context.ui;
+  const Control control{"source.times", "Times",
+                        "A table of when each scan was taken: its file or number, seconds. Off: one scan a "
+                        "frame, but for missing numbers"};
+  const bool is_on = !source.times.empty();
+  const float side = ImGui::GetFrameHeight();
+  row(ui, control.label, control.explanation);
+  ImGui::BeginChild(
+      (control.name + ".field").c_str(),
+      {std::max(1.f, ImGui::GetContentRegionAvail().x - (is_on ? 2 : 1) * (side + ui.px(4))), side});
+  const auto text = committed_text(ui, control.name, is_on ? source.times : "off");
+  if (is_on) tooltip(ui, source.times);
+  ImGui::EndChild();
+  if (text) context.ask("source.times", {text->empty() ? "off" : *text});
+  ImGui::SameLine(0, ui.px(4));
+  if (icon_button(ui, control.name + ".browse", Icon::Folder, {"Choose the table", "", false, false, 26}))
+    context.ask("dialog.open", {"source_times"});
+  if (!is_on) return;
+  ImGui::SameLine(0, ui.px(4));
+  if (icon_button(ui, control.name + ".reset", Icon::Reset, {"No times", "", false, false, 26}))
+    context.ask("source.times", {"off"});
+}
+
 void draw_source_fields(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::SourceOptions& source = session.document.source;
   const std::string fps = source.fps > 0 ? argument(source.fps) : "auto";
-  if (const auto text = text_row(ui, {"source.fps", "Frames/s", "auto: the file's own, or 30"}, fps))
+  if (const auto text =
+          text_row(ui, {"source.fps", "Frames/s", "auto: the file's own, as the times tell, or 30"}, fps))
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
+  if (source.motion.empty() && session.source.clips.empty()) draw_times(source, context);
   if (may_move(source)) draw_animation_fields(session.source, source, context);
   draw_import(context, "source", source.import);
   if (const auto deg = typed_number_row(ui, {"source.turn", "Turn by", "Degrees about the vertical"},

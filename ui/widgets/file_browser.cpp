@@ -79,10 +79,11 @@ bool FileFilter::passes(const std::string& name) const {
 }
 
 FileFilter filter_of(FileKind kind) {
-  static const std::array<FileFilter, 9> kFilters = {{
+  static const std::array<FileFilter, 10> kFilters = {{
       {"Scans and motions", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
       {"Targets", format_suffixes(kTarget)},
       {"AMASS-format motions", format_suffixes(kBody)},  // both are .npz
+      {"Tables of times", {".csv", ".tsv", ".txt"}},
       {"Understudy documents", format_suffixes(kDocument)},
       {"Perceptual studies", format_suffixes(kStudy)},
       {"Answers", {".csv"}},
