@@ -1,7 +1,6 @@
 #include "retarget/motion_space/plain_space.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -10,22 +9,12 @@
 namespace understudy {
 namespace {
 
-constexpr float kUsualSpeed = 0.5f, kStill = 0.1f;  // m/s
-
 void check_question(const KnownMotion& question) {
   US_CHECK(question.known.size() == question.motion.poses.size(), "what is known is told of ",
            question.known.size(), " frames, the motion has ", question.motion.poses.size());
   US_CHECK(std::any_of(question.known.begin(), question.known.end(),
                        [](const KnownParts& frame) { return frame != all_parts(false); }),
            "no frame of the motion is known");
-}
-
-/// The frames of which all is known.
-std::vector<int> whole_frames(const std::vector<KnownParts>& known) {
-  std::vector<int> frames;
-  for (int t = 0; t < ssize(known); ++t)
-    if (known[t] == all_parts(true)) frames.push_back(t);
-  return frames;
 }
 
 void copy_part(const Pose& from, int part, Pose& to) {
@@ -62,7 +51,7 @@ void each_unknown(const std::vector<KnownParts>& known, int part, Put&& put) {
 
 class HoldSpace final : public PlainSpace {
  public:
-  HoldSpace() : PlainSpace({1.12f, 0.78f, 1.46f}) {}
+  HoldSpace() : PlainSpace({0.75f, 0.9f, 1.47f, /*since_last=*/true}) {}
   std::string name() const override { return "hold"; }
 
  private:
@@ -97,7 +86,7 @@ class SlerpSpace final : public PlainSpace {
 
 class HermiteSpace final : public PlainSpace {
  public:
-  HermiteSpace() : PlainSpace({0.58f, 1.34f, 0.94f}) {}
+  HermiteSpace() : PlainSpace(kCurveDoubt) {}
   std::string name() const override { return "hermite"; }
 
  private:
@@ -108,51 +97,13 @@ class HermiteSpace final : public PlainSpace {
 
 }  // namespace
 
-float DoubtLaw::metres(float seconds, float speed) const {
-  return size * std::pow(seconds, by_time) * std::pow(speed + kStill, by_speed);
-}
-
-std::vector<float> known_speeds(const KnownMotion& question) {
-  const std::vector<int> frames = whole_frames(question.known);
-  std::vector<float> speeds(question.known.size(), kUsualSpeed);
-  if (frames.size() < 2) return speeds;
-  const auto joints_at = [&](int i) {
-    return forward_kinematics(question.rest, question.motion.poses[frames[i]]).joints;
-  };
-  std::vector<float> steps;  // from each known frame to the next
-  Joints here = joints_at(0);
-  for (int i = 0; i + 1 < ssize(frames); ++i) {
-    const Joints next = joints_at(i + 1);
-    const float seconds = static_cast<float>(frames[i + 1] - frames[i]) / question.motion.fps;
-    steps.push_back((next - here).rowwise().norm().mean() / seconds);
-    here = next;
-  }
-  for (int t = 0; t < ssize(speeds); ++t) {
-    const auto after = std::upper_bound(frames.begin(), frames.end(), t) - frames.begin();
-    float sum = 0;
-    int count = 0;
-    for (auto i = after - 2; i <= after; ++i)
-      if (i >= 0 && i < ssize(steps)) sum += steps[i], ++count;
-    speeds[t] = sum / static_cast<float>(count);
-  }
-  return speeds;
-}
-
 Completion PlainSpace::complete(const KnownMotion& question) {
   check_question(question);
-  Completion made{question.motion, std::vector<float>(question.known.size())};
+  Completion made{question.motion, doubt_of(doubt_, question.known, question.motion, question.rest)};
   fill(question, made.motion);
-  const std::vector<KnownDistance> distances = known_distances(question.known);
-  const std::vector<float> speeds = known_speeds(question);
   for (size_t t = 0; t < question.known.size(); ++t)
-    for (int part = 0; part < kPartCount; ++part) {
-      if (question.known[t][part]) {
-        copy_part(question.motion.poses[t], part, made.motion.poses[t]);
-        continue;
-      }
-      const auto& [since, until] = distances[t][part];
-      made.doubt_m[t] += doubt_.metres(std::min(since, until) / question.motion.fps, speeds[t]) / kPartCount;
-    }
+    for (int part = 0; part < kPartCount; ++part)
+      if (question.known[t][part]) copy_part(question.motion.poses[t], part, made.motion.poses[t]);
   return made;
 }
 

@@ -5,21 +5,9 @@
 #include <string>
 
 #include "retarget/pipeline/motion_space.hpp"
+#include "retarget/skeleton/curve_doubt.hpp"
 
 namespace understudy {
-
-/// How far off a way to fill frames is on average: metres = size * s^by_time * (v + 0.1)^by_speed, where s is
-/// the time to the nearest known frame in seconds, v the mean speed of the joints around it in m/s. Fitted to
-/// gaps of 5 to 60 frames.
-struct DoubtLaw {
-  float size, by_time, by_speed;
-  float metres(float seconds, float speed) const;
-};
-
-/// Of each frame the mean speed of all joints, m/s, as known frames show it: the mean of that from the known
-/// frame before to the one after, and of those just before and behind these two. 0.5 where fewer than two
-/// frames are wholly known.
-std::vector<float> known_speeds(const KnownMotion& question);
 
 /// Does for each MotionSpace of this folder what all have to: checks the question, keeps what is known, tells
 /// the doubt.

@@ -8,37 +8,65 @@
 namespace understudy {
 namespace {
 
-constexpr float kStill = 0.3f;      // m/s, of a body that stands: it, too, may have moved
-constexpr float kMostShare = 0.8f;  // of the way that a body goes meanwhile
-constexpr float kHalfway_s = 0.6f;  // from the nearest known frame, at which half of that is doubted
+constexpr float kUsualSpeed = 0.5f, kStill = 0.1f;  // m/s
 
-/// Mean speed of the joints over the known frames and the gap beside a frame, m/s.
-std::vector<float> speeds(const Motion& curve, const Joints& rest) {
-  std::vector<float> speeds(curve.poses.size(), 0.0f);
-  Joints before;
-  for (int t = 0; t < ssize(curve.poses); ++t) {
-    const Joints joints = forward_kinematics(rest, curve.poses[t]).joints;
-    if (t > 0) speeds[t] = (joints - before).rowwise().norm().mean() * curve.fps;
-    before = joints;
-  }
-  return speeds;
+/// The frames of which all is known.
+std::vector<int> whole_frames(const std::vector<KnownParts>& known) {
+  std::vector<int> frames;
+  for (int t = 0; t < ssize(known); ++t)
+    if (known[t] == all_parts(true)) frames.push_back(t);
+  return frames;
 }
 
 }  // namespace
 
-std::vector<float> curve_doubt(const std::vector<KnownParts>& known, const Motion& curve,
-                               const Joints& rest) {
-  const std::vector<KnownDistance> distances = known_distances(known);
-  const std::vector<float> speed = speeds(curve, rest);
-  std::vector<float> doubt(known.size(), 0.0f);
-  for (size_t t = 0; t < known.size(); ++t) {
-    float nearest = 0;
-    for (const auto& part : distances[t]) nearest = std::max(nearest, std::min(part[0], part[1]));
-    const float away_s = nearest / curve.fps;
-    const float share = kMostShare * away_s / (away_s + kHalfway_s);
-    doubt[t] = share * away_s * (kStill + speed[t]);
+float DoubtLaw::metres(float seconds, float speed) const {
+  return size * std::pow(seconds, by_time) * std::pow(speed + kStill, by_speed);
+}
+
+std::vector<float> known_speeds(const std::vector<KnownParts>& known, const Motion& motion,
+                                const Joints& rest) {
+  const std::vector<int> frames = whole_frames(known);
+  std::vector<float> speeds(known.size(), kUsualSpeed);
+  if (frames.size() < 2) return speeds;
+  const auto joints_at = [&](int i) { return forward_kinematics(rest, motion.poses[frames[i]]).joints; };
+  std::vector<float> steps;  // from each known frame to the next
+  Joints here = joints_at(0);
+  for (int i = 0; i + 1 < ssize(frames); ++i) {
+    const Joints next = joints_at(i + 1);
+    const float seconds = static_cast<float>(frames[i + 1] - frames[i]) / motion.fps;
+    steps.push_back((next - here).rowwise().norm().mean() / seconds);
+    here = next;
   }
+  for (int t = 0; t < ssize(speeds); ++t) {
+    const auto after = std::upper_bound(frames.begin(), frames.end(), t) - frames.begin();
+    float sum = 0;
+    int count = 0;
+    for (auto i = after - 2; i <= after; ++i)
+      if (i >= 0 && i < ssize(steps)) sum += steps[i], ++count;
+    speeds[t] = sum / static_cast<float>(count);
+  }
+  return speeds;
+}
+
+std::vector<float> doubt_of(const DoubtLaw& law, const std::vector<KnownParts>& known, const Motion& motion,
+                            const Joints& rest) {
+  const std::vector<KnownDistance> distances = known_distances(known);
+  const std::vector<float> speeds = known_speeds(known, motion, rest);
+  std::vector<float> doubt(known.size(), 0.0f);
+  for (size_t t = 0; t < known.size(); ++t)
+    for (size_t part = 0; part < kPartCount; ++part) {
+      if (known[t][part]) continue;
+      const auto& [since, until] = distances[t][part];
+      const float frames = law.since_last && since < kFarFrames ? since : std::min(since, until);
+      doubt[t] += law.metres(frames / motion.fps, speeds[t]) / kPartCount;
+    }
   return doubt;
+}
+
+std::vector<float> curve_doubt(const std::vector<KnownParts>& known, const Motion& motion,
+                               const Joints& rest) {
+  return doubt_of(kCurveDoubt, known, motion, rest);
 }
 
 }  // namespace understudy
