@@ -140,6 +140,7 @@ const Changes& document_changes() {
       POSES(fill.pop_back()),
       POSES(fill[0].first = 1),
       POSES(fill[0].last = 17),
+      POSES(fill[0].learned = 0.25f),
       POSES(rotate.pop_back()),
       POSES(rotate[0].frame = 1),
       POSES(rotate[0].joint = 1),
@@ -194,7 +195,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
   [[maybe_unused]] const auto& [fill, rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();
-  [[maybe_unused]] const auto& [fill_first, fill_last] = FillEdit();
+  [[maybe_unused]] const auto& [fill_first, fill_last, fill_learned] = FillEdit();
   [[maybe_unused]] const auto& [frame, joint, turn, falloff, limb] = RotateEdit();
   [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();
   [[maybe_unused]] const auto& [begin_height, end_height, begin_speed, end_speed] = FootContactOptions();

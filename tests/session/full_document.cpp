@@ -28,7 +28,7 @@ std::shared_ptr<const WeightRows> weight_rows() {
 
 PoseEdits pose_edits() {
   PoseEdits edits;
-  edits.fill = {{14, 16}};
+  edits.fill = {{14, 16, 0.5f}};
   edits.rotate = {{12, LeftElbow, Vec3(0.1f, -0.2f, 1 / 3.0f), 7, LeftWrist},
                   {0, Head, Vec3(1e-7f, 0, 0), 0}};
   edits.smooth = SmoothEdit{0.7f};

@@ -31,7 +31,7 @@ class ElbowNetwork final : public WindowNetwork {
             pose.local[RightKnee] * rotation_from_axis_angle({0.3f * away * angle_, 0, 0});
         pose.root += Vec3(0.1f * away * angle_, 0, 0.05f * away * angle_);
         answer.poses.push_back(pose);
-        answer.standing.push_back({stands_, 0});
+        answer.standing.push_back({stands_, stands_});
         answer.doubt_m.push_back(0.01f * away);
       }
     }
@@ -44,7 +44,8 @@ class ElbowNetwork final : public WindowNetwork {
 
 struct Question : KnownMotion {
   Question(int first, int last) {
-    rest = builtin_person().joints;
+    static const Joints person = builtin_person().joints;
+    rest = person;
     motion = builtin_motion("walk", rest);
     known.assign(motion.poses.size(), all_parts(true));
     for (int t = first; t <= last; ++t) known[t] = all_parts(false);
