@@ -23,6 +23,7 @@ constexpr Subcommand kSubcommands[] = {
     {"play", "plays a script of the studio without a window", declare_play},
     {"retarget", "lets a target perform what a source does", declare_retarget},
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
+    {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
     {"cases", "makes suites of test cases from people and motions", declare_cases},
     {"eval", "evaluates the method on a folder of cases", declare_eval},
     {"measure", "metrics of a source that need no ground truth", declare_measure},

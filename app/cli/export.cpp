@@ -5,13 +5,12 @@
 #include <memory>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/headless.hpp"
 #include "app/cli/options.hpp"
 #include "app/cli/preview.hpp"
 #include "app/cli/progress.hpp"
-#include "app/cli/studio.hpp"
 #include "app/run/export_presets.hpp"
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
@@ -58,11 +57,6 @@ struct Role {
   SourceOptions source;
   std::string called;
 };
-
-std::string clip_name(const std::string& source) {
-  const std::string stem = std::filesystem::path(file_name(source)).stem().string();
-  return stem.empty() ? "motion" : stem;
-}
 
 /// The numbers in "1,3"; none: it is no list.
 std::vector<int> listed_people(const std::string& person) {
@@ -201,15 +195,6 @@ Performance perform_sources(const ExportOptions& options, const ExportFormat& fo
   return out;
 }
 
-/// What a studio asks that nobody looks at.
-void check_questions(const Session& session) {
-  US_CHECK(!session.question || session.question->kind != Question::Kind::MissingFiles,
-           session.question->missing[0], ": is a file of the document, but does not exist");
-  US_CHECK(!session.question || session.question->kind != Question::Kind::PaintMisfit,
-           session.question->text);
-  US_CHECK(!session.question || session.question->kind != Question::Kind::NotAPerson, session.question->text);
-}
-
 std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& document,
                                  const ExportFormat& format) {
   std::vector<size_t> takes;
@@ -227,36 +212,12 @@ std::vector<size_t> chosen_takes(const ExportOptions& options, const Document& d
 std::unique_ptr<Studio> open_document(const ExportOptions& options) {
   US_CHECK(options.not_of_documents.empty(), options.document, ": a document has its own source and target, ",
            options.not_of_documents, " cannot be combined with it");
-  const StudioServices program = studio_services(options.how.weights);
-  StudioServices services;
-  services.networks = program.networks;
-  services.motion_space = program.motion_space;
-  auto studio = std::make_unique<Studio>(std::move(services));
+  auto studio = headless_studio(options.how.weights);
   studio->run("document.open", {options.document});
   const Document& document = studio->session().document;
   US_CHECK(!document.source.path.empty() && !document.takes.empty(), options.document, ": has no ",
            document.source.path.empty() ? "source" : "target");
   return studio;
-}
-
-/// Performs all takes, and says how far this one is.
-void make_takes(const ExportOptions& options, Studio& studio, size_t take) {
-  const Session& session = studio.session();
-  const auto look = [&] {
-    check_questions(session);
-    US_CHECK(options.all_takes || session.errors.empty(), session.errors.front().text);
-  };
-  Progress progress(clip_name(options.document) + " -> " + session.document.takes[take].name, 0);
-  do {
-    studio.tick(0);
-    look();
-    progress.step(static_cast<int64_t>(session.takes[take].performed.size()));
-    check_interrupt("after " + std::to_string(session.takes[take].performed.size()) + " frames");
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  } while (!studio.made());
-  studio.tick(0);
-  look();
-  progress.finish();
 }
 
 ExportChoice choice_of(const ExportOptions& options, const ExportFormat& format) {
@@ -273,7 +234,7 @@ Performance perform_document(const ExportOptions& options, const ExportFormat& f
   const Session& session = studio->session();
   const std::vector<size_t> takes = chosen_takes(options, session.document, format);
   check_not_read(options.out, files_read_by(session.document));
-  make_takes(options, *studio, takes[0]);
+  make_takes(*studio, takes[0], {clip_name(options.document), options.all_takes});
   Performance out{export_inputs(session, takes, choice_of(options, format)), ""};
   for (const ExportInput& one : out.performers) append_item(out.by, one.name);
   return out;
@@ -289,7 +250,7 @@ int export_takes(const ExportOptions& options) {
   const ExportFormat& format = export_format(options.format.empty() ? "glb" : options.format, options.out);
   if (options.bones == "own") check_own_bones(options.out, format);
   const auto studio = open_document(options);
-  make_takes(options, *studio, 0);
+  make_takes(*studio, 0, {clip_name(options.document), options.all_takes});
   const auto files = take_files(studio->session(), options.out, choice_of(options, format));
   const auto problems = write_takes(options.out, files, [](float) { check_interrupt("during the export"); });
   size_t written = 0;

@@ -381,14 +381,19 @@ std::vector<FillEdit> unusable_runs(const Session& session, size_t take) {
   return runs;
 }
 
+std::vector<FillEdit> all_unusable(const Session& session, size_t take) {
+  std::vector<FillEdit> runs = unusable_runs(session, take);
+  US_CHECK(!runs.empty(), "all frames could be used: set the loop marks around those that are to be filled");
+  return runs;
+}
+
 /// What is to be filled without being told: what is between the loop marks, else the run of unusable frames
 /// under the playhead, else all of them.
 std::vector<FillEdit> wanted_fills(const Session& session, size_t take) {
   const FrameRange marked = play_range(session.playback, frame_count(session));
   if (!marked.empty() && (session.playback.in >= 0 || session.playback.out >= 0))
     return {{marked.first, marked.last}};
-  std::vector<FillEdit> runs = unusable_runs(session, take);
-  US_CHECK(!runs.empty(), "all frames could be used: set the loop marks around those that are to be filled");
+  const std::vector<FillEdit> runs = all_unusable(session, take);
   const int now = shown_frame(session);
   for (const FillEdit& run : runs)
     if (run.first <= now && now <= run.last) return {run};
@@ -398,9 +403,10 @@ std::vector<FillEdit> wanted_fills(const Session& session, size_t take) {
 void fill(Call& c) {
   const size_t take = c.arguments.empty() ? static_cast<size_t>(c.session.selected_take) : c.take_number();
   US_CHECK(take < c.document.takes.size(), "add a target first");
-  const bool told = c.arguments.size() > 1;
-  const std::vector<FillEdit> wanted =
-      told ? std::vector<FillEdit>{frame_range<FillEdit>(c, 1)} : wanted_fills(c.session, take);
+  const std::vector<FillEdit> wanted = c.has("bad", 1) ? all_unusable(c.session, take)
+                                       : c.arguments.size() > 1
+                                           ? std::vector<FillEdit>{frame_range<FillEdit>(c, 1)}
+                                           : wanted_fills(c.session, take);
   auto& fills = c.document.takes[take].pose_edits.fill;
   for (const FillEdit& one : wanted) add_fill(one, fills);
   const int last = static_cast<int>(c.session.takes[take].performed.size()) - 1;
@@ -413,8 +419,8 @@ void fill(Call& c) {
 
 void add_pose_ranges(Commands& commands) {
   commands.add_edit({"edit.fill", "Fill frames",
-                     "[TAKE [FIRST LAST]]: between the loop marks, else the unusable frames here, else all "
-                     "unusable ones",
+                     "[TAKE [FIRST LAST | bad]]: between the loop marks, else the unusable frames here, else "
+                     "all unusable ones (bad)",
                      "G"},
                     fill);
   commands.add_slider({"edit.fill_learned", "Plain or learned",

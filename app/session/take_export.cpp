@@ -53,11 +53,14 @@ void add_clip(ExportInput& out, const Session& session, size_t k, const std::str
   const Take& take = session.document.takes[k];
   const TakeState& state = session.takes[k];
   CharacterClip clip{name, session.source.fps, {}};
+  std::vector<float> doubt_m;
   for (const int frame : kept_frames(take.pose_edits, state.shown.poses.size())) {
     const size_t t = frame;
     clip.poses.push_back(state.shown.poses[t]);
+    if (t < state.shown.doubt_m.size()) doubt_m.push_back(state.shown.doubt_m[t]);
     out.source_joints.push_back(t < state.performed.size() ? state.performed[t].source : Joints::Zero());
   }
+  clip.made = made_frames(doubt_m);
   out.source_to_scan = session.source.to_file;
   out.clips.push_back(std::move(clip));
 }

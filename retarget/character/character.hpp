@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/skeleton/made_frames.hpp"
 
 namespace understudy {
 
@@ -79,6 +80,7 @@ struct CharacterTrack {
 struct CharacterAnimation {
   std::string name;
   std::vector<CharacterTrack> tracks;
+  std::vector<MadeFrames> made{};  ///< frames that were not captured; written, not read
   float duration() const;
 };
 

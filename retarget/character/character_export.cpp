@@ -559,6 +559,7 @@ Character animated(const StagedPerformance& staged, const std::function<void(flo
     }
     out.animations.push_back(
         animation_of(fresh_name(clip.name, out.animations), sampled, animator->moved(), out));
+    out.animations.back().made = clip.made;
   }
   if (options.root_motion) carry_path(staged.clips, rest, animator->moved(), out, own);
   if (options.reduce_mm > 0) reduce_keys(character, options.reduce_mm, out);

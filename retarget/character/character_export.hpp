@@ -14,6 +14,7 @@ struct CharacterClip {
   std::string name = "motion";
   double fps = 30;
   std::vector<Pose> poses;
+  std::vector<MadeFrames> made{};  ///< which of them were not captured; told in the file's extras
   /// When pose `i` is.
   float seconds(size_t i) const { return static_cast<float>(static_cast<double>(i) / fps); }
 };

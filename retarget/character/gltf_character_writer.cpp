@@ -258,6 +258,17 @@ void add_images(const Character& character, ModelMaker& out) {
   }
 }
 
+/// Nobody is to take frames that were made for captured ones.
+tinygltf::Value extras_of(const std::vector<MadeFrames>& made) {
+  tinygltf::Value::Array list;
+  for (const MadeFrames& one : made)
+    list.emplace_back(
+        tinygltf::Value::Object{{"first", tinygltf::Value(one.first)},
+                                {"last", tinygltf::Value(one.last)},
+                                {"doubt_m", tinygltf::Value(static_cast<double>(one.doubt_m))}});
+  return tinygltf::Value(tinygltf::Value::Object{{"made_frames", tinygltf::Value(std::move(list))}});
+}
+
 void add_animations(const Character& character, ModelMaker& out) {
   static const std::array<const char*, 3> kKinds = {"LINEAR", "STEP", "CUBICSPLINE"};
   for (const auto& from : character.animations) {
@@ -286,6 +297,7 @@ void add_animations(const Character& character, ModelMaker& out) {
       animation.channels.push_back(std::move(channel));
       animation.samplers.push_back(std::move(sampler));
     }
+    if (!from.made.empty()) animation.extras = extras_of(from.made);
     out.model.animations.push_back(std::move(animation));
   }
 }

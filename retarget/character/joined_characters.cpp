@@ -139,7 +139,8 @@ void add_animations(CastMember& member, int first_node, Character& out,
     else if (i >= out.animations.size())
       out.animations.push_back(std::move(animations[i]));
     else
-      move_to_end(animations[i].tracks, out.animations[i].tracks);
+      move_to_end(animations[i].tracks, out.animations[i].tracks),
+          move_to_end(animations[i].made, out.animations[i].made);
   }
 }
 

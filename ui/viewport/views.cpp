@@ -8,6 +8,7 @@
 #include "app/session/follow.hpp"
 #include "render/gizmo.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
 #include "ui/gui/draw_pass.hpp"
 #include "ui/gui/gui.hpp"
 #include "ui/panels/panel.hpp"
@@ -71,6 +72,13 @@ void draw_cube_of(Ui& ui, const Pane& pane) {
   if (!pane.cube) return;
   draw_cube(ui, "view." + std::to_string(pane.content.number) + ".cube", *pane.cube, pane.view.camera,
             pane.cube_face);
+}
+
+/// Of a frame that was made and not captured, metres; 0 where it was captured.
+float made_doubt(const Session& session, const PaneContent& content, int frame) {
+  if (content.source || content.takes.empty()) return 0;
+  const float* doubt_m = at_or_null(session.takes[content.takes[0]].shown.doubt_m, frame);
+  return doubt_m != nullptr ? *doubt_m : 0;
 }
 
 }  // namespace
@@ -404,7 +412,9 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
     if (!legend_beside_ || pane.made.legend.categories.empty()) overlay.legend = pane.made.legend;
   }
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
-  if (seen != nullptr && seen->flagged) overlay.warning = seen->reason;
+  const float doubt_m = rest ? 0 : made_doubt(session, pane.content, frame);
+  if (doubt_m > 0) overlay.subtitle += printed(" \u00b7 filled, \u00b1 %.0f cm", std::ceil(100 * doubt_m));
+  if (seen != nullptr && seen->flagged && doubt_m == 0) overlay.warning = seen->reason;
   const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
   const int person = person_of_tool(session, pane.content);
   const PaneView view = tool_view(session, pane);
