@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -61,19 +60,14 @@ void fill_take(const FillOptions& options, Studio& studio) {
     const FillEdit range = range_of(text);
     studio.run("edit.fill", {"0", std::to_string(range.first), std::to_string(range.last)});
   }
-  const auto& performed = session.takes[0].performed;
-  const bool has_bad =
-      std::any_of(performed.begin(), performed.end(), [](const KeptFrame& frame) { return frame.flagged; });
+  bool has_bad = false;
+  for (const KeptFrame& frame : session.takes[0].performed) has_bad = has_bad || frame.flagged;
   if (options.bad && has_bad) studio.run("edit.fill", {"0", "bad"});
   if (options.bad && !has_bad) log::info(options.source.path + ": all of its frames could be used");
   for (int i = 0; i < ssize(session.document.takes[0].pose_edits.fill); ++i)
     studio.run("edit.fill_learned", {"0", std::to_string(i), std::to_string(options.learned)});
   studio.wait_idle();
   US_CHECK(session.errors.empty(), session.errors.front().text);
-}
-
-Json to_json(const MadeFrames& made) {
-  return {{"first", made.first}, {"last", made.last}, {"doubt_m", made.doubt_m}};
 }
 
 Json report_of(const FillOptions& options, const Session& session, const std::vector<MadeFrames>& made) {
@@ -83,7 +77,8 @@ Json report_of(const FillOptions& options, const Session& session, const std::ve
   report["fps"] = session.source.fps;
   report["frames"] = session.takes[0].shown.poses.size();
   report["made_frames"] = Json::array();
-  for (const MadeFrames& one : made) report["made_frames"].push_back(to_json(one));
+  for (const MadeFrames& one : made)
+    report["made_frames"].push_back({{"first", one.first}, {"last", one.last}, {"doubt_m", one.doubt_m}});
   return report;
 }
 
@@ -96,11 +91,15 @@ int fill(FillOptions options) {
   for (const std::string& text : options.ranges) range_of(text);
   const auto studio = headless_studio(options.how.weights);
   const Session& session = studio->session();
-  studio->replace_document({document_of(options)}, "");
+  SavedDocument asked;
+  asked.document = document_of(options);
+  studio->replace_document(std::move(asked), "");
   make_takes(*studio, 0, {clip_name(options.source.path)});
   fill_take(options, *studio);
   const std::vector<MadeFrames> made = made_frames(session.takes[0].shown.doubt_m);
-  auto inputs = export_inputs(session, {0}, {&format, {}, {}, {}});
+  ExportChoice choice;
+  choice.format = &format;
+  auto inputs = export_inputs(session, {0}, choice);
   inputs[0].body.file.progress = [](float) { check_interrupt("during the export"); };
   const ExportCost cost = export_motion(options.out, format, inputs);
   for (const MadeFrames& one : made)

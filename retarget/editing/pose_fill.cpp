@@ -40,7 +40,7 @@ Pose between(const Pose& a, const Pose& b, float share) {
 Motion curve_through(const KnownMotion& question, const std::vector<FillEdit>& fills) {
   Motion motion = question.motion;
   fill_curves(question.known, 0, ssize(motion.poses) - 1, motion);
-  motion.doubt_m = curve_doubt(question.known, motion, question.rest);
+  motion.doubt_m = curve_doubt(question.known, question.motion, question.rest);
   for (const FillEdit& fill : fills) hold_feet(fill, question.rest, motion);
   return motion;
 }

@@ -105,7 +105,7 @@ Completion LearnedSpace::complete(const KnownMotion& question) {
   Motion& motion = made.motion = question.motion;
   const int count = ssize(motion.poses);
   fill_curves(question.known, 0, count - 1, motion);
-  made.doubt_m = curve_doubt(question.known, motion, question.rest);
+  made.doubt_m = curve_doubt(question.known, question.motion, question.rest);
   const bool standing_known = !motion.standing.empty();
   motion.standing.resize(question.known.size());
   const std::vector<MotionWindow> windows = windows_of(question.known, motion, question.rest);
