@@ -158,28 +158,27 @@ void draw_animation_fields(const app::SourceState& state, const app::SourceOptio
   ask_toggle(context, {"source.as_scan", "As a scan", "Uses its surface, not its skeleton"}, source.as_scan);
 }
 
-/// The table of a scan's times: typed or chosen, and a way back to none.
+/// The table of a scan's times: buttons choose one and put it away.
 void draw_times(const app::SourceOptions& source, PanelContext& context) {
   Ui& ui = context.ui;
-  const Control control{"source.times", "Times",
-                        "A table of when each scan was taken: its file or number, seconds. Off: one scan a "
-                        "frame, but for missing numbers"};
   const bool is_on = !source.times.empty();
-  const float side = ImGui::GetFrameHeight();
-  row(ui, control.label, control.explanation);
-  ImGui::BeginChild(
-      (control.name + ".field").c_str(),
-      {std::max(1.f, ImGui::GetContentRegionAvail().x - (is_on ? 2 : 1) * (side + ui.px(4))), side});
-  const auto text = committed_text(ui, control.name, is_on ? source.times : "off");
+  const float side = ImGui::GetFrameHeight(), buttons = (is_on ? 2 : 1) * (side + ui.px(4));
+  row(ui, "Times",
+      "A table of when each scan was taken: its file or number, seconds. Off: one scan a frame, but for "
+      "missing numbers");
+  const float width = std::max(1.f, ImGui::GetContentRegionAvail().x - buttons);
+  ImGui::BeginChild("source.times.name", {width, side});
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(is_on ? cut_name(file_name(source.times), width).c_str() : "off");
   if (is_on) tooltip(ui, source.times);
+  ui.mark("source.times");
   ImGui::EndChild();
-  if (text) context.ask("source.times", {text->empty() ? "off" : *text});
   ImGui::SameLine(0, ui.px(4));
-  if (icon_button(ui, control.name + ".browse", Icon::Folder, {"Choose the table", "", false, false, 26}))
+  if (icon_button(ui, "source.times.browse", Icon::Folder, {"Choose the table", "", false, false, 26}))
     context.ask("dialog.open", {"source_times"});
   if (!is_on) return;
   ImGui::SameLine(0, ui.px(4));
-  if (icon_button(ui, control.name + ".reset", Icon::Reset, {"No times", "", false, false, 26}))
+  if (icon_button(ui, "source.times.reset", Icon::Reset, {"No times", "", false, false, 26}))
     context.ask("source.times", {"off"});
 }
 
