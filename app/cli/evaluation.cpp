@@ -241,9 +241,10 @@ KnownMotion performed_motion(const Case& c, const EvalOptions& options, Retarget
   from.edits = options.edits;
   const auto source = open_source(from);
   const std::vector<bool> known = known_frames(*c.gaps);
-  KnownMotion performed{{static_cast<float>(c.fps), std::vector<Pose>(known.size()), {}},
-                        std::vector<KnownParts>(known.size(), all_parts(false)),
-                        rest};
+  KnownMotion performed{
+      {static_cast<float>(c.fps), std::vector<Pose>(known.size()), {}, std::vector<Standing>(known.size())},
+      std::vector<KnownParts>(known.size(), all_parts(false)),
+      rest};
   RetargetedSource retargeted(*source, retargeter, from);
   while (const auto frame = retargeted.next()) {
     check_interrupt("in case " + c.name);
@@ -254,6 +255,7 @@ KnownMotion performed_motion(const Case& c, const EvalOptions& options, Retarget
     result.latency.add(frame->times);
     result.flagged += frame->result.flagged;
     performed.motion.poses[static_cast<size_t>(t)] = frame->result.pose;
+    performed.motion.standing[static_cast<size_t>(t)] = frame->result.standing;
     if (!frame->result.flagged) performed.known[static_cast<size_t>(t)] = all_parts(true);
   }
   retargeted.check_used();
