@@ -23,9 +23,9 @@ struct ReportPlan {
 };
 
 /// {"note", "rows": [{"table", "name", "suite", "budget", "engine", "extractor", "weights", "engine_weights",
-/// "extractor_weights", "offsets", "oracle", "baseline", "fill", "context", "limit", "breakdown", and kSwitches by
-/// their names, now or before}]}; all but a row's first three may be missing. "context": frames after which
-/// the past is forgotten. Paths are from the file's folder.
+/// "extractor_weights", "offsets", "oracle", "baseline", "fill", "context", "limit", "breakdown", and
+/// kSwitches by their names, now or before}]}; all but a row's first three may be missing. "context": frames
+/// after which the past is forgotten. Paths are from the file's folder.
 /// Throws Error naming the file and what it does not know.
 ReportPlan read_report_plan(const std::string& path);
 

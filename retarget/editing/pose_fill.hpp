@@ -25,10 +25,11 @@ FieldsOf<S, FillEdit> fields(V& visit, S& fill) {
 bool need_space(const std::vector<FillEdit>& fills);
 
 /// Makes these frames anew, the others stay as they are to the bit. The smooth curve: each joint's rotation
-/// and the root follow the cubic Hermite curve through the frames beside, with their velocities (fill_curves);
-/// a foot that stands before and after, at one place, stands meanwhile. At the motion's start or end it is a
-/// prediction. What was made tells its doubt (Motion::doubt_m). Without a motion space all follow the curve.
-/// Throws Error for frames that the motion does not have, or where none is left that is known.
+/// and the root follow the cubic Hermite curve through the frames beside, with their velocities
+/// (fill_curves); a foot that stands before and after, at one place, stands meanwhile. At the motion's start
+/// or end it is a prediction. What was made tells its doubt (Motion::doubt_m). Without a motion space all
+/// follow the curve. Throws Error for frames that the motion does not have, or where none is left that is
+/// known.
 void fill_frames(const std::vector<FillEdit>& fills, const Joints& rest, MotionSpace* space, Motion& motion);
 
 }  // namespace understudy

@@ -29,7 +29,8 @@ struct NetworkOptions {
 /// one null. Throws Error when weights are missing or of another version.
 Networks load_networks(const NetworkOptions& options, const NetworkParts& parts = NetworkParts::all());
 
-/// What fills gaps, with the weights in that folder. Throws Error when they are missing or of another version.
+/// What fills gaps, with the weights in that folder. Throws Error when they are missing or of another
+/// version.
 std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder);
 
 /// The folder that weights are read from; empty when there is none.

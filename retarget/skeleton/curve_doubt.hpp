@@ -7,8 +7,9 @@
 
 namespace understudy {
 
-/// How far off a plain way to fill frames is on average: metres = size * s^by_time * (v + 0.1)^by_speed, where
-/// s is the time to the nearest known frame in seconds, v the mean speed of the joints around it in m/s.
+/// How far off a plain way to fill frames is on average: metres = size * s^by_time * (v + 0.1)^by_speed,
+/// where s is the time to the nearest known frame in seconds, v the mean speed of the joints around it in
+/// m/s.
 struct DoubtLaw {
   float size, by_time, by_speed;
   bool since_last = false;  ///< s is the time since the last known frame, where there is one

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kEase_s = 0.15f;    // in which a foot comes to where it stands
 constexpr float kSlow = 0.4f;       // m/s, of a foot that stands, leg 0.8 m
-constexpr float kMostMoved = 0.1f;  // of a foot that stands, share of the leg
+constexpr float kMostMoved = 0.3f;  // of a foot that stands, share of the leg
 
 /// One foot in frames first .. last.
 class HeldFoot {

@@ -7,6 +7,7 @@
 
 #include "retarget/nn/modules/inbetween_net.hpp"
 #include "retarget/training/clip_poses.hpp"
+#include "retarget/training/training_data.hpp"
 
 namespace understudy::training {
 
