@@ -3,6 +3,7 @@
 
 #include <torch/torch.h>
 
+#include <optional>
 #include <vector>
 
 #include "retarget/nn/modules/inbetween_net.hpp"
@@ -28,8 +29,9 @@ class InbetweenData {
   InbetweenBatch batch(int frames, Rng& rng) const;
 
   /// One gap of `gap` frames with `ends` known ones on each side, at every `every`-th frame of all clips.
-  /// `travelling`: only of clips whose pelvis goes at more than 0.6 m/s half of the time.
-  InbetweenBatch gaps(int gap, int ends, int every, bool travelling) const;
+  /// `travelling`: only of clips whose pelvis goes at more than 0.6 m/s half of the time. None where no clip is
+  /// long enough.
+  std::optional<InbetweenBatch> gaps(int gap, int ends, int every, bool travelling) const;
 
  private:
   struct Window {

@@ -33,11 +33,13 @@ class InbetweenTrainer final : public TrainingRun {
 
  private:
   Step learn() override;
-  Figures evaluate() override;
+  Figures evaluate() override { return dev_errors(false); }
   nn::WeightsHeader header() const override;
   void put_own(torch::serialize::OutputArchive& archive) const override { put_random(archive, rng_.state()); }
   void take_own(torch::serialize::InputArchive& archive) override { rng_ = Rng(take_random(archive)); }
 
+  /// Of the dev windows, by the curve alone or by the network.
+  Figures dev_errors(bool of_curve);
   /// Mean error of joints over the frames that are not known, mm.
   double error_mm(const InbetweenBatch& batch, bool of_curve);
 
@@ -60,10 +62,8 @@ InbetweenTrainer::InbetweenTrainer(const nn::MotionSpaceTrainOptions& options)
   own(net_.ptr(), average_.ptr(),
       std::make_unique<torch::optim::AdamW>(net_->parameters(),
                                             torch::optim::AdamWOptions().weight_decay(0.01)));
-  for (const int gap : {5, 15, 30, 60})
-    log::info(detail::join("motion-space: Hermite, gap ", gap, ": ",
-                           error_mm(dev_.gaps(gap, kEnds, kEvery, false), true), " mm; of those who travel ",
-                           error_mm(dev_.gaps(gap, 5, 6, true), true)));
+  for (const Figure& figure : dev_errors(true))
+    log::info(detail::join("motion-space: the curve alone, ", figure.name, " ", figure.value));
 }
 
 TrainingRun::Step InbetweenTrainer::learn() {
@@ -91,13 +91,14 @@ double InbetweenTrainer::error_mm(const InbetweenBatch& batch, bool of_curve) {
   return 1000 * sum.item<double>() / count.item<double>();
 }
 
-Figures InbetweenTrainer::evaluate() {
+Figures InbetweenTrainer::dev_errors(bool of_curve) {
   Figures figures;
-  for (const int gap : {5, 15, 30, 60})
-    figures.push_back(
-        {detail::join("dev_", gap, "_mm"), error_mm(dev_.gaps(gap, kEnds, kEvery, false), false)});
-  for (const int gap : {15, 30, 60})
-    figures.push_back({detail::join("dev_travel_", gap, "_mm"), error_mm(dev_.gaps(gap, 5, 6, true), false)});
+  const auto add = [&](const char* name, int gap, int ends, int every, bool travelling) {
+    if (const auto windows = dev_.gaps(gap, ends, every, travelling))
+      figures.push_back({detail::join(name, gap, "_mm"), error_mm(*windows, of_curve)});
+  };
+  for (const int gap : {5, 15, 30, 60}) add("dev_", gap, kEnds, kEvery, false);
+  for (const int gap : {15, 30, 60}) add("dev_travel_", gap, 5, 6, true);
   return figures;
 }
 
