@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/file_preview.hpp"
 #include "app/cli/headless.hpp"
 #include "app/cli/options.hpp"
 #include "app/run/exports.hpp"
@@ -23,7 +24,7 @@ struct FillOptions {
   SourceOptions source;
   TargetOptions target;
   MethodOptions how;
-  std::string out, report;
+  std::string out, report, preview;
   std::vector<std::string> ranges;
   bool bad = false;
   float learned = 1;
@@ -86,7 +87,9 @@ int fill(FillOptions options) {
   const ExportFormat& format = export_format("", options.out);
   check_not_read(options.out, {options.source.path, options.source.motion, options.target.path});
   check_export(options.out, format);
-  check_writable(options.report);
+  US_CHECK(options.preview.empty() || format.is_character, options.preview,
+           ": --preview needs a GLB or glTF file");
+  for (const std::string& path : {options.report, options.preview}) check_writable(path);
   options.bad = options.bad || options.ranges.empty();
   for (const std::string& text : options.ranges) range_of(text);
   const auto studio = headless_studio(options.how.weights);
@@ -108,6 +111,8 @@ int fill(FillOptions options) {
   std::printf("%s %lld bytes, %lld frames\n", options.out.c_str(), static_cast<long long>(cost.bytes),
               static_cast<long long>(cost.frames));
   if (!options.report.empty()) write_json(options.report, report_of(options, session, made));
+  if (!options.preview.empty())
+    write_file_preview(options.preview, options.out, inputs, clip_name(options.target.path));
   return 0;
 }
 
@@ -137,6 +142,7 @@ Action declare_fill(CLI::App& command) {
       ->check(CLI::Range(0.0, 1.0));
   command.add_option("--report", options->report,
                      "which frames were made, and how doubtful they are, as JSON");
+  command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");
   return [options] { return fill(*options); };
 }
 
