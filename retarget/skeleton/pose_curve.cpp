@@ -5,11 +5,13 @@
 
 #include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/smooth_step.hpp"
 
 namespace understudy {
 namespace {
 
 constexpr float kRest_s = 0.15f;  // in which a movement that nothing is known of loses most of its speed
+constexpr float kLongest_s = 4;   // that a movement goes on as it was at the ends
 constexpr float kFullTurn = 2 * kPi;
 
 /// The rotation vector nearest to `near` of those that mean the same rotation.
@@ -98,9 +100,24 @@ class PartCurve {
     const Vec3 end = step(before, after);
     const Vec3 leaving = speed_at(known_before(before), before, end, length);
     const Vec3 coming = speed_coming(before, after, known_after(after), end);
+    if (length > kLongest_s * motion_.fps) return rest_between(before, after, first, last, leaving, coming);
     for (int t = std::max(first, before + 1); t <= std::min(last, after - 1); ++t) {
       const float at = static_cast<float>(t - before) / length;
       set(t, origin, hermite(length * leaving, end, length * coming, at));
+    }
+  }
+
+  /// Comes to rest after the one end, sets out before the other, and goes over slowly between.
+  void rest_between(int before, int after, int first, int last, const Vec3& leaving, const Vec3& coming) {
+    const Pose origin = motion_.poses[before];
+    const Vec3 end = step(before, after);
+    const float slowing = kRest_s * motion_.fps;
+    const auto gone = [slowing](int frames) {
+      return slowing * (1 - std::exp(-static_cast<float>(frames) / slowing));
+    };
+    for (int t = std::max(first, before + 1); t <= std::min(last, after - 1); ++t) {
+      const float over = smooth_step(0, static_cast<float>(after - before), static_cast<float>(t - before));
+      set(t, origin, (1 - over) * gone(t - before) * leaving + over * (end - gone(after - t) * coming));
     }
   }
 

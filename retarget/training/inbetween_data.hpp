@@ -29,8 +29,8 @@ class InbetweenData {
   InbetweenBatch batch(int frames, Rng& rng) const;
 
   /// One gap of `gap` frames with `ends` known ones on each side, at every `every`-th frame of all clips.
-  /// `travelling`: only of clips whose pelvis goes at more than 0.6 m/s half of the time. None where no clip is
-  /// long enough.
+  /// `travelling`: only of clips whose pelvis goes at more than 0.6 m/s half of the time. None where no clip
+  /// is long enough.
   std::optional<InbetweenBatch> gaps(int gap, int ends, int every, bool travelling) const;
 
  private:

@@ -112,6 +112,24 @@ TEST(PoseFill, HoldsAFootThatStandsOnBothSides) {
   }
 }
 
+TEST(PoseFill, ALongGapNeitherSpinsNorRunsAway) {
+  Motion motion = stage().walk;
+  const size_t count = motion.poses.size();
+  for (int i = 0; i < 900; ++i) motion.poses.insert(motion.poses.begin() + 20, motion.poses[20]);
+  for (size_t t = 920; t < motion.poses.size(); ++t) motion.poses[t].root.z() += 1;
+  const Vec3 from = motion.poses[19].root, to = motion.poses[920].root;
+  fill_frames({{20, 919}}, stage().rest, nullptr, motion);
+  EXPECT_EQ(motion.poses.size(), count + 900);
+  for (int t = 20; t < 920; ++t) {
+    EXPECT_LT(geodesic_angle(motion.poses[t - 1].local[LeftHip], motion.poses[t].local[LeftHip]), 0.2f) << t;
+    const float way = (motion.poses[t].root - from).norm();
+    EXPECT_LT(way, (to - from).norm() + 0.3f) << t;
+  }
+  // In the middle it stands nearly still.
+  EXPECT_LT((motion.poses[470].root - motion.poses[469].root).norm() * motion.fps, 0.1f);
+  EXPECT_GT(motion.doubt_m[470], 3 * motion.doubt_m[25]);
+}
+
 TEST(PoseFill, PredictsAtTheEnds) {
   const int count = static_cast<int>(stage().walk.poses.size());
   const Motion on = stage().filled(count - 3, count - 1);
