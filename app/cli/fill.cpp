@@ -62,11 +62,15 @@ void fill_take(const FillOptions& options, Studio& studio) {
     studio.run("edit.fill", {"0", std::to_string(range.first), std::to_string(range.last)});
   }
   bool has_bad = false;
-  for (const KeptFrame& frame : session.takes[0].performed) has_bad = has_bad || frame.flagged;
+  const auto& performed = session.takes[0].performed;
+  for (const KeptFrame& frame : performed) has_bad = has_bad || frame.flagged;
   if (options.bad && has_bad) studio.run("edit.fill", {"0", "bad"});
   if (options.bad && !has_bad) log::info(options.source.path + ": all of its frames could be used");
   for (int i = 0; i < ssize(session.document.takes[0].pose_edits.fill); ++i)
     studio.run("edit.fill_learned", {"0", std::to_string(i), std::to_string(options.learned)});
+  for (const FillEdit& one : session.document.takes[0].pose_edits.fill)
+    if (const std::string guess = guess_of(one, ssize(performed), session.source.fps); !guess.empty())
+      log::warn(options.source.path + ": " + guess);
   studio.wait_idle();
   US_CHECK(session.errors.empty(), session.errors.front().text);
 }
@@ -92,6 +96,8 @@ int fill(FillOptions options) {
   for (const std::string& path : {options.report, options.preview}) check_writable(path);
   options.bad = options.bad || options.ranges.empty();
   for (const std::string& text : options.ranges) range_of(text);
+  if (options.learned > 0)
+    nn::load_motion_space(nn::weights_folder(network_options(options.how)));  // or throws
   const auto studio = headless_studio(options.how.weights);
   const Session& session = studio->session();
   SavedDocument asked;

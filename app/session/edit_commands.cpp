@@ -401,19 +401,6 @@ std::vector<FillEdit> wanted_fills(const Session& session, size_t take) {
   return runs;
 }
 
-/// Says of frames that lie far from what is known, or on one side of it alone, how little is behind them.
-void tell_guess(Call& c, const FillEdit& fill, int last) {
-  constexpr double kFar_s = 3;  // that the motion space looks over
-  const std::string frames = "Frames " + std::to_string(fill.first) + " to " + std::to_string(fill.last);
-  const double seconds = (fill.last - fill.first + 1) / c.session.source.fps;
-  if (fill.first == 0 || fill.last >= last)
-    c.studio.notify(frames + " are a prediction: there is nothing known " +
-                    (fill.first == 0 ? "before" : "after") + " them");
-  else if (seconds > kFar_s)
-    c.studio.notify(frames +
-                    printed(" are %.1f seconds: what happened in the middle of them is not known", seconds));
-}
-
 void fill(Call& c) {
   const size_t take = c.arguments.empty() ? static_cast<size_t>(c.session.selected_take) : c.take_number();
   US_CHECK(take < c.document.takes.size(), "add a target first");
@@ -426,7 +413,9 @@ void fill(Call& c) {
   const int last = static_cast<int>(c.session.takes[take].performed.size()) - 1;
   for (const FillEdit& one : fills)
     US_CHECK(one.first > 0 || one.last < last, "all frames would be filled: none is left that is known");
-  for (const FillEdit& one : wanted) tell_guess(c, one, last);
+  for (const FillEdit& one : wanted)
+    if (const std::string guess = guess_of(one, last + 1, c.session.source.fps); !guess.empty())
+      c.studio.notify(guess);
   c.label = wanted.size() == 1
                 ? "Fill frames " + std::to_string(wanted[0].first) + " to " + std::to_string(wanted[0].last)
                 : "Fill all unusable frames";

@@ -4,6 +4,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/skeleton/curve_doubt.hpp"
 #include "retarget/skeleton/foot_hold.hpp"
 
@@ -58,6 +59,16 @@ void put_learned(const FillEdit& fill, const Completion& made, Motion& motion) {
 
 bool need_space(const std::vector<FillEdit>& fills) {
   return std::any_of(fills.begin(), fills.end(), [](const FillEdit& fill) { return fill.learned > 0; });
+}
+
+std::string guess_of(const FillEdit& fill, int frames, double fps) {
+  constexpr double kFar_s = 3;  // about as long as what the motion space looks over
+  const std::string which = "frames " + std::to_string(fill.first) + " to " + std::to_string(fill.last);
+  const double seconds = (fill.last - fill.first + 1) / fps;
+  if (fill.first <= 0) return which + " are a guess: nothing before them is known";
+  if (fill.last >= frames - 1) return which + " are a guess: nothing after them is known";
+  if (seconds <= kFar_s) return "";
+  return which + printed(" are %.1f seconds: what happens in the middle of them is a guess", seconds);
 }
 
 void fill_frames(const std::vector<FillEdit>& fills, const Joints& rest, MotionSpace* space, Motion& motion) {

@@ -2,6 +2,7 @@
 // space makes of it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "retarget/base/fields.hpp"
@@ -23,6 +24,10 @@ FieldsOf<S, FillEdit> fields(V& visit, S& fill) {
 
 /// Whether the motion space is asked for one of them.
 bool need_space(const std::vector<FillEdit>& fills);
+
+/// One sentence where little is behind what fills them: they are at an end of the motion, of `frames` frames,
+/// or far from what is known; else empty.
+std::string guess_of(const FillEdit& fill, int frames, double fps);
 
 /// Makes these frames anew, the others stay as they are to the bit. The smooth curve: each joint's rotation
 /// and the root follow the cubic Hermite curve through the frames beside, with their velocities

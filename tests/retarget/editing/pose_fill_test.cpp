@@ -130,6 +130,52 @@ TEST(PoseFill, ALongGapNeitherSpinsNorRunsAway) {
   EXPECT_GT(motion.doubt_m[470], 3 * motion.doubt_m[25]);
 }
 
+TEST(PoseFill, SaysWhatIsAGuess) {
+  EXPECT_EQ(guess_of({10, 20}, 100, 30), "");
+  EXPECT_EQ(guess_of({0, 20}, 100, 30), "frames 0 to 20 are a guess: nothing before them is known");
+  EXPECT_EQ(guess_of({90, 99}, 100, 30), "frames 90 to 99 are a guess: nothing after them is known");
+  EXPECT_EQ(guess_of({10, 909}, 1000, 30),
+            "frames 10 to 909 are 30.0 seconds: what happens in the middle of them is a guess");
+}
+
+/// Answers with everybody's left arm raised.
+class RaisedArm final : public MotionSpace {
+ public:
+  Completion complete(const KnownMotion& question) override {
+    Completion made{question.motion, std::vector<float>(question.known.size())};
+    for (size_t t = 0; t < question.known.size(); ++t) {
+      if (question.known[t] == all_parts(true)) continue;
+      made.motion.poses[t] = Pose();
+      made.motion.poses[t].local[LeftShoulder] = rotation_from_axis_angle({0, 0, 1});
+      made.doubt_m[t] = 0.5f;
+    }
+    return made;
+  }
+  std::string name() const override { return "raised arm"; }
+};
+
+TEST(PoseFill, TakesAsMuchOfTheLearnedAnswerAsIsWanted) {
+  RaisedArm space;
+  const auto filled = [&](float learned) {
+    Motion motion = stage().walk;
+    fill_frames({{20, 29, learned}, {35, 37, 0}}, stage().rest, &space, motion);
+    return motion;
+  };
+  const Motion plain = filled(0), half = filled(0.5f), whole = filled(1);
+  const Pose raised = Pose();
+  for (int t = 0; t < static_cast<int>(plain.poses.size()); ++t) {
+    const bool learns = t >= 20 && t <= 29;
+    EXPECT_EQ(same(plain.poses[t], whole.poses[t]), !learns) << t;
+    EXPECT_EQ(plain.doubt_m[t] > 0, learns || (t >= 35 && t <= 37)) << t;
+    if (!learns) continue;
+    EXPECT_EQ(whole.poses[t].root, raised.root);
+    EXPECT_EQ(whole.doubt_m[t], 0.5f);
+    EXPECT_NEAR((half.poses[t].root - plain.poses[t].root).norm(), 0.5f * plain.poses[t].root.norm(), 1e-4f);
+    EXPECT_NEAR(geodesic_angle(half.poses[t].local[LeftKnee], plain.poses[t].local[LeftKnee]),
+                0.5f * geodesic_angle(raised.local[LeftKnee], plain.poses[t].local[LeftKnee]), 1e-3f);
+  }
+}
+
 TEST(PoseFill, PredictsAtTheEnds) {
   const int count = static_cast<int>(stage().walk.poses.size());
   const Motion on = stage().filled(count - 3, count - 1);
