@@ -26,7 +26,10 @@ struct Studio::Background {
     Neighbours neighbours;
     bool asked_about_paint = false;
     bool measured = false;
-    int64_t measuring = 0;  // the job; 0: none
+    int64_t measuring = 0;           // the job; 0: none
+    std::string fill_of;             // the source key of which it was looked for frames to fill
+    std::vector<FillEdit> unusable;  // those found
+    int64_t fill_notice = 0;         // that offers to fill them; 0: none
   };
 
   /// What was there before something was opened, until that has been read.

@@ -370,18 +370,6 @@ void add_rearrangement(Commands& commands) {
       move_edit);
 }
 
-/// Runs of frames that could not be used, of who is performed by a take.
-std::vector<FillEdit> unusable_runs(const Session& session, size_t take) {
-  const auto& frames = performed_by(session, take);
-  std::vector<FillEdit> runs;
-  for (int t = 0; t < ssize(frames); ++t) {
-    if (!frames[t].flagged) continue;
-    if (runs.empty() || runs.back().last + 1 < t) runs.push_back({t, t});
-    runs.back().last = t;
-  }
-  return runs;
-}
-
 std::vector<FillEdit> all_unusable(const Session& session, size_t take) {
   std::vector<FillEdit> runs = unusable_runs(session, take);
   US_CHECK(!runs.empty(), "all frames could be used: set the loop marks around those that are to be filled");

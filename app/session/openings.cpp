@@ -1,5 +1,6 @@
 // What was opened and could not be read is taken back; all else stays as it is. What is read but may be no
-// person is asked about; scans in which nobody is found are offered to be cleaned up.
+// person is asked about; scans in which nobody is found are offered to be cleaned up, frames that could not be used
+// to be filled.
 #include <algorithm>
 
 #include "app/session/background.hpp"
@@ -104,6 +105,87 @@ void Studio::offer_clean_up(const std::string& doubt) {
                                          : "No person recognised: a floor or things may hide them";
   log::warn(session_.document.source.path + ": " + (doubt.empty() ? sentence : doubt));
   notify(sentence, true, lost && !cleaned ? Offer{"Clean up", "edit.clean_up", true} : Offer{});
+}
+
+namespace {
+
+/// Whether nothing is to be done about a frame any more: it is filled, or neither played nor exported.
+bool is_settled(const PoseEdits& edits, int frame) {
+  const auto in = [frame](const auto& range) { return range.first <= frame && frame <= range.last; };
+  return std::any_of(edits.fill.begin(), edits.fill.end(), in) || edits.skip.count(frame) > 0 ||
+         (edits.trim && !in(*edits.trim));
+}
+
+/// The runs in which something is still to be done.
+std::vector<FillEdit> unsettled(const PoseEdits& edits, std::vector<FillEdit> runs) {
+  const auto is_done = [&](const FillEdit& run) {
+    for (int t = run.first; t <= run.last; ++t)
+      if (!is_settled(edits, t)) return false;
+    return true;
+  };
+  runs.erase(std::remove_if(runs.begin(), runs.end(), is_done), runs.end());
+  return runs;
+}
+
+std::string fill_command(size_t take) {
+  return "edit.fill " + std::to_string(take) + " bad";
+}
+
+/// "7 frames (41 to 47) could not be used and repeat the last pose".
+std::string unusable_in_words(const std::vector<FillEdit>& runs) {
+  int count = 0;
+  for (const FillEdit& run : runs) count += run.last - run.first + 1;
+  const FillEdit& only = runs[0];
+  std::string text = count == 1 ? "1 frame" : std::to_string(count) + " frames";
+  if (runs.size() > 1)
+    text += " in " + std::to_string(runs.size()) + " places";
+  else
+    text += " (" + std::to_string(only.first) +
+            (count > 1 ? " to " + std::to_string(only.last) : std::string()) + ")";
+  const std::string poses = count == 1 ? " and repeats the last pose" : " and repeat the last pose";
+  return text + " could not be used" + (only.first > 0 ? poses : "");
+}
+
+}  // namespace
+
+void Studio::withdraw_notice(int64_t id) {
+  auto& notices = session_.notices;
+  notices.erase(
+      std::remove_if(notices.begin(), notices.end(), [id](const Notice& one) { return one.id == id; }),
+      notices.end());
+}
+
+/// Once all frames of a take are made, once for each source: not where they are filled or left out already.
+void Studio::offer_fill(size_t k) {
+  Background& b = *background_;
+  Background::Applied& applied = b.applied[b.take_ids[k]];
+  const Take& take = session_.document.takes[k];
+  applied.fill_of = b.source_key, applied.fill_notice = 0;
+  applied.unusable = unusable_runs(session_, k);
+  const auto runs = unsettled(take.pose_edits, applied.unusable);
+  const bool none_is_known =
+      runs.size() == 1 && runs[0].first == 0 && runs[0].last + 1 == ssize(performed_by(session_, k));
+  if (runs.empty() || none_is_known) return;
+  const std::string whose = session_.takes.size() > 1 ? take.name + ": " : "";
+  notify(whose + unusable_in_words(runs), true, Offer{"Fill", fill_command(k), true});
+  applied.fill_notice = session_.notices_made;
+}
+
+void Studio::offer_fills() {
+  Background& b = *background_;
+  for (size_t k = 0; k < session_.takes.size(); ++k) {
+    Background::Applied& applied = b.applied[b.take_ids[k]];
+    const auto& performed = session_.takes[k].performed;
+    const bool made = !session_.working && !session_.paused && !performed.empty() &&
+                      performed.size() == performed_by(session_, k).size();
+    if (made && applied.fill_of != b.source_key) offer_fill(k);
+    const auto notice = std::find_if(session_.notices.begin(), session_.notices.end(),
+                                     [&applied](const Notice& one) { return one.id == applied.fill_notice; });
+    if (notice == session_.notices.end()) continue;
+    notice->offer.command = fill_command(k);  // takes before it may have gone
+    if (unsettled(session_.document.takes[k].pose_edits, applied.unusable).empty())
+      session_.notices.erase(notice);
+  }
 }
 
 /// One after the other.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
 
@@ -192,6 +193,17 @@ std::vector<BadFrame> bad_frames(const Session& session) {
     if (!why.empty()) bad.push_back({static_cast<int>(i), why});
   }
   return bad;
+}
+
+std::vector<FillEdit> unusable_runs(const Session& session, size_t take) {
+  const auto& frames = performed_by(session, take);
+  std::vector<FillEdit> runs;
+  for (int t = 0; t < ssize(frames); ++t) {
+    if (!frames[t].flagged) continue;
+    if (runs.empty() || runs.back().last + 1 < t) runs.push_back({t, t});
+    runs.back().last = t;
+  }
+  return runs;
 }
 
 }  // namespace understudy::app

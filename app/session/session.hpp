@@ -237,5 +237,7 @@ struct BadFrame {
   std::string why;
 };
 std::vector<BadFrame> bad_frames(const Session& session);
+/// Runs of frames that could not be used, of who is performed by a take, in order of time.
+std::vector<FillEdit> unusable_runs(const Session& session, size_t take);
 
 }  // namespace understudy::app

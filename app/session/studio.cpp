@@ -237,6 +237,7 @@ void Studio::forget_removed() {
     const bool stays = std::find(b.take_ids.begin(), b.take_ids.end(), id) != b.take_ids.end();
     if (!stays && applied->second.measuring != 0) jobs_.cancel(applied->second.measuring);
     if (!stays) b.dirty.erase(id), b.opened_targets.erase(id), b.doubted.erase(id);
+    if (!stays) withdraw_notice(applied->second.fill_notice);
     any = any || !stays;
     applied = stays ? std::next(applied) : b.applied.erase(applied);
   }

@@ -100,6 +100,9 @@ class Studio {
   void tell_unseen(size_t k, int first);
   void take_in_people(const SourceFrames& event);
   void offer_clean_up(const std::string& doubt);
+  void offer_fills();
+  void offer_fill(size_t k);
+  void withdraw_notice(int64_t id);
   void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
   void roll_back_source();
   void note_source_read();

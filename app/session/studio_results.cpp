@@ -454,6 +454,7 @@ void Studio::take_in_results() {
   }
   if (!session_.working && !session_.paused && !b.people_before.empty())
     b.people_before.clear(), session_.source.people = b.people_now;
+  offer_fills();
   measure_finished();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 
 namespace understudy::app {
@@ -25,6 +26,16 @@ std::string bound_by_shape(const Session& session) {
       session.takes[k].binding->uncertainty.size() == 0)
     return "none";
   return std::to_string(100 * session.takes[k].binding->uncertainty.mean());
+}
+
+/// Of the selected take, "40-46 60-62".
+std::string fills(const Session& session) {
+  const Take* const take = at_or_null(session.document.takes, session.selected_take);
+  std::string text;
+  if (take != nullptr)
+    for (const FillEdit& fill : take->pose_edits.fill)
+      text += (text.empty() ? "" : " ") + std::to_string(fill.first) + "-" + std::to_string(fill.last);
+  return text;
 }
 
 }  // namespace
@@ -54,6 +65,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"undo_label", undo_label(session)},
       {"redo_label", redo_label(session)},
       {"skeleton_edits", count(session.document.skeleton_edits.size())},
+      {"fills", fills(session)},
       {"layout", kLayoutNames[static_cast<size_t>(session.view.layout)]},
       {"active_pane", std::to_string(session.view.active_pane)},
       {"tool", kToolNames[static_cast<size_t>(session.tool)]},

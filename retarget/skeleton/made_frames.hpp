@@ -25,4 +25,12 @@ inline std::vector<MadeFrames> made_frames(const std::vector<float>& doubt_m) {
   return made;
 }
 
+/// The largest doubt of the frames first..last, both inside, metres; 0 where none of them was made.
+inline float largest_doubt(const std::vector<float>& doubt_m, int first, int last) {
+  float largest = 0;
+  for (int t = std::max(0, first); t <= std::min(last, static_cast<int>(doubt_m.size()) - 1); ++t)
+    largest = std::max(largest, doubt_m[t]);
+  return largest;
+}
+
 }  // namespace understudy

@@ -6,7 +6,6 @@
 #include "app/session/follow.hpp"
 #include "app/session/source_drag.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/formats/scan_source.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/session/studio_fixture.hpp"
 
@@ -70,21 +69,9 @@ TEST_F(StudioTest, EditsOfAFrameAreMovedInTimeAndRemovedTogether) {
   EXPECT_EQ(edits.skip, (std::set<int>{6}));
 }
 
-/// The frames of a sequence as files, but for some.
-void write_folder_without(const std::string& scans, const std::set<int>& missing, const std::string& folder) {
-  fs::create_directories(folder);
-  ScanSource source(scans);
-  for (int t = 0; const auto frame = source.next(); ++t) {
-    if (missing.count(t) > 0) continue;
-    std::ofstream file(folder + "/f" + std::to_string(t) + ".xyz");
-    file << frame->mesh.vertices << '\n';
-  }
-}
-
 TEST_F(StudioTest, AGapIsShownInItsTimeAndFilled) {
-  write_folder_without(path("scan.npz"), {9, 10, 11, 17}, path("gaps"));
   Studio studio(services());
-  studio.run("open", {path("gaps")});
+  studio.run("open", {folder_without({9, 10, 11, 17})});
   studio.run("open", {path("target.obj")});
   studio.wait_idle();
   const auto poses = [&]() -> const std::vector<Pose>& { return studio.session().takes[0].shown.poses; };

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "retarget/formats/npz.hpp"
+#include "retarget/formats/scan_source.hpp"
+#include "retarget/skeleton/curve_doubt.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
 
 namespace understudy::app {
@@ -92,6 +94,14 @@ Points NearestDeformer::offsets(const Pose&) const {
   return Points::Zero(rest_.rows(), 3);
 }
 
+Completion LiftedSpace::complete(const KnownMotion& question) {
+  Completion made{question.motion, curve_doubt(question.known, question.motion, question.rest)};
+  fill_curves(question.known, 0, static_cast<int>(question.known.size()) - 1, made.motion);
+  for (size_t t = 0; t < question.known.size(); ++t)
+    if (question.known[t] != all_parts(true)) made.motion.poses[t].root.y() += kLift_m;
+  return made;
+}
+
 bool same_poses(const Motion& a, const Motion& b) {
   const auto same = [](const Pose& one, const Pose& other) {
     return one.root == other.root && one.local == other.local;
@@ -125,9 +135,21 @@ StudioServices StudioTest::services() {
     if (parts.deformer) networks.deformer = std::make_shared<NearestDeformer>();
     return networks;
   };
+  services.motion_space = [] { return std::make_shared<LiftedSpace>(); };
   services.weights = [] { return std::string("stand-ins:00000000"); };
   services.autosave_folder = path("state");
   return services;
+}
+
+std::string StudioTest::folder_without(const std::set<int>& missing, const std::string& name) {
+  fs::create_directories(path(name));
+  ScanSource source(path("scan.npz"));
+  for (int t = 0; const auto frame = source.next(); ++t) {
+    if (missing.count(t) > 0) continue;
+    std::ofstream file(path(name) + "/f" + std::to_string(t) + ".xyz");
+    file << frame->mesh.vertices << '\n';
+  }
+  return path(name);
 }
 
 void StudioTest::open_both(Studio& studio) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "app/session/studio.hpp"
 
@@ -29,6 +30,15 @@ class NearestDeformer : public Deformer {
   RowMatrix weights_;
 };
 
+/// The smooth curve, but higher where nothing was known.
+class LiftedSpace final : public MotionSpace {
+ public:
+  static constexpr float kLift_m = 0.1f;
+
+  Completion complete(const KnownMotion& question) override;
+  std::string name() const override { return "lifted"; }
+};
+
 /// The same poses to the last bit.
 bool same_poses(const Motion& a, const Motion& b);
 
@@ -44,6 +54,9 @@ class StudioTest : public ::testing::Test {
 
   /// Stand-ins for the networks; the extractor counts in extractions_ how many frames it saw.
   StudioServices services();
+
+  /// A folder with the dance's scans as files, but for some frames.
+  std::string folder_without(const std::set<int>& missing, const std::string& name = "gaps");
 
   /// The dance, performed by the target.
   void open_both(Studio& studio);

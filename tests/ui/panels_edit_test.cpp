@@ -85,13 +85,28 @@ TEST_F(EditPanel, OfTheResult) {
   expect_click("edit.trim_off", {"edit.trim 0 off"});
   expect_click("edit.skip", {"edit.skip 0 20 on"});
   expect_click("edit.fill", {"edit.fill 0"});
-  session.document.takes[0].pose_edits.fill = {{7, 9}};
+  session.document.takes[0].pose_edits.fill = {{7, 9, 0.5f}};
   frame(2);
   expect_click("edit.filled.0", {"playback.frame 7"});
   expect_click("edit.filled.0.remove", {"edit.remove fill 0 0"});
+  expect_drag("edit.fill_learned.0", "edit.fill_learned 0 0 ");
   expect_click("edit.rotation.0", {"playback.frame 12"});
   expect_click("edit.rotation.0.remove", {"edit.remove rotation 0 0"});
   expect_click("edit.poses_clear", {"edit.poses_clear 0"});
+}
+
+TEST_F(EditPanel, ALineOfAFillSaysHowFarItMayBeOff) {
+  session.document.takes[0].pose_edits.fill = {{7, 9}, {12, 12}};
+  const auto words = [&](const std::string& name) {
+    frame(2);
+    const auto said = gui.ui().explanation_at(mark(name).rect.at(0.5f, 0.5f));
+    return said ? said->text : "";
+  };
+  EXPECT_EQ(words("edit.filled.0"), "Frames 7 to 9 filled. Click: go there") << "not made yet";
+  session.takes[0].shown.doubt_m.assign(13, 0.f);
+  session.takes[0].shown.doubt_m[8] = 0.024f, session.takes[0].shown.doubt_m[12] = 0.007f;
+  EXPECT_EQ(words("edit.filled.0"), "Frames 7 to 9 filled, \u00b1 3 cm. Click: go there");
+  EXPECT_EQ(words("edit.filled.1"), "Frame 12 filled, \u00b1 1 cm. Click: go there");
 }
 
 TEST_F(EditPanel, AHandThatWasMovedIsOneEntry) {

@@ -1,4 +1,7 @@
 // Timeline, log, start screen and status line.
+#include <algorithm>
+#include <map>
+
 #include "retarget/base/text.hpp"
 #include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/bars.hpp"
@@ -212,6 +215,61 @@ TEST_F(Timeline, DeleteRemovesTheEditThatWasClickedAndNothingElse) {
   queue.clear();
   key(render::Key::Delete);
   EXPECT_EQ(asked(), Lines{});
+}
+
+/// How high violet is drawn at a place of the track, pixels.
+float violet_at(const ImDrawData& drawn, const ImU32 violet, float x) {
+  float low = 1e9f, high = -1e9f;
+  for (int n = 0; n < drawn.CmdListsCount; ++n) {
+    const auto& list = *drawn.CmdLists[n];
+    for (int i = 0; i + 5 < list.IdxBuffer.Size; i += 3) {
+      const ImDrawVert* corner[3];
+      for (int c = 0; c < 3; ++c) corner[c] = &list.VtxBuffer[list.IdxBuffer[i + c]];
+      if (corner[0]->col != violet) continue;
+      const auto [left, right] = std::minmax({corner[0]->pos.x, corner[1]->pos.x, corner[2]->pos.x});
+      if (x < left || x > right) continue;
+      for (const ImDrawVert* one : corner) low = std::min(low, one->pos.y), high = std::max(high, one->pos.y);
+    }
+  }
+  return std::max(0.f, high - low);
+}
+
+TEST_F(Timeline, AFillIsAsHighAsItsDoubtFrameByFrame) {
+  session.document.takes[0].pose_edits.fill = {{30, 33}};
+  std::vector<float>& doubt_m = session.takes[0].shown.doubt_m;
+  doubt_m.assign(session.takes[0].shown.poses.size(), 0.f);
+  doubt_m[31] = 0.05f, doubt_m[32] = 0.3f, doubt_m[33] = 0.15f;
+  const ImU32 violet = color(gui.ui().theme().series[4]);
+  const ImDrawData& drawn = frame(2);
+  const Rect bar = mark("timeline.track.made.0").rect, track = mark("timeline.track").rect;
+  const auto high = [&](float at) { return violet_at(drawn, violet, track.at(at / 59, 0).x); };
+  EXPECT_EQ(high(30), 0) << "known";
+  EXPECT_NEAR(high(31), bar.height() / 3, 1) << "but for parts of a pixel";
+  EXPECT_NEAR(high(32), bar.height(), 0.5f) << "never higher";
+  EXPECT_NEAR(high(33), bar.height(), 0.5f) << "15 cm";
+  EXPECT_EQ(high(35), 0) << "beside it";
+  const float ten = frames_wide(10);
+  EXPECT_EQ(dragged("made.0", 0.5f, ten), Lines{"edit.move fill 0 0 40"});
+  EXPECT_EQ(dragged("made.0", 0.99f, ten), Lines{"edit.move fill 0 0 30 43"});
+}
+
+TEST_F(Timeline, MissingFramesAreOneRun) {
+  for (int t = 24; t <= 26; ++t) flag_frame(t, printed("dance: frame %d is missing", 100 + t));
+  ++session.source.generation;
+  frame(2);
+  EXPECT_NEAR(mark("timeline.track.fill.24").rect.width(), frames_wide(3), 1);
+  EXPECT_FALSE(shown("timeline.track.fill.25"));
+}
+
+TEST_F(Timeline, AFillSaysItsFramesAndItsLargestDoubt) {
+  session.document.takes[0].pose_edits.fill = {{30, 33}, {40, 40}};
+  std::vector<float>& doubt_m = session.takes[0].shown.doubt_m;
+  doubt_m.assign(41, 0.f);
+  doubt_m[31] = 0.021f, doubt_m[32] = 0.012f;
+  std::map<std::string, std::string> words;
+  for (const EditMark& edit : edit_marks(session, {})) words[edit.mark.name] = edit.mark.words;
+  EXPECT_EQ(words["made.0"], "Filled: frames 30 to 33, \u00b1 3 cm");
+  EXPECT_EQ(words["made.1"], "Filled: frame 40") << "not made yet";
 }
 
 TEST_F(Timeline, TheEditedJointsChannelIsDrawnWithItsKeys) {

@@ -93,6 +93,15 @@ TEST_F(SceneTest, TwoMethodsOnOneTargetAreToldApartByALineOfTheirOwn) {
   EXPECT_EQ(pane_method(session, panes_of(session)[0]), "");
 }
 
+TEST_F(SceneTest, AFrameThatWasMadeSaysSoAndHowFarItMayBeOff) {
+  session.takes[0].shown.doubt_m.assign(session.takes[0].shown.poses.size(), 0.f);
+  session.takes[0].shown.doubt_m[3] = 0.021f;
+  EXPECT_EQ(pane_made(session, pane_of(1), 3), "filled, \u00b1 3 cm");
+  EXPECT_EQ(pane_made(session, pane_of(1), 2), "") << "captured";
+  EXPECT_EQ(pane_made(session, pane_of(0), 3), "") << "the source is as it was captured";
+  EXPECT_EQ(pane_made(session, pane_of(1), 4000), "");
+}
+
 /// Where a picture's points are in the middle.
 Vec3 middle_of(const Points& points) {
   return points.colwise().mean().transpose();

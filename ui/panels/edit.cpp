@@ -13,6 +13,7 @@
 
 #include "retarget/base/text.hpp"
 #include "retarget/editing/limb_move.hpp"
+#include "retarget/skeleton/made_frames.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
@@ -302,24 +303,35 @@ void draw_trim(const app::Session& session, PanelContext& context, const PoseEdi
              edits.skip.count(frame) > 0);
 }
 
-void draw_fill(PanelContext& context, const FillEdit& fill, const std::string& k, const std::string& i) {
-  edit_line(context, "edit.filled." + i, printed("Frames %d to %d filled", fill.first, fill.last), fill.first,
-            {"fill", k, i});
+/// "Frames 41 to 47 filled, ± 3 cm".
+std::string describe(const FillEdit& fill, float doubt_m) {
+  const std::string frames = fill.first == fill.last ? printed("Frame %d", fill.first)
+                                                     : printed("Frames %d to %d", fill.first, fill.last);
+  return frames + " filled" + (doubt_m > 0 ? ", " + doubt_text(doubt_m) : "");
+}
+
+void draw_fill(const app::Session& session, PanelContext& context, size_t i) {
+  const FillEdit& fill = selected_take(session)->pose_edits.fill[i];
+  const std::vector<float>& doubt_m = selected_state(session)->shown.doubt_m;
+  const std::string k = std::to_string(session.selected_take), number = std::to_string(i);
+  edit_line(context, "edit.filled." + number, describe(fill, largest_doubt(doubt_m, fill.first, fill.last)),
+            fill.first, {"fill", k, number});
   ask_number(context,
-             {"edit.fill_learned." + i, "Plain - learned",
+             {"edit.fill_learned." + number, "Plain - learned",
               "0: the smooth curve through the frames beside; 1: what the motion space has learned of people",
-              "edit.fill_learned " + k + " " + i},
+              "edit.fill_learned " + k + " " + number},
              fill.learned, {0, 1, 0.01f, "%.2f", 1, true});
 }
 
-void draw_fills(PanelContext& context, const std::vector<FillEdit>& fills, const std::string& k) {
+void draw_fills(const app::Session& session, PanelContext& context) {
   ButtonOptions options;
   options.width = -1, options.shortcut = keys_of(context.commands, "edit.fill");
   options.tooltip =
       "Makes frames anew from those around them: between the loop marks, else the unusable frames here, else "
       "all unusable ones";
-  if (button(context.ui, "edit.fill", "Fill frames", options)) context.ask("edit.fill", {k});
-  for (size_t i = 0; i < fills.size(); ++i) draw_fill(context, fills[i], k, std::to_string(i));
+  if (button(context.ui, "edit.fill", "Fill frames", options))
+    context.ask("edit.fill", {std::to_string(session.selected_take)});
+  for (size_t i = 0; i < selected_take(session)->pose_edits.fill.size(); ++i) draw_fill(session, context, i);
 }
 
 struct ListedEdit {
@@ -367,7 +379,7 @@ void draw_result(const app::Session& session, PanelContext& context) {
   draw_amounts(edits, context, k);
   draw_cost(selected_state(session), ui);
   draw_trim(session, context, edits, k);
-  draw_fills(context, edits.fill, k);
+  draw_fills(session, context);
   const std::vector<ListedEdit> listed = listed_rotations(edits.rotate, k);
   for (size_t i = listed.size() > 50 ? listed.size() - 50 : 0; i < listed.size(); ++i)
     edit_line(context, "edit.rotation." + std::to_string(listed[i].first), listed[i].words, listed[i].frame,

@@ -5,6 +5,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/editing/limb_move.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/skeleton/made_frames.hpp"
 #include "ui/panels/timeline.hpp"
 
 namespace understudy::ui {
@@ -84,13 +85,33 @@ void add_source_edits(std::vector<EditMark>& all, const app::Session& session) {
   add_diamonds(all, drags, {"drags"}, 0);
 }
 
-void add_fills(std::vector<EditMark>& all, const std::vector<FillEdit>& fills, const std::string& take) {
+/// Of each frame of a fill the part of the row that its doubt takes: all of it from 15 cm on.
+std::vector<float> doubt_heights(const FillEdit& fill, const std::vector<float>& doubt_m) {
+  constexpr float kFull_m = 0.15f;
+  std::vector<float> heights;
+  for (int t = fill.first; t <= fill.last; ++t) {
+    const float* doubt = at_or_null(doubt_m, t);
+    heights.push_back(doubt != nullptr ? std::clamp(*doubt / kFull_m, 0.f, 1.f) : 0);
+  }
+  return heights;
+}
+
+void add_fills(std::vector<EditMark>& all, const app::Session& session, const std::string& take) {
+  const std::vector<FillEdit>& fills = selected_take(session)->pose_edits.fill;
+  const std::vector<float>& doubt_m = selected_state(session)->shown.doubt_m;
   for (size_t i = 0; i < fills.size(); ++i) {
-    const std::string number = std::to_string(i);
-    all.push_back({{"made." + number, "Filled: " + frames_text(fills[i].first, fills[i].last), fills[i].first,
-                    fills[i].last, false, 0, 1, kViolet},
-                   {"fill", take, number},
-                   "edit.remove fill " + take + " " + number});
+    const FillEdit& fill = fills[i];
+    const std::string number = std::to_string(i),
+                      doubt = doubt_text(largest_doubt(doubt_m, fill.first, fill.last));
+    EditMark edit;
+    edit.mark.name = "made." + number;
+    edit.mark.words = "Filled: " + frames_text(fill.first, fill.last) + (doubt.empty() ? "" : ", " + doubt);
+    edit.mark.first = fill.first, edit.mark.last = fill.last;
+    edit.mark.row = 1, edit.mark.color = kViolet;
+    edit.mark.heights = doubt_heights(fill, doubt_m);
+    edit.move = {"fill", take, number};
+    edit.remove = "edit.remove fill " + take + " " + number;
+    all.push_back(std::move(edit));
   }
 }
 
@@ -147,7 +168,7 @@ std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<
   const app::Take* take = selected_take(session);
   if (take == nullptr) return all;
   const std::string k = std::to_string(session.selected_take);
-  add_fills(all, take->pose_edits.fill, k);
+  add_fills(all, session, k);
   add_skips(all, take->pose_edits.skip, k);
   KeyFrames rotations;
   for (const RotateEdit& edit : take->pose_edits.rotate)

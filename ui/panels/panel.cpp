@@ -58,6 +58,10 @@ std::string figure(double value, const std::string& unit) {
   return short_number(value) + (unit.empty() ? "" : " " + unit);
 }
 
+std::string doubt_text(float doubt_m) {
+  return doubt_m > 0 ? printed("\u00b1 %.0f cm", std::ceil(100 * doubt_m)) : "";
+}
+
 const app::Take* selected_take(const app::Session& session) {
   return at_or_null(session.document.takes, session.selected_take);
 }

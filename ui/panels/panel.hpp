@@ -45,6 +45,8 @@ std::string joint_name(int joint);
 std::string time_left(double seconds);
 /// With few digits and its unit: "12.4 mm".
 std::string figure(double value, const std::string& unit);
+/// How far what was made is expected to be off: "± 3 cm", rounded up; "" for 0 metres.
+std::string doubt_text(float doubt_m);
 
 /// The selected take; null when there is none.
 const app::Take* selected_take(const app::Session& session);

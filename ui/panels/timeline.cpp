@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/text.hpp"
 #include "ui/panels/bindings.hpp"
 #include "ui/panels/panels.hpp"
 #include "ui/panels/rows.hpp"
@@ -193,6 +194,11 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   if (answer.loop->last != range.last) context.ask("playback.out", {std::to_string(answer.loop->last)});
 }
 
+/// Why a run of frames is bad: of missing ones each has its own words.
+std::string without_number(const std::string& why) {
+  return ends_with(why, " is missing") ? "missing" : why;
+}
+
 }  // namespace
 
 void TimelineState::follow(const app::Session& session) {
@@ -216,10 +222,11 @@ void TimelineState::follow(const app::Session& session) {
   for (const app::BadFrame& frame : bad) {
     bad_numbers.push_back(frame.frame);
     if (!source.frames[frame.frame].flagged) continue;
-    if (!fills.empty() && fills.back().last + 1 == frame.frame && fills.back().why == frame.why)
+    const std::string why = without_number(frame.why);
+    if (!fills.empty() && fills.back().last + 1 == frame.frame && fills.back().why == why)
       fills.back().last = frame.frame;
     else
-      fills.push_back({frame.frame, frame.frame, frame.why});
+      fills.push_back({frame.frame, frame.frame, why});
   }
 }
 

@@ -117,6 +117,12 @@ std::string pane_method(const Session& session, const PaneContent& pane) {
   return take == nullptr ? "" : method_words(take->method);
 }
 
+std::string pane_made(const Session& session, const PaneContent& pane, int frame) {
+  const app::TakeState* const take = pane.source ? nullptr : first_take(session, pane);
+  const float* const doubt_m = take == nullptr ? nullptr : at_or_null(take->shown.doubt_m, frame);
+  return doubt_m == nullptr || *doubt_m <= 0 ? "" : "filled, " + doubt_text(*doubt_m);
+}
+
 std::string pane_hint(const Session& session, const PaneContent& pane) {
   if (pane.source && session.document.source.path.empty()) return "Drop a scan folder or a motion here";
   if (!pane.source && first_take(session, pane) == nullptr) return "Drop a character here";

@@ -74,13 +74,6 @@ void draw_cube_of(Ui& ui, const Pane& pane) {
             pane.cube_face);
 }
 
-/// Of a frame that was made and not captured, metres; 0 where it was captured.
-float made_doubt(const Session& session, const PaneContent& content, int frame) {
-  if (content.source || content.takes.empty()) return 0;
-  const float* doubt_m = at_or_null(session.takes[content.takes[0]].shown.doubt_m, frame);
-  return doubt_m != nullptr ? *doubt_m : 0;
-}
-
 }  // namespace
 
 void Views::forget() {
@@ -412,9 +405,9 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
     if (!legend_beside_ || pane.made.legend.categories.empty()) overlay.legend = pane.made.legend;
   }
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
-  const float doubt_m = rest ? 0 : made_doubt(session, pane.content, frame);
-  if (doubt_m > 0) overlay.subtitle += printed(" \u00b7 filled, \u00b1 %.0f cm", std::ceil(100 * doubt_m));
-  if (seen != nullptr && seen->flagged && doubt_m == 0) overlay.warning = seen->reason;
+  const std::string made = rest ? "" : pane_made(session, pane.content, frame);
+  if (!made.empty()) overlay.subtitle += " \u00b7 " + made;
+  if (seen != nullptr && seen->flagged && made.empty()) overlay.warning = seen->reason;
   const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
   const int person = person_of_tool(session, pane.content);
   const PaneView view = tool_view(session, pane);

@@ -208,6 +208,32 @@ LoopRange kept_now(const Track& t) {
   return is_of_trim(t.state.grip) ? carried(t, *t.data.kept) : *t.data.kept;
 }
 
+/// Both sides of a line, to a part of a pixel.
+void draw_about(Track& t, const Rect& line, float half, const ImVec4& ink) {
+  const float y = std::round(line.at(0, 0.5f).y), whole = std::floor(half), rest = half - whole;
+  const auto rows = [&](float from, float to, float strength) {
+    if (to > from && strength > 0)
+      t.list.AddRectFilled({line.min.x, y + from}, {line.max.x, y + to}, color(ink, strength));
+  };
+  rows(-whole, whole, 1);
+  rows(-whole - 1, -whole, rest);
+  rows(whole, whole + 1, rest);
+}
+
+void draw_bar(Track& t, const TrackMark& mark, const LoopRange& frames, const Rect& place) {
+  const ImVec4& ink = t.ui.theme().series[mark.color];
+  const bool whole = mark.heights.empty();
+  const float strength = mark.fixed ? 0.5f : whole ? 1.f : 0.3f;
+  t.list.AddRectFilled(place.min, place.max, color(ink, strength), t.ui.px(2));
+  for (size_t i = 0; i < mark.heights.size(); ++i) {
+    const int frame = frames.first + static_cast<int>(i);
+    if (frame > frames.last || mark.heights[i] <= 0) continue;
+    const Rect line{{std::max(place.min.x, t.axis.x(frame - 0.5)), place.min.y},
+                    {std::min(place.max.x, t.axis.x(frame + 0.5)), place.max.y}};
+    draw_about(t, line, std::max(t.ui.px(0.5f), 0.5f * mark.heights[i] * place.height()), ink);
+  }
+}
+
 void draw_marks(Track& t, const std::string& name) {
   const int chosen = chosen_mark(t);
   for (size_t i = 0; i < t.data.marks.size(); ++i) {
@@ -216,7 +242,6 @@ void draw_marks(Track& t, const std::string& name) {
     const LoopRange frames = frames_of(t, mark, lit);
     const Rect place = place_of(t, mark, frames);
     const ImVec2 middle = place.at(0.5f, 0.5f);
-    const ImU32 ink = color(t.ui.theme().series[mark.color], mark.fixed ? 0.5f : 1.f);
     const ImU32 rim = color(lit ? t.ui.theme().text : t.ui.theme().backdrop);
     if (mark.diamond) {
       if (mark.reach > 0)
@@ -224,9 +249,9 @@ void draw_marks(Track& t, const std::string& name) {
                        {t.axis.x(frames.first + mark.reach), middle.y},
                        color(t.ui.theme().series[mark.color], 0.5f), t.ui.px(1));
       draw_diamond(t, middle, t.ui.px(lit ? 7 : 6), rim);
-      draw_diamond(t, middle, t.ui.px(4.5f), ink);
+      draw_diamond(t, middle, t.ui.px(4.5f), color(t.ui.theme().series[mark.color]));
     } else {
-      t.list.AddRectFilled(place.min, place.max, ink, t.ui.px(2));
+      draw_bar(t, mark, frames, place);
       if (lit) t.list.AddRect(place.min, place.max, rim, t.ui.px(2), 0, t.ui.px(1.5f));
     }
     t.ui.mark(name + "." + mark.name, place);

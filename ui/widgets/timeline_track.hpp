@@ -27,6 +27,8 @@ struct TrackMark {
   int row = 0;         ///< 0 or 1: the lower one
   int color = 0;       ///< of Theme::series
   bool fixed = false;  ///< nobody's edit: can be clicked, not moved or deleted
+  /// Of each frame of a bar the share of its height that is filled, 0..1; empty: all of it.
+  std::vector<float> heights{};
 };
 
 /// A thin row of bars over the frames in which something holds: nobody's edit, not to be clicked.

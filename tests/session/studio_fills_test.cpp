@@ -1,0 +1,227 @@
+// Frames that could not be used are offered to be filled, and filled: plainly first, then as learned.
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
+#include "tests/session/studio_fixture.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// A motion space that cannot be had before the gate is opened.
+struct Gate {
+  std::mutex mutex;
+  std::condition_variable opened;
+  bool is_open = false, was_asked = false;
+
+  void open() {
+    const std::lock_guard lock(mutex);
+    is_open = true;
+    opened.notify_all();
+  }
+  std::shared_ptr<MotionSpace> wait_for_space() {
+    std::unique_lock lock(mutex);
+    was_asked = true;
+    opened.wait(lock, [this] { return is_open; });
+    return std::make_shared<LiftedSpace>();
+  }
+};
+
+class Fills : public StudioTest {
+ protected:
+  void open_gaps(Studio& studio, const std::set<int>& missing) {
+    studio.run("open", {folder_without(missing)});
+    studio.run("open", {path("target.obj")});
+    studio.wait_idle();
+  }
+
+  static std::vector<Notice> offers(const Studio& studio) {
+    std::vector<Notice> all;
+    for (const Notice& notice : studio.session().notices)
+      if (notice.offer.label == "Fill") all.push_back(notice);
+    return all;
+  }
+  /// As a click on its button does.
+  static void accept(Studio& studio, const Notice& notice) {
+    studio.run("notice.dismiss", {std::to_string(notice.id)});
+    const Arguments words = split_line(notice.offer.command);
+    studio.run(words[0], {words.begin() + 1, words.end()});
+    studio.wait_idle();
+  }
+  static const Motion& shown(const Studio& studio, size_t take = 0) {
+    return studio.session().takes[take].shown;
+  }
+};
+
+bool equal(const Pose& a, const Pose& b) {
+  return a.local == b.local && a.root == b.root;
+}
+
+TEST_F(Fills, AreOfferedOnceForFramesThatCouldNotBeUsed) {
+  Studio studio(services());
+  open_gaps(studio, {9, 10, 11});
+  ASSERT_EQ(offers(studio).size(), 1u);
+  const Notice notice = offers(studio)[0];
+  EXPECT_EQ(notice.text, "3 frames (9 to 11) could not be used and repeat the last pose");
+  EXPECT_EQ(notice.offer.command, "edit.fill 0 bad");
+  studio.tick(600);
+  EXPECT_EQ(offers(studio).size(), 1u) << "it waits";
+  const std::vector<Pose> before = shown(studio).poses;
+  EXPECT_TRUE(equal(before[10], before[8]));
+
+  accept(studio, notice);
+  for (int t = 0; t < kFrames; ++t) {
+    const bool made = t >= 9 && t <= 11;
+    EXPECT_EQ(equal(shown(studio).poses[t], before[t]), !made) << t;
+    EXPECT_EQ(shown(studio).doubt_m[t] > 0, made) << t;
+  }
+  studio.run("edit.undo");
+  studio.run("edit.smooth", {"0", "0.3"});
+  studio.wait_idle();
+  EXPECT_TRUE(offers(studio).empty()) << "it was answered";
+}
+
+TEST_F(Fills, InSeveralPlacesAreCountedAndOneFrameIsNamed) {
+  Studio studio(services());
+  open_gaps(studio, {5, 9, 10, 17});
+  ASSERT_EQ(offers(studio).size(), 1u);
+  EXPECT_EQ(offers(studio)[0].text, "4 frames in 3 places could not be used and repeat the last pose");
+  studio.run("edit.fill", {"0", "9", "10"});
+  studio.wait_idle();
+  EXPECT_EQ(offers(studio).size(), 1u) << "there are others";
+  studio.run("edit.skip", {"0", "5", "on"});
+  studio.run("edit.fill", {"0", "17", "17"});
+  studio.wait_idle();
+  EXPECT_TRUE(offers(studio).empty()) << "nothing is left to be done";
+  studio.run("open", {folder_without({20}, "another")});
+  studio.wait_idle();
+  ASSERT_EQ(offers(studio).size(), 1u) << "another source";
+  EXPECT_EQ(offers(studio)[0].text, "1 frame (20) could not be used and repeats the last pose");
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle();
+  EXPECT_TRUE(offers(studio).empty()) << "it went with its source";
+}
+
+TEST_F(Fills, AreNotOfferedWhereAllFramesWereUsed) {
+  Studio studio(services());
+  open_both(studio);
+  EXPECT_TRUE(offers(studio).empty());
+}
+
+TEST_F(Fills, OfEachTakeAreOfferedAndFollowTheirTake) {
+  Studio studio(services());
+  open_gaps(studio, {9, 10});
+  studio.run("compare.add", {"0", "engine=paper"});
+  studio.wait_idle();
+  ASSERT_EQ(offers(studio).size(), 2u);
+  EXPECT_EQ(offers(studio)[1].offer.command, "edit.fill 1 bad");
+  EXPECT_EQ(offers(studio)[1].text.find(studio.session().document.takes[1].name + ": 2 frames"), 0u)
+      << offers(studio)[1].text;
+  studio.run("target.remove", {"0"});
+  studio.wait_idle();
+  ASSERT_EQ(offers(studio).size(), 1u) << "its take is gone";
+  EXPECT_EQ(offers(studio)[0].offer.command, "edit.fill 0 bad") << "the other is the first now";
+  accept(studio, offers(studio)[0]);
+  EXPECT_GT(shown(studio).doubt_m[9], 0);
+}
+
+TEST_F(Fills, AreSavedAndOpenedAgainToTheBitAndNotOfferedAgain) {
+  Motion saved;
+  {
+    Studio studio(services());
+    open_gaps(studio, {9, 10, 11});
+    accept(studio, offers(studio).at(0));
+    studio.run("edit.fill_learned", {"0", "0", "0.3"});
+    studio.wait_idle();
+    studio.run("document.save_as", {path("filled.understudy")});
+    saved = shown(studio);
+  }
+  Studio studio(services());
+  studio.run("document.open", {path("filled.understudy")});
+  studio.wait_idle();
+  ASSERT_EQ(shown(studio).poses.size(), saved.poses.size());
+  EXPECT_TRUE(same_poses(shown(studio), saved));
+  EXPECT_EQ(shown(studio).doubt_m, saved.doubt_m);
+  EXPECT_TRUE(offers(studio).empty());
+}
+
+TEST_F(Fills, FollowThePlainToLearnedSliderAndUndo) {
+  Studio studio(services());
+  open_gaps(studio, {9, 10, 11});
+  const auto height = [&] { return shown(studio).poses[10].root.y(); };
+  accept(studio, offers(studio).at(0));
+  const float learned = height();
+  for (const char* share : {"0.7", "0.5", "0"}) studio.run("edit.fill_learned", {"0", "0", share});
+  studio.wait_idle();
+  EXPECT_NEAR(learned - height(), LiftedSpace::kLift_m, 1e-5) << "the plain curve";
+  studio.run("edit.undo");
+  studio.wait_idle();
+  EXPECT_EQ(height(), learned) << "one step for the whole slider";
+  studio.run("edit.redo");
+  studio.wait_idle();
+  EXPECT_NEAR(learned - height(), LiftedSpace::kLift_m, 1e-5);
+}
+
+TEST_F(Fills, ArePlainUntilTheLearnedOnesAreThere) {
+  Gate gate;
+  StudioServices own = services();
+  own.motion_space = [&gate] { return gate.wait_for_space(); };
+  Studio studio(own);
+  open_gaps(studio, {9, 10, 11});
+  const Pose still = shown(studio).poses[10];
+  EXPECT_FALSE(gate.was_asked) << "nothing is filled yet";
+  studio.run("edit.fill", {"0", "bad"});
+  for (int i = 0; i < 5000 && shown(studio).doubt_m.empty(); ++i) {
+    studio.tick(0.01);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const Motion plain = shown(studio);
+  ASSERT_FALSE(plain.doubt_m.empty()) << "the curve does not wait for the motion space";
+  EXPECT_FALSE(studio.idle()) << "more is to come";
+  EXPECT_FALSE(equal(plain.poses[10], still));
+  gate.open();
+  studio.wait_idle();
+  EXPECT_NEAR(shown(studio).poses[10].root.y() - plain.poses[10].root.y(), LiftedSpace::kLift_m, 1e-5);
+  EXPECT_TRUE(equal(shown(studio).poses[8], plain.poses[8]));
+}
+
+TEST_F(Fills, AreCurvesWhereTheMotionSpaceCannotBeLoaded) {
+  std::atomic<int> asked{0};
+  StudioServices own = services();
+  own.motion_space = [&asked]() -> std::shared_ptr<MotionSpace> {
+    ++asked;
+    throw Error("motion_space.weights: ends before its header");
+  };
+  std::vector<std::string> warnings;
+  std::mutex writing;
+  const log::Sink before = log::set_sink([&](log::Level level, const std::string& text) {
+    const std::lock_guard lock(writing);
+    if (level == log::Level::Warning) warnings.push_back(text);
+  });
+  {
+    Studio studio(own);
+    open_gaps(studio, {9, 10, 11});
+    const Pose still = shown(studio).poses[10];
+    accept(studio, offers(studio).at(0));
+    EXPECT_FALSE(equal(shown(studio).poses[10], still));
+    EXPECT_TRUE(studio.session().errors.empty()) << "no dialog: it is filled";
+    studio.run("edit.fill_learned", {"0", "0", "0.5"});
+    studio.wait_idle();
+  }
+  log::set_sink(before);
+  EXPECT_EQ(asked, 1) << "once is enough";
+  EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                          [](const std::string& text) {
+                            return text.find("ends before its header: filled frames follow smooth curves") !=
+                                   std::string::npos;
+                          }),
+            1);
+}
+
+}  // namespace
+}  // namespace understudy::app
