@@ -8,6 +8,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/pipeline/human_rest.hpp"
 #include "tests/session/studio_fixture.hpp"
 
 namespace understudy::app {
@@ -111,6 +112,31 @@ TEST_F(Fills, AreNotOfferedWhereAllFramesWereUsed) {
   Studio studio(services());
   open_both(studio);
   EXPECT_TRUE(offers(studio).empty());
+}
+
+/// Is sure of nobody.
+class NobodyExtractor final : public SkeletonExtractor {
+ public:
+  Extraction extract(const Mesh&) override {
+    Extraction nobody;
+    nobody.joints = human_rest();
+    nobody.confidence.setZero();
+    return nobody;
+  }
+  std::string name() const override { return "nobody"; }
+};
+
+TEST_F(Fills, AreNotOfferedWhereNoFrameIsKnown) {
+  StudioServices own = services();
+  own.networks = [usual = own.networks](const Method& method, const NetworkParts& parts) {
+    Networks networks = usual(method, parts);
+    if (parts.extractor) networks.extractor = std::make_shared<NobodyExtractor>();
+    return networks;
+  };
+  Studio studio(own);
+  open_both(studio);
+  ASSERT_EQ(unusable_runs(studio.session(), 0).size(), 1u);
+  EXPECT_TRUE(offers(studio).empty()) << "there is nothing to fill them from";
 }
 
 TEST_F(Fills, OfEachTakeAreOfferedAndFollowTheirTake) {

@@ -76,6 +76,17 @@ void write_people(const std::string& file) {
   write_npz(file, {{"points", points}});
 }
 
+/// The sample's first 30 scans, but for 12 to 16.
+void copy_with_a_gap(const std::string& folder) {
+  fs::create_directories(folder);
+  for (int t = 0; t < 30; ++t) {
+    const std::string name = printed("frame_%05d.ply", t);
+    if (t < 12 || t > 16)
+      fs::copy_file(US_SOURCE_DIR "/assets/samples/scan/" + name, folder + "/" + name,
+                    fs::copy_options::overwrite_existing);
+  }
+}
+
 class Path : public StudioWindow, public testing::WithParamInterface<std::string> {
  protected:
   using Play = void (Path::*)(const Words&);
@@ -312,6 +323,7 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
 
   std::string path_of(const std::string& word) const {
     if (word == "out/people.npz") write_people(scratch.path("people.npz"));
+    if (word == "out/gaps") copy_with_a_gap(scratch.path("gaps"));
     if (starts_with(word, "samples/")) return std::string(US_SOURCE_DIR "/assets/") + word;
     return starts_with(word, "out/") ? scratch.path(word.substr(4)) : word;
   }
