@@ -382,7 +382,7 @@ std::vector<FillEdit> wanted_fills(const Session& session, size_t take) {
   const FrameRange marked = play_range(session.playback, frame_count(session));
   if (!marked.empty() && (session.playback.in >= 0 || session.playback.out >= 0))
     return {{marked.first, marked.last}};
-  const std::vector<FillEdit> runs = all_unusable(session, take);
+  std::vector<FillEdit> runs = all_unusable(session, take);
   const int now = shown_frame(session);
   for (const FillEdit& run : runs)
     if (run.first <= now && now <= run.last) return {run};

@@ -80,7 +80,7 @@ class PartCurve {
   /// A frame's step at the known frame between `before` (-1: none) and a way of `on` in `frames` frames.
   Vec3 speed_at(int before, int at, const Vec3& on, float frames) const {
     if (before < 0) return on / frames;
-    const Vec3 past = -step(at, before);
+    Vec3 past = -step(at, before);
     const auto since = static_cast<float>(at - before);
     if (at - before == 1) return past;
     return (past / since * frames + on / frames * since) / (since + frames);
@@ -88,7 +88,7 @@ class PartCurve {
   Vec3 speed_coming(int before, int at, int next, const Vec3& way) const {
     const auto frames = static_cast<float>(at - before);
     if (next < 0) return way / frames;
-    const Vec3 on = step(before, next, way) - way;
+    Vec3 on = step(before, next, way) - way;
     const auto until = static_cast<float>(next - at);
     if (next - at == 1) return on;
     return (on / until * frames + way / frames * until) / (until + frames);
