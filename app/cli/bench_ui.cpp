@@ -384,7 +384,8 @@ class UiBench {
     }
     const double first = times.front();
     times.erase(times.begin());
-    line("30 frames filled, click to seen", milliseconds(times) + printed("; the first %.0f ms", 1e3 * first));
+    line("30 frames filled, click to seen",
+         milliseconds(times) + printed("; the first %.0f ms", 1e3 * first));
   }
 
   /// Plays in real time, 45 frames of the source a second: every picture is of the next frame or one soon

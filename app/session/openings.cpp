@@ -1,6 +1,6 @@
 // What was opened and could not be read is taken back; all else stays as it is. What is read but may be no
-// person is asked about; scans in which nobody is found are offered to be cleaned up, frames that could not be used
-// to be filled.
+// person is asked about; scans in which nobody is found are offered to be cleaned up, frames that could not
+// be used to be filled.
 #include <algorithm>
 
 #include "app/session/background.hpp"

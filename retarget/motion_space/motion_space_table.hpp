@@ -23,7 +23,7 @@ struct MotionSpaceChoice {
 /// All rows, the plainest first.
 const std::vector<MotionSpaceChoice>& motion_spaces();
 /// The name of the one that is taken where none is named.
-constexpr const char* kDefaultMotionSpace = "hermite";
+constexpr const char* kDefaultMotionSpace = "space";
 
 /// Throws Error with the names that there are.
 const MotionSpaceChoice& motion_space_named(const std::string& name);
