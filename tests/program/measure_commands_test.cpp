@@ -93,7 +93,7 @@ TEST_F(Measuring, GapsAreFilledFromScansAndFromTruePoses) {
   ASSERT_EQ(run_program({"eval", cases, "--out", out("true.json"), "--oracle", "pose"}).code, 0);
   const Json poses = Json::parse(read_bytes(out("true.json")));
   EXPECT_EQ(scans["fill"], "slerp");
-  EXPECT_EQ(poses["fill"], "hermite");
+  EXPECT_EQ(poses["fill"], "space");  // the default
   for (const Json& report : {scans, poses}) {
     EXPECT_EQ(report["cases"][0]["frames"], 5);  // 6 to 35 hold one window
     for (const char* key : {"gap_mpjpe_m", "gap_rel_mpjpe_m", "mve_m", "gap_acc", "seam_m", "spread"})
