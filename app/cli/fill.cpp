@@ -114,8 +114,8 @@ int fill(FillOptions options) {
   for (const MadeFrames& one : made)
     std::printf("frames %d to %d were made, expected to be off by up to %.1f cm\n", one.first, one.last,
                 static_cast<double>(100 * one.doubt_m));
-  std::printf("%s %lld bytes, %lld frames\n", options.out.c_str(), static_cast<long long>(cost.bytes),
-              static_cast<long long>(cost.frames));
+  std::printf("%s %lld bytes, %zu frames\n", options.out.c_str(), static_cast<long long>(cost.bytes),
+              inputs[0].clips[0].poses.size());
   if (!options.report.empty()) write_json(options.report, report_of(options, session, made));
   if (!options.preview.empty())
     write_file_preview(options.preview, options.out, inputs, clip_name(options.target.path));
