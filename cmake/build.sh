@@ -59,7 +59,10 @@ build() {
   local preset=$1 folder=build-$1 launcher=()
   shift
   [ "$preset" = release ] && folder=build
-  command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  if command -v ccache >/dev/null; then  # what one checkout compiled serves another
+    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+  fi
   if [ ! -f $folder/build.ninja ] || [ -n "${STRICT:-}" ]; then
     echo "Configuring ($folder/)"
     mkdir -p $folder

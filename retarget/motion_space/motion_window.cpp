@@ -42,16 +42,6 @@ std::vector<Gap> gaps_in(const std::vector<KnownParts>& known) {
   return gaps;
 }
 
-Pose between(const Pose& a, const Pose& b, float share) {
-  if (share == 0) return a;
-  Pose pose;
-  pose.root = a.root + share * (b.root - a.root);
-  for (int j = 0; j < kJointCount; ++j)
-    pose.local[j] =
-        Eigen::Quaternionf(a.local[j]).slerp(share, Eigen::Quaternionf(b.local[j])).toRotationMatrix();
-  return pose;
-}
-
 /// Of a moment between two frames, in samples.
 KnownDistance distance_at(const KnownDistance& before, const KnownDistance& after, float share, float step) {
   KnownDistance at = before;

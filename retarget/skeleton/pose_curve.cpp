@@ -140,6 +140,16 @@ class PartCurve {
 
 }  // namespace
 
+Pose between(const Pose& a, const Pose& b, float share) {
+  if (share == 0) return a;
+  Pose pose;
+  pose.root = a.root + share * (b.root - a.root);
+  for (int j = 0; j < kJointCount; ++j)
+    pose.local[j] =
+        Eigen::Quaternionf(a.local[j]).slerp(share, Eigen::Quaternionf(b.local[j])).toRotationMatrix();
+  return pose;
+}
+
 std::vector<KnownDistance> known_distances(const std::vector<KnownParts>& known) {
   const int count = ssize(known);
   std::vector<KnownDistance> distances(known.size());
