@@ -28,16 +28,6 @@ void hold_feet(const FillEdit& fill, const Joints& rest, Motion& motion) {
   hold_standing(rest, fill.first, fill.last, motion);
 }
 
-Pose between(const Pose& a, const Pose& b, float share) {
-  if (share >= 1) return b;
-  Pose pose;
-  pose.root = a.root + share * (b.root - a.root);
-  for (int j = 0; j < kJointCount; ++j)
-    pose.local[j] =
-        Eigen::Quaternionf(a.local[j]).slerp(share, Eigen::Quaternionf(b.local[j])).toRotationMatrix();
-  return pose;
-}
-
 Motion curve_through(const KnownMotion& question, const std::vector<FillEdit>& fills) {
   Motion motion = question.motion;
   fill_curves(question.known, 0, ssize(motion.poses) - 1, motion);

@@ -142,6 +142,7 @@ class PartCurve {
 
 Pose between(const Pose& a, const Pose& b, float share) {
   if (share == 0) return a;
+  if (share == 1) return b;
   Pose pose;
   pose.root = a.root + share * (b.root - a.root);
   for (int j = 0; j < kJointCount; ++j)
