@@ -1,6 +1,7 @@
 #include "retarget/skeleton/foot_hold.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "retarget/base/index.hpp"
@@ -13,6 +14,12 @@ namespace {
 constexpr float kEase_s = 0.15f;    // in which a foot comes to where it stands
 constexpr float kSlow = 0.4f;       // m/s, of a foot that stands, leg 0.8 m
 constexpr float kMostMoved = 0.3f;  // of a foot that stands, share of the leg
+
+/// How high the ball of a foot is at least that moves at `speed` m/s along the floor, metres, leg 0.8 m: in
+/// 200 captured clips one in twenty is lower.
+float clearance(float speed) {
+  return 0.02f + 0.045f * (1 - std::exp(-speed));
+}
 
 /// One foot in frames first .. last.
 class HeldFoot {
@@ -28,6 +35,7 @@ class HeldFoot {
     for (int t = first_; t <= last_; ++t)
       if (stands(t)) t = hold_from(t);
     ease();
+    clear_floor();
     for (int t = first_; t <= last_; ++t) move(t);
   }
 
@@ -88,6 +96,25 @@ class HeldFoot {
       eased[t] *= freedom(t);
     }
     offset_ = eased;
+  }
+
+  /// A foot that swings does so above the floor.
+  void clear_floor() {
+    std::vector<float> lift(offset_.size(), 0.0f);
+    const float scale = leg_length(rest_) / 0.8f;
+    const int count = ssize(ball_);
+    for (int t = first_; t <= last_; ++t) {
+      const int next = std::min(t + 1, count - 1), last = std::max(0, t - 1);
+      if (stands(t) || next == last) continue;
+      const Vec3 way =
+          (ball_[next] + offset_[next] - ball_[last] - offset_[last]) / static_cast<float>(next - last);
+      const float speed = Vec3(way.x(), 0, way.z()).norm() * motion_.fps / scale;
+      lift[t] = freedom(t) * std::max(0.0f, scale * clearance(speed) - ball_[t].y() - offset_[t].y());
+    }
+    for (int t = first_; t <= last_; ++t) {  // a foot has no kinks
+      const int next = std::min(t + 1, count - 1), last = std::max(0, t - 1);
+      if (!stands(t)) offset_[t].y() += 0.25f * (lift[last] + 2 * lift[t] + lift[next]);
+    }
   }
 
   void move(int t) {

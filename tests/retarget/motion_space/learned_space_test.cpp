@@ -10,6 +10,7 @@
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/skeleton/foot_hold.hpp"
 
 namespace understudy {
 namespace {
@@ -60,10 +61,12 @@ bool is_same(const Pose& a, const Pose& b) {
   return a.local == b.local && a.root == b.root;
 }
 
-TEST(LearnedSpace, WithoutACorrectionItIsTheCurve) {
+TEST(LearnedSpace, WithoutACorrectionItIsTheCurveWhoseFeetClearTheFloor) {
   const Question question(20, 29);
   Motion curve = question.motion;
   fill_curves(question.known, 0, ssize(curve.poses) - 1, curve);
+  curve.standing.resize(curve.poses.size());
+  hold_standing(question.rest, 20, 29, curve);
   const Completion made = completed(question, 0);
   for (size_t t = 0; t < curve.poses.size(); ++t) {
     EXPECT_LT((made.motion.poses[t].root - curve.poses[t].root).norm(), 1e-6f);
