@@ -5,50 +5,23 @@
 #include <filesystem>
 #include <numeric>
 #include <optional>
-#include <stdexcept>
 #include <unordered_map>
 
 #include "retarget/base/error.hpp"
-#include "retarget/base/file.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/csv_lines.hpp"
 #include "retarget/formats/scan_frames.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t{1} << 30;
 constexpr double kLongestInterval_s = 3600, kHighestRate = 1000;
-
-std::string in_line(const std::string& table, int64_t line) {
-  return table + ": line " + std::to_string(line);
-}
 
 // "0.25 s", with all digits that tell it from others.
 std::string in_seconds(double seconds) {
   return printed("%.12g s", seconds);
-}
-
-std::vector<std::string> cells_of(const std::string& line, char separator, const std::string& where) {
-  std::vector<std::string> cells;
-  try {
-    cells = csv_cells(line, separator);
-  } catch (const std::invalid_argument&) {
-    throw Error(where + ": a quote is not closed");
-  }
-  for (std::string& cell : cells) {
-    cell = trim_end(cell);
-    cell.erase(0, cell.find_first_not_of(" \t"));
-  }
-  return cells;
-}
-
-// What parts the first line into two.
-char separator_of(const std::string& line, const std::string& where) {
-  for (const char separator : {'\t', ';'})
-    if (cells_of(line, separator, where).size() > 1) return separator;
-  return ',';
 }
 
 // Which scan a table means.
@@ -323,26 +296,20 @@ class ClockFrames : public ScanSource::Frames {
 }  // namespace
 
 std::vector<ScanTime> read_scan_times(const std::string& path) {
-  const std::string text = read_file(path, kMostBytes);
-  std::string_view rest = text;
-  if (starts_with(rest, "\xef\xbb\xbf")) rest.remove_prefix(3);  // spreadsheets write a byte order mark
-  TextCursor lines(rest, path);
+  CsvLines lines(path);
   std::vector<ScanTime> rows;
-  char separator = 0;
-  for (int64_t number = 1; !lines.at_end(); ++number) {
-    const std::string line(trim_end(lines.line()));
-    if (line.empty()) continue;
-    const std::string where = in_line(path, number);
-    const bool is_first = separator == 0;
-    if (is_first) separator = separator_of(line, where);
-    std::vector<std::string> cells = cells_of(line, separator, where);
-    US_CHECK(cells.size() == 2, where, ": has ", cells.size(), cells.size() == 1 ? " column" : " columns",
-             " in place of two, scan and seconds");
-    ScanTime row{std::move(cells[0]), 0, number};
-    const bool is_number = parse_number(cells[1], row.seconds);
-    if (is_first && !is_number && !cells[1].empty()) continue;  // a header
-    US_CHECK(!row.scan.empty(), where, ": names no scan");
-    US_CHECK(is_number && std::isfinite(row.seconds), where, ": '", excerpt(cells[1]),
+  bool is_first = true;
+  while (auto cells = lines.next()) {
+    US_CHECK(cells->size() == 2, lines.where(), ": has ", cells->size(),
+             cells->size() == 1 ? " column" : " columns", " in place of two, scan and seconds");
+    const std::string& time = (*cells)[1];
+    ScanTime row{(*cells)[0], 0, lines.number()};
+    const bool is_number = parse_number(time, row.seconds);
+    const bool is_header = is_first && !is_number && !time.empty();
+    is_first = false;
+    if (is_header) continue;
+    US_CHECK(!row.scan.empty(), lines.where(), ": names no scan");
+    US_CHECK(is_number && std::isfinite(row.seconds), lines.where(), ": '", excerpt(time),
              "' is no time in seconds");
     rows.push_back(std::move(row));
   }

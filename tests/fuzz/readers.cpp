@@ -27,6 +27,7 @@
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/vertex_colors.hpp"
 #include "retarget/formats/file_formats.hpp"
+#include "retarget/formats/markers.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/formats/scan_source.hpp"
@@ -353,6 +354,16 @@ void scan_times(const std::string& bytes) {
   }
 }
 
+void markers(const std::string& bytes) {
+  double before = -1e300;
+  for (const MarkerFrame& frame : read_markers(ScratchFile("markers.csv", bytes).path())) {
+    must(frame.seconds > before && !frame.markers.empty(), "times rise");
+    before = frame.seconds;
+    for (const Marker& marker : frame.markers)
+      must(!marker.name.empty() && marker.place.allFinite(), "markers have names and places");
+  }
+}
+
 // What the process that reads FBX and DAE says when it fails; what it makes is a GLB, and read as any other.
 void worker_words(const std::string& bytes) {
   const std::string words = last_words(bytes);
@@ -446,6 +457,7 @@ std::vector<Reader> all_readers() {
                              {"bone_map", bone_choices, text_size},
                              {"scan_list", scan_list, text_size},
                              {"scan_times", scan_times, declared_by_table},
+                             {"markers", markers, declared_by_table},
                              {"case", test_case, text_size},
                              {"splits", splits, text_size},
                              {"report_rows", report_rows, text_size},
