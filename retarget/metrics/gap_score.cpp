@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -9,6 +10,9 @@
 
 namespace understudy {
 namespace {
+
+/// Frames after the last that is known, and the figure of each.
+constexpr std::pair<size_t, const char*> kPredicted[] = {{3, "mve_3_m"}, {8, "mve_8_m"}, {15, "mve_15_m"}};
 
 /// Frames first .. last, as far as there are such.
 JointSequence part_of(const JointSequence& all, int first, int last) {
@@ -54,6 +58,9 @@ void GapScore::push_frames(const FilledGap& gap) {
         mean_joint_error({less_pelvis(gap.joints[t])}, {less_pelvis(gap.truth[t])}));
   }
   for (const double error : gap.vertex_errors) means_["mve_m"].add(error);
+  if (gap.last + 1 < ssize(gap.truth)) return;
+  for (const auto& [frames, key] : kPredicted)
+    if (frames <= gap.vertex_errors.size()) means_[key].add(gap.vertex_errors[frames - 1]);
 }
 
 void GapScore::push_seams(const FilledGap& gap, double fps) {

@@ -16,6 +16,14 @@ void check_same_size(const Points& p, const Points& q) {
   US_CHECK(q.rows() > 0, "no vertices to compare");
 }
 
+double mean_nearest(const Points& from, const Points& to) {
+  const IntMatrix nearest = nearest_neighbours(to, from, 1);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < from.rows(); ++i)
+    sum += static_cast<double>((from.row(i) - to.row(nearest(i, 0))).norm());
+  return sum / static_cast<double>(from.rows());
+}
+
 double edge(const Points& x, Eigen::Index a, Eigen::Index b) {
   return (x.row(a).cast<double>() - x.row(b).cast<double>()).norm();
 }
@@ -25,6 +33,12 @@ double edge(const Points& x, Eigen::Index a, Eigen::Index b) {
 double mean_vertex_error(const Points& p, const Points& q) {
   check_same_size(p, q);
   return (p.cast<double>() - q.cast<double>()).rowwise().norm().mean();
+}
+
+double chamfer_distance(const Points& p, const Points& q) {
+  US_CHECK(p.rows() > 0 && q.rows() > 0, "surfaces of ", p.rows(), " and ", q.rows(),
+           " points cannot be compared");
+  return (mean_nearest(p, q) + mean_nearest(q, p)) / 2;
 }
 
 double aligned_vertex_error(const Points& p, const Points& q) {

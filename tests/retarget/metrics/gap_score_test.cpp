@@ -84,6 +84,34 @@ TEST(GapScore, AGapAtTheStartHasOneSeam) {
   EXPECT_NEAR(score.figures().at("seam_m"), (1.5 + 1) / 2, 1e-6);
 }
 
+TEST(GapScore, WhatIsPredictedHasItsErrorsByTheFrame) {
+  FilledGap gap = two_frames_off(0);
+  gap.first = 1, gap.last = 9;
+  for (int t = 0; t < 9; ++t) gap.vertex_errors.push_back(0.1 * (t + 1));
+  GapScore score;
+  score.push(gap, 30);
+  const auto figures = score.figures();
+  EXPECT_NEAR(figures.at("mve_3_m"), 0.3, 1e-9);
+  EXPECT_NEAR(figures.at("mve_8_m"), 0.8, 1e-9);
+  EXPECT_EQ(figures.count("mve_15_m"), 0u);  // there are nine
+  EXPECT_NEAR(figures.at("mve_m"), 0.5, 1e-9);
+  gap.last = 8, gap.vertex_errors.pop_back();  // something is known after it
+  GapScore between;
+  between.push(gap, 30);
+  EXPECT_EQ(between.figures().count("mve_3_m"), 0u);
+}
+
+TEST(GapScore, HasTheMeanDistanceOfSurfaces) {
+  GapScore score, more;
+  EXPECT_TRUE(score.empty());
+  score.push_surface(0.01);
+  more.push_surface(0.02);
+  more.push_surface(0.06);
+  EXPECT_FALSE(score.empty());
+  score.append(more);
+  EXPECT_NEAR(score.figures().at("chamfer_m"), 0.03, 1e-9);
+}
+
 TEST(GapScore, RefusesWhatDoesNotFit) {
   GapScore score;
   FilledGap gap = two_frames_off(1);

@@ -62,6 +62,18 @@ Points limb(float radius, int count) {
   return x;
 }
 
+TEST(ChamferDistance, IsTheMeanOfBothWays) {
+  Points p(2, 3), q(3, 3);
+  p << 0, 0, 0, 1, 0, 0;
+  q << 0, 0.2f, 0, 0, 0, 0.4f, 1, 0, 0;
+  // from p: 0.2, 0; from q: 0.2, 0.4, 0
+  EXPECT_NEAR(chamfer_distance(p, q), (0.1 + 0.2) / 2, 1e-6);
+  EXPECT_NEAR(chamfer_distance(q, p), (0.1 + 0.2) / 2, 1e-6);
+  EXPECT_EQ(chamfer_distance(q, q), 0);
+  EXPECT_THROW(chamfer_distance(p, Points(0, 3)), Error);
+  EXPECT_THROW(chamfer_distance(Points(0, 3), p), Error);
+}
+
 TEST(MeanVertexError, IsTheLengthOfAShift) {
   const Points q = random_points(50, 1);
   EXPECT_NEAR(mean_vertex_error(q.rowwise() + Eigen::RowVector3f(0, 0.003f, 0.004f), q), 0.005, 1e-6);
