@@ -27,6 +27,10 @@ std::unique_ptr<MotionSpace> make_nearest_space(const std::string& data) {
 const std::vector<MotionSpaceChoice>& motion_spaces() {
   static const std::vector<MotionSpaceChoice> all = {
       {"hold", "Hold", "the last known pose stays", nullptr, false, made<make_hold_space>},
+      {"glide", "Glide", "the last known pose stays, and the body goes on as fast as it went", nullptr, false,
+       made<make_glide_space>},
+      {"coast", "Coast", "the body and each joint go on as fast as they went", nullptr, false,
+       made<make_coast_space>},
       {"slerp", "Slerp", "each joint takes the shortest turn to the next known pose, the body a straight way",
        nullptr, false, made<make_slerp_space>},
       {"hermite", "Hermite curves", "smooth curves that keep the speed of the known poses", nullptr, false,

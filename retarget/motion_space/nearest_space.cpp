@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <cmath>
 #include <limits>
 
 #include "retarget/base/error.hpp"
@@ -11,6 +12,8 @@
 namespace understudy {
 namespace {
 
+constexpr float kClipRate = 30;
+constexpr float kOnFrame = 1e-3f;  // of a frame: so near to one is that one
 constexpr int kBeside = 10;  // known frames that are looked at on each side of a gap
 
 Joints seen_from(const Outlook& outlook, const Joints& joints) {
@@ -81,9 +84,38 @@ void NearestSpace::fill(const KnownMotion& question, Motion& motion) {
     while (end < count && !is_whole(question, end)) ++end;
     while (before < kBeside && is_whole(question, t - before - 1)) ++before;
     while (after < kBeside && is_whole(question, end + after)) ++after;
-    fill_window(question, {t - before, end + after - t + before, before, after}, motion);
+    const Window window{t - before, end + after - t + before, before, after, kClipRate / question.motion.fps};
+    fill_window(question, window, motion);
     t = end;
   }
+}
+
+NearestSpace::Moment NearestSpace::moment(int first, float frames) {
+  const float whole = std::floor(frames + kOnFrame);
+  return {first + static_cast<int>(whole), frames - whole > kOnFrame ? frames - whole : 0};
+}
+
+Outlook NearestSpace::outlook_at(int clip, const Moment& at) const {
+  const auto& views = views_[clip];
+  Outlook here = views[at.frame].outlook;
+  if (at.share == 0) return here;
+  const Outlook& next = views[at.frame + 1].outlook;
+  here.place += at.share * (next.place - here.place);
+  here.heading += at.share * (next.heading - here.heading);
+  const float length = here.heading.col(0).norm();  // both turn about y
+  here.heading.col(0) /= length, here.heading.col(2) /= length;
+  return here;
+}
+
+Joints NearestSpace::joints_at(int clip, const Moment& at) const {
+  const auto& views = views_[clip];
+  if (at.share == 0) return views[at.frame].joints;
+  return (1 - at.share) * views[at.frame].joints + at.share * views[at.frame + 1].joints;
+}
+
+Pose NearestSpace::pose_at(int clip, const Moment& at) const {
+  const auto& poses = clips_[clip].motion.poses;
+  return at.share == 0 ? poses[at.frame] : between(poses[at.frame], poses[at.frame + 1], at.share);
 }
 
 ClipRun NearestSpace::nearest(const KnownMotion& question, const Window& window) const {
@@ -95,28 +127,33 @@ ClipRun NearestSpace::nearest(const KnownMotion& question, const Window& window)
         known.emplace_back(
             t, seen_from(from,
                          forward_kinematics(question.rest, question.motion.poses[window.first + t]).joints));
+  const auto frames = [&window](int t) { return window.step * static_cast<float>(t); };
+  const int longest = static_cast<int>(std::ceil(frames(window.count - 1) - kOnFrame));
   ClipRun best;
   float least = std::numeric_limits<float>::infinity();
   for (const ClipRun& run : runs_)
-    for (int first = run.first; first + window.count <= run.first + run.count; ++first) {
-      const auto& views = views_[run.clip];
-      const Outlook& outlook = views[first + window.outlook()].outlook;
+    for (int first = run.first; first + longest < run.first + run.count; ++first) {
+      const Outlook outlook = outlook_at(run.clip, moment(first, frames(window.outlook())));
       float sum = 0;
-      for (size_t k = 0; k < known.size() && sum < least; ++k)
-        sum += (seen_from(outlook, views[first + known[k].first].joints) - known[k].second).squaredNorm();
-      if (sum < least) least = sum, best = {run.clip, first, window.count};
+      for (size_t k = 0; k < known.size() && sum < least; ++k) {
+        const Joints there = joints_at(run.clip, moment(first, frames(known[k].first)));
+        sum += (seen_from(outlook, there) - known[k].second).squaredNorm();
+      }
+      if (sum < least) least = sum, best = {run.clip, first, longest + 1};
     }
-  US_CHECK(best.count > 0, "no clip has ", window.count, " good frames in a row");
+  US_CHECK(best.count > 0, "no clip has ", longest + 1, " good frames in a row");
   return best;
 }
 
 void NearestSpace::fill_window(const KnownMotion& question, const Window& window, Motion& motion) const {
   const ClipRun found = nearest(question, window);
   const auto known = [&](int t) -> const Pose& { return question.motion.poses[window.first + t]; };
-  const auto& poses = clips_[found.clip].motion.poses;
-  const Outlook there = Outlook::of(poses[found.first + window.outlook()]),
+  const auto pose_of = [&](int t) {
+    return pose_at(found.clip, moment(found.first, window.step * static_cast<float>(t)));
+  };
+  const Outlook there = Outlook::of(pose_of(window.outlook())),
                 here = Outlook::of(known(window.outlook()));
-  const auto like = [&](int t) { return back_from(here, there.seen(poses[found.first + t])); };
+  const auto like = [&](int t) { return back_from(here, there.seen(pose_of(t))); };
   const int before = window.before - 1, after = window.count - window.after;
   const int one_end = window.before > 0 ? before : after;  // that there is
   const int from = window.before > 0 ? before : one_end, to = window.after > 0 ? after : one_end;

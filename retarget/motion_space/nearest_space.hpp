@@ -16,7 +16,8 @@ namespace understudy {
 /// gap and what is known beside it.
 class NearestSpace final : public PlainSpace {
  public:
-  /// Throws Error without clips. They are at 30 frames/s, as the questions must be.
+  /// Throws Error without clips. They are at 30 frames/s; of questions at another rate they are looked at
+  /// between their frames.
   explicit NearestSpace(std::vector<Clip> clips);
   std::string name() const override { return "nearest"; }
 
@@ -27,10 +28,20 @@ class NearestSpace final : public PlainSpace {
   };
   struct Window {
     int first, count, before, after;  // of the question; known frames at its ends
+    float step;                       // frames of a clip in one of the question
     int outlook() const { return before > 0 ? before - 1 : count - after; }
   };
+  /// A moment of a clip.
+  struct Moment {
+    int frame;
+    float share;  // of the way to the next frame
+  };
+  static Moment moment(int first, float frames);
   void fill(const KnownMotion& question, Motion& motion) override;
   void set_rest(const Joints& rest);
+  Outlook outlook_at(int clip, const Moment& at) const;
+  Joints joints_at(int clip, const Moment& at) const;
+  Pose pose_at(int clip, const Moment& at) const;
   ClipRun nearest(const KnownMotion& question, const Window& window) const;
   void fill_window(const KnownMotion& question, const Window& window, Motion& motion) const;
 

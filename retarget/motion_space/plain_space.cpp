@@ -9,6 +9,9 @@
 namespace understudy {
 namespace {
 
+constexpr DoubtLaw kGlideDoubt = {0.75f, 0.9f, 1.47f, /*since_last=*/true},
+                   kCoastDoubt = {0.75f, 0.9f, 1.47f, /*since_last=*/true};
+
 void check_question(const KnownMotion& question) {
   US_CHECK(question.known.size() == question.motion.poses.size(), "what is known is told of ",
            question.known.size(), " frames, the motion has ", question.motion.poses.size());
@@ -64,6 +67,40 @@ class HoldSpace final : public PlainSpace {
   }
 };
 
+/// The first frame from `from` on, in steps of `by`, that knows the part; -1: none.
+int next_known(const std::vector<KnownParts>& known, int part, int from, int by) {
+  for (int t = from + by; t >= 0 && t < ssize(known); t += by)
+    if (known[t][part]) return t;
+  return -1;
+}
+
+/// What `hold` keeps goes on as it went: the root alone, or every part.
+class OngoingSpace final : public PlainSpace {
+ public:
+  OngoingSpace(const char* name, int first_part, const DoubtLaw& doubt)
+      : PlainSpace(doubt), name_(name), first_part_(first_part) {}
+  std::string name() const override { return name_; }
+
+ private:
+  void fill(const KnownMotion& question, Motion& motion) override {
+    const auto& poses = question.motion.poses;
+    for (int part = 0; part < kPartCount; ++part)
+      each_unknown(question.known, part, [&](int before, int t, int after) {
+        const int from = before >= 0 ? before : after;
+        if (from < 0) return;
+        const int past = part < first_part_ ? -1 : next_known(question.known, part, from, before >= 0 ? -1 : 1);
+        if (past >= 0)
+          mix_part(poses[past], poses[from], static_cast<float>(t - past) / static_cast<float>(from - past),
+                   part, motion.poses[t]);
+        else
+          copy_part(poses[from], part, motion.poses[t]);
+      });
+  }
+
+  const char* name_;
+  int first_part_;  // that goes on, and those after it
+};
+
 class SlerpSpace final : public PlainSpace {
  public:
   SlerpSpace() : PlainSpace({0.72f, 1.2f, 1.16f}) {}
@@ -109,6 +146,12 @@ Completion PlainSpace::complete(const KnownMotion& question) {
 
 std::unique_ptr<MotionSpace> make_hold_space() {
   return std::make_unique<HoldSpace>();
+}
+std::unique_ptr<MotionSpace> make_glide_space() {
+  return std::make_unique<OngoingSpace>("glide", kRootPart, kGlideDoubt);
+}
+std::unique_ptr<MotionSpace> make_coast_space() {
+  return std::make_unique<OngoingSpace>("coast", 0, kCoastDoubt);
 }
 std::unique_ptr<MotionSpace> make_slerp_space() {
   return std::make_unique<SlerpSpace>();

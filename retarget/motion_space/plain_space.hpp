@@ -26,6 +26,10 @@ class PlainSpace : public MotionSpace {
 
 /// `hold`: the last known pose stays; before the first known one, that.
 std::unique_ptr<MotionSpace> make_hold_space();
+/// `glide`: hold, but the root goes on as fast as between the two known frames at that end of the gap.
+std::unique_ptr<MotionSpace> make_glide_space();
+/// `coast`: each joint goes on turning so fast, too, and never comes to rest.
+std::unique_ptr<MotionSpace> make_coast_space();
 /// `slerp`: from one known frame to the next each joint takes the shortest turn, the root the straight way.
 /// Stays before the first and after the last.
 std::unique_ptr<MotionSpace> make_slerp_space();

@@ -36,6 +36,23 @@ TEST_F(Nearest, FindsItsOwnWindowAgainWhereverItIs) {
   }
 }
 
+TEST_F(Nearest, FindsItAtAnotherRate) {
+  KnownMotion question = dance.question(37, 40, 10, 29);
+  KnownMotion faster{{90, {}, {}}, {}, question.rest};  // between 13 of these frames, of which two are known
+  for (int t = 0; t <= 3 * 12; ++t) {
+    const float at = static_cast<float>(t) / 3;
+    const auto frame = static_cast<size_t>(at);
+    const Pose* const from = &dance.motion.poses[37 + frame];
+    faster.motion.poses.push_back(between(from[0], from[1], at - static_cast<float>(frame)));
+    faster.known.push_back(all_parts(t < 2 || t > 34));
+  }
+  const std::vector<Pose> truth = faster.motion.poses;
+  for (int t = 2; t <= 34; ++t) faster.motion.poses[t] = Pose();
+  const Completion answer = space.complete(faster);
+  Motion true_motion{90, truth, {}};
+  EXPECT_LT(tests::farthest(question.rest, answer.motion, true_motion), 2e-3f);
+}
+
 TEST_F(Nearest, FindsItInTheMirror) {
   const Completion answer = space.complete(tests::mirrored(walk.question(13, 30, 10, 19)));
   const Motion back = tests::mirrored(answer.motion);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "retarget/base/error.hpp"
 #include "retarget/base/rng.hpp"
 #include "retarget/math/rotation.hpp"
@@ -27,6 +29,8 @@ class MotionSpaces : public testing::TestWithParam<const char*> {
  private:
   static std::unique_ptr<MotionSpace> made(const std::string& name) {
     if (name == "hold") return make_hold_space();
+    if (name == "glide") return make_glide_space();
+    if (name == "coast") return make_coast_space();
     if (name == "slerp") return make_slerp_space();
     if (name == "hermite") return make_hermite_space();
     static const KnownWalk walk("walk");
@@ -35,7 +39,7 @@ class MotionSpaces : public testing::TestWithParam<const char*> {
     return std::make_unique<NearestSpace>(std::vector<Clip>{clip});
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, MotionSpaces, testing::Values("hold", "slerp", "hermite", "nearest"),
+INSTANTIATE_TEST_SUITE_P(All, MotionSpaces, testing::Values("hold", "glide", "coast", "slerp", "hermite", "nearest"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_P(MotionSpaces, HasItsName) {
@@ -95,7 +99,7 @@ TEST_P(MotionSpaces, DoubtGrowsWithTheDistanceToWhatIsKnownAndWithSpeed) {
   const KnownMotion question = dance().question(20, 40, 10, 29);
   const std::vector<float> doubt = space->complete(question).doubt_m;
   for (size_t t = 10; t < 19; ++t) EXPECT_LT(doubt[t], doubt[t + 1]) << t;
-  const bool held = std::string(GetParam()) == "hold";  // from the last known frame on
+  const bool held = std::set<std::string>{"hold", "glide", "coast"}.count(GetParam()) > 0;  // from the last on
   for (size_t t = 20; t < 29; ++t) EXPECT_EQ(doubt[t] < doubt[t + 1], held) << t;
   KnownMotion faster = question;
   for (Pose& pose : faster.motion.poses)
@@ -119,6 +123,27 @@ TEST(PlainSpaces, HoldKeepsTheLastKnownPoseAndTheFirstBeforeIt) {
       if (t < 5 || t > 9)
         EXPECT_TRUE(tests::same_part(answer.motion.poses[t], question.motion.poses[t < 5 ? 5 : 9], part))
             << t;
+}
+
+TEST(PlainSpaces, GlidingGoesOnAndCoastingTurnsOnToo) {
+  KnownMotion question = dance().question(20, 9, 2, 8);
+  auto &before = question.motion.poses[0], &last = question.motion.poses[1];
+  before = last = Pose();
+  last.local[LeftKnee] = rotation_from_axis_angle(Vec3(0.2f, 0, 0));
+  last.root = Vec3(0.1f, 0, 0.05f);
+  const Motion glided = make_glide_space()->complete(question).motion,
+               coasted = make_coast_space()->complete(question).motion;
+  for (const int t : {2, 8}) {
+    const float turn = 0.2f * static_cast<float>(t);
+    for (const Motion* motion : {&glided, &coasted})
+      EXPECT_TRUE(motion->poses[t].root.isApprox(static_cast<float>(t) * last.root, 1e-5f)) << t;
+    EXPECT_EQ(glided.poses[t].local[LeftKnee], last.local[LeftKnee]);
+    EXPECT_TRUE(
+        coasted.poses[t].local[LeftKnee].isApprox(rotation_from_axis_angle(Vec3(turn, 0, 0)), 1e-4f))
+        << t;
+  }
+  question.known[0] = all_parts(false);  // nobody knows how fast it went
+  EXPECT_EQ(make_coast_space()->complete(question).motion.poses[8].root, last.root);
 }
 
 TEST(PlainSpaces, SlerpGoesHalfTheShortestTurnInHalfTheTime) {
