@@ -12,7 +12,7 @@ Action declare_cases(CLI::App& command) {
   command.add_option("--suite", options->suite, "the suite to make")
       ->required()
       ->check(CLI::IsMember({"naked", "clothed", "captured", "hands", "bends", "extraction", "occluded",
-                             "partial", "sensors", "scenes", "inbetween"}));
+                             "partial", "sensors", "scenes", "inbetween", "predict", "sparse"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split, "split of splits.json (default: dev)");
   command.add_option("--body", options->body, "an SMPL-format body in place of the folder's own");
@@ -23,11 +23,16 @@ Action declare_cases(CLI::App& command) {
       ->check(CLI::Range(1, 100000));
   command
       .add_option("--points", options->points,
-                  "points per scan, roughly (default: 8000); 0, of inbetween: no scans, clips whole")
+                  "points per scan, roughly (default: 8000); 0, of inbetween, predict and sparse: no scans")
       ->check(CLI::Range(0, 10000000));
-  command.add_option("--gap", options->gap, "frames that are not known (inbetween)")
+  command.add_option("--gap", options->gap, "frames that are not known (inbetween; predict, default: 15)")
       ->check(CLI::Range(1, 1000));
-  command.add_flag("--walks", options->walks, "walks and runs only, a window every 3 frames (inbetween)");
+  command.add_option("--known", options->known, "frames of 100 that are known, evenly (sparse)")
+      ->check(CLI::Range(2, 100));
+  command.add_option("--markers", options->markers, "markers on the body in known frames (sparse)")
+      ->check(CLI::IsMember({0, 16}));
+  command.add_flag("--walks", options->walks,
+                   "walks and runs only, a window every 3 frames (inbetween, predict, sparse)");
   command.add_option("--seed", options->seed, "seed of the random numbers");
   return [options] {
     const int count = make_suite(*options, [](const std::string& name) {

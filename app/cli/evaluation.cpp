@@ -5,28 +5,19 @@
 #include <map>
 
 #include "app/cli/gap_evaluation.hpp"
+#include "app/run/case_source.hpp"
 #include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/retargeted_source.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/baselines/body_fit.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/scene/scene.hpp"
 
 namespace understudy::app {
-
-SourceOptions case_source(const Case& c) {
-  SourceOptions options;
-  options.path = c.source;
-  options.fps = c.fps;
-  options.import.units = "m";
-  options.import.up = "y";
-  options.import.floor = 0.0f;
-  options.quiet = true;  // nothing was decided
-  return options;
-}
 
 namespace {
 
@@ -264,14 +255,7 @@ KnownMotion performed_motion(const Case& c, const EvalOptions& options, Retarget
 
 /// A case of which the frames in gaps are evaluated, by true poses beside them.
 void evaluate_true_gap_case(Bench& bench, const Case& c, const Truth& truth, CaseFigures& to) {
-  GapCase of{c, truth, bench.filling(), {}};
-  if (!c.target.empty() && truth.target_joints) {
-    const std::shared_ptr<Deformer> deformer =
-        nn::load_networks(network_options(bench.options.how), {false, false, false, true}).deformer;
-    deformer->bind(read_mesh(c.target).vertices, *truth.target_joints);
-    of.target = [deformer](const Pose& pose) { return deformer->deform(pose); };
-  }
-  for (const double ms : evaluate_true_gaps(of, to.evaluator)) {
+  for (const double ms : evaluate_true_gaps({c, truth, {}}, bench.filling(), to.evaluator)) {
     FrameTimes times;
     times.total = ms;
     to.result.latency.add(times);
@@ -287,10 +271,15 @@ void evaluate_performed_gap_case(Bench& bench, const Case& c, const Truth& truth
   retargeter.set_target(character->target);
   const KnownMotion performed =
       performed_motion(c, bench.options, retargeter, character->target.joints, to.result);
-  const auto surface = [&](const Pose& pose) {
-    return character->surface.in_file_order(retargeter.performer().deformer()->deform(pose));
-  };
-  evaluate_performed_gaps({c, truth, bench.filling(), surface}, performed, to.evaluator);
+  GapSurface surface;
+  if (!truth.vertices.empty()) {
+    surface.made = [&](const Pose& pose) {
+      return character->surface.in_file_order(retargeter.performer().deformer()->deform(pose));
+    };
+    surface.truth = [&](int64_t t) { return truth.frame_vertices(t); };
+    surface.is_dense = true;
+  }
+  evaluate_performed_gaps({c, truth, surface}, bench.filling(), performed, to.evaluator);
 }
 
 void evaluate_gap_case(Bench& bench, const Case& c, CaseResult& result) {
@@ -301,7 +290,8 @@ void evaluate_gap_case(Bench& bench, const Case& c, CaseResult& result) {
     evaluate_true_gap_case(bench, c, truth, to);
   else
     evaluate_performed_gap_case(bench, c, truth, to);
-  result.frames = static_cast<int64_t>(window_starts(*c.gaps).size()) * c.gaps->gap;
+  const std::vector<bool> known = window_known(*c.gaps);
+  result.frames = ssize(window_starts(*c.gaps)) * std::count(known.begin(), known.end(), false);
   result.metrics = evaluator.metrics();
   result.gaps = evaluator.gaps();
 }

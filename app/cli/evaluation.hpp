@@ -45,10 +45,6 @@ struct Evaluation {
   bool failed = false;  ///< some case
 };
 
-/// What is true of a case by the format's definition, so that nothing has to be guessed: metres, y up, the
-/// floor at 0.
-SourceOptions case_source(const Case& c);
-
 /// Evaluates every chosen case; `on_result` gets each when it is done. A case that fails has an error,
 /// and the others go on. Throws Error when there is no case.
 Evaluation evaluate(const EvalOptions& options, const std::function<void(const CaseResult&)>& on_result);

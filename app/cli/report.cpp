@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTables[] = {"baselines",  "seen",    "contexts", "rotation",
-                                   "extraction", "offsets", "inbetween"};
+constexpr const char* kTables[] = {"baselines", "seen",      "contexts", "rotation", "extraction",
+                                   "offsets",   "inbetween", "predict",  "sparse"};
 
 /// Calls visit(key, member) for all that the file may have of a row and that its results follow from as it
 /// is.
@@ -237,7 +237,8 @@ Action declare_report(CLI::App& command) {
                      "JSON that lists the rows (default: comparison.json beside the weights)");
   command
       .add_option("--tables", options->tables,
-                  "only these tables: baselines, seen, contexts, rotation, extraction, offsets, inbetween")
+                  "only these tables: baselines, seen, contexts, rotation, extraction, offsets, inbetween, "
+                  "predict, sparse")
       ->delimiter(',');
   command.add_option("--weights", options->weights, "folder of the weights (default: beside the program)");
   command.add_option("--body", options->body, "the SMPL-format body that the baseline fits");

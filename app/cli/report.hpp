@@ -9,7 +9,8 @@
 namespace understudy::app {
 
 struct ReportRow {
-  std::string table;       ///< baselines, seen, contexts, rotation, extraction, offsets or inbetween
+  std::string
+      table;  ///< baselines, seen, contexts, rotation, extraction, offsets, inbetween, predict or sparse
   std::string name;        ///< of the row
   std::string suite;       ///< folder of cases
   std::string budget;      ///< what its networks were trained with, in words

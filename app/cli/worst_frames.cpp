@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/cli/evaluation.hpp"
+#include "app/run/case_source.hpp"
 #include "render/context/context.hpp"
 #include "render/renderer.hpp"
 #include "render/text.hpp"

@@ -6,8 +6,10 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/formats/scan_frames.hpp"
 
 namespace understudy::app {
 namespace fs = std::filesystem;
@@ -88,6 +90,51 @@ std::vector<TruePeople> scene_frames(const Npz& npz, const std::string& path, in
   return scene;
 }
 
+/// skin_points [N, 3] and skin_weights [N, 22].
+SkinSample skin_sample(const Npz& npz, const std::string& path) {
+  SkinSample skin;
+  const auto points = npz.find("skin_points"), weights = npz.find("skin_weights");
+  if (points == npz.end() && weights == npz.end()) return skin;
+  US_CHECK(points != npz.end() && weights != npz.end(), path,
+           ": has one of skin_points and skin_weights without the other");
+  const auto &p = points->second, &w = weights->second;
+  US_CHECK(p.shape.size() == 2 && p.shape[0] > 0 && p.shape[1] == 3, path,
+           ": skin_points has the wrong shape");
+  US_CHECK(w.shape == (std::vector<int64_t>{p.shape[0], kJointCount}), path,
+           ": skin_weights has the wrong shape");
+  skin.rest = Eigen::Map<const Points>(p.values.data(), p.shape[0], 3);
+  skin.weights = Eigen::Map<const RowMatrix>(w.values.data(), p.shape[0], kJointCount);
+  return skin;
+}
+
+/// The numbers in the names of a folder's scans where some below `frames` are missing; none otherwise.
+std::vector<int> numbers_there(const std::string& folder, int frames) {
+  std::vector<int> there;
+  if (!fs::is_directory(folder)) return there;
+  for (const std::string& file : frame_files(folder, folder_files(folder))) {
+    const std::optional<int64_t> number = frame_number(file);
+    if (!number || *number < 0 || *number >= frames) return {};
+    there.push_back(static_cast<int>(*number));
+  }
+  std::sort(there.begin(), there.end());
+  there.erase(std::unique(there.begin(), there.end()), there.end());
+  return ssize(there) < frames ? there : std::vector<int>();
+}
+
+/// What case.json says of gaps, or its source's missing numbers.
+std::optional<GapPlan> gaps_of(const nlohmann::json& json, const std::string& source,
+                               const std::string& path) {
+  std::optional<GapPlan> plan = gap_plan(json, path);
+  if (plan || !json.contains("frames")) return plan;
+  US_CHECK(json["frames"].is_number_integer() && json["frames"] > 0 && json["frames"] <= 1000000, path,
+           ": \"frames\" is no number of frames");
+  GapPlan missing;
+  missing.frames = json["frames"].get<int>();
+  missing.known_alone = numbers_there(source, missing.frames);
+  if (missing.is_whole()) plan = std::move(missing);
+  return plan;
+}
+
 }  // namespace
 
 Points Truth::frame_vertices(int64_t t) const {
@@ -117,9 +164,11 @@ Case read_case(const std::string& folder) {
   };
   Case result;
   result.name = file_name(fs::absolute(root).lexically_normal().string());
-  result.gaps = gap_plan(json, path);
   result.source = text("source");
+  result.gaps = gaps_of(json, result.source, path);
   US_CHECK(!result.source.empty() || result.gaps, path, ": has no \"source\"");
+  result.times = text("times");
+  result.markers = text("markers");
   result.target = text("target");
   if (json.contains("alone")) {
     US_CHECK(json["alone"].is_array(), path, ": \"alone\" is not a list of paths");
@@ -169,6 +218,7 @@ Truth read_truth(const std::string& path) {
              ": target_joints has the wrong shape");
     truth.target_joints = joints_at(rest->second.values.data());
   }
+  truth.skin = skin_sample(npz, path);
   US_CHECK(truth.frames > 0, path, ": has none of the known ground-truth arrays");
   return truth;
 }

@@ -17,11 +17,19 @@ struct Case {
   std::string name;
   double fps = 30;
   std::string source;              ///< path; empty: no scans, only gaps in the truth's motion
+  std::string times = {};          ///< path of when each scan was taken (scan_times.hpp); empty: evenly
+  std::string markers = {};        ///< path (markers.hpp), frame 0 at 0 s; empty: none
   std::string target;              ///< path; empty: only the extraction is evaluated
   std::string truth;               ///< path; empty: none
   std::vector<std::string> alone;  ///< paths: each person of a scene, scanned alone by the same sensors
   std::vector<std::string> tags;
   std::optional<GapPlan> gaps = {};  ///< frames are to be made: these alone are evaluated
+};
+
+/// Some points of a surface, as linear blend skinning moves them.
+struct SkinSample {
+  Points rest{0, 3};                  ///< [N, 3] in T-pose, metres; N = 0: none
+  RowMatrix weights{0, kJointCount};  ///< [N, 22]
 };
 
 /// The ground truth of a case; parts may be missing (empty).
@@ -32,6 +40,7 @@ struct Truth {
   std::vector<Joints> joints, source_joints;
   std::vector<Rotations> rotations;  ///< local
   std::optional<Joints> target_joints;
+  SkinSample skin{};  ///< of the body that the rotations are of: for true poses and made ones
   std::vector<HandGaps> source_gaps;    ///< [T, 2, 5] metres: what the source's hands touch
   std::vector<float> source_buried;     ///< [T] share of the source's hands and forearms inside its own body
   std::vector<SeenJoints> source_seen;  ///< which of the source's joints the scan shows
@@ -43,7 +52,8 @@ struct Truth {
 /// The folders in `cases` that hold a case.json, by name; `cases` itself when it is one. Throws Error when
 /// there is none.
 std::vector<std::string> case_folders(const std::string& cases);
-/// Throws Error naming the file.
+/// Where case.json has "frames" and no gaps, and numbers below that are missing in the source's folder, those
+/// that are there are the known frames of one window. Throws Error naming the file.
 Case read_case(const std::string& folder);
 /// Throws Error naming the file and the array whose shape does not fit.
 Truth read_truth(const std::string& path);

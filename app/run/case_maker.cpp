@@ -13,6 +13,7 @@
 #include "app/run/inbetween_suite.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
+#include "app/run/sparse_suite.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/numpy_random.hpp"
@@ -386,7 +387,9 @@ std::vector<EvaluatedMotion> motions_of(const DataSplit& split) {
 
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string&)>& done) {
   DataSplit split = read_split(options.data, options.split);
-  if (options.suite == "inbetween") return make_inbetween_suite(options, split, done);
+  if (options.suite == "inbetween" || options.suite == "predict")
+    return make_inbetween_suite(options, split, done);
+  if (options.suite == "sparse") return make_sparse_suite(options, split, done);
   split.motions = motions_of(split);
   US_CHECK(!split.motions.empty(), options.data, ": the split \"", options.split, "\" names no motion");
   US_CHECK(options.points >= 100, "a scan of ", options.points, " points shows nobody: at least 100");

@@ -17,8 +17,10 @@ struct SuiteOptions {
       90;  ///< of a case; extraction and occluded have 12, of hands, scenes, partial and sensors fewer
   int points = 8000;   ///< of a scan, roughly
   int cases = 0;       ///< at most this many; 0: all
-  int gap = 0;         ///< of inbetween: frames that are not known
-  bool walks = false;  ///< of inbetween: walks and runs alone, with windows of their own
+  int gap = 0;         ///< of inbetween and predict: frames that are not known; 0, of predict: 15
+  int known = 0;       ///< of sparse: frames of 100 that are known
+  int markers = 0;     ///< of sparse: 16, the markers on the body; 0: none
+  bool walks = false;  ///< of inbetween, predict and sparse: walks and runs alone, with windows of their own
   uint32_t seed = 0;   ///< the same options give the same files
 };
 
@@ -45,6 +47,8 @@ struct SuiteOptions {
 ///   inbetween: each clip, with gaps (gap_plan.hpp) between 10 known frames on each side, a window every 15
 ///     frames; of `walks` 5 and every 3. Without points the truth is the source: the clip whole. With points
 ///     at most `frames` frames, gap after gap; the known frames have scans, the others' numbers are missing
+///   predict: the same, but of each window the first 8 frames are known and the rest is not
+///   sparse: see make_sparse_suite
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 
 }  // namespace understudy::app

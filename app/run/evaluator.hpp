@@ -64,6 +64,8 @@ class Evaluator {
   void push_alone(size_t frame, size_t person, const Joints& joints);
   /// Frames that were not known, filled. A sequence of which gaps alone are pushed has their figures alone.
   void push_gap(const FilledGap& gap) { gaps_.push(gap, fps_); }
+  /// How far the surface of any frame of such a sequence is from the true one.
+  void push_gap_surface(double chamfer_m) { gaps_.push_surface(chamfer_m); }
   /// Throws Error when there are fewer or more frames than the truth has.
   Metrics metrics() const;
   /// Figures of the last frame's surface, by the metric's key; those not measured are left out.

@@ -29,13 +29,13 @@ class GapScore {
   bool empty() const { return means_.empty(); }
 
   /// By key, those that are defined: gap_mpjpe_m, mean over frames and joints; gap_rel_mpjpe_m, the same less
-  /// the pelvis' place; mve_m, mean over frames and vertices; mve_3_m,
-  /// mve_8_m and mve_15_m, the mean over vertices of the 3rd, 8th and 15th frame of those gaps after which
-  /// nothing is known; chamfer_m, mean over the frames that were pushed; spread, the rank correlation over frames of
-  /// doubt and gap_mpjpe_m's error. Means over gaps: gap_foot_skate and gap_acc of the gap and a frame on
-  /// each side of it (joint_metrics.hpp), gap_foot_skate_true the truth's; seam_m, |D2 p - D2 q| over joints
-  /// and the two frames at each end of the gap, the last that is known and the first that is not, D2 the
-  /// second difference at 30 frames/s.
+  /// the pelvis' place; mve_m, mean over frames and vertices; mve_3_m, mve_8_m and mve_15_m, the mean over
+  /// vertices of the 3rd, 8th and 15th frame of those gaps after which nothing is known; chamfer_m, mean over
+  /// the frames that were pushed; spread, the rank correlation over frames of doubt and gap_mpjpe_m's error.
+  /// Means over gaps: gap_foot_skate and gap_acc of the gap and a frame on each side of it
+  /// (joint_metrics.hpp), gap_foot_skate_true the truth's; seam_m, |D2 p - D2 q| over joints and the two
+  /// frames at each end of the gap, the last that is known and the first that is not, D2 the second
+  /// difference at 30 frames/s.
   std::map<std::string, double> figures() const;
 
  private:

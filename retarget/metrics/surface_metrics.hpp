@@ -21,10 +21,10 @@ double aligned_vertex_error(const Points& p, const Points& q);
 /// others). Mean over edges of |length in p - length in q|, metres. 0 for a single vertex.
 double edge_length_error(const Points& p, const Points& q, int neighbours = 6);
 
-/// Half the sum of the mean distance from each point of p to the nearest of q and of that from q to p, metres:
-/// how far two surfaces are from each other whose points are not each other's (paper 2, section 6.2). Any
-/// numbers of points, at least one each; otherwise Error. Surfaces that slide along themselves differ by up
-/// to half the distance of their points.
+/// Half the sum of the mean distance from each point of p to the nearest of q and of that from q to p,
+/// metres: how far two surfaces are from each other whose points are not each other's (paper 2, section 6.2).
+/// Any numbers of points, at least one each; otherwise Error. Surfaces that slide along themselves differ by
+/// up to half the distance of their points.
 double chamfer_distance(const Points& p, const Points& q);
 
 /// y of the lowest vertex that is finite; none where none is.

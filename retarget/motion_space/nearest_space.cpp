@@ -151,8 +151,7 @@ void NearestSpace::fill_window(const KnownMotion& question, const Window& window
   const auto pose_of = [&](int t) {
     return pose_at(found.clip, moment(found.first, window.step * static_cast<float>(t)));
   };
-  const Outlook there = Outlook::of(pose_of(window.outlook())),
-                here = Outlook::of(known(window.outlook()));
+  const Outlook there = Outlook::of(pose_of(window.outlook())), here = Outlook::of(known(window.outlook()));
   const auto like = [&](int t) { return back_from(here, there.seen(pose_of(t))); };
   const int before = window.before - 1, after = window.count - window.after;
   const int one_end = window.before > 0 ? before : after;  // that there is

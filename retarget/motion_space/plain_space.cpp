@@ -88,7 +88,8 @@ class OngoingSpace final : public PlainSpace {
       each_unknown(question.known, part, [&](int before, int t, int after) {
         const int from = before >= 0 ? before : after;
         if (from < 0) return;
-        const int past = part < first_part_ ? -1 : next_known(question.known, part, from, before >= 0 ? -1 : 1);
+        const int past =
+            part < first_part_ ? -1 : next_known(question.known, part, from, before >= 0 ? -1 : 1);
         if (past >= 0)
           mix_part(poses[past], poses[from], static_cast<float>(t - past) / static_cast<float>(from - past),
                    part, motion.poses[t]);

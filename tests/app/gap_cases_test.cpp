@@ -6,11 +6,17 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/evaluation.hpp"
+#include "app/run/case_maker.hpp"
+#include "app/run/case_source.hpp"
 #include "app/run/case_writer.hpp"
-#include "app/run/inbetween_suite.hpp"
+#include "app/run/gap_case_writer.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
+#include "retarget/body/marker_places.hpp"
+#include "retarget/math/rotation.hpp"
 #include "tests/app/program.hpp"
 #include "tests/support/training_folder.hpp"
 
@@ -18,7 +24,7 @@ namespace understudy::app {
 namespace {
 
 TEST(GapPlan, WindowsLieBetweenBadFrames) {
-  GapPlan plan{30, 2, 3, 4, {}};  // windows of 8 frames
+  GapPlan plan{30, 2, 3, 3, 4, {}};  // windows of 8 frames
   EXPECT_EQ(window_starts(plan), (std::vector<int>{0, 4, 8, 12, 16, 20}));
   plan.bad_frames = {0, 14, 15, 24};
   EXPECT_EQ(window_starts(plan), (std::vector<int>{1, 5, 16}));
@@ -27,12 +33,40 @@ TEST(GapPlan, WindowsLieBetweenBadFrames) {
     EXPECT_EQ(known[static_cast<size_t>(t)], t != 4 && t != 5 && t != 8 && t != 9 && t != 19 && t != 20) << t;
 }
 
+TEST(GapPlan, NothingIsKnownAfterWhatIsPredicted) {
+  const auto plan =
+      gap_plan(nlohmann::json::parse(R"({"frames": 12, "gap": 3, "seen": 2, "every": 7})"), "case.json");
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->after, 0);
+  EXPECT_EQ(window_starts(*plan), (std::vector<int>{0, 7}));
+  EXPECT_EQ(window_known(*plan), (std::vector<bool>{true, true, false, false, false}));
+}
+
+TEST(GapPlan, ASequenceOfFewKnownFramesIsOneWindow) {
+  const auto plan = gap_plan(nlohmann::json::parse(R"({"frames": 5, "known": [0, 3]})"), "case.json");
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(window_starts(*plan), std::vector<int>{0});
+  EXPECT_EQ(plan->window(), 5);
+  EXPECT_EQ(known_frames(*plan), (std::vector<bool>{true, false, false, true, false}));
+  EXPECT_EQ(window_known(*plan), known_frames(*plan));
+}
+
+TEST(GapPlan, KnownFramesLieEvenly) {
+  EXPECT_EQ(evenly_known(100, 2), (std::vector<int>{0, 99}));
+  EXPECT_EQ(evenly_known(100, 5), (std::vector<int>{0, 25, 50, 74, 99}));
+  EXPECT_EQ(evenly_known(100, 100).size(), 100u);
+  EXPECT_THROW(evenly_known(100, 1), Error);
+  EXPECT_THROW(evenly_known(100, 101), Error);
+}
+
 TEST(GapPlan, IsReadFromACase) {
   const auto read = [](const char* text) { return gap_plan(nlohmann::json::parse(text), "case.json"); };
   EXPECT_FALSE(read(R"({"fps": 30})"));
   const auto plan = read(R"({"frames": 30, "gap": 5, "ends": 2, "every": 9, "bad_frames": [3]})");
   ASSERT_TRUE(plan);
   EXPECT_EQ(plan->window(), 9);
+  EXPECT_EQ(plan->before, 2);
+  EXPECT_EQ(plan->after, 2);
   EXPECT_EQ(plan->every, 9);
   EXPECT_EQ(plan->bad_frames, std::vector<int>{3});
   for (const char* wrong :
@@ -42,7 +76,11 @@ TEST(GapPlan, IsReadFromACase) {
         R"({"frames": 30, "gap": 5, "ends": 2, "every": 0})",
         R"({"frames": 30, "gap": 5, "ends": 2, "every": 9, "bad_frames": [4, 4]})",
         R"({"frames": 30, "gap": 5, "ends": 2, "every": 9, "bad_frames": [30]})",
-        R"({"frames": 1e30, "gap": 5, "ends": 2, "every": 9})"})
+        R"({"frames": 1e30, "gap": 5, "ends": 2, "every": 9})",
+        R"({"frames": 30, "gap": 5, "seen": 0, "every": 9})",
+        R"({"frames": 30, "gap": 25, "seen": 6, "every": 9})",  // longer than the clip
+        R"({"frames": 30, "known": []})", R"({"frames": 30, "known": [30]})",
+        R"({"frames": 30, "known": [2, 2]})", R"({"known": [2]})"})
     EXPECT_THROW(read(wrong), Error) << wrong;
 }
 
@@ -108,7 +146,7 @@ TEST_F(GapCases, EveryGapCountsAlikeInTheMean) {
 
 TEST_F(GapCases, AreRefusedWhereTheyCannotBeEvaluated) {
   make("a", 16, 0.1f);
-  EXPECT_NE(evaluated("magic").results[0].error.find("hold, slerp"), std::string::npos);
+  EXPECT_NE(evaluated("magic").results[0].error.find("hold, glide, coast, slerp"), std::string::npos);
   EXPECT_NE(evaluated("nearest").results[0].error.find("--data"), std::string::npos);
   EvalOptions options;
   options.cases = scratch.path("cases");
@@ -149,7 +187,8 @@ TEST_F(InbetweenSuite, HasEachClipWholeWithoutScans) {
   EXPECT_EQ(c.tags, std::vector<std::string>{"inbetween"});
   ASSERT_TRUE(c.gaps);
   EXPECT_EQ(c.gaps->frames, 60);
-  EXPECT_EQ(c.gaps->ends, 10);
+  EXPECT_EQ(c.gaps->before, 10);
+  EXPECT_EQ(c.gaps->after, 10);
   EXPECT_EQ(c.gaps->bad_frames, std::vector<int>{5});
   EXPECT_EQ(window_starts(*c.gaps), (std::vector<int>{6, 21}));
   const Truth truth = read_truth(c.truth);
@@ -197,15 +236,193 @@ TEST_F(InbetweenSuite, RefusesWhatNoClipHas) {
   EXPECT_THROW(make(), Error);
 }
 
-TEST(InbetweenTags, TellWhoTravels) {
+/// The suites predict and sparse, of the same folder, to which somebody who walks is added.
+class WalkingSuite : public InbetweenSuite {
+ protected:
+  WalkingSuite() { options.gap = 0; }
+  void SetUp() override { write_walk(); }
+  void write_walk() const {
+    NpyArray poses, trans, rate;
+    for (const Pose& pose : walk.poses) {
+      for (const Mat3& R : pose.local)
+        for (const float x : rotation_to_axis_angle(R)) poses.values.push_back(x);
+      trans.values.insert(trans.values.end(), pose.root.begin(), pose.root.end());
+    }
+    const int64_t frames = ssize(walk.poses);
+    poses.shape = {frames, 66}, trans.shape = {frames, 3};
+    rate.values = {30};
+    write_npz(scratch.path("data/motion/b/walk_poses.npz"),
+              {{"poses", poses}, {"trans", trans}, {"mocap_framerate", rate}});
+  }
+  Evaluation filled(const std::string& fill) {
+    EvalOptions eval;
+    eval.cases = options.out;
+    eval.oracle = "pose";
+    eval.fill = fill;
+    return evaluate(eval, [](const CaseResult&) {});
+  }
+  const Motion walk = builtin_motion("walk", builtin_joints());
+  static double mean(const Evaluation& evaluation, const std::string& key) {
+    for (const auto& [name, value] : evaluation.mean)
+      if (name == key) return value;
+    return std::nan("");
+  }
+};
+
+TEST_F(WalkingSuite, PredictsFromEightFramesOn) {
+  options.suite = "predict";
+  ASSERT_EQ(make(), (std::vector<std::string>{"two_poses", "walk_poses"}));
+  const Case c = read_case(options.out + "/walk_poses");
+  ASSERT_TRUE(c.gaps);
+  EXPECT_EQ(c.gaps->before, 8);
+  EXPECT_EQ(c.gaps->after, 0);
+  EXPECT_EQ(c.gaps->gap, 15);
+  EXPECT_EQ(c.tags[0], "predict");
+  const Evaluation held = filled("hold"), glided = filled("glide");
+  for (const char* key : {"mve_3_m", "mve_8_m", "mve_15_m", "gap_mpjpe_m"})
+    EXPECT_GT(mean(held, key), 0) << key;
+  EXPECT_LT(mean(held, "mve_3_m"), mean(held, "mve_8_m"));
+  EXPECT_LT(mean(glided, "mve_15_m"), 0.5 * mean(held, "mve_15_m"));
+  options.gap = 20;
+  make();
+  EXPECT_EQ(read_case(options.out + "/walk_poses").gaps->gap, 20);
+}
+
+TEST_F(WalkingSuite, StepsHaveAHundredFramesHoweverLongTheyTake) {
+  options.suite = "sparse";
+  options.known = 5;
+  const auto names = make();
+  ASSERT_GE(names.size(), 2u);
+  for (const std::string& name : names) {
+    EXPECT_EQ(name.find("walk_poses_"), 0u) << name;
+    const Case c = read_case(options.out + "/" + name);
+    EXPECT_TRUE(c.source.empty());
+    EXPECT_GT(c.fps, 33);  // at most three seconds
+    ASSERT_TRUE(c.gaps);
+    EXPECT_EQ(c.gaps->known_alone, evenly_known(100, 5));
+    const Truth truth = read_truth(c.truth);
+    EXPECT_EQ(truth.frames, 100);
+    EXPECT_EQ(truth.skin.rest.rows(), 88);
+    const int first = std::stoi(name.substr(11, 4)), frames = static_cast<int>(std::lround(2970 / c.fps));
+    for (const int t : {0, 99}) {
+      const Pose& pose = walk.poses[first + (t == 0 ? 0 : frames)];
+      EXPECT_TRUE(truth.rotations[t][LeftKnee].isApprox(pose.local[LeftKnee], 1e-4f)) << name << t;
+    }
+  }
+  const Evaluation slerped = filled("slerp"), curved = filled("hermite");
+  EXPECT_EQ(slerped.results[0].frames, 95);
+  EXPECT_TRUE(std::isnan(mean(slerped, "chamfer_m")));  // of few points nothing is told
+  EXPECT_GT(mean(slerped, "mve_m"), 0);
+  EXPECT_LT(mean(curved, "mve_m"), mean(slerped, "mve_m"));
+  options.known = 20;
+  make();
+  EXPECT_LT(mean(filled("slerp"), "mve_m"), 0.4 * mean(slerped, "mve_m"));
+}
+
+TEST_F(WalkingSuite, KnownFramesHavePointsTimesAndMarkers) {
+  options.suite = "sparse";
+  options.known = 5;
+  options.points = 50;
+  options.markers = 16;
+  options.cases = 1;
+  const auto names = make();
+  ASSERT_EQ(names.size(), 1u);
+  const Case c = read_case(options.out + "/" + names[0]);
+  const auto known = known_frames_of(c);
+  const Truth truth = read_truth(c.truth);
+  ASSERT_EQ(known.size(), 5u);
+  for (size_t i = 0; i < known.size(); ++i) {
+    EXPECT_EQ(known[i].frame, evenly_known(100, 5)[i]);
+    EXPECT_NEAR(known[i].seconds * c.fps, static_cast<double>(known[i].frame), 1e-6);
+    EXPECT_EQ(known[i].points.rows(), 50);
+    ASSERT_EQ(known[i].markers.size(), 16u);
+    const Points vertices = truth.frame_vertices(known[i].frame);
+    for (const Marker& marker : known[i].markers) {
+      EXPECT_GE(marker_named(marker.name), 0) << marker.name;
+      EXPECT_LT((vertices.rowwise() - marker.place.transpose()).rowwise().norm().minCoeff(), 1e-5f);
+    }
+    // on the surface: the boxes of the body are 12 cm wide
+    for (int p = 0; p < 50; ++p)
+      EXPECT_LT((vertices.rowwise() - known[i].points.row(p)).rowwise().norm().minCoeff(), 0.2f);
+  }
+  const std::string before = tests::read_bytes(c.source + "/frame_00025.ply");
+  make();
+  EXPECT_EQ(tests::read_bytes(c.source + "/frame_00025.ply"), before);
+}
+
+TEST_F(WalkingSuite, MarkersAloneMakeACase) {
+  options.suite = "sparse";
+  options.known = 2;
+  options.markers = 16;
+  options.cases = 1;
+  const Case c = read_case(options.out + "/" + make().at(0));
+  EXPECT_TRUE(c.source.empty());
+  EXPECT_FALSE(c.target.empty());
+  const auto known = known_frames_of(c);
+  ASSERT_EQ(known.size(), 2u);
+  EXPECT_EQ(known[1].points.rows(), 0);
+  EXPECT_EQ(known[1].markers.size(), 16u);
+}
+
+TEST_F(WalkingSuite, MarkersOfOtherFramesAreRefused) {
+  options.suite = "sparse";
+  options.known = 2;
+  options.markers = 16;
+  options.cases = 1;
+  Case c = read_case(options.out + "/" + make().at(0));
+  c.fps = 30;
+  for (const char* seconds : {"0.5166", "3.34"}) {
+    std::ofstream(c.markers) << "seconds,name,x,y,z\n"
+                             << seconds << ",a,0,0,0\n"
+                             << seconds << ",b,0,0,0\n"
+                             << seconds << ",c,0,0,0\n";
+    EXPECT_THROW(known_frames_of(c), Error) << seconds;
+  }
+}
+
+TEST_F(WalkingSuite, RefusesWhatItCannotMake) {
+  options.suite = "sparse";
+  EXPECT_THROW(make(), Error);  // how many frames are known is not said
+  options.known = 5;
+  options.markers = 7;
+  EXPECT_THROW(make(), Error);
+  options.markers = 0;
+  options.walks = true;  // no clip says that it is one
+  EXPECT_THROW(make(), Error);
+}
+
+TEST_F(WalkingSuite, MissingNumbersAreWhatIsToBeMade) {
+  options.suite = "sparse";
+  options.known = 5;
+  options.points = 40;
+  options.cases = 1;
+  const std::string folder = options.out + "/" + make().at(0);
+  const auto plan_of = [&](const std::string& json) {
+    std::ofstream(folder + "/case.json") << json;
+    return read_case(folder).gaps;
+  };
+  const auto plan = plan_of(R"({"source": "source", "truth": "truth.npz", "frames": 100})");
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->known_alone, evenly_known(100, 5));
+  EXPECT_FALSE(plan_of(R"({"source": "source", "truth": "truth.npz"})"));
+  EXPECT_THROW(plan_of(R"({"source": "source", "frames": "many"})"), Error);
+  for (int t = 0; t < 100; ++t)
+    std::filesystem::copy_file(folder + "/source/frame_00000.ply",
+                               folder + "/source/frame_" + printed("%05d", t) + ".ply",
+                               std::filesystem::copy_options::skip_existing);
+  EXPECT_FALSE(plan_of(R"({"source": "source", "truth": "truth.npz", "frames": 100})"));  // none is missing
+}
+
+TEST(GapTags, TellWhoTravels) {
   Motion motion{30, std::vector<Pose>(31), {}};
-  EXPECT_EQ(inbetween_tags(motion, {"jump"}), (std::vector<std::string>{"inbetween", "jump"}));
-  EXPECT_EQ(inbetween_tags(motion, {"run", "turn"}),
+  EXPECT_EQ(gap_tags("inbetween", motion, {"jump"}), (std::vector<std::string>{"inbetween", "jump"}));
+  EXPECT_EQ(gap_tags("inbetween", motion, {"run", "turn"}),
             (std::vector<std::string>{"inbetween", "travels", "run", "turn"}));
   for (int t = 0; t < 31; ++t) motion.poses[static_cast<size_t>(t)].root.z() = 0.021f * static_cast<float>(t);
-  EXPECT_EQ(inbetween_tags(motion, {"dance"}), (std::vector<std::string>{"inbetween", "travels", "dance"}));
+  EXPECT_EQ(gap_tags("inbetween", motion, {"dance"}),
+            (std::vector<std::string>{"inbetween", "travels", "dance"}));
   motion.fps = 25;
-  EXPECT_EQ(inbetween_tags(motion, {"dance"}), (std::vector<std::string>{"inbetween", "dance"}));
+  EXPECT_EQ(gap_tags("inbetween", motion, {"dance"}), (std::vector<std::string>{"inbetween", "dance"}));
 }
 
 }  // namespace

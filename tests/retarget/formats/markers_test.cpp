@@ -36,7 +36,8 @@ TEST_F(Markers, AreInTheOrderOfTimeWhateverThatOfTheLines) {
 }
 
 TEST_F(Markers, OfFramesAreAtTheirTimes) {
-  const auto frames = read("Frame; Name; X; Y; Z\r\n0; a; 1; 2; 3\r\n50; b; 1; 2; 3\r\n50; c; 1; 2; 3\r\n", 25);
+  const auto frames =
+      read("Frame; Name; X; Y; Z\r\n0; a; 1; 2; 3\r\n50; b; 1; 2; 3\r\n50; c; 1; 2; 3\r\n", 25);
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[1].seconds, 2);
   EXPECT_EQ(frames[1].markers.size(), 2u);

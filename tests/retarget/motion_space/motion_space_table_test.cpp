@@ -29,7 +29,8 @@ TEST(MotionSpaceTable, NamesThoseThatThereAreWhenAskedForAnother) {
     motion_space_named("magic");
     FAIL();
   } catch (const Error& wrong) {
-    EXPECT_NE(std::string(wrong.what()).find("hold, glide, coast, slerp, hermite, nearest, space"), std::string::npos);
+    EXPECT_NE(std::string(wrong.what()).find("hold, glide, coast, slerp, hermite, nearest, space"),
+              std::string::npos);
   }
 }
 

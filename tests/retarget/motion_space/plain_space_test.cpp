@@ -39,7 +39,8 @@ class MotionSpaces : public testing::TestWithParam<const char*> {
     return std::make_unique<NearestSpace>(std::vector<Clip>{clip});
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, MotionSpaces, testing::Values("hold", "glide", "coast", "slerp", "hermite", "nearest"),
+INSTANTIATE_TEST_SUITE_P(All, MotionSpaces,
+                         testing::Values("hold", "glide", "coast", "slerp", "hermite", "nearest"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_P(MotionSpaces, HasItsName) {
@@ -99,7 +100,8 @@ TEST_P(MotionSpaces, DoubtGrowsWithTheDistanceToWhatIsKnownAndWithSpeed) {
   const KnownMotion question = dance().question(20, 40, 10, 29);
   const std::vector<float> doubt = space->complete(question).doubt_m;
   for (size_t t = 10; t < 19; ++t) EXPECT_LT(doubt[t], doubt[t + 1]) << t;
-  const bool held = std::set<std::string>{"hold", "glide", "coast"}.count(GetParam()) > 0;  // from the last on
+  const bool held =
+      std::set<std::string>{"hold", "glide", "coast"}.count(GetParam()) > 0;  // from the last on
   for (size_t t = 20; t < 29; ++t) EXPECT_EQ(doubt[t] < doubt[t + 1], held) << t;
   KnownMotion faster = question;
   for (Pose& pose : faster.motion.poses)
@@ -138,8 +140,7 @@ TEST(PlainSpaces, GlidingGoesOnAndCoastingTurnsOnToo) {
     for (const Motion* motion : {&glided, &coasted})
       EXPECT_TRUE(motion->poses[t].root.isApprox(static_cast<float>(t) * last.root, 1e-5f)) << t;
     EXPECT_EQ(glided.poses[t].local[LeftKnee], last.local[LeftKnee]);
-    EXPECT_TRUE(
-        coasted.poses[t].local[LeftKnee].isApprox(rotation_from_axis_angle(Vec3(turn, 0, 0)), 1e-4f))
+    EXPECT_TRUE(coasted.poses[t].local[LeftKnee].isApprox(rotation_from_axis_angle(Vec3(turn, 0, 0)), 1e-4f))
         << t;
   }
   question.known[0] = all_parts(false);  // nobody knows how fast it went
