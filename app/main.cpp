@@ -28,6 +28,7 @@ constexpr Subcommand kSubcommands[] = {
     {"eval", "evaluates the method on a folder of cases", declare_eval},
     {"measure", "metrics of a source that need no ground truth", declare_measure},
     {"report", "compares ways to do the job: a page of tables and plots", declare_report},
+    {"steps", "how well steps are coded as points of a motion space", declare_steps},
     {"train", "trains a network", declare_train},
     {"sample", "writes the bundled samples as files", declare_sample},
     {"doctor", "reports BLAS, threads, OpenGL and weights", declare_doctor},

@@ -21,6 +21,7 @@ Action declare_cases(CLI::App& command);
 Action declare_eval(CLI::App& command);
 Action declare_measure(CLI::App& command);
 Action declare_report(CLI::App& command);
+Action declare_steps(CLI::App& command);
 Action declare_train(CLI::App& command);
 Action declare_sample(CLI::App& command);
 Action declare_doctor(CLI::App& command);

@@ -48,7 +48,23 @@ void add_own(CLI::App& command, nn::MotionTrainOptions& options) {
 
 void add_own(CLI::App&, nn::PartTrainOptions&) {}
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
-void add_own(CLI::App&, nn::MotionSpaceTrainOptions&) {}
+void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
+  command
+      .add_option(
+          "--form", options.form,
+          "space: windows with holes, for filling (default); paper: steps as codes, paper 2's network")
+      ->check(CLI::IsMember({"space", "paper"}));
+  const std::string of_paper = " (--form paper)";
+  command.add_option("--code", options.code, "numbers of a code (default: 64)" + of_paper)
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--kl", options.kl, "weight of the divergence of codes (default: 0.01)" + of_paper)
+      ->check(CLI::Range(0.0, 100.0));
+  command.add_option("--clips", options.clips, "share of the clips to learn from (default: 1)" + of_paper)
+      ->check(CLI::Range(0.01, 1.0));
+  command.add_flag("!--no-surface", options.surface, "without phase 2, on vertices" + of_paper);
+  command.add_flag("!--not-told", options.told, "the decoder is not told the body" + of_paper);
+  command.add_flag("!--no-times", options.timed, "without time stamps" + of_paper);
+}
 
 /// A subcommand of `train`: a network with the options that all have and its own.
 template <class Options>
@@ -72,7 +88,8 @@ Action declare_train(CLI::App& command) {
   add_network<nn::PartTrainOptions>(command, "the part refiner: arms, hands, legs, feet, head", chosen);
   add_network<nn::MotionTrainOptions>(command, "motion transfer of paper 1", chosen);
   add_network<nn::DeformationTrainOptions>(command, "skin weights and pose-corrective offsets", chosen);
-  add_network<nn::MotionSpaceTrainOptions>(command, "what lies between known frames", chosen);
+  add_network<nn::MotionSpaceTrainOptions>(command, "what lies between known frames, and steps as codes",
+                                           chosen);
   return [chosen] { return (*chosen)(); };
 }
 

@@ -145,6 +145,10 @@ std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder) {
   return plugin().load_motion_space(folder + "/motion_space.weights");
 }
 
+std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder) {
+  return plugin().load_motion_coder(folder + "/motion_steps.weights");
+}
+
 RuntimeReport runtime_report() {
   RuntimeReport report = plugin().report();
   const auto cores = std::thread::hardware_concurrency();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 
 namespace understudy::nn {
@@ -32,6 +33,10 @@ Networks load_networks(const NetworkOptions& options, const NetworkParts& parts 
 /// What fills gaps, with the weights in that folder. Throws Error when they are missing or of another
 /// version.
 std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder);
+
+/// What codes movements as points of a space, with the weights in that folder. Throws Error when they are
+/// missing or of another version.
+std::unique_ptr<MotionCoder> load_motion_coder(const std::string& folder);
 
 /// The folder that weights are read from; empty when there is none.
 std::string weights_folder(const NetworkOptions& options);

@@ -7,7 +7,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 9;
+constexpr int kPluginVersion = 10;
 
 struct PluginApi {
   int version;
@@ -15,6 +15,7 @@ struct PluginApi {
   void (*send_log_to)(void (*sink)(log::Level, const std::string&));
   Networks (*load)(const NetworkOptions& options, const std::string& folder, const NetworkParts& parts);
   std::unique_ptr<MotionSpace> (*load_motion_space)(const std::string& path);
+  std::unique_ptr<MotionCoder> (*load_motion_coder)(const std::string& path);
   RuntimeReport (*report)();
   int (*train)(const AnyTrainOptions& options);
 };

@@ -46,6 +46,14 @@ struct DeformationTrainOptions : TrainOptions {
 
 struct MotionSpaceTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "motion-space";
+  std::string form = "space";  ///< "space": windows with holes; "paper": steps as codes
+  // Of "paper" alone:
+  int code = 64;        ///< numbers of a code
+  double kl = 0.01;     ///< weight of the Kullback-Leibler divergence, w_KL
+  bool surface = true;  ///< phase 2, on vertices
+  double clips = 1;     ///< share of the clips that is learned from
+  bool told = true;     ///< the decoder is told the body
+  bool timed = true;    ///< movements have their times
 };
 
 using AnyTrainOptions = std::variant<SkeletonTrainOptions, PartTrainOptions, MotionTrainOptions,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/pipeline/motion_space.hpp"
 
 namespace understudy::nn {
@@ -19,5 +20,8 @@ std::unique_ptr<MotionTransfer> load_paper_transfer(const std::string& path);
 
 /// Fills gaps by the network that corrects smooth curves (InbetweenNet): the motion space `space`.
 std::unique_ptr<MotionSpace> load_inbetween_space(const std::string& path);
+
+/// Codes movements of one cycle of the legs by the network of paper 2, section 3 (StepCvae).
+std::unique_ptr<MotionCoder> load_step_coder(const std::string& path);
 
 }  // namespace understudy::nn

@@ -114,7 +114,7 @@ nn::WeightsHeader InbetweenTrainer::header() const {
 }  // namespace
 
 int train(const nn::MotionSpaceTrainOptions& options) {
-  return InbetweenTrainer(options).run();
+  return options.form == "paper" ? train_steps(options) : InbetweenTrainer(options).run();
 }
 
 }  // namespace understudy::training

@@ -94,6 +94,8 @@ class TrainingRun {
   virtual void take_own(torch::serialize::InputArchive&) {}
 
   const TrainingProgress& progress() const { return progress_; }
+  /// Of the training, 0 .. 1.
+  double done_share() const;
   const torch::Device& device() const { return device_; }
 
  private:
@@ -109,7 +111,6 @@ class TrainingRun {
   void append_row(const Figures& row);
   void log_figures(const Figures& row) const;
   Figures figures() const;
-  double done_share() const;
   double learning_rate() const;
   std::string checkpoint() const { return options_.out + ".checkpoint"; }
 
@@ -135,5 +136,7 @@ int train(const nn::PartTrainOptions& options);
 int train(const nn::MotionTrainOptions& options);
 int train(const nn::DeformationTrainOptions& options);
 int train(const nn::MotionSpaceTrainOptions& options);
+/// Of the form "paper"; samples are steps.
+int train_steps(const nn::MotionSpaceTrainOptions& options);
 
 }  // namespace understudy::training
