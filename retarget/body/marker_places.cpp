@@ -5,24 +5,25 @@
 
 namespace understudy {
 
-// Offsets are measured on the built-in person and rounded; marker_vertices finds the skin.
+// Offsets are those of the built-in person and of a mean human body, between both; marker_vertices finds the
+// skin.
 const std::array<MarkerPlace, kMarkerCount> kMarkerPlaces = {
-    {{"forehead", Head, {0, 0.11f, 0.13f}},
-     {"back", Spine3, {0, 0.10f, -0.15f}},
-     {"left_shoulder", LeftShoulder, {0, 0.08f, 0}},
-     {"right_shoulder", RightShoulder, {0, 0.08f, 0}},
-     {"left_elbow", LeftElbow, {0, 0, -0.06f}},
-     {"right_elbow", RightElbow, {0, 0, -0.06f}},
-     {"left_wrist", LeftWrist, {0, 0.04f, 0}},
-     {"right_wrist", RightWrist, {0, 0.04f, 0}},
-     {"left_hip", Pelvis, {0.15f, 0.08f, 0.13f}},
-     {"right_hip", Pelvis, {-0.15f, 0.08f, 0.13f}},
-     {"left_knee", LeftKnee, {0, 0, 0.08f}},
-     {"right_knee", RightKnee, {0, 0, 0.08f}},
-     {"left_ankle", LeftAnkle, {0.05f, 0, 0}},
-     {"right_ankle", RightAnkle, {-0.05f, 0, 0}},
-     {"left_toe", LeftFoot, {0, 0.03f, 0.04f}},
-     {"right_toe", RightFoot, {0, 0.03f, 0.04f}}}};
+    {{"forehead", Head, {0, 0.105f, 0.115f}},
+     {"back", Spine3, {0, 0.11f, -0.07f}},
+     {"left_shoulder", LeftShoulder, {0, 0.067f, 0}},
+     {"right_shoulder", RightShoulder, {0, 0.067f, 0}},
+     {"left_elbow", LeftElbow, {0, 0, -0.045f}},
+     {"right_elbow", RightElbow, {0, 0, -0.045f}},
+     {"left_wrist", LeftWrist, {0, 0.022f, 0}},
+     {"right_wrist", RightWrist, {0, 0.022f, 0}},
+     {"left_hip", Pelvis, {0.14f, 0.077f, 0.118f}},
+     {"right_hip", Pelvis, {-0.14f, 0.077f, 0.118f}},
+     {"left_knee", LeftKnee, {0, 0, 0.07f}},
+     {"right_knee", RightKnee, {0, 0, 0.07f}},
+     {"left_ankle", LeftAnkle, {0.048f, -0.008f, 0}},
+     {"right_ankle", RightAnkle, {-0.048f, -0.008f, 0}},
+     {"left_toe", LeftFoot, {0, 0.022f, 0.04f}},
+     {"right_toe", RightFoot, {0, 0.022f, 0.04f}}}};
 
 int marker_named(const std::string& name) {
   for (int m = 0; m < kMarkerCount; ++m)

@@ -13,12 +13,11 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
-#include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/body/marker_places.hpp"
-#include "retarget/math/rotation.hpp"
 #include "tests/app/program.hpp"
 #include "tests/support/training_folder.hpp"
+#include "tests/support/walk_clip.hpp"
 
 namespace understudy::app {
 namespace {
@@ -240,20 +239,6 @@ TEST_F(InbetweenSuite, RefusesWhatNoClipHas) {
 class WalkingSuite : public InbetweenSuite {
  protected:
   WalkingSuite() { options.gap = 0; }
-  void SetUp() override { write_walk(); }
-  void write_walk() const {
-    NpyArray poses, trans, rate;
-    for (const Pose& pose : walk.poses) {
-      for (const Mat3& R : pose.local)
-        for (const float x : rotation_to_axis_angle(R)) poses.values.push_back(x);
-      trans.values.insert(trans.values.end(), pose.root.begin(), pose.root.end());
-    }
-    const int64_t frames = ssize(walk.poses);
-    poses.shape = {frames, 66}, trans.shape = {frames, 3};
-    rate.values = {30};
-    write_npz(scratch.path("data/motion/b/walk_poses.npz"),
-              {{"poses", poses}, {"trans", trans}, {"mocap_framerate", rate}});
-  }
   Evaluation filled(const std::string& fill) {
     EvalOptions eval;
     eval.cases = options.out;
@@ -261,7 +246,7 @@ class WalkingSuite : public InbetweenSuite {
     eval.fill = fill;
     return evaluate(eval, [](const CaseResult&) {});
   }
-  const Motion walk = builtin_motion("walk", builtin_joints());
+  const Motion walk = test::write_walk_clip(scratch.path("data/motion/b/walk_poses.npz"));
   static double mean(const Evaluation& evaluation, const std::string& key) {
     for (const auto& [name, value] : evaluation.mean)
       if (name == key) return value;

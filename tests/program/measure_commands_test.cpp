@@ -2,6 +2,7 @@
 
 #include "tests/app/cli_fixture.hpp"
 #include "tests/support/training_folder.hpp"
+#include "tests/support/walk_clip.hpp"
 
 namespace understudy::tests {
 namespace {
@@ -110,6 +111,38 @@ TEST_F(Measuring, GapsAreFilledFromScansAndFromTruePoses) {
                 .code,
             0);
   EXPECT_NE(read_bytes(out("page/report.md")).find("| inbetween_5 | hold |"), std::string::npos);
+}
+
+TEST_F(Measuring, WhatIsToComeAndWhatIsSparseAreMadeAndReported) {
+  test::write_training_folder(scratch.path("data"));
+  test::write_walk_clip(scratch.path("data/motion/b/walk_poses.npz"));
+  const auto make = [&](std::vector<std::string> more, const std::string& to) {
+    std::vector<std::string> command = {"cases", scratch.path("data"), "--out", scratch.path("cases/" + to)};
+    command.insert(command.end(), more.begin(), more.end());
+    return run_program(command);
+  };
+  ASSERT_EQ(make({"--suite", "predict", "--points", "0"}, "predict").code, 0);
+  ASSERT_EQ(make({"--suite", "sparse", "--known", "5", "--points", "0", "--cases", "2"}, "sparse").code, 0);
+  const Finished scans = make(
+      {"--suite", "sparse", "--known", "5", "--points", "2000", "--markers", "16", "--cases", "1"}, "scans");
+  ASSERT_EQ(scans.code, 0) << scans.err;
+  write_text(scratch.path("rows.json"),
+             R"({"rows": [{"table": "predict", "name": "glide", "suite": "predict", "oracle": "pose",
+                           "fill": "glide"},
+                          {"table": "sparse", "name": "slerp", "suite": "sparse", "oracle": "pose",
+                           "fill": "slerp"},
+                          {"table": "sparse", "name": "extraction", "suite": "scans", "fill": "hermite"}]})");
+  const Finished run = run_program({"report", "--cases", scratch.path("cases"), "--rows",
+                                    scratch.path("rows.json"), "--out", out("page")});
+  ASSERT_EQ(run.code, 0) << run.err << run.out;
+  const std::string page = read_bytes(out("page/report.md"));
+  for (const char* row : {"| predict | glide |", "| sparse | slerp |", "| scans | extraction |"})
+    EXPECT_NE(page.find(row), std::string::npos) << row << page;
+  const Json mean = Json::parse(read_bytes(out("page/rows/sparse_extraction_scans.json")))["mean"];
+  for (const char* key : {"mve_m", "gap_mpjpe_m", "chamfer_m"}) EXPECT_GT(mean[key], 0) << key;
+  EXPECT_LE(mean["chamfer_m"], mean["mve_m"]);
+  std::filesystem::remove_all(scratch.path("out"));
+  expect_clean_failure(make({"--suite", "sparse", "--points", "0"}, "none"), "--known");
 }
 
 TEST_F(Measuring, ReportRefusesRowsThatItDoesNotKnow) {

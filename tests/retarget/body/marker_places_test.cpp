@@ -32,7 +32,7 @@ TEST(MarkerPlaces, LieOnTheSkinOfPeopleOfAnySize) {
     ASSERT_EQ(marked.size(), size_t{kMarkerCount});
     EXPECT_EQ(std::set<int>(marked.begin(), marked.end()).size(), size_t{kMarkerCount});
     for (int m = 0; m < kMarkerCount; ++m)
-      EXPECT_LT((points.row(m) - vertices.row(marked[m])).norm(), 0.035f * size) << kMarkerPlaces[m].name;
+      EXPECT_LT((points.row(m) - vertices.row(marked[m])).norm(), 0.025f * size) << kMarkerPlaces[m].name;
   }
 }
 
