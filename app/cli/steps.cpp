@@ -57,8 +57,10 @@ class StepsReport {
   void add_linear() {
     const auto train = read_step_clips(read_split(options_.data, "train"), body_.joints);
     const RowMatrix rows = step_rows(train, leg_length(body_.joints));
-    for (const int size : options_.linear)
+    for (const int size : options_.linear) {
       add("linear " + std::to_string(size), *fit_linear_coder(rows, size));
+      add("linear " + std::to_string(size) + " by reach", *fit_linear_coder(rows, size, &body_));
+    }
   }
 
   const Json& rows() const { return rows_; }
@@ -95,7 +97,8 @@ Action declare_steps(CLI::App& command) {
                      "folders with motion_steps.weights to compare (default: the program's own)");
   command
       .add_option("--linear", options->linear,
-                  "principal components in their place, so many each: fitted to the split train")
+                  "principal components beside them, so many: fitted to the split train, each number "
+                  "counting alike, and as much as it moves the surface")
       ->delimiter(',')
       ->check(CLI::Range(1, 1024));
   command.add_option("--frames", options->score.frames, "frames that are compared of a step (default: 100)")

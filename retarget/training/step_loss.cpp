@@ -17,8 +17,8 @@ torch::Tensor surface_loss(const torch::Tensor& squared) {
 LossSum step_loss(nn::StepCvae& net, const StepBatch& batch, const torch::Tensor& noise,
                   const SurfaceDistance& surface, const StepLossOptions& options, StepBalances& balances) {
   const nn::StepCodes codes = net->encode(batch.movements);
-  const auto hidden = net->hidden(codes.mean + noise * (0.5 * codes.log_variance).exp(), batch.rest);
-  const auto made = net->movements(hidden);
+  const auto drawn = codes.mean + noise * (0.5 * codes.log_variance).exp();
+  const auto made = net->decode(drawn, batch.rest);
   const auto part = [&](int64_t first, int64_t count) {
     return part_loss(made, batch.movements, first, count);
   };
@@ -33,7 +33,7 @@ LossSum step_loss(nn::StepCvae& net, const StepBatch& batch, const torch::Tensor
     losses = {pose, path};
   if (net->options().timed) losses.push_back(time);
   LossBalance& balance = options.on_surface ? balances.surface : balances.numbers;
-  if (options.balance) balance.update(losses, hidden);
+  if (options.balance) balance.update(losses, drawn);
   const double numbers = options.on_surface ? 0 : 1;
   LossSum loss;  // the learning curve shows all of them in both phases
   loss.add("pose_loss", pose, numbers);

@@ -1,5 +1,6 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/motion_space/linear_coder.hpp"
 #include "retarget/motion_space/step_score.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/training/step_loss.hpp"
@@ -9,7 +10,7 @@ namespace understudy::training {
 namespace {
 
 constexpr int kStepBatch = 256;
-constexpr double kPhaseOne = 0.4;  // share of the training
+constexpr double kPhaseOne = 0.2;  // share of the training
 constexpr int kBalanceEvery = 10;  // steps
 constexpr StepScoreOptions kDevScore{20, 60};
 
@@ -35,6 +36,15 @@ struct StepFolder {
   ShapedBody mean;
   std::vector<StepClip> clips;
 };
+
+/// Begins as the linear space of the steps, each number counting as much as it moves the surface.
+void begin_linear(const StepFolder& folder, nn::StepCvae& net) {
+  const RowMatrix rows = step_rows(folder.clips, leg_length(folder.mean.joints));
+  const auto code = static_cast<int>(net->options().code);
+  const LinearSpace space(rows, surface_reach(folder.mean, rows.colwise().mean()), code);
+  net->begin_linear(nn::tensor_of(space.mean).squeeze(1), nn::tensor_of(space.to_codes),
+                    nn::tensor_of(space.to_movements));
+}
 
 nn::StepCvaeOptions form_of(const nn::MotionSpaceTrainOptions& options) {
   nn::StepCvaeOptions form;
@@ -84,6 +94,7 @@ StepTrainer::StepTrainer(const nn::MotionSpaceTrainOptions& options)
   loss_.kl = options.kl;
   for (nn::StepCvae* net : {&net_, &average_})
     (*net)->set_usual(nn::tensor_of(train_.mean.joints), data_.mean_seconds());
+  begin_linear(train_, net_);
   own(net_.ptr(), average_.ptr(),
       std::make_unique<torch::optim::AdamW>(net_->parameters(),
                                             torch::optim::AdamWOptions().weight_decay(0.01)));

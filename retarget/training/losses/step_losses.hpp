@@ -10,10 +10,9 @@
 
 namespace understudy::training {
 
-/// Squared distance of the vertices of a body in two poses, summed over as many as paper 2's phase 2 needs
-/// (eq. 2), for linear blend skinning: exact for all vertices of the body, though none is made. A vertex is
-/// linear in the joints' transforms, v = sum_j w_j T_j x, so the mean of |v - v^|^2 is a quadratic form of T -
-/// T^ whose matrix [88, 88] depends on the body alone.
+/// Distance of the vertices of a body in two movements (paper 2, eq. 2), by linear blend skinning: exact for
+/// all vertices, though none is made. A vertex is linear in the joints' transforms, v = sum_j w_j T_j x, so
+/// the mean of |v - v^|^2 is a quadratic form of T - T^ whose matrix [88, 88] depends on the body alone.
 class SurfaceDistance {
  public:
   explicit SurfaceDistance(const ShapedBody& body);

@@ -204,6 +204,19 @@ TEST_F(StepScores, WhatIsAsideAndSlowIsToldOnTheMeanBody) {
   EXPECT_EQ(score.walks.joints_mm, 0);
 }
 
+TEST_F(StepScores, TheSurfaceGoesAsFarAsThePathAndFartherWithTheHipThanWithTheHand) {
+  const StepNumbers numbers = step_numbers(performed_step(clip_, clip_.steps[1], 0.8f), clip_.rest);
+  const StepNumbers reach = surface_reach(body_, numbers);
+  EXPECT_NEAR(reach(kStepTurns + 4), leg_length(body_.joints), 1e-3f);
+  EXPECT_EQ(reach(kStepNumbers - 1), 1);
+  EXPECT_EQ(reach(0), reach(kKnotTurns));  // of another knot
+  const auto of = [&](int joint) { return reach.segment(6 * joint, 6).norm(); };
+  EXPECT_GT(of(Pelvis), of(LeftHip));
+  EXPECT_GT(of(LeftHip), of(LeftKnee));
+  EXPECT_GT(of(LeftElbow), of(LeftWrist));
+  EXPECT_NEAR(of(LeftHip), of(RightHip), 0.5f * of(LeftHip));
+}
+
 TEST_F(StepScores, RowsAreOfStepsAndTheirMirrorImages) {
   const RowMatrix rows = step_rows({clip_}, leg_length(body_.joints));
   ASSERT_EQ(rows.rows(), 2 * ssize(clip_.steps));

@@ -11,7 +11,9 @@
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/motion_space/linear_coder.hpp"
 #include "retarget/nn/load.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/step_loss.hpp"
 #include "retarget/training/training_run.hpp"
@@ -182,6 +184,29 @@ TEST_F(Steps, OneBatchCanBeLearntByHeartInBothPhases) {
     }
     EXPECT_LT(last, 0.1 * first) << on_surface;
   }
+}
+
+TEST_F(Steps, BeginsAsALinearCoder) {
+  const ShapedBody body = mean();
+  const auto clips = read_step_clips(read_split(folder_.path(), "train"), body.joints);
+  const RowMatrix rows = step_rows(clips, leg_length(body.joints));
+  const LinearSpace space(rows, surface_reach(body, rows.colwise().mean()), 6);
+  nn::StepCvae net(kSmallCvae);
+  net->begin_linear(nn::tensor_of(space.mean).squeeze(1), nn::tensor_of(space.to_codes),
+                    nn::tensor_of(space.to_movements));
+  const auto linear = fit_linear_coder(rows, 6, &body), coder = nn::step_coder(net);
+  const TimedPoses movement =
+      movement_of(clips[0].clip.motion, clips[0].steps[0].first, clips[0].steps[0].last);
+  const auto a = linear->encode(movement, body.joints), b = coder->encode(movement, body.joints);
+  for (size_t i = 0; i < a.mean.size(); ++i) EXPECT_NEAR(a.mean[i], b.mean[i], 1e-3f);
+  const TimedPoses p = linear->decode(a.mean, body.joints), q = coder->decode(a.mean, body.joints);
+  EXPECT_NEAR(p.duration(), q.duration(), 1e-4f);
+  for (size_t k = 0; k < p.poses.size(); ++k)
+    EXPECT_LT((forward_kinematics(body.joints, p.poses[k]).joints -
+               forward_kinematics(body.joints, q.poses[k]).joints)
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-3f);
 }
 
 TEST_F(Steps, GoingOnFromACheckpointIsTheSameAsNeverStopping) {
