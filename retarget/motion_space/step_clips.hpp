@@ -17,8 +17,8 @@ struct StepClip {
   std::vector<Step> steps;       ///< at least one
 };
 
-/// The clips of a split in which somebody steps. `mean`: the joints that stand for a performer whose file does
-/// not tell them. Throws Error naming a file that cannot be read, and where nobody steps.
+/// The clips of a split in which somebody steps. `mean`: the joints that stand for a performer whose file
+/// does not tell them. Throws Error naming a file that cannot be read, and where nobody steps.
 std::vector<StepClip> read_step_clips(const DataSplit& split, const Joints& mean);
 
 /// The body that stands for all of a data folder, its pelvis at the origin. Throws Error naming the file.

@@ -19,8 +19,8 @@ constexpr float kLongestMovement = 10;  ///< seconds
 using StepNumbers = Eigen::VectorXf;
 
 /// Of a movement of the body with these T-pose joints, [kStepNumbers]: seen from its first pose, which is
-/// above the origin and faces +z. Throws Error for fewer than two poses, poses that are not finite, times that
-/// do not begin at 0 or do not rise, or more than kLongestMovement.
+/// above the origin and faces +z. Throws Error for fewer than two poses, poses that are not finite, times
+/// that do not begin at 0 or do not rise, or more than kLongestMovement.
 StepNumbers step_numbers(const TimedPoses& movement, const Joints& rest);
 
 /// Writes the row of poses that are evenly spread over `seconds` and seen from the first; kKnots of them.

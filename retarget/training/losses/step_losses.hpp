@@ -32,12 +32,12 @@ class SurfaceDistance {
 torch::Tensor part_loss(const torch::Tensor& movements, const torch::Tensor& truth, int64_t first,
                         int64_t count);
 
-/// Divergence of N(mean, exp(log_variance)) from N(0, 1), summed over the code's numbers and averaged over the
-/// batch, nats.
+/// Divergence of N(mean, exp(log_variance)) from N(0, 1), summed over the code's numbers and averaged over
+/// the batch, nats.
 torch::Tensor divergence(const torch::Tensor& mean, const torch::Tensor& log_variance);
 
-/// Weights of losses by the norms of their gradients, so that they fall in like proportions (GradNorm, Chen et
-/// al. 2018). The first weight stays 1.
+/// Weights of losses by the norms of their gradients, so that they fall in like proportions (GradNorm, Chen
+/// et al. 2018). The first weight stays 1.
 class LossBalance {
  public:
   explicit LossBalance(int64_t losses);
