@@ -24,6 +24,7 @@ constexpr Subcommand kSubcommands[] = {
     {"retarget", "lets a target perform what a source does", declare_retarget},
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
+    {"blend", "makes what lies between two to four motions", declare_blend},
     {"cases", "makes suites of test cases from people and motions", declare_cases},
     {"eval", "evaluates the method on a folder of cases", declare_eval},
     {"measure", "metrics of a source that need no ground truth", declare_measure},

@@ -16,6 +16,7 @@ using Action = std::function<int()>;
 Action declare_retarget(CLI::App& command);
 Action declare_export(CLI::App& command);
 Action declare_fill(CLI::App& command);
+Action declare_blend(CLI::App& command);
 Action declare_import_worker(CLI::App& command);
 Action declare_cases(CLI::App& command);
 Action declare_eval(CLI::App& command);

@@ -29,6 +29,7 @@ std::unique_ptr<Studio> headless_studio(const std::string& weights) {
   StudioServices services;
   services.networks = program.networks;
   services.motion_space = program.motion_space;
+  services.motion_coder = program.motion_coder;
   return std::make_unique<Studio>(std::move(services));
 }
 

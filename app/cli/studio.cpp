@@ -15,8 +15,13 @@
 
 namespace understudy::app {
 
+std::function<std::shared_ptr<MotionCoder>()> coder_loader(const std::string& /*weights*/) {
+  return {};
+}
+
 StudioServices studio_services(const std::string& weights) {
   StudioServices services;
+  services.motion_coder = coder_loader(weights);
   services.networks = [weights](const Method& method, const NetworkParts& parts) {
     return nn::load_networks(network_options({method, weights, {}, {}, {}}), parts);
   };

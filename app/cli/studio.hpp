@@ -11,6 +11,8 @@ namespace understudy::app {
 /// The trained networks, loaded when a frame is first made, and the bundled samples. weights: their folder;
 /// empty: beside the program.
 StudioServices studio_services(const std::string& weights);
+/// Loads what codes movements, with the weights in that folder.
+std::function<std::shared_ptr<MotionCoder>()> coder_loader(const std::string& weights);
 /// By its name on the command line: any, egl, osmesa, null.
 render::ContextKind context_kind(const std::string& name);
 

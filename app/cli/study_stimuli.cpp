@@ -42,7 +42,8 @@ int make(const Options& options) {
   StimuliOptions how = options.stimuli;
   how.study_folder = folder_of_file(options.study);
   how.made_by = program.weights();
-  const StimuliReport report = make_stimuli(study, {program.networks, progress_lines()}, how);
+  const StimuliReport report =
+      make_stimuli(study, {program.networks, progress_lines(), program.motion_coder}, how);
   std::printf("%s: %d clips", how.out.c_str(), report.clips);
   if (report.made == 0)
     std::printf(", all were there\n");

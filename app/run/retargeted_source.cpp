@@ -13,6 +13,7 @@ Observation observed(Observer& observer, const SourceFrame& frame, float dt) {
   if (!frame.skeleton) return observer.observe(frame.mesh, dt);
   Observation seen = observer.observe(*frame.skeleton, dt);
   seen.points = frame.mesh.vertices.rows();
+  seen.doubt_m = frame.doubt_m;
   return seen;
 }
 

@@ -286,6 +286,65 @@ class MovingSkeleton final : public AnimatedSource {
   SkeletalMotion motion_;
 };
 
+/// An octahedron from each joint to each of its children: something to look at.
+Mesh bone_shapes(const Joints& joints) {
+  constexpr float kThickness = 0.09f, kRingAt = 0.15f;  // of a bone's length
+  constexpr int kCorners = 6, kFaces = 8;
+  Mesh mesh;
+  mesh.vertices.resize((kJointCount - 1) * kCorners, 3);
+  mesh.faces.resize((kJointCount - 1) * kFaces, 3);
+  for (int j = 1; j < kJointCount; ++j) {
+    const Vec3 from = joints.row(kParents[j]).transpose(), to = joints.row(j).transpose(), along = to - from;
+    const Vec3 side = along.unitOrthogonal() * kThickness * along.norm();
+    const Vec3 other = along.stableNormalized().cross(side), ring = from + kRingAt * along;
+    const int first = (j - 1) * kCorners;
+    int row = first;
+    for (const Vec3& v :
+         {from, to, Vec3(ring + side), Vec3(ring + other), Vec3(ring - side), Vec3(ring - other)})
+      mesh.vertices.row(row++) = v.transpose();
+    for (int i = 0; i < 4; ++i) {
+      const int a = first + 2 + i, b = first + 2 + (i + 1) % 4, face = (j - 1) * kFaces + 2 * i;
+      mesh.faces.row(face) << first, b, a;
+      mesh.faces.row(face + 1) << first + 1, a, b;
+    }
+  }
+  return mesh;
+}
+
+/// What lies between skeletal motions: made, all of it.
+class BlendedSource final : public AnimatedSource {
+ public:
+  BlendedSource(BlendedMotion blend, const SourceOptions& options)
+      : AnimatedSource(static_cast<double>(blend.motion.fps), ssize(blend.motion.poses)),
+        blend_(std::move(blend)) {
+    const std::string name = name_of(options);
+    std::string sentence = printed("blended by the coder %s, %.2f s a cycle", blend_.coder.c_str(),
+                                   static_cast<double>(blend_.seconds));
+    for (const auto* notes : {&blend_.notes, &blend_.warnings})
+      for (const std::string& note : *notes) append_item(sentence, note, "; ");
+    set_decision(sentence, Eigen::Matrix4d::Identity());
+    if (options.quiet) return;
+    for (const std::string& note : blend_.notes) log::info(name + ": " + note);
+    for (const std::string& warning : blend_.warnings) log::warn(name + ": " + warning);
+  }
+
+ private:
+  SourceFrame frame_at(int64_t frame) const override {
+    const PosedSkeleton posed = forward_kinematics(blend_.rest, blend_.motion.poses[frame]);
+    Extraction skeleton;
+    skeleton.joints = posed.joints;
+    skeleton.global = posed.global;
+    skeleton.exact = true;
+    SourceFrame out;
+    out.mesh = bone_shapes(posed.joints);
+    out.skeleton = std::move(skeleton);
+    out.doubt_m = blend_.motion.doubt_m[frame];
+    return out;
+  }
+
+  BlendedMotion blend_;
+};
+
 /// The surface of an animated character, sampled anew in each frame: a scan of it.
 class ScannedCharacter final : public AnimatedSource {
  public:
@@ -375,6 +434,16 @@ void check_skeletal_options(const SourceOptions& options) {
   US_CHECK(options.times.empty(), options.path, ": is a skeletal motion, ", kTimesAreFor);
 }
 
+void check_blend_options(const SourceOptions& options) {
+  const std::string name = name_of(options);
+  check_no_skeleton(options, "is blended with other motions");
+  US_CHECK(options.motion.empty() && options.betas.empty() && !options.as_scan && !options.follow, name,
+           ": is a blend of skeletal motions, there is no body or scan");
+  US_CHECK(options.edits.empty() && options.person.empty(), name,
+           ": is a blend of skeletal motions, only scans are cleaned and hold several people");
+  US_CHECK(options.times.empty(), name, ": is a blend of skeletal motions, ", kTimesAreFor);
+}
+
 std::unique_ptr<Source> as_scan(Character character, const SourceOptions& options) {
   US_CHECK(character.vertex_count() > 0, options.path, ": has no surface to sample as a scan");
   const int clip = chosen_clip(character, options.clip);
@@ -412,6 +481,18 @@ bool turn_upright(Motion& motion, const std::string& up) {
   return true;
 }
 
+SourceOptions blended_source(BlendRecipe blend) {
+  SourceOptions source;
+  if (!blend.parts.empty()) source.path = blend.parts.front().path;
+  source.blend = std::move(blend);
+  return source;
+}
+
+std::string name_of(const SourceOptions& options) {
+  if (options.blend) return name_of(*options.blend);
+  return file_name(options.motion.empty() ? options.path : options.motion);
+}
+
 SourceOptions without_people(SourceOptions options) {
   options.person.clear();
   options.people.clear();
@@ -429,6 +510,7 @@ int person_number(const std::string& person) {
 
 void check_source_options(const SourceOptions& options) {
   person_number(options.person);
+  if (options.blend) return check_blend_options(options);
   if (!options.motion.empty()) return check_body_options(options);
   if (is_motion_file(options.path)) return check_skeletal_options(options);
   std::error_code failed;
@@ -436,8 +518,13 @@ void check_source_options(const SourceOptions& options) {
   if (is_folder || !may_hold_motion(options.path)) check_scan_options(options);
 }
 
-std::unique_ptr<Source> open_source(const SourceOptions& options) {
+std::unique_ptr<Source> open_source(const SourceOptions& options, MotionBlender* blender) {
   check_source_options(options);
+  if (options.blend) {
+    MotionBlender plain;
+    return std::make_unique<BlendedSource>((blender ? blender : &plain)->make(*options.blend, options.fps),
+                                           options);
+  }
   if (!options.motion.empty())
     return std::make_unique<PerformingBody>(options, read_amass_motion(options.motion));
   std::optional<Character> moving = read_motion(options.path);

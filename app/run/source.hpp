@@ -1,5 +1,5 @@
-// Where the frames come from: scans on disk, an SMPL-format body that performs an AMASS-format motion, or a
-// skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF).
+// Where the frames come from: scans on disk, an SMPL-format body that performs an AMASS-format motion, a
+// skeleton that moves (BVH, AMASS-format motion, animated FBX, DAE, GLB, glTF), or a blend of such motions.
 #pragma once
 
 #include <functional>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/motion_blender.hpp"
 #include "retarget/base/fields.hpp"
 #include "retarget/character/bone_map.hpp"
 #include "retarget/character/character.hpp"
@@ -21,7 +22,8 @@
 namespace understudy::app {
 
 struct SourceOptions {
-  std::string path;          ///< scans, a skeletal motion, or an SMPL-format body where `motion` is given
+  /// scans, a skeletal motion, or an SMPL-format body where `motion` is given; of a blend its first part
+  std::string path;
   std::string motion;        ///< AMASS-format .npz that the body performs; empty: there is no body
   std::vector<float> betas;  ///< of the performing body; empty: those in the motion's file
   double fps = 0;            ///< 0: the motion's own, as `times` tell, or 30
@@ -35,6 +37,7 @@ struct SourceOptions {
   std::string person{};  ///< who of a scan: a number, "largest", "all"; empty or "best": who is seen best
   std::string times{};   ///< of scans: CSV of when each was taken (see scan_times.hpp); empty: evenly
   std::vector<PersonEdit> people{};  ///< who is who, where it was not seen rightly
+  std::optional<BlendRecipe> blend{};  ///< made of several skeletal motions; none: no blend
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
@@ -52,7 +55,12 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("bones", source.bones);
   visit("person", source.person);
   visit("people", source.people);
+  visit("blend", source.blend);
 }
+/// A source that is made by this recipe.
+SourceOptions blended_source(BlendRecipe blend);
+/// What a source is called, for people: the name of its file, "walk - run" of a blend.
+std::string name_of(const SourceOptions& options);
 /// The options without those that say who of the scans is taken: scans that are read by equal ones are the
 /// same.
 SourceOptions without_people(SourceOptions options);
@@ -60,6 +68,7 @@ SourceOptions without_people(SourceOptions options);
 /// A scan, or what a skeleton looks like, and then the skeleton itself.
 struct SourceFrame : ScanFrame {
   std::optional<Extraction> skeleton;  ///< nothing is to be extracted from the scan
+  float doubt_m = 0;  ///< how far that skeleton may be off where it was made; 0: it was captured
   // To be judged by alone, the method never sees them.
   std::optional<Extraction> truth{};  ///< the bones that the scan was made from
   Points registered{0, 3};  ///< the scan's vertices in their topology's order; see registered_source.hpp
@@ -123,8 +132,9 @@ class Source {
 int person_number(const std::string& person);
 
 /// Logs what it decided about units, axes and rate. Throws Error naming the path, also where
-/// an option is about something that such a source does not have, as bones of a scan.
-std::unique_ptr<Source> open_source(const SourceOptions& options);
+/// an option is about something that such a source does not have, as bones of a scan. blender: makes blends;
+/// null: they go straight from pose to pose.
+std::unique_ptr<Source> open_source(const SourceOptions& options, MotionBlender* blender = nullptr);
 
 /// The same of the options, as far as the path alone shows what the source is.
 void check_source_options(const SourceOptions& options);

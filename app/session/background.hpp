@@ -12,8 +12,8 @@
 namespace understudy::app {
 
 struct Studio::Background {
-  Background(Engine::NetworksOf networks, LoadSpace motion_space)
-      : engine(std::move(networks)), refiner(std::move(motion_space)) {}
+  Background(const StudioServices& services, std::shared_ptr<MotionBlender> blender)
+      : engine(services.networks, std::move(blender)), refiner(services.motion_space) {}
 
   /// The inputs from which a take in the session was made.
   struct Applied {

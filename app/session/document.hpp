@@ -71,6 +71,8 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
 inline std::vector<std::string> files_read_by(const Document& document) {
   std::vector<std::string> files = {document.source.path, document.source.motion, document.source.times,
                                     document.truth};
+  if (document.source.blend)
+    for (const BlendPart& part : document.source.blend->parts) files.push_back(part.path);
   for (const Take& take : document.takes) files.push_back(take.target.path);
   return files;
 }

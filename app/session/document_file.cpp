@@ -22,6 +22,8 @@ void visit_paths(Document& document, Visit visit) {
   visit(document.source.motion);
   visit(document.source.times);
   visit(document.truth);
+  if (document.source.blend)
+    for (auto& part : document.source.blend->parts) visit(part.path);
   for (auto& take : document.takes) visit(take.target.path);
 }
 

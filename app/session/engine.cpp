@@ -93,7 +93,8 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
 }
 
 struct Engine::Impl {
-  explicit Impl(NetworksOf source_of_networks) : networks_of(std::move(source_of_networks)) {}
+  Impl(NetworksOf source_of_networks, std::shared_ptr<MotionBlender> of_blends)
+      : networks_of(std::move(source_of_networks)), blender(std::move(of_blends)) {}
 
   // Shared with the UI thread, under the worker's mutex.
   std::optional<Plan> next_plan;
@@ -106,6 +107,7 @@ struct Engine::Impl {
   bool rests = true;      // nothing is left of the plan at work
   int64_t own_epoch = 0;  // of the plan at work
   NetworksOf networks_of;
+  std::shared_ptr<MotionBlender> blender;
   Plan plan;
   std::string source_is, skeleton_is;
   std::unique_ptr<Source> source;
@@ -329,10 +331,10 @@ bool Engine::Impl::of_take(TakeWork& take, Work work) {
 void Engine::Impl::open() {
   opened = true;
   try {
-    source = open_source(plan.source);
+    source = open_source(plan.source, blender.get());
     source->set_look([this](const Mesh& scan) { return observer_of(shown()).look(scan); });
     SourceOpened event;
-    event.name = file_name(plan.source.motion.empty() ? plan.source.path : plan.source.motion);
+    event.name = name_of(plan.source);
     event.count = source->count();
     event.fps = source->fps();
     event.clips = source->clips();
@@ -582,7 +584,8 @@ void Engine::Impl::perform(TakeWork& take) {
   emit(std::move(event));
 }
 
-Engine::Engine(NetworksOf networks) : impl_(std::make_unique<Impl>(std::move(networks))) {}
+Engine::Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender)
+    : impl_(std::make_unique<Impl>(std::move(networks), std::move(blender))) {}
 
 Engine::~Engine() = default;
 

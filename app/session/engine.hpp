@@ -112,7 +112,8 @@ class Engine {
  public:
   /// The parts asked for, of the networks of a method.
   using NetworksOf = std::function<Networks(const Method&, const NetworkParts&)>;
-  explicit Engine(NetworksOf networks);
+  /// blender: makes sources that are blends; null: they go straight from pose to pose.
+  explicit Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender = nullptr);
   ~Engine();  ///< finishes the current frame, then stops
 
   /// Makes this plan from now on. Never waits.

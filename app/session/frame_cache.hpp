@@ -33,7 +33,8 @@ class FrameCache {
  public:
   using Open = std::function<std::unique_ptr<Source>(const SourceOptions&)>;
   /// `open`: where scans come from, called on the cache's thread.
-  explicit FrameCache(int64_t limit_mb = 512, Open open = open_source);
+  explicit FrameCache(
+      int64_t limit_mb = 512, Open open = [](const SourceOptions& source) { return open_source(source); });
   ~FrameCache();  ///< waits for the one frame that is being made
 
   /// Reads scans from this source with these edits from now on; a change drops the frames made before.

@@ -11,7 +11,8 @@ namespace understudy::app {
 namespace {
 
 bool same_file(const SourceOptions& a, const SourceOptions& b) {
-  return a.path == b.path && a.motion == b.motion;
+  if (a.blend.has_value() != b.blend.has_value()) return false;
+  return a.path == b.path && a.motion == b.motion && (!a.blend || are_same_parts(*a.blend, *b.blend));
 }
 
 /// Whatever belongs to the source, as it was before.

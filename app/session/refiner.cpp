@@ -19,11 +19,15 @@ constexpr size_t kRoomForNewFrames = 1024;
 Motion motion_of(const SharedFrames<KeptFrame>& frames, float fps) {
   Motion motion;
   motion.fps = fps;
+  bool any_made = false;
   for (const KeptFrame& frame : frames) {
+    any_made = any_made || frame.doubt_m > 0;
+    motion.doubt_m.push_back(frame.doubt_m);
     motion.poses.push_back(frame.pose);
     motion.flags.push_back(frame.flagged);
     motion.standing.push_back(frame.standing);
   }
+  if (!any_made) motion.doubt_m.clear();
   return motion;
 }
 

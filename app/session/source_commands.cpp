@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <optional>
 
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
@@ -124,6 +125,84 @@ void add_import(Commands& commands) {
   });
 }
 
+/// A motion that is blended, by its whole path. What cannot be one is refused at once.
+BlendPart part_of(const std::string& text) {
+  BlendPart part = blend_part(text);
+  part.path = std::filesystem::absolute(part.path).lexically_normal().string();
+  US_CHECK(is_motion_file(part.path) || may_hold_motion(part.path), part.path,
+           ": is no skeletal motion, only these are blended");
+  return part;
+}
+
+/// The blend that is open, or one of the motion that is.
+BlendRecipe open_blend(const Call& c) {
+  const SourceOptions& source = c.document.source;
+  if (source.blend) return *source.blend;
+  US_CHECK(!source.path.empty(), "no motion is open that could be blended with another");
+  US_CHECK(source.motion.empty() && !source.as_scan, name_of(source),
+           ": is no skeletal motion, only these are blended");
+  BlendRecipe blend;
+  blend.parts.push_back(part_of(source.path));
+  const Playback& playback = c.session.playback;
+  if (playback.in >= 0 && playback.out > playback.in && source.fps == 0)
+    blend.parts[0].range = BlendRange{playback.in, playback.out};
+  return blend;
+}
+
+void check_blend_size(size_t parts) {
+  constexpr size_t kFewest = 2, kMost = 4;
+  US_CHECK(parts >= kFewest && parts <= kMost, "a blend is made of ", kFewest, " to ", kMost,
+           " movements, not of ", parts);
+}
+
+BlendRecipe& blend_of(Call& c) {
+  US_CHECK(c.document.source.blend, "the source is no blend of motions");
+  return *c.document.source.blend;
+}
+
+void blend_files(Call& c) {
+  Arguments words = c.arguments;
+  std::optional<std::vector<float>> weights;
+  if (!words.empty() && words.back().find_first_not_of("0123456789.,") == std::string::npos) {
+    weights = blend_weights(words.back());
+    words.pop_back();
+  }
+  check_blend_size(words.size());
+  BlendRecipe blend;
+  for (const std::string& word : words) blend.parts.push_back(part_of(word));
+  set_weights(weights.value_or(std::vector<float>(words.size(), 1)), blend);
+  set_source(c, blended_source(std::move(blend)));
+}
+
+void add_blends(Commands& commands) {
+  commands.add_edit({"source.blend", "Blend motions",
+                     "MOTION MOTION ... [WEIGHTS]: two to four files, or FILE@FIRST:LAST for some of its "
+                     "frames, else its best step; 0.3,0.7 for more of the second"},
+                    blend_files);
+  commands.add_edit({"source.blend_with", "Blend with another motion",
+                     "MOTION: a file, or FILE@FIRST:LAST; of the open one the frames between the loop marks, "
+                     "else its best step"},
+                    [](Call& c) {
+                      BlendRecipe blend = open_blend(c);
+                      blend.parts.push_back(part_of(c.word(0, "motion")));
+                      check_blend_size(blend.parts.size());
+                      set_weights(std::vector<float>(blend.parts.size(), 1), blend);
+                      set_source(c, blended_source(std::move(blend)));
+                    });
+  commands.add_slider(
+      {"source.blend_weight", "Weight in the blend", "PART SHARE: from 0, of 1 in all"}, [](Call& c) {
+        const auto part = c.number<int>(0, "part");
+        const float share = c.number(1, "share");
+        US_CHECK(part >= 0 && share >= 0 && share <= 1, "a share of a blend is 0 to 1, not ", share);
+        set_share(static_cast<size_t>(part), share, blend_of(c));
+      });
+  commands.add_edit({"source.blend_cycles", "Cycles of the blend", "COUNT"}, [](Call& c) {
+    const auto cycles = c.number<int>(0, "count");
+    US_CHECK(cycles >= 1 && cycles <= 1000, "a blend is played 1 to 1000 times, not ", cycles);
+    blend_of(c).cycles = cycles;
+  });
+}
+
 /// Refuses an unknown name at once where the file's animations are known.
 void check_clip(const SourceState& source, const std::string& clip) {
   if (source.clips.empty() || clip.empty()) return;
@@ -168,6 +247,7 @@ void add_source_commands(Commands& commands) {
   add_times(commands);
   add_skeletal(commands);
   add_import(commands);
+  add_blends(commands);
 }
 
 }  // namespace understudy::app

@@ -40,8 +40,9 @@ std::vector<int> matched_takes(const std::vector<Take>& before, const std::vecto
 
 Studio::Studio(StudioServices services)
     : services_(std::move(services)),
-      cache_(512),
-      background_(std::make_unique<Background>(services_.networks, services_.motion_space)) {
+      blender_(std::make_shared<MotionBlender>(services_.motion_coder)),
+      cache_(512, [blender = blender_](const SourceOptions& of) { return open_source(of, blender.get()); }),
+      background_(std::make_unique<Background>(services_, blender_)) {
   if (!services_.settings_file.empty()) session_.settings = read_settings(services_.settings_file);
   std::error_code ignored;
   const bool is_first =

@@ -18,6 +18,8 @@ struct SourceFrames;
 struct StudioServices {
   std::function<Networks(const Method&, const NetworkParts&)> networks;  ///< called off the UI thread
   std::function<std::shared_ptr<MotionSpace>()> motion_space;  ///< what fills gaps; called off the UI thread
+  /// what codes movements that are blended; called off the UI thread, once
+  std::function<std::shared_ptr<MotionCoder>()> motion_coder;
   std::function<std::string()> weights;  ///< checksums, for documents; called off the UI thread
   std::string samples;                   ///< folder of the bundled samples; empty: none
   std::string program;                   ///< that shows a study; empty: this one, once more
@@ -123,6 +125,7 @@ class Studio {
   StudioServices services_;
   Session session_;
   Commands commands_;
+  std::shared_ptr<MotionBlender> blender_;
   JobQueue jobs_;
   FrameCache cache_;
   std::unique_ptr<Background> background_;

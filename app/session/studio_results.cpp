@@ -38,9 +38,12 @@ void append_shown(TakeState& take, int first, double fps) {
   take.shown.poses.resize(count);
   take.shown.flags.resize(count);
   take.shown.standing.resize(count);
-  if (!take.shown.doubt_m.empty()) take.shown.doubt_m.resize(count);
+  bool any_made = false;
+  for (size_t t = first; t < count; ++t) any_made = any_made || take.performed[t].doubt_m > 0;
+  if (any_made || !take.shown.doubt_m.empty()) take.shown.doubt_m.resize(count);
   take.joints.resize(count);
   for (size_t t = first; t < count; ++t) {
+    if (any_made) take.shown.doubt_m[t] = take.performed[t].doubt_m;
     take.shown.poses[t] = take.performed[t].pose;
     take.shown.flags[t] = take.performed[t].flagged;
     take.shown.standing[t] = take.performed[t].standing;
@@ -124,7 +127,8 @@ void Studio::take_in(SourceFailed& event) {
   const bool is_new = background_->opened_source.has_value();
   roll_back_source();
   auto& recent = session_.settings.recent_sources;
-  fail(event.sentence + (is_new ? taken_off({&recent}, recent_source(failed.path, failed.motion)) : ""),
+  fail(event.sentence +
+           (is_new && !failed.blend ? taken_off({&recent}, recent_source(failed.path, failed.motion)) : ""),
        "source.open");
 }
 
@@ -145,7 +149,7 @@ void Studio::note_source_read() {
   for (const KeptSource& frame : session_.source.frames) {
     if (frame.points == 0 && frame.flagged) continue;
     const SourceOptions& source = session_.document.source;
-    remember(session_.settings.recent_sources, recent_source(source.path, source.motion));
+    if (!source.blend) remember(session_.settings.recent_sources, recent_source(source.path, source.motion));
     return opened.reset();
   }
 }
@@ -366,6 +370,7 @@ struct Measuring {
   std::shared_ptr<const Truth> truth;
   std::vector<Series> series;
   Metrics metrics;
+  std::shared_ptr<MotionBlender> blender;
 };
 
 /// Leaves what is the person's. False: that is nothing.
@@ -388,7 +393,7 @@ void evaluate_all(Measuring& m, JobControl& control) {
       m.series.push_back(blank_series(metric.key, count));
   SourceOptions quiet = m.source;
   quiet.quiet = true;
-  const std::unique_ptr<Source> source = open_source(quiet);
+  const std::unique_ptr<Source> source = open_source(quiet, m.blender.get());
   for (size_t t = 0; t < count; ++t) {
     control.check();
     control.progress(static_cast<float>(t) / static_cast<float>(count));
@@ -412,6 +417,7 @@ void Studio::measure(size_t k) {
   const TakeState& take = session_.takes[k];
   auto m = std::make_shared<Measuring>();
   m->source = source_as_read(session_);
+  m->blender = blender_;
   m->edits = session_.document.scan_edits;
   m->shown = take.shown;
   m->joints = take.joints;

@@ -190,6 +190,12 @@ void add_items(Commands& commands) {
                       for (const std::string& path : paths_from(c, 0)) add_motion_of_file(study, path);
                       choose_last(c, StudyList::Motion, open_study(c).motions);
                     });
+  commands.add_edit({"study.add_blends", "Add steps of the blend",
+                     "COUNT: as many motions, from the first of what is blended to the last"},
+                    [](Call& c) {
+                      add_blends(open_study(c), c.session, c.number<int>(0, "count"));
+                      choose_last(c, StudyList::Motion, open_study(c).motions);
+                    });
   commands.add_edit({"study.add_target", "Add target", "[PATH ...]: those of the takes, or files"},
                     [](Call& c) {
                       Study& study = open_study(c);

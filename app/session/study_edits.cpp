@@ -7,6 +7,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/motion_space/blend.hpp"
 #include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
@@ -263,8 +264,7 @@ void add_motion_of_source(Study& study, const Session& session) {
   StudyMotion motion;
   motion.source = document.source;
   motion.edits = document.scan_edits;
-  const std::string& path = document.source.motion.empty() ? document.source.path : document.source.motion;
-  motion.name = free_name(study.motions, stem(path));
+  motion.name = free_name(study.motions, stem(name_of(document.source)));
   const Playback& playback = session.playback;
   const double fps = session.source.fps > 0 ? session.source.fps : 30;
   if (playback.in > 0) motion.from_s = static_cast<float>(playback.in / fps);
@@ -275,6 +275,21 @@ void add_motion_of_source(Study& study, const Session& session) {
            one.seconds == motion.seconds;
   };
   if (std::none_of(study.motions.begin(), study.motions.end(), is_it)) study.motions.push_back(motion);
+}
+
+void add_blends(Study& study, const Session& session, int steps) {
+  const SourceOptions& open = session.document.source;
+  US_CHECK(open.blend, "the source is no blend of motions");
+  US_CHECK(steps >= 2 && steps <= 100, "a line of blends has 2 to 100 steps, not ", steps);
+  for (const auto& weights : weights_along(open.blend->parts.size(), steps)) {
+    StudyMotion motion;
+    motion.source = open;
+    set_weights(weights, *motion.source.blend);
+    std::string shares;
+    for (const float weight : weights) append_item(shares, printed("%.2f", static_cast<double>(weight)), " ");
+    motion.name = free_name(study.motions, name_of(open) + " " + shares);
+    study.motions.push_back(std::move(motion));
+  }
 }
 
 Study study_of_takes(const Session& session) {

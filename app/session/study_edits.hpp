@@ -38,6 +38,9 @@ void add_conditions_of_takes(Study& study, const Document& document);
 void add_targets_of_takes(Study& study, const Document& document);
 /// The source, between the loop marks where there are any. Throws Error where no source is open.
 void add_motion_of_source(Study& study, const Session& session);
+/// The blend that is open at `steps` evenly spread weights, from the first of its motions to the last: a
+/// motion each. Throws Error where the source is none, and for fewer than 2 or more than 100.
+void add_blends(Study& study, const Session& session, int steps);
 /// All three, as far as there is something; nothing is asked yet.
 Study study_of_takes(const Session& session);
 

@@ -73,6 +73,7 @@ Mesh body_part(const Mesh& scan, const Observation& seen) {
 }
 
 bool is_bones_alone(const SourceOptions& options) {
+  if (options.blend) return true;
   if (!options.motion.empty() || options.as_scan) return false;
   const std::optional<Character> moving = read_motion(options.path);
   return moving && moving->vertex_count() == 0;
@@ -89,7 +90,7 @@ struct StageMaker::Watched {
 };
 
 StageMaker::StageMaker(Study study, StimulusServices services)
-    : study_(std::move(study)), services_(std::move(services)) {}
+    : study_(std::move(study)), services_(std::move(services)), blender_(services_.motion_coder) {}
 StageMaker::~StageMaker() = default;
 
 void StageMaker::tell(const std::string& what, int64_t done, int64_t total) const {
@@ -124,7 +125,7 @@ StageMaker::Watched StageMaker::watched(const StudyMotion& motion, const Method&
   SourceOptions options = motion.source;
   options.edits = motion.edits;
   options.quiet = watched_.size() > 1;  // another extractor
-  const auto source = open_source(options);
+  const auto source = open_source(options, &blender_);
   const bool bones_alone = is_bones_alone(options);
   Networks seeing;
   seeing.extractor = networks_of(method).extractor;

@@ -20,6 +20,7 @@ struct StimulusServices {
   /// Called between frames, with what is being done and how far it is (total 0: not known). What it throws
   /// ends the work; may be empty.
   std::function<void(const std::string& what, int64_t done, int64_t total)> progress{};
+  std::function<std::shared_ptr<MotionCoder>()> motion_coder{};  ///< what codes movements that are blended
 };
 
 struct Stage {
@@ -56,6 +57,7 @@ class StageMaker {
 
   Study study_;
   StimulusServices services_;
+  MotionBlender blender_;
   std::map<std::string, Networks> networks_;                 // by networks_key()
   int motion_ = -1;                                          // that was watched last
   std::map<std::string, std::unique_ptr<Watched>> watched_;  // by extraction_key()

@@ -95,7 +95,7 @@ Application::Application(StudioServices services, std::unique_ptr<Surface> surfa
   pass_ = std::make_unique<ui::DrawPass>();
   views_ = std::make_unique<ui::Views>();
   previews_ = std::make_unique<Previews>();
-  study_pictures_ = std::make_unique<StudyPictures>(studio_->services().networks);
+  study_pictures_ = std::make_unique<StudyPictures>(studio_->services());
   workspace_ = make_workspace();
   add_window_commands(studio_->commands(), *workspace_);
   ticked_at_ = drawn_at_ = input_at_ = Clock::now();

@@ -38,6 +38,15 @@ std::string fills(const Session& session) {
   return text;
 }
 
+/// The shares of the source's parts, "0.30 0.70".
+std::string blend(const Session& session) {
+  std::string text;
+  if (session.document.source.blend)
+    for (const BlendPart& part : session.document.source.blend->parts)
+      append_item(text, printed("%.2f", static_cast<double>(part.weight)), " ");
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -66,6 +75,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"redo_label", redo_label(session)},
       {"skeleton_edits", count(session.document.skeleton_edits.size())},
       {"fills", fills(session)},
+      {"blend", blend(session)},
       {"layout", kLayoutNames[static_cast<size_t>(session.view.layout)]},
       {"active_pane", std::to_string(session.view.active_pane)},
       {"tool", kToolNames[static_cast<size_t>(session.tool)]},

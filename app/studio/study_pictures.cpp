@@ -25,8 +25,8 @@ render::PixelSize size_of(const StudyPicture& picture) {
 
 }  // namespace
 
-StudyPictures::StudyPictures(std::function<Networks(const Method&, const NetworkParts&)> networks)
-    : networks_(std::move(networks)) {}
+StudyPictures::StudyPictures(const StudioServices& services)
+    : networks_(services.networks), motion_coder_(services.motion_coder) {}
 
 StudyPictures::~StudyPictures() {
   stopped_ = true;
@@ -70,6 +70,7 @@ render::Image StudyPictures::draw(const Wanted& wanted) {
     check_files(wanted.study);
     StimulusServices services;
     services.networks = networks_;
+    services.motion_coder = motion_coder_;
     services.progress = [this](const std::string&, int64_t, int64_t) {
       US_CHECK(!stopped_, "the studio is closed");
     };

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "app/session/studio.hpp"
 #include "app/stimuli/stage.hpp"
 #include "app/study/trials.hpp"
 #include "render/gl/object.hpp"
@@ -21,7 +22,7 @@ namespace understudy::app {
 /// Make, use and destroy it with one context current.
 class StudyPictures {
  public:
-  explicit StudyPictures(std::function<Networks(const Method&, const NetworkParts&)> networks);
+  explicit StudyPictures(const StudioServices& services);
   ~StudyPictures();  ///< stops what is being made
   StudyPictures(const StudyPictures&) = delete;
   StudyPictures& operator=(const StudyPictures&) = delete;
@@ -58,6 +59,7 @@ class StudyPictures {
   void forget_oldest();
 
   std::function<Networks(const Method&, const NetworkParts&)> networks_;
+  std::function<std::shared_ptr<MotionCoder>()> motion_coder_;
   // Of the thread alone.
   std::string stage_key_;
   std::unique_ptr<StageMaker> maker_;

@@ -43,6 +43,7 @@ void render_stimuli(Call& c) {
         if (services.weights) options.made_by = services.weights();
         StimulusServices making;
         making.networks = services.networks;
+        making.motion_coder = services.motion_coder;
         making.progress = [&control](const std::string& what, int64_t done, int64_t total) {
           control.check();
           tell(control, what, done, total);

@@ -168,6 +168,9 @@ void check_files(const Study& study) {
   for (const StudyMotion& motion : study.motions) {
     check_there(quoted("motion", motion.name), motion.source.path);
     check_there(quoted("motion", motion.name), motion.source.motion);
+    if (motion.source.blend)
+      for (const BlendPart& part : motion.source.blend->parts)
+        check_there(quoted("motion", motion.name), part.path);
   }
   for (const StudyTarget& target : study.targets)
     check_there(quoted("target", target.name), target.target.path);

@@ -32,6 +32,9 @@ Motion curve_through(const KnownMotion& question, const std::vector<FillEdit>& f
   Motion motion = question.motion;
   fill_curves(question.known, 0, ssize(motion.poses) - 1, motion);
   motion.doubt_m = curve_doubt(question.known, question.motion, question.rest);
+  const std::vector<float>& before = question.motion.doubt_m;  // of frames that came as made ones
+  for (size_t t = 0; t < before.size(); ++t)
+    if (question.known[t] == all_parts(true)) motion.doubt_m[t] = before[t];
   for (const FillEdit& fill : fills) hold_feet(fill, question.rest, motion);
   return motion;
 }

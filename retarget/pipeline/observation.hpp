@@ -16,6 +16,7 @@ struct Observation : Extraction {
   /// where the skeletons so far may not be a person's; set once in a source's first frames
   std::string warning;
   int64_t points = 0;  ///< in the scan
+  float doubt_m = 0;   ///< how far the skeleton may be off where it was made, as Motion's; 0: it was seen
   double extract_ms = 0;
 };
 

@@ -192,7 +192,8 @@ void Performer::watch(PerformedFrame& frame) {
 }
 
 KeptFrame kept(const PerformedFrame& frame) {
-  return {frame.pose, frame.source.joints, frame.flagged, frame.standing, frame.limbs};
+  return {frame.pose,     frame.source.joints, frame.flagged,
+          frame.standing, frame.limbs,         frame.observed.doubt_m};
 }
 
 }  // namespace understudy

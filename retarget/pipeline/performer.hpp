@@ -56,6 +56,7 @@ struct KeptFrame {
   bool flagged = false;
   Standing standing{};  ///< the feet that are held on the floor
   LimbsSight limbs{};   ///< what is seen of the limbs
+  float doubt_m = 0;    ///< as Observation's
 };
 KeptFrame kept(const PerformedFrame& frame);
 

@@ -1,11 +1,16 @@
 #include "tests/app/sample_files.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "retarget/base/error.hpp"
+#include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
+#include "retarget/formats/npz.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/pipeline/human_rest.hpp"
 
 namespace understudy::tests {
 namespace {
@@ -66,6 +71,27 @@ std::string frame_name(int frame) {
 void write_scans(const std::string& folder, int count) {
   std::filesystem::create_directories(folder);
   for (int i = 0; i < count; ++i) write_cloud(folder + "/" + frame_name(i), person_points(i));
+}
+
+void write_walk(const std::string& path, const WalkOptions& options) {
+  const bool still = options.motion == "still";
+  Motion motion = builtin_motion(still ? "walk" : options.motion, human_rest());
+  const auto all = static_cast<int>(motion.poses.size());
+  motion.poses.erase(motion.poses.begin() + std::min(options.last + 1, all), motion.poses.end());
+  motion.poses.erase(motion.poses.begin(), motion.poses.begin() + options.first);
+  NpyArray poses, trans, fps;
+  const auto count = static_cast<int64_t>(motion.poses.size());
+  poses.shape = {count, 3 * kJointCount}, trans.shape = {count, 3}, fps.values = {options.fps};
+  for (Pose pose : motion.poses) {
+    if (still) pose.local = identity_rotations();
+    if (options.mirrored) pose = mirrored(pose);
+    for (const Mat3& R : pose.local) {
+      const Vec3 turn = rotation_to_axis_angle(R);
+      poses.values.insert(poses.values.end(), turn.begin(), turn.end());
+    }
+    trans.values.insert(trans.values.end(), pose.root.begin(), pose.root.end());
+  }
+  write_npz(path, {{"poses", poses}, {"trans", trans}, {"mocap_framerate", fps}});
 }
 
 }  // namespace understudy::tests

@@ -19,4 +19,13 @@ std::string frame_name(int frame);
 /// Frames 0 .. count-1 in a new folder.
 void write_scans(const std::string& folder, int count);
 
+/// Another motion of the mean adult as an AMASS-format .npz.
+struct WalkOptions {
+  std::string motion = "walk";  ///< the built-in one, or "still": nobody steps
+  float fps = 30;               ///< told by the file: twice 30 is walked in half the time
+  bool mirrored = false;
+  int first = 0, last = 1000;  ///< frames that are written, as far as there are any
+};
+void write_walk(const std::string& path, const WalkOptions& options = {});
+
 }  // namespace understudy::tests

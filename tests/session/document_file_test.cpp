@@ -105,6 +105,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   wanted.source.import.height.reset();
   wanted.source = without_people(wanted.source);
   wanted.source.times.clear();
+  wanted.source.blend.reset();
   for (Take& take : wanted.takes) {
     take.method.part_refiner = take.method.hand_contacts = true;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
@@ -160,6 +161,7 @@ TEST(DocumentFile, PathsAreRelativeToIt) {
   EXPECT_EQ(read.document.truth, scratch.path("new/moved/data/truth.npz"));
   EXPECT_EQ(read.document.source.times, scratch.path("new/moved/data/scans/times.csv"));
   EXPECT_EQ(read.document.takes[1].target.path, scratch.path("new/moved/data/b.glb"));
+  EXPECT_EQ(read.document.source.blend->parts[0].path, scratch.path("new/moved/data/a walk.bvh"));
 }
 
 TEST(DocumentFile, PathsWithOnlyTheRootInCommonStayAbsolute) {

@@ -66,6 +66,16 @@ const Changes& document_changes() {
       CHANGE(source.people[0].last += 1),
       CHANGE(source.people[0].person += 10),
       CHANGE(source.people[0].other += 10),
+      CHANGE(source.blend.reset()),
+      CHANGE(source.blend->parts.pop_back()),
+      CHANGE(source.blend->parts[0].path += "x"),
+      CHANGE(source.blend->parts[0].range.reset()),
+      CHANGE(source.blend->parts[0].range->first += 1),
+      CHANGE(source.blend->parts[0].range->last += 1),
+      CHANGE(source.blend->parts[0].weight += 0.125f),
+      CHANGE(source.blend->parts[0].checksum.clear()),
+      CHANGE(source.blend->cycles += 1),
+      CHANGE(source.blend->coder = "paper"),
       CHANGE(truth.clear()),
       CHANGE(scan_edits.crop.reset()),
       CHANGE(scan_edits.crop->low.x() -= 1),
@@ -176,7 +186,10 @@ const Changes& document_changes() {
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
-                                with_truth, person, times, people, edits] = SourceOptions();
+                                with_truth, person, times, people, blend, edits] = SourceOptions();
+  [[maybe_unused]] const auto& [parts, cycles, coder] = BlendRecipe();
+  [[maybe_unused]] const auto& [part_path, part_range, part_weight, part_checksum] = BlendPart();
+  [[maybe_unused]] const auto& [range_first, range_last] = BlendRange();
   [[maybe_unused]] const auto& [how, edit_first, edit_last, whose, other] = PersonEdit();
   [[maybe_unused]] const auto& [units, up, yaw, floor, body_height] = ImportOptions();
   [[maybe_unused]] const auto& [crop, cut, cluster, gap] = ScanEdits();

@@ -102,6 +102,11 @@ SavedDocument full_document(const std::string& folder) {
   saved.document.source.person = "2";
   saved.document.source.times = folder + "/scans/times.csv";
   saved.document.source.people = {{PersonEdit::How::Join, 3, 9, 1, 4}};
+  saved.document.source.blend =
+      BlendRecipe{{{folder + "/a walk.bvh", BlendRange{3, 40}, 0.25f, "0123456789abcdef"},
+                   {folder + "/b.npz", {}, 0.75f, ""}},
+                  2,
+                  "plain"};
   saved.document.truth = folder + "/truth.npz";
   saved.document.scan_edits = scan_edits();
   saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},

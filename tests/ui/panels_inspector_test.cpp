@@ -88,6 +88,25 @@ TEST_F(Inspector, WhatIsNoScanHasNoTimes) {
   EXPECT_FALSE(shown("source.times"));
 }
 
+TEST_F(Inspector, ABlendHasAShareForEachOfItsMotions) {
+  EXPECT_FALSE(shown("source.blend_with")) << "scans are not blended";
+  session.source.clips = {{"walk", 2}};
+  frame(3);
+  expect_click("source.blend_with", {"dialog.open blend_with"});
+  session.document.source.blend =
+      app::BlendRecipe{{{"/a/walk.bvh", app::BlendRange{3, 40}, 0.5f}, {"/a/run.npz", {}, 0.5f}}};
+  session.source.clips.clear();
+  frame(3);
+  EXPECT_FALSE(shown("source.units")) << "its files say that themselves";
+  expect_drag("source.blend.0", "source.blend_weight 0 ");
+  expect_drag("source.blend.1", "source.blend_weight 1 ");
+  expect_typed("source.blend_cycles", "3", {"source.blend_cycles 3"});
+  expect_click("source.blend_with", {"dialog.open blend_with"});
+  session.document.source.blend->parts.resize(4);
+  frame(3);
+  expect_click("source.blend_with", {});
+}
+
 TEST_F(Inspector, PeopleAreListedAndAClickChoosesOne) {
   session.source.people = {{1, true, 48}};
   session.source.person = 1;

@@ -62,6 +62,10 @@ TEST_F(StudyPanel, OfMotionsAndTargets) {
   expect_drag("study.motions.0.from_s", "study.set motions.0.from_s ");
   expect_click("study.add_source", {"study.add_motion"});
   expect_click("study.add_motion", {"dialog.open study_motion"});
+  EXPECT_FALSE(shown("study.add_blends"));
+  session.document.source.blend = app::BlendRecipe{{{"/a/walk.bvh"}, {"/a/run.npz"}}};
+  frame(2);
+  expect_click("study.add_blends", {"study.add_blends 7"});
   expect_typed("study.targets.0.name", "grown", {"study.set targets.0.name grown"});
   expect_typed("study.targets.0.target.import.height_m", "1.6",
                {"study.set targets.0.target.import.height_m 1.6"});

@@ -25,6 +25,7 @@ constexpr FileDialog kDialogs[] = {
     {"open", "open", "Open", "Open", FileKind::Known},
     {"open_source", "source.open", "Open source", "Open", FileKind::Source},
     {"", "source.motion", "Open source: now the motion of ", "Open", FileKind::BodyMotion},
+    {"blend_with", "source.blend_with", "Blend with another motion", "Blend", FileKind::Source},
     {"source_times", "source.times", "Times of the scans", "Use", FileKind::Times},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},
     {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},

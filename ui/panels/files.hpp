@@ -14,6 +14,7 @@ enum class FilePurpose {
   Anything,
   Source,      ///< an SMPL-format body is the first of two: its motion is asked for next
   BodyMotion,  ///< the second
+  BlendWith,
   SourceTimes,
   Target,
   ReplaceTarget,

@@ -1,12 +1,12 @@
 // What is open and how it is done: the source, the takes, their target and method.
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.times(.browse, .reset),
 // source.units, source.up, source.height(.reset), source.turn, source.floor, source.extractor,
-// source.people.K (a row of who is there), source.person, source.open, source.motion; take.K (its row),
-// take.name, take.remove, take.add, take.replace; target.units, target.height(.reset), target.up,
-// target.turn, target.betas, target.stride, target.hip_height, target.arm_reach, target.rest_pose,
-// target.rest_mirror, edit.rest_pose_clear; method.engine, method.extractor, method.offsets, method.path,
-// method.repair_swaps, method.smooth_joints, method.fix_lengths, method.compare, work.pause, work.resume,
-// work.restart.
+// source.people.K (a row of who is there), source.person, source.blend.K (a part's share),
+// source.blend_cycles, source.blend_with, source.open, source.motion; take.K (its row), take.name,
+// take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.turn,
+// target.betas, target.stride, target.hip_height, target.arm_reach, target.rest_pose, target.rest_mirror,
+// edit.rest_pose_clear; method.engine, method.extractor, method.offsets, method.path, method.repair_swaps,
+// method.smooth_joints, method.fix_lengths, method.compare, work.pause, work.resume, work.restart.
 #include <algorithm>
 #include <sstream>
 
@@ -72,7 +72,8 @@ void draw_target_turn(const app::TargetOptions& target, PanelContext& context, c
 
 void draw_source_facts(const app::Session& session, Ui& ui) {
   const app::SourceState& source = session.source;
-  row_text(ui, "File", source.name.empty() ? file_name(session.document.source.path) : source.name);
+  const app::SourceOptions& from = session.document.source;
+  row_text(ui, from.blend ? "Blend" : "File", source.name.empty() ? name_of(from) : source.name);
   const std::string made = grouped(static_cast<int64_t>(source.frames.size()));
   row_text(ui, "Frames", source.count ? made + " of " + grouped(*source.count) : made);
   const int frame = app::shown_frame(session);
@@ -206,6 +207,37 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
              extractor);
 }
 
+/// What a blend is made of, a share each.
+void draw_blend(const app::BlendRecipe& blend, PanelContext& context) {
+  Ui& ui = context.ui;
+  for (size_t i = 0; i < blend.parts.size(); ++i) {
+    const app::BlendPart& part = blend.parts[i];
+    const std::string k = std::to_string(i), frames = in_words(part).substr(part.path.size());
+    const std::string name = cut_name(file_name(part.path), 0.34f * ImGui::GetContentRegionAvail().x);
+    ask_number(context,
+               {"source.blend." + k, name,
+                part.path + (frames.empty() ? ", its best step" : ", frames " + frames.substr(1)),
+                "source.blend_weight " + k},
+               part.weight, {0, 1, 0.005f, "%.2f"});
+  }
+  if (const auto cycles = typed_number_row(
+          ui, {"source.blend_cycles", "Cycles", "How often the movement is played, one after the other"},
+          blend.cycles, 0))
+    context.ask("source.blend_cycles", {argument(*cycles)});
+}
+
+/// Only skeletal motions are blended, and four at most.
+void draw_blend_with(const app::Session& session, PanelContext& context) {
+  const app::SourceOptions& source = session.document.source;
+  const bool moves = !session.source.clips.empty() && !source.as_scan;
+  if (!moves && !source.blend) return;
+  ask_button(context,
+             {"source.blend_with", "Blend with\u2026",
+              "With another motion: of this one the frames between the loop marks, else its best step",
+              "dialog.open blend_with"},
+             !source.blend || source.blend->parts.size() < 4);
+}
+
 void draw_source(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   if (!section(ui, "inspector.source", "Source")) return;
@@ -214,7 +246,11 @@ void draw_source(const app::Session& session, PanelContext& context) {
   } else {
     draw_source_facts(session, ui);
     draw_people(session, context);
-    draw_source_fields(session, context);
+    if (const auto& blend = session.document.source.blend)
+      draw_blend(*blend, context);
+    else
+      draw_source_fields(session, context);
+    draw_blend_with(session, context);
   }
   ask_button(context, {"source.open", "Open source\u2026", "A scan or a motion", "dialog.open open_source"});
 }

@@ -264,8 +264,7 @@ void draw_study_motions(const app::Session& session, PanelContext& context) {
     const app::StudyMotion& motion = all[static_cast<size_t>(i)];
     study_text(context, item("motions", i, "name"), motion.name);
     study_text(context, item("motions", i, "action"), motion.action, motion.name);
-    row_text(context.ui, "File",
-             file_name(motion.source.motion.empty() ? motion.source.path : motion.source.motion));
+    row_text(context.ui, motion.source.blend ? "Blend" : "File", name_of(motion.source));
     study_number(context, item("motions", i, "from_s"), motion.from_s, {0, 1e5f, 0.01f, "%.2f s", 0, true});
     study_optional(context, item("motions", i, "seconds"), motion.seconds);
   }
@@ -277,6 +276,10 @@ void draw_study_motions(const app::Session& session, PanelContext& context) {
            "study.add_motion"},
           source);
   add.ask(context, {"study.add_motion", "Add file\u2026", "A scan or a motion", "dialog.open study_motion"});
+  if (session.document.source.blend)
+    ask_button(context, {"study.add_blends", "Add 7 steps of the blend",
+                         "A motion for each of seven weights, from the first of what is blended to the last",
+                         "study.add_blends 7"});
 }
 
 void draw_study_targets(const app::Session& session, PanelContext& context) {

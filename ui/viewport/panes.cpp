@@ -120,7 +120,13 @@ std::string pane_method(const Session& session, const PaneContent& pane) {
 std::string pane_made(const Session& session, const PaneContent& pane, int frame) {
   const app::TakeState* const take = pane.source ? nullptr : first_take(session, pane);
   const float* const doubt_m = take == nullptr ? nullptr : at_or_null(take->shown.doubt_m, frame);
-  return doubt_m == nullptr || *doubt_m <= 0 ? "" : "filled, " + doubt_text(*doubt_m);
+  if (doubt_m == nullptr || *doubt_m <= 0) return "";
+  const auto& fills = session.document.takes[pane.takes[0]].pose_edits.fill;
+  const bool is_blended = session.document.source.blend &&
+                          std::none_of(fills.begin(), fills.end(), [frame](const FillEdit& fill) {
+                            return fill.first <= frame && frame <= fill.last;
+                          });
+  return (is_blended ? "blended, " : "filled, ") + doubt_text(*doubt_m);
 }
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {

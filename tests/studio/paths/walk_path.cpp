@@ -17,6 +17,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/npz.hpp"
+#include "tests/app/sample_files.hpp"
 #include "tests/retarget/scene/made_scene.hpp"
 #include "tests/studio/studio_window.hpp"
 #include "ui/gui/key_chord.hpp"
@@ -323,6 +324,8 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
 
   std::string path_of(const std::string& word) const {
     if (word == "out/people.npz") write_people(scratch.path("people.npz"));
+    if (word == "out/walk.npz") write_walk(scratch.path("walk.npz"));
+    if (word == "out/run.npz") write_walk(scratch.path("run.npz"), {"walk", 48});
     if (word == "out/gaps") copy_with_a_gap(scratch.path("gaps"));
     if (starts_with(word, "samples/")) return std::string(US_SOURCE_DIR "/assets/") + word;
     return starts_with(word, "out/") ? scratch.path(word.substr(4)) : word;

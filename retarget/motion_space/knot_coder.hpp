@@ -1,0 +1,19 @@
+// Movements as the poses at evenly spread moments: the plain coder, beside which a learned one is judged.
+#pragma once
+
+#include <memory>
+
+#include "retarget/pipeline/motion_coder.hpp"
+
+namespace understudy {
+
+/// A code is 20 poses, evenly spread over the movement: of each the 22 rotations in 6D form, the root in leg
+/// lengths and the time in seconds. What lies between two codes is the straight line between their poses. It
+/// needs no weights.
+std::unique_ptr<MotionCoder> make_knot_coder();
+
+/// Of a movement from the origin, facing +z, evenly many poses: number i of `count` at i / (count - 1) of its
+/// time. Throws Error for fewer than two poses, and for times that do not rise.
+std::vector<Pose> sampled_evenly(const TimedPoses& movement, int count);
+
+}  // namespace understudy
