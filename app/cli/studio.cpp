@@ -15,8 +15,12 @@
 
 namespace understudy::app {
 
-std::function<std::shared_ptr<MotionCoder>()> coder_loader(const std::string& /*weights*/) {
-  return {};
+std::function<std::shared_ptr<MotionCoder>()> coder_loader(const std::string& weights) {
+  return [weights]() -> std::shared_ptr<MotionCoder> {
+    nn::NetworkOptions options;
+    options.weights = weights;
+    return nn::load_motion_coder(nn::weights_folder(options));
+  };
 }
 
 StudioServices studio_services(const std::string& weights) {
