@@ -130,7 +130,8 @@ void turn(const TurnEdit& edit, Motion& motion) {
 }  // namespace
 
 bool PoseEdits::empty() const {
-  return fill.empty() && rotate.empty() && !smooth && !raise && !pin && !turn && !trim && skip.empty();
+  return fill.empty() && !go_on && rotate.empty() && !smooth && !raise && !pin && !turn && !loop && !trim &&
+         skip.empty();
 }
 
 EditedBody EditedBody::from(const Points& rest_vertices, const Joints& rest_joints) {
@@ -154,12 +155,14 @@ Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBod
   const auto not_there = [&](const FillEdit& one) { return one.last >= ssize(result.poses); };
   fills.erase(std::remove_if(fills.begin(), fills.end(), not_there), fills.end());
   fill_frames(fills, body.rest, space, result);
+  if (edits.go_on && !result.poses.empty()) go_on(*edits.go_on, body.rest, space, result);
   rotate(edits.rotate, body.rest, result);
   if (edits.smooth) smooth(*edits.smooth, result);
   if (edits.raise)
     for (Pose& pose : result.poses) pose.root.y() += edits.raise->offset_m;
   if (edits.pin) pin_feet(*edits.pin, result, body);
   if (edits.turn) turn(*edits.turn, result);
+  if (edits.loop && edits.loop->last < ssize(result.poses)) close_loop(*edits.loop, body.rest, space, result);
   return result;
 }
 
@@ -177,10 +180,17 @@ std::vector<int> kept_frames(const PoseEdits& edits, int count) {
   return kept;
 }
 
+bool need_space(const PoseEdits& edits) {
+  return need_space(edits.fill) || (edits.go_on && edits.go_on->learned > 0) ||
+         (edits.loop && edits.loop->learned > 0);
+}
+
 EditCost edit_cost(const Motion& before, const Motion& after, const Joints& rest) {
-  US_CHECK(before.poses.size() == after.poses.size(), "motions of ", before.poses.size(), " and ",
+  US_CHECK(before.poses.size() <= after.poses.size(), "motions of ", before.poses.size(), " and ",
            after.poses.size(), " frames cannot be compared");
-  const auto x = joints_over_time(before, rest), y = joints_over_time(after, rest);
+  const auto x = joints_over_time(before, rest);
+  auto y = joints_over_time(after, rest);
+  y.resize(x.size());
   EditCost cost;
   cost.acceleration_before = mean_acceleration(x, before.fps);
   cost.acceleration_after = mean_acceleration(y, after.fps);

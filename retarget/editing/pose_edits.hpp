@@ -1,4 +1,5 @@
-// Edits of the result: filled frames, rotated bones, smoothing, raise, pinned feet, turn, trim.
+// Edits of the result: filled and added frames, rotated bones, smoothing, raise, pinned feet, turn, a loop,
+// trim.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "retarget/base/fields.hpp"
 #include "retarget/editing/pose_fill.hpp"
+#include "retarget/editing/pose_loop.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/skeleton/foot_contact.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -94,11 +96,13 @@ FieldsOf<S, Trim> fields(V& visit, S& trim) {
 
 struct PoseEdits {
   std::vector<FillEdit> fill;
+  std::optional<GoOnEdit> go_on;
   std::vector<RotateEdit> rotate;
   std::optional<SmoothEdit> smooth;
   std::optional<RaiseEdit> raise;
   std::optional<PinEdit> pin;
   std::optional<TurnEdit> turn;
+  std::optional<LoopEdit> loop;
   std::optional<Trim> trim;
   std::set<int> skip;  ///< frames left out, original numbers
   bool empty() const;
@@ -106,11 +110,13 @@ struct PoseEdits {
 template <class V, class S>
 FieldsOf<S, PoseEdits> fields(V& visit, S& edits) {
   visit("fill", edits.fill);
+  visit("go_on", edits.go_on);
   visit("rotate", edits.rotate);
   visit("smooth", edits.smooth);
   visit(MemberName("raise", "floor"), edits.raise);
   visit("pin", edits.pin);
   visit(MemberName("turn", "heading"), edits.turn);
+  visit("loop", edits.loop);
   visit("trim", edits.trim);
   visit("skip", edits.skip, kFrameNumbers);
 }
@@ -122,13 +128,14 @@ struct EditedBody {
   static EditedBody from(const Points& rest_vertices, const Joints& rest_joints);
 };
 
-/// All edits in this order, whatever order they were made in: fill, rotate (both as listed), smooth, raise,
-/// pin, turn. So a foot rotated by hand is still pinned, pins see the final floor, and frame numbers are
-/// always the original ones: frames that trim and skip leave out stay, for a timeline that still shows them.
-/// Deterministic. Without soles pinned feet keep their heights. A pinned foot stands (Motion::standing) where
-/// it is held; a foot that was turned away from where it stood does not. Frames that are to be filled beyond
-/// the motion's end, which may still be made, are left. Throws Error for unknown joints or a strength outside
-/// 0..1. `space` makes what is filled; null: smooth curves do.
+/// All edits in this order, whatever order they were made in: fill (as listed), go on, rotate (as listed),
+/// smooth, raise, pin, turn, loop. So a foot rotated by hand is still pinned, pins see the final floor, what
+/// loops does so with all of that, and frame numbers are always the original ones: frames that trim and skip
+/// leave out stay, for a timeline that still shows them. Deterministic. Without soles pinned feet keep their
+/// heights. A pinned foot stands (Motion::standing) where it is held; a foot that was turned away from where
+/// it stood does not. Frames that are to be filled, or to loop, beyond the motion's end, which may still be
+/// made, are left. Throws Error for unknown joints or a strength outside 0..1. `space` makes what is filled;
+/// null: smooth curves do.
 Motion apply_poses(const PoseEdits& edits, const Motion& motion, const EditedBody& body,
                    MotionSpace* space = nullptr);
 /// A frame's pose after the rotations alone. Throws Error for an unknown joint.
@@ -139,7 +146,10 @@ std::vector<int> kept_frames(const PoseEdits& edits, int count);
 /// One step of it.
 void pin_feet(const PinEdit& edit, Motion& motion, const EditedBody& body);
 
-/// What an edit does to a motion, in figures; both of one length.
+/// Whether the motion space is asked for one of the edits.
+bool need_space(const PoseEdits& edits);
+
+/// What an edit does to a motion, in figures; over the frames of the one before.
 struct EditCost {
   double acceleration_before = 0, acceleration_after = 0;  ///< mean |second difference| of joints, m/s^2
   double mean_displacement_m = 0, max_displacement_m = 0;  ///< of joints

@@ -1,6 +1,8 @@
 #include "retarget/editing/pose_fill.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -12,6 +14,7 @@ namespace understudy {
 namespace {
 
 constexpr float kSamePlace_m = 0.05f;  // that the ball of a standing foot moves at most, leg 0.8 m
+constexpr float kAtOnce_s = 1;         // of a prediction: farther on the motion space knows little
 
 /// A foot that stands before and after, at one place, stands meanwhile.
 void hold_feet(const FillEdit& fill, const Joints& rest, Motion& motion) {
@@ -84,6 +87,30 @@ void fill_frames(const std::vector<FillEdit>& fills, const Joints& rest, MotionS
   const Completion made = space->complete(question);
   for (const FillEdit& fill : fills)
     if (fill.learned > 0) put_learned(fill, made, motion);
+}
+
+int frames_added(const GoOnEdit& edit, double fps) {
+  return std::max(1, static_cast<int>(std::lround(static_cast<double>(edit.seconds) * fps)));
+}
+
+void go_on(const GoOnEdit& edit, const Joints& rest, MotionSpace* space, Motion& motion) {
+  US_CHECK(!motion.poses.empty(), "a motion without frames cannot go on");
+  const size_t wanted = motion.poses.size() + static_cast<size_t>(frames_added(edit, motion.fps));
+  const auto at_once = static_cast<size_t>(frames_added({kAtOnce_s}, motion.fps));
+  float doubt = 0;  // at the end of what was made before
+  while (motion.poses.size() < wanted) {
+    const size_t first = motion.poses.size(), count = std::min(wanted, first + at_once);
+    std::vector<float> told = std::move(motion.doubt_m);
+    told.resize(first);
+    motion.poses.resize(count, Pose(motion.poses.back()));
+    if (!motion.flags.empty()) motion.flags.resize(count);
+    if (!motion.standing.empty()) motion.standing.resize(count);
+    const FillEdit added{static_cast<int>(first), static_cast<int>(count) - 1, edit.learned};
+    fill_frames({added}, rest, space, motion);
+    std::copy(told.begin(), told.end(), motion.doubt_m.begin());
+    for (size_t t = first; t < count; ++t) motion.doubt_m[t] += doubt;
+    doubt = motion.doubt_m.back();
+  }
 }
 
 }  // namespace understudy

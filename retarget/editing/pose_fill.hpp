@@ -22,6 +22,18 @@ FieldsOf<S, FillEdit> fields(V& visit, S& fill) {
   visit("learned", fill.learned, Within<float>{0, 1});
 }
 
+/// The motion goes on beyond its last frame, which is a prediction.
+struct GoOnEdit {
+  float seconds = 1;
+  float learned = 1;  ///< as FillEdit's
+};
+constexpr Within<float> kGoOnSeconds{0.05f, 60};
+template <class V, class S>
+FieldsOf<S, GoOnEdit> fields(V& visit, S& edit) {
+  visit("seconds", edit.seconds, kGoOnSeconds);
+  visit("learned", edit.learned, Within<float>{0, 1});
+}
+
 /// Whether the motion space is asked for one of them.
 bool need_space(const std::vector<FillEdit>& fills);
 
@@ -36,5 +48,13 @@ std::string guess_of(const FillEdit& fill, int frames, double fps);
 /// follow the curve. Throws Error for frames that the motion does not have, or where none is left that is
 /// known.
 void fill_frames(const std::vector<FillEdit>& fills, const Joints& rest, MotionSpace* space, Motion& motion);
+
+/// The frames that an edit adds at this rate, at least one.
+int frames_added(const GoOnEdit& edit, double fps);
+
+/// Makes the motion longer: what is added is predicted from what comes before, by a second or two at a time,
+/// each of them from what was made just before it. So the doubt grows with the way from the last frame that
+/// was there. Those that were there stay as they are to the bit. Throws Error for a motion without frames.
+void go_on(const GoOnEdit& edit, const Joints& rest, MotionSpace* space, Motion& motion);
 
 }  // namespace understudy

@@ -5,6 +5,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/body/builtin_motion.hpp"
 #include "retarget/body/builtin_person.hpp"
+#include "retarget/editing/pose_edits.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -198,6 +199,90 @@ TEST(PoseFill, RefusesFramesThatAreNotThere) {
   EXPECT_THROW(fill_frames({{5, count}}, stage().rest, nullptr, motion), Error);
   EXPECT_THROW(fill_frames({{5, 4}}, stage().rest, nullptr, motion), Error);
   EXPECT_THROW(fill_frames({{-1, 4}}, stage().rest, nullptr, motion), Error);
+}
+
+TEST(GoingOn, MakesTheMotionLongerAndLeavesWhatWasThere) {
+  Motion motion = stage().walk;
+  const size_t count = motion.poses.size();
+  motion.flags.assign(count, 0);
+  motion.standing.assign(count, {false, false});
+  go_on({1.5f}, stage().rest, nullptr, motion);
+  ASSERT_EQ(motion.poses.size(), count + 45);
+  EXPECT_EQ(motion.flags.size(), count + 45);
+  EXPECT_EQ(motion.standing.size(), count + 45);
+  for (size_t t = 0; t < motion.poses.size(); ++t) {
+    if (t < count) EXPECT_TRUE(same(motion.poses[t], stage().walk.poses[t])) << t;
+    EXPECT_EQ(motion.doubt_m[t] > 0, t >= count) << t;
+    if (t > count) EXPECT_GT(motion.doubt_m[t], motion.doubt_m[t - 1]) << "farther from what is known: " << t;
+  }
+  const float before = (motion.poses[count - 1].root - motion.poses[count - 2].root).norm();
+  EXPECT_NEAR((motion.poses[count].root - motion.poses[count - 1].root).norm(), before, 0.2f * before);
+}
+
+TEST(GoingOn, AsksTheMotionSpaceAgainFromWhatItMade) {
+  /// One frame after the other a step farther than the last known one.
+  class Strides final : public MotionSpace {
+   public:
+    int asked = 0;
+    Completion complete(const KnownMotion& question) override {
+      ++asked;
+      Completion made{question.motion, std::vector<float>(question.known.size())};
+      for (size_t t = 1; t < question.known.size(); ++t) {
+        if (question.known[t] == all_parts(true)) continue;
+        made.motion.poses[t] = made.motion.poses[t - 1];
+        made.motion.poses[t].root.z() += 0.01f;
+        made.doubt_m[t] = made.doubt_m[t - 1] + 0.001f;
+      }
+      return made;
+    }
+    std::string name() const override { return "strides"; }
+  } space;
+  Motion motion = stage().walk;
+  const size_t count = motion.poses.size();
+  go_on({3}, stage().rest, &space, motion);
+  ASSERT_EQ(motion.poses.size(), count + 90);
+  EXPECT_EQ(space.asked, 3) << "a second at a time";
+  for (size_t t = count; t < motion.poses.size(); ++t) {
+    EXPECT_NEAR(motion.poses[t].root.z() - motion.poses[t - 1].root.z(), 0.01f, 1e-5f) << t;
+    EXPECT_NEAR(motion.doubt_m[t], 0.001f * static_cast<float>(t - count + 1), 1e-5f) << "it adds up: " << t;
+  }
+  Motion plain = stage().walk;
+  go_on({3, 0}, stage().rest, &space, plain);
+  EXPECT_EQ(space.asked, 3) << "nothing learned is wanted";
+}
+
+TEST(GoingOn, FollowsWhatWasFilledAndKeepsItsDoubt) {
+  PoseEdits edits;
+  edits.fill = {{20, 24}};
+  edits.go_on = GoOnEdit{0.5f};
+  const Motion made = apply_poses(edits, stage().walk, {stage().rest, {}});
+  const size_t count = stage().walk.poses.size();
+  ASSERT_EQ(made.poses.size(), count + 15);
+  const Motion filled = stage().filled(20, 24);
+  for (int t = 20; t <= 24; ++t) {
+    EXPECT_TRUE(same(made.poses[t], filled.poses[t])) << t;
+    EXPECT_EQ(made.doubt_m[t], filled.doubt_m[t]) << t;
+  }
+  EXPECT_GT(made.doubt_m.back(), 0);
+  const EditCost cost = edit_cost(stage().walk, made, stage().rest);
+  EXPECT_GT(cost.max_displacement_m, 0) << "over the frames that both have";
+  EXPECT_FALSE(edits.empty());
+  edits.fill.clear();
+  EXPECT_FALSE(edits.empty());
+  EXPECT_TRUE(need_space(edits));
+  edits.go_on->learned = 0;
+  EXPECT_FALSE(need_space(edits));
+}
+
+TEST(GoingOn, OfOneFrameStandsStillAndOfNoneIsRefused) {
+  Motion motion;
+  EXPECT_EQ(failure_of([&] { go_on({1}, stage().rest, nullptr, motion); }),
+            "a motion without frames cannot go on");
+  motion.poses.push_back(stage().walk.poses[7]);
+  go_on({0.2f}, stage().rest, nullptr, motion);
+  ASSERT_EQ(motion.poses.size(), 7u);
+  for (const Pose& pose : motion.poses) EXPECT_LT((pose.root - motion.poses[0].root).norm(), 1e-5f);
+  EXPECT_GT(motion.doubt_m.back(), 0);
 }
 
 }  // namespace
