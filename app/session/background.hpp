@@ -22,6 +22,7 @@ struct Studio::Background {
     PoseEdits poses;                            // the edits of the result
     double refined_at = -1e9;                   // Session::time
     size_t refined_frames = 0;
+    bool goes_on = false;                         // beyond the last frame, as it was refined last
     std::shared_ptr<const Target> neighbours_of;  // the target that `neighbours` are of
     Neighbours neighbours;
     bool asked_about_paint = false;
@@ -70,6 +71,8 @@ struct Studio::Background {
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };
 
+/// Whether all frames of a take are performed.
+bool is_performed(const Session& session, size_t take);
 /// Whether both give the same poses: trim and skip only change what plays.
 bool same_poses(PoseEdits a, PoseEdits b);
 

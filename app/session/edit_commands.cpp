@@ -261,10 +261,19 @@ void remove_limb_move(Call& c) {
   edits.erase(first, edits.end());
 }
 
+/// What it had trimmed plays again.
+void remove_loop(Call& c, PoseEdits& edits) {
+  const auto& loop = edits.loop;
+  const auto& trim = edits.trim;
+  if (loop && trim && trim->first == loop->first && trim->last == loop->last) edits.trim.reset();
+  edits.loop.reset();
+  c.label = "No loop";
+}
+
 void remove_edit(Call& c) {
   const size_t kind = c.choice(0, "kind",
                                {"skeleton", "drags", "rotation", "rotations", "joint", "drags_of",
-                                "rotations_of", "limb", "people", "fill"});
+                                "rotations_of", "limb", "people", "fill", "go_on", "loop"});
   if (kind == 8) return remove_at(c.document.source.people, c, 1);
   if (kind == 5) return remove_drags_of(c, c.joint(1));
   if (kind == 6) return remove_rotations_of(c, c.joint(2));
@@ -274,6 +283,8 @@ void remove_edit(Call& c) {
   Take& take = c.take(1);
   if (kind == 2) return remove_at(take.pose_edits.rotate, c, 2);
   if (kind == 9) return remove_at(take.pose_edits.fill, c, 2);
+  if (kind == 10) return take.pose_edits.go_on.reset();
+  if (kind == 11) return remove_loop(c, take.pose_edits);
   if (kind == 3) return remove_all_at(take.pose_edits.rotate, c.number<int>(2, "frame"));
   remove_at(take.target_edits.joints, c, 2);
 }
@@ -346,9 +357,21 @@ void move_fill(Call& c) {
   add_fill({to.first, to.last, before.learned}, fills);
 }
 
+/// Wherever it is moved to it begins behind the last captured frame: what counts is where it ends.
+void move_go_on(Call& c) {
+  auto& edit = c.take(1).pose_edits.go_on;
+  US_CHECK(edit, "the take does not go on beyond its last frame");
+  const int last = c.number<int>(c.arguments.size() > 3 ? 3 : 2, "frame") +
+                   (c.arguments.size() > 3 ? 0 : frames_added(*edit, c.session.source.fps) - 1);
+  const int frames = last + 1 - static_cast<int>(c.take_state(1).performed.size());
+  const double seconds = std::max(1, frames) / c.session.source.fps;
+  edit->seconds = std::clamp(static_cast<float>(seconds), kGoOnSeconds.low, kGoOnSeconds.high);
+}
+
 void move_edit(Call& c) {
-  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people", "fill"});
+  const size_t kind = c.choice(0, "kind", {"drags", "swap", "rotations", "skips", "people", "fill", "go_on"});
   if (kind == 5) return move_fill(c);
+  if (kind == 6) return move_go_on(c);
   if (kind == 0)
     return move_all_at(c.document.skeleton_edits, c.number<int>(1, "frame"), frame_argument(c, 2));
   if (kind == 1) return move_swap(c);
@@ -361,12 +384,14 @@ void add_rearrangement(Commands& commands) {
   commands.add_edit(
       {"edit.remove", "Remove an edit",
        "skeleton INDEX | drags FRAME | drags_of JOINT | rotation TAKE INDEX | rotations TAKE FRAME | "
-       "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX | people INDEX | fill TAKE INDEX"},
+       "rotations_of TAKE JOINT | limb TAKE FRAME JOINT | joint TAKE INDEX | people INDEX | fill TAKE INDEX "
+       "| "
+       "go_on TAKE | loop TAKE"},
       remove_edit);
   commands.add_edit(
       {"edit.move", "Move an edit in time",
        "drags FRAME TO | swap INDEX TO [LAST] | rotations TAKE FRAME TO | skips TAKE FIRST LAST TO [LAST] | "
-       "people INDEX TO [LAST] | fill TAKE INDEX TO [LAST]"},
+       "people INDEX TO [LAST] | fill TAKE INDEX TO [LAST] | go_on TAKE TO [LAST]"},
       move_edit);
 }
 
@@ -389,9 +414,15 @@ std::vector<FillEdit> wanted_fills(const Session& session, size_t take) {
   return runs;
 }
 
-void fill(Call& c) {
+/// The take that the first argument names, else the current one.
+size_t wanted_take(const Call& c) {
   const size_t take = c.arguments.empty() ? static_cast<size_t>(c.session.selected_take) : c.take_number();
   US_CHECK(take < c.document.takes.size(), "add a target first");
+  return take;
+}
+
+void fill(Call& c) {
+  const size_t take = wanted_take(c);
   const std::vector<FillEdit> wanted = c.has("bad", 1) ? all_unusable(c.session, take)
                                        : c.arguments.size() > 1
                                            ? std::vector<FillEdit>{frame_range<FillEdit>(c, 1)}
@@ -399,6 +430,9 @@ void fill(Call& c) {
   auto& fills = c.document.takes[take].pose_edits.fill;
   for (const FillEdit& one : wanted) add_fill(one, fills);
   const int last = static_cast<int>(c.session.takes[take].performed.size()) - 1;
+  for (const FillEdit& one : wanted)
+    US_CHECK(one.last <= std::max(0, last) || !c.document.takes[take].pose_edits.go_on, "frame ", one.last,
+             " is beyond the last captured one, ", last, ": it is made already");
   for (const FillEdit& one : fills)
     US_CHECK(one.first > 0 || one.last < last, "all frames would be filled: none is left that is known");
   for (const FillEdit& one : wanted)
@@ -407,6 +441,88 @@ void fill(Call& c) {
   c.label = wanted.size() == 1
                 ? "Fill frames " + std::to_string(wanted[0].first) + " to " + std::to_string(wanted[0].last)
                 : "Fill all unusable frames";
+}
+
+/// "frames 24 to 53 are a guess: nothing after them is known".
+void tell_go_on(const Call& c, size_t take, const GoOnEdit& edit) {
+  const int first = static_cast<int>(c.session.takes[take].performed.size());
+  const FillEdit added{first, first + frames_added(edit, c.session.source.fps) - 1};
+  const auto& trim = c.document.takes[take].pose_edits.trim;
+  const bool trimmed = trim && trim->last < added.first;
+  c.studio.notify(guess_of(added, added.last + 1, c.session.source.fps) +
+                  (trimmed ? "; the trim leaves them out" : ""));
+}
+
+/// Without a number it goes on a second longer.
+void go_on(Call& c) {
+  constexpr float kMore_s = 1;
+  const size_t take = wanted_take(c);
+  auto& edit = c.document.takes[take].pose_edits.go_on;
+  if (c.has("off", 1)) return edit.reset();
+  US_CHECK(!c.session.takes[take].performed.empty(), "no frame is performed yet that could go on");
+  const float before = edit ? edit->seconds : 0;
+  const float seconds = c.arguments.size() > 1 ? c.number(1, "time") : before + kMore_s;
+  US_CHECK(seconds >= kGoOnSeconds.low && seconds <= kGoOnSeconds.high, "a take goes on for ",
+           kGoOnSeconds.low, " to ", kGoOnSeconds.high, " seconds, not ", seconds);
+  edit = GoOnEdit{seconds, edit ? edit->learned : 1};
+  tell_go_on(c, take, *edit);
+  c.label = printed("Go on for %.3g s", static_cast<double>(seconds));
+}
+
+/// Where two moments are to be looked for without being told: between the loop marks, else in what is kept.
+LoopEdit wanted_loop(const Call& c, size_t take) {
+  const Motion& shown = c.session.takes[take].shown;
+  const int count = static_cast<int>(shown.poses.size());
+  US_CHECK(count > 0, "no frame is performed yet that could be in a loop");
+  FrameRange range = play_range(c.session.playback, count);
+  if (c.arguments.size() > 1) {
+    const auto given = frame_range<Trim>(c, 1);
+    range = {given.first, given.last};
+  }
+  US_CHECK(range.last < count, "frame ", range.last, " is not performed yet");
+  return find_loop(shown, c.session.takes[take].target->joints, range.first, range.last);
+}
+
+/// The loop is what plays; without the loop all does.
+void loop(Call& c) {
+  const size_t take = wanted_take(c);
+  PoseEdits& edits = c.document.takes[take].pose_edits;
+  if (c.has("off", 1)) return remove_loop(c, edits);
+  const LoopEdit found = wanted_loop(c, take);
+  edits.loop = found;
+  edits.trim = Trim{found.first, found.last};
+  const LoopTravel travel = travel_of(found, c.session.takes[take].shown);
+  c.studio.notify(printed("frames %d to %d play in a loop, %.2f m and %.0f\u00b0 farther each round",
+                          found.first, found.last, static_cast<double>(travel.metres),
+                          static_cast<double>(travel.turn_deg)));
+  c.label = printed("Loop frames %d to %d", found.first, found.last);
+}
+
+void add_made_frames(Commands& commands) {
+  commands.add_edit({"edit.go_on", "Go on",
+                     "[TAKE [SECONDS | off]]: beyond the last captured frame; without a number a second "
+                     "longer",
+                     "Shift+G"},
+                    go_on);
+  commands.add_slider({"edit.go_on_learned", "Plain or learned",
+                       "TAKE SHARE: 0 the smooth curve to 1 the motion space's answer"},
+                      [](Call& c) {
+                        auto& edit = c.take().pose_edits.go_on;
+                        US_CHECK(edit, "the take does not go on beyond its last frame");
+                        edit->learned = c.clamped(1, "share", 0.f, 1.f);
+                      });
+  commands.add_edit({"edit.loop", "Make a loop",
+                     "[TAKE [FIRST LAST | off]]: finds two like moments between the loop marks, or in all "
+                     "frames, and closes the seam between them",
+                     "Shift+L"},
+                    loop);
+  commands.add_slider({"edit.loop_learned", "Plain or learned",
+                       "TAKE SHARE: 0 the smooth curve over the seam to 1 the motion space's answer"},
+                      [](Call& c) {
+                        auto& edit = c.take().pose_edits.loop;
+                        US_CHECK(edit, "the take is no loop");
+                        edit->learned = c.clamped(1, "share", 0.f, 1.f);
+                      });
 }
 
 void add_pose_ranges(Commands& commands) {
@@ -562,6 +678,7 @@ void add_edit_commands(Commands& commands) {
   add_skeleton_edits(commands);
   add_pose_edits(commands);
   add_pose_ranges(commands);
+  add_made_frames(commands);
   add_rearrangement(commands);
   add_target_edits(commands);
   add_weight_tools(commands);

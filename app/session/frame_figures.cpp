@@ -40,7 +40,8 @@ Series blank_series(const std::string& key, size_t count) {
 }
 
 std::vector<Series> joint_figures(const FigureInput& input) {
-  const size_t count = std::min(input.shown.poses.size(), input.joints.size());
+  const size_t shown = std::min(input.shown.poses.size(), input.joints.size()),
+               count = std::min(shown, input.performed.size());
   const MetricSequence seen = seen_in(input, count);
   MetricSequence truth;
   if (input.truth)
@@ -52,8 +53,9 @@ std::vector<Series> joint_figures(const FigureInput& input) {
   std::vector<Series> all;
   for (const Metric& metric : metric_table()) {
     if (!metric.per_frame || is_of_surfaces(metric) || !is_known(metric, seen, truth)) continue;
-    all.push_back(blank_series(metric.key, count));
-    all.back().values = per_frame_figures(metric, seen, truth, count, input.shown.fps);
+    all.push_back(blank_series(metric.key, shown));
+    const auto figures = per_frame_figures(metric, seen, truth, count, input.shown.fps);
+    std::copy(figures.begin(), figures.end(), all.back().values.begin());
   }
   return all;
 }

@@ -8,7 +8,7 @@
 
 namespace understudy::app {
 
-/// The inputs of the figures; `joints` and `performed` are as long as `shown`.
+/// The inputs of the figures; `joints` is as long as `shown`, `performed` as its part that was performed.
 struct FigureInput {
   const Motion& shown;
   const std::vector<Joints>& joints;         ///< of the target
@@ -18,7 +18,7 @@ struct FigureInput {
 };
 
 /// Every metric of the table of single frames that joints and poses give, as far as its input is known. As
-/// many values as frames shown.
+/// many values as frames shown, NaN beyond those that were performed.
 std::vector<Series> joint_figures(const FigureInput& input);
 
 /// The series of a metric by key, with `count` values NaN. Throws Error when there is none.

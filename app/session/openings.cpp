@@ -176,10 +176,7 @@ void Studio::offer_fills() {
   Background& b = *background_;
   for (size_t k = 0; k < session_.takes.size(); ++k) {
     Background::Applied& applied = b.applied[b.take_ids[k]];
-    const auto& performed = session_.takes[k].performed;
-    const bool made = !session_.working && !session_.paused && !performed.empty() &&
-                      performed.size() == performed_by(session_, k).size();
-    if (made && applied.fill_of != b.source_key) offer_fill(k);
+    if (is_performed(session_, k) && applied.fill_of != b.source_key) offer_fill(k);
     const auto notice = std::find_if(session_.notices.begin(), session_.notices.end(),
                                      [&applied](const Notice& one) { return one.id == applied.fill_notice; });
     if (notice == session_.notices.end()) continue;

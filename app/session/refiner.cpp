@@ -37,19 +37,22 @@ Refined refine(const RefineRequest& request, MotionSpace* space) {
   const Motion performed = motion_of(request.performed, request.fps);
   Refined result;
   result.take_id = request.take_id;
+  result.performed = performed.poses.size();
   result.shown = performed;
-  if (!request.edits.empty() && !performed.poses.empty()) {
+  PoseEdits edits = request.edits;
+  if (!request.all_there) edits.go_on.reset();
+  if (!edits.empty() && !performed.poses.empty()) {
     try {
       const EditedBody body = EditedBody::from(request.target->mesh.vertices, request.target->joints);
-      result.shown = apply_poses(request.edits, performed, body, space);
+      result.shown = apply_poses(edits, performed, body, space);
       result.cost = edit_cost(performed, result.shown, request.target->joints);
     } catch (const Error& error) {
       result.shown = performed;
       result.problem = error.what();
     }
   }
-  result.shown.poses.reserve(performed.poses.size() + kRoomForNewFrames);
-  result.joints.reserve(performed.poses.size() + kRoomForNewFrames);
+  result.shown.poses.reserve(result.shown.poses.size() + kRoomForNewFrames);
+  result.joints.reserve(result.shown.poses.size() + kRoomForNewFrames);
   for (const Pose& pose : result.shown.poses)
     result.joints.push_back(forward_kinematics(request.target->joints, pose).joints);
   result.series =
@@ -71,7 +74,7 @@ struct Refiner::Impl {
     const auto request = std::make_shared<const RefineRequest>(std::move(waiting.front()));
     waiting.erase(waiting.begin());
     return [this, request] {
-      const bool waits = load_space && need_space(request->edits.fill);
+      const bool waits = load_space && need_space(request->edits);
       answer(*request);
       if (!waits) return;
       const std::string problem = failure_of([&] { space = std::exchange(load_space, nullptr)(); });

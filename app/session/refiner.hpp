@@ -17,13 +17,15 @@ struct RefineRequest {
   std::shared_ptr<const Target> target;
   SharedFrames<KeptSource> source;
   std::shared_ptr<const Truth> truth;  ///< may be null
+  bool all_there = true;               ///< false: more are performed yet, and nothing goes on beyond the last
 };
 
 struct Refined {
   int64_t take_id = 0;
-  Motion shown;
+  size_t performed = 0;  ///< frames that it was made of
+  Motion shown;          ///< more than these where it goes on beyond the last
   std::vector<Joints> joints;
-  std::vector<Series> series;
+  std::vector<Series> series;  ///< NaN beyond the last
   EditCost cost;
   std::string problem;  ///< why the edits cannot be applied; the motion is then unedited
 };

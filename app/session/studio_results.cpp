@@ -23,11 +23,31 @@ bool put(SharedFrames<Frame>& all, size_t first, std::vector<Frame> frames) {
   return replaces;
 }
 
-/// Puts newer items in the place of the first ones of a list that may have grown meanwhile.
+/// Puts the first `count` of newer items in the place of the first ones of a list that has grown meanwhile.
 template <class Item>
-void replace_first(std::vector<Item>& all, std::vector<Item> newer) {
-  newer.insert(newer.end(), all.begin() + ssize(newer), all.end());
+void replace_first(std::vector<Item>& all, std::vector<Item> newer, size_t count) {
+  newer.resize(std::min(count, newer.size()));
+  if (newer.size() < all.size()) newer.insert(newer.end(), all.begin() + ssize(newer), all.end());
   all = std::move(newer);
+}
+
+/// What was refined takes the place of what is shown. Of frames that have come meanwhile it knows nothing:
+/// these stay as they were performed.
+void show(Refined refined, TakeState& take) {
+  if (refined.performed == take.performed.size()) {
+    take.shown = std::move(refined.shown);
+    take.joints = std::move(refined.joints);
+    return;
+  }
+  const size_t count = refined.performed;
+  replace_first(take.shown.poses, std::move(refined.shown.poses), count);
+  replace_first(take.shown.flags, std::move(refined.shown.flags), count);
+  replace_first(take.shown.standing, std::move(refined.shown.standing), count);
+  replace_first(take.joints, std::move(refined.joints), count);
+  take.shown.doubt_m = std::move(refined.shown.doubt_m);
+  if (take.shown.doubt_m.empty()) return;
+  take.shown.doubt_m.resize(count);
+  take.shown.doubt_m.resize(take.shown.poses.size());
 }
 
 /// Shows frames appended to a result without edits at once.
@@ -291,30 +311,29 @@ void Studio::take_in_refined() {
     TakeState* const take = take_of(refined.take_id);
     if (!take) continue;
     if (!refined.problem.empty()) fail(refined.problem);
-    const size_t count = refined.shown.poses.size();
-    const size_t k = take - session_.takes.data();
-    const bool edited =
-        !session_.document.takes[k].pose_edits.empty() ||
-        !std::equal(take->joints.begin(),
-                    take->joints.begin() + static_cast<long>(std::min(count, take->joints.size())),
-                    refined.joints.begin());
-    if (edited && count <= take->shown.poses.size()) {
-      replace_first(take->shown.poses, std::move(refined.shown.poses));
-      replace_first(take->shown.standing, std::move(refined.shown.standing));
-      replace_first(take->joints, std::move(refined.joints));
-      take->shown.doubt_m = std::move(refined.shown.doubt_m);
-      if (!take->shown.doubt_m.empty()) take->shown.doubt_m.resize(take->shown.poses.size());
-      ++take->generation;
-    }
+    const size_t count = refined.performed, k = take - session_.takes.data();
+    const bool edited = !session_.document.takes[k].pose_edits.empty() ||
+                        refined.shown.poses.size() != take->shown.poses.size() ||
+                        !std::equal(take->joints.begin(), take->joints.end(), refined.joints.begin());
     take->cost = refined.cost;
     merge_series(take->series, std::move(refined.series));
     background_->applied[refined.take_id].refined_frames = count;
+    if (!edited || count > take->performed.size()) continue;
+    show(std::move(refined), *take);
+    ++take->generation;
   }
 }
 
 /// A case's truth is of one person.
 std::shared_ptr<const Truth> truth_of(const Session& session, size_t take) {
   return performs_another(session.document, session.document.takes[take]) ? nullptr : session.truth;
+}
+
+/// Whether all frames of a take are performed.
+bool is_performed(const Session& session, size_t k) {
+  const auto& performed = session.takes[k].performed;
+  return !session.working && !session.paused && !performed.empty() &&
+         performed.size() == performed_by(session, k).size();
 }
 
 void Studio::refine_dirty() {
@@ -334,7 +353,8 @@ void Studio::refine_dirty() {
       const size_t k = take - session_.takes.data();
       b.refiner.request({*id, take->performed, static_cast<float>(session_.source.fps),
                          session_.document.takes[k].pose_edits, take->target, performed_by(session_, k),
-                         truth_of(session_, k)});
+                         truth_of(session_, k), is_performed(session_, k)});
+      applied.goes_on = session_.document.takes[k].pose_edits.go_on && is_performed(session_, k);
       applied.refined_at = session_.time;
       applied.measured = false;
     }
@@ -382,15 +402,16 @@ bool cut_out(const KeptSource& kept, Mesh& scan) {
   return scan.vertices.rows() > 0;
 }
 
+/// Of the frames that were performed; beyond them there is nothing to measure against.
 void evaluate_all(Measuring& m, JobControl& control) {
-  const size_t count = m.shown.poses.size();
+  const size_t count = std::min(m.shown.poses.size(), m.source_joints.size());
   const bool comparable = m.truth && m.truth->frames == static_cast<int64_t>(count) &&
                           m.truth->vertex_count == static_cast<int64_t>(m.character->surface.in_file.size());
   const Mesh target = m.character->target_in_file_order();
   Evaluator evaluator(m.shown.fps, comparable ? m.truth.get() : nullptr, &target);
   for (const Metric& metric : metric_table())
     if (metric.per_frame && is_of_surfaces(metric) && (comparable || (metric.needs & kNeedsTruth) == 0))
-      m.series.push_back(blank_series(metric.key, count));
+      m.series.push_back(blank_series(metric.key, m.shown.poses.size()));
   SourceOptions quiet = m.source;
   quiet.quiet = true;
   const std::unique_ptr<Source> source = open_source(quiet, m.blender.get());
@@ -424,7 +445,7 @@ void Studio::measure(size_t k) {
   m->kept = performed_by(session_, k);
   for (const KeptFrame& frame : take.performed)
     m->source_joints.push_back(frame.source), m->limbs.push_back(frame.limbs);
-  if (std::min(m->kept.size(), m->source_joints.size()) < m->shown.poses.size()) return;
+  if (m->kept.size() < std::min(m->shown.poses.size(), m->source_joints.size())) return;
   m->character = take.character;
   m->deformer = take.deformer;
   m->truth = truth_of(session_, k);
@@ -449,6 +470,10 @@ void Studio::take_in_results() {
   ask_about_paint();
   ask_about_persons();
   take_in_refined();
+  for (size_t k = 0; k < session_.takes.size(); ++k)  // what goes on does so when the last frame is there
+    if (session_.document.takes[k].pose_edits.go_on && is_performed(session_, k) &&
+        !b.applied[b.take_ids[k]].goes_on)
+      b.dirty.insert(b.take_ids[k]);
   refine_dirty();
   for (const JobQueue::Failure& failed : jobs_.drain()) fail(failed.sentence, failed.command);
   for (auto& [id, applied] : b.applied) {  // a measuring that failed or was cancelled is over, too

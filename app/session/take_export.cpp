@@ -58,7 +58,8 @@ void add_clip(ExportInput& out, const Session& session, size_t k, const std::str
     const size_t t = frame;
     clip.poses.push_back(state.shown.poses[t]);
     if (t < state.shown.doubt_m.size()) doubt_m.push_back(state.shown.doubt_m[t]);
-    out.source_joints.push_back(t < state.performed.size() ? state.performed[t].source : Joints::Zero());
+    const size_t seen = std::min(t + 1, state.performed.size());  // beyond the last it stays
+    out.source_joints.push_back(seen > 0 ? state.performed[seen - 1].source : Joints::Zero());
   }
   clip.made = made_frames(doubt_m);
   out.source_to_scan = session.source.to_file;

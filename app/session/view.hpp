@@ -131,6 +131,7 @@ struct View {
   int weights_joint = -1;                 ///< -1: all joints
   std::vector<int> trail_joints{20, 21};  ///< wrists
   int ghost_count = 3, ghost_step = 8;    ///< to each side; frames between two
+  bool ghosts_by_time = false;            ///< from blue, the first of them, to red, the last
   float error_scale_mm = 50;              ///< upper end of the scales of errors, offsets and differences
   float wipe = 0.5f;                      ///< the wipe's line, share of the width
   bool cube = true;                       ///< a cube in each view that shows where it looks from
@@ -139,6 +140,7 @@ struct View {
   Background background = Background::Theme;
   Vec3 background_color = Vec3(0.16f, 0.24f, 0.34f);  ///< of Background::Custom, sRGB
   std::string metric = "confidence";                  ///< plotted in the timeline
+  bool steps = true;                                  ///< marked there
 };
 template <class V, class S>
 FieldsOf<S, View> fields(V& visit, S& view) {
@@ -154,6 +156,7 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit("trail_joints", view.trail_joints, Within<int>{0, kJointCount - 1});
   visit("ghost_count", view.ghost_count, Clamped<int>{0, 100});
   visit("ghost_step", view.ghost_step, Clamped<int>{1, kFrameNumbers.high});
+  visit("ghosts_by_time", view.ghosts_by_time);
   visit("error_scale_mm", view.error_scale_mm, Clamped<float>{1e-3f, 1e6f});
   visit("wipe", view.wipe, Clamped<float>{0, 1});
   visit("cube", view.cube);
@@ -162,6 +165,7 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit(MemberName("background", "backdrop"), view.background, kBackgroundNames);
   visit(MemberName("background_color", "backdrop_color"), view.background_color);
   visit("metric", view.metric);
+  visit("steps", view.steps);
 }
 
 /// What a pane (0 the source, k the take k - 1) is seen through: the first camera while they are linked, else

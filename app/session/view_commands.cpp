@@ -229,8 +229,12 @@ void add_layers(Commands& commands) {
     c.session.view.ghost_count = c.clamped(0, "count", 0, 10);
     c.session.view.ghost_step = c.clamped(1, "step", 1, 1000);
   });
+  commands.add({"view.ghosts_by_time", "Colour ghosts by time", "on|off|toggle"},
+               [](Call& c) { c.session.view.ghosts_by_time = c.switched(0, c.session.view.ghosts_by_time); });
   commands.add({"view.error_scale", "Error scale", "MM: the upper end of the scale"},
                [](Call& c) { c.session.view.error_scale_mm = c.clamped(0, "scale", 0.1f, 1e4f); });
+  commands.add({"view.steps", "Steps in the timeline", "on|off|toggle"},
+               [](Call& c) { c.session.view.steps = c.switched(0, c.session.view.steps); });
   commands.add({"view.metric", "Plot in the timeline", "KEY"},
                [](Call& c) { c.session.view.metric = c.word(0, "figure"); });
 }

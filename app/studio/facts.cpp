@@ -47,6 +47,20 @@ std::string blend(const Session& session) {
   return text;
 }
 
+/// Of the selected take, "4-31"; empty: it is no loop.
+std::string looped(const Session& session) {
+  const Take* const take = at_or_null(session.document.takes, session.selected_take);
+  if (take == nullptr || !take->pose_edits.loop) return "";
+  return std::to_string(take->pose_edits.loop->first) + "-" + std::to_string(take->pose_edits.loop->last);
+}
+
+/// Of the selected take the seconds, "1.5"; empty: it ends with its last captured frame.
+std::string goes_on(const Session& session) {
+  const Take* const take = at_or_null(session.document.takes, session.selected_take);
+  const bool on = take != nullptr && take->pose_edits.go_on;
+  return on ? printed("%.3g", static_cast<double>(take->pose_edits.go_on->seconds)) : "";
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
@@ -76,6 +90,8 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"skeleton_edits", count(session.document.skeleton_edits.size())},
       {"fills", fills(session)},
       {"blend", blend(session)},
+      {"goes_on", goes_on(session)},
+      {"loop", looped(session)},
       {"layout", kLayoutNames[static_cast<size_t>(session.view.layout)]},
       {"active_pane", std::to_string(session.view.active_pane)},
       {"tool", kToolNames[static_cast<size_t>(session.tool)]},

@@ -151,6 +151,9 @@ const Changes& document_changes() {
       POSES(fill[0].first = 1),
       POSES(fill[0].last = 17),
       POSES(fill[0].learned = 0.25f),
+      POSES(go_on.reset()),
+      POSES(go_on->seconds += 1),
+      POSES(go_on->learned = 1),
       POSES(rotate.pop_back()),
       POSES(rotate[0].frame = 1),
       POSES(rotate[0].joint = 1),
@@ -174,6 +177,11 @@ const Changes& document_changes() {
       POSES(pin->max_drop_m += 1),
       POSES(turn.reset()),
       POSES(turn->turn_deg += 1),
+      POSES(loop.reset()),
+      POSES(loop->first += 1),
+      POSES(loop->last += 1),
+      POSES(loop->seam_s = 0),
+      POSES(loop->learned = 0),
       POSES(trim.reset()),
       POSES(trim->first = 0),
       POSES(trim->last = 9),
@@ -207,7 +215,10 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [turned_joint, axis_angle] = BoneTurn();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
-  [[maybe_unused]] const auto& [fill, rotate, smoothing, floors, pin, heading, trim, skip] = PoseEdits();
+  [[maybe_unused]] const auto& [fill, go_on, rotate, smoothing, floors, pin, heading, looped, trim, skip] =
+      PoseEdits();
+  [[maybe_unused]] const auto& [seconds, on_learned] = GoOnEdit();
+  [[maybe_unused]] const auto& [loop_first, loop_last, seam, loop_learned] = LoopEdit();
   [[maybe_unused]] const auto& [fill_first, fill_last, fill_learned] = FillEdit();
   [[maybe_unused]] const auto& [frame, joint, turn, falloff, limb] = RotateEdit();
   [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();
@@ -217,8 +228,8 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [turn_deg] = TurnEdit();
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
-                                weights_joint, trails, ghosts, step, scale, wipe, cube, overlay, light,
-                                background, background_color, metric] = View();
+                                weights_joint, trails, ghosts, step, by_time, scale, wipe, cube, overlay,
+                                light, background, background_color, metric, steps] = View();
   [[maybe_unused]] const auto& [of_scan, of_skeletons, of_results, spread] = OverlayLook();
   [[maybe_unused]] const auto& [light_turn, light_height, brightness] = LightLook();
   [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();

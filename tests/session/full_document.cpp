@@ -29,12 +29,14 @@ std::shared_ptr<const WeightRows> weight_rows() {
 PoseEdits pose_edits() {
   PoseEdits edits;
   edits.fill = {{14, 16, 0.5f}};
+  edits.go_on = GoOnEdit{2.5f, 0.25f};
   edits.rotate = {{12, LeftElbow, Vec3(0.1f, -0.2f, 1 / 3.0f), 7, LeftWrist},
                   {0, Head, Vec3(1e-7f, 0, 0), 0}};
   edits.smooth = SmoothEdit{0.7f};
   edits.raise = RaiseEdit{-0.012f};
   edits.pin = PinEdit{false, false, {0.02f, 0.06f, 0.5f, 1.1f}, 0.3f, false, false, 0.05f};
   edits.turn = TurnEdit{-91.5f};
+  edits.loop = LoopEdit{20, 47, 0.25f, 0.75f};
   edits.trim = Trim{3, 95};
   edits.skip = {4, 50, 51};
   return edits;
@@ -73,6 +75,7 @@ View view() {
   view.trail_joints = {LeftFoot, Head, Pelvis};
   view.ghost_count = 5;
   view.ghost_step = 3;
+  view.ghosts_by_time = true;
   view.error_scale_mm = 25;
   view.wipe = 0.3f;
   view.cube = false;
@@ -81,6 +84,7 @@ View view() {
   view.background = Background::Custom;
   view.background_color = Vec3(0.25f, 0.5f, 0.75f);
   view.metric = "foot_skate";
+  view.steps = false;
   return view;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <thread>
 
+#include "app/session/take_export.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/pipeline/human_rest.hpp"
@@ -247,6 +248,55 @@ TEST_F(Fills, AreCurvesWhereTheMotionSpaceCannotBeLoaded) {
                                    std::string::npos;
                           }),
             1);
+}
+
+TEST_F(Fills, OverTrimmedFramesAreMadeAndExportedAsFarAsTheyAreKept) {
+  Studio studio(services());
+  open_both(studio);
+  const std::vector<Pose> before = shown(studio).poses;
+  studio.run("edit.trim", {"0", "6", "15"});
+  studio.run("edit.fill", {"0", "4", "8"});
+  studio.wait_idle();
+  for (int t = 0; t < kFrames; ++t) EXPECT_EQ(equal(shown(studio).poses[t], before[t]), t < 4 || t > 8) << t;
+  const auto inputs = export_inputs(studio.session(), {0}, {});
+  ASSERT_EQ(inputs.at(0).clips.at(0).poses.size(), 10u);
+  const auto& made = inputs[0].clips[0].made;
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0].first, 0);
+  EXPECT_EQ(made[0].last, 2) << "as the written clip counts";
+  studio.run("edit.trim", {"0", "off"});
+  studio.wait_idle();
+  EXPECT_FALSE(equal(shown(studio).poses[4], before[4])) << "the fill reaches beyond the trim";
+}
+
+TEST_F(Fills, AtAnEndAreSaidToBeAGuess) {
+  Studio studio(services());
+  open_both(studio);
+  const auto is_told = [&](const std::string& words) {
+    for (const Notice& notice : studio.session().notices)
+      if (notice.text == words) return true;
+    return false;
+  };
+  studio.run("edit.fill", {"0", "0", "3"});
+  EXPECT_TRUE(is_told("frames 0 to 3 are a guess: nothing before them is known"));
+  studio.run("edit.fill", {"0", "20", "23"});
+  EXPECT_TRUE(is_told("frames 20 to 23 are a guess: nothing after them is known"));
+  studio.wait_idle();
+  EXPECT_TRUE(studio.session().errors.empty());
+}
+
+TEST_F(Fills, NeedOneKnownFrameAndNoMore) {
+  Studio studio(services());
+  open_both(studio);
+  EXPECT_EQ(failure_of([&] {
+              studio.run("edit.fill", {"0", "0", "23"});
+            }),
+            "all frames would be filled: none is left that is known");
+  studio.run("edit.fill", {"0", "0", "22"});
+  studio.wait_idle();
+  EXPECT_TRUE(studio.session().errors.empty());
+  EXPECT_GT(shown(studio).doubt_m[0], shown(studio).doubt_m[20]) << "far from what is known";
+  EXPECT_EQ(shown(studio).doubt_m[23], 0);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "retarget/body/builtin_motion.hpp"
+#include "retarget/formats/motion_writers.hpp"
 #include "retarget/formats/npz.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/skeleton/curve_doubt.hpp"
@@ -154,6 +156,16 @@ std::string StudioTest::folder_without(const std::set<int>& missing, const std::
 
 void StudioTest::open_both(Studio& studio) {
   studio.run("open", {path("scan.npz")});
+  studio.run("open", {path("target.obj")});
+  studio.wait_idle();
+}
+
+void StudioTest::open_walk(Studio& studio) {
+  const Motion walk = builtin_motion("walk", human_rest());
+  BvhWriter writer(path("walk.bvh"), human_rest(), walk.fps);
+  for (const Pose& pose : walk.poses) writer.push(pose);
+  writer.finish();
+  studio.run("open", {path("walk.bvh")});
   studio.run("open", {path("target.obj")});
   studio.wait_idle();
 }

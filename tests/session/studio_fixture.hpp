@@ -60,6 +60,8 @@ class StudioTest : public ::testing::Test {
 
   /// The dance, performed by the target.
   void open_both(Studio& studio);
+  /// A walk of several steps, five seconds of it, performed by the target.
+  void open_walk(Studio& studio);
 
   fs::path folder_, before_;
   std::shared_ptr<std::atomic<int>> extractions_ = std::make_shared<std::atomic<int>>(0);
