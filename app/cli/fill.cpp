@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/file_preview.hpp"
@@ -28,6 +29,8 @@ struct FillOptions {
   std::vector<std::string> ranges;
   bool bad = false;
   float learned = 1;
+  std::optional<double> until;  // seconds from the first frame
+  bool loop = false;
 };
 
 /// "40:55".
@@ -54,6 +57,30 @@ Document document_of(const FillOptions& options) {
   return document;
 }
 
+void check_done(Studio& studio) {
+  studio.wait_idle();
+  US_CHECK(studio.session().errors.empty(), studio.session().errors.front().text);
+}
+
+void go_on_until(const FillOptions& options, Studio& studio) {
+  const Session& session = studio.session();
+  const double there = static_cast<double>(session.takes[0].performed.size()) / session.source.fps;
+  US_CHECK(*options.until > there, "--until ", *options.until, ": ", options.source.path, " is ", there,
+           " seconds long already");
+  studio.run("edit.go_on", {"0", std::to_string(*options.until - there)});
+  studio.run("edit.go_on_learned", {"0", std::to_string(options.learned)});
+  const auto added = frames_added(*session.document.takes[0].pose_edits.go_on, session.source.fps);
+  const int first = ssize(session.takes[0].performed), last = first + added - 1;
+  log::warn(options.source.path + ": " + guess_of({first, last}, last + 1, session.source.fps));
+}
+
+/// Between two like moments of what was filled.
+void make_loop(const FillOptions& options, Studio& studio) {
+  check_done(studio);
+  studio.run("edit.loop", {"0"});
+  studio.run("edit.loop_learned", {"0", std::to_string(options.learned)});
+}
+
 /// Fills what is asked for, and waits for it.
 void fill_take(const FillOptions& options, Studio& studio) {
   const Session& session = studio.session();
@@ -65,14 +92,31 @@ void fill_take(const FillOptions& options, Studio& studio) {
   const auto& performed = session.takes[0].performed;
   for (const KeptFrame& frame : performed) has_bad = has_bad || frame.flagged;
   if (options.bad && has_bad) studio.run("edit.fill", {"0", "bad"});
-  if (options.bad && !has_bad) log::info(options.source.path + ": all of its frames could be used");
+  if (options.bad && !has_bad && !options.until && !options.loop)
+    log::info(options.source.path + ": all of its frames could be used");
   for (int i = 0; i < ssize(session.document.takes[0].pose_edits.fill); ++i)
     studio.run("edit.fill_learned", {"0", std::to_string(i), std::to_string(options.learned)});
   for (const FillEdit& one : session.document.takes[0].pose_edits.fill)
     if (const std::string guess = guess_of(one, ssize(performed), session.source.fps); !guess.empty())
       log::warn(options.source.path + ": " + guess);
-  studio.wait_idle();
-  US_CHECK(session.errors.empty(), session.errors.front().text);
+  if (options.until) go_on_until(options, studio);
+  if (options.loop) make_loop(options, studio);
+  check_done(studio);
+}
+
+/// What is made of the frames: those that play, from 0 on.
+std::vector<MadeFrames> made_of(const Session& session) {
+  const Motion& shown = session.takes[0].shown;
+  std::vector<float> doubt_m;
+  for (const int frame : kept_frames(session.document.takes[0].pose_edits, ssize(shown.poses)))
+    doubt_m.push_back(frame < ssize(shown.doubt_m) ? shown.doubt_m[static_cast<size_t>(frame)] : 0);
+  return made_frames(doubt_m);
+}
+
+Json loop_of(const Session& session, const LoopEdit& loop) {
+  const LoopTravel travel = travel_of(loop, session.takes[0].shown);
+  return {
+      {"first", loop.first}, {"last", loop.last}, {"travel_m", travel.metres}, {"turn_deg", travel.turn_deg}};
 }
 
 Json report_of(const FillOptions& options, const Session& session, const std::vector<MadeFrames>& made) {
@@ -80,11 +124,23 @@ Json report_of(const FillOptions& options, const Session& session, const std::ve
   report["source"] = options.source.path;
   report["target"] = options.target.path;
   report["fps"] = session.source.fps;
-  report["frames"] = session.takes[0].shown.poses.size();
+  const PoseEdits& edits = session.document.takes[0].pose_edits;
+  report["frames"] = kept_frames(edits, ssize(session.takes[0].shown.poses)).size();
+  report["learned"] = options.learned;
+  if (edits.loop) report["loop"] = loop_of(session, *edits.loop);
   report["made_frames"] = Json::array();
   for (const MadeFrames& one : made)
     report["made_frames"].push_back({{"first", one.first}, {"last", one.last}, {"doubt_m", one.doubt_m}});
   return report;
+}
+
+/// How much is learned: nothing where the motion space cannot be had.
+float usable(const FillOptions& options) {
+  if (options.learned <= 0) return 0;
+  const std::string problem =
+      failure_of([&] { nn::load_motion_space(nn::weights_folder(network_options(options.how))); });
+  if (!problem.empty()) log::warn(problem + ": what is made follows smooth curves");
+  return problem.empty() ? options.learned : 0;
 }
 
 int fill(FillOptions options) {
@@ -96,8 +152,7 @@ int fill(FillOptions options) {
   for (const std::string& path : {options.report, options.preview}) check_writable(path);
   options.bad = options.bad || options.ranges.empty();
   for (const std::string& text : options.ranges) range_of(text);
-  if (options.learned > 0)
-    nn::load_motion_space(nn::weights_folder(network_options(options.how)));  // or throws
+  options.learned = usable(options);
   const auto studio = headless_studio(options.how.weights);
   const Session& session = studio->session();
   SavedDocument asked;
@@ -105,12 +160,18 @@ int fill(FillOptions options) {
   studio->replace_document(std::move(asked), "");
   make_takes(*studio, 0, {clip_name(options.source.path)});
   fill_take(options, *studio);
-  const std::vector<MadeFrames> made = made_frames(session.takes[0].shown.doubt_m);
+  const std::vector<MadeFrames> made = made_of(session);
   ExportChoice choice;
   choice.format = &format;
   auto inputs = export_inputs(session, {0}, choice);
   inputs[0].body.file.progress = [](float) { check_interrupt("during the export"); };
   const ExportCost cost = export_motion(options.out, format, inputs);
+  if (const auto& loop = session.document.takes[0].pose_edits.loop) {
+    const LoopTravel travel = travel_of(*loop, session.takes[0].shown);
+    std::printf("frames %d to %d of the source play in a loop, %.2f m and %.0f degrees farther each round\n",
+                loop->first, loop->last, static_cast<double>(travel.metres),
+                static_cast<double>(travel.turn_deg));
+  }
   for (const MadeFrames& one : made)
     std::printf("frames %d to %d were made, expected to be off by up to %.1f cm\n", one.first, one.last,
                 static_cast<double>(100 * one.doubt_m));
@@ -141,6 +202,13 @@ Action declare_fill(CLI::App& command) {
                      "frames FIRST:LAST that are made from those around them; may be given several times");
   command.add_flag("--bad", options->bad,
                    "makes all frames that could not be used, missing ones too (default without --range)");
+  const auto until = command.add_option(
+      "--until", options->until,
+      "goes on beyond the last frame until so many seconds from the first: a prediction, and said to be");
+  command
+      .add_flag("--loop", options->loop,
+                "keeps what lies between the two most alike moments, and closes the seam between them")
+      ->excludes(until);
   command
       .add_option("--learned", options->learned,
                   "0: smooth curves between what is known; 1: what the motion space learned of people "
