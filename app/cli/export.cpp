@@ -110,12 +110,14 @@ std::vector<Role> roles_in(const ExportOptions& options, const std::string& path
 void perform(const ExportOptions& options, const Role& role, Retargeter& retargeter, ExportInput& input) {
   const std::string& path = role.source.path;
   const auto source = open_source(role.source);
-  RetargetedSource retargeted(*source, retargeter, role.source);
+  RetargetedSource retargeted(*source, retargeter, role.source, motion_space_loader(options.how));
   const bool is_together = options.targets.size() > 1;
   CharacterClip clip{is_together ? clip_name(path) : role.called, source->fps(), {}};
+  std::vector<float> doubt_m;
   Progress progress(role.called + " -> " + input.name, source->count().value_or(0));
   while (const auto frame = retargeted.next()) {
     clip.poses.push_back(frame->result.pose);
+    doubt_m.push_back(frame->scan.doubt_m);
     input.source_joints.push_back(frame->result.source.joints);
     progress.step(retargeted.frames());
     check_interrupt("after frame " + std::to_string(frame->scan.number));
@@ -127,6 +129,7 @@ void perform(const ExportOptions& options, const Role& role, Retargeter& retarge
   if (retargeted.flagged() > 0)
     log::warn(path + ": " + std::to_string(retargeted.flagged()) +
               " of its frames could not be used and repeat the last pose");
+  clip.made = made_frames(doubt_m);
   input.source_to_scan = source->to_file();
   input.clips.push_back(std::move(clip));
 }
@@ -314,6 +317,7 @@ int run_export(const ExportOptions& options) {
   read.insert(read.end(), options.targets.begin(), options.targets.end());
   read.push_back(options.source.motion);
   read.push_back(options.source.times);
+  read.push_back(options.source.markers);
   check_not_read(options.out, read);
   check_export(options.out, format);
   if (options.bones == "own") check_own_bones(options.out, format);

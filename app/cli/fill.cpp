@@ -128,9 +128,7 @@ Json report_of(const FillOptions& options, const Session& session, const std::ve
   report["frames"] = kept_frames(edits, ssize(session.takes[0].shown.poses)).size();
   report["learned"] = options.learned;
   if (edits.loop) report["loop"] = loop_of(session, *edits.loop);
-  report["made_frames"] = Json::array();
-  for (const MadeFrames& one : made)
-    report["made_frames"].push_back({{"first", one.first}, {"last", one.last}, {"doubt_m", one.doubt_m}});
+  report["made_frames"] = to_json(made);
   return report;
 }
 

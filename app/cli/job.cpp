@@ -28,7 +28,8 @@ struct Running {
   std::optional<PreviewMoments> moments, skeletons;
   std::optional<Evaluator> evaluator;
   Latency latency;
-  log::Tally repeats;  // of the last pose
+  log::Tally repeats;          // of the last pose
+  std::vector<float> doubt_m;  // of each frame that was made, 0 where it was captured
 };
 
 /// Moments and columns of a sheet that shows the extraction alone.
@@ -64,6 +65,7 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
   if (result.flagged)
     job.repeats.warn("frame " + std::to_string(frame.scan.number) +
                      " repeats the last pose: " + result.reason);
+  job.doubt_m.push_back(frame.scan.doubt_m);
   if (job.output) job.output->push({result.pose, result.source.joints, &result.vertices});
   if (job.moments && job.moments->wanted(frame.index))
     job.moments->add(frame.index, moment_of(frame, fps, job.character->target.mesh));
@@ -83,6 +85,8 @@ Json report_of(const JobOptions& options, const Running& job) {
   report["fps"] = job.source->fps();
   report["frames"] = job.retargeted->frames();
   report["flagged"] = job.retargeted->flagged();
+  if (const std::vector<MadeFrames> made = made_frames(job.doubt_m); !made.empty())
+    report["made_frames"] = to_json(made);
   report["metrics"] = to_json(job.evaluator->metrics());
   report["ms"] = to_json(job.latency, 0.5);
   report["ms_p95"] = to_json(job.latency, 0.95);
@@ -98,7 +102,8 @@ Running start(const JobOptions& options) {
   log::info(std::string("inference: one thread, ") + nn::kernels().name + " kernels");
   job.retargeter = std::make_unique<Retargeter>(std::move(networks), retarget_options(options.how));
   job.retargeter->set_target(job.character->target);
-  job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source);
+  job.retargeted = std::make_unique<RetargetedSource>(*job.source, *job.retargeter, options.source,
+                                                      motion_space_loader(options.how));
   if (!options.preview.empty()) job.moments.emplace(job.source->count());
   if (!options.skeletons.empty()) job.skeletons.emplace(job.source->count(), kSkeletonMoments);
   if (!options.report.empty()) job.evaluator.emplace(job.source->fps(), nullptr, &job.character->target.mesh);
@@ -138,8 +143,8 @@ std::string path_of_person(const std::string& path, int id) {
 }  // namespace
 
 void run_job(const JobOptions& options) {
-  check_not_read(options.out,
-                 {options.source.path, options.source.motion, options.source.times, options.target.path});
+  check_not_read(options.out, {options.source.path, options.source.motion, options.source.times,
+                               options.source.markers, options.target.path});
   if (!options.out.empty()) check_export(options.out, export_format("", options.out));
   for (const std::string& path : {options.report, options.preview, options.skeletons}) check_writable(path);
   Running job = start(options);

@@ -80,6 +80,14 @@ void add_source_options(CLI::App& command, SourceOptions& source) {
       "--times", source.times,
       "CSV of when each scan was taken: its file or number, seconds; --fps is then the rate of "
       "the result (default: the usual interval's)");
+  command
+      .add_option(
+          "--complete", source.complete,
+          "fits one body to all scans, however few and sparse, and makes so many frames per second of "
+          "them; looks both ways")
+      ->check(CLI::Range(1.0, 1000.0));
+  command.add_option("--markers", source.markers,
+                     "CSV of markers for --complete: seconds,name,x,y,z in the scans' units and axes");
   command.add_option("--up", source.import.up, "the source's up axis: auto, x, y, z, -x, -y, -z");
   command.add_option("--units", source.import.units, "the source's units: auto, m, dm, cm, mm, in");
   command.add_option("--height", source.import.height,
@@ -174,6 +182,12 @@ nn::NetworkOptions network_options(const MethodOptions& how) {
   options.engine_file = how.engine_file;
   options.extractor_file = how.extractor_file;
   return options;
+}
+
+std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOptions& how) {
+  return [folder = nn::weights_folder(network_options(how))] {
+    return std::shared_ptr<MotionSpace>(nn::load_motion_space(folder));
+  };
 }
 
 RetargetOptions retarget_options(const MethodOptions& how) {

@@ -33,6 +33,8 @@ void add_method_options(CLI::App& command, MethodOptions& how);
 /// As --rest-pose takes it: "left_shoulder=0,0,-30".
 std::string turn_words(const BoneTurn& turn);
 nn::NetworkOptions network_options(const MethodOptions& how);
+/// Loads what fills frames between scans, with the same weights.
+std::function<std::shared_ptr<MotionSpace>()> motion_space_loader(const MethodOptions& how);
 /// The options of the pipeline, networks apart.
 RetargetOptions retarget_options(const MethodOptions& how);
 

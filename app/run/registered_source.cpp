@@ -90,6 +90,7 @@ Mesh shuffled(const Mesh& mesh, Rng& rng) {
 
 std::unique_ptr<Source> hide_topology(std::unique_ptr<Source> source, const SourceOptions& options,
                                       Registered registered) {
+  if (options.complete > 0) return source;  // a body's own frames: nothing is extracted from them
   if (registered == Registered::No || (registered == Registered::Auto && options.follow)) return source;
   const bool certain = registered == Registered::Yes;
   if (!certain && !starts_with_one_topology(*source)) return source;

@@ -44,6 +44,13 @@ Json to_json(const Latency& latency, double quantile) {
   return json;
 }
 
+Json to_json(const std::vector<MadeFrames>& made) {
+  Json json = Json::array();
+  for (const MadeFrames& one : made)
+    json.push_back({{"first", one.first}, {"last", one.last}, {"doubt_m", one.doubt_m}});
+  return json;
+}
+
 void write_json(const std::string& path, const Json& json) {
   write_file(path, json.dump(1) + '\n');
 }

@@ -7,6 +7,7 @@
 
 #include "app/run/evaluator.hpp"
 #include "app/run/latency.hpp"
+#include "retarget/skeleton/made_frames.hpp"
 
 namespace understudy::app {
 
@@ -19,6 +20,8 @@ std::string checksum(const std::filesystem::path& path);
 Json to_json(const Metrics& metrics);
 /// Milliseconds a stage at this quantile.
 Json to_json(const Latency& latency, double quantile);
+/// [{"first", "last", "doubt_m"}], both inside.
+Json to_json(const std::vector<MadeFrames>& made);
 /// Writes beside the path, then renames. Throws Error naming the path.
 void write_json(const std::string& path, const Json& json);
 

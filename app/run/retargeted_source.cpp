@@ -21,14 +21,16 @@ void look_with(Retargeter& retargeter, Source& source) {
   source.set_look([&retargeter](const Mesh& scan) { return retargeter.observer().look(scan); });
 }
 
-RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, const SourceOptions& options)
+RetargetedSource::RetargetedSource(Source& source, Retargeter& retargeter, const SourceOptions& options,
+                                   const std::function<std::shared_ptr<MotionSpace>()>& motion_space)
     : source_(source),
       retargeter_(retargeter),
       name_(options.path),
-      edits_(options.edits),
+      edits_(options.complete > 0 ? ScanEdits() : options.edits),
       cut_(retargeter.extractor(), options) {
   retargeter_.restart();
   look_with(retargeter_, source_);
+  source_.set_tools({[this] { return retargeter_.extractor(); }, motion_space, {}});
 }
 
 std::optional<RetargetedFrame> RetargetedSource::next(const std::optional<Joints>& known) {

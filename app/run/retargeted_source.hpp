@@ -33,7 +33,9 @@ class RetargetedSource {
   /// `retargeter` starts anew, and looks at the source's first frame (look_with). Both must outlive this.
   /// `options` are those that the source was opened with: its `edits` are applied to each scan first, then
   /// the `person` is cut out.
-  RetargetedSource(Source& source, Retargeter& retargeter, const SourceOptions& options);
+  /// `motion_space` fills sparse scans that are completed; it may be empty.
+  RetargetedSource(Source& source, Retargeter& retargeter, const SourceOptions& options,
+                   const std::function<std::shared_ptr<MotionSpace>()>& motion_space = {});
   /// None at the end. Warns once of each limb that is not seen. known: the source's joints, where they are
   /// not to be extracted.
   std::optional<RetargetedFrame> next(const std::optional<Joints>& known = {});
@@ -54,7 +56,7 @@ class RetargetedSource {
   Source& source_;
   Retargeter& retargeter_;
   std::string name_;
-  ScanEdits edits_;
+  ScanEdits edits_;  // none where scans are completed: they were applied before
   PersonCut cut_;
   std::string doubt_;    // why the source may be no person; empty: nothing speaks against it
   std::string problem_;  // of the last frame that could not be used

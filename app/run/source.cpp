@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/run/completed_source.hpp"
 #include "app/run/interrupt.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
@@ -392,6 +393,8 @@ class ScannedCharacter final : public AnimatedSource {
   std::optional<SkeletalMotion> bones_;  // none: nobody asked
 };
 
+constexpr double kFineClock = 240;  // frames/s on which scans lie that are completed: they keep their times
+
 constexpr const char* kTimesAreFor = "a table of times (--times) is for scans";
 
 /// What asks for bones or animations of a source that has none would go unheard.
@@ -407,6 +410,17 @@ void check_scan_options(const SourceOptions& options) {
            ": is a scan, only an SMPL-format body that performs a --motion takes --source-betas");
   US_CHECK(options.times.empty() || !options.follow, options.path,
            ": is still being written (--follow), its scans have no times yet (--times)");
+  US_CHECK(options.complete == 0 || !options.follow, options.path,
+           ": is still being written (--follow); what is completed (--complete) is known to its end");
+  US_CHECK(options.complete == 0 || options.person.empty(), options.path,
+           ": one person is completed (--complete), none can be chosen (--person)");
+  US_CHECK(options.markers.empty() || options.complete > 0, options.path,
+           ": markers (--markers) are for scans that are completed (--complete)");
+}
+
+void check_not_completed(const SourceOptions& options) {
+  US_CHECK(options.complete == 0 && options.markers.empty(), options.path,
+           ": is a motion already, only scans are completed (--complete, --markers)");
 }
 
 void check_body_options(const SourceOptions& options) {
@@ -421,6 +435,7 @@ void check_body_options(const SourceOptions& options) {
   US_CHECK(options.person.empty(), options.path,
            ": is a body that performs a motion, only scans may hold several people (--person)");
   US_CHECK(options.times.empty(), options.path, ": is a body that performs a motion, ", kTimesAreFor);
+  check_not_completed(options);
 }
 
 void check_skeletal_options(const SourceOptions& options) {
@@ -432,6 +447,7 @@ void check_skeletal_options(const SourceOptions& options) {
   US_CHECK(options.person.empty(), options.path,
            ": is a skeletal motion, only scans may hold several people (--person)");
   US_CHECK(options.times.empty(), options.path, ": is a skeletal motion, ", kTimesAreFor);
+  check_not_completed(options);
 }
 
 void check_blend_options(const SourceOptions& options) {
@@ -449,6 +465,11 @@ std::unique_ptr<Source> as_scan(Character character, const SourceOptions& option
   const int clip = chosen_clip(character, options.clip);
   const ClipTimes times = clip_times(character, clip, options.fps);
   return std::make_unique<ScannedCharacter>(std::move(character), clip, times, options);
+}
+
+std::unique_ptr<Source> scans_to_complete(SourceOptions options) {
+  if (!options.times.empty()) options.fps = kFineClock;
+  return std::make_unique<ScanFiles>(options);
 }
 
 std::unique_ptr<Source> as_skeleton(const Character& character, const SourceOptions& options) {
@@ -530,6 +551,7 @@ std::unique_ptr<Source> open_source(const SourceOptions& options, MotionBlender*
   std::optional<Character> moving = read_motion(options.path);
   if (!moving) {
     check_scan_options(options);
+    if (options.complete > 0) return complete_scans(scans_to_complete(options), options);
     return std::make_unique<ScanFiles>(options);
   }
   check_skeletal_options(options);

@@ -16,10 +16,13 @@
 #include "retarget/formats/import.hpp"
 #include "retarget/formats/scan_source.hpp"
 #include "retarget/pipeline/interfaces.hpp"
+#include "retarget/pipeline/motion_space.hpp"
 #include "retarget/scene/person_edits.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::app {
+
+struct MadeCapture;
 
 struct SourceOptions {
   /// scans, a skeletal motion, or an SMPL-format body where `motion` is given; of a blend its first part
@@ -28,20 +31,24 @@ struct SourceOptions {
   std::vector<float> betas;  ///< of the performing body; empty: those in the motion's file
   double fps = 0;            ///< 0: the motion's own, as `times` tell, or 30
   ImportOptions import;
-  bool follow = false;   ///< the folder is still being written
-  bool as_scan = false;  ///< a skeletal motion's surface is sampled as a scan
-  std::string clip;      ///< of a skeletal motion's animations, by name or number from 1; empty: the longest
-  BoneChoices bones;     ///< of a skeletal motion, as the user wants them
-  bool quiet = false;    ///< log nothing: another source has logged it all
-  bool truth = false;    ///< of scans made from a body the bones come along, to be judged by
-  std::string person{};  ///< who of a scan: a number, "largest", "all"; empty or "best": who is seen best
-  std::string times{};   ///< of scans: CSV of when each was taken (see scan_times.hpp); empty: evenly
+  bool follow = false;    ///< the folder is still being written
+  bool as_scan = false;   ///< a skeletal motion's surface is sampled as a scan
+  std::string clip;       ///< of a skeletal motion's animations, by name or number from 1; empty: the longest
+  BoneChoices bones;      ///< of a skeletal motion, as the user wants them
+  bool quiet = false;     ///< log nothing: another source has logged it all
+  bool truth = false;     ///< of scans made from a body the bones come along, to be judged by
+  std::string person{};   ///< who of a scan: a number, "largest", "all"; empty or "best": who is seen best
+  std::string times{};    ///< of scans: CSV of when each was taken (see scan_times.hpp); empty: evenly
+  double complete = 0;    ///< frames/s that sparse scans are completed to (see completed_source.hpp); 0: off
+  std::string markers{};  ///< of scans that are completed: CSV of markers (see markers.hpp); empty: none
+  std::shared_ptr<const MadeCapture>
+      made{};                        ///< what `complete` made of the same scans before; null: nothing
   std::vector<PersonEdit> people{};  ///< who is who, where it was not seen rightly
   std::optional<BlendRecipe> blend{};  ///< made of several skeletal motions; none: no blend
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source
 };
-/// What documents keep of it: `follow`, `quiet`, `truth` and `edits` belong to one run.
+/// What documents keep of it: `follow`, `quiet`, `truth`, `made` and `edits` belong to one run.
 template <class V, class S>
 FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("path", source.path, FilePath{});
@@ -49,6 +56,8 @@ FieldsOf<S, SourceOptions> fields(V& visit, S& source) {
   visit("betas", source.betas);
   visit("fps", source.fps, Within<double>{0, 1e6});
   visit("times", source.times, FilePath{});
+  visit("complete", source.complete, Within<double>{0, 1000});
+  visit("markers", source.markers, FilePath{});
   visit("import", source.import);
   visit("as_scan", source.as_scan);
   visit("clip", source.clip);
@@ -80,6 +89,13 @@ struct SourceClip {
   double seconds = 0;
 };
 
+/// What sparse scans are completed with.
+struct CompletingTools {
+  std::function<std::shared_ptr<SkeletonExtractor>()> extractor;
+  std::function<std::shared_ptr<MotionSpace>()> space;  ///< fills between scans; empty: smooth curves do
+  std::function<void(float)> progress;  ///< told the share that is done, 0..1; may throw; may be empty
+};
+
 /// What takes away that is no person, as options.
 constexpr const char* kCleaning = "--remove-floor, --largest-part, --crop";
 
@@ -98,6 +114,10 @@ class Source {
   /// without feet: its height is not theirs. Called on the thread of next(), at most once; what throws sees
   /// nobody. Motions of bodies and skeletons do not ask.
   virtual void set_look(const std::function<Extraction(const Mesh&)>& /*look*/) {}
+  /// Called before next(), whose thread then calls them. Sources that are not completed do not.
+  virtual void set_tools(const CompletingTools& /*tools*/) {}
+  /// What was completed, for SourceOptions::made; null before it is and of other sources.
+  virtual std::shared_ptr<const MadeCapture> made() const { return nullptr; }
   /// The options by which the same is decided without a look; none: those that it was opened with.
   const std::optional<ImportOptions>& import() const { return import_; }
   /// From frames as they are handed out back to the file's own units, axes and floor: scale, rotation and

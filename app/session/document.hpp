@@ -70,7 +70,7 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
 /// All that the document reads; some may be empty.
 inline std::vector<std::string> files_read_by(const Document& document) {
   std::vector<std::string> files = {document.source.path, document.source.motion, document.source.times,
-                                    document.truth};
+                                    document.source.markers, document.truth};
   if (document.source.blend)
     for (const BlendPart& part : document.source.blend->parts) files.push_back(part.path);
   for (const Take& take : document.takes) files.push_back(take.target.path);

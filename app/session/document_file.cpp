@@ -21,6 +21,7 @@ void visit_paths(Document& document, Visit visit) {
   visit(document.source.path);
   visit(document.source.motion);
   visit(document.source.times);
+  visit(document.source.markers);
   visit(document.truth);
   if (document.source.blend)
     for (auto& part : document.source.blend->parts) visit(part.path);

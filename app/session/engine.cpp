@@ -93,8 +93,10 @@ Plan plan_of(const Document& document, const std::vector<int64_t>& take_ids) {
 }
 
 struct Engine::Impl {
-  Impl(NetworksOf source_of_networks, std::shared_ptr<MotionBlender> of_blends)
-      : networks_of(std::move(source_of_networks)), blender(std::move(of_blends)) {}
+  Impl(NetworksOf source_of_networks, std::shared_ptr<MotionBlender> of_blends, SpaceOf source_of_space)
+      : networks_of(std::move(source_of_networks)),
+        blender(std::move(of_blends)),
+        motion_space(std::move(source_of_space)) {}
 
   // Shared with the UI thread, under the worker's mutex.
   std::optional<Plan> next_plan;
@@ -108,6 +110,7 @@ struct Engine::Impl {
   int64_t own_epoch = 0;  // of the plan at work
   NetworksOf networks_of;
   std::shared_ptr<MotionBlender> blender;
+  SpaceOf motion_space;
   Plan plan;
   std::string source_is, skeleton_is;
   std::unique_ptr<Source> source;
@@ -331,8 +334,15 @@ bool Engine::Impl::of_take(TakeWork& take, Work work) {
 void Engine::Impl::open() {
   opened = true;
   try {
-    source = open_source(plan.source, blender.get());
+    SourceOptions options = plan.source;
+    if (options.complete > 0) options.edits = plan.scan_edits;
+    source = open_source(options, blender.get());
     source->set_look([this](const Mesh& scan) { return observer_of(shown()).look(scan); });
+    source->set_tools({[this] { return extractor_of(shown()); }, motion_space,
+                       [this](float) {
+                         const auto held = worker.lock();
+                         US_CHECK(own_epoch == epoch, plan.source.path, ": is no longer wanted");
+                       }});
     SourceOpened event;
     event.name = name_of(plan.source);
     event.count = source->count();
@@ -425,7 +435,8 @@ bool Engine::Impl::read_frame() {
     if (!frame->usable) unusable = frame->problem;
     has_faces = has_faces || !frame->mesh.is_cloud();
     const std::optional<Box> extent = frame->usable ? extent_of(frame->mesh.vertices) : std::nullopt;
-    if (frame->usable) frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
+    if (frame->usable && plan.source.complete <= 0)
+      frame->mesh = understudy::apply(plan.scan_edits, frame->mesh);
     const double read_ms = ms_since(began);
     for (const Whom& whom : wanted) {
       Stream& stream = stream_of(whom);
@@ -547,7 +558,7 @@ bool Engine::Impl::send_source() {
   SourceFrames event;
   event.first = sent;
   event.decision = source ? source->decision() : "";
-  if (source) event.to_file = source->to_file(), event.import = source->import();
+  if (source) event.to_file = source->to_file(), event.import = source->import(), event.made = source->made();
   event.has_faces = has_faces;
   event.doubt = std::exchange(doubt, {});
   if (const auto& cut = stream_of(shown()).cut)
@@ -584,10 +595,13 @@ void Engine::Impl::perform(TakeWork& take) {
   emit(std::move(event));
 }
 
-Engine::Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender)
-    : impl_(std::make_unique<Impl>(std::move(networks), std::move(blender))) {}
+Engine::Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender, SpaceOf motion_space)
+    : impl_(std::make_unique<Impl>(std::move(networks), std::move(blender), std::move(motion_space))) {}
 
-Engine::~Engine() = default;
+Engine::~Engine() {
+  const auto held = impl_->worker.lock();
+  ++impl_->epoch;
+}
 
 void Engine::set_plan(Plan plan, bool afresh) {
   const auto held = impl_->worker.lock();

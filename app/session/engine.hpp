@@ -73,6 +73,7 @@ struct SourceFrames {
   std::string decision;                                   ///< about units, axes and floor
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();  ///< as SourceState's
   std::optional<ImportOptions> import;                    ///< as SourceState's
+  std::shared_ptr<const MadeCapture> made;                ///< as SourceState's
   std::vector<PersonSeen> people;                         ///< in all frames so far
   int person = 0;                                         ///< as SourceState's
   int left_out = 0;                                       ///< people so far who are too many to be followed
@@ -112,9 +113,11 @@ class Engine {
  public:
   /// The parts asked for, of the networks of a method.
   using NetworksOf = std::function<Networks(const Method&, const NetworkParts&)>;
-  /// blender: makes sources that are blends; null: they go straight from pose to pose.
-  explicit Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender = nullptr);
-  ~Engine();  ///< finishes the current frame, then stops
+  using SpaceOf = std::function<std::shared_ptr<MotionSpace>()>;
+  /// blender: makes sources that are blends; null: they go straight from pose to pose. motion_space: what fills sparse
+  /// scans that are completed; called on the engine's thread; may be empty.
+  explicit Engine(NetworksOf networks, std::shared_ptr<MotionBlender> blender = nullptr, SpaceOf motion_space = {});
+  ~Engine();  ///< finishes the current frame, or breaks the completing of scans off, then stops
 
   /// Makes this plan from now on. Never waits.
   /// `afresh`: drops everything made before, even what would still fit.

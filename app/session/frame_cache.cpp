@@ -151,9 +151,9 @@ class ScanReader {
     SourceOptions wanted = options;
     wanted.quiet = true;
     wanted.follow = false;  // never wait for what is not there yet
-    if (!same(wanted, options_)) source_.reset();
+    if (!same(wanted, options_) || wanted.made != options_.made) source_.reset();
     options_ = wanted;
-    edits_ = edits;
+    edits_ = wanted.complete > 0 ? ScanEdits() : edits;  // they were applied before it was completed
   }
 
   /// Never throws: an error becomes the picture's problem.
@@ -393,7 +393,12 @@ FrameCache::~FrameCache() = default;
 
 void FrameCache::set_source(const SourceOptions& source, const ScanEdits& edits) {
   const auto held = impl_->worker.lock();
-  if (same(source, impl_->source) && same(edits, impl_->edits)) return;
+  const bool is_same = same(source, impl_->source) && same(edits, impl_->edits);
+  if (is_same && source.made && source.made != impl_->source.made) {
+    impl_->source.made = source.made;
+    ++impl_->source_version;
+  }
+  if (is_same) return;
   impl_->source = source;
   impl_->edits = edits;
   ++impl_->source_version;

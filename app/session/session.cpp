@@ -90,6 +90,7 @@ std::optional<Box> everything(const Session& session) {
 SourceOptions source_as_read(const Session& session) {
   SourceOptions source = session.document.source;
   if (session.source.import) source.import = *session.source.import;
+  if (source.complete > 0) source.made = session.source.made;
   return source;
 }
 

@@ -55,8 +55,9 @@ struct SourceState {
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
   /// by which units, axes and floor are decided again as they were; none: by the document's
   std::optional<ImportOptions> import;
-  std::vector<SourceClip> clips;  ///< animations in the file; none of scans
-  int clip = -1;                  ///< the one that is played
+  std::shared_ptr<const MadeCapture> made;  ///< of scans that are completed, once they are
+  std::vector<SourceClip> clips;            ///< animations in the file; none of scans
+  int clip = -1;                            ///< the one that is played
   /// of the points of all frames so far before any edit;
   /// stays while the same source is read again with other edits
   std::optional<Box> extent;

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/run/completed_source.hpp"
 #include "app/session/command_sets.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/body/body.hpp"
@@ -89,6 +90,37 @@ void add_times(Commands& commands) {
         }
         set_options(c, std::move(source));
       });
+}
+
+/// Markers that cannot be read are refused at once.
+void add_completing(Commands& commands) {
+  commands.add_edit({"source.complete", "Complete the scans",
+                     "FRAMES_PER_SECOND|off: fits one body to all scans and makes a motion of them"},
+                    [](Call& c) {
+                      SourceOptions source = c.document.source;
+                      const bool is_off = c.word(0, "frame rate") == "off";
+                      source.complete = is_off ? 0 : c.number<double>(0, "frame rate");
+                      US_CHECK(is_off || (source.complete >= 1 && source.complete <= 1000),
+                               "a frame rate is 1 to 1000, not ", source.complete);
+                      if (is_off) source.markers.clear(), c.label = "Do not complete the scans";
+                      US_CHECK(is_off || !source.path.empty(), "no scans are open that could be completed");
+                      US_CHECK(is_off || c.session.source.clips.empty(), source.path,
+                               ": is a motion already, only scans are completed");
+                      set_options(c, std::move(source));
+                    });
+  commands.add_edit({"source.markers", "Markers of the scans", "FILE|off: a CSV of seconds, name, x, y, z"},
+                    [](Call& c) {
+                      SourceOptions source = c.document.source;
+                      const bool is_off = c.word(0, "file of markers") == "off";
+                      source.markers = is_off ? "" : c.path(0, "file of markers");
+                      if (is_off) c.label = "No markers";
+                      check_source_options(source);
+                      if (!is_off) {
+                        remember_folder(c.studio, source.markers);
+                        known_markers(source.markers);
+                      }
+                      set_options(c, std::move(source));
+                    });
 }
 
 void add_import(Commands& commands) {
@@ -245,6 +277,7 @@ void add_skeletal(Commands& commands) {
 void add_source_commands(Commands& commands) {
   add_opening(commands);
   add_times(commands);
+  add_completing(commands);
   add_skeletal(commands);
   add_import(commands);
   add_blends(commands);

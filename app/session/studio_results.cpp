@@ -186,6 +186,7 @@ void Studio::take_in(SourceFrames& event) {
   note_source_read();
   source.decision = event.decision;
   source.to_file = event.to_file;
+  source.made = event.made;
   source.import = event.import;
   cache_.set_source(without_people(source_as_read(session_)), in_effect(session_.document.scan_edits));
   take_in_people(event);

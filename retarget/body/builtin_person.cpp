@@ -118,4 +118,13 @@ Joints builtin_joints(const PersonOptions& options) {
   return shape.joints() * shape.scale();
 }
 
+Eigen::VectorXf builtin_distances(const PersonOptions& options, const Points& points) {
+  const PersonShape shape(options);
+  const float scale = shape.scale();
+  Eigen::VectorXf distances(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    distances[i] = scale * shape.value(Vec3(std::abs(points(i, 0)), points(i, 1), points(i, 2)) / scale);
+  return distances;
+}
+
 }  // namespace understudy

@@ -21,4 +21,8 @@ ShapedBody builtin_person(const PersonOptions& options = {});
 /// The T-pose joints of that person, without making the surface.
 Joints builtin_joints(const PersonOptions& options = {});
 
+/// About how far each point [N, 3] lies outside that person's skin in T-pose, metres, negative inside; the
+/// surface is not made for it.
+Eigen::VectorXf builtin_distances(const PersonOptions& options, const Points& points);
+
 }  // namespace understudy

@@ -106,6 +106,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   wanted.source = without_people(wanted.source);
   wanted.source.times.clear();
   wanted.source.blend.reset();
+  wanted.source.complete = 0, wanted.source.markers.clear();
   for (Take& take : wanted.takes) {
     take.method.part_refiner = take.method.hand_contacts = true;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
@@ -135,7 +136,8 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   for (const char* added : {"cube", "overlay", "light", "background", "background_color"}) view.erase(added);
   for (const char* layers : {"source", "take"})
     for (const char* added : {"wireframe", "scene"}) view[layers].erase(added);
-  for (const char* added : {"person", "people", "times"}) written["source"].erase(added);
+  for (const char* added : {"person", "people", "times", "complete", "markers"})
+    written["source"].erase(added);
   EXPECT_EQ(json_text(written), without);
 }
 
@@ -160,6 +162,7 @@ TEST(DocumentFile, PathsAreRelativeToIt) {
   const SavedDocument read = read_document(scratch.path("new/moved/docs/a.understudy"));
   EXPECT_EQ(read.document.truth, scratch.path("new/moved/data/truth.npz"));
   EXPECT_EQ(read.document.source.times, scratch.path("new/moved/data/scans/times.csv"));
+  EXPECT_EQ(read.document.source.markers, scratch.path("new/moved/data/scans/markers.csv"));
   EXPECT_EQ(read.document.takes[1].target.path, scratch.path("new/moved/data/b.glb"));
   EXPECT_EQ(read.document.source.blend->parts[0].path, scratch.path("new/moved/data/a walk.bvh"));
 }

@@ -50,6 +50,8 @@ const Changes& document_changes() {
       CHANGE(source.betas.pop_back()),
       CHANGE(source.fps = 30),
       CHANGE(source.times.clear()),
+      CHANGE(source.complete = 0),
+      CHANGE(source.markers.clear()),
       CHANGE(source.import.units = "m"),
       CHANGE(source.import.up = "y"),
       CHANGE(source.import.turn_deg += 1),
@@ -194,7 +196,8 @@ const Changes& document_changes() {
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
-                                with_truth, person, times, people, blend, edits] = SourceOptions();
+                                with_truth, person, times, complete, markers, made, people, blend, edits] =
+      SourceOptions();
   [[maybe_unused]] const auto& [parts, cycles, coder] = BlendRecipe();
   [[maybe_unused]] const auto& [part_path, part_range, part_weight, part_checksum] = BlendPart();
   [[maybe_unused]] const auto& [range_first, range_last] = BlendRange();

@@ -105,6 +105,8 @@ SavedDocument full_document(const std::string& folder) {
                            /*edits=*/{}};
   saved.document.source.person = "2";
   saved.document.source.times = folder + "/scans/times.csv";
+  saved.document.source.complete = 60;
+  saved.document.source.markers = folder + "/scans/markers.csv";
   saved.document.source.people = {{PersonEdit::How::Join, 3, 9, 1, 4}};
   saved.document.source.blend =
       BlendRecipe{{{folder + "/a walk.bvh", BlendRange{3, 40}, 0.25f, "0123456789abcdef"},

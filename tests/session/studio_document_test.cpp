@@ -91,6 +91,58 @@ TEST_F(StudioTest, TimesThatAreNotThoseOfTheScansAreRefusedAtOnce) {
   EXPECT_EQ(studio.session().document.source.times, "");
 }
 
+TEST_F(StudioTest, ScansAreCompletedCanBeUndoneAndAreSavedAsARecipe) {
+  {
+    Studio studio(services());
+    const Session& session = studio.session();
+    open_both(studio);
+    studio.run("source.complete", {"60"});
+    studio.wait_idle();
+    EXPECT_EQ(session.source.problem, "");
+    EXPECT_EQ(session.source.fps, 60);
+    ASSERT_EQ(frame_count(session), 2 * kFrames - 1);
+    for (const KeptSource& frame : session.source.frames) {
+      EXPECT_TRUE(frame.exact);
+      EXPECT_FALSE(frame.flagged) << frame.reason;
+    }
+    EXPECT_NE(session.source.decision.find("looks both ways"), std::string::npos) << session.source.decision;
+    studio.run("edit.undo");
+    studio.wait_idle();
+    EXPECT_EQ(frame_count(session), kFrames);
+    EXPECT_FALSE(session.source.frames[0].exact);
+    studio.run("edit.redo");
+    studio.run("document.save_as", {path("dance")});
+  }
+  EXPECT_LT(fs::file_size(path("dance.understudy")), 20000u) << "the recipe, not its frames";
+  Studio studio(services());
+  studio.run("document.open", {path("dance.understudy")});
+  studio.wait_idle();
+  EXPECT_EQ(studio.session().document.source.complete, 60);
+  EXPECT_EQ(frame_count(studio.session()), 2 * kFrames - 1);
+  fs::remove(path("scan.npz"));
+  studio.run("work.restart");
+  studio.wait_idle();
+  EXPECT_NE(studio.session().source.problem.find("scan.npz"), std::string::npos)
+      << "a recipe whose file is gone: " << studio.session().source.problem;
+}
+
+TEST_F(StudioTest, WhatCannotBeCompletedIsRefusedAtOnce) {
+  Studio studio(services());
+  const auto refused = [&](const char* command, const std::string& argument) {
+    return failure_of([&] { studio.run(command, {argument}); });
+  };
+  EXPECT_EQ(refused("source.complete", "60"), "no scans are open that could be completed");
+  open_both(studio);
+  EXPECT_EQ(refused("source.complete", "0.5"), "a frame rate is 1 to 1000, not 0.5");
+  std::ofstream(path("markers.csv")) << "seconds,name,x,y,z\n0,tail,0,0,0\n0,horn,0,0,0\n0,wing,0,0,0\n";
+  EXPECT_NE(refused("source.markers", "markers.csv").find("(--complete)"), std::string::npos);
+  studio.run("source.complete", {"60"});
+  EXPECT_NE(refused("source.markers", "markers.csv").find("there is no place for a marker 'tail'"),
+            std::string::npos)
+      << refused("source.markers", "markers.csv");
+  EXPECT_NE(refused("source.markers", "gone.csv").find("gone.csv"), std::string::npos);
+}
+
 TEST_F(StudioTest, AnotherSourceHasNoTimes) {
   std::ofstream(path("times.csv")) << times_with_a_gap(kFrames);
   fs::copy_file(path("scan.npz"), path("other.npz"));

@@ -67,6 +67,18 @@ TEST_F(Inspector, TheTableOfTimesIsChosenAndPutAway) {
   expect_click("source.times.reset", {"source.times off"});
 }
 
+TEST_F(Inspector, ScansAreCompletedToARateAndMayHaveMarkers) {
+  EXPECT_FALSE(shown("source.markers"));
+  expect_choice("source.complete", 2, {"source.complete 60"});
+  session.document.source.complete = 60;
+  frame(3);
+  expect_choice("source.complete", 0, {"source.complete off"});
+  expect_click("source.markers.browse", {"dialog.open source_markers"});
+  session.document.source.markers = "/data/markers.csv";
+  frame(3);
+  expect_click("source.markers.reset", {"source.markers off"});
+}
+
 TEST_F(Inspector, TheTableOfTimesIsPutAwayWithTheKeys) {
   session.document.source.times = "/data/times.csv";
   frame(3);
@@ -82,6 +94,7 @@ TEST_F(Inspector, WhatIsNoScanHasNoTimes) {
   session.source.clips = {{"walk", 2}};
   frame(3);
   EXPECT_FALSE(shown("source.times"));
+  EXPECT_FALSE(shown("source.complete"));
   session.source.clips.clear();
   session.document.source.motion = "/data/walk.npz";
   frame(3);

@@ -27,6 +27,7 @@ constexpr FileDialog kDialogs[] = {
     {"", "source.motion", "Open source: now the motion of ", "Open", FileKind::BodyMotion},
     {"blend_with", "source.blend_with", "Blend with another motion", "Blend", FileKind::Source},
     {"source_times", "source.times", "Times of the scans", "Use", FileKind::Times},
+    {"source_markers", "source.markers", "Markers of the scans", "Use", FileKind::Times},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},
     {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},
     {"open_document", "document.open", "Open document", "Open", FileKind::Document},

@@ -16,6 +16,7 @@ enum class FilePurpose {
   BodyMotion,  ///< the second
   BlendWith,
   SourceTimes,
+  SourceMarkers,
   Target,
   ReplaceTarget,
   Document,

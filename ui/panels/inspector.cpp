@@ -1,5 +1,6 @@
 // What is open and how it is done: the source, the takes, their target and method.
 // Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.times(.browse, .reset),
+// source.complete, source.markers(.browse, .reset),
 // source.units, source.up, source.height(.reset), source.turn, source.floor, source.extractor,
 // source.people.K (a row of who is there), source.person, source.blend.K (a part's share),
 // source.blend_cycles, source.blend_with, source.open, source.motion; take.K (its row), take.name,
@@ -159,28 +160,51 @@ void draw_animation_fields(const app::SourceState& state, const app::SourceOptio
   ask_toggle(context, {"source.as_scan", "As a scan", "Uses its surface, not its skeleton"}, source.as_scan);
 }
 
-/// The table of a scan's times: buttons choose one and put it away.
-void draw_times(const app::SourceOptions& source, PanelContext& context) {
+/// A table that belongs to the scans: buttons choose one and put it away.
+void draw_table(const Control& control, const std::string& path, PanelContext& context) {
   Ui& ui = context.ui;
-  const bool is_on = !source.times.empty();
+  const std::string& name = control.name;
+  const bool is_on = !path.empty();
   const float side = ImGui::GetFrameHeight(), buttons = (is_on ? 2 : 1) * (side + ui.px(4));
-  row(ui, "Times",
-      "A table of when each scan was taken: its file or number, seconds. Off: one scan a frame, but for "
-      "missing numbers");
+  row(ui, control.label, control.explanation);
   const float width = std::max(1.f, ImGui::GetContentRegionAvail().x - buttons);
-  ImGui::BeginChild("source.times.name", {width, side});
+  ImGui::BeginChild((name + ".name").c_str(), {width, side});
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(is_on ? cut_name(file_name(source.times), width).c_str() : "off");
-  if (is_on) tooltip(ui, source.times);
-  ui.mark("source.times");
+  ImGui::TextUnformatted(is_on ? cut_name(file_name(path), width).c_str() : "off");
+  if (is_on) tooltip(ui, path);
+  ui.mark(name);
   ImGui::EndChild();
   ImGui::SameLine(0, ui.px(4));
-  if (icon_button(ui, "source.times.browse", Icon::Folder, {"Choose the table", "", false, false, 26}))
-    context.ask("dialog.open", {"source_times"});
+  if (icon_button(ui, name + ".browse", Icon::Folder, {"Choose the table", "", false, false, 26}))
+    context.ask("dialog.open", {control.command});
   if (!is_on) return;
   ImGui::SameLine(0, ui.px(4));
-  if (icon_button(ui, "source.times.reset", Icon::Reset, {"No times", "", false, false, 26}))
-    context.ask("source.times", {"off"});
+  if (icon_button(ui, name + ".reset", Icon::Reset,
+                  {"No " + lower_case(control.label), "", false, false, 26}))
+    context.ask(name, {"off"});
+}
+
+/// What scans alone have: their times, and the motion that they are completed to.
+void draw_scan_fields(const app::SourceOptions& source, PanelContext& context) {
+  draw_table(
+      {"source.times", "Times",
+       "A table of when each scan was taken: its file or number, seconds. Off: one scan a frame, but for "
+       "missing numbers",
+       "source_times"},
+      source.times, context);
+  std::vector<std::string> choices = {"Off", "30", "60", "120"}, words = {"off", "30", "60", "120"};
+  const std::string chosen = source.complete > 0 ? argument(source.complete) : "off";
+  if (std::find(words.begin(), words.end(), chosen) == words.end())
+    choices.push_back(chosen), words.push_back(chosen);
+  ask_choice(
+      context,
+      {"source.complete", "Complete to",
+       "Frames/s: one body is fitted to all scans, however few and sparse, and frames between them are "
+       "made. Looks both ways"},
+      choices, words, chosen);
+  if (source.complete <= 0) return;
+  draw_table({"source.markers", "Markers", "A table of named markers: seconds,name,x,y,z", "source_markers"},
+             source.markers, context);
 }
 
 void draw_source_fields(const app::Session& session, PanelContext& context) {
@@ -190,7 +214,7 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
   if (const auto text =
           text_row(ui, {"source.fps", "Frames/s", "auto: the file's own, as the times tell, or 30"}, fps))
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
-  if (source.motion.empty() && session.source.clips.empty()) draw_times(source, context);
+  if (source.motion.empty() && session.source.clips.empty()) draw_scan_fields(source, context);
   if (may_move(source)) draw_animation_fields(session.source, source, context);
   draw_import(context, "source", source.import);
   if (const auto deg = typed_number_row(ui, {"source.turn", "Turn by", "Degrees about the vertical"},

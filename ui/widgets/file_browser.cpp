@@ -83,7 +83,7 @@ FileFilter filter_of(FileKind kind) {
       {"Scans and motions", format_suffixes(kScanFrame | kScanSequence | kMotion), true},
       {"Targets", format_suffixes(kTarget)},
       {"AMASS-format motions", format_suffixes(kBody)},  // both are .npz
-      {"Tables of times", {".csv", ".tsv", ".txt"}},
+      {"Tables of times or markers", {".csv", ".tsv", ".txt"}},
       {"Understudy documents", format_suffixes(kDocument)},
       {"Perceptual studies", format_suffixes(kStudy)},
       {"Answers", {".csv"}},

@@ -21,8 +21,8 @@ struct FileFilter {
   bool any_folder = false;            ///< the folder that is shown may be chosen, whatever is in it
   bool passes(const std::string& name) const;
 };
-/// Source: all that moves. BodyMotion: what an SMPL-format body performs. Times: when scans were taken.
-/// Known: all that opens.
+/// Source: all that moves. BodyMotion: what an SMPL-format body performs. Times: when scans were taken, or
+/// markers. Known: all that opens.
 enum class FileKind { Source, Target, BodyMotion, Times, Document, Study, Answers, Known, Any, Folder };
 FileFilter filter_of(FileKind kind);
 
