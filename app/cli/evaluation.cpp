@@ -15,7 +15,9 @@
 #include "retarget/base/index.hpp"
 #include "retarget/baselines/body_fit.hpp"
 #include "retarget/formats/mesh_reader.hpp"
+#include "retarget/motion_space/person_fitter.hpp"
 #include "retarget/scene/scene.hpp"
+#include "retarget/skeleton/skinning.hpp"
 
 namespace understudy::app {
 
@@ -202,6 +204,12 @@ struct Bench {
   }
 };
 
+void check_completing(const EvalOptions& options, const Case& c) {
+  US_CHECK(options.oracle.empty(), c.name, ": --baseline complete is of scans and markers, not of --oracle");
+  US_CHECK(c.gaps->is_whole() && !(c.source.empty() && c.markers.empty()), c.name,
+           ": --baseline complete is of the suite sparse, with scans or markers");
+}
+
 /// The same of a case with gaps.
 void check_gap_options(const EvalOptions& options, const Case& c) {
   US_CHECK(options.oracle.empty() || options.oracle == "pose", c.name,
@@ -210,6 +218,7 @@ void check_gap_options(const EvalOptions& options, const Case& c) {
   US_CHECK(!options.file_shapes && options.restart_every == 0, c.name,
            ": only frames that are not known are evaluated: --file and --restart-every do not apply");
   US_CHECK(!c.truth.empty(), c.name, ": frames that are to be made need a ground truth");
+  if (options.baseline == "complete") return check_completing(options, c);
   US_CHECK(options.oracle == "pose" || (!c.source.empty() && !c.target.empty()), c.name, ": it has no ",
            c.source.empty() ? "scans" : "target", ": only --oracle pose can evaluate it");
 }
@@ -282,12 +291,42 @@ void evaluate_performed_gap_case(Bench& bench, const Case& c, const Truth& truth
   evaluate_performed_gaps({c, truth, surface}, bench.filling(), performed, to.evaluator);
 }
 
+/// A body of its own is fitted to all that is known (SparseFitter); the target is not looked at.
+void evaluate_completed_case(Bench& bench, const Case& c, const Truth& truth, CaseFigures& to) {
+  NetworkParts seeing;
+  seeing.extractor = true;
+  SparseCapture capture;
+  capture.fps = c.fps;
+  for (KnownFrame& frame : known_frames_of(c))
+    capture.frames.push_back({frame.seconds, std::move(frame.points), std::move(frame.markers)});
+  bench.filling();
+  PersonFitter fitter(nn::load_networks(network_options(bench.options.how), seeing).extractor, bench.space);
+  const auto began = std::chrono::steady_clock::now();
+  CompletedCapture made = fitter.complete(capture, [&](float) { check_interrupt("in case " + c.name); });
+  FrameTimes times;
+  times.total = ms_since(began);
+  to.result.latency.add(times);
+  GapSurface surface;
+  if (!truth.vertices.empty()) {
+    surface.made = [&](const Pose& pose) {
+      return linear_blend_skinning(made.vertices, made.weights, made.rest,
+                                   forward_kinematics(made.rest, pose));
+    };
+    surface.truth = [&](int64_t t) { return truth.frame_vertices(t); };
+    surface.is_dense = surface.is_another = true;
+  }
+  const Completion completion{made.motion, made.doubt_m};
+  evaluate_completion({c, truth, surface}, made.rest, completion, to.evaluator);
+}
+
 void evaluate_gap_case(Bench& bench, const Case& c, CaseResult& result) {
   const Truth truth = read_truth(c.truth);
   Evaluator evaluator(c.fps, &truth, nullptr);
   CaseFigures to{evaluator, result, &truth, {}};
   if (bench.options.oracle == "pose")
     evaluate_true_gap_case(bench, c, truth, to);
+  else if (bench.options.baseline == "complete")
+    evaluate_completed_case(bench, c, truth, to);
   else
     evaluate_performed_gap_case(bench, c, truth, to);
   const std::vector<bool> known = window_known(*c.gaps);

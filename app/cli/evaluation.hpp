@@ -18,7 +18,9 @@ struct EvalOptions {
   std::string cases, oracle, filter;
   int limit = 0;          ///< cases; 0: all
   int restart_every = 0;  ///< frames after which the method forgets the past; 0: never
-  std::string baseline;   ///< "fit": a body is fitted to each scan in place of the extractor; empty: none
+  /// "fit": a body is fitted to each scan in place of the extractor; "complete": one to all known frames of a
+  /// case at once; empty: none
+  std::string baseline;
   std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
   std::string body;                ///< SMPL-format, of the baseline "fit"
   std::string fill = kDefaultMotionSpace;  ///< of cases with gaps: one of motion_spaces()

@@ -50,10 +50,10 @@ FilledWindow filled_window(const GapCase& of, const Joints& rest, const Completi
     const Pose& pose = made.motion.poses[t];
     window.joints.push_back(forward_kinematics(rest, pose).joints);
     if (!of.surface.made) continue;
-    window.vertex_errors.push_back(0);
+    if (!of.surface.is_another) window.vertex_errors.push_back(0);
     if (known[t] && !compared) continue;
     const Points shown = of.surface.made(pose), truth = of.surface.truth(start + t);
-    if (!known[t]) window.vertex_errors.back() = mean_vertex_error(shown, truth);
+    if (!known[t] && !of.surface.is_another) window.vertex_errors.back() = mean_vertex_error(shown, truth);
     if (compared) evaluator.push_gap_surface(chamfer_distance(shown, truth));
   }
   return window;

@@ -13,7 +13,8 @@ namespace understudy::app {
 struct GapSurface {
   std::function<Points(const Pose&)> made;
   std::function<Points(int64_t frame)> truth;
-  bool is_dense = false;  ///< chamfer_m can be told of it
+  bool is_dense = false;    ///< chamfer_m can be told of it
+  bool is_another = false;  ///< its vertices are not the truth's, mve_m cannot be told
 };
 
 /// A case with gaps.

@@ -56,9 +56,11 @@ class CaptureFit {
   std::vector<float> expected_errors(const FitRound& round) const;
   Joints rest() const { return model_->joints(shape); }
   const std::vector<Evidence>& frames() const { return frames_; }
-  /// What was extracted of a frame is evidence from now on; rotations err by `turn_error`, radians.
-  void believe(int frame, const Extraction& seen, float turn_error) {
-    frames_[frame].seen = seen, frames_[frame].turn_error = turn_error;
+  /// What was extracted of a frame is evidence from now on; null: nothing is. Rotations err by `turn_error`.
+  void believe(int frame, const Extraction* seen, float turn_error) {
+    frames_[frame].seen.reset();
+    if (seen) frames_[frame].seen = *seen;
+    frames_[frame].turn_error = turn_error;
   }
 
  private:

@@ -27,7 +27,7 @@ std::string where(const SparseCapture& capture, int frame) {
   return "frame " + std::to_string(frame) + " of " + std::to_string(ssize(capture.frames));
 }
 
-void check(const SparseCapture& capture) {
+void check_capture(const SparseCapture& capture) {
   US_CHECK(capture.fps > 0 && capture.fps <= 1000, "a motion of ", capture.fps, " frames/s cannot be made");
   US_CHECK(ssize(capture.frames) >= 2,
            "one frame alone cannot be completed: a motion is between two at least");
@@ -287,8 +287,8 @@ class Starts {
     for (size_t i = starts_.size(); i-- > 0;) {
       const Start& taken = starts_[i][at];
       fit_.poses[looked_[i]] = taken.pose;
-      fit_.believe(looked_[i],
-                   taken.seen < 0 ? std::nullopt : std::optional<Extraction>(seen_[i][taken.seen]));
+      const Extraction* const seen = taken.seen < 0 ? nullptr : &seen_[i][taken.seen];
+      fit_.believe(looked_[i], seen, seen ? turn_error_for(*seen) : 1);
       at = best[i][at].second;
     }
   }
@@ -406,7 +406,7 @@ PersonFitter::PersonFitter(std::shared_ptr<SkeletonExtractor> extractor, std::sh
     : extractor_(std::move(extractor)), between_(between ? std::move(between) : make_hermite_space()) {}
 
 CompletedCapture PersonFitter::complete(const SparseCapture& capture, const Progress& progress) {
-  check(capture);
+  check_capture(capture);
   const auto tell = [&](float share) {
     if (progress) progress(share);
   };

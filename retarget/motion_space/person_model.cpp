@@ -10,16 +10,28 @@ namespace {
 
 constexpr int kLookedAt = 1400;  // vertices that fitting looks at
 
-enum Stretch { Size, Trunk, Hips, Shoulders, Thigh, Shin, Foot, UpperArm, Forearm, HeadSize, kStretches };
-// Logarithms, of 400 sampled people's bones rounded up; the size is of children and adults.
+enum Stretch {
+  OfSize,
+  OfTrunk,
+  OfHips,
+  OfShoulders,
+  OfThigh,
+  OfShin,
+  OfFoot,
+  OfUpperArm,
+  OfForearm,
+  OfHead,
+  kStretches
+};
+// About how much people differ: of lengths their logarithms, the size of children and adults. Chosen wide.
 constexpr std::array<float, kStretches> kSpread = {0.15f, 0.06f, 0.10f, 0.08f, 0.05f,
                                                    0.05f, 0.08f, 0.06f, 0.06f, 0.08f};
 constexpr float kGirthStep = 0.3f;  // of the sample that the direction of girth is made from
 
 /// Which stretch moves a joint away from its parent.
 constexpr std::array<int, kJointCount> kOfJoint = {
-    Size, Hips,  Hips,      Trunk,     Thigh,    Thigh,     Trunk,     Shin,     Shin,     Trunk,   Foot,
-    Foot, Trunk, Shoulders, Shoulders, HeadSize, Shoulders, Shoulders, UpperArm, UpperArm, Forearm, Forearm};
+    OfSize, OfHips,  OfHips,      OfTrunk,     OfThigh,    OfThigh,     OfTrunk,     OfShin,     OfShin,     OfTrunk,   OfFoot,
+    OfFoot, OfTrunk, OfShoulders, OfShoulders, OfHead, OfShoulders, OfShoulders, OfUpperArm, OfUpperArm, OfForearm, OfForearm};
 
 /// How a stretch acts on what a bone carries: a projection, so that parts grow along one axis or all.
 Mat3 stretched_by(int stretch, int bone, const Joints& joints) {
@@ -29,51 +41,51 @@ Mat3 stretched_by(int stretch, int bone, const Joints& joints) {
   };
   const Mat3 none = Mat3::Zero(), wide = Vec3::UnitX() * Vec3::UnitX().transpose(),
              high = Vec3::UnitY() * Vec3::UnitY().transpose();
-  if (stretch == Size) return Mat3::Identity();
+  if (stretch == OfSize) return Mat3::Identity();
   switch (bone) {
     case Pelvis:
-      return stretch == Hips ? wide : stretch == Trunk ? high : none;
+      return stretch == OfHips ? wide : stretch == OfTrunk ? high : none;
     case Spine1:
-      return stretch == Hips        ? Mat3(0.6f * wide)
-             : stretch == Shoulders ? Mat3(0.4f * wide)
-             : stretch == Trunk     ? high
+      return stretch == OfHips        ? Mat3(0.6f * wide)
+             : stretch == OfShoulders ? Mat3(0.4f * wide)
+             : stretch == OfTrunk     ? high
                                     : none;
     case Spine2:
-      return stretch == Hips        ? Mat3(0.3f * wide)
-             : stretch == Shoulders ? Mat3(0.7f * wide)
-             : stretch == Trunk     ? high
+      return stretch == OfHips        ? Mat3(0.3f * wide)
+             : stretch == OfShoulders ? Mat3(0.7f * wide)
+             : stretch == OfTrunk     ? high
                                     : none;
     case Spine3:
-      return stretch == Shoulders ? wide : stretch == Trunk ? high : none;
+      return stretch == OfShoulders ? wide : stretch == OfTrunk ? high : none;
     case Neck:
-      return stretch == Trunk ? high : none;
+      return stretch == OfTrunk ? high : none;
     case Head:
-      return stretch == HeadSize ? Mat3(Mat3::Identity()) : none;
+      return stretch == OfHead ? Mat3(Mat3::Identity()) : none;
     case LeftCollar:
     case RightCollar:
-      return stretch == Shoulders ? along(bone == LeftCollar ? LeftShoulder : RightShoulder) : none;
+      return stretch == OfShoulders ? along(bone == LeftCollar ? LeftShoulder : RightShoulder) : none;
     case LeftShoulder:
     case RightShoulder:
-      return stretch == UpperArm ? along(bone + 2) : none;
+      return stretch == OfUpperArm ? along(bone + 2) : none;
     case LeftElbow:
     case RightElbow:
-      return stretch == Forearm ? along(bone + 2) : none;
+      return stretch == OfForearm ? along(bone + 2) : none;
     case LeftWrist:
     case RightWrist:
-      return stretch == Forearm ? Mat3(Mat3::Identity()) : none;
+      return stretch == OfForearm ? Mat3(Mat3::Identity()) : none;
     case LeftHip:
     case RightHip:
-      return stretch == Thigh ? along(bone + 3) : none;
+      return stretch == OfThigh ? along(bone + 3) : none;
     case LeftKnee:
     case RightKnee:
-      return stretch == Shin ? along(bone + 3) : none;
+      return stretch == OfShin ? along(bone + 3) : none;
     default:
-      return stretch == Foot ? Mat3(Mat3::Identity()) : none;  // ankles and balls
+      return stretch == OfFoot ? Mat3(Mat3::Identity()) : none;  // ankles and balls
   }
 }
 
 Joints stretch_joints(int stretch, const Joints& joints) {
-  if (stretch == Size) return joints;
+  if (stretch == OfSize) return joints;
   Joints moved = Joints::Zero();
   for (int j = 1; j < kJointCount; ++j) {
     const int p = kParents[j];
@@ -120,7 +132,7 @@ std::vector<PersonModel::Skin> skin_of(const RowMatrix& weights) {
 }
 
 /// Vertices far apart on the left half and in the middle, and their mirror images.
-std::vector<int> looked_at(const Points& vertices) {
+std::vector<int> vertices_far_apart(const Points& vertices) {
   std::vector<int> left, kept;
   for (int v = 0; v < vertices.rows(); ++v)
     if (vertices(v, 0) >= 0) left.push_back(v);
@@ -149,7 +161,7 @@ std::shared_ptr<const PersonModel> make_model() {
   model->whole_dirs.push_back(thickening(body, normals, mean));
   model->spread.push_back(0.3f);
 
-  const std::vector<int> kept = looked_at(body.vertices);
+  const std::vector<int> kept = vertices_far_apart(body.vertices);
   model->vertices = body.vertices(kept, Eigen::all);
   model->normals = normals(kept, Eigen::all);
   model->skin = skin_of(body.weights(kept, Eigen::all));
