@@ -15,11 +15,26 @@ std::string one_line(const CaseResult& result) {
   if (!result.error.empty()) return result.name + ": ERROR " + result.error;
   std::string line = result.name + ": " + std::to_string(result.frames) + " frames";
   if (result.flagged > 0) line += ", " + std::to_string(result.flagged) + " flagged";
-  for (const char* key :
-       {"mpjpe_m", "pa_mpjpe_m", "pa_mpvd_m", "medl_mm", "file_medl_mm", "extraction_mpjpe_mm",
-        "extraction_swap_rate", "extraction_seen_mm", "visibility_right", "points_owner_right",
-        "identities_exchanged", "people_missed", "people_mm", "people_alone_mm", "hand_contact_kept",
-        "arm_buried_added", "gap_mpjpe_m", "chamfer_m", "seam_m", "spread"})
+  for (const char* key : {"mpjpe_m",
+                          "pa_mpjpe_m",
+                          "pa_mpvd_m",
+                          "medl_mm",
+                          "file_medl_mm",
+                          "extraction_mpjpe_mm",
+                          "extraction_swap_rate",
+                          "extraction_seen_mm",
+                          "visibility_right",
+                          "points_owner_right",
+                          "identities_exchanged",
+                          "people_missed",
+                          "people_mm",
+                          "people_alone_mm",
+                          "hand_contact_kept",
+                          "arm_buried_added",
+                          "gap_mpjpe_m",
+                          "chamfer_m",
+                          "seam_m",
+                          "spread"})
     for (const auto& [name, value] : result.metrics)
       if (name == key) line += printed(", %s %.4g", key, value);
   return line;
@@ -60,9 +75,10 @@ Action declare_eval(CLI::App& command) {
                   "resets the method every so many frames: contexts of this length")
       ->check(CLI::NonNegativeNumber);
   command
-      .add_option("--baseline", options->baseline,
-                  "fit: fit a body to each scan instead of extracting a skeleton; complete: fit one body to all "
-                  "known frames of a case at once, as --complete does (sparse)")
+      .add_option(
+          "--baseline", options->baseline,
+          "fit: fit a body to each scan instead of extracting a skeleton; complete: fit one body to all "
+          "known frames of a case at once, as --complete does (sparse)")
       ->check(CLI::IsMember({"fit", "complete"}));
   command
       .add_option("--file", options->file_shapes,

@@ -40,9 +40,9 @@ struct Truth {
   std::vector<Joints> joints, source_joints;
   std::vector<Rotations> rotations;  ///< local
   std::optional<Joints> target_joints;
-  SkinSample skin{};  ///< of the body that the rotations are of: for true poses and made ones
-  std::vector<HandGaps> source_gaps;    ///< [T, 2, 5] metres: what the source's hands touch
-  std::vector<float> source_buried;     ///< [T] share of the source's hands and forearms inside its own body
+  SkinSample skin{};                  ///< of the body that the rotations are of: for true poses and made ones
+  std::vector<HandGaps> source_gaps;  ///< [T, 2, 5] metres: what the source's hands touch
+  std::vector<float> source_buried;   ///< [T] share of the source's hands and forearms inside its own body
   std::vector<SeenJoints> source_seen;  ///< which of the source's joints the scan shows
   std::vector<TruePeople> scene;  ///< of scans with several people and things; there source_joints is empty
   /// The vertices of one frame, [V, 3].

@@ -42,8 +42,8 @@ struct SourceOptions {
   double complete = 0;    ///< frames/s that sparse scans are completed to (see completed_source.hpp); 0: off
   std::string markers{};  ///< of scans that are completed: CSV of markers (see markers.hpp); empty: none
   std::shared_ptr<const MadeCapture>
-      made{};                        ///< what `complete` made of the same scans before; null: nothing
-  std::vector<PersonEdit> people{};  ///< who is who, where it was not seen rightly
+      made{};                          ///< what `complete` made of the same scans before; null: nothing
+  std::vector<PersonEdit> people{};    ///< who is who, where it was not seen rightly
   std::optional<BlendRecipe> blend{};  ///< made of several skeletal motions; none: no blend
   ScanEdits
       edits{};  ///< of each frame, before anybody is looked for; documents have theirs beside the source

@@ -188,7 +188,8 @@ void show_file(Call& c) {
 
 void add_window_commands(Commands& commands, ui::Workspace& workspace) {
   commands.add({"dialog.open", "Open dialog",
-                "open|open_source|blend_with|source_times|source_markers|open_target|replace_target|open_document|save_as|export|csv|"
+                "open|open_source|blend_with|source_times|source_markers|open_target|replace_target|open_"
+                "document|save_as|export|csv|"
                 "picture|video|compare|settings|about|keys|here|open_study|save_study|study_files|"
                 "study_animation|study_motion|study_target|study_answers|study_table|study_csv|study_jspsych|"
                 "study_psychopy|study_stimuli|study_web|study_run|none"},

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kClipRate = 30;
 constexpr float kOnFrame = 1e-3f;  // of a frame: so near to one is that one
-constexpr int kBeside = 10;  // known frames that are looked at on each side of a gap
+constexpr int kBeside = 10;        // known frames that are looked at on each side of a gap
 
 Joints seen_from(const Outlook& outlook, const Joints& joints) {
   return (joints.rowwise() - outlook.place.transpose()) * outlook.heading;

@@ -242,7 +242,8 @@ class Starts {
     const float misfit = fit_.run_alone(far_round(), looked_[i], pose);
     starts_[i].push_back({pose, misfit, seen});
   }
-  /// The usual pose as the best look stands; once all was fitted what was fitted there, and between neighbours.
+  /// The usual pose as the best look stands; once all was fitted what was fitted there, and between
+  /// neighbours.
   void add_guesses(size_t i) {
     keep(i, kManyKept);
     const Pose from = is_fitted_ ? fit_.poses[looked_[i]] : starts_[i].empty() ? Pose() : starts_[i][0].pose;

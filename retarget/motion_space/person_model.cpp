@@ -30,8 +30,9 @@ constexpr float kGirthStep = 0.3f;  // of the sample that the direction of girth
 
 /// Which stretch moves a joint away from its parent.
 constexpr std::array<int, kJointCount> kOfJoint = {
-    OfSize, OfHips,  OfHips,      OfTrunk,     OfThigh,    OfThigh,     OfTrunk,     OfShin,     OfShin,     OfTrunk,   OfFoot,
-    OfFoot, OfTrunk, OfShoulders, OfShoulders, OfHead, OfShoulders, OfShoulders, OfUpperArm, OfUpperArm, OfForearm, OfForearm};
+    OfSize,      OfHips,      OfHips,     OfTrunk,    OfThigh,   OfThigh,     OfTrunk,     OfShin,
+    OfShin,      OfTrunk,     OfFoot,     OfFoot,     OfTrunk,   OfShoulders, OfShoulders, OfHead,
+    OfShoulders, OfShoulders, OfUpperArm, OfUpperArm, OfForearm, OfForearm};
 
 /// How a stretch acts on what a bone carries: a projection, so that parts grow along one axis or all.
 Mat3 stretched_by(int stretch, int bone, const Joints& joints) {
@@ -49,12 +50,12 @@ Mat3 stretched_by(int stretch, int bone, const Joints& joints) {
       return stretch == OfHips        ? Mat3(0.6f * wide)
              : stretch == OfShoulders ? Mat3(0.4f * wide)
              : stretch == OfTrunk     ? high
-                                    : none;
+                                      : none;
     case Spine2:
       return stretch == OfHips        ? Mat3(0.3f * wide)
              : stretch == OfShoulders ? Mat3(0.7f * wide)
              : stretch == OfTrunk     ? high
-                                    : none;
+                                      : none;
     case Spine3:
       return stretch == OfShoulders ? wide : stretch == OfTrunk ? high : none;
     case Neck:

@@ -9,8 +9,8 @@
 namespace understudy {
 namespace {
 
-// Fitted to 84,164 frames of gaps of 2 to 60 in 201 captured clips, half of them with nothing known behind; on
-// 36 others their rank correlations with the error are 0.90 and 0.94.
+// Fitted to 84,164 frames of gaps of 2 to 60 in 201 captured clips, half of them with nothing known behind;
+// on 36 others their rank correlations with the error are 0.90 and 0.94.
 constexpr DoubtLaw kGlideDoubt = {0.74f, 1.07f, 1.07f, /*since_last=*/true},
                    kCoastDoubt = {0.83f, 1.32f, 0.98f, /*since_last=*/true};
 

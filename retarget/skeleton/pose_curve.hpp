@@ -8,8 +8,8 @@
 
 namespace understudy {
 
-/// `share` of the way from one pose to another: rotations slerped, the root on a straight line. 0 is `a`, 1 is
-/// `b` to the bit.
+/// `share` of the way from one pose to another: rotations slerped, the root on a straight line. 0 is `a`, 1
+/// is `b` to the bit.
 Pose between(const Pose& a, const Pose& b, float share);
 
 /// The parts of a pose that can be known each by itself: a rotation for each joint, and last the root's

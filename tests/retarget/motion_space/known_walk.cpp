@@ -8,8 +8,7 @@
 
 namespace understudy::tests {
 
-KnownWalk::KnownWalk(const std::string& name)
-    : rest(builtin_joints()), motion(builtin_motion(name, rest)) {}
+KnownWalk::KnownWalk(const std::string& name) : rest(builtin_joints()), motion(builtin_motion(name, rest)) {}
 
 KnownMotion KnownWalk::question(int start, int count, int first, int last) const {
   KnownMotion question{{motion.fps, {}, {}}, std::vector<KnownParts>(count, all_parts(true)), rest};
