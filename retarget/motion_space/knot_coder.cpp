@@ -1,55 +1,24 @@
 #include "retarget/motion_space/knot_coder.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
-#include "retarget/math/rotation.hpp"
+#include "retarget/motion_space/step_form.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kKnots = 20, kOfKnot = kJointCount * 6 + 3 + 1;
-constexpr float kLongest_s = 10;
-
 class KnotCoder final : public MotionCoder {
  public:
-  int size() const override { return kKnots * kOfKnot; }
+  int size() const override { return kStepNumbers; }
   std::string name() const override { return "plain"; }
 
   MotionCode encode(const TimedPoses& movement, const Joints& rest) override {
-    US_CHECK(movement.duration() <= kLongest_s, "a movement of ", movement.duration(),
-             " s is too long to be coded: ", kLongest_s, " s is the most");
-    const std::vector<Pose> knots = sampled_evenly(movement, kKnots);
-    const float leg = leg_length(rest);
-    MotionCode code;
-    for (int k = 0; k < kKnots; ++k) {
-      for (const Mat3& R : knots[k].local) {
-        const Vec6 r = rotation_to_6d(R);
-        code.mean.insert(code.mean.end(), r.begin(), r.end());
-      }
-      for (const float metres : knots[k].root) code.mean.push_back(metres / leg);
-      code.mean.push_back(movement.duration() * static_cast<float>(k) / (kKnots - 1));
-    }
-    return code;
+    const StepNumbers numbers = step_numbers(movement, rest);
+    return {{numbers.begin(), numbers.end()}, {}};
   }
 
   TimedPoses decode(const std::vector<float>& code, const Joints& rest) override {
-    US_CHECK(ssize(code) == size(), "a code of ", code.size(), " numbers, not ", size());
-    US_CHECK(std::all_of(code.begin(), code.end(), [](float x) { return std::isfinite(x); }),
-             "a code that is not finite");
-    const float leg = leg_length(rest);
-    TimedPoses movement;
-    for (int k = 0; k < kKnots; ++k) {
-      const float* at = code.data() + static_cast<ptrdiff_t>(k) * kOfKnot;
-      Pose& pose = movement.poses.emplace_back();
-      for (int j = 0; j < kJointCount; ++j, at += 6)
-        pose.local[j] = rotation_from_6d(Eigen::Map<const Vec6>(at));
-      pose.root = leg * Eigen::Map<const Vec3>(at);
-      movement.seconds.push_back(at[3]);
-    }
-    return movement;
+    return movement_of_numbers(Eigen::Map<const StepNumbers>(code.data(), ssize(code)), rest);
   }
 };
 

@@ -7,9 +7,8 @@
 
 namespace understudy {
 
-/// A code is 20 poses, evenly spread over the movement: of each the 22 rotations in 6D form, the root in leg
-/// lengths and the time in seconds. What lies between two codes is the straight line between their poses. It
-/// needs no weights.
+/// A code is the movement's numbers themselves (step_numbers). What lies between two codes is the straight
+/// line between their poses. It needs no weights.
 std::unique_ptr<MotionCoder> make_knot_coder();
 
 /// Of a movement from the origin, facing +z, evenly many poses: number i of `count` at i / (count - 1) of its
