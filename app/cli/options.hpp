@@ -1,6 +1,9 @@
 // Options that several subcommands take, and the samples that they take where none are given.
 #pragma once
 
+#include <functional>
+#include <memory>
+
 #include "app/run/method.hpp"
 #include "app/run/source.hpp"
 #include "app/run/target_file.hpp"

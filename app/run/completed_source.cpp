@@ -198,7 +198,7 @@ class CompletedScans final : public Source {
     out.skeleton->global = posed.global;
     out.skeleton->exact = true;
     out.skeleton->confidence.setConstant(std::max(kLeastConfidence, confidence_for(made.doubt_m[t])));
-    out.doubt_m = made.is_made[t] ? made.doubt_m[t] : 0;
+    out.doubt_m = made_->doubt_of(frame);
     return out;
   }
 
@@ -211,6 +211,11 @@ class CompletedScans final : public Source {
 };
 
 }  // namespace
+
+float MadeCapture::doubt_of(int64_t frame) const {
+  const int64_t t = frame - first;
+  return t >= 0 && t < ssize(capture.is_made) && capture.is_made[t] ? capture.doubt_m[t] : 0;
+}
 
 std::vector<MarkerFrame> known_markers(const std::string& path, double fps) {
   std::vector<MarkerFrame> frames = read_markers(path, fps);

@@ -14,6 +14,9 @@ struct MadeCapture {
   int64_t first = 0;     ///< the frame that it begins with
   std::string sentence;  ///< of units, axes and what was made
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
+
+  /// Of a frame of the source that was made and not captured, as Motion::doubt_m; else 0.
+  float doubt_of(int64_t frame) const;
 };
 
 /// The markers in a table, which stand on places that are known. Throws Error naming it.

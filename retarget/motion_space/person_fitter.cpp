@@ -199,6 +199,13 @@ std::vector<Pose> look_alikes(const Pose& pose) {
   return alike;
 }
 
+/// The usual pose where the frame's points or markers are.
+Pose standing_at(const Evidence& frame) {
+  Pose pose = usual_pose();
+  if (frame.points.rows() > 0) pose.root = frame.points.colwise().mean().transpose();
+  return pose;
+}
+
 class Starts {
  public:
   Starts(const std::vector<int>& looked, const std::vector<std::vector<Extraction>>& seen, CaptureFit& fit)
@@ -212,6 +219,7 @@ class Starts {
       for (int k = 0; k < ssize(seen_[i]); ++k) add(i, pose_of(seen_[i][k]), k);
       if (const auto pose = pose_of(frame(i).markers, fit_.rest())) add(i, *pose, -1);
       if (is_sparse(i)) add_guesses(i);
+      if (starts_[i].empty()) add(i, standing_at(frame(i)), -1);
       if (is_sparse(i)) {
         keep(i, 2);
         const std::vector<Start> best = starts_[i];

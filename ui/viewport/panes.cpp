@@ -122,11 +122,12 @@ std::string pane_made(const Session& session, const PaneContent& pane, int frame
   const float* const doubt_m = take == nullptr ? nullptr : at_or_null(take->shown.doubt_m, frame);
   if (doubt_m == nullptr || *doubt_m <= 0) return "";
   const auto& fills = session.document.takes[pane.takes[0]].pose_edits.fill;
-  const bool is_blended = session.document.source.blend &&
-                          std::none_of(fills.begin(), fills.end(), [frame](const FillEdit& fill) {
-                            return fill.first <= frame && frame <= fill.last;
-                          });
-  return (is_blended ? "blended, " : "filled, ") + doubt_text(*doubt_m);
+  const app::SourceOptions& source = session.document.source;
+  const bool is_filled = std::any_of(fills.begin(), fills.end(), [frame](const FillEdit& fill) {
+    return fill.first <= frame && frame <= fill.last;
+  });
+  const char* const made = source.complete > 0 ? "made, " : "filled, ";
+  return (source.blend && !is_filled ? "blended, " : is_filled ? "filled, " : made) + doubt_text(*doubt_m);
 }
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {
