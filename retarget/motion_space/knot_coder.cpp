@@ -1,7 +1,6 @@
 #include "retarget/motion_space/knot_coder.hpp"
 
 #include "retarget/base/error.hpp"
-#include "retarget/base/index.hpp"
 #include "retarget/motion_space/step_form.hpp"
 
 namespace understudy {
@@ -18,7 +17,8 @@ class KnotCoder final : public MotionCoder {
   }
 
   TimedPoses decode(const std::vector<float>& code, const Joints& rest) override {
-    return movement_of_numbers(Eigen::Map<const StepNumbers>(code.data(), ssize(code)), rest);
+    const auto count = static_cast<Eigen::Index>(code.size());
+    return movement_of_numbers(Eigen::Map<const StepNumbers>(code.data(), count), rest);
   }
 };
 

@@ -7,8 +7,8 @@
 
 namespace understudy {
 
-/// A code is the movement's numbers themselves (step_numbers). What lies between two codes is the straight
-/// line between their poses. It needs no weights.
+/// A code is the movement's evenly spread poses as they are (step_numbers): what lies between two codes is
+/// the straight line between their poses. It needs no weights.
 std::unique_ptr<MotionCoder> make_knot_coder();
 
 /// Of a movement from the origin, facing +z, evenly many poses: number i of `count` at i / (count - 1) of its

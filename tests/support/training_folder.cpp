@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "retarget/base/rng.hpp"
+#include "retarget/body/builtin_motion.hpp"
+#include "retarget/body/builtin_person.hpp"
 #include "retarget/formats/npz.hpp"
+#include "retarget/math/rotation.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
 namespace understudy::test {
@@ -142,6 +145,22 @@ void write_training_folder(const std::string& folder) {
   };
   std::ofstream(root / "splits.json")
       << "{\"train\": " << split("[0, 6]", "motion/a") << ", \"dev\": " << split("[6, 8]", "motion/b") << "}";
+}
+
+void write_walk_clip(const std::string& path) {
+  const Motion walk = builtin_motion("walk", builtin_joints());
+  std::vector<float> poses, trans;
+  for (const Pose& pose : walk.poses) {
+    for (const Mat3& R : pose.local) {
+      const Vec3 turn = rotation_to_axis_angle(R);
+      poses.insert(poses.end(), turn.data(), turn.data() + 3);
+    }
+    trans.insert(trans.end(), pose.root.data(), pose.root.data() + 3);
+  }
+  const auto frames = static_cast<int64_t>(walk.poses.size());
+  write_npz(path, {{"poses", array({frames, 66}, poses)},
+                   {"trans", array({frames, 3}, trans)},
+                   {"mocap_framerate", array({}, {30})}});
 }
 
 }  // namespace understudy::test

@@ -9,4 +9,7 @@ namespace understudy::test {
 /// `folder`.
 void write_training_folder(const std::string& folder);
 
+/// The built-in walk as a clip (AMASS-format): somebody steps in it, as in none of that folder's own.
+void write_walk_clip(const std::string& path);
+
 }  // namespace understudy::test

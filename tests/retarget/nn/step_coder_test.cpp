@@ -18,6 +18,7 @@
 #include "retarget/training/step_loss.hpp"
 #include "retarget/training/training_run.hpp"
 #include "tests/retarget/nn/motion_support.hpp"
+#include "tests/support/training_folder.hpp"
 
 namespace understudy {
 namespace {
@@ -27,30 +28,13 @@ using namespace training;
 
 const nn::StepCvaeOptions kSmallCvae{6, 24, true, true};
 
-/// The built-in walk as a clip of a data folder.
-void write_walk(const std::string& path) {
-  const Motion walk = builtin_motion("walk", builtin_joints());
-  std::vector<float> poses, trans;
-  for (const Pose& pose : walk.poses) {
-    for (const Mat3& R : pose.local) {
-      const Vec3 turn = rotation_to_axis_angle(R);
-      poses.insert(poses.end(), turn.data(), turn.data() + 3);
-    }
-    trans.insert(trans.end(), pose.root.data(), pose.root.data() + 3);
-  }
-  const auto frames = static_cast<int64_t>(walk.poses.size());
-  write_npz(path, {{"poses", {{frames, 66}, poses, ""}},
-                   {"trans", {{frames, 3}, trans, ""}},
-                   {"mocap_framerate", {{}, {30}, ""}}});
-}
-
 class Steps : public ::testing::Test {
  protected:
   void SetUp() override {
     before_ = log::set_sink([](log::Level, const std::string&) {});
     torch::manual_seed(1);
     for (const char* part : {"/motion/a/walk_poses.npz", "/motion/b/walk_poses.npz"})
-      write_walk(folder_.path() + part);
+      test::write_walk_clip(folder_.path() + part);
   }
   void TearDown() override { log::set_sink(before_); }
 
