@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/plot_axis.hpp"
+#include "render/strokes.hpp"
 #include "render/text.hpp"
 #include "retarget/base/error.hpp"
-#include "retarget/base/text.hpp"
 
 namespace understudy::render {
 namespace {
@@ -17,50 +18,13 @@ const Vec3 kAxisInk(0.13f, 0.15f, 0.18f), kFaint(0.87f, 0.88f, 0.90f), kAxisPape
 const Vec3 kColors[] = {{0.12f, 0.42f, 0.70f}, {0.85f, 0.37f, 0.12f}, {0.17f, 0.58f, 0.31f},
                         {0.55f, 0.30f, 0.66f}, {0.62f, 0.54f, 0.10f}, {0.35f, 0.38f, 0.42f}};
 
-/// Round numbers from below the least to above the greatest.
-struct Axis {
-  double low = 0, high = 1, step = 0.2;
-
-  Axis(double least, double greatest) {
-    const double span = std::max(greatest - least, 1e-9 * std::max(1.0, std::abs(greatest)));
-    const double ten = std::pow(10, std::floor(std::log10(span / 5)));
-    for (const double round : {1.0, 2.0, 5.0, 10.0})
-      if (span / (round * ten) <= 7) {
-        step = round * ten;
-        break;
-      }
-    low = std::floor(least / step + 1e-9) * step;
-    high = std::ceil(greatest / step - 1e-9) * step;
-    if (high <= low) high = low + step;
-  }
-  float share(double value) const { return static_cast<float>((value - low) / (high - low)); }
-};
-
-std::string number(double value) {
-  return printed("%.6g", std::abs(value) < 1e-12 ? 0 : value);
-}
-
-/// A line with round ends and soft edges.
 void draw_line(Image& image, const Vector2f& a, const Vector2f& b, float width, const Vec3& color) {
-  const Vector2f low = a.cwiseMin(b).array() - width, high = a.cwiseMax(b).array() + width;
-  const Vector2f along = b - a;
-  const float length = std::max(along.squaredNorm(), 1e-12f);
-  for (int y = std::max(0, static_cast<int>(low.y()));
-       y <= std::min(image.height - 1, static_cast<int>(high.y())); ++y)
-    for (int x = std::max(0, static_cast<int>(low.x()));
-         x <= std::min(image.width - 1, static_cast<int>(high.x())); ++x) {
-      const Vector2f at(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      const float t = std::clamp((at - a).dot(along) / length, 0.f, 1.f);
-      const float cover = std::clamp(0.5f * width + 0.5f - (at - a - t * along).norm(), 0.f, 1.f);
-      uint8_t* pixel = image.at(x, y);
-      for (int c = 0; c < 3; ++c)
-        pixel[c] = static_cast<uint8_t>(std::lround((1 - cover) * pixel[c] + cover * 255 * color[c]));
-    }
+  paint(image, {{a, b, width, width}}, color);
 }
 
 /// Where values lie in the picture.
 struct Frame {
-  Axis x, y;
+  PlotAxis x, y;
   int width, height;
   Vector2f at(double px, double py) const {
     return {kLeft + x.share(px) * static_cast<float>(width - kLeft - kRight),
@@ -82,20 +46,20 @@ Frame frame_of(const std::vector<Curve>& curves, const PlotOptions& options) {
     }
   }
   US_CHECK(left <= right, options.title, ": there is nothing to plot");
-  return {Axis(left, right), Axis(low, high), options.width, options.height};
+  return {PlotAxis(left, right), PlotAxis(low, high), options.width, options.height};
 }
 
 void draw_axes(Image& image, const Font& font, const Frame& frame, const PlotOptions& options) {
   for (double v = frame.y.low; v <= frame.y.high + 0.5 * frame.y.step; v += frame.y.step) {
     const Vector2f from = frame.at(frame.x.low, v);
     draw_line(image, from, frame.at(frame.x.high, v), 1, kFaint);
-    const std::string text = number(v);
+    const std::string text = axis_number(v);
     font.draw(image, text, {from.x() - 9 - font.width(text, 15), from.y() + 5}, 15, kAxisInk);
   }
   for (double v = frame.x.low; v <= frame.x.high + 0.5 * frame.x.step; v += frame.x.step) {
     const Vector2f from = frame.at(v, frame.y.low);
     draw_line(image, from, frame.at(v, frame.y.high), 1, kFaint);
-    const std::string text = number(v);
+    const std::string text = axis_number(v);
     font.draw(image, text, {from.x() - 0.5f * font.width(text, 15), from.y() + 21}, 15, kAxisInk);
   }
   const float right = static_cast<float>(frame.width - kRight),
