@@ -25,6 +25,8 @@ constexpr Subcommand kSubcommands[] = {
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
     {"blend", "makes what lies between two to four motions", declare_blend},
+    {"map", "shows the steps of many motions by their likeness, and finds those like a given one",
+     declare_map},
     {"cases", "makes suites of test cases from people and motions", declare_cases},
     {"eval", "evaluates the method on a folder of cases", declare_eval},
     {"measure", "metrics of a source that need no ground truth", declare_measure},

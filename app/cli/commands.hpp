@@ -31,5 +31,6 @@ Action declare_demo(CLI::App& command);
 Action declare_studio(CLI::App& command);
 Action declare_play(CLI::App& command);
 Action declare_study(CLI::App& command);
+Action declare_map(CLI::App& command);
 
 }  // namespace understudy::app

@@ -6,8 +6,9 @@
 
 namespace understudy::app {
 
-Progress::Progress(std::string what, int64_t total, bool lines)
+Progress::Progress(std::string what, int64_t total, bool lines, std::string item)
     : what_(std::move(what)),
+      item_(std::move(item)),
       total_(total),
       terminal_(!lines && isatty(2) == 1),
       began_(Clock::now()),
@@ -27,10 +28,10 @@ void Progress::show() {
   last_ = Clock::now();
   const double seconds = std::chrono::duration<double>(last_ - began_).count();
   const double rate = seconds > 0 ? static_cast<double>(done_) / seconds : 0;
-  std::fprintf(stderr, "%s%s: frame %lld", terminal_ ? "\r" : "", what_.c_str(),
+  std::fprintf(stderr, "%s%s: %s %lld", terminal_ ? "\r" : "", what_.c_str(), item_.c_str(),
                static_cast<long long>(done_));
   if (total_ > 0) std::fprintf(stderr, " of %lld", static_cast<long long>(total_));
-  std::fprintf(stderr, ", %.1f frames/s%s", rate, terminal_ ? "  " : "\n");
+  std::fprintf(stderr, ", %.1f %ss/s%s", rate, item_.c_str(), terminal_ ? "  " : "\n");
   std::fflush(stderr);
   open_ = terminal_;
   shown_ = done_;

@@ -8,8 +8,8 @@ namespace understudy::app {
 
 class Progress {
  public:
-  /// total 0: unknown. Writes to stderr. lines: new lines even on a terminal.
-  Progress(std::string what, int64_t total, bool lines = false);
+  /// total 0: unknown. Writes to stderr. lines: new lines even on a terminal. item: what is counted.
+  Progress(std::string what, int64_t total, bool lines = false, std::string item = "frame");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -21,7 +21,7 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   void show();
-  std::string what_;
+  std::string what_, item_;
   int64_t total_, done_ = 0, shown_ = 0;
   bool terminal_, open_ = false;
   Clock::time_point began_, last_;

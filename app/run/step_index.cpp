@@ -16,9 +16,9 @@
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/body/clips.hpp"
 #include "retarget/formats/file_formats.hpp"
+#include "retarget/motion/moving_person.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/motion/skeletal_motion.hpp"
-#include "retarget/pipeline/human_rest.hpp"
 
 namespace understudy::app {
 namespace {
@@ -35,15 +35,12 @@ FileMotion motion_of(const Character& character, const std::string& clip, const 
   FileMotion file;
   file.clip = std::to_string(skeletal.clip() + 1);
   file.clip_name = character.animations[skeletal.clip()].name;
-  file.motion.fps = static_cast<float>(skeletal.fps());
-  for (int64_t t = 0; t < skeletal.count(); ++t) {
-    const Extraction seen = skeletal.skeleton(t);
-    if (t == 0) file.rest = rest_with_lengths(human_rest(), bone_lengths(seen.joints));
-    file.motion.poses.push_back({local_rotations(*seen.global), Vec3(seen.joints.row(Pelvis))});
-  }
+  MovingPerson person = moving_person(skeletal);
+  file.motion = std::move(person.motion), file.rest = person.rest;
   if (file_suffix(path) == ".npz") {
     const std::vector<uint8_t> flags = read_amass_arrays(path).flags;
-    if (flags.size() == file.motion.poses.size()) file.motion.flags = flags;
+    for (size_t t = 0; t < flags.size() && t < file.motion.flags.size(); ++t)
+      file.motion.flags[t] |= flags[t];
   }
   return file;
 }
@@ -231,6 +228,7 @@ class Index {
     if (failed) refuse(folder_ + ": cannot be made: " + failed.message());
   }
 
+  const std::string& coder() const { return mark_; }
   /// What is known of a file, from the index or read now.
   void add(const std::string& path, IndexedSteps& all) {
     Entry entry;
@@ -338,6 +336,7 @@ IndexedSteps index_steps(const std::vector<std::string>& files, MotionCoder& cod
                          const StepIndexOptions& options) {
   IndexedSteps all;
   Index index(coder, options.folder);
+  all.coder = index.coder();
   const int count = static_cast<int>(ssize(files));
   for (int i = 0; i < count; ++i) {
     if (options.progress) options.progress(i, count);
@@ -345,6 +344,30 @@ IndexedSteps index_steps(const std::vector<std::string>& files, MotionCoder& cod
   }
   if (options.progress) options.progress(count, count);
   return all;
+}
+
+std::vector<NearStep> like_this(const MotionMap& map, const MotionRange& range, MotionCoder& coder,
+                                int count) {
+  const Motion& motion = range.motion.motion;
+  const std::string name = range.path.empty() ? "the open motion" : range.path;
+  const int frames = static_cast<int>(ssize(motion.poses));
+  US_CHECK(range.first >= 0 && range.first < range.last && range.last < frames, name, ": has no frames ",
+           range.first, " to ", range.last, ", there are 0 to ", frames - 1);
+  std::vector<std::vector<float>> codes;
+  for (MappedStep& step : coded_steps(motion, range.motion.rest, coder, range.first, range.last))
+    codes.push_back(std::move(step.code));
+  US_CHECK(!codes.empty(), name, ": nobody makes a whole step (0.3 to 3 s) in frames ", range.first, " to ",
+           range.last);
+  return map.nearest(codes, count, [&](int i) {
+    const MappedMotion& other = map.motion_of(i);
+    return other.path == range.path && other.clip == range.motion.clip && map.step(i).first <= range.last &&
+           range.first <= map.step(i).last;
+  });
+}
+
+std::string step_words(const MotionMap& map, int step) {
+  return map.motion_of(step).name + ", frames " + std::to_string(map.step(step).first) + " to " +
+         std::to_string(map.step(step).last);
 }
 
 std::string index_words(const IndexedSteps& indexed) {

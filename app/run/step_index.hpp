@@ -35,6 +35,7 @@ struct StepIndexOptions {
 
 /// What is told of files.
 struct IndexedSteps {
+  std::string coder;                       ///< that coded them: its name and what tells it from others
   std::vector<MappedMotion> motions;       ///< in which somebody steps, in the order of the files
   std::vector<std::string> problems;       ///< a sentence for each file that cannot be read
   std::vector<std::string> without_steps;  ///< files in which nobody steps
@@ -50,6 +51,19 @@ struct IndexedSteps {
 IndexedSteps index_steps(const std::vector<std::string>& files, MotionCoder& coder,
                          const StepIndexOptions& options);
 
+/// Frames of a motion, both inside.
+struct MotionRange {
+  std::string path;  ///< its file; empty: it is in none
+  FileMotion motion;
+  int first = 0, last = 0;
+};
+/// The steps of a map that are most like any of those in the range, the likest first; those that share frames
+/// with the range are left out. Throws Error where the motion has no such frames, or nobody steps in them.
+std::vector<NearStep> like_this(const MotionMap& map, const MotionRange& range, MotionCoder& coder,
+                                int count);
+
+/// "walk.bvh, frames 12 to 45".
+std::string step_words(const MotionMap& map, int step);
 /// One sentence: "237 files, 201 read anew, 2,364 steps in 195 motions".
 std::string index_words(const IndexedSteps& indexed);
 

@@ -15,7 +15,6 @@ namespace understudy {
 namespace {
 
 constexpr int kAsked = 256;           // steps whose neighbours tell how far neighbours are
-constexpr int kBlended = 3;           // steps about a place
 constexpr float kLeastShare = 0.02f;  // of a step in a blend
 
 std::vector<int16_t> figure_of(const TimedPoses& movement, const Joints& rest) {
@@ -31,16 +30,22 @@ std::vector<int16_t> figure_of(const TimedPoses& movement, const Joints& rest) {
 }
 
 Joints moment_of(const MappedStep& step, int k) {
-  const auto* const values = step.figure.data() + std::clamp(k, 0, kFigureMoments - 1) * kJointCount * 3;
+  // Before the first and after the last it goes on as it did there.
+  if (k < 0) return 2 * moment_of(step, 0) - moment_of(step, 1);
+  if (k >= kFigureMoments)
+    return 2 * moment_of(step, kFigureMoments - 1) - moment_of(step, kFigureMoments - 2);
+  const auto* const values = step.figure.data() + k * kJointCount * 3;
   return Eigen::Map<const Eigen::Matrix<int16_t, kJointCount, 3, Eigen::RowMajor>>(values).cast<float>() /
          1000;
 }
 
 }  // namespace
 
-std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MotionCoder& coder) {
+std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MotionCoder& coder, int first,
+                                    int last) {
   std::vector<MappedStep> steps;
   for (const Step& found : find_steps(motion)) {
+    if (found.first < first || found.last > last) continue;
     const TimedPoses movement = movement_of(motion, found.first, found.last);
     MappedStep step;
     step.first = found.first, step.last = found.last, step.left_first = found.left_first;
@@ -172,22 +177,40 @@ std::vector<NearStep> MotionMap::nearest(const std::vector<std::vector<float>>& 
   return near;
 }
 
+std::vector<int> MotionMap::around(const MapPlace& place) const {
+  const Eigen::Matrix<float, Eigen::Dynamic, 2> ways = places_.rowwise() - place.transpose();
+  Eigen::Index nearest = 0;
+  ways.rowwise().squaredNorm().minCoeff(&nearest);
+  const float ahead = std::atan2(ways(nearest, 1), ways(nearest, 0));
+  std::array<int, 2> other = {-1, -1};
+  std::array<float, 2> away = {INFINITY, INFINITY};
+  for (int i = 0; i < size(); ++i) {
+    float turn = std::atan2(ways(i, 1), ways(i, 0)) - ahead;
+    turn -= 2 * kPi * std::floor(turn / (2 * kPi));
+    const int third =
+        static_cast<int>(std::floor((turn + kPi / 3) / (2 * kPi / 3)));  // 0 and 3: the nearest's
+    if (third % 3 == 0 || ways.row(i).squaredNorm() >= away[third - 1]) continue;
+    away[third - 1] = ways.row(i).squaredNorm();
+    other[third - 1] = i;
+  }
+  if (away[1] < away[0]) std::swap(other[0], other[1]);
+  std::vector<int> steps = {static_cast<int>(nearest)};
+  for (const int one : other)
+    if (one >= 0) steps.push_back(one);
+  return steps;
+}
+
 MapBlend MotionMap::at(const MapPlace& place) const {
   US_CHECK(size() > 0, "there are no steps on the map");
-  const Eigen::VectorXf away = (places_.rowwise() - place.transpose()).rowwise().squaredNorm();
-  std::vector<int> order(size());
-  for (int i = 0; i < size(); ++i) order[i] = i;
-  const auto end = order.begin() + std::min(kBlended, size());
-  std::partial_sort(order.begin(), end, order.end(),
-                    [&](int a, int b) { return away[a] != away[b] ? away[a] < away[b] : a < b; });
   const float extent = (places_.colwise().maxCoeff() - places_.colwise().minCoeff()).norm();
   const float on_it = 1e-5f * (extent + 1e-6f);  // so near to a step that it is meant
   MapBlend blend;
   float sum = 0;
-  for (auto i = order.begin(); i != end; ++i) {
-    const float weight = 1 / std::max(away[*i], on_it * on_it);
+  for (const int one : around(place)) {
+    const float away = (places_.row(one).transpose() - place).squaredNorm();
+    const float weight = 1 / std::max(away, on_it * on_it);
     if (weight < kLeastShare * sum) break;
-    blend.weights.emplace_back(*i, weight);
+    blend.weights.emplace_back(one, weight);
     sum += weight;
   }
   Eigen::RowVectorXf code = Eigen::RowVectorXf::Zero(codes_.cols());

@@ -13,7 +13,7 @@
 
 namespace understudy {
 
-constexpr int kFigureMoments = 10;  ///< of a step that are kept to be shown
+constexpr int kFigureMoments = 12;  ///< of a step that are kept to be shown
 
 /// A step with its code.
 struct MappedStep {
@@ -39,8 +39,9 @@ struct MappedMotion {
   std::vector<MappedStep> steps;
 };
 
-/// All steps of a motion, coded. Throws Error as the coder does.
-std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MotionCoder& coder);
+/// The steps of a motion that lie wholly in frames first .. last, coded. Throws Error as the coder does.
+std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MotionCoder& coder,
+                                    int first = 0, int last = kFrameNumbers.high);
 
 /// The joints of a step after so many seconds of it, again from the start after its end; between the moments
 /// that are kept along a smooth curve. In place: the pelvis stays above the origin.
@@ -59,7 +60,8 @@ struct NearStep {
 
 /// What lies at a place of the map.
 struct MapBlend {
-  /// Of two to four steps there, the nearest first; weights sum to 1. One where the place is a step's own.
+  /// Of two or three steps about it, the nearest first; weights sum to 1. One where the place is a step's own,
+  /// or beyond all others.
   std::vector<std::pair<int, float>> weights;
   std::vector<float> code;
   NearStep known;  ///< the step whose code is nearest to it
@@ -92,7 +94,8 @@ class MotionMap {
   /// The steps nearest to any of the codes, the nearest first; those that `skip` names are left out.
   std::vector<NearStep> nearest(const std::vector<std::vector<float>>& codes, int count,
                                 const std::function<bool(int step)>& skip = {}) const;
-  /// Weights fall with the square of the distance on the plane. Throws Error on an empty map.
+  /// Of the nearest step and the nearest in each of both other thirds of the plane, seen from the place, so
+  /// that it lies between them; weights fall with the square of the distance. Throws Error on an empty map.
   MapBlend at(const MapPlace& place) const;
   /// The distance between neighbours: the median over steps of how far the nearest code is that is of no
   /// step that shares frames with it. 1 where there are no neighbours.
@@ -103,6 +106,7 @@ class MotionMap {
     int motion, step;
   };
   bool share_frames(int a, int b) const;
+  std::vector<int> around(const MapPlace& place) const;
   void find_axes();
   void find_unit();
 
