@@ -54,9 +54,10 @@ MotionRange range_asked(const std::string& text) {
 
 /// The learned one; the plain one where there is none, which is said.
 std::shared_ptr<MotionCoder> coder_of(const std::string& weights) {
-  const auto load = coder_loader(weights);
-  if (load) return load();
-  log::warn("there is no learned coder of movements: they are compared pose by pose");
+  std::shared_ptr<MotionCoder> coder;
+  const std::string problem = failure_of([&] { coder = coder_loader(weights)(); });
+  if (coder) return coder;
+  log::warn(problem + ": steps are compared pose by pose");
   return make_knot_coder();
 }
 

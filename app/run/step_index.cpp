@@ -34,6 +34,7 @@ FileMotion motion_of(const Character& character, const std::string& clip, const 
   const SkeletalMotion skeletal(character, options);
   FileMotion file;
   file.clip = std::to_string(skeletal.clip() + 1);
+  file.is_longest = skeletal.clip() == chosen_clip(character, "");
   file.clip_name = character.animations[skeletal.clip()].name;
   MovingPerson person = moving_person(skeletal);
   file.motion = std::move(person.motion), file.rest = person.rest;
@@ -108,6 +109,7 @@ FieldsOf<S, StoredStep> fields(V& visit, S& step) {
 
 struct StoredMotion {
   std::string clip, name, action;
+  bool is_longest = true;
   float fps = 30;
   int frames = 0;
   std::vector<float> rest;
@@ -116,6 +118,7 @@ struct StoredMotion {
 template <class V, class S>
 FieldsOf<S, StoredMotion> fields(V& visit, S& motion) {
   visit("clip", motion.clip);
+  visit("is_longest", motion.is_longest);
   visit("name", motion.name);
   visit("action", motion.action);
   visit("fps", motion.fps);
@@ -169,7 +172,8 @@ std::vector<int16_t> numbers_of(const std::string& hex) {
 }
 
 StoredMotion stored(const MappedMotion& motion) {
-  StoredMotion out{motion.clip, motion.name, motion.action, motion.fps, motion.frames, {}, {}};
+  StoredMotion out{motion.clip, motion.name, motion.action, motion.is_longest, motion.fps, motion.frames,
+                   {},          {}};
   out.rest.assign(motion.rest.data(), motion.rest.data() + motion.rest.size());
   for (const MappedStep& step : motion.steps)
     out.steps.push_back({step.first, step.last, step.left_first, step.seconds, step.speed_m_s, step.code,
@@ -182,6 +186,7 @@ MappedMotion restored(StoredMotion motion, const std::string& path, int code_siz
   MappedMotion out;
   out.path = path;
   out.clip = std::move(motion.clip), out.name = std::move(motion.name), out.action = std::move(motion.action);
+  out.is_longest = motion.is_longest;
   out.fps = motion.fps, out.frames = motion.frames;
   US_CHECK(ssize(motion.rest) == out.rest.size(), "a body of ", motion.rest.size(), " numbers");
   std::copy(motion.rest.begin(), motion.rest.end(), out.rest.data());
@@ -297,7 +302,7 @@ class Index {
 
   MappedMotion mapped(const FileMotion& file, const std::string& path) {
     MappedMotion motion;
-    motion.path = path, motion.clip = file.clip;
+    motion.path = path, motion.clip = file.clip, motion.is_longest = file.is_longest;
     motion.name = file_name(path);
     if (file.clip != "1") motion.name += ": " + excerpt(file.clip_name);
     motion.action = action_of(path);

@@ -13,6 +13,7 @@ namespace understudy::app {
 struct FileMotion {
   std::string clip;  ///< which of the file's animations, a number from 1
   std::string clip_name;
+  bool is_longest = true;  ///< it is the one that is taken where none is named
   Motion motion;
   Joints rest = Joints::Zero();  ///< T-pose joints, metres
 };

@@ -106,6 +106,7 @@ void add_all_commands(Commands& commands) {
   add_edit_commands(commands);
   add_export_commands(commands);
   add_study_commands(commands);
+  add_map_commands(commands);
   add_program_commands(commands);
 }
 

@@ -14,6 +14,7 @@ void add_view_commands(Commands& commands);
 void add_edit_commands(Commands& commands);
 void add_export_commands(Commands& commands);
 void add_study_commands(Commands& commands);
+void add_map_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 
@@ -81,6 +82,9 @@ class Call : public ArgumentReader {
 bool no_unsaved_study(Studio& studio, const std::string& then);
 /// Saves the open study. It may be one that cannot be run yet. Throws Error naming the path.
 void save_study(Studio& studio, const std::string& path);
+
+/// Another source in place of the open one: edits and settings of the old one's frames go with it.
+void set_source(Call& c, SourceOptions source);
 
 /// The folder that a file or folder was opened from or saved in, for the next time; not that of the samples.
 void remember_folder(Studio& studio, const std::string& path);

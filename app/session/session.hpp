@@ -16,6 +16,7 @@
 #include "app/session/document_file.hpp"
 #include "app/session/history.hpp"
 #include "app/session/kept_owners.hpp"
+#include "app/session/map_state.hpp"
 #include "app/session/playback.hpp"
 #include "app/session/series.hpp"
 #include "app/session/settings.hpp"
@@ -165,6 +166,7 @@ struct Session {
   std::string weights;   ///< checksums of the networks here; empty: not known yet
   History history;
   StudyState study;
+  MapState map;
   View view;
   Playback playback;
   Settings settings;

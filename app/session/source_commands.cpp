@@ -11,9 +11,7 @@
 #include "retarget/pipeline/method_table.hpp"
 
 namespace understudy::app {
-namespace {
 
-/// For another source: drops the edits and settings of the old one's frames.
 void set_source(Call& c, SourceOptions source) {
   Document& document = c.document;
   remember_folder(c.studio, source.motion.empty() ? source.path : source.motion);
@@ -24,6 +22,8 @@ void set_source(Call& c, SourceOptions source) {
   for (Take& take : document.takes) take.pose_edits = {}, take.person.clear();
   c.session.playback = Playback{};
 }
+
+namespace {
 
 void check_file(const std::string& path) {
   std::error_code failed;

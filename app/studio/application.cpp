@@ -182,7 +182,7 @@ bool Application::due() const {
   const Clock::time_point now = Clock::now();
   const double since_drawn = seconds_between(drawn_at_, now);
   if (since_drawn < fastest_s()) return false;
-  if (frames_wanted_ > 0 || gui_->pending()) return true;
+  if (frames_wanted_ > 0 || gui_->pending() || gui_->ui().moves()) return true;
   if (seconds_between(input_at_, now) < kTooltips && since_drawn > kLookingAround) return true;
   if (gui_->wants_text() && since_drawn > kBlink) return true;
   if (!session().jobs.empty() && since_drawn > kBarMoves) return true;
@@ -194,7 +194,8 @@ double Application::patience_s() const {
   const Clock::time_point now = Clock::now();
   if (frames_wanted_ > 0 || gui_->pending()) return std::max(0.0, kFastest - seconds_between(drawn_at_, now));
   const Session& s = session();
-  if (s.playback.playing || s.view.turntable_deg_s != 0 || !studio_->idle() || study_pictures_->busy())
+  if (s.playback.playing || s.view.turntable_deg_s != 0 || gui_->ui().moves() || !studio_->idle() ||
+      study_pictures_->busy())
     return std::clamp(fastest_s() - seconds_between(drawn_at_, now), kBriefest, kListening);
   if (seconds_between(input_at_, now) < kTooltips) return kLookingAround;
   return gui_->wants_text() ? kBlink : kAsleep;

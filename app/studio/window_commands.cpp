@@ -187,16 +187,17 @@ void show_file(Call& c) {
 }  // namespace
 
 void add_window_commands(Commands& commands, ui::Workspace& workspace) {
-  commands.add({"dialog.open", "Open dialog",
-                "open|open_source|blend_with|source_times|source_markers|open_target|replace_target|open_"
-                "document|save_as|export|csv|"
-                "picture|video|compare|settings|about|keys|here|open_study|save_study|study_files|"
-                "study_animation|study_motion|study_target|study_answers|study_table|study_csv|study_jspsych|"
-                "study_psychopy|study_stimuli|study_web|study_run|none"},
-               [&workspace](Call& c) {
-                 US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
-                 workspace.open_dialog(c.session, c.arguments[0]);
-               });
+  commands.add(
+      {"dialog.open", "Open dialog",
+       "open|open_source|blend_with|map_folder|source_times|source_markers|open_target|replace_target|open_"
+       "document|save_as|export|csv|"
+       "picture|video|compare|settings|about|keys|here|open_study|save_study|study_files|"
+       "study_animation|study_motion|study_target|study_answers|study_table|study_csv|study_jspsych|"
+       "study_psychopy|study_stimuli|study_web|study_run|none"},
+      [&workspace](Call& c) {
+        US_CHECK(c.arguments.size() == 1, "dialog.open needs the name of a dialog");
+        workspace.open_dialog(c.session, c.arguments[0]);
+      });
   commands.add({"panel.show", "Panel", "NAME on|off|toggle"}, [&workspace](Call& c) {
     const bool shown = ui::panel_shown(c.session, c.word(0, "panel"));
     workspace.show_panel(c.session.settings, c.arguments[0], c.switched(1, shown));

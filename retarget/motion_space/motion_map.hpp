@@ -29,10 +29,11 @@ struct MappedStep {
 
 /// A motion and the steps in it.
 struct MappedMotion {
-  std::string path;    ///< its file; empty: it is in none
-  std::string clip;    ///< which of the file's animations: a number from 1
-  std::string name;    ///< for people: "dance.glb: spin"
-  std::string action;  ///< what it shows: "walk"
+  std::string path;        ///< its file; empty: it is in none
+  std::string clip;        ///< which of the file's animations: a number from 1
+  bool is_longest = true;  ///< it is the one that is taken of the file where none is named
+  std::string name;        ///< for people: "dance.glb: spin"
+  std::string action;      ///< what it shows: "walk"
   float fps = 30;
   int frames = 0;
   Joints rest = Joints::Zero();  ///< T-pose joints of who performs it, metres
@@ -60,8 +61,8 @@ struct NearStep {
 
 /// What lies at a place of the map.
 struct MapBlend {
-  /// Of two or three steps about it, the nearest first; weights sum to 1. One where the place is a step's own,
-  /// or beyond all others.
+  /// Of two or three steps about it, the nearest first; weights sum to 1. One where the place is a step's
+  /// own, or beyond all others.
   std::vector<std::pair<int, float>> weights;
   std::vector<float> code;
   NearStep known;  ///< the step whose code is nearest to it

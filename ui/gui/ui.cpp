@@ -75,6 +75,7 @@ void Ui::finish_frame() {
   explaining_.clear();
   drawing_.clear();
   drawing_at_.clear();
+  moves_ = std::exchange(drawing_moves_, false);
 }
 
 }  // namespace understudy::ui

@@ -82,6 +82,11 @@ class Ui {
   /// Scrolls to an item when it is next drawn.
   void reveal(const std::string& name) { reveal_ = name; }
 
+  /// Something drawn in this frame moves by itself: the next is wanted at once.
+  void keep_moving() { drawing_moves_ = true; }
+  /// Whether the last finished frame had such a thing.
+  bool moves() const { return moves_; }
+
   /// Whether the dialog `name` may be open now: only one is open at a time, the others wait. Call in every
   /// frame while it is open. A dialog inside another need not call it.
   bool claim_dialog(const std::string& name);
@@ -109,6 +114,7 @@ class Ui {
   Focus focus_;
   std::string reveal_, dialog_;
   int dialog_frame_ = -2;
+  bool drawing_moves_ = false, moves_ = false;
 };
 
 /// Uses a font until the end of the scope.

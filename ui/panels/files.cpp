@@ -26,6 +26,7 @@ constexpr FileDialog kDialogs[] = {
     {"open_source", "source.open", "Open source", "Open", FileKind::Source},
     {"", "source.motion", "Open source: now the motion of ", "Open", FileKind::BodyMotion},
     {"blend_with", "source.blend_with", "Blend with another motion", "Blend", FileKind::Source},
+    {"map_folder", "map.index", "Read the motions of a folder onto the map", "Read", FileKind::Folder},
     {"source_times", "source.times", "Times of the scans", "Use", FileKind::Times},
     {"source_markers", "source.markers", "Markers of the scans", "Use", FileKind::Times},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},

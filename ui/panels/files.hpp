@@ -15,6 +15,7 @@ enum class FilePurpose {
   Source,      ///< an SMPL-format body is the first of two: its motion is asked for next
   BodyMotion,  ///< the second
   BlendWith,
+  MapFolder,
   SourceTimes,
   SourceMarkers,
   Target,

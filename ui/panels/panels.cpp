@@ -9,7 +9,7 @@ namespace understudy::ui {
 // Each in the file of its name.
 using DrawPanel = void(const app::Session&, PanelContext&);
 DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_study, draw_timeline, draw_log,
-    draw_bad_frames;
+    draw_bad_frames, draw_motion_map;
 
 const std::vector<Panel>& panels() {
   using Dock = Panel::Dock;
@@ -27,6 +27,10 @@ const std::vector<Panel>& panels() {
        "A perceptual study: which methods are compared on which motions and targets, what people are asked, "
        "and in which order they see the clips.",
        draw_study},
+      {"motion_map", "Map", "Alt+6", Dock::Side, false,
+       "The steps of many motions by their likeness: what is alike lies near to each other. A click takes a "
+       "step as the source, a click between steps what lies between them.",
+       draw_motion_map},
       {"timeline", "Timeline", "Alt+T", Dock::Timeline, true,
        "The frames and the edits made at them. Thin bars show when the left and the right foot are held on "
        "the floor. Red frames cannot be trusted: rest the pointer on one to read why.",

@@ -34,9 +34,9 @@ class Workspace {
   /// `frame_rate`: of the window, frames per second, for the status line.
   void draw(const app::Session& session, PanelContext& context, float frame_rate = 0);
 
-  /// open, open_source, blend_with, source_times, source_markers, open_target, replace_target, open_document,
-  /// save_as, export, csv, picture, video, compare, settings, about, keys, here (help for what the pointer is
-  /// on), and those of a study that files.cpp lists; "none" closes.
+  /// open, open_source, blend_with, map_folder, source_times, source_markers, open_target, replace_target,
+  /// open_document, save_as, export, csv, picture, video, compare, settings, about, keys, here (help for what
+  /// the pointer is on), and those of a study that files.cpp lists; "none" closes.
   /// Throws Error for another name.
   void open_dialog(const app::Session& session, const std::string& name);
   /// Opens a menu of the bar by its name, "" the first, or closes the one that is open.
