@@ -63,6 +63,14 @@ Vec3 diverging_color(float t) {
   return stops[k] + (at - static_cast<float>(k)) * (stops[k + 1] - stops[k]);
 }
 
+Vec3 time_color(float t) {
+  static const std::array<Vec3, 3> stops = {hex(0x3B4CC0), hex(0xDCDDDD), hex(0xB40426)};
+  if (std::isnan(t)) return kNoValue;
+  const float at = 2 * std::clamp(t, 0.f, 1.f);
+  const size_t k = at < 1 ? 0 : 1;
+  return stops[k] + (at - static_cast<float>(k)) * (stops[k + 1] - stops[k]);
+}
+
 Points colors_along(Vec3 (*scale)(float), const Eigen::VectorXf& values, float low, float high) {
   Points colors(values.size(), 3);
   const float range = high > low ? high - low : 1.f;

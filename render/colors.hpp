@@ -20,6 +20,8 @@ Vec3 viridis(float t);
 Vec3 error_color(float t);
 /// For signed values: blue, near white in the middle, orange brown.
 Vec3 diverging_color(float t);
+/// For moments: blue for the first, pale in the middle, red for the last.
+Vec3 time_color(float t);
 
 /// A colour for each value, `low` to `high` along one of the scales above, [N, 3].
 Points colors_along(Vec3 (*scale)(float), const Eigen::VectorXf& values, float low, float high);

@@ -458,6 +458,7 @@ Json report_of(const EvalOptions& options, const Evaluation& evaluation) {
   if (!method.offsets) report["offsets"] = false;
   for (const MethodSwitch& one : kSwitches)
     if (!(method.*one.on)) report[one.name] = false;
+  if (method.predict) report["predict"] = true;
   if (method.extractor != Method().extractor) report["extractor"] = method.extractor;
   for (const Proportion& one : kProportions)
     if (method.*one.value != Method().*one.value) report[one.name] = method.*one.value;

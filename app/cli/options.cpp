@@ -146,6 +146,9 @@ void add_method_options(CLI::App& command, MethodOptions& how) {
     command.add_flag(names, method.*one.on, std::string("switches off: ") + one.explanation);
   }
   command.add_flag("!--no-offsets", method.offsets, "no pose-corrective offsets");
+  command.add_flag("--predict", method.predict,
+                   "frames that cannot be used go on as those before went, for half a second, instead of "
+                   "repeating the last; they stay flagged");
   for (const Proportion& one : kProportions)
     command.add_option("--" + dashed(one.name), method.*one.value, one.explanation)
         ->check(CLI::Range(one.range.low, one.range.high));

@@ -34,6 +34,7 @@ void each_result_key(Row& row, Visit visit) {
   visit("extractor", method.extractor);
   visit("offsets", method.offsets);
   for (const MethodSwitch& one : kSwitches) visit(MemberName(one.name, one.old_name), method.*one.on);
+  visit("predict", method.predict);
   visit("oracle", row.eval.oracle);
   visit("baseline", row.eval.baseline);
   visit("fill", row.eval.fill);

@@ -13,6 +13,7 @@ RetargetOptions retarget_options(const Method& method) {
   options.root.stride = method.stride;
   options.root.hip_height_m = method.hip_height;
   options.arm_reach = method.arm_reach;
+  options.predict = method.predict;
   return options;
 }
 

@@ -18,6 +18,7 @@ struct Method {
   bool hand_contacts = true;                                           ///< hand contacts are kept
   RootMode path = RootMode::Scaled;                                    ///< across the floor
   float stride = 1, hip_height = 0, arm_reach = 0;                     ///< of the target, see kProportions
+  bool predict = false;  ///< frames that cannot be used go on from those before, for half a second
 };
 
 /// A setting of the target's proportions, by the same name in documents, commands and options.
@@ -62,11 +63,16 @@ FieldsOf<S, Method> fields(V& visit, S& method) {
   visit(MemberName("hand_contacts", "keep_contacts"), method.hand_contacts);
   visit(MemberName("path", "root"), method.path, kRootNames);
   for (const Proportion& one : kProportions) visit(one.name, method.*one.value, one.range);
+  visit("predict", method.predict);
 }
 
 /// What the other settings do, on the screen.
 constexpr const char* kOffsetsExplanation =
     "Corrects the skin by millimetres where joints bend, so that elbows and knees keep their shape";
+constexpr const char* kPredictExplanation =
+    "Frames that cannot be used go on as those before went, for half a second, instead of repeating the "
+    "last; "
+    "they stay marked";
 constexpr const char* kPathExplanation = "How far the target walks for each metre that the source walks";
 
 /// What can be switched off, by the same name in documents, commands and options ("--no-repair-swaps").

@@ -133,7 +133,7 @@ std::string fill_command(size_t take) {
 }
 
 /// "7 frames (41 to 47) could not be used and repeat the last pose".
-std::string unusable_in_words(const std::vector<FillEdit>& runs) {
+std::string unusable_in_words(const std::vector<FillEdit>& runs, bool predicted) {
   int count = 0;
   for (const FillEdit& run : runs) count += run.last - run.first + 1;
   const FillEdit& only = runs[0];
@@ -143,7 +143,9 @@ std::string unusable_in_words(const std::vector<FillEdit>& runs) {
   else
     text += " (" + std::to_string(only.first) +
             (count > 1 ? " to " + std::to_string(only.last) : std::string()) + ")";
-  const std::string poses = count == 1 ? " and repeats the last pose" : " and repeat the last pose";
+  const std::string poses = predicted    ? " and went on as those before"
+                            : count == 1 ? " and repeats the last pose"
+                                         : " and repeat the last pose";
   return text + " could not be used" + (only.first > 0 ? poses : "");
 }
 
@@ -168,7 +170,7 @@ void Studio::offer_fill(size_t k) {
       runs.size() == 1 && runs[0].first == 0 && runs[0].last + 1 == ssize(performed_by(session_, k));
   if (runs.empty() || none_is_known) return;
   const std::string whose = session_.takes.size() > 1 ? take.name + ": " : "";
-  notify(whose + unusable_in_words(runs), true, Offer{"Fill", fill_command(k), true});
+  notify(whose + unusable_in_words(runs, take.method.predict), true, Offer{"Fill", fill_command(k), true});
   applied.fill_notice = session_.notices_made;
 }
 

@@ -372,6 +372,7 @@ std::string method_in_words(const Method& method) {
     append_item(words, std::string("path ") + kRootNames[static_cast<size_t>(method.path)]);
   for (const MethodSwitch& one : kSwitches)
     if (method.*one.on != usual.*one.on) append_item(words, "no " + lower_case(one.label));
+  if (method.predict) append_item(words, "predicted gaps");
   for (const Proportion& one : kProportions)
     if (method.*one.value != usual.*one.value)
       append_item(words, lower_case(one.label) + " " + printed("%g", static_cast<double>(method.*one.value)));

@@ -147,7 +147,7 @@ std::string present_name(const std::string& setting) {
 /// One setting of a method, "engine=paper".
 void set_method(Method& method, const std::string& key, const std::string& value) {
   std::vector<std::string> settings = switch_names();
-  settings.insert(settings.begin(), {"engine", "extractor", "offsets", "path"});
+  settings.insert(settings.begin(), {"engine", "extractor", "offsets", "path", "predict"});
   for (const Proportion& one : kProportions) settings.push_back(one.name);
   ArgumentReader({key}).one_of(0, "setting", settings);
   const ArgumentReader words({value});
@@ -159,6 +159,8 @@ void set_method(Method& method, const std::string& key, const std::string& value
     method.path = words.choice<RootMode>(0, "path", kRootNames);
   else if (key == "offsets")
     method.offsets = words.on(0);
+  else if (key == "predict")
+    method.predict = words.on(0);
   for (const MethodSwitch& one : kSwitches)
     if (key == one.name) method.*one.on = words.on(0);
   for (const Proportion& one : kProportions)
@@ -198,6 +200,7 @@ void add_methods(Commands& commands) {
   setting("engine", "Motion transfer", "TAKE " + names_of(engines(), "|"));
   setting("extractor", "Skeleton extraction", "TAKE " + names_of(extractors(), "|"));
   setting("offsets", "Pose-corrective offsets", "TAKE on|off");
+  setting("predict", "Predict unusable frames", "TAKE on|off");
   setting("path", "Path", "TAKE scaled|original|in-place", "method.root");
   std::string filters;
   for (const std::string& name : switch_names()) append_item(filters, name, "|");

@@ -61,6 +61,7 @@ void Performer::restart() {
     now_.root.reset(target_.mesh.vertices, target_.joints);
   }
   last_ = {};
+  ahead_.reset();
   waited_ = 0;
 }
 
@@ -86,6 +87,10 @@ PerformedFrame Performer::perform(const Observation& seen, float dt) {
   } catch (const Error& error) {
     put_back(std::move(before));
     return repeat(std::move(frame), error.what());
+  }
+  if (options_.predict && transfer_) {
+    if (!ahead_) ahead_.emplace();
+    ahead_->push(frame.pose, frame.standing, waited_);
   }
   waited_ = 0;
   last_ = kept(frame);
@@ -164,7 +169,7 @@ PerformedFrame Performer::repeat(PerformedFrame frame, std::string reason) {
   frame.flagged = true;
   frame.reason = std::move(reason);
   frame.confidence.setZero();
-  frame.pose = last_.pose;
+  frame.pose = ahead_ ? ahead_->after(waited_, target_.joints) : last_.pose;
   frame.standing = last_.standing;
   frame.limbs = last_.limbs;
   frame.source.joints = last_.source;

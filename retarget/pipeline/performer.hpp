@@ -12,6 +12,7 @@
 #include "retarget/pipeline/hand_contacts.hpp"
 #include "retarget/pipeline/joint_filter.hpp"
 #include "retarget/pipeline/observation.hpp"
+#include "retarget/pipeline/pose_prediction.hpp"
 #include "retarget/pipeline/root_path.hpp"
 #include "retarget/pipeline/target.hpp"
 #include "retarget/pipeline/torn_surface.hpp"
@@ -28,6 +29,8 @@ struct RetargetOptions {
   float arm_reach = 0;        ///< 0..1, see ArmReach
   bool keep_contacts = true;  ///< hands that touch the body or each other do so on the target, too
   bool vertices = true;       ///< false: poses only, no deformation
+  /// Frames that cannot be used go on as those before went and come to rest, instead of repeating the last.
+  bool predict = false;
   /// Whether limbs are placed elsewhere than the transfer puts them, standing feet and hands' contacts apart.
   bool places_limbs() const { return root.stride != 1 || root.hip_height_m != 0 || arm_reach > 0; }
 };
@@ -43,7 +46,7 @@ struct PerformedFrame {
   Confidence confidence = Confidence::Zero();  ///< of the observed joints; zero where flagged
   Standing standing{};                         ///< the feet that are held on the floor
   LimbsSight limbs{};                          ///< what is seen of the limbs; the rest stands or hangs still
-  bool flagged = false;                        ///< the frame could not be used; the pose is the last good one
+  bool flagged = false;                        ///< it could not be used; the last good pose, or from there on
   std::string reason;                          ///< why it is flagged, one sentence
   std::string warning;                         ///< that the target falls apart, once; it is logged, too
   double transfer_ms = 0, deform_ms = 0;
@@ -77,8 +80,9 @@ class Performer {
   void restart(const RetargetOptions& options);
 
   /// The target's frame, dt seconds after the one before. One that is refused (refusal(), or a stage cannot
-  /// work with it) repeats the last pose (before any good one: the T-pose at the origin), is flagged and
-  /// leaves no trace in what comes after.
+  /// work with it) repeats the last pose (before any good one: the T-pose at the origin), or goes on from it
+  /// for half a second where that is asked for (RetargetOptions::predict), is flagged and leaves no trace in
+  /// what comes after.
   PerformedFrame perform(const Observation& seen, float dt);
 
   const Target& target() const { return target_; }
@@ -115,7 +119,8 @@ class Performer {
   bool is_torn_ = false;  // and it has been told
   int64_t watched_ = 0;   // frames
   KeptFrame last_;
-  float waited_ = 0;  // seconds since the last good frame
+  std::optional<PosePrediction> ahead_;  // only where it is asked for
+  float waited_ = 0;                     // seconds since the last good frame
 };
 
 }  // namespace understudy

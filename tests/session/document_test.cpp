@@ -127,6 +127,7 @@ const Changes& document_changes() {
       TAKE(method.stride = 1),
       TAKE(method.hip_height = 0),
       TAKE(method.arm_reach = 0),
+      TAKE(method.predict = false),
       TAKE(target_edits.joints.pop_back()),
       TAKE(target_edits.joints[0].joint = Head),
       TAKE(target_edits.joints[0].position.x() = 0),
@@ -213,7 +214,7 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [target_path, target_betas, target_import, target_forward, target_rig,
                                 target_bones, not_a_person] = TargetOptions();
   [[maybe_unused]] const auto& [engine, extractor, near, offsets, swaps, smooth, lengths, feet, contacts,
-                                root, stride, hip_height, arm_reach] = Method();
+                                root, stride, hip_height, arm_reach, predict] = Method();
   [[maybe_unused]] const auto& [moves, weights, rest_pose] = TargetEdits();
   [[maybe_unused]] const auto& [turned_joint, axis_angle] = BoneTurn();
   [[maybe_unused]] const auto& [moved, position, mirror] = JointMove();

@@ -53,7 +53,7 @@ Take take(const std::string& folder) {
                  {{"left_wrist", "Hand.L"}, {"head", ""}},
                  NotAPerson::Use};
   take.method = {"paper", "paper",           false, false,  false, false, false, false,
-                 false,   RootMode::InPlace, 1.25f, -0.05f, 0.5f};
+                 false,   RootMode::InPlace, 1.25f, -0.05f, 0.5f,  true};
   take.target_edits.joints = {{LeftWrist, Vec3(0.7f, 1.4f, 0.02f), false}, {Spine1, Vec3(0, 1.1f, 0), true}};
   take.target_edits.weights = weight_rows();
   take.target_edits.rest_pose = {{LeftShoulder, Vec3(0, 0.1f, -0.75f)}};

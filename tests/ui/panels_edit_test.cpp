@@ -95,6 +95,23 @@ TEST_F(EditPanel, OfTheResult) {
   expect_click("edit.poses_clear", {"edit.poses_clear 0"});
 }
 
+TEST_F(EditPanel, GoesOnAndLoops) {
+  expect_click("edit.go_on", {"edit.go_on"});
+  expect_click("edit.loop", {"edit.loop"});
+  EXPECT_FALSE(shown("edit.gone_on"));
+  EXPECT_FALSE(shown("edit.looped"));
+  session.document.takes[0].pose_edits.go_on = GoOnEdit{1.5f, 0.5f};
+  session.document.takes[0].pose_edits.loop = LoopEdit{8, 36, 0.2f, 0.5f};
+  frame(2);
+  const std::string there = std::to_string(session.takes[0].performed.size());
+  expect_click("edit.gone_on", {"playback.frame " + there});
+  expect_click("edit.gone_on.remove", {"edit.remove go_on 0"});
+  expect_drag("edit.go_on_learned", "edit.go_on_learned 0 ");
+  expect_click("edit.looped", {"playback.frame 8"});
+  expect_click("edit.looped.remove", {"edit.remove loop 0"});
+  expect_drag("edit.loop_learned", "edit.loop_learned 0 ");
+}
+
 TEST_F(EditPanel, ALineOfAFillSaysHowFarItMayBeOff) {
   session.document.takes[0].pose_edits.fill = {{7, 9}, {12, 12}};
   const auto words = [&](const std::string& name) {

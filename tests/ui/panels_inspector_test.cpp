@@ -328,6 +328,7 @@ TEST_F(LayersPanel, ColoursTrailsAndScales) {
   expect_click("layers.trail.left_wrist", {"view.trail_joint left_wrist off"});
   expect_drag("layers.ghost_count", "view.ghosts ");
   expect_drag("layers.ghost_step", "view.ghosts 3 ");
+  expect_click("layers.ghosts_by_time", {"view.ghosts_by_time on"});
   expect_drag("layers.error_scale", "view.error_scale ");
 }
 

@@ -3,6 +3,8 @@
 #include <map>
 
 #include "retarget/base/text.hpp"
+#include "retarget/body/builtin_motion.hpp"
+#include "retarget/pipeline/human_rest.hpp"
 #include "tests/ui/support/panels_test.hpp"
 #include "ui/panels/bars.hpp"
 #include "ui/panels/bindings.hpp"
@@ -69,6 +71,63 @@ TEST_F(Timeline, AClickInTheTrackGoesThere) {
   const Lines lines = asked();
   ASSERT_FALSE(lines.empty());
   EXPECT_EQ(lines.front(), "playback.frame 15");
+}
+
+TEST_F(Timeline, StepsAreLettersThatLoopMarksSnapTo) {
+  app::TakeState& take = session.takes[0];
+  const Motion walk = builtin_motion("walk", human_rest());
+  for (size_t t = 0; t < take.shown.poses.size(); ++t) take.shown.poses[t] = walk.poses[t];
+  ++take.generation;
+  frame(2);
+  ASSERT_FALSE(state.steps.letters.empty());
+  const int begins = state.steps.letters[0].frame;
+  EXPECT_TRUE(state.steps.letters[0].letter == "L" || state.steps.letters[0].letter == "R");
+  EXPECT_TRUE(shown("timeline.track.letter.0"));
+  queue.clear();
+  const Mark grip = mark("timeline.track.loop_first"), letter = mark("timeline.track.letter.0");
+  drag(grip.rect.at(0.5f, 0.5f), {letter.rect.min.x + 4, grip.rect.at(0, 0.5f).y});
+  const Lines lines = asked();
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ(lines.back(), "playback.in " + std::to_string(begins));
+  expect_click("timeline.steps", {"view.steps off"});
+  session.view.steps = false;
+  frame(2);
+  EXPECT_FALSE(shown("timeline.track.letter.0"));
+}
+
+TEST_F(Timeline, FramesBeyondTheLastCapturedOneAreAVioletBar) {
+  app::TakeState& take = session.takes[0];
+  for (const Pose& pose : take.shown.poses) take.performed.push_back({pose});
+  const int count = static_cast<int>(take.performed.size());
+  take.shown.poses.resize(static_cast<size_t>(count) + 10);
+  take.shown.doubt_m.assign(take.shown.poses.size(), 0.f);
+  for (int t = count; t < count + 10; ++t) take.shown.doubt_m[static_cast<size_t>(t)] = 0.05f;
+  session.document.takes[0].pose_edits.go_on = GoOnEdit{10 / 30.0f};
+  frame(2);
+  const auto marks = edit_marks(session, {});
+  const auto made = std::find_if(marks.begin(), marks.end(),
+                                 [](const EditMark& edit) { return edit.mark.name == "made.on"; });
+  ASSERT_NE(made, marks.end());
+  EXPECT_EQ(made->mark.first, count);
+  EXPECT_EQ(made->mark.last, count + 9);
+  EXPECT_EQ(made->mark.words.substr(0, 7), "Goes on");
+  EXPECT_EQ(made->remove, "edit.remove go_on 0");
+  EXPECT_TRUE(shown("timeline.track.made.on"));
+}
+
+TEST_F(Timeline, ALoopsSeamIsShownAtBothItsEnds) {
+  app::TakeState& take = session.takes[0];
+  take.shown.fps = 30;
+  take.shown.doubt_m.assign(take.shown.poses.size(), 0.f);
+  session.document.takes[0].pose_edits.loop = LoopEdit{4, 40};
+  std::map<std::string, LoopRange> bars;
+  for (const EditMark& edit : edit_marks(session, {}))
+    if (starts_with(edit.mark.name, "made.loop")) bars[edit.mark.name] = {edit.mark.first, edit.mark.last};
+  ASSERT_EQ(bars.size(), 2u);
+  EXPECT_EQ(bars["made.loop_start"].first, 4);
+  EXPECT_EQ(bars["made.loop_start"].last, 9);
+  EXPECT_EQ(bars["made.loop_end"].first, 34);
+  EXPECT_EQ(bars["made.loop_end"].last, 40);
 }
 
 TEST_F(Timeline, LoopMarksAreDragged) {

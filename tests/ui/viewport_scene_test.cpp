@@ -97,6 +97,10 @@ TEST_F(SceneTest, AFrameThatWasMadeSaysSoAndHowFarItMayBeOff) {
   session.takes[0].shown.doubt_m.assign(session.takes[0].shown.poses.size(), 0.f);
   session.takes[0].shown.doubt_m[3] = 0.021f;
   EXPECT_EQ(pane_made(session, pane_of(1), 3), "filled, \u00b1 3 cm");
+  session.document.takes[0].pose_edits.go_on = GoOnEdit{};
+  EXPECT_EQ(pane_made(session, pane_of(1), 3), "predicted, \u00b1 3 cm")
+      << "beyond those performed: none here";
+  session.document.takes[0].pose_edits.go_on.reset();
   EXPECT_EQ(pane_made(session, pane_of(1), 2), "") << "captured";
   EXPECT_EQ(pane_made(session, pane_of(0), 3), "") << "the source is as it was captured";
   EXPECT_EQ(pane_made(session, pane_of(1), 4000), "");
@@ -190,6 +194,65 @@ TEST_F(SceneTest, GhostsArePosesOfOtherFrames) {
   EXPECT_LT(ghosts.meshes[1].opacity, 0.5f);
   const float moved = (ghosts.meshes[1].vertices->row(0) - ghosts.meshes[0].vertices->row(0)).norm();
   EXPECT_GT(moved, 0.05f);
+}
+
+TEST_F(SceneTest, GhostsAreColouredByTimeWhereThatIsAskedFor) {
+  session.view.take.ghosts = session.view.source.ghosts = true;
+  session.view.ghost_count = 2, session.view.ghost_step = 4;
+  pictures(1);
+  const Vec3 plain = scene(1).scene.meshes.at(1).color;
+  const float faint = scene(1).scene.meshes[1].opacity;
+  session.view.ghosts_by_time = true;
+  const auto meshes = scene(1).scene.meshes;
+  ASSERT_EQ(meshes.size(), 5u);
+  EXPECT_LT((meshes[0].color - plain).norm(), 1e-5f) << "the frame shown is as ever";
+  // Nearer ghosts come first: 6, 2, then 14, 18.
+  const std::array<int, 4> frames = {6, 2, 14, 18};
+  for (size_t i = 0; i < 4; ++i) {
+    const Vec3 wanted = render::time_color(static_cast<float>(frames[i] - 2) / 16);
+    EXPECT_LT((meshes[i + 1].color - wanted).norm(), 1e-5f) << frames[i];
+    EXPECT_GT(meshes[i + 1].opacity, faint);
+  }
+  EXPECT_GT(meshes[2].color.z(), meshes[2].color.x()) << "the first is blue";
+  EXPECT_GT(meshes[4].color.x(), meshes[4].color.z()) << "the last is red";
+  pictures(0);
+  const auto clouds = scene(0).scene.clouds;
+  ASSERT_EQ(clouds.size(), 5u);
+  EXPECT_LT((clouds[2].color - render::time_color(0)).norm(), 1e-5f);
+}
+
+TEST_F(SceneTest, GhostsThatWereMadeDifferFromThoseThatWereCaptured) {
+  session.view.take.ghosts = true, session.view.ghost_count = 1, session.view.ghost_step = 4;
+  session.takes[0].shown.doubt_m.assign(session.takes[0].shown.poses.size(), 0.f);
+  session.takes[0].shown.doubt_m[14] = 0.03f;
+  pictures(1);
+  auto meshes = scene(1).scene.meshes;
+  ASSERT_EQ(meshes.size(), 3u);
+  EXPECT_GT((meshes[2].color - meshes[1].color).norm(), 0.1f) << "violet";
+  session.view.ghosts_by_time = true;
+  meshes = scene(1).scene.meshes;
+  EXPECT_FALSE(meshes[1].wireframe);
+  EXPECT_TRUE(meshes[2].wireframe) << "its colour tells the time";
+}
+
+TEST_F(SceneTest, AFutureIsAFanOfTrailsFromTheLastCapturedFrame) {
+  app::TakeState& take = session.takes[0];
+  const size_t count = take.joints.size();
+  for (const Pose& pose : take.shown.poses) take.performed.push_back({pose});
+  EXPECT_TRUE(scene(1).scene.lines.empty());
+  for (int i = 0; i < 20; ++i) {
+    take.shown.poses.push_back(take.shown.poses.back());
+    take.joints.push_back(take.joints.back());
+    take.joints.back().col(2).array() += 0.02f;
+  }
+  EXPECT_TRUE(scene(1).scene.lines.empty()) << "far from it";
+  stage.show_frame(static_cast<int>(count) - 1);
+  const auto lines = scene(1).scene.lines;
+  ASSERT_EQ(lines.size(), 5u);
+  const Points& path = lines[0].positions;
+  ASSERT_EQ(path.rows(), 21);
+  EXPECT_LT((path.row(20) - take.joints[count - 1].row(Pelvis)).norm(), 1e-5f);
+  EXPECT_LT((path.row(0) - take.joints.back().row(Pelvis)).norm(), 1e-5f);
 }
 
 TEST_F(SceneTest, OffsetsAreTheirLengthInMillimetres) {

@@ -5,12 +5,14 @@
 // edit.people_clear; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
 // edit.skeleton.K (one made before), edit.skeleton_clear; edit.bones_tool, edit.bone_falloff, edit.pin,
 // edit.smooth, edit.raise, edit.turn, edit.trim, edit.trim_off, edit.skip, edit.fill, edit.filled.K,
-// edit.rotation.K, edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear;
-// edit.paint_tool, edit.joint, edit.brush_radius, edit.brush_strength, edit.brush_mode,
-// edit.weights_mirror.left, .right, edit.weights_smooth, edit.weights_clear.
+// edit.go_on, edit.gone_on, edit.go_on_learned, edit.loop, edit.looped, edit.loop_learned, edit.rotation.K,
+// edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
+// edit.brush_radius, edit.brush_strength, edit.brush_mode, edit.weights_mirror.left, .right,
+// edit.weights_smooth, edit.weights_clear.
 #include <algorithm>
 #include <cmath>
 
+#include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/editing/limb_move.hpp"
 #include "retarget/skeleton/made_frames.hpp"
@@ -334,6 +336,63 @@ void draw_fills(const app::Session& session, PanelContext& context) {
   for (size_t i = 0; i < selected_take(session)->pose_edits.fill.size(); ++i) draw_fill(session, context, i);
 }
 
+struct ListedMade {
+  std::string words;
+  int frame = 0;
+  float learned = 1;
+  std::string learned_command;
+  app::Arguments removal;  ///< the take is the second
+};
+
+/// A line for what was made, and how much of it is learned.
+void draw_made(PanelContext& context, const std::string& name, const ListedMade& made) {
+  edit_line(context, name, made.words, made.frame, made.removal);
+  ask_number(context,
+             {made.learned_command, "Plain - learned",
+              "0: the smooth curve through the frames beside; 1: what the motion space has learned of people",
+              made.learned_command + " " + made.removal[1]},
+             made.learned, {0, 1, 0.01f, "%.2f", 1, true});
+}
+
+/// "Goes on for 1.5 s, ± 12 cm".
+void draw_go_on(const app::Session& session, PanelContext& context) {
+  const auto& edit = selected_take(session)->pose_edits.go_on;
+  const std::string k = std::to_string(session.selected_take);
+  ask_button(context,
+             {"edit.go_on", edit ? "Go on, 1 s longer" : "Go on, 1 s",
+              "Continues beyond the last captured frame: a prediction, told as such wherever it goes",
+              "edit.go_on"});
+  if (!edit) return;
+  const app::TakeState& state = *selected_state(session);
+  const int first = static_cast<int>(state.performed.size());
+  const std::string doubt = doubt_text(largest_doubt(state.shown.doubt_m, first, ssize(state.shown.poses)));
+  draw_made(context, "edit.gone_on",
+            {printed("Goes on for %.3g s", static_cast<double>(edit->seconds)) +
+                 (doubt.empty() ? "" : ", " + doubt),
+             first,
+             edit->learned,
+             "edit.go_on_learned",
+             {"go_on", k}});
+}
+
+void draw_loop_edit(const app::Session& session, PanelContext& context) {
+  const auto& edit = selected_take(session)->pose_edits.loop;
+  const std::string k = std::to_string(session.selected_take);
+  ask_button(
+      context,
+      {"edit.loop", edit ? "Look for another loop" : "Make a loop",
+       "Keeps what lies between the two most alike moments, of the frames between the loop marks or of "
+       "all, and makes the seam between them anew",
+       "edit.loop"});
+  if (!edit) return;
+  draw_made(context, "edit.looped",
+            {printed("Frames %d to %d loop", edit->first, edit->last),
+             edit->first,
+             edit->learned,
+             "edit.loop_learned",
+             {"loop", k}});
+}
+
 struct ListedEdit {
   size_t first = 0;  ///< among the rotations
   std::string words;
@@ -380,6 +439,8 @@ void draw_result(const app::Session& session, PanelContext& context) {
   draw_cost(selected_state(session), ui);
   draw_trim(session, context, edits, k);
   draw_fills(session, context);
+  draw_go_on(session, context);
+  draw_loop_edit(session, context);
   const std::vector<ListedEdit> listed = listed_rotations(edits.rotate, k);
   for (size_t i = listed.size() > 50 ? listed.size() - 50 : 0; i < listed.size(); ++i)
     edit_line(context, "edit.rotation." + std::to_string(listed[i].first), listed[i].words, listed[i].frame,

@@ -5,6 +5,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/editing/limb_move.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/motion_space/steps.hpp"
 #include "retarget/skeleton/made_frames.hpp"
 #include "ui/panels/timeline.hpp"
 
@@ -115,6 +116,43 @@ void add_fills(std::vector<EditMark>& all, const app::Session& session, const st
   }
 }
 
+/// Beyond the last captured frame.
+void add_go_on(std::vector<EditMark>& all, const app::Session& session, const std::string& take) {
+  const app::TakeState& state = *selected_state(session);
+  const int first = static_cast<int>(state.performed.size()), last = ssize(state.shown.poses) - 1;
+  if (!selected_take(session)->pose_edits.go_on || last < first) return;
+  EditMark edit;
+  edit.mark.name = "made.on";
+  edit.mark.words = "Goes on: " + frames_text(first, last) + ", a prediction, " +
+                    doubt_text(largest_doubt(state.shown.doubt_m, first, last));
+  edit.mark.first = first, edit.mark.last = last;
+  edit.mark.row = 1, edit.mark.color = kViolet;
+  edit.mark.heights = doubt_heights({first, last}, state.shown.doubt_m);
+  edit.move = {"go_on", take};
+  edit.remove = "edit.remove go_on " + take;
+  all.push_back(std::move(edit));
+}
+
+/// Both sides of the seam.
+void add_loop(std::vector<EditMark>& all, const app::Session& session) {
+  const auto& loop = selected_take(session)->pose_edits.loop;
+  const Motion& shown = selected_state(session)->shown;
+  if (!loop || loop->last >= ssize(shown.poses)) return;
+  const int seam = seam_frames(*loop, shown.fps);
+  if (seam == 0) return;
+  for (const bool start : {true, false}) {
+    const int first = start ? loop->first : loop->last - seam, last = first + seam - (start ? 1 : 0);
+    EditMark edit;
+    edit.mark.name = start ? "made.loop_start" : "made.loop_end";
+    edit.mark.words = "Seam of the loop: " + frames_text(first, last) + ", " +
+                      doubt_text(largest_doubt(shown.doubt_m, first, last));
+    edit.mark.first = first, edit.mark.last = last;
+    edit.mark.row = 1, edit.mark.color = kViolet, edit.mark.fixed = true;
+    edit.mark.heights = doubt_heights({first, last}, shown.doubt_m);
+    all.push_back(std::move(edit));
+  }
+}
+
 void add_skips(std::vector<EditMark>& all, const std::set<int>& skip, const std::string& take) {
   for (auto at = skip.begin(); at != skip.end();) {
     const int first = *at;
@@ -156,19 +194,23 @@ std::vector<int> edited_frames(const app::Session& session, int joint, bool bone
 std::vector<EditMark> edit_marks(const app::Session& session, const std::vector<TimelineState::Fill>& fills) {
   std::vector<EditMark> all;
   all.reserve(fills.size());
+  const app::Take* take = selected_take(session);
+  const std::string pose = take != nullptr && take->method.predict
+                               ? "Goes on as the frames before, for half a second: "
+                               : "Stands still as in the last good frame: ";
   for (const TimelineState::Fill& fill : fills)
     all.push_back(
-        {{"fill." + std::to_string(fill.first),
-          "Stands still as in the last good frame: " + frames_text(fill.first, fill.last) + ", " + fill.why,
+        {{"fill." + std::to_string(fill.first), pose + frames_text(fill.first, fill.last) + ", " + fill.why,
           fill.first, fill.last, false, 0, 0, kBlue, true},
          {},
          ""});
   add_person_edits(all, session);
   add_source_edits(all, session);
-  const app::Take* take = selected_take(session);
   if (take == nullptr) return all;
   const std::string k = std::to_string(session.selected_take);
   add_fills(all, session, k);
+  add_go_on(all, session, k);
+  add_loop(all, session);
   add_skips(all, take->pose_edits.skip, k);
   KeyFrames rotations;
   for (const RotateEdit& edit : take->pose_edits.rotate)
@@ -194,6 +236,25 @@ void StandingRuns::follow(const app::Session& session) {
       if (runs.empty() || runs.back().last + 1 < frame) runs.push_back({frame, frame});
       runs.back().last = frame;
     }
+}
+
+void StepLetters::follow(const app::Session& session) {
+  const app::TakeState* const state = selected_state(session);
+  const size_t now = state != nullptr ? state->shown.poses.size() : 0;
+  const int64_t generation = state != nullptr ? state->generation : -1;
+  const bool same = take_ == session.selected_take && generation_ == generation && now == frames_;
+  if (same || !session.view.steps) return;
+  if (session.working && now > 0 && take_ == session.selected_take) return;  // each look is at all frames
+  take_ = session.selected_take, generation_ = generation, frames_ = now;
+  letters.clear();
+  if (now == 0) return;
+  Motion motion{state->shown.fps, state->shown.poses, {}};
+  if (state->shown.doubt_m.empty()) motion.flags = state->shown.flags;  // what was filled has steps again
+  for (const Step& step : find_steps(motion))
+    letters.push_back(
+        {step.first, step.left_first ? "L" : "R",
+         std::string(step.left_first ? "Left" : "Right") + " step, " + frames_text(step.first, step.last),
+         step.left_first ? kBlue : kOrange});
 }
 
 std::vector<TrackBand> contact_bands(const app::Session& session, const StandingRuns& standing) {

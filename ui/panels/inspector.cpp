@@ -430,6 +430,8 @@ void draw_filter(const app::Method& method, PanelContext& context, const std::st
     ask_toggle(context, {"method." + name, s.label, s.explanation, "method.filter " + k + " " + name},
                method.*s.on);
   }
+  ask_toggle(context, {"method.predict", "Predict gaps", app::kPredictExplanation, "method.predict " + k},
+             method.predict);
 }
 
 void draw_work(const app::Session& session, PanelContext& context) {

@@ -2,10 +2,10 @@
 // Marks, P being source or take: layers.P.surface, .as_points, .skeleton, .x_ray, .joint_names, .ground,
 // .trails, .ghosts, .wireframe, .scene, .colour; layers.opacity.scan, .skeletons, .results, layers.spread;
 // layers.light.turn, .height, .brightness, layers.background, layers.background_colour; layers.weights_joint,
-// layers.trail_joint, layers.trail.JOINT, layers.ghost_count, layers.ghost_step, layers.error_scale;
-// layers.preset.NAME, layers.fit, layers.ortho, layers.linked, layers.follow, layers.turntable. Sections:
-// layers.source, layers.take, layers.overlay (in that layout), layers.colours, layers.camera,
-// layers.light_and_background.
+// layers.trail_joint, layers.trail.JOINT, layers.ghost_count, layers.ghost_step, layers.ghosts_by_time,
+// layers.error_scale; layers.preset.NAME, layers.fit, layers.ortho, layers.linked, layers.follow,
+// layers.turntable. Sections: layers.source, layers.take, layers.overlay (in that layout), layers.colours,
+// layers.camera, layers.light_and_background.
 #include <algorithm>
 #include <cmath>
 
@@ -129,6 +129,10 @@ void draw_colours(const app::Session& session, PanelContext& context) {
   row(ui, "Apart", "Frames between two ghosts");
   changed |= number(ui, "layers.ghost_step", step, {1, 120, 0.2f, "%.0f frames"});
   if (changed) context.ask("view.ghosts", {argument(std::round(count)), argument(std::round(step))});
+  ask_toggle(context,
+             {"layers.ghosts_by_time", "Ghosts by time",
+              "Colours them from blue, the first, to red, the last", "view.ghosts_by_time"},
+             session.view.ghosts_by_time);
   ask_number(context, {"layers.error_scale", "Scale to", "Upper end of the error scales", "view.error_scale"},
              session.view.error_scale_mm, {1, 1000, 0.5f, "%.0f mm", 50, true});
 }

@@ -75,6 +75,10 @@ void draw_marks(const app::Session& session, PanelContext& context) {
   if (icon_button(ui, "timeline.clear_marks", Icon::Close, {"Play all frames", "", false, none, 28}))
     context.ask("playback.clear_marks");
   ImGui::SameLine(0, ui.px(3));
+  if (icon_button(ui, "timeline.steps", Icon::Skeleton,
+                  {"Marks steps, L and R; In and Out snap to them", "", session.view.steps, disabled, 28}))
+    context.ask("view.steps", {on_off(!session.view.steps)});
+  ImGui::SameLine(0, ui.px(3));
   if (icon_button(ui, "timeline.live", Icon::Clock,
                   {"Shows the newest frame while frames are processed", "", playback.live, disabled, 28}))
     context.ask("playback.follow_live");
@@ -178,6 +182,7 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   const std::vector<EditMark> edits = edit_marks(session, state.fills);
   for (const EditMark& edit : edits) data.marks.push_back(edit.mark);
   data.bands = contact_bands(session, state.standing);
+  if (session.view.steps) data.letters = state.steps.letters;
   const app::Take* take = selected_take(session);
   if (take != nullptr && take->pose_edits.trim)
     data.kept = LoopRange{take->pose_edits.trim->first, take->pose_edits.trim->last};
@@ -203,6 +208,7 @@ std::string without_number(const std::string& why) {
 
 void TimelineState::follow(const app::Session& session) {
   standing.follow(session);
+  steps.follow(session);
   const app::SourceState& source = session.source;
   const size_t now = source.frames.size();
   if (source.generation != generation) {

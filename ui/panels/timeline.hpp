@@ -1,6 +1,7 @@
 // The timeline: transport, and a track with what has been made, bad frames, loop marks and a metric.
 // Marks: timeline.first, .back, .play, .forward, .last, .loop, .in, .out, .clear_marks, .live, .rate,
-// .metric, .frame, .time; timeline.track and what timeline_track() marks in it (bands left_foot, right_foot).
+// .metric, .steps, .frame, .time; timeline.track and what timeline_track() marks in it (bands left_foot,
+// right_foot).
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,19 @@ struct StandingRuns {
   size_t frames_ = 0;  // looked at
 };
 
+/// Where the selected take begins a step: "L" with the left foot, "R" with the right.
+struct StepLetters {
+  std::vector<TrackLetter> letters;
+
+  /// Updates it from the session: once all frames that are to be looked at are there.
+  void follow(const app::Session& session);
+
+ private:
+  int take_ = -1;
+  int64_t generation_ = -1;
+  size_t frames_ = 0;  // looked at
+};
+
 /// Values that are costly to find and change rarely.
 struct TimelineState {
   int64_t generation = -1;  ///< of the source that the rest is about
@@ -38,6 +52,7 @@ struct TimelineState {
   };
   std::vector<Fill> fills;  ///< runs of frames without a pose of their own: the last good one fills them
   StandingRuns standing;
+  StepLetters steps;
 
   /// Updates it from the session.
   void follow(const app::Session& session);

@@ -117,17 +117,24 @@ std::string pane_method(const Session& session, const PaneContent& pane) {
   return take == nullptr ? "" : method_words(take->method);
 }
 
+namespace {
+
+/// In one word, of a frame that was not captured.
+const char* how_made(const Session& session, const app::TakeState& state, int take, int frame) {
+  const PoseEdits& edits = session.document.takes[take].pose_edits;
+  if (edits.go_on && frame >= ssize(state.performed)) return "predicted";
+  const auto is_in = [frame](const FillEdit& fill) { return fill.first <= frame && frame <= fill.last; };
+  if (std::any_of(edits.fill.begin(), edits.fill.end(), is_in)) return "filled";
+  return session.document.source.blend ? "blended" : session.document.source.complete > 0 ? "made" : "filled";
+}
+
+}  // namespace
+
 std::string pane_made(const Session& session, const PaneContent& pane, int frame) {
   const app::TakeState* const take = pane.source ? nullptr : first_take(session, pane);
   const float* const doubt_m = take == nullptr ? nullptr : at_or_null(take->shown.doubt_m, frame);
   if (doubt_m == nullptr || *doubt_m <= 0) return "";
-  const auto& fills = session.document.takes[pane.takes[0]].pose_edits.fill;
-  const app::SourceOptions& source = session.document.source;
-  const bool is_filled = std::any_of(fills.begin(), fills.end(), [frame](const FillEdit& fill) {
-    return fill.first <= frame && frame <= fill.last;
-  });
-  const char* const made = source.complete > 0 ? "made, " : "filled, ";
-  return (source.blend && !is_filled ? "blended, " : is_filled ? "filled, " : made) + doubt_text(*doubt_m);
+  return std::string(how_made(session, *take, pane.takes[0], frame)) + ", " + doubt_text(*doubt_m);
 }
 
 std::string pane_hint(const Session& session, const PaneContent& pane) {

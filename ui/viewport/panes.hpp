@@ -33,7 +33,8 @@ PaneContent pane_of(int number);
 std::string pane_title(const app::Session& session, const PaneContent& pane);
 /// How the pane's only take is made, "copied rotations"; empty for others.
 std::string pane_method(const app::Session& session, const PaneContent& pane);
-/// "filled, ± 3 cm" where the first take's frame was made and not captured; else empty.
+/// "filled, ± 3 cm" where the first take's frame was made and not captured, "predicted, ± 9 cm" beyond the
+/// last that was; else empty.
 std::string pane_made(const app::Session& session, const PaneContent& pane, int frame);
 /// Why the pane is empty, for the user; empty when it is not.
 std::string pane_hint(const app::Session& session, const PaneContent& pane);

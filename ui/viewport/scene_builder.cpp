@@ -17,7 +17,8 @@ using app::Colouring;
 using app::Session;
 using render::SharedPoints;
 
-constexpr float kGhostOpacity = 0.16f, kTrailSeconds = 1.2f;
+constexpr float kGhostOpacity = 0.16f, kTimedGhostOpacity = 0.4f, kTrailSeconds = 1.2f;
+constexpr std::array<int, 5> kFutureJoints = {Pelvis, LeftWrist, RightWrist, LeftFoot, RightFoot};
 constexpr float kUnseen = 0.004f;  // an opacity that leaves nothing
 constexpr float kDisc = 1.15f;     // a scan's discs against its spacing: few holes, edges still sharp
 const Vec3 kScanColor(0.60f, 0.66f, 0.72f);
@@ -98,6 +99,14 @@ class Builder {
   void add_trails();
   void add_trail(int person, int joint);
   void add_ghosts();
+  void add_futures();
+  float ghost_opacity() const { return session_.view.ghosts_by_time ? kTimedGhostOpacity : kGhostOpacity; }
+  Vec3 ghost_color(int frame, const Vec3& plain) const;
+  /// What was made and not captured, as in the timeline.
+  Vec3 made_color() const {
+    const ImVec4& violet = theme(in_.theme).series[4];
+    return {violet.x, violet.y, violet.z};
+  }
   void add_crop_box();
   void add_cropped_away();
   void set_ground();
@@ -134,6 +143,7 @@ PaneScene Builder::build() {
     for (size_t i = 0; i < in_.pane.takes.size(); ++i) add_take(i);
     add_ghosts();
     add_trails();
+    add_futures();
     add_crop_box();
   }
   if (in_.preview.gizmo) {
@@ -224,6 +234,13 @@ void Builder::add_target_surface(size_t i, const std::shared_ptr<const app::Pose
   view.faces = part_of(target, mesh.faces), view.normals = part_of(posed, posed->normals);
   view.color = take_color(k), view.opacity = opacity;
   view.wireframe = session_.view.take.wireframe && ghost < 0;
+  if (ghost >= 0) {
+    const int frame = in_.pictures.ghosts[static_cast<size_t>(ghost)].frame;
+    const float* const doubt_m = at_or_null(take->shown.doubt_m, frame);
+    const bool made = doubt_m != nullptr && *doubt_m > 0;
+    view.color = ghost_color(frame, made ? made_color() : view.color);
+    view.wireframe = made && session_.view.ghosts_by_time;  // its colour tells the time
+  }
   if (ghost < 0) {
     const SurfaceColours& made = take_colors(k, posed);
     view.colors = made.colors;
@@ -254,13 +271,23 @@ void Builder::add_skeleton(const Joints& joints, const app::Layers& layers, int 
   out_.scene.skeletons.push_back(std::move(view));
 }
 
+/// By the place among all ghosts, where time is what colours tell.
+Vec3 Builder::ghost_color(int frame, const Vec3& plain) const {
+  if (!session_.view.ghosts_by_time) return plain;
+  int first = in_.pictures.frame, last = first;
+  for (const PanePictures::Ghost& ghost : in_.pictures.ghosts)
+    first = std::min(first, ghost.frame), last = std::max(last, ghost.frame);
+  return render::time_color(static_cast<float>(frame - first) /
+                            static_cast<float>(std::max(1, last - first)));
+}
+
 /// Poses before and after, fainter than the one shown.
 void Builder::add_ghosts() {
   for (size_t i = 0; i < in_.pictures.ghosts.size(); ++i) {
     const PanePictures::Ghost& ghost = in_.pictures.ghosts[i];
     const int number = static_cast<int>(i);
     if (ghost.take != nullptr && !in_.pane.takes.empty() && session_.view.take.ghosts)
-      add_target_surface(0, ghost.take, kGhostOpacity, number);
+      add_target_surface(0, ghost.take, ghost_opacity(), number);
     if (ghost.scan != nullptr && in_.pane.source && session_.view.source.ghosts) {
       const auto& scan =
           shown(memory_.ghosts[number], ghost.scan, ghost.frame, ShownScan::Part::Person).shown;
@@ -269,6 +296,7 @@ void Builder::add_ghosts() {
       view.vertices = displaced(part_of(scan, scan->mesh.vertices), 0, MovedLayer::ScanGhost, number);
       view.normals = part_of(scan, scan->normals);
       view.color = 0.75f * air() + 0.25f * kScanColor;
+      view.color = ghost_color(ghost.frame, view.color);
       add_surface(std::move(view), true, 0.6f * spacing);
     }
   }
@@ -299,6 +327,29 @@ void Builder::add_trail(int person, int joint) {
     render::LinesView line = render::trail(points, color, step == 1 ? 3.f : 1.5f);
     line.x_ray = true;
     out_.scene.lines.push_back(std::move(line));
+  }
+}
+
+/// Where a take goes on beyond its last captured frame: the ways of hands, feet and pelvis, from a little
+/// before it on.
+void Builder::add_futures() {
+  const int reach = static_cast<int>(std::lround(kTrailSeconds * session_.source.fps));
+  for (const int k : in_.pane.takes) {
+    const app::TakeState* const take = at_or_null(session_.takes, k);
+    if (take == nullptr || take->performed.empty() || take->joints.size() <= take->performed.size()) continue;
+    const int last = static_cast<int>(take->performed.size()) - 1, end = ssize(take->joints);
+    if (in_.pictures.frame < last - reach) continue;
+    for (const int joint : kFutureJoints) {
+      std::vector<Vec3> path;  // backwards: it fades the way that it goes
+      for (int f = end - 1; f >= last; --f)
+        if (const Joints* joints = app::pane_joints(session_, k + 1, f))
+          path.push_back(joints->row(joint).transpose() + aside_of(k + 1));
+      if (path.size() < 2) continue;
+      render::LinesView line =
+          render::trail(Eigen::Map<const Points>(path.front().data(), ssize(path), 3), made_color(), 2.5f);
+      line.x_ray = true;
+      out_.scene.lines.push_back(std::move(line));
+    }
   }
 }
 

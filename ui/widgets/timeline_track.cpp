@@ -273,6 +273,34 @@ void draw_bands(Track& t, const std::string& name) {
   }
 }
 
+/// Each is drawn where the one before leaves room; the line of each is.
+void draw_letters(Track& t, const std::string& name) {
+  const FontScope small(t.ui.fonts().small);
+  float free = t.body.min.x;
+  for (size_t k = 0; k < t.data.letters.size(); ++k) {
+    const TrackLetter& letter = t.data.letters[k];
+    const float x = std::round(t.axis.x(letter.frame)), y = t.body.min.y + t.ui.px(1);
+    if (x < t.body.min.x || x > t.body.max.x) continue;
+    const ImVec4& ink = t.ui.theme().series[letter.color];
+    const ImVec2 size = ImGui::CalcTextSize(letter.letter.c_str());
+    t.list.AddLine({x, t.body.min.y}, {x, y + size.y}, color(ink, 0.8f), t.ui.px(1));
+    if (x < free) continue;
+    t.list.AddText({x + t.ui.px(2), y}, color(ink), letter.letter.c_str());
+    free = x + t.ui.px(4) + size.x;
+    t.ui.mark(name + ".letter." + std::to_string(k), {{x, y}, {free, y + size.y}});
+  }
+}
+
+/// The frame of a letter that is near one in pixels, else the frame itself.
+int snapped(const Track& t, int frame) {
+  int nearest = frame;
+  float least = t.ui.px(kEdge);
+  for (const TrackLetter& letter : t.data.letters)
+    if (const float away = std::abs(t.axis.x(letter.frame) - t.axis.x(frame)); away < least)
+      least = away, nearest = letter.frame;
+  return nearest;
+}
+
 /// Where an end of the part that is kept is gripped; empty where it is not to be seen.
 Rect trim_grip(const Track& t, bool first) {
   if (!t.data.kept) return {};
@@ -340,6 +368,7 @@ void draw_body(Track& t, const std::string& name) {
   }
   draw_bands(t, name);
   draw_trimmed(t, name);
+  draw_letters(t, name);
   draw_marks(t, name);
   t.list.PopClipRect();
   const FontScope small(t.ui.fonts().small);
@@ -428,6 +457,8 @@ void draw_hover(Track& t, int frame) {
   if (is_on_trim(t, true, mouse) || is_on_trim(t, false, mouse))
     ImGui::TextUnformatted("Drag: trim more or less");
   for (const std::string& words : bands_at(t, frame)) ImGui::TextUnformatted(words.c_str());
+  for (const TrackLetter& letter : t.data.letters)
+    if (letter.frame == frame) ImGui::TextUnformatted(letter.words.c_str());
   if (t.data.channel.empty() && std::isfinite(t.data.curve.at(frame)))
     ImGui::Text("%s  %s", t.data.curve_label.c_str(), short_number(t.data.curve.at(frame)).c_str());
   if (!t.data.channel.empty()) {
@@ -548,6 +579,7 @@ void answer_drag(const Track& t, int frame, TrackAnswer& answer) {
   if (t.state.grip == Grip::Playhead) answer.seek = frame;
   if (!t.data.loop) return;
   LoopRange loop = *t.data.loop;
+  frame = snapped(t, frame);
   if (t.state.grip == Grip::LoopFirst) loop.first = std::min(frame, loop.last);
   if (t.state.grip == Grip::LoopLast) loop.last = std::max(frame, loop.first);
   if (loop.first != t.data.loop->first || loop.last != t.data.loop->last) answer.loop = loop;

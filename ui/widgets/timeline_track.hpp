@@ -39,6 +39,14 @@ struct TrackBand {
   int color = 0;                ///< of Theme::series
 };
 
+/// A moment with a letter: loop marks that are dragged near it snap to it.
+struct TrackLetter {
+  int frame = 0;
+  std::string letter;  ///< "L"
+  std::string words;   ///< what it is, for the tooltip
+  int color = 0;       ///< of Theme::series
+};
+
 struct TrackData {
   int total = 0;      ///< frames of the sequence; may grow while it is followed
   int processed = 0;  ///< frames 0..processed-1 are finished
@@ -52,6 +60,7 @@ struct TrackData {
   std::vector<int> keys;        ///< frames in which the channel was edited: diamonds on its curves
   std::vector<TrackMark> marks;
   std::vector<TrackBand> bands;              ///< above the marks, the first on top; where there is room
+  std::vector<TrackLetter> letters;          ///< under the ruler, in order of time
   std::optional<LoopRange> kept;             ///< the ends outside it are greyed: they were trimmed
   std::function<std::string(int)> describe;  ///< extra text for the frame under the pointer
   bool follow = false;                       ///< keep the playhead in view while it plays
@@ -74,8 +83,8 @@ struct TrackAnswer {
 /// double click in the ruler shows everything. A click at a mark chooses it and goes there; dragged it moves,
 /// by an end of a bar it gets longer or shorter, as the part does that is kept. Escape cancels a drag. Marks:
 /// NAME (the part under the ruler), NAME.ruler, NAME.loop_first, NAME.loop_last, NAME.playhead, NAME.MARK,
-/// NAME.BAND.K, NAME.trimmed (.before, .after), NAME.trim_first, NAME.trim_last (the grips), NAME.key.K (the
-/// K-th key), NAME.chosen (the mark chosen).
+/// NAME.BAND.K, NAME.letter.K, NAME.trimmed (.before, .after), NAME.trim_first, NAME.trim_last (the grips),
+/// NAME.key.K (the K-th key), NAME.chosen (the mark chosen).
 TrackAnswer timeline_track(Ui& ui, const std::string& name, const TrackData& data);
 
 /// "0:03.27": minutes, seconds, hundredths.
