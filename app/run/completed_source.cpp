@@ -20,6 +20,7 @@ namespace understudy::app {
 namespace {
 
 constexpr Eigen::Index kFewestCompleted = 10, kMostKept = 4000;  // points of a scan
+constexpr double kSameTime_s = 0.005;     // between markers and the scan that they go with
 constexpr float kFloorAtMost_m = 0.2f;    // that soles are from what the scans took for the floor
 constexpr float kLeastConfidence = 0.1f;  // of made frames: doubt is told, and the frame is shown
 
@@ -123,11 +124,11 @@ class CompletedScans final : public Source {
     return capture;
   }
 
-  /// Those of one time with a scan go with it, others are frames of their own.
+  /// Those of one time with a scan go with it, others are frames of their own, no more than are wanted.
   void add_markers(SparseCapture& capture) {
     if (markers_.empty() || capture.frames.empty()) return;
     const Eigen::Matrix4f m = scans_->to_file().inverse().cast<float>();
-    const double begin = first_time(options_), near = 0.5 / scans_->fps() + 1e-6;
+    const double begin = first_time(options_), near = std::min(0.5 / scans_->fps(), kSameTime_s);
     const double first = capture.frames.front().seconds, last = capture.frames.back().seconds;
     std::vector<SparseFrame> alone;
     int64_t outside = 0;
@@ -142,6 +143,7 @@ class CompletedScans final : public Source {
                            [](const SparseFrame& frame, double s) { return frame.seconds < s; });
       const bool has_scan =
           after != capture.frames.end() && after->seconds <= seconds + near && after->markers.empty();
+      if (!has_scan && !alone.empty() && seconds - alone.back().seconds < 1 / fps()) continue;
       SparseFrame& to = has_scan ? *after : alone.emplace_back();
       if (!has_scan) to.seconds = seconds;
       for (const Marker& marker : seen.markers)

@@ -20,8 +20,9 @@ constexpr int kFewestPoints = 10, kFewestMarkers = 3, kSeenPoints = 32;
 constexpr double kLongestPause_s = 3600;
 constexpr double kLookEvery_s = 0.06;  // frames nearer than that to one that was extracted are not
 constexpr int kNearRounds = 3;
-constexpr int kManyLooks = 150;        // of the extractor, in all
-constexpr Eigen::Index kSparse = 250;  // points of a scan below which one way to fill it is not enough
+constexpr int kManyLooks = 150;           // of the extractor, in all
+constexpr Eigen::Index kSparse = 250;     // points of a scan below which one way to fill it is not enough
+constexpr Eigen::Index kVerySparse = 80;  // below which starts are chosen again, once all was fitted
 
 std::string where(const SparseCapture& capture, int frame) {
   return "frame " + std::to_string(frame) + " of " + std::to_string(ssize(capture.frames));
@@ -236,9 +237,9 @@ class Starts {
     is_fitted_ = true;
   }
 
-  bool any_sparse() const {
+  bool any_very_sparse() const {
     for (size_t i = 0; i < looked_.size(); ++i)
-      if (is_sparse(i)) return true;
+      if (is_sparse(i) && frame(i).points.rows() < kVerySparse) return true;
     return false;
   }
 
@@ -433,7 +434,7 @@ CompletedCapture PersonFitter::complete(const SparseCapture& capture, const Prog
   starts.choose([&](float share) { tell(0.4f + 0.1f * share); });
   spread_starts(looked, frames, fit);
   fit.run(far_round());
-  if (starts.any_sparse()) {
+  if (starts.any_very_sparse()) {
     starts.choose([&](float share) { tell(0.5f + 0.1f * share); });
     spread_starts(looked, frames, fit);
     fit.run(far_round());

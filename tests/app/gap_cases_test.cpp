@@ -17,7 +17,6 @@
 #include "retarget/body/marker_places.hpp"
 #include "tests/app/program.hpp"
 #include "tests/support/training_folder.hpp"
-#include "tests/support/walk_clip.hpp"
 
 namespace understudy::app {
 namespace {

@@ -147,7 +147,7 @@ void write_training_folder(const std::string& folder) {
       << "{\"train\": " << split("[0, 6]", "motion/a") << ", \"dev\": " << split("[6, 8]", "motion/b") << "}";
 }
 
-void write_walk_clip(const std::string& path) {
+Motion write_walk_clip(const std::string& path) {
   const Motion walk = builtin_motion("walk", builtin_joints());
   std::vector<float> poses, trans;
   for (const Pose& pose : walk.poses) {
@@ -161,6 +161,7 @@ void write_walk_clip(const std::string& path) {
   write_npz(path, {{"poses", array({frames, 66}, poses)},
                    {"trans", array({frames, 3}, trans)},
                    {"mocap_framerate", array({}, {30})}});
+  return walk;
 }
 
 }  // namespace understudy::test

@@ -33,8 +33,6 @@ class MotionMapPanel : public PanelsTest {
   }
   std::string mark_of(int step) const { return "map.step." + std::to_string(step); }
 };
-}
-};
 
 TEST_F(MotionMapPanel, WithoutAMapAsksForAFolder) {
   panel("motion_map");
