@@ -2,7 +2,6 @@
 
 #include "tests/app/cli_fixture.hpp"
 #include "tests/support/training_folder.hpp"
-#include "tests/support/walk_clip.hpp"
 
 namespace understudy::tests {
 namespace {

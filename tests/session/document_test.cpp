@@ -197,7 +197,7 @@ const Changes& document_changes() {
 [[maybe_unused]] void all_members_are_known() {
   [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
-                                with_truth, person, times, complete, markers, made, people, blend, edits] =
+                                with_truth, person, times, complete, markers, made, people, recipe, edits] =
       SourceOptions();
   [[maybe_unused]] const auto& [parts, cycles, coder] = BlendRecipe();
   [[maybe_unused]] const auto& [part_path, part_range, part_weight, part_checksum] = BlendPart();
