@@ -47,7 +47,8 @@ void show(Refined refined, TakeState& take) {
   take.shown.doubt_m = std::move(refined.shown.doubt_m);
   if (take.shown.doubt_m.empty()) return;
   take.shown.doubt_m.resize(count);
-  take.shown.doubt_m.resize(take.shown.poses.size());
+  for (size_t t = count; t < take.shown.poses.size(); ++t)
+    take.shown.doubt_m.push_back(t < take.performed.size() ? take.performed[t].doubt_m : 0);
 }
 
 /// Shows frames appended to a result without edits at once.

@@ -108,10 +108,10 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   wanted.source.blend.reset();
   wanted.source.complete = 0, wanted.source.markers.clear();
   for (Take& take : wanted.takes) {
-    take.method.part_refiner = take.method.hand_contacts = true;
+    take.method.part_refiner = take.method.hand_contacts = true, take.method.predict = false;
     for (const Proportion& one : kProportions) take.method.*one.value = Method().*one.value;
     take.target_edits.rest_pose.clear();
-    take.pose_edits.fill.clear();
+    take.pose_edits.fill.clear(), take.pose_edits.go_on.reset(), take.pose_edits.loop.reset();
     for (RotateEdit& edit : take.pose_edits.rotate) edit.limb.reset();
     take.target.import.height.reset();
     take.target.not_a_person = NotAPerson::RefuseClear;
@@ -127,13 +127,16 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   auto written = to_json(read, "/a/documents");
   for (auto& take : written["takes"]) {
     take["method"].erase("part_refiner"), take["method"].erase("hand_contacts");
+    take["method"].erase("predict");
     for (const Proportion& one : kProportions) take["method"].erase(one.name);
     take["target"].erase("not_a_person"), take.erase("person");
     take["target_edits"].erase("rest_pose");
     take["pose_edits"].erase("fill");
   }
   auto& view = written["view"];
-  for (const char* added : {"cube", "overlay", "light", "background", "background_color"}) view.erase(added);
+  for (const char* added :
+       {"cube", "overlay", "light", "background", "background_color", "ghosts_by_time", "steps"})
+    view.erase(added);
   for (const char* layers : {"source", "take"})
     for (const char* added : {"wireframe", "scene"}) view[layers].erase(added);
   for (const char* added : {"person", "people", "times", "complete", "markers"})

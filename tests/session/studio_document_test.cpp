@@ -137,7 +137,7 @@ TEST_F(StudioTest, WhatCannotBeCompletedIsRefusedAtOnce) {
   std::ofstream(path("markers.csv")) << "seconds,name,x,y,z\n0,tail,0,0,0\n0,horn,0,0,0\n0,wing,0,0,0\n";
   EXPECT_NE(refused("source.markers", "markers.csv").find("(--complete)"), std::string::npos);
   studio.run("source.complete", {"60"});
-  EXPECT_NE(refused("source.markers", "markers.csv").find("there is no place for a marker 'tail'"),
+  EXPECT_NE(refused("source.markers", "markers.csv").find("there is no place for a marker 'horn'"),
             std::string::npos)
       << refused("source.markers", "markers.csv");
   EXPECT_NE(refused("source.markers", "gone.csv").find("gone.csv"), std::string::npos);

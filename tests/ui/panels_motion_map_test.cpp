@@ -140,11 +140,11 @@ TEST_F(MotionMapPanel, TheWheelShowsMoreFiguresOfAPart) {
 
 TEST_F(MotionMapPanel, ColoursAreChosen) {
   show_map();
-  expect_click("map.color.1", {"map.color speed"});
+  expect_choice("map.color", 1, {"map.color speed"});
   session.map.colour = MapColour::Speed;
   session.map.colouring = std::make_shared<MapColouring>(map_colouring(*session.map.map, MapColour::Speed));
   frame(2);
-  expect_click("map.color.3", {"map.color file"});
+  expect_choice("map.color", 3, {"map.color file"});
 }
 
 TEST_F(MotionMapPanel, AsksForWhatIsLikeTheMarkedFramesAndTakesIt) {

@@ -237,6 +237,7 @@ TEST_F(SceneTest, GhostsThatWereMadeDifferFromThoseThatWereCaptured) {
 
 TEST_F(SceneTest, AFutureIsAFanOfTrailsFromTheLastCapturedFrame) {
   app::TakeState& take = session.takes[0];
+  session.source.fps = 5;  // so that the frame shown at first is far from the last
   const size_t count = take.joints.size();
   for (const Pose& pose : take.shown.poses) take.performed.push_back({pose});
   EXPECT_TRUE(scene(1).scene.lines.empty());

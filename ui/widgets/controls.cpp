@@ -148,7 +148,7 @@ std::vector<float> segment_widths(const std::vector<std::string>& choices, float
     needed += widths.back(), widest = std::max(widest, widths.back());
   }
   const float count = static_cast<float>(choices.size()), each = width / count;
-  const bool alike = widest <= each || needed > width;
+  const bool alike = widest <= each || needed - width > count * around;
   for (float& one : widths) one = alike ? each : one + (width - needed) / count;
   return widths;
 }
