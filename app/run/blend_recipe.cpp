@@ -16,7 +16,7 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, failed);
 }
 
-std::optional<int> frame_number(const std::string& text) {
+std::optional<int> whole_frame(const std::string& text) {
   int64_t number = 0;
   if (!parse_integer(text, number) || number < 0 || number > kFrameNumbers.high) return std::nullopt;
   return static_cast<int>(number);
@@ -37,8 +37,8 @@ BlendPart blend_part(const std::string& text) {
   if (at != std::string::npos) {
     const std::string range = text.substr(at + 1);
     const size_t colon = range.find(':');
-    const auto first = frame_number(range.substr(0, colon));
-    const auto last = colon == std::string::npos ? std::nullopt : frame_number(range.substr(colon + 1));
+    const auto first = whole_frame(range.substr(0, colon));
+    const auto last = colon == std::string::npos ? std::nullopt : whole_frame(range.substr(colon + 1));
     US_CHECK(first && last && *first < *last, text,
              ": is not FILE@FIRST:LAST, a file and the numbers of two frames, the later one last");
     part.path = text.substr(0, at);

@@ -77,6 +77,7 @@ TEST_F(Timeline, StepsAreLettersThatLoopMarksSnapTo) {
   app::TakeState& take = session.takes[0];
   const Motion walk = builtin_motion("walk", human_rest());
   for (size_t t = 0; t < take.shown.poses.size(); ++t) take.shown.poses[t] = walk.poses[t];
+  session.working = false;
   std::fill(take.shown.flags.begin(), take.shown.flags.end(), uint8_t{0});  // a flagged frame is in no step
   ++take.generation;
   frame(2);
