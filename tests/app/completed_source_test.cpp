@@ -55,9 +55,9 @@ class KnowingExtractor final : public SkeletonExtractor {
 class CompletedSource : public testing::Test {
  protected:
   void SetUp() override {
-    log::set_sink([this](log::Level, const std::string& line) { said += line + "\n"; });
+    before_ = log::set_sink([this](log::Level, const std::string& line) { said += line + "\n"; });
   }
-  void TearDown() override { log::set_sink({}); }
+  void TearDown() override { log::set_sink(before_); }
 
   void write_scan(int scan, int count, const std::string& folder = "scans") {
     std::filesystem::create_directories(scratch.path(folder));
@@ -101,6 +101,9 @@ class CompletedSource : public testing::Test {
 
   tests::ScratchFolder scratch;
   std::string said;
+
+ private:
+  log::Sink before_;
 };
 
 TEST_F(CompletedSource, HandsOutExactSkeletonsAtTheWantedRate) {
