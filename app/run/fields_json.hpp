@@ -109,7 +109,7 @@ class FieldsWriter {
   }
 
   Json& json_;
-  const std::string& folder_;
+  std::string folder_;
   std::string where_;  // "takes[2].method."
 };
 
@@ -223,7 +223,7 @@ class FieldsReader {
   }
 
   const Json& json_;
-  const std::string& folder_;
+  std::string folder_;
   std::string where_;
   UnknownMembers unknown_;
   std::set<std::string> known_;

@@ -21,7 +21,9 @@ namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr float kUnlike_m = 0.25f;  // from which on two movements are told to be unlike each other
+// From which on two movements are told to be unlike each other: a walk and a run are 0.1 m apart, a walk and a
+// punch 0.15 m.
+constexpr float kUnlike_m = 0.125f;
 
 /// A file as it was read.
 struct ReadFile {

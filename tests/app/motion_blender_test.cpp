@@ -153,7 +153,7 @@ TEST_F(Blends, UnlikeMotionsAreMadeAndDoubtedAloud) {
   ASSERT_EQ(unlike.warnings.size(), 1u);
   EXPECT_NE(unlike.warnings[0].find("walk.npz and dance.npz are unlike each other"), std::string::npos)
       << unlike.warnings[0];
-  EXPECT_GT(unlike.motion.doubt_m[10], 0.05f);
+  EXPECT_GT(unlike.motion.doubt_m[10], 0.03f);
 }
 
 TEST_F(Blends, AFileThatHasChangedIsToldInASentence) {

@@ -42,7 +42,7 @@ class PlainCoder final : public MotionCoder {
     }
     return movement;
   }
-  std::string name() const override { return "plain"; }
+  std::string name() const override { return "paper"; }  // stands for the learned one
 
  private:
   static constexpr int kCoded[] = {LeftHip, RightHip, LeftKnee, RightKnee, LeftShoulder, RightShoulder};

@@ -55,6 +55,8 @@ TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
 }
 
 TEST_F(Inspector, TheTableOfTimesIsChosenAndPutAway) {
+  EXPECT_FALSE(shown("source.times")) << "folded away where nobody asked for it";
+  click("inspector.times");
   EXPECT_FALSE(shown("source.times.reset"));
   const float off = mark("source.times").rect.width();
   expect_click("source.times.browse", {"dialog.open source_times"});
@@ -68,6 +70,7 @@ TEST_F(Inspector, TheTableOfTimesIsChosenAndPutAway) {
 }
 
 TEST_F(Inspector, ScansAreCompletedToARateAndMayHaveMarkers) {
+  click("inspector.times");
   EXPECT_FALSE(shown("source.markers"));
   expect_click("source.complete.2", {"source.complete 60"});
   session.document.source.complete = 60;
@@ -80,6 +83,7 @@ TEST_F(Inspector, ScansAreCompletedToARateAndMayHaveMarkers) {
 }
 
 TEST_F(Inspector, TheTableOfTimesIsPutAwayWithTheKeys) {
+  click("inspector.times");
   session.document.source.times = "/data/times.csv";
   frame(3);
   for (int i = 0; i < 80 && gui.ui().focus().name() != "source.times.reset"; ++i) key(render::Key::Tab);
@@ -90,6 +94,7 @@ TEST_F(Inspector, TheTableOfTimesIsPutAwayWithTheKeys) {
 }
 
 TEST_F(Inspector, WhatIsNoScanHasNoTimes) {
+  click("inspector.times");
   EXPECT_TRUE(shown("source.times"));
   session.source.clips = {{"walk", 2}};
   frame(3);

@@ -383,6 +383,7 @@ TEST_F(WorkspaceTest, ATableOfTimesIsChosenWithTheKeysAmongTablesAlone) {
   session.settings.last_folder = folder.string();
   session.settings.panels["inspector"] = true;
   frame(3);
+  click("inspector.times");
   gui.ui().reveal("source.times.browse");
   frame(3);
   click("source.times.browse");

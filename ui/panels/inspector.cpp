@@ -1,5 +1,5 @@
 // What is open and how it is done: the source, the takes, their target and method.
-// Marks: inspector.source, .takes, .target, .method (sections); source.fps, source.times(.browse, .reset),
+// Marks: inspector.source, .times, .takes, .target, .method (sections); source.fps, source.times(.browse, .reset),
 // source.complete, source.markers(.browse, .reset),
 // source.units, source.up, source.height(.reset), source.turn, source.floor, source.extractor,
 // source.people.K (a row of who is there), source.person, source.blend.K (a part's share),
@@ -186,6 +186,9 @@ void draw_table(const Control& control, const std::string& path, PanelContext& c
 
 /// What scans alone have: their times, and the motion that they are completed to.
 void draw_scan_fields(const app::SourceOptions& source, PanelContext& context) {
+  if (!section(context.ui, "inspector.times", "Times and completion",
+               !source.times.empty() || source.complete > 0))
+    return;
   draw_table(
       {"source.times", "Times",
        "A table of when each scan was taken: its file or number, seconds. Off: one scan a frame, but for "
