@@ -21,8 +21,8 @@ namespace understudy::app {
 namespace fs = std::filesystem;
 namespace {
 
-// From which on two movements are told to be unlike each other: a walk and a run are 0.1 m apart, a walk and a
-// punch 0.15 m.
+// From which on two movements are told to be unlike each other: a walk and a run are 0.1 m apart, a walk
+// and a punch 0.15 m.
 constexpr float kUnlike_m = 0.125f;
 
 /// A file as it was read.

@@ -1,7 +1,7 @@
 // What is open and how it is done: the source, the takes, their target and method.
-// Marks: inspector.source, .times, .takes, .target, .method (sections); source.fps, source.times(.browse, .reset),
-// source.complete, source.markers(.browse, .reset),
-// source.units, source.up, source.height(.reset), source.turn, source.floor, source.extractor,
+// Marks: inspector.source, .times, .takes, .target, .method (sections); source.fps,
+// source.times(.browse, .reset), source.complete, source.markers(.browse, .reset), source.units, source.up,
+// source.height(.reset), source.turn, source.floor, source.extractor,
 // source.people.K (a row of who is there), source.person, source.blend.K (a part's share),
 // source.blend_cycles, source.blend_with, source.open, source.motion; take.K (its row), take.name,
 // take.remove, take.add, take.replace; target.units, target.height(.reset), target.up, target.turn,
