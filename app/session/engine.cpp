@@ -339,7 +339,8 @@ void Engine::Impl::open() {
     source = open_source(options, blender.get());
     source->set_look([this](const Mesh& scan) { return observer_of(shown()).look(scan); });
     source->set_tools({[this] { return extractor_of(shown()); }, motion_space,
-                       [this](float) {
+                       [this](float share) {
+                         emit(SourceCompleting{share});
                          const auto held = worker.lock();
                          US_CHECK(own_epoch == epoch, plan.source.path, ": is no longer wanted");
                        }});

@@ -61,6 +61,10 @@ struct SourceOpened {
   std::vector<SourceClip> clips;
   int clip = -1;
 };
+/// So far scans are completed, 0..1: their frames come after that.
+struct SourceCompleting {
+  float share = 0;
+};
 /// The source cannot be opened, or reading it failed.
 struct SourceFailed {
   std::string sentence;
@@ -106,8 +110,8 @@ struct TakeFrames {
   std::vector<FrameTimes> times;  ///< of new frames; empty when redone
   std::string warning;            ///< that the target falls apart; once
 };
-using EngineEvent =
-    std::variant<SourceOpened, SourceFailed, SourceFrames, TakeLoaded, TakeReady, TakeFailed, TakeFrames>;
+using EngineEvent = std::variant<SourceOpened, SourceCompleting, SourceFailed, SourceFrames, TakeLoaded,
+                                 TakeReady, TakeFailed, TakeFrames>;
 
 class Engine {
  public:

@@ -51,7 +51,8 @@ struct SourceState {
   std::string problem;           ///< why it gives no frames, one sentence; empty: no problem
   std::optional<int64_t> count;  ///< frames in all, where known
   double fps = 30;
-  std::string decision;  ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
+  float completing = -1;  ///< while scans are completed the share that is done, 0..1; else below 0
+  std::string decision;   ///< "units: millimetres (from the height 1750), up: z, floor at 0.03 m"
   /// from the frames' joints to the file's coordinates
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
   /// by which units, axes and floor are decided again as they were; none: by the document's

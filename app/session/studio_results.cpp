@@ -141,8 +141,14 @@ void Studio::take_in(SourceOpened& event) {
 }
 
 template <>
+void Studio::take_in(SourceCompleting& event) {
+  session_.source.completing = event.share;
+}
+
+template <>
 void Studio::take_in(SourceFailed& event) {
   session_.source.problem = event.sentence;
+  session_.source.completing = -1;
   if (asked_for(session_, event.sentence)) return log::warn(event.sentence);
   const SourceOptions failed = session_.document.source;
   const bool is_new = background_->opened_source.has_value();
@@ -178,6 +184,7 @@ void Studio::note_source_read() {
 template <>
 void Studio::take_in(SourceFrames& event) {
   SourceState& source = session_.source;
+  source.completing = -1;
   for (const KeptSource& frame : event.frames) {
     source.extent = united(source.extent, frame.extent);
     source.has_scene = source.has_scene || frame.owners;

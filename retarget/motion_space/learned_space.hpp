@@ -25,7 +25,8 @@ class WindowNetwork {
 /// Fills by the curve (fill_curves), then adds what the network changes of it. The network is asked of the
 /// mirror image, too, and what is taken is the mean of both answers: so the mirrored question has the
 /// mirrored answer. Feet that it lets stand are held (hold_standing); known ones are as
-/// KnownMotion::motion.standing says. Gaps that fit into no window (of some three seconds) stay the curve.
+/// KnownMotion::motion.standing says. Gaps of up to 0.17 s between wholly known frames stay the curve, and so
+/// do those that fit into no window (of some three seconds).
 class LearnedSpace final : public MotionSpace {
  public:
   explicit LearnedSpace(std::unique_ptr<WindowNetwork> network) : network_(std::move(network)) {}

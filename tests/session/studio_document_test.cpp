@@ -1,3 +1,6 @@
+#include <chrono>
+#include <thread>
+
 #include "app/session/document_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/text.hpp"
@@ -97,6 +100,14 @@ TEST_F(StudioTest, ScansAreCompletedCanBeUndoneAndAreSavedAsARecipe) {
     const Session& session = studio.session();
     open_both(studio);
     studio.run("source.complete", {"60"});
+    float told = -1;
+    for (int i = 0; i < 60000 && (session.source.fps != 60 || session.source.frames.size() == 0); ++i) {
+      studio.tick(0.001);
+      told = std::max(told, session.source.completing);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_GT(told, 0) << "how far it is";
+    EXPECT_LT(session.source.completing, 0) << "done";
     studio.wait_idle();
     EXPECT_EQ(session.source.problem, "");
     EXPECT_EQ(session.source.fps, 60);

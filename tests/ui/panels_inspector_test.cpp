@@ -31,6 +31,8 @@ TEST_F(Inspector, ButtonsAskForTheirCommands) {
 TEST_F(Inspector, ImportSettingsAreAskedForWhenWrittenOrChosen) {
   expect_typed("source.fps", "25", {"source.fps 25"});
   expect_typed("source.fps", "auto", {});  // it was automatic
+  EXPECT_FALSE(shown("source.units")) << "folded away where nothing is told";
+  click("inspector.import");
   expect_typed("source.turn", "90", {"source.turn 90"});
   expect_typed("source.floor", "0.05 m", {"source.floor 0.05"});
   expect_choice("source.units", 3, {"source.units mm"});
@@ -115,7 +117,7 @@ TEST_F(Inspector, ABlendHasAShareForEachOfItsMotions) {
       app::BlendRecipe{{{"/a/walk.bvh", app::BlendRange{3, 40}, 0.5f}, {"/a/run.npz", {}, 0.5f}}};
   session.source.clips.clear();
   frame(3);
-  EXPECT_FALSE(shown("source.units")) << "its files say that themselves";
+  EXPECT_FALSE(shown("inspector.import")) << "its files say that themselves";
   expect_drag("source.blend.0", "source.blend_weight 0 ");
   expect_drag("source.blend.1", "source.blend_weight 1 ");
   expect_typed("source.blend_cycles", "3", {"source.blend_cycles 3"});
@@ -202,6 +204,7 @@ TEST_F(Inspector, SaysWhereTheShapeBinds) {
 }
 
 TEST_F(Inspector, WhatIsLeftWithoutEnterIsAskedForToo) {
+  click("inspector.import");
   write_into("source.turn", "15");
   EXPECT_EQ(asked(), Lines());
   click("source.fps");
@@ -209,6 +212,7 @@ TEST_F(Inspector, WhatIsLeftWithoutEnterIsAskedForToo) {
 }
 
 TEST_F(Inspector, EscapeAndNonsenseAskForNothing) {
+  click("inspector.import");
   write_into("source.turn", "15");
   key(render::Key::Escape);
   EXPECT_EQ(asked(), Lines());

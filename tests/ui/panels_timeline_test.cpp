@@ -477,6 +477,17 @@ TEST_F(PanelsTest, StatusShowsJobsAndCancelsThem) {
   EXPECT_TRUE(shown("status.rate"));
 }
 
+TEST_F(PanelsTest, StatusShowsHowFarScansAreCompletedAndStopsIt) {
+  input.size = {1280, 60};
+  session.jobs.clear();
+  panel([this] { draw_status(session, context, 60); });
+  frame(2);
+  EXPECT_FALSE(shown("status.completing"));
+  session.source.completing = 0.4f;
+  frame(2);
+  expect_click("status.completing.cancel", {"source.complete off"});
+}
+
 TEST_F(PanelsTest, StatusForgetsMessagesAfterTenSecondsAndErrorsWhenMended) {
   input.size = {1280, 60};
   panel([this] { draw_status(session, context, 60); });

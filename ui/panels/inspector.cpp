@@ -1,5 +1,5 @@
 // What is open and how it is done: the source, the takes, their target and method.
-// Marks: inspector.source, .times, .takes, .target, .method (sections); source.fps,
+// Marks: inspector.source, .times, .import, .takes, .target, .method (sections); source.fps,
 // source.times(.browse, .reset), source.complete, source.markers(.browse, .reset), source.units, source.up,
 // source.height(.reset), source.turn, source.floor, source.extractor,
 // source.people.K (a row of who is there), source.person, source.blend.K (a part's share),
@@ -210,6 +210,24 @@ void draw_scan_fields(const app::SourceOptions& source, PanelContext& context) {
              source.markers, context);
 }
 
+/// What is decided of a file where nobody says otherwise: folded away until somebody does.
+void draw_source_import(const ImportOptions& import, PanelContext& context) {
+  Ui& ui = context.ui;
+  const auto is_chosen = [](const std::string& word) { return !word.empty() && word != "auto"; };
+  const bool is_told = is_chosen(import.units) || is_chosen(import.up) || import.height || import.floor ||
+                       import.turn_deg != 0;
+  if (!section(ui, "inspector.import", "Size, axes and floor", is_told)) return;
+  draw_import(context, "source", import);
+  if (const auto deg =
+          typed_number_row(ui, {"source.turn", "Turn by", "Degrees about the vertical"}, import.turn_deg, 1))
+    context.ask("source.turn", {argument(*deg)});
+  const std::string floor = import.floor ? argument(*import.floor) : "auto";
+  if (const auto text = text_row(ui, {"source.floor", "Floor", "Its height in metres, or auto"}, floor)) {
+    const auto height = parse_number(*text);
+    context.ask("source.floor", {height ? argument(*height) : "auto"});
+  }
+}
+
 void draw_source_fields(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
   const app::SourceOptions& source = session.document.source;
@@ -219,15 +237,7 @@ void draw_source_fields(const app::Session& session, PanelContext& context) {
     context.ask("source.fps", {argument(std::max(0.0, parse_number(*text).value_or(0)))});
   if (source.motion.empty() && session.source.clips.empty()) draw_scan_fields(source, context);
   if (may_move(source)) draw_animation_fields(session.source, source, context);
-  draw_import(context, "source", source.import);
-  if (const auto deg = typed_number_row(ui, {"source.turn", "Turn by", "Degrees about the vertical"},
-                                        source.import.turn_deg, 1))
-    context.ask("source.turn", {argument(*deg)});
-  const std::string floor = source.import.floor ? argument(*source.import.floor) : "auto";
-  if (const auto text = text_row(ui, {"source.floor", "Floor", "Its height in metres, or auto"}, floor)) {
-    const auto height = parse_number(*text);
-    context.ask("source.floor", {height ? argument(*height) : "auto"});
-  }
+  draw_source_import(source.import, context);
   const app::Take* take = session.document.takes.empty() ? nullptr : &session.document.takes.front();
   const std::string extractor = take != nullptr ? take->method.extractor : extractors().front().name;
   ask_method(context, {"source.extractor", "Extractor", "The network that finds the joints"}, extractors(),

@@ -23,6 +23,15 @@ void draw_job(const app::Session& session, PanelContext& context, float width) {
   ImGui::EndChild();
 }
 
+/// Scans that are completed: no frame is there before all of them are.
+void draw_completing(const app::Session& session, PanelContext& context, float width) {
+  Ui& ui = context.ui;
+  ImGui::BeginChild("##completing", {width, ui.px(kStatusHeight - 6)});
+  if (progress(ui, "status.completing", {session.source.completing, "Completing the scans", "", true}))
+    context.ask("source.complete", {"off"});
+  ImGui::EndChild();
+}
+
 /// What all jobs do, when there are several: each with its own cancel.
 void draw_more_jobs(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
@@ -84,9 +93,10 @@ void draw_status(const app::Session& session, PanelContext& context, float frame
   const float document_width =
       wide ? std::min(ui.px(220), ImGui::CalcTextSize(document_words(session).c_str()).x + ui.px(20)) : 0;
   float left = width - rate_width - document_width;
-  if (!session.jobs.empty()) {
+  const bool completing = session.source.completing >= 0 && session.jobs.empty();
+  if (!session.jobs.empty() || completing) {
     const float job = std::min(ui.px(340), wide ? left * 0.6f : left);
-    draw_job(session, context, job);
+    completing ? draw_completing(session, context, job) : draw_job(session, context, job);
     if (session.jobs.size() > 1 && wide) draw_more_jobs(session, context), left -= ui.px(32);
     left -= job + ImGui::GetStyle().ItemSpacing.x;
     ImGui::SameLine();

@@ -40,9 +40,9 @@ void write(const ImVec2& at, const std::string& words, const ImVec4& with) {
   ImGui::GetWindowDrawList()->AddText(at, color(with), words.c_str());
 }
 
-/// Words in the middle of the rectangle, cut to fit.
-void write_centered(const Rect& rect, const std::string& words, const ImVec4& with) {
-  const std::string cut = cut_to(words, rect.width() - ImGui::GetStyle().FramePadding.x);
+/// Words in the middle of the rectangle, cut so that `around` pixels of it stay free.
+void write_centered(const Rect& rect, const std::string& words, const ImVec4& with, float around) {
+  const std::string cut = cut_to(words, rect.width() - around);
   const ImVec2 size = ImGui::CalcTextSize(cut.c_str());
   const ImVec2 at(std::floor(rect.at(0.5f, 0).x - size.x / 2), std::floor(rect.at(0, 0.5f).y - size.y / 2));
   write(at, cut, with);
@@ -209,7 +209,7 @@ bool button(Ui& ui, const std::string& name, const std::string& label, const But
   const ButtonColors colors = button_colors(ui.theme(), options.look);
   const Press p = press(ui, name, {std::round(width), ImGui::GetFrameHeight()}, name);
   fill(p.rect, p.held ? colors.held : p.hovered ? colors.hovered : colors.box, rounding());
-  write_centered(p.rect, label, colors.words);
+  write_centered(p.rect, label, colors.words, ImGui::GetStyle().FramePadding.x);
   tooltip(ui, options.tooltip, options.shortcut);
   return p.clicked;
 }
@@ -237,12 +237,12 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
   const Theme& t = ui.theme();
   const IdScope id(name);
   const float height = ImGui::GetFrameHeight(), width = width_left(0), inset = std::round(ui.px(2));
+  const float around = 0.5f * ImGui::GetStyle().FramePadding.x;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const Rect all{at, {at.x + width, at.y + height}};
   fill(all, t.field, rounding());
   bool changed = false;
-  const std::vector<float> widths =
-      segment_widths(choices, width, 2 * inset + ImGui::GetStyle().FramePadding.x);
+  const std::vector<float> widths = segment_widths(choices, width, 2 * inset + around);
   float left = at.x;
   for (int i = 0; i < ssize(choices); ++i) {
     const float each = widths[i];
@@ -254,7 +254,7 @@ bool segmented(Ui& ui, const std::string& name, const std::vector<std::string>& 
                      {std::round(left + each - inset), at.y + height - inset}};
     const bool on = chosen == i;
     if (on || p.hovered) fill(inner, on ? t.accent : t.field_hover, rounding() * 0.75f);
-    write_centered(inner, choices[i], on ? t.on_accent : p.hovered ? t.text : t.text_dim);
+    write_centered(inner, choices[i], on ? t.on_accent : p.hovered ? t.text : t.text_dim, around);
     left += each;
   }
   ui.mark(name, all);

@@ -176,6 +176,19 @@ TEST(LearnedSpace, ALongGapStaysTheCurve) {
   EXPECT_GT(made.doubt_m[80], made.doubt_m[12]);
 }
 
+TEST(LearnedSpace, AShortGapBetweenKnownFramesStaysTheCurve) {
+  Question question(20, 24);
+  for (int t = 30; t < 36; ++t) question.known[t] = all_parts(false);
+  Motion curve = question.motion;
+  fill_curves(question.known, 0, ssize(curve.poses) - 1, curve);
+  const Completion made = completed(question, 0.8f, 1);
+  for (int t = 20; t < 25; ++t) EXPECT_TRUE(is_same(curve.poses[t], made.motion.poses[t])) << t;
+  EXPECT_FALSE(is_same(curve.poses[33], made.motion.poses[33])) << "a frame more is made";
+  const Question ahead(146, 149);
+  EXPECT_FALSE(is_same(completed(ahead, 0).motion.poses[149], completed(ahead, 0.8f).motion.poses[149]))
+      << "after the last known frame any gap is made";
+}
+
 TEST(LearnedSpace, RefusesQuestionsWithoutAnAnswer) {
   Question none(0, -1);
   none.known.assign(none.known.size(), all_parts(false));
