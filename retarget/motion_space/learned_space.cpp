@@ -15,7 +15,7 @@ namespace {
 /// From which on a foot stands: on dev this gives the smallest errors, and feet that slide least.
 constexpr float kStands = 0.3f;
 
-/// Up to so long, between wholly known frames, a gap stays the curve: on dev the curve is nearer to the truth.
+/// Up to so long, between wholly known frames, a gap stays the curve: on dev that is nearer to the truth.
 constexpr float kShortGap_s = 0.17f;
 
 /// What is added to a pose of the curve: turns in the joints' own frames, and a way of the root.
