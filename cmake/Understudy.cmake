@@ -5,17 +5,31 @@
 add_library(warnings INTERFACE)
 target_compile_options(warnings INTERFACE -Wall -Wextra -Wshadow $<$<BOOL:${STRICT}>:-Werror>)
 
-# us_torch(TARGET): its sources may include LibTorch, by the one precompiled header of torch_pch.
-function(us_torch target)
-  target_link_libraries(${target} PRIVATE torch_headers)
+# us_precompiled(NAME LIBS ... HEADERS ...): others' headers as one precompiled header; us_reads(TARGET NAME) gives it to
+# a target. g++ gains nothing by it and goes without: so it notices what a source forgets to include.
+function(us_precompiled name)
+  cmake_parse_arguments(P "" "" "LIBS;HEADERS" ${ARGN})
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${name}.cpp CONTENT "")  # untouched where it is there
+  add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/${name}.cpp)
+  target_precompile_headers(${name} PRIVATE ${P_HEADERS})
+  target_link_libraries(${name} PRIVATE warnings ${P_LIBS})
+endfunction()
+function(us_reads target name)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    return()
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${name})
   get_target_property(type ${target} TYPE)
   if(type STREQUAL "EXECUTABLE")  # -fPIE would not fit the precompiled header, which is -fPIC
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
     target_compile_options(${target} PRIVATE -fPIC)
   endif()
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT target STREQUAL "torch_pch")
-    target_precompile_headers(${target} REUSE_FROM torch_pch)
-  endif()
+endfunction()
+
+# us_torch(TARGET): its sources may include LibTorch.
+function(us_torch target)
+  target_link_libraries(${target} PRIVATE torch_headers)
+  us_reads(${target} torch_pch)
 endfunction()
 
 # us_module(NAME [TORCH] [PUBLIC ...] [PRIVATE ...]): the current folder, those inside it too, as the static library
@@ -48,6 +62,8 @@ function(us_test_helpers name folder)
   target_link_libraries(${name}_support PUBLIC Eigen3::Eigen GTest::gtest nlohmann_json::nlohmann_json ${H_PUBLIC})
   if(H_TORCH)
     us_torch(${name}_support)
+  else()
+    us_reads(${name}_support test_pch)
   endif()
 endfunction()
 
@@ -86,6 +102,8 @@ function(us_tests name folder)
     set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
     if(T_TORCH)
       us_torch(${program})
+    else()
+      us_reads(${program} test_pch)
     endif()
     foreach(label ${T_LABELS})
       if(TARGET ${label}_tests)

@@ -100,6 +100,7 @@ Image ghost_sheet(Renderer& renderer, const std::vector<GhostSeries>& series,
     longest = std::max(longest, one.seconds.back());
   }
   std::vector<Scene> scenes;
+  scenes.reserve(series.size());
   for (const GhostSeries& one : series) scenes.push_back(scene_of(one, longest));
   const View view = view_of(scenes, options.heading);
   const int columns = std::clamp(static_cast<int>(ssize(series)), 1, std::max(1, options.columns));

@@ -25,7 +25,7 @@ constexpr float kFloorAtMost_m = 0.2f;    // that soles are from what the scans 
 constexpr float kLeastConfidence = 0.1f;  // of made frames: doubt is told, and the frame is shown
 
 Points kept_points(const Mesh& scan) {
-  const Points all = finite_points(scan.vertices);
+  Points all = finite_points(scan.vertices);
   if (all.rows() <= kMostKept) return all;
   Points kept(kMostKept, 3);
   for (Eigen::Index i = 0; i < kMostKept; ++i) kept.row(i) = all.row(i * all.rows() / kMostKept);

@@ -70,6 +70,7 @@ std::vector<int> evenly_known(int frames, int count) {
   US_CHECK(count >= 2 && count <= frames, "of ", frames, " frames ", count,
            " are to be known: 2 at least, and no more than all");
   std::vector<int> known;
+  known.reserve(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i)
     known.push_back(static_cast<int>(std::lround(static_cast<double>(i) * (frames - 1) / (count - 1))));
   return known;

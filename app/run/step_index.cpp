@@ -59,6 +59,7 @@ std::vector<FileMotion> read_file_motions(const std::string& path) {
   std::vector<FileMotion> motions;
   const int count = static_cast<int>(ssize(character.animations));
   US_CHECK(count <= kMostAnimations, path, ": has ", count, " animations, more than ", kMostAnimations);
+  motions.reserve(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i) motions.push_back(motion_of(character, std::to_string(i + 1), path));
   return motions;
 }

@@ -1,5 +1,7 @@
 #include "retarget/motion_space/knot_coder.hpp"
 
+#include <algorithm>
+
 #include "retarget/base/error.hpp"
 #include "retarget/motion_space/step_form.hpp"
 
@@ -36,6 +38,7 @@ std::vector<Pose> sampled_evenly(const TimedPoses& movement, int count) {
     US_CHECK(times[i] > times[i - 1], "the times of a movement do not rise: ", times[i], " s follow ",
              times[i - 1], " s");
   std::vector<Pose> samples;
+  samples.reserve(static_cast<size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i)
     samples.push_back(pose_at(movement, times[0] + (times.back() - times[0]) * static_cast<float>(i) /
                                                        static_cast<float>(count - 1)));

@@ -251,6 +251,7 @@ MapColouring by_value(const MotionMap& map, const std::string& unit, float Mappe
   MapColouring colouring;
   colouring.unit = unit;
   std::vector<float> sorted;
+  sorted.reserve(static_cast<size_t>(map.size()));
   for (int i = 0; i < map.size(); ++i) sorted.push_back(map.step(i).*value);
   std::sort(sorted.begin(), sorted.end());
   if (!sorted.empty()) {

@@ -59,6 +59,7 @@ void put_step_numbers(const std::vector<Pose>& knots, float seconds, float leg_m
 StepNumbers step_numbers(const TimedPoses& movement, const Joints& rest) {
   check_movement(movement);
   std::vector<Pose> knots;
+  knots.reserve(kKnots);
   for (int k = 0; k < kKnots; ++k)
     knots.push_back(
         pose_at(movement, movement.duration() * static_cast<float>(k) / static_cast<float>(kKnots - 1)));
