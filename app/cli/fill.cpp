@@ -29,6 +29,7 @@ struct FillOptions {
   std::vector<std::string> ranges;
   bool bad = false;
   float learned = 1;
+  int variation = 0;
   std::optional<double> until;  // seconds from the first frame
   bool loop = false;
 };
@@ -69,6 +70,7 @@ void go_on_until(const FillOptions& options, Studio& studio) {
            " seconds long already");
   studio.run("edit.go_on", {"0", std::to_string(*options.until - there)});
   studio.run("edit.go_on_learned", {"0", std::to_string(options.learned)});
+  studio.run("edit.go_on_variation", {"0", std::to_string(options.variation)});
   const auto added = frames_added(*session.document.takes[0].pose_edits.go_on, session.source.fps);
   const int first = ssize(session.takes[0].performed), last = first + added - 1;
   log::warn(options.source.path + ": " + guess_of({first, last}, last + 1, session.source.fps));
@@ -94,8 +96,10 @@ void fill_take(const FillOptions& options, Studio& studio) {
   if (options.bad && has_bad) studio.run("edit.fill", {"0", "bad"});
   if (options.bad && !has_bad && !options.until && !options.loop)
     log::info(options.source.path + ": all of its frames could be used");
-  for (int i = 0; i < ssize(session.document.takes[0].pose_edits.fill); ++i)
+  for (int i = 0; i < ssize(session.document.takes[0].pose_edits.fill); ++i) {
     studio.run("edit.fill_learned", {"0", std::to_string(i), std::to_string(options.learned)});
+    studio.run("edit.fill_variation", {"0", std::to_string(i), std::to_string(options.variation)});
+  }
   for (const FillEdit& one : session.document.takes[0].pose_edits.fill)
     if (const std::string guess = guess_of(one, ssize(performed), session.source.fps); !guess.empty())
       log::warn(options.source.path + ": " + guess);
@@ -127,6 +131,7 @@ Json report_of(const FillOptions& options, const Session& session, const std::ve
   const PoseEdits& edits = session.document.takes[0].pose_edits;
   report["frames"] = kept_frames(edits, ssize(session.takes[0].shown.poses)).size();
   report["learned"] = options.learned;
+  report["variation"] = options.variation;
   if (edits.loop) report["loop"] = loop_of(session, *edits.loop);
   report["made_frames"] = to_json(made);
   return report;
@@ -212,6 +217,12 @@ Action declare_fill(CLI::App& command) {
                   "0: smooth curves between what is known; 1: what the motion space learned of people "
                   "(default: 1)")
       ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option(
+          "--variation", options->variation,
+          "which of the motion space's answers, of frames that are made and of --until: 0 the best, 1 "
+          "to 3 others (default: 0)")
+      ->check(CLI::Range(kVariationNumbers.low, kVariationNumbers.high));
   command.add_option("--report", options->report,
                      "which frames were made, and how doubtful they are, as JSON");
   command.add_option("--preview", options->preview, "contact sheet of the written file as PNG");

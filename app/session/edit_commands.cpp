@@ -336,7 +336,7 @@ void move_skips(Call& c) {
 void add_fill(FillEdit fill, std::vector<FillEdit>& all) {
   for (auto at = all.begin(); at != all.end();) {
     const bool apart = at->last + 1 < fill.first || at->first > fill.last + 1;
-    if (!apart) fill = {std::min(fill.first, at->first), std::max(fill.last, at->last), fill.learned};
+    if (!apart) fill.first = std::min(fill.first, at->first), fill.last = std::max(fill.last, at->last);
     at = apart ? at + 1 : all.erase(at);
   }
   all.push_back(fill);
@@ -354,7 +354,7 @@ void move_fill(Call& c) {
   const FillEdit before = fill_argument(c, 1);
   const Trim to = frames_to(c, 3, before.last - before.first);
   fills.erase(fills.begin() + c.number<int>(2, "edit"));
-  add_fill({to.first, to.last, before.learned}, fills);
+  add_fill({to.first, to.last, before.learned, before.variation}, fills);
 }
 
 /// Wherever it is moved to it begins behind the last captured frame: what counts is where it ends.
@@ -464,9 +464,19 @@ void go_on(Call& c) {
   const float seconds = c.arguments.size() > 1 ? c.number(1, "time") : before + kMore_s;
   US_CHECK(seconds >= kGoOnSeconds.low && seconds <= kGoOnSeconds.high, "a take goes on for ",
            kGoOnSeconds.low, " to ", kGoOnSeconds.high, " seconds, not ", seconds);
-  edit = GoOnEdit{seconds, edit ? edit->learned : 1};
+  if (!edit) edit.emplace();
+  edit->seconds = seconds;
   tell_go_on(c, take, *edit);
   c.label = printed("Go on for %.3g s", static_cast<double>(seconds));
+}
+
+/// One of the motion space's answers: 0 the best, from 1 on the others.
+int variation_argument(const Call& c, size_t i) {
+  const int variation = c.number<int>(i, "alternative");
+  US_CHECK(variation >= kVariationNumbers.low && variation <= kVariationNumbers.high,
+           "there is no alternative ", variation, ": they are 0, the best answer, to ",
+           kVariationNumbers.high);
+  return variation;
 }
 
 /// Where two moments are to be looked for without being told: between the loop marks, else in what is kept.
@@ -511,6 +521,14 @@ void add_made_frames(Commands& commands) {
                         US_CHECK(edit, "the take does not go on beyond its last frame");
                         edit->learned = c.clamped(1, "share", 0.f, 1.f);
                       });
+  commands.add_edit({"edit.go_on_variation", "Another alternative",
+                     "TAKE N: of what goes on, 0 the motion space's best answer, 1 to 3 others"},
+                    [](Call& c) {
+                      auto& edit = c.take().pose_edits.go_on;
+                      US_CHECK(edit, "the take does not go on beyond its last frame");
+                      edit->variation = variation_argument(c, 1);
+                      c.label = printed("Go on by alternative %d", edit->variation + 1);
+                    });
   commands.add_edit({"edit.loop", "Make a loop",
                      "[TAKE [FIRST LAST | off]]: finds two like moments between the loop marks, or in all "
                      "frames, and closes the seam between them",
@@ -534,6 +552,13 @@ void add_pose_ranges(Commands& commands) {
   commands.add_slider({"edit.fill_learned", "Plain or learned",
                        "TAKE EDIT SHARE: 0 the smooth curve to 1 the motion space's answer"},
                       [](Call& c) { fill_argument(c, 0).learned = c.clamped(2, "share", 0.f, 1.f); });
+  commands.add_edit({"edit.fill_variation", "Another alternative",
+                     "TAKE EDIT N: 0 the motion space's best answer, 1 to 3 others"},
+                    [](Call& c) {
+                      FillEdit& fill = fill_argument(c, 0);
+                      fill.variation = variation_argument(c, 2);
+                      c.label = printed("Fill by alternative %d", fill.variation + 1);
+                    });
   commands.add_edit({"edit.trim", "Trim", "TAKE FIRST LAST | TAKE off"}, [](Call& c) {
     auto& trim = c.take().pose_edits.trim;
     trim.reset();

@@ -60,6 +60,24 @@ Refined refine(const RefineRequest& request, MotionSpace* space) {
   return result;
 }
 
+Alternatives alternatives_of(const RefineRequest& request, MotionSpace* space) {
+  Alternatives made{request.take_id, {}};
+  PoseEdits edits = request.edits;
+  if (!request.all_there) edits.go_on.reset();
+  const bool any = need_space(edits.fill) || (edits.go_on && edits.go_on->learned > 0);
+  if (!any || space == nullptr || space->variations() < 2 || request.performed.empty()) return made;
+  const Motion performed = motion_of(request.performed, request.fps);
+  const EditedBody body = EditedBody::from(request.target->mesh.vertices, request.target->joints);
+  for (int variation = 0; variation < space->variations(); ++variation) {
+    for (FillEdit& fill : edits.fill) fill.variation = variation;
+    if (edits.go_on) edits.go_on->variation = variation;
+    std::vector<Joints>& joints = made.joints.emplace_back();
+    for (const Pose& pose : apply_poses(edits, performed, body, space).poses)
+      joints.push_back(forward_kinematics(body.rest, pose).joints);
+  }
+  return made;
+}
+
 struct Refiner::Impl {
   explicit Impl(LoadSpace load) : load_space(std::move(load)) {}
 
@@ -67,6 +85,7 @@ struct Refiner::Impl {
   std::shared_ptr<MotionSpace> space;
   std::vector<RefineRequest> waiting;
   std::vector<Refined> finished;
+  std::vector<Alternatives> alternatives;
   Worker worker{"refining", [this] { return next(); }};
 
   Worker::Task next() {
@@ -76,11 +95,25 @@ struct Refiner::Impl {
     return [this, request] {
       const bool waits = load_space && need_space(request->edits);
       answer(*request);
-      if (!waits) return;
-      const std::string problem = failure_of([&] { space = std::exchange(load_space, nullptr)(); });
-      if (!problem.empty()) log::warn(problem + ": filled frames follow smooth curves");
-      if (space) answer(*request);
+      if (waits) {
+        const std::string problem = failure_of([&] { space = std::exchange(load_space, nullptr)(); });
+        if (!problem.empty()) log::warn(problem + ": filled frames follow smooth curves");
+        if (space) answer(*request);
+      }
+      answer_otherwise(*request);
     };
+  }
+
+  void answer_otherwise(const RefineRequest& request) {
+    {
+      const auto held = worker.lock();
+      if (!waiting.empty()) return;
+    }
+    Alternatives made{request.take_id, {}};
+    const std::string problem = failure_of([&] { made = alternatives_of(request, space.get()); });
+    if (!problem.empty()) made = {request.take_id, {}};  // the answer itself has told it
+    const auto held = worker.lock();
+    alternatives.push_back(std::move(made));
   }
 
   void answer(const RefineRequest& request) {
@@ -109,9 +142,15 @@ std::vector<Refined> Refiner::drain() {
   return std::exchange(impl_->finished, {});
 }
 
+std::vector<Alternatives> Refiner::drain_alternatives() {
+  const auto held = impl_->worker.lock();
+  return std::exchange(impl_->alternatives, {});
+}
+
 bool Refiner::busy() const {
   const auto held = impl_->worker.lock();
-  return impl_->worker.working() || !impl_->waiting.empty() || !impl_->finished.empty();
+  return impl_->worker.working() || !impl_->waiting.empty() || !impl_->finished.empty() ||
+         !impl_->alternatives.empty();
 }
 
 }  // namespace understudy::app

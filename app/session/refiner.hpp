@@ -33,6 +33,13 @@ struct Refined {
 /// The same on this thread. `space` makes what is filled; null: smooth curves do.
 Refined refine(const RefineRequest& request, MotionSpace* space);
 
+/// What each of the motion space's answers makes of all that is filled and of what goes on.
+struct Alternatives {
+  int64_t take_id = 0;
+  std::vector<std::vector<Joints>> joints;  ///< of each answer and frame; empty: there is but one answer
+};
+Alternatives alternatives_of(const RefineRequest& request, MotionSpace* space);
+
 /// Loads the motion space; may be empty, then there is none.
 using LoadSpace = std::function<std::shared_ptr<MotionSpace>()>;
 
@@ -45,6 +52,8 @@ class Refiner {
   /// Never waits; replaces a request of the same take that has not begun.
   void request(RefineRequest request);
   std::vector<Refined> drain();
+  /// These come after what was asked for; not where it was asked for more meanwhile.
+  std::vector<Alternatives> drain_alternatives();
   bool busy() const;
 
  private:

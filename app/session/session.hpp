@@ -91,6 +91,8 @@ struct TakeState {
   LimbsSight limbs{};                        ///< the least that is seen of each limb so far
   Motion shown;                ///< after the user's edits of the result; may trail `performed` shortly
   std::vector<Joints> joints;  ///< of `shown`
+  /// Of each of the motion space's answers to what is filled or goes on, as of `joints`; empty: there is one.
+  std::vector<std::vector<Joints>> alternatives;
   std::vector<Series> series;  ///< as many values as frames shown
   Metrics metrics;             ///< of the whole, once all frames are there
   Latency latency;

@@ -331,6 +331,8 @@ void Studio::take_in_refined() {
     show(std::move(refined), *take);
     ++take->generation;
   }
+  for (Alternatives& made : background_->refiner.drain_alternatives())
+    if (TakeState* const take = take_of(made.take_id)) take->alternatives = std::move(made.joints);
 }
 
 /// A case's truth is of one person.

@@ -84,9 +84,15 @@ void fill_frames(const std::vector<FillEdit>& fills, const Joints& rest, MotionS
            "all frames are to be filled: none is left that is known");
   motion = curve_through(question, fills);
   if (space == nullptr || !need_space(fills)) return;
-  const Completion made = space->complete(question);
-  for (const FillEdit& fill : fills)
-    if (fill.learned > 0) put_learned(fill, made, motion);
+  for (question.variation = 0; question.variation < kMostVariations; ++question.variation) {
+    const auto wants = [&question](const FillEdit& fill) {
+      return fill.learned > 0 && fill.variation == question.variation;
+    };
+    if (std::none_of(fills.begin(), fills.end(), wants)) continue;
+    const Completion made = space->complete(question);
+    for (const FillEdit& fill : fills)
+      if (wants(fill)) put_learned(fill, made, motion);
+  }
 }
 
 int frames_added(const GoOnEdit& edit, double fps) {
@@ -105,7 +111,7 @@ void go_on(const GoOnEdit& edit, const Joints& rest, MotionSpace* space, Motion&
     motion.poses.resize(count, Pose(motion.poses.back()));
     if (!motion.flags.empty()) motion.flags.resize(count);
     if (!motion.standing.empty()) motion.standing.resize(count);
-    const FillEdit added{static_cast<int>(first), static_cast<int>(count) - 1, edit.learned};
+    const FillEdit added{static_cast<int>(first), static_cast<int>(count) - 1, edit.learned, edit.variation};
     fill_frames({added}, rest, space, motion);
     std::copy(told.begin(), told.end(), motion.doubt_m.begin());
     for (size_t t = first; t < count; ++t) motion.doubt_m[t] += doubt;

@@ -6,6 +6,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/motion_space/curve_bend.hpp"
 #include "retarget/skeleton/curve_doubt.hpp"
 #include "retarget/skeleton/foot_hold.hpp"
 
@@ -49,6 +50,38 @@ std::vector<Sample> samples_of(const MotionWindow& window, const WindowAnswer& d
     samples[i].doubt_m = 0.5f * (direct.doubt_m[i] + mirror.doubt_m[i]);
   }
   return samples;
+}
+
+Joints joints_of(const MotionWindow& window, size_t sample, const Change& change) {
+  Pose pose = window.curve[sample];
+  for (int j = 0; j < kJointCount; ++j) pose.local[j] = pose.local[j] * rotation_from_axis_angle(change[j]);
+  pose.root += change[kRootPart];
+  return forward_kinematics(window.rest, pose).joints;
+}
+
+/// What another answer tells beside the best one: that it is as doubtful as that, and off by the way between
+/// both, too. A foot that stands in one of them stands.
+std::vector<Sample> beside_the_best(const MotionWindow& window, const std::vector<Sample>& best,
+                                    std::vector<Sample> other) {
+  for (size_t i = 0; i < other.size(); ++i) {
+    const Joints here = joints_of(window, i, best[i].change), there = joints_of(window, i, other[i].change);
+    other[i].doubt_m = std::hypot(other[i].doubt_m, (there - here).rowwise().norm().mean());
+    for (size_t side = 0; side < 2; ++side)
+      other[i].standing[side] = std::max(other[i].standing[side], best[i].standing[side]);
+  }
+  return other;
+}
+
+std::vector<Sample> answered(WindowNetwork& network, const MotionWindow& window, int variation) {
+  const auto ask = [&](const MotionWindow& about) {
+    const auto answers = network.answer({about, mirrored(about)});
+    return samples_of(window, answers[0], answers[1]);
+  };
+  std::vector<Sample> best = ask(window);
+  if (variation <= 0 || variation > kCurveBends) return best;
+  std::vector<float> doubt_m;
+  for (const Sample& sample : best) doubt_m.push_back(sample.doubt_m);
+  return beside_the_best(window, best, ask(bent(window, variation, doubt_m)));
 }
 
 /// Between four values in a row, `share` of the way from b to c (Catmull and Rom): through all of them.
@@ -139,8 +172,7 @@ Completion LearnedSpace::complete(const KnownMotion& question) {
     made_frames.erase(std::remove_if(made_frames.begin(), made_frames.end(), [&](int t) { return stays[t]; }),
                       made_frames.end());
     if (made_frames.empty()) continue;
-    const auto answers = network_->answer({window, mirrored(window)});
-    const std::vector<Sample> samples = samples_of(window, answers[0], answers[1]);
+    const std::vector<Sample> samples = answered(*network_, window, question.variation);
     for (const int t : made_frames) {
       const Sample sample = at(samples, (static_cast<float>(t) - window.first) / window.step);
       change(sample, question.known[t], window.outlook.heading, motion.poses[t]);

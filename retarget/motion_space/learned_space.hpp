@@ -27,11 +27,15 @@ class WindowNetwork {
 /// mirrored answer. Feet that it lets stand are held (hold_standing); known ones are as
 /// KnownMotion::motion.standing says. Gaps of up to 0.17 s between wholly known frames stay the curve, and so
 /// do those that fit into no window (of some three seconds).
+/// The other answers (KnownMotion::variation 1 to 3) are what the network makes of the curve when it is bent
+/// (curve_bend.hpp), by as much as it doubts the best one in each frame: sure frames stay. Their doubt is
+/// that, and the way from the best answer, as of independent errors.
 class LearnedSpace final : public MotionSpace {
  public:
   explicit LearnedSpace(std::unique_ptr<WindowNetwork> network) : network_(std::move(network)) {}
   Completion complete(const KnownMotion& question) override;
   std::string name() const override { return "space"; }
+  int variations() const override { return kMostVariations; }
 
  private:
   std::unique_ptr<WindowNetwork> network_;

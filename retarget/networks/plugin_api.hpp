@@ -7,7 +7,7 @@
 
 namespace understudy::nn {
 
-constexpr int kPluginVersion = 10;
+constexpr int kPluginVersion = 11;
 
 struct PluginApi {
   int version;

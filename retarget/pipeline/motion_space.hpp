@@ -13,7 +13,11 @@ struct KnownMotion {
   Motion motion;                  ///< at any rate; what is not known is not looked at
   std::vector<KnownParts> known;  ///< of each frame of it
   Joints rest = Joints::Zero();   ///< T-pose joints of who moves, metres
+  /// Which of the answers: 0 the best, from 1 on another that is plausible, too (MotionSpace::variations).
+  int variation = 0;
 };
+
+constexpr int kMostVariations = 4;  ///< that a motion space tells apart
 
 /// What was made of it.
 struct Completion {
@@ -30,6 +34,8 @@ class MotionSpace {
   /// Throws Error where `known` is not as long as the motion, or knows no frame at all.
   virtual Completion complete(const KnownMotion& question) = 0;
   virtual std::string name() const = 0;
+  /// How many answers a question has; a KnownMotion::variation beyond them is answered like 0.
+  virtual int variations() const { return 1; }
 };
 
 }  // namespace understudy

@@ -58,6 +58,21 @@ TEST_F(Filling, RangesAreMadeToo) {
   EXPECT_EQ(report["made_frames"][0]["last"], 3);
 }
 
+TEST_F(Filling, AlternativesDifferAndAreTheSameTwice) {
+  const auto made = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--until", "0.5", "--learned", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished run = fill(scans(), arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return read_bytes(out("filled.glb"));
+  };
+  const std::string best = made({}), other = made({"--variation", "2"});
+  EXPECT_EQ(made({"--variation", "0"}), best);
+  EXPECT_EQ(made({"--variation", "2"}), other);
+  EXPECT_NE(other, best);
+  expect_clean_failure(fill(scans(), {"--variation", "4"}), "--variation: Value 4 not in range 0 to 3");
+}
+
 TEST_F(Filling, RangesThatAreNoneAreRefused) {
   for (const char* range : {"4", "a:b", "-1:3", "1.5:2", ":"})
     expect_clean_failure(fill(scans(), {"--range", range}), "is not FIRST:LAST, two numbers of frames");

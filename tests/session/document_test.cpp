@@ -154,9 +154,11 @@ const Changes& document_changes() {
       POSES(fill[0].first = 1),
       POSES(fill[0].last = 17),
       POSES(fill[0].learned = 0.25f),
+      POSES(fill[0].variation = 1),
       POSES(go_on.reset()),
       POSES(go_on->seconds += 1),
       POSES(go_on->learned = 1),
+      POSES(go_on->variation = 3),
       POSES(rotate.pop_back()),
       POSES(rotate[0].frame = 1),
       POSES(rotate[0].joint = 1),
@@ -221,9 +223,9 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [vertex, rows, places, of] = WeightRows();
   [[maybe_unused]] const auto& [fill, go_on, rotate, smoothing, floors, pin, heading, looped, trim, skip] =
       PoseEdits();
-  [[maybe_unused]] const auto& [seconds, on_learned] = GoOnEdit();
+  [[maybe_unused]] const auto& [seconds, on_learned, on_variation] = GoOnEdit();
   [[maybe_unused]] const auto& [loop_first, loop_last, seam, loop_learned] = LoopEdit();
-  [[maybe_unused]] const auto& [fill_first, fill_last, fill_learned] = FillEdit();
+  [[maybe_unused]] const auto& [fill_first, fill_last, fill_learned, fill_variation] = FillEdit();
   [[maybe_unused]] const auto& [frame, joint, turn, falloff, limb] = RotateEdit();
   [[maybe_unused]] const auto& [left, right, contact, blend, soles, to_floor, drop] = PinEdit();
   [[maybe_unused]] const auto& [begin_height, end_height, begin_speed, end_speed] = FootContactOptions();
@@ -264,6 +266,19 @@ TEST(Document, SameAreThoseWithTheSameText) {
     EXPECT_TRUE(json.dump() != text) << name;
     EXPECT_TRUE(same(from_json(json, "/a", "doc").document, after.document)) << name;
   }
+}
+
+TEST(Document, FillsOfOlderOnesAreTheBestAnswerAndThereAreFour) {
+  auto json = to_json(full_document("/a"), "/a");
+  auto& edits = json["takes"][0]["pose_edits"];
+  EXPECT_EQ(edits["fill"][0]["variation"], 2);
+  edits["fill"][0]["variation"] = 4;
+  EXPECT_THROW(from_json(json, "/a", "doc"), Error);
+  edits["fill"][0].erase("variation");
+  edits["go_on"].erase("variation");
+  const PoseEdits read = from_json(json, "/a", "doc").document.takes[0].pose_edits;
+  EXPECT_EQ(read.fill[0].variation, 0);
+  EXPECT_EQ(read.go_on->variation, 0);
 }
 
 TEST(Document, WhatBelongsToOneRunIsNoMatter) {

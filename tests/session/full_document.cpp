@@ -28,8 +28,8 @@ std::shared_ptr<const WeightRows> weight_rows() {
 
 PoseEdits pose_edits() {
   PoseEdits edits;
-  edits.fill = {{14, 16, 0.5f}};
-  edits.go_on = GoOnEdit{2.5f, 0.25f};
+  edits.fill = {{14, 16, 0.5f, 2}};
+  edits.go_on = GoOnEdit{2.5f, 0.25f, 1};
   edits.rotate = {{12, LeftElbow, Vec3(0.1f, -0.2f, 1 / 3.0f), 7, LeftWrist},
                   {0, Head, Vec3(1e-7f, 0, 0), 0}};
   edits.smooth = SmoothEdit{0.7f};

@@ -194,6 +194,56 @@ TEST_F(Fills, FollowThePlainToLearnedSliderAndUndo) {
   EXPECT_NEAR(learned - height(), LiftedSpace::kLift_m, 1e-5);
 }
 
+TEST_F(Fills, HaveFourAnswersToChooseFrom) {
+  Studio studio(services());
+  open_gaps(studio, {9, 10, 11});
+  const auto height = [&] { return shown(studio).poses[10].root.y(); };
+  accept(studio, offers(studio).at(0));
+  const float best = height();
+  studio.run("edit.fill_variation", {"0", "0", "2"});
+  studio.wait_idle();
+  EXPECT_NEAR(height() - best, 2 * LiftedSpace::kAlternativeLift_m, 1e-5);
+  EXPECT_EQ(undo_label(studio.session()), "Fill by alternative 3");
+  const auto& alternatives = studio.session().takes[0].alternatives;
+  ASSERT_EQ(alternatives.size(), size_t{kMostVariations});
+  for (int k = 0; k < kMostVariations; ++k) {
+    const float lift = LiftedSpace::kAlternativeLift_m * static_cast<float>(k);
+    EXPECT_NEAR(alternatives[k][10](Pelvis, 1) - best, lift, 1e-5) << k;
+    EXPECT_EQ(alternatives[k][8], studio.session().takes[0].joints[8]) << k << ": it is known";
+  }
+  for (const char* bad : {"4", "-1", "best"})
+    EXPECT_THROW(studio.run("edit.fill_variation", {"0", "0", bad}), Error) << bad;
+  EXPECT_EQ(failure_of([&] {
+              studio.run("edit.fill_variation", {"0", "0", "4"});
+            }),
+            "there is no alternative 4: they are 0, the best answer, to 3");
+  EXPECT_THROW(studio.run("edit.fill_variation", {"0", "1", "2"}), Error) << "there is one fill";
+  studio.run("edit.undo");
+  studio.wait_idle();
+  EXPECT_EQ(height(), best);
+  studio.run("edit.redo");
+  studio.run("edit.move", {"fill", "0", "0", "8", "11"});
+  EXPECT_EQ(studio.session().document.takes[0].pose_edits.fill[0].variation, 2)
+      << "it is moved, not asked anew";
+  studio.run("edit.remove", {"fill", "0", "0"});
+  studio.wait_idle();
+  EXPECT_TRUE(alternatives.empty()) << "nothing is made any more";
+}
+
+TEST_F(Fills, OfTwoAlternativesEachHaveTheirOwn) {
+  Studio studio(services());
+  open_both(studio);
+  studio.run("edit.fill", {"0", "4", "5"});
+  studio.run("edit.fill", {"0", "12", "13"});
+  studio.wait_idle();
+  const Motion best = shown(studio);
+  studio.run("edit.fill_variation", {"0", "1", "3"});
+  studio.wait_idle();
+  EXPECT_TRUE(equal(shown(studio).poses[4], best.poses[4]));
+  EXPECT_NEAR(shown(studio).poses[12].root.y() - best.poses[12].root.y(), 3 * LiftedSpace::kAlternativeLift_m,
+              1e-5);
+}
+
 TEST_F(Fills, ArePlainUntilTheLearnedOnesAreThere) {
   Gate gate;
   StudioServices own = services();

@@ -100,7 +100,8 @@ Completion LiftedSpace::complete(const KnownMotion& question) {
   Completion made{question.motion, curve_doubt(question.known, question.motion, question.rest)};
   fill_curves(question.known, 0, static_cast<int>(question.known.size()) - 1, made.motion);
   for (size_t t = 0; t < question.known.size(); ++t)
-    if (question.known[t] != all_parts(true)) made.motion.poses[t].root.y() += kLift_m;
+    if (question.known[t] != all_parts(true))
+      made.motion.poses[t].root.y() += kLift_m + kAlternativeLift_m * static_cast<float>(question.variation);
   return made;
 }
 

@@ -33,10 +33,11 @@ class NearestDeformer : public Deformer {
 /// The smooth curve, but higher where nothing was known.
 class LiftedSpace final : public MotionSpace {
  public:
-  static constexpr float kLift_m = 0.1f;
+  static constexpr float kLift_m = 0.1f, kAlternativeLift_m = 0.02f;
 
   Completion complete(const KnownMotion& question) override;
   std::string name() const override { return "lifted"; }
+  int variations() const override { return kMostVariations; }
 };
 
 /// The same poses to the last bit.

@@ -69,6 +69,26 @@ TEST_F(MadeFramesOfATake, GoOnASecondLongerEachTimeAndNoLonger) {
   EXPECT_THROW(studio.run("edit.go_on", {"1", "1"}), Error);
 }
 
+TEST_F(MadeFramesOfATake, GoOnByOneOfFourFutures) {
+  Studio studio(services());
+  open_both(studio);
+  EXPECT_THROW(studio.run("edit.go_on_variation", {"0", "1"}), Error) << "it does not go on";
+  studio.run("edit.go_on", {"0", "0.5"});
+  studio.wait_idle();
+  const float best = shown(studio).poses[kFrames + 5].root.y();
+  studio.run("edit.go_on_variation", {"0", "1"});
+  studio.wait_idle();
+  EXPECT_NEAR(shown(studio).poses[kFrames + 5].root.y() - best, LiftedSpace::kAlternativeLift_m, 1e-5f);
+  EXPECT_EQ(undo_label(studio.session()), "Go on by alternative 2");
+  const auto& alternatives = studio.session().takes[0].alternatives;
+  ASSERT_EQ(alternatives.size(), size_t{kMostVariations});
+  EXPECT_EQ(alternatives[3].size(), size_t{kFrames + 15});
+  EXPECT_EQ(alternatives[1], studio.session().takes[0].joints) << "the chosen one";
+  studio.run("edit.go_on", {"0", "0.7"});
+  EXPECT_EQ(studio.session().document.takes[0].pose_edits.go_on->variation, 1) << "longer by the same";
+  EXPECT_THROW(studio.run("edit.go_on_variation", {"0", "4"}), Error);
+}
+
 TEST_F(MadeFramesOfATake, HaveNoFiguresAndTheOthersKeepTheirs) {
   Studio studio(services());
   open_both(studio);

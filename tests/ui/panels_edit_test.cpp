@@ -90,6 +90,7 @@ TEST_F(EditPanel, OfTheResult) {
   expect_click("edit.filled.0", {"playback.frame 7"});
   expect_click("edit.filled.0.remove", {"edit.remove fill 0 0"});
   expect_drag("edit.fill_learned.0", "edit.fill_learned 0 0 ");
+  expect_click("edit.fill_variation.0.2", {"edit.fill_variation 0 0 2"});
   expect_click("edit.rotation.0", {"playback.frame 12"});
   expect_click("edit.rotation.0.remove", {"edit.remove rotation 0 0"});
   expect_click("edit.poses_clear", {"edit.poses_clear 0"});
@@ -107,6 +108,7 @@ TEST_F(EditPanel, GoesOnAndLoops) {
   expect_click("edit.gone_on", {"playback.frame " + there});
   expect_click("edit.gone_on.remove", {"edit.remove go_on 0"});
   expect_drag("edit.go_on_learned", "edit.go_on_learned 0 ");
+  expect_click("edit.go_on_variation.3", {"edit.go_on_variation 0 3"});
   expect_click("edit.looped", {"playback.frame 8"});
   expect_click("edit.looped.remove", {"edit.remove loop 0"});
   expect_drag("edit.loop_learned", "edit.loop_learned 0 ");

@@ -5,10 +5,11 @@
 // edit.people_clear; edit.joints_tool, edit.falloff, edit.children, edit.swap.first, .last, .limbs, .apply,
 // edit.skeleton.K (one made before), edit.skeleton_clear; edit.bones_tool, edit.bone_falloff, edit.pin,
 // edit.smooth, edit.raise, edit.turn, edit.trim, edit.trim_off, edit.skip, edit.fill, edit.filled.K,
-// edit.go_on, edit.gone_on, edit.go_on_learned, edit.loop, edit.looped, edit.loop_learned, edit.rotation.K,
-// edit.poses_clear; edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint,
-// edit.brush_radius, edit.brush_strength, edit.brush_mode, edit.weights_mirror.left, .right,
-// edit.weights_smooth, edit.weights_clear.
+// edit.fill_learned.K, edit.fill_variation.K (.0 to .3), edit.go_on, edit.gone_on, edit.go_on_learned,
+// edit.go_on_variation, edit.loop, edit.looped, edit.loop_learned, edit.rotation.K, edit.poses_clear;
+// edit.target_tool, edit.mirror, edit.target_joints_clear; edit.paint_tool, edit.joint, edit.brush_radius,
+// edit.brush_strength, edit.brush_mode, edit.weights_mirror.left, .right, edit.weights_smooth,
+// edit.weights_clear.
 #include <algorithm>
 #include <cmath>
 
@@ -312,6 +313,19 @@ std::string describe(const FillEdit& fill, float doubt_m) {
   return frames + " filled" + (doubt_m > 0 ? ", " + doubt_text(doubt_m) : "");
 }
 
+/// Which of the motion space's answers is taken: they are numbered from 1 here.
+void ask_alternative(PanelContext& context, const std::string& name, const std::string& command,
+                     int variation) {
+  std::vector<std::string> labels, words, tips;
+  for (int i = 0; i < kMostVariations; ++i) {
+    labels.push_back(std::to_string(i + 1)), words.push_back(std::to_string(i));
+    tips.push_back(i == 0 ? "The best answer" : "Another that is plausible, too");
+  }
+  Control control{name, "Alternative", "Which of the motion space's answers is taken", command};
+  control.tips = tips;
+  ask_choice(context, control, labels, words, words[static_cast<size_t>(variation)]);
+}
+
 void draw_fill(const app::Session& session, PanelContext& context, size_t i) {
   const FillEdit& fill = selected_take(session)->pose_edits.fill[i];
   const std::vector<float>& doubt_m = selected_state(session)->shown.doubt_m;
@@ -323,6 +337,8 @@ void draw_fill(const app::Session& session, PanelContext& context, size_t i) {
               "0: the smooth curve through the frames beside; 1: what the motion space has learned of people",
               "edit.fill_learned " + k + " " + number},
              fill.learned, {0, 1, 0.01f, "%.2f", 1, true});
+  ask_alternative(context, "edit.fill_variation." + number, "edit.fill_variation " + k + " " + number,
+                  fill.variation);
 }
 
 void draw_fills(const app::Session& session, PanelContext& context) {
@@ -373,6 +389,7 @@ void draw_go_on(const app::Session& session, PanelContext& context) {
              edit->learned,
              "edit.go_on_learned",
              {"go_on", k}});
+  ask_alternative(context, "edit.go_on_variation", "edit.go_on_variation " + k, edit->variation);
 }
 
 void draw_loop_edit(const app::Session& session, PanelContext& context) {

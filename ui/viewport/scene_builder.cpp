@@ -78,6 +78,10 @@ app::ScanPicture kept_picture(const app::ScanPicture& whole, const std::vector<c
   return part;
 }
 
+struct FrameSpan {
+  int first = 0, last = 0;
+};
+
 class Builder {
  public:
   Builder(const SceneInput& input, SceneMemory& memory)
@@ -99,7 +103,11 @@ class Builder {
   void add_trails();
   void add_trail(int person, int joint);
   void add_ghosts();
-  void add_futures();
+  void add_made_ways();
+  /// The ways of hands, feet and pelvis in frames first .. last of a take, as one of the motion space's
+  /// answers has it: full where it is the chosen one.
+  void add_ways(int take, const std::vector<Joints>& joints, FrameSpan span, bool chosen);
+  void add_fan(int take, FrameSpan span, int chosen);
   float ghost_opacity() const { return session_.view.ghosts_by_time ? kTimedGhostOpacity : kGhostOpacity; }
   Vec3 ghost_color(int frame, const Vec3& plain) const;
   /// What was made and not captured, as in the timeline.
@@ -143,7 +151,7 @@ PaneScene Builder::build() {
     for (size_t i = 0; i < in_.pane.takes.size(); ++i) add_take(i);
     add_ghosts();
     add_trails();
-    add_futures();
+    add_made_ways();
     add_crop_box();
   }
   if (in_.preview.gizmo) {
@@ -330,26 +338,43 @@ void Builder::add_trail(int person, int joint) {
   }
 }
 
-/// Where a take goes on beyond its last captured frame: the ways of hands, feet and pelvis, from a little
-/// before it on.
-void Builder::add_futures() {
+void Builder::add_ways(int take, const std::vector<Joints>& joints, FrameSpan span, bool chosen) {
+  const Vec3 color = chosen ? made_color() : Vec3(0.5f * (made_color() + air()));
+  for (const int joint : kFutureJoints) {
+    std::vector<Vec3> path;  // backwards: it fades the way that it goes
+    for (int f = std::min(span.last, static_cast<int>(ssize(joints)) - 1); f >= std::max(span.first, 0); --f)
+      path.push_back(joints[static_cast<size_t>(f)].row(joint).transpose() + aside_of(take + 1));
+    if (path.size() < 2) continue;
+    render::LinesView line = render::trail(Eigen::Map<const Points>(path.front().data(), ssize(path), 3),
+                                           color, chosen ? 2.5f : 1.2f);
+    line.x_ray = true;
+    out_.scene.lines.push_back(std::move(line));
+  }
+}
+
+void Builder::add_fan(int take, FrameSpan span, int chosen) {
+  const app::TakeState& state = session_.takes[static_cast<size_t>(take)];
+  for (int i = 0; i < ssize(state.alternatives); ++i)
+    if (i != chosen) add_ways(take, state.alternatives[static_cast<size_t>(i)], span, false);
+  add_ways(take, state.joints, span, true);
+}
+
+/// Where a take goes on beyond its last captured frame, from a little before it on, and in frames that are
+/// filled, while one of them is shown: a fan of what it could be.
+void Builder::add_made_ways() {
   const int reach = static_cast<int>(std::lround(kTrailSeconds * session_.source.fps));
+  const int now = in_.pictures.frame;
   for (const int k : in_.pane.takes) {
-    const app::TakeState* const take = at_or_null(session_.takes, k);
-    if (take == nullptr || take->performed.empty() || take->joints.size() <= take->performed.size()) continue;
-    const int last = static_cast<int>(take->performed.size()) - 1, end = ssize(take->joints);
-    if (in_.pictures.frame < last - reach) continue;
-    for (const int joint : kFutureJoints) {
-      std::vector<Vec3> path;  // backwards: it fades the way that it goes
-      for (int f = end - 1; f >= last; --f)
-        if (const Joints* joints = app::pane_joints(session_, k + 1, f))
-          path.push_back(joints->row(joint).transpose() + aside_of(k + 1));
-      if (path.size() < 2) continue;
-      render::LinesView line =
-          render::trail(Eigen::Map<const Points>(path.front().data(), ssize(path), 3), made_color(), 2.5f);
-      line.x_ray = true;
-      out_.scene.lines.push_back(std::move(line));
-    }
+    const app::TakeState* const state = at_or_null(session_.takes, k);
+    const app::Take* const take = at_or_null(session_.document.takes, k);
+    if (state == nullptr || take == nullptr || state->performed.empty()) continue;
+    const int last = static_cast<int>(state->performed.size()) - 1,
+              end = static_cast<int>(state->joints.size());
+    const auto& go_on = take->pose_edits.go_on;
+    if (end > last + 1 && now >= last - reach) add_fan(k, {last, end - 1}, go_on ? go_on->variation : 0);
+    for (const FillEdit& fill : take->pose_edits.fill)
+      if (fill.first <= now && now <= fill.last && !state->alternatives.empty())
+        add_fan(k, {fill.first - 1, fill.last + 1}, fill.variation);
   }
 }
 

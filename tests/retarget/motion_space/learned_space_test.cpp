@@ -57,6 +57,23 @@ Completion completed(const KnownMotion& question, float angle, float stands = 0)
   return LearnedSpace(std::make_unique<ElbowNetwork>(angle, stands)).complete(question);
 }
 
+/// Another of its answers.
+Completion alternative(KnownMotion question, int variation) {
+  question.variation = variation;
+  return completed(question, 0.8f);
+}
+
+/// Mean distance of the joints over some frames, metres.
+float apart(const Joints& rest, const Motion& a, const Motion& b, int first, int last) {
+  float sum = 0;
+  for (int t = first; t <= last; ++t)
+    sum += (forward_kinematics(rest, a.poses[t]).joints - forward_kinematics(rest, b.poses[t]).joints)
+               .rowwise()
+               .norm()
+               .mean();
+  return sum / static_cast<float>(last - first + 1);
+}
+
 bool is_same(const Pose& a, const Pose& b) {
   return a.local == b.local && a.root == b.root;
 }
@@ -187,6 +204,82 @@ TEST(LearnedSpace, AShortGapBetweenKnownFramesStaysTheCurve) {
   const Question ahead(146, 149);
   EXPECT_FALSE(is_same(completed(ahead, 0).motion.poses[149], completed(ahead, 0.8f).motion.poses[149]))
       << "after the last known frame any gap is made";
+}
+
+TEST(LearnedSpace, AlternativesDifferFromEachOtherAndTellMoreDoubt) {
+  const Question question(20, 39);
+  const LearnedSpace space(std::make_unique<ElbowNetwork>(0.8f));
+  ASSERT_EQ(space.variations(), kMostVariations);
+  std::vector<Completion> made;
+  for (int k = 0; k < kMostVariations; ++k) made.push_back(alternative(question, k));
+  for (int k = 0; k < kMostVariations; ++k)
+    for (int other = 0; other < k; ++other)
+      EXPECT_GT(apart(question.rest, made[k].motion, made[other].motion, 20, 39), 1e-3f) << k << other;
+  for (int k = 1; k < kMostVariations; ++k) {
+    EXPECT_GT(made[k].doubt_m[30], made[0].doubt_m[30]) << k;
+    const float way = apart(question.rest, made[k].motion, made[0].motion, 30, 30);
+    EXPECT_LT(made[k].doubt_m[30], made[0].doubt_m[30] + way + 0.01f) << k;
+    EXPECT_TRUE(std::equal(made[k].motion.poses.begin(), made[k].motion.poses.end(),
+                           alternative(question, k).motion.poses.begin(), is_same))
+        << k;
+  }
+}
+
+TEST(LearnedSpace, ANumberBeyondTheAlternativesIsTheBestAnswerToTheBit) {
+  const Question question(20, 39);
+  const Completion best = completed(question, 0.8f);
+  for (const int k : {-1, 0, kMostVariations}) {
+    const Completion made = alternative(question, k);
+    EXPECT_EQ(made.doubt_m, best.doubt_m);
+    for (size_t t = 0; t < best.motion.poses.size(); ++t)
+      EXPECT_TRUE(is_same(made.motion.poses[t], best.motion.poses[t])) << k << " " << t;
+  }
+}
+
+TEST(LearnedSpace, AlternativesKeepWhatIsKnownToTheBit) {
+  Question question(20, 39);
+  question.known[28] = all_parts(true);
+  for (int t = 20; t < 28; ++t) question.known[t][LeftShoulder] = question.known[t][LeftHip] = true;
+  for (int k = 1; k < kMostVariations; ++k) {
+    const Completion made = alternative(question, k);
+    for (int t = 0; t < ssize(question.known); ++t) {
+      const Pose &was = question.motion.poses[t], &is = made.motion.poses[t];
+      EXPECT_EQ(is_same(was, is), t < 20 || t > 39 || t == 28) << k << " " << t;
+      for (const int joint : {LeftShoulder, LeftHip})
+        if (t < 28) EXPECT_EQ(was.local[joint], is.local[joint]) << k << " " << t;
+    }
+  }
+}
+
+TEST(LearnedSpace, AlternativesTurnAndMirrorWithWhatIsKnown) {
+  const Question question(20, 39);
+  KnownMotion turned = question, mirror = question;
+  const Mat3 R = rotation_about_y(2);
+  for (Pose& pose : turned.motion.poses)
+    pose.root = R * pose.root, pose.local[Pelvis] = R * pose.local[Pelvis];
+  for (Pose& pose : mirror.motion.poses) pose = mirrored(pose);
+  for (int k = 1; k < kMostVariations; ++k) {
+    Motion made = alternative(question, k).motion, other = alternative(turned, k).motion,
+           seen = alternative(mirror, k).motion;
+    for (Pose& pose : other.poses)
+      pose.root = R.transpose() * pose.root, pose.local[Pelvis] = R.transpose() * pose.local[Pelvis];
+    for (Pose& pose : seen.poses) pose = mirrored(pose);
+    EXPECT_LT(apart(question.rest, made, other, 20, 39), 1e-3f) << k;
+    EXPECT_LT(apart(question.rest, made, seen, 20, 39), 2e-3f) << k;
+  }
+}
+
+TEST(LearnedSpace, FuturesGoApartAndBeginTogether) {
+  Question question(0, -1);
+  const int end = ssize(question.known) - 1, first = end - 29;
+  for (int t = first; t <= end; ++t) question.known[t] = all_parts(false);
+  const Completion best = completed(question, 0.8f);
+  for (int k = 1; k < kMostVariations; ++k) {
+    const Completion made = alternative(question, k);
+    const auto way = [&](int t) { return apart(question.rest, made.motion, best.motion, t, t); };
+    EXPECT_GT(way(end), 1e-3f) << k;
+    EXPECT_LT(way(first), 0.5f * way(end)) << k;
+  }
 }
 
 TEST(LearnedSpace, RefusesQuestionsWithoutAnAnswer) {
