@@ -83,7 +83,7 @@ std::vector<std::vector<float>> weights_of(const BlendOptions& options) {
 
 /// What a part is called among the others: by its file, and by its frames where another has that name.
 std::string label_of(const BlendRecipe& blend, size_t i) {
-  const std::string name = clip_name(blend.parts[i].path);
+  std::string name = clip_name(blend.parts[i].path);
   const auto same_name = [&](const BlendPart& part) { return clip_name(part.path) == name; };
   if (std::count_if(blend.parts.begin(), blend.parts.end(), same_name) == 1) return name;
   const std::string frames = in_words(blend.parts[i]).substr(blend.parts[i].path.size());
