@@ -199,7 +199,7 @@ struct Bench {
     if (space) return *space;
     const bool plain = motion_space_named(options.fill).make;
     space = plain ? make_motion_space(options.fill, options.data)
-                  : nn::load_motion_space(nn::weights_folder(network_options(options.how)));
+                  : nn::load_motion_space(nn::weights_folder(network_options(options.how)), options.fill);
     return *space;
   }
 };

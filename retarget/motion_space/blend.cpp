@@ -35,26 +35,6 @@ DecodedSample decoded_sample(const TimedPoses& movement, int k) {
   return {between(movement.poses[before], movement.poses[after], share), from + share * (to - from)};
 }
 
-/// Both feet over evenly timed joints, looking forwards and then backwards: a foot stands where either sees
-/// it stand. What is lowest of a ball in all of them is where it stands.
-std::vector<Standing> stances(const std::vector<Joints>& joints, float dt, float leg) {
-  std::vector<Standing> standing(joints.size(), Standing{});
-  const int count = ssize(joints);
-  for (int side = 0; side < 2; ++side) {
-    float floor = joints[0](LeftFoot + side, 1);
-    for (const Joints& frame : joints) floor = std::min(floor, frame(LeftFoot + side, 1));
-    for (const bool backwards : {false, true}) {
-      ContactSwitch contact({}, leg);
-      for (int i = 0; i < count; ++i) {
-        const int k = backwards ? count - 1 - i : i;
-        if (contact.push(joints[k].row(LeftFoot + side).transpose(), floor, dt) && i > 0)
-          standing[k][side] = true;
-      }
-    }
-  }
-  return standing;
-}
-
 std::vector<Joints> joints_of(const Joints& rest, const std::vector<Pose>& poses) {
   std::vector<Joints> joints;
   joints.reserve(poses.size());

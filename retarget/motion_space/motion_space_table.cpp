@@ -37,6 +37,8 @@ const std::vector<MotionSpaceChoice>& motion_spaces() {
        made<make_hermite_space>},
       {"nearest", "Nearest", "the most similar of known motions, bent to what is known", nullptr, true,
        make_nearest_space},
+      {"paper", "Fitted steps", "steps that a network knows are fitted to the known frames and bent to them",
+       "motion_steps.weights"},
       {"space", "Learned", "the motion space's network corrects the smooth curves", "motion_space.weights"}};
   return all;
 }

@@ -23,6 +23,12 @@ std::vector<Pose> Outlook::seen(std::vector<Pose> poses) const {
   return poses;
 }
 
+Pose Outlook::placed(Pose pose) const {
+  pose.root = place + heading * pose.root;
+  pose.local[Pelvis] = heading * pose.local[Pelvis];
+  return pose;
+}
+
 namespace {
 
 constexpr int kContext = 12;  // known samples on each side

@@ -18,6 +18,8 @@ struct Outlook {
   static Outlook of(const Pose& pose);
   Pose seen(Pose pose) const;
   std::vector<Pose> seen(std::vector<Pose> poses) const;
+  /// The inverse: where in the world a pose is that looks so from here.
+  Pose placed(Pose pose) const;
 };
 
 constexpr float kWindowRate = 30;    ///< samples/s

@@ -20,12 +20,6 @@ Joints seen_from(const Outlook& outlook, const Joints& joints) {
   return (joints.rowwise() - outlook.place.transpose()) * outlook.heading;
 }
 
-Pose back_from(const Outlook& outlook, Pose pose) {
-  pose.root = outlook.place + outlook.heading * pose.root;
-  pose.local[Pelvis] = outlook.heading * pose.local[Pelvis];
-  return pose;
-}
-
 bool is_whole(const KnownMotion& question, int t) {
   return t >= 0 && t < ssize(question.known) && question.known[t] == all_parts(true);
 }
@@ -152,7 +146,7 @@ void NearestSpace::fill_window(const KnownMotion& question, const Window& window
     return pose_at(found.clip, moment(found.first, window.step * static_cast<float>(t)));
   };
   const Outlook there = Outlook::of(pose_of(window.outlook())), here = Outlook::of(known(window.outlook()));
-  const auto like = [&](int t) { return back_from(here, there.seen(pose_of(t))); };
+  const auto like = [&](int t) { return here.placed(there.seen(pose_of(t))); };
   const int before = window.before - 1, after = window.count - window.after;
   const int one_end = window.before > 0 ? before : after;  // that there is
   const int from = window.before > 0 ? before : one_end, to = window.after > 0 ? after : one_end;

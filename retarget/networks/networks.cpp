@@ -12,6 +12,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/program_files.hpp"
+#include "retarget/motion_space/paper_space.hpp"
 #include "retarget/networks/dense_extractor.hpp"
 #include "retarget/networks/network_deformer.hpp"
 #include "retarget/networks/plugin_api.hpp"
@@ -141,7 +142,9 @@ Networks load_networks(const NetworkOptions& options, const NetworkParts& parts)
   return networks;
 }
 
-std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder) {
+std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder, const std::string& name) {
+  if (name == "paper") return std::make_unique<PaperSpace>(load_motion_coder(folder));
+  US_CHECK(name == "space", "no network fills frames as '", name, "' does");
   return plugin().load_motion_space(folder + "/motion_space.weights");
 }
 

@@ -30,9 +30,9 @@ struct NetworkOptions {
 /// one null. Throws Error when weights are missing or of another version.
 Networks load_networks(const NetworkOptions& options, const NetworkParts& parts = NetworkParts::all());
 
-/// What fills gaps, with the weights in that folder. Throws Error when they are missing or of another
-/// version.
-std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder);
+/// What fills gaps, with the weights in that folder: "space", or "paper" by load_motion_coder. Throws Error
+/// for another name, and when they are missing or of another version.
+std::unique_ptr<MotionSpace> load_motion_space(const std::string& folder, const std::string& name = "space");
 
 /// What codes movements as points of a space, with the weights in that folder. Throws Error when they are
 /// missing or of another version.

@@ -29,7 +29,7 @@ TEST(MotionSpaceTable, NamesThoseThatThereAreWhenAskedForAnother) {
     motion_space_named("magic");
     FAIL();
   } catch (const Error& wrong) {
-    EXPECT_NE(std::string(wrong.what()).find("hold, glide, coast, slerp, hermite, nearest, space"),
+    EXPECT_NE(std::string(wrong.what()).find("hold, glide, coast, slerp, hermite, nearest, paper, space"),
               std::string::npos);
   }
 }
