@@ -8,9 +8,9 @@
 #include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion_space/knot_coder.hpp"
-#include "retarget/skeleton/foot_contact.hpp"
 #include "retarget/skeleton/foot_hold.hpp"
 #include "retarget/skeleton/pose_curve.hpp"
+#include "retarget/skeleton/stances.hpp"
 
 namespace understudy {
 namespace {

@@ -10,7 +10,7 @@
 #include "retarget/motion_space/step_fit.hpp"
 #include "retarget/motion_space/steps.hpp"
 #include "retarget/skeleton/curve_doubt.hpp"
-#include "retarget/skeleton/foot_contact.hpp"
+#include "retarget/skeleton/stances.hpp"
 
 namespace understudy {
 namespace {

@@ -1,7 +1,5 @@
-// When a foot stands on the floor.
+// When a foot stands on the floor, decided from the past only.
 #pragma once
-
-#include <vector>
 
 #include "retarget/base/fields.hpp"
 #include "retarget/skeleton/skeleton.hpp"
@@ -22,7 +20,7 @@ FieldsOf<S, FootContactOptions> fields(V& visit, S& contact) {
   visit("end_speed", contact.end_speed);
 }
 
-/// Hysteresis for one point of a foot; decides from the past only.
+/// Hysteresis for one point of a foot.
 class ContactSwitch {
  public:
   explicit ContactSwitch(const FootContactOptions& options = {}, float leg_m = 0.8f);
@@ -38,10 +36,5 @@ class ContactSwitch {
   Vec3 last_ = Vec3::Zero(), velocity_ = Vec3::Zero();
   bool on_ = false, started_ = false;
 };
-
-/// Both feet over joints every `dt` seconds, looking forwards and then backwards: a foot stands where either
-/// sees it stand. What is lowest of a ball in all of them is where it stands. `leg`: leg_length.
-/// There is a frame at least.
-std::vector<Standing> stances(const std::vector<Joints>& joints, float dt, float leg);
 
 }  // namespace understudy
