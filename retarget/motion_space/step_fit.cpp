@@ -14,7 +14,7 @@ namespace {
 // Chosen on some windows of unseen walks.
 constexpr float kNoise_m = 0.005f;
 constexpr size_t kFollowed = 4;  // starts
-constexpr int kRounds = 6, kSteps = 6;
+constexpr int kMostRounds = 6, kSteps = 6;
 constexpr float kLeastGain = 1e-3f, kLeastRoundGain = 0.02f;  // shares of the cost
 
 constexpr int kPlaceNumbers = 3;
@@ -204,7 +204,7 @@ FittedStep fit_step(MotionCoder& coder, const MotionWindow& window,
                    attempts.end());
   };
   keep(kFollowed);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     bool gained = false;
     for (Attempt& one : attempts) gained |= fitter.improve(one);
     if (!gained) break;
