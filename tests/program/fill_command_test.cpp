@@ -24,9 +24,9 @@ class Filling : public ShippedProgram {
       EXPECT_TRUE(std::filesystem::remove(folder + missing));
     return folder;
   }
-  Finished fill(const std::string& source, std::vector<std::string> more) {
+  Finished fill(const std::string& source, std::vector<std::string> more, const std::string& learned = "0") {
     std::vector<std::string> arguments = {"fill",  "--source",        source,      "--target", target(),
-                                          "--out", out("filled.glb"), "--learned", "0"};
+                                          "--out", out("filled.glb"), "--learned", learned};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_program(arguments);
   }
@@ -60,9 +60,9 @@ TEST_F(Filling, RangesAreMadeToo) {
 
 TEST_F(Filling, AlternativesDifferAndAreTheSameTwice) {
   const auto made = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"--until", "0.5", "--learned", "1"};
+    std::vector<std::string> arguments = {"--until", "0.5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Finished run = fill(scans(), arguments);
+    const Finished run = fill(scans(), arguments, "1");
     EXPECT_EQ(run.code, 0) << run.err;
     return read_bytes(out("filled.glb"));
   };
@@ -70,7 +70,9 @@ TEST_F(Filling, AlternativesDifferAndAreTheSameTwice) {
   EXPECT_EQ(made({"--variation", "0"}), best);
   EXPECT_EQ(made({"--variation", "2"}), other);
   EXPECT_NE(other, best);
-  expect_clean_failure(fill(scans(), {"--variation", "4"}), "--variation: Value 4 not in range 0 to 3");
+  const Finished none = fill(scans(), {"--variation", "4"});
+  EXPECT_GT(none.code, 0);
+  EXPECT_NE(none.err.find("--variation: Value 4 not in range"), std::string::npos) << none.err;
 }
 
 TEST_F(Filling, RangesThatAreNoneAreRefused) {
