@@ -80,6 +80,7 @@ std::vector<Sample> answered(WindowNetwork& network, const MotionWindow& window,
   std::vector<Sample> best = ask(window);
   if (variation <= 0 || variation > kCurveBends) return best;
   std::vector<float> doubt_m;
+  doubt_m.reserve(best.size());
   for (const Sample& sample : best) doubt_m.push_back(sample.doubt_m);
   return beside_the_best(window, best, ask(bent(window, variation, doubt_m)));
 }

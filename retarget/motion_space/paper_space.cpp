@@ -90,6 +90,7 @@ class StepWindows final : public WindowNetwork {
 
   std::vector<WindowAnswer> answer(const std::vector<MotionWindow>& windows) override {
     std::vector<WindowAnswer> answers;
+    answers.reserve(windows.size());
     for (const MotionWindow& window : windows) answers.push_back(answer(window));
     return answers;
   }
@@ -106,6 +107,7 @@ class StepWindows final : public WindowNetwork {
     const std::vector<Pose> poses = bent(step.poses, known, window.curve);
     for (size_t i = 0; i < known.size(); ++i) mix(window, i, poses[i], step.error_m, answer);
     std::vector<Joints> joints;
+    joints.reserve(answer.poses.size());
     for (const Pose& pose : answer.poses) joints.push_back(forward_kinematics(window.rest, pose).joints);
     const std::vector<Standing> stand = stances(joints, 1 / kWindowRate, leg_length(window.rest));
     for (size_t i = 0; i < stand.size(); ++i)

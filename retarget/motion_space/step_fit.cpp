@@ -197,6 +197,7 @@ FittedStep fit_step(MotionCoder& coder, const MotionWindow& window,
   US_CHECK(!starts.empty(), "a movement is fitted from no start");
   const StepFitter fitter(coder, window);
   std::vector<Attempt> attempts;
+  attempts.reserve(starts.size());
   for (const std::vector<float>& code : starts) attempts.push_back(fitter.begin(code));
   const auto keep = [&attempts](size_t count) {
     std::stable_sort(attempts.begin(), attempts.end(), is_cheaper);
