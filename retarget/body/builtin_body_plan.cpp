@@ -56,7 +56,7 @@ class PlanPlayer {
 
   FootState foot(int side, float t) const {
     FootState state{on_floor(plan_.feet[side].x(), plan_.feet[side].z()), plan_.feet[side].y(), 0, true};
-    for (const Step& step : plan_.steps) {
+    for (const PlannedStep& step : plan_.steps) {
       if (step.side != side) continue;
       // The heel rises before the ball leaves.
       const float lead = 0.35f * (step.end - step.start);
@@ -71,7 +71,7 @@ class PlanPlayer {
   }
 
   /// First up, then along, then down: near the floor a foot hardly moves along it.
-  FootState in_the_air(const Step& step, const FootState& from, const Vec3& to, float s) const {
+  FootState in_the_air(const PlannedStep& step, const FootState& from, const Vec3& to, float s) const {
     FootState state = from;
     state.planted = false;
     const float along = smoother_step(s, 0.08f, 0.92f);

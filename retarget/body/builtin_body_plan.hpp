@@ -29,7 +29,7 @@ struct TrunkPlan {
 };
 
 /// A foot goes to a new place; between steps it is planted. Lengths in leg lengths / 0.8.
-struct Step {
+struct PlannedStep {
   int side;             ///< 0 left, 1 right
   float start, end;     ///< seconds
   float x, z, yaw_deg;  ///< where the ball of the foot lands
@@ -40,7 +40,7 @@ struct Step {
 struct MotionPlan {
   float seconds = 4;
   std::array<Vec3, 2> feet = {Vec3(.11f, 0, 0), Vec3(-.11f, 0, 0)};  ///< at the start: x, yaw in degrees, z
-  std::vector<Step> steps;                                           ///< by start, per foot
+  std::vector<PlannedStep> steps;                                    ///< by start, per foot
   std::function<TrunkPlan(float)> trunk;
 };
 
