@@ -256,6 +256,28 @@ TEST_F(SceneTest, AFutureIsAFanOfTrailsFromTheLastCapturedFrame) {
   EXPECT_LT((path.row(0) - take.joints.back().row(Pelvis)).norm(), 1e-5f);
 }
 
+TEST_F(SceneTest, OtherAnswersAreThinTrailsBesideTheChosenOne) {
+  app::TakeState& take = session.takes[0];
+  for (const Pose& pose : take.shown.poses) take.performed.push_back({pose});
+  session.document.takes[0].pose_edits.fill = {{5, 8, 1, 2}};
+  stage.show_frame(6);
+  EXPECT_TRUE(scene(1).scene.lines.empty()) << "they are not made yet";
+  for (int k = 0; k < kMostVariations; ++k) {
+    take.alternatives.push_back(take.joints);
+    for (int t = 5; t <= 8; ++t) take.alternatives.back()[t].col(0).array() += 0.1f * static_cast<float>(k);
+  }
+  const auto lines = scene(1).scene.lines;
+  ASSERT_EQ(lines.size(), 20u) << "four answers of five joints";
+  for (size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].positions.rows(), 6) << "from the frame before to the one behind";
+    EXPECT_EQ(lines[i].width > 2, i >= 15) << "the chosen one is full";
+  }
+  const float apart = lines[10].positions(2, 0) - lines[0].positions(2, 0);
+  EXPECT_NEAR(apart, 0.3f, 1e-5f) << "the fourth and the first: the third is chosen";
+  stage.show_frame(10);
+  EXPECT_TRUE(scene(1).scene.lines.empty()) << "none of the filled frames is shown";
+}
+
 TEST_F(SceneTest, OffsetsAreTheirLengthInMillimetres) {
   session.view.take.colouring = app::Colouring::Offsets;
   const PaneScene made = scene(1);
