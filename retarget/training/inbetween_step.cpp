@@ -40,7 +40,7 @@ LossSum inbetween_loss(const nn::InbetweenOutput& made, const InbetweenBatch& ba
            0.1);
   loss.add("speed", (between(weight, 1) * difference_error(joints, true_joints, 1).mean(-1)).mean(), 3);
   loss.add("acceleration", (between(weight, 2) * difference_error(joints, true_joints, 2).mean(-1)).mean(),
-           4);
+           2);
   const auto feet =
       torch::tensor({int64_t(LeftAnkle), int64_t(LeftFoot), int64_t(RightAnkle), int64_t(RightFoot)});
   const auto made_feet = joints.index_select(2, feet), true_feet = true_joints.index_select(2, feet);
