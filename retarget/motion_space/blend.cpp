@@ -8,6 +8,8 @@
 #include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/motion_space/knot_coder.hpp"
+#include "retarget/motion_space/motion_window.hpp"
+#include "retarget/motion_space/seam.hpp"
 #include "retarget/skeleton/foot_hold.hpp"
 #include "retarget/skeleton/pose_curve.hpp"
 #include "retarget/skeleton/stances.hpp"
@@ -71,43 +73,10 @@ void make_rise(std::vector<float>& share) {
   for (float& one : share) one /= last;
 }
 
-Mat3 part_of_turn(const Mat3& turn, float share) {
-  return rotation_from_axis_angle(share * rotation_to_axis_angle(turn));
-}
-
-/// How a pose stands in the world, and what is left of it from there.
-struct Place {
-  Mat3 heading;
-  Vec3 ground;
-
-  static Place of(const Pose& pose) {
-    return {rotation_about_y(heading_of(pose.local[Pelvis])), Vec3(pose.root.x(), 0, pose.root.z())};
-  }
-  Pose from_here(Pose pose) const {
-    pose.local[Pelvis] = heading.transpose() * pose.local[Pelvis];
-    pose.root = heading.transpose() * (pose.root - ground);
-    return pose;
-  }
-  Pose to_world(Pose pose) const {
-    pose.local[Pelvis] = heading * pose.local[Pelvis];
-    pose.root = heading * pose.root + ground;
-    return pose;
-  }
-};
-
-/// Bends a movement so that it ends as it begins, elsewhere: half of what is missing at either end.
-void close_seam(std::vector<Pose>& poses) {
-  const Pose first = Place::of(poses.front()).from_here(poses.front());
-  const Pose last = Place::of(poses.back()).from_here(poses.back());
-  for (int k = 0; k < ssize(poses); ++k) {
-    const float share = 0.5f - static_cast<float>(k) / static_cast<float>(ssize(poses) - 1);
-    const Place place = Place::of(poses[k]);
-    Pose pose = place.from_here(poses[k]);
-    for (int j = 0; j < kJointCount; ++j)
-      pose.local[j] = pose.local[j] * part_of_turn(first.local[j].transpose() * last.local[j], share);
-    pose.root.y() += share * (last.root.y() - first.root.y());
-    poses[k] = place.to_world(pose);
-  }
+Outlook on_the_ground(const Pose& pose) {
+  Outlook from = Outlook::of(pose);
+  from.place.y() = 0;
+  return from;
 }
 
 }  // namespace
@@ -235,22 +204,21 @@ Motion played(const Blended& blended, float fps, int cycles) {
   US_CHECK(cycles >= 1 && cycles <= 1000, "a movement is played 1 to 1000 times, not ", cycles);
   TimedPoses cycle = blended.movement;
   if (cycles > 1) close_seam(cycle.poses);
-  const Place begin = Place::of(cycle.poses.front()), end = Place::of(cycle.poses.back());
+  const Outlook begin = on_the_ground(cycle.poses.front()), end = on_the_ground(cycle.poses.back());
   const float duration = cycle.duration();
   Motion motion;
   motion.fps = fps;
   const auto count =
       static_cast<int64_t>(std::floor(duration * static_cast<float>(cycles) * fps + 1e-3f)) + 1;
-  Place from{Mat3::Identity(), Vec3::Zero()};
+  Outlook from;
   int turn = 0;
   for (int64_t t = 0; t < count; ++t) {
     const float seconds = static_cast<float>(t) / fps;
     for (; turn + 1 < cycles && seconds >= static_cast<float>(turn + 1) * duration; ++turn)
-      from = {
-          from.heading * end.heading * begin.heading.transpose(),
-          from.ground + from.heading * (end.ground - end.heading * begin.heading.transpose() * begin.ground)};
+      from = {from.place + from.heading * (end.place - end.heading * begin.heading.transpose() * begin.place),
+              from.heading * end.heading * begin.heading.transpose()};
     const float at = seconds - static_cast<float>(turn) * duration;
-    motion.poses.push_back(from.to_world(pose_at(cycle, at)));
+    motion.poses.push_back(from.placed(pose_at(cycle, at)));
     const auto next = std::upper_bound(cycle.seconds.begin(), cycle.seconds.end(), at);
     const ptrdiff_t k = std::max<ptrdiff_t>(0, next - cycle.seconds.begin() - 1);
     motion.standing.push_back(blended.standing[k]);

@@ -39,12 +39,7 @@ float length_of(const std::array<float, 2>& distance) {
 
 /// -1 .. 1: which foot is in front, left or right, where the window is looked at from.
 float foot_in_front(const MotionWindow& window) {
-  std::vector<KnownParts> known;
-  for (const KnownDistance& distance : window.distance) {
-    KnownParts& parts = known.emplace_back();
-    for (size_t part = 0; part < kPartCount; ++part) parts[part] = distance[part][0] == 0;
-  }
-  const Pose& pose = window.curve[static_cast<size_t>(outlook_frame(known))];
+  const Pose& pose = window.curve[static_cast<size_t>(outlook_frame(known_of(window)))];
   const Joints joints = forward_kinematics(window.rest, pose).joints;
   return std::tanh((joints(LeftAnkle, 2) - joints(RightAnkle, 2)) / kFeetApart_m);
 }

@@ -29,6 +29,13 @@ Pose Outlook::placed(Pose pose) const {
   return pose;
 }
 
+std::vector<KnownParts> known_of(const MotionWindow& window) {
+  std::vector<KnownParts> known(window.distance.size());
+  for (size_t i = 0; i < known.size(); ++i)
+    for (size_t part = 0; part < kPartCount; ++part) known[i][part] = window.distance[i][part][0] == 0;
+  return known;
+}
+
 namespace {
 
 constexpr int kContext = 12;  // known samples on each side
@@ -86,13 +93,8 @@ class WindowMaker {
     window.first = at.first;
     for (const Gap& gap : gaps)
       for (int t = gap.first; t <= gap.last; ++t) window.gap_frames.push_back(t);
-    std::vector<KnownParts> known;
     for (int i = 0; i < at.samples; ++i) add_sample(at.first + static_cast<float>(i) * step(), window);
-    for (const KnownDistance& distance : window.distance) {
-      KnownParts& parts = known.emplace_back();
-      for (size_t part = 0; part < kPartCount; ++part) parts[part] = distance[part][0] == 0;
-    }
-    window.outlook = Outlook::of(window.curve[static_cast<size_t>(outlook_frame(known))]);
+    window.outlook = Outlook::of(window.curve[static_cast<size_t>(outlook_frame(known_of(window)))]);
     window.curve = window.outlook.seen(std::move(window.curve));
     return window;
   }

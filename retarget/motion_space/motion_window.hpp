@@ -41,6 +41,9 @@ struct MotionWindow {
 std::vector<MotionWindow> windows_of(const std::vector<KnownParts>& known, const Motion& curve,
                                      const Joints& rest);
 
+/// What is known of each sample.
+std::vector<KnownParts> known_of(const MotionWindow& window);
+
 /// The same in a mirror.
 MotionWindow mirrored(const MotionWindow& window);
 

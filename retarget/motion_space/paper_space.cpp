@@ -42,13 +42,6 @@ std::vector<std::vector<float>> walk_codes(MotionCoder& coder) {
   return codes;
 }
 
-std::vector<KnownParts> known_of(const MotionWindow& window) {
-  std::vector<KnownParts> known(window.distance.size());
-  for (size_t i = 0; i < known.size(); ++i)
-    for (size_t part = 0; part < kPartCount; ++part) known[i][part] = window.distance[i][part][0] == 0;
-  return known;
-}
-
 /// What brings one pose to another, and the pose that it brings one to.
 Pose way_between(const Pose& from, const Pose& to) {
   Pose way;

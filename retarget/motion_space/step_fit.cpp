@@ -7,6 +7,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/motion_space/seam.hpp"
 
 namespace understudy {
 namespace {
@@ -23,18 +24,13 @@ constexpr float kDifference = 0.05f;
 constexpr int kSmoothings = 2;
 constexpr float kShortestRound = 0.1f;  // seconds
 
-bool is_known(const KnownDistance& distance) {
-  return std::all_of(distance.begin(), distance.end(),
-                     [](const std::array<float, 2>& part) { return part[0] == 0; });
-}
-
 /// A movement from the origin that goes on where it ends, as it is at any time.
 class Course {
  public:
   explicit Course(TimedPoses movement) : movement_(std::move(movement)) {
     turn_ = Outlook::of(movement_.poses.back());
     turn_.place.y() = 0;
-    close();
+    close_seam(movement_.poses);
   }
 
   Pose at(float seconds) const {
@@ -46,23 +42,6 @@ class Course {
   }
 
  private:
-  /// It ends as it begins, elsewhere: half of what is missing is put right at either end.
-  void close() {
-    const Pose first = movement_.poses.front(), last = turn_.seen(movement_.poses.back());
-    std::array<Vec3, kJointCount> missing;
-    for (int j = 0; j < kJointCount; ++j)
-      missing[j] = rotation_to_axis_angle(first.local[j].transpose() * last.local[j]);
-    const float rise = last.root.y() - first.root.y();
-    const int count = ssize(movement_.poses);
-    for (int k = 0; k < count; ++k) {
-      const float share = 0.5f - static_cast<float>(k) / static_cast<float>(count - 1);
-      Pose& pose = movement_.poses[k];
-      for (int j = 0; j < kJointCount; ++j)
-        pose.local[j] = pose.local[j] * rotation_from_axis_angle(share * missing[j]);
-      pose.root.y() += share * rise;
-    }
-  }
-
   TimedPoses movement_;
   Outlook turn_;  // where it ends
 };
@@ -89,8 +68,9 @@ bool is_cheaper(const Attempt& a, const Attempt& b) {
 class StepFitter {
  public:
   StepFitter(MotionCoder& coder, const MotionWindow& window) : coder_(coder), window_(window) {
+    const std::vector<KnownParts> known = known_of(window);
     for (int i = 0; i < ssize(window.curve); ++i)
-      if (is_known(window.distance[i])) {
+      if (known[i] == all_parts(true)) {
         known_.push_back(i);
         joints_.push_back(forward_kinematics(window.rest, window.curve[i]).joints);
       }
