@@ -133,6 +133,7 @@ void Studio::take_in(SourceOpened& event) {
     take.another.clear();
     take.shown = Motion{};
     take.joints.clear();
+    take.alternatives.clear();
     take.series.clear();
     take.metrics.clear();
     take.latency = {};

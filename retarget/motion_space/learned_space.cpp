@@ -52,10 +52,15 @@ std::vector<Sample> samples_of(const MotionWindow& window, const WindowAnswer& d
   return samples;
 }
 
-Joints joints_of(const MotionWindow& window, size_t sample, const Change& change) {
-  Pose pose = window.curve[sample];
-  for (int j = 0; j < kJointCount; ++j) pose.local[j] = pose.local[j] * rotation_from_axis_angle(change[j]);
-  pose.root += change[kRootPart];
+void change(const Sample& sample, const KnownParts& known, const Mat3& heading, Pose& pose) {
+  for (int j = 0; j < kJointCount; ++j)
+    if (!known[j]) pose.local[j] = pose.local[j] * rotation_from_axis_angle(sample.change[j]);
+  if (!known[kRootPart]) pose.root += heading * sample.change[kRootPart];
+}
+
+Joints joints_of(const MotionWindow& window, size_t i, const Sample& sample) {
+  Pose pose = window.curve[i];
+  change(sample, all_parts(false), Mat3::Identity(), pose);
   return forward_kinematics(window.rest, pose).joints;
 }
 
@@ -64,7 +69,7 @@ Joints joints_of(const MotionWindow& window, size_t sample, const Change& change
 std::vector<Sample> beside_the_best(const MotionWindow& window, const std::vector<Sample>& best,
                                     std::vector<Sample> other) {
   for (size_t i = 0; i < other.size(); ++i) {
-    const Joints here = joints_of(window, i, best[i].change), there = joints_of(window, i, other[i].change);
+    const Joints here = joints_of(window, i, best[i]), there = joints_of(window, i, other[i]);
     other[i].doubt_m = std::hypot(other[i].doubt_m, (there - here).rowwise().norm().mean());
     for (size_t side = 0; side < 2; ++side)
       other[i].standing[side] = std::max(other[i].standing[side], best[i].standing[side]);
@@ -107,12 +112,6 @@ Sample at(const std::vector<Sample>& samples, float when) {
     made.standing[side] = b.standing[side] + share * (c.standing[side] - b.standing[side]);
   made.doubt_m = b.doubt_m + share * (c.doubt_m - b.doubt_m);
   return made;
-}
-
-void change(const Sample& sample, const KnownParts& known, const Mat3& heading, Pose& pose) {
-  for (int j = 0; j < kJointCount; ++j)
-    if (!known[j]) pose.local[j] = pose.local[j] * rotation_from_axis_angle(sample.change[j]);
-  if (!known[kRootPart]) pose.root += heading * sample.change[kRootPart];
 }
 
 void check(const KnownMotion& question) {
