@@ -117,7 +117,7 @@ void perform(const ExportOptions& options, const Role& role, Retargeter& retarge
   Progress progress(role.called + " -> " + input.name, source->count().value_or(0));
   while (const auto frame = retargeted.next()) {
     clip.poses.push_back(frame->result.pose);
-    doubt_m.push_back(frame->scan.doubt_m);
+    doubt_m.push_back(frame->result.observed.doubt_m);
     input.source_joints.push_back(frame->result.source.joints);
     progress.step(retargeted.frames());
     check_interrupt("after frame " + std::to_string(frame->scan.number));

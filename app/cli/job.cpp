@@ -65,8 +65,9 @@ void take_frame(Running& job, const RetargetedFrame& frame, bool live) {
   if (result.flagged)
     job.repeats.warn("frame " + std::to_string(frame.scan.number) +
                      " repeats the last pose: " + result.reason);
-  job.doubt_m.push_back(frame.scan.doubt_m);
-  if (job.output) job.output->push({result.pose, result.source.joints, &result.vertices});
+  job.doubt_m.push_back(result.observed.doubt_m);
+  if (job.output)
+    job.output->push({result.pose, result.source.joints, &result.vertices, result.observed.doubt_m});
   if (job.moments && job.moments->wanted(frame.index))
     job.moments->add(frame.index, moment_of(frame, fps, job.character->target.mesh));
   if (job.skeletons && job.skeletons->wanted(frame.index))

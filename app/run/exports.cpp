@@ -124,9 +124,13 @@ class CharacterOutput final : public MotionOutput {
  public:
   CharacterOutput(std::string path, const ExportBody& body, const std::string& name, double fps)
       : path_(std::move(path)), body_(body), clip_{name, fps, {}} {}
-  void push(const ExportFrame& frame) override { clip_.poses.push_back(frame.pose); }
+  void push(const ExportFrame& frame) override {
+    clip_.poses.push_back(frame.pose);
+    doubt_m_.push_back(frame.doubt_m);
+  }
   ExportCost finish() override {
     US_CHECK(!clip_.poses.empty(), path_, ": there is no motion to export");
+    clip_.made = made_frames(doubt_m_);
     return export_character(path_, {{*body_.character, *body_.screen, {clip_}, body_.file}});
   }
 
@@ -134,6 +138,7 @@ class CharacterOutput final : public MotionOutput {
   std::string path_;
   ExportBody body_;
   CharacterClip clip_;
+  std::vector<float> doubt_m_;  // of each pose
 };
 
 }  // namespace

@@ -64,6 +64,7 @@ struct ExportFrame {
   const Pose& pose;
   Joints source_joints = Joints::Zero();  ///< of the source, for formats that hold them
   const Points* vertices = nullptr;       ///< where they are known already, in the target's order
+  float doubt_m = 0;                      ///< of a frame that was not captured but made; else 0
 };
 
 /// Takes one motion, frame after frame. What was at the path stays until finish(); without it nothing is left

@@ -170,6 +170,7 @@ PerformedFrame Performer::repeat(PerformedFrame frame, std::string reason) {
   frame.reason = std::move(reason);
   frame.confidence.setZero();
   frame.pose = ahead_ ? ahead_->after(waited_, target_.joints) : last_.pose;
+  frame.observed.doubt_m = ahead_ ? PosePrediction::doubt_m(waited_) : 0;
   frame.standing = last_.standing;
   frame.limbs = last_.limbs;
   frame.source.joints = last_.source;

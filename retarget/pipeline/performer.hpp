@@ -40,7 +40,7 @@ struct PerformedFrame {
   Points vertices;                 ///< [V, 3] metres, in the target's order; empty when not asked for
   Joints joints = Joints::Zero();  ///< of the target, world
   Pose pose;                       ///< of the target: local rotations and root
-  Observation observed;            ///< as it came
+  Observation observed;            ///< as it came; the doubt is of what stands in where it is predicted
   Observation source;              ///< styled, repaired and smoothed: what was transferred; where
                                    ///< flagged that of the last good frame
   Confidence confidence = Confidence::Zero();  ///< of the observed joints; zero where flagged
@@ -59,7 +59,7 @@ struct KeptFrame {
   bool flagged = false;
   Standing standing{};  ///< the feet that are held on the floor
   LimbsSight limbs{};   ///< what is seen of the limbs
-  float doubt_m = 0;    ///< as Observation's
+  float doubt_m = 0;    ///< as observed.doubt_m
 };
 KeptFrame kept(const PerformedFrame& frame);
 

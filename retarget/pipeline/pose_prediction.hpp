@@ -19,6 +19,8 @@ class PosePrediction {
   /// The pose `seconds` after the last frame pushed; that frame's own where none came before it. Feet that
   /// stood then stay where they are. rest: T-pose joints. Throws Error where none was pushed.
   Pose after(float seconds, const Joints& rest) const;
+  /// How far that pose may be off, metres: as people who walk and run are found to be.
+  static float doubt_m(float seconds);
 
  private:
   struct Speed {

@@ -49,6 +49,24 @@ TEST_F(Filling, MissingFramesAreMadeAndTold) {
   EXPECT_EQ(character.animations[0].tracks.at(0).times.size(), 8u);
 }
 
+TEST_F(Filling, FramesPredictedWhilePerformingAreToldToo) {
+  for (const bool predicts : {false, true}) {
+    std::vector<std::string> more = {"--out", out("p.glb"), "--report", out("p.json")};
+    if (predicts) more.push_back("--predict");
+    const Finished run = retarget(gaps(), more);
+    ASSERT_EQ(run.code, 0) << run.err;
+    const Json report = Json::parse(read_bytes(out("p.json")));
+    EXPECT_EQ(report["flagged"], 2) << "as ever";
+    EXPECT_EQ(read_bytes(out("p.glb")).find("made_frames") != std::string::npos, predicts);
+    ASSERT_EQ(report.contains("made_frames"), predicts);
+    if (!predicts) continue;
+    ASSERT_EQ(report["made_frames"].size(), 1u) << report.dump();
+    EXPECT_EQ(report["made_frames"][0]["first"], 3);
+    EXPECT_EQ(report["made_frames"][0]["last"], 4);
+    EXPECT_GT(report["made_frames"][0]["doubt_m"].get<double>(), 0);
+  }
+}
+
 TEST_F(Filling, RangesAreMadeToo) {
   const Finished run = fill(scans(), {"--range", "2:3", "--report", out("report.json")});
   ASSERT_EQ(run.code, 0) << run.err;

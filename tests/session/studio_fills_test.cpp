@@ -204,12 +204,14 @@ TEST_F(Fills, HaveFourAnswersToChooseFrom) {
   studio.wait_idle();
   EXPECT_NEAR(height() - best, 2 * LiftedSpace::kAlternativeLift_m, 1e-5);
   EXPECT_EQ(undo_label(studio.session()), "Fill by alternative 3");
-  const auto& alternatives = studio.session().takes[0].alternatives;
-  ASSERT_EQ(alternatives.size(), size_t{kMostVariations});
+  const auto alternatives = [&]() -> const auto& {
+    return studio.session().takes[0].alternatives;
+  };
+  ASSERT_EQ(alternatives().size(), size_t{kMostVariations});
   for (int k = 0; k < kMostVariations; ++k) {
     const float lift = LiftedSpace::kAlternativeLift_m * static_cast<float>(k);
-    EXPECT_NEAR(alternatives[k][10](Pelvis, 1) - best, lift, 1e-5) << k;
-    EXPECT_EQ(alternatives[k][8], studio.session().takes[0].joints[8]) << k << ": it is known";
+    EXPECT_NEAR(alternatives()[k][10](Pelvis, 1) - best, lift, 1e-5) << k;
+    EXPECT_EQ(alternatives()[k][8], studio.session().takes[0].joints[8]) << k << ": it is known";
   }
   for (const char* bad : {"4", "-1", "best"})
     EXPECT_THROW(studio.run("edit.fill_variation", {"0", "0", bad}), Error) << bad;
@@ -227,7 +229,7 @@ TEST_F(Fills, HaveFourAnswersToChooseFrom) {
       << "it is moved, not asked anew";
   studio.run("edit.remove", {"fill", "0", "0"});
   studio.wait_idle();
-  EXPECT_TRUE(alternatives.empty()) << "nothing is made any more";
+  EXPECT_TRUE(alternatives().empty()) << "nothing is made any more";
 }
 
 TEST_F(Fills, OfTwoAlternativesEachHaveTheirOwn) {

@@ -187,11 +187,11 @@ TEST_F(MadeFramesOfATake, OfALoopCloseItsSeam) {
   open_walk(studio);
   studio.run("edit.loop");
   studio.wait_idle();
-  const PoseEdits& edits = studio.session().document.takes[0].pose_edits;
-  ASSERT_TRUE(edits.loop && edits.trim);
-  const LoopEdit loop = *edits.loop;
-  EXPECT_EQ(edits.trim->first, loop.first);
-  EXPECT_EQ(edits.trim->last, loop.last);
+  const auto edits = [&]() -> const PoseEdits& { return studio.session().document.takes[0].pose_edits; };
+  ASSERT_TRUE(edits().loop && edits().trim);
+  const LoopEdit loop = *edits().loop;
+  EXPECT_EQ(edits().trim->first, loop.first);
+  EXPECT_EQ(edits().trim->last, loop.last);
   EXPECT_TRUE(is_told(studio, "play in a loop"));
   const Motion& motion = shown(studio);
   for (int joint = 1; joint < kJointCount; ++joint)
@@ -205,11 +205,11 @@ TEST_F(MadeFramesOfATake, OfALoopCloseItsSeam) {
   EXPECT_EQ(studio.session().history.undo_label().find("Loop frames "), 0u);
   studio.run("edit.loop", {"0", "off"});
   studio.wait_idle();
-  EXPECT_FALSE(edits.loop || edits.trim);
+  EXPECT_FALSE(edits().loop || edits().trim);
   EXPECT_TRUE(shown(studio).doubt_m.empty() || shown(studio).doubt_m[loop.first + 2] == 0);
   studio.run("edit.undo");
   studio.run("edit.remove", {"loop", "0"});
-  EXPECT_FALSE(edits.loop || edits.trim);
+  EXPECT_FALSE(edits().loop || edits().trim);
 }
 
 TEST_F(MadeFramesOfATake, LoopBetweenTheMarksOrSayWhyNot) {

@@ -116,6 +116,8 @@ TEST(PosePrediction, InThePerformerIsOffAtFirstAndChangesFlaggedFramesAlone) {
     EXPECT_EQ(b.flagged, misses) << "it stays flagged";
     EXPECT_EQ(same_result(a, b), !misses) << i << ": no trace in what comes after";
     if (misses) EXPECT_TRUE(a.pose.local == last.pose.local) << "as ever";
+    EXPECT_EQ(kept(a).doubt_m, 0);
+    EXPECT_EQ(kept(b).doubt_m > 0, misses) << i << ": what was made tells its doubt";
     if (!misses) last = a;
   }
 }
