@@ -74,11 +74,12 @@ function(us_test_settings target)
     US_PROGRAM="$<TARGET_FILE_DIR:understudy>/understudy" US_INTEROP_PACKAGES="${PROJECT_BINARY_DIR}/interop")
 endfunction()
 
-# us_tests(NAME FOLDER [EACH] [TORCH] [TIMEOUT SECONDS] LABELS ... LIBS ...): the *_test.cpp of a folder as one program,
-# build/tests/NAME_test, and one entry of ctest. EACH: one program a file, named after it: for tests that run long, so
-# that they run side by side. NAME_support, if the folder has helpers, is linked unasked.
+# us_tests(NAME FOLDER [EACH] [TORCH|LIGHT] [TIMEOUT SECONDS] LABELS ... LIBS ...): the *_test.cpp of a folder as one
+# program, build/tests/NAME_test, and one entry of ctest. EACH: one program a file, named after it: for tests that run
+# long, so that they run side by side. LIGHT: they compute little themselves and are compiled without optimisation, in a
+# third of the time. NAME_support, if the folder has helpers, is linked unasked.
 function(us_tests name folder)
-  cmake_parse_arguments(T "EACH;TORCH" "TIMEOUT" "LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(T "EACH;TORCH;LIGHT" "TIMEOUT" "LIBS;LABELS" ${ARGN})
   us_test_helpers(${name} ${folder} ${ARGN})
   if(TARGET ${name}_support)
     list(PREPEND T_LIBS ${name}_support)
@@ -102,6 +103,9 @@ function(us_tests name folder)
     set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
     if(T_TORCH)
       us_torch(${program})
+    elseif(T_LIGHT)
+      target_compile_options(${program} PRIVATE -O0)
+      us_reads(${program} light_test_pch)
     else()
       us_reads(${program} test_pch)
     endif()

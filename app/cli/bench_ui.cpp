@@ -201,6 +201,7 @@ class UiBench {
     turn();
     idle();
     fill();
+    point_at_steps();
     play("playing kept frames", kVertices);
     video(files);
     live(files);
@@ -386,6 +387,36 @@ class UiBench {
     times.erase(times.begin());
     line("30 frames filled, click to seen",
          milliseconds(times) + printed("; the first %.0f ms", 1e3 * first));
+  }
+
+  /// Whether every target is seen in what it performs now of the map.
+  bool performance_shown() {
+    const Session& s = application_->session();
+    for (size_t k = 0; k < s.takes.size(); ++k) {
+      const int frame = s.map.performance->frame_at(s.time, k);
+      if (frame >= 0 && !application_->studio().cache().performing(
+                            s.takes[k], static_cast<int>(k), frame,
+                            s.map.performance->takes[k][static_cast<size_t>(frame)].pose))
+        return false;
+    }
+    return true;
+  }
+
+  /// From pointing at a step of the map until the target is seen in it.
+  void point_at_steps() {
+    command("map.index");
+    settle();
+    std::vector<double> times;
+    for (int i = 0; i < application_->session().map.map->size(); ++i) {
+      const auto began = Clock::now();
+      command("map.perform", {std::to_string(i)});
+      do step();
+      while (!performance_shown());
+      application_->frame(0);
+      times.push_back(seconds_since(began));
+    }
+    command("map.perform");
+    line("a step of the map, pointed at to performed", milliseconds(times));
   }
 
   /// Plays in real time, 45 frames of the source a second: every picture is of the next frame or one soon

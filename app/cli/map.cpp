@@ -20,7 +20,6 @@
 #include "retarget/base/part_file.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/formats/file_formats.hpp"
-#include "retarget/motion_space/knot_coder.hpp"
 
 namespace understudy::app {
 namespace {
@@ -28,6 +27,7 @@ namespace {
 struct MapOptions {
   std::vector<std::string> paths;
   std::string out, csv, report, color = "action", like, index, weights;
+  std::string of = kMapOfNames[0];
   int count = 8;
 };
 
@@ -52,16 +52,11 @@ MotionRange range_asked(const std::string& text) {
   return range;
 }
 
-/// The learned one; the plain one where there is none, which is said.
-std::shared_ptr<MotionCoder> coder_of(const std::string& weights) {
-  std::shared_ptr<MotionCoder> coder;
-  const std::string problem = failure_of([&] { coder = coder_loader(weights)(); });
-  if (coder) return coder;
-  log::warn(problem + ": steps are compared pose by pose");
-  return make_knot_coder();
+MapOf kind_of(const MapOptions& options) {
+  return options.of == kMapOfNames[0] ? MapOf::Steps : MapOf::Others;
 }
 
-IndexedSteps indexed(const MapOptions& options, MotionCoder& coder) {
+IndexedSteps indexed(const MapOptions& options, MapEncoders& encoders) {
   const std::vector<std::string> files = motion_files(options.paths);
   Progress progress("reading motions", ssize(files), false, "file");
   StepIndexOptions how;
@@ -71,7 +66,7 @@ IndexedSteps indexed(const MapOptions& options, MotionCoder& coder) {
              " files; what was read is kept for the next time");
     progress.step(done);
   };
-  IndexedSteps steps = index_steps(files, coder, how);
+  IndexedSteps steps = index_steps(files, encoders, how);
   progress.finish();
   return steps;
 }
@@ -110,9 +105,11 @@ void write_picture(const MapOptions& options, const MotionMap& map, const std::v
         {map.place(i), grouped_by ? group_color(colouring.group[i]) : scale_color(colouring.value[i])});
   }
   render::MapPlotOptions plot;
-  plot.title = "Steps by their likeness";
-  plot.subtitle = grouped(map.size()) + " steps in " + grouped(ssize(map.motions())) +
-                  " motions; each figure at the end of its step, " +
+  const bool steps = kind_of(options) == MapOf::Steps;
+  plot.title = steps ? "Steps by their likeness" : "Movements that are no steps, by their likeness";
+  plot.subtitle = grouped(map.size()) + (steps ? " steps in " : " stretches in ") +
+                  grouped(ssize(map.motions())) + " motions; each figure at the end of its " +
+                  (steps ? "step, " : "stretch, ") +
                   (like.empty() ? "its beginning behind it" : "numbered: those most like " + options.like);
   const auto axis = [&](int k) {
     return printed("component %d (%.0f %% of the variance)", k + 1,
@@ -129,13 +126,13 @@ void write_picture(const MapOptions& options, const MotionMap& map, const std::v
     const MappedStep& step = map.step(i);
     std::vector<Joints> moments;
     for (const float share : {0.05f, 0.35f, 0.65f, 0.95f})
-      moments.push_back(figure_at(step, share * step.seconds, /*in_place=*/false));
+      moments.push_back(figure_at(step, map.motion_of(i).rest, share * step.seconds, /*in_place=*/false));
     return moments;
   };
   render::write_png(options.out, render::map_plot(points, plot));
 }
 
-void write_table(const std::string& path, const MotionMap& map) {
+void write_table(const MapOptions& options, const MotionMap& map) {
   std::string text = "step,file,animation,first,last,action,seconds,speed_m_s,foot,x,y\n";
   for (int i = 0; i < map.size(); ++i) {
     const MappedMotion& motion = map.motion_of(i);
@@ -143,10 +140,12 @@ void write_table(const std::string& path, const MotionMap& map) {
     text += printed("%d,%s,%s,%d,%d,%s,%.3f,%.3f,%s,%.5f,%.5f\n", i, csv_cell(motion.path).c_str(),
                     motion.clip.c_str(), step.first, step.last, csv_cell(motion.action).c_str(),
                     static_cast<double>(step.seconds), static_cast<double>(step.speed_m_s),
-                    step.left_first ? "left" : "right", static_cast<double>(map.place(i).x()),
-                    static_cast<double>(map.place(i).y()));
+                    kind_of(options) == MapOf::Others ? ""
+                    : step.left_first                 ? "left"
+                                                      : "right",
+                    static_cast<double>(map.place(i).x()), static_cast<double>(map.place(i).y()));
   }
-  write_file(path, text);
+  write_file(options.csv, text);
 }
 
 Json report_of(const MapOptions& options, const IndexedSteps& steps, const MotionMap& map,
@@ -155,6 +154,7 @@ Json report_of(const MapOptions& options, const IndexedSteps& steps, const Motio
   networks.weights = options.weights;
   Json report = report_header(nn::weights_folder(networks));
   report["coder"] = steps.coder;
+  report["of"] = options.of;
   report["files"] = steps.files;
   report["read_anew"] = steps.read;
   report["damaged_entries"] = steps.damaged;
@@ -191,23 +191,27 @@ int map(MapOptions options) {
   colour_named(options.color);
   std::optional<MotionRange> range;
   if (!options.like.empty()) range = range_asked(options.like);
-  const std::shared_ptr<MotionCoder> coder = coder_of(options.weights);
-  IndexedSteps steps = indexed(options, *coder);
+  MethodOptions how;
+  how.weights = options.weights;
+  MapEncoders encoders(coder_loader(options.weights), motion_space_loader(how));
+  IndexedSteps steps = indexed(options, encoders);
   name_left_out(steps);
   US_CHECK(steps.files > 0, options.paths.front(), ": holds no skeletal motion (", format_names(kMotion),
            ")");
   std::printf("%s\n", index_words(steps).c_str());
-  const MotionMap all(std::move(steps.motions));
-  US_CHECK(all.size() > 0, "nobody steps in any of these motions");
+  const MapOf kind = kind_of(options);
+  const MotionMap all(std::move(kind == MapOf::Steps ? steps.motions : steps.others));
+  US_CHECK(all.size() > 0, kind == MapOf::Steps ? "nobody steps in any of these motions"
+                                                : "there is nothing but steps in these motions");
   std::vector<NearStep> like;
   if (range) {
     range->motion = read_file_motion(range->path, "");
-    like = like_this(all, *range, *coder, options.count);
+    like = like_this(all, kind, *range, encoders, options.count);
   }
   for (const NearStep& near : like)
     std::printf("%s: %s\n", step_words(all, near.step).c_str(), distance_words(near.distance).c_str());
   if (!options.out.empty()) write_picture(options, all, like);
-  if (!options.csv.empty()) write_table(options.csv, all);
+  if (!options.csv.empty()) write_table(options, all);
   if (!options.report.empty()) write_json(options.report, report_of(options, steps, all, like));
   return 0;
 }
@@ -221,6 +225,9 @@ Action declare_map(CLI::App& command) {
                   "skeletal motions (" + format_names(kMotion) +
                       ") and folders of them; folders inside are looked into")
       ->required();
+  command
+      .add_option("--of", options->of, "what is on the map: steps, or others: movements that are no steps")
+      ->check(CLI::IsMember({"steps", "others"}));
   command.add_option("--out", options->out, "the map as PNG");
   command.add_option("--csv", options->csv, "all steps as a table: file, frames, speed, place on the map");
   command

@@ -195,10 +195,7 @@ class CompletedScans final : public Source {
     const PosedSkeleton posed = forward_kinematics(made.rest, made.motion.poses[t]);
     out.mesh.vertices = linear_blend_skinning(made.vertices, made.weights, made.rest, posed);
     out.mesh.faces = made.faces;
-    out.skeleton.emplace();
-    out.skeleton->joints = posed.joints;
-    out.skeleton->global = posed.global;
-    out.skeleton->exact = true;
+    out.skeleton = exact_extraction(posed);
     out.skeleton->confidence.setConstant(std::max(kLeastConfidence, confidence_for(made.doubt_m[t])));
     out.doubt_m = made_->doubt_of(frame);
     return out;

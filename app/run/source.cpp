@@ -332,13 +332,9 @@ class BlendedSource final : public AnimatedSource {
  private:
   SourceFrame frame_at(int64_t frame) const override {
     const PosedSkeleton posed = forward_kinematics(blend_.rest, blend_.motion.poses[frame]);
-    Extraction skeleton;
-    skeleton.joints = posed.joints;
-    skeleton.global = posed.global;
-    skeleton.exact = true;
     SourceFrame out;
     out.mesh = bone_shapes(posed.joints);
-    out.skeleton = std::move(skeleton);
+    out.skeleton = exact_extraction(posed);
     out.doubt_m = blend_.motion.doubt_m[frame];
     return out;
   }

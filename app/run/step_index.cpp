@@ -19,13 +19,14 @@
 #include "retarget/motion/moving_person.hpp"
 #include "retarget/motion/read_motion.hpp"
 #include "retarget/motion/skeletal_motion.hpp"
+#include "retarget/motion_space/knot_coder.hpp"
 
 namespace understudy::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr JsonFileKind kEntryKind{"understudy-steps", "an entry of an index of steps", "such entries", 1};
+constexpr JsonFileKind kEntryKind{"understudy-steps", "an entry of an index of steps", "such entries", 2};
 constexpr int kMostAnimations = 1000;
 
 FileMotion motion_of(const Character& character, const std::string& clip, const std::string& path) {
@@ -88,6 +89,24 @@ std::vector<std::string> motion_files(const std::vector<std::string>& paths) {
   return {files.begin(), files.end()};
 }
 
+MapEncoders::MapEncoders(const std::function<std::shared_ptr<MotionCoder>()>& load_coder,
+                         const std::function<std::shared_ptr<MotionSpace>()>& load_space)
+    : plain_(make_knot_coder()) {
+  std::string problem =
+      load_coder ? failure_of([&] { steps_ = load_coder(); }) : "there is no learned coder of movements";
+  if (!steps_) log::warn(problem + ": steps are compared pose by pose");
+  problem = load_space ? failure_of([&] { space_ = load_space(); }) : "there is no learned space of motion";
+  if (!space_ || space_->encoder() == nullptr)
+    log::warn((problem.empty() ? "the motion space has no codes" : problem) +
+              ": movements that are no steps are compared pose by pose");
+}
+
+MovementEncoder& MapEncoders::of(MapOf kind) {
+  if (kind == MapOf::Steps && steps_) return *steps_;
+  MovementEncoder* const others = space_ ? space_->encoder() : nullptr;
+  return kind == MapOf::Others && others != nullptr ? *others : *plain_;
+}
+
 namespace {
 
 struct StoredStep {
@@ -114,7 +133,7 @@ struct StoredMotion {
   float fps = 30;
   int frames = 0;
   std::vector<float> rest;
-  std::vector<StoredStep> steps;
+  std::vector<StoredStep> steps, others;
 };
 template <class V, class S>
 FieldsOf<S, StoredMotion> fields(V& visit, S& motion) {
@@ -126,6 +145,7 @@ FieldsOf<S, StoredMotion> fields(V& visit, S& motion) {
   visit("frames", motion.frames, kFrameNumbers);
   visit("rest", motion.rest);
   visit("steps", motion.steps);
+  visit("others", motion.others);
 }
 
 /// What the index knows of a file.
@@ -146,8 +166,6 @@ FieldsOf<S, Entry> fields(V& visit, S& entry) {
   visit("is_motion", entry.is_motion);
   visit("motions", entry.motions);
 }
-
-constexpr size_t kFigureNumbers = kFigureMoments * kJointCount * 3;
 
 std::string hex_of(const std::vector<int16_t>& numbers) {
   constexpr char kDigits[] = "0123456789abcdef";
@@ -172,18 +190,42 @@ std::vector<int16_t> numbers_of(const std::string& hex) {
   return numbers;
 }
 
-StoredMotion stored(const MappedMotion& motion) {
-  StoredMotion out{motion.clip, motion.name, motion.action, motion.is_longest, motion.fps, motion.frames,
-                   {},          {}};
-  out.rest.assign(motion.rest.data(), motion.rest.data() + motion.rest.size());
-  for (const MappedStep& step : motion.steps)
-    out.steps.push_back({step.first, step.last, step.left_first, step.seconds, step.speed_m_s, step.code,
-                         hex_of(step.figure)});
+/// A motion with its steps and with what else is in it.
+struct TwoMaps {
+  MappedMotion steps, others;
+};
+
+std::vector<StoredStep> stored(const std::vector<MappedStep>& steps) {
+  std::vector<StoredStep> out;
+  for (const MappedStep& step : steps)
+    out.push_back({step.first, step.last, step.left_first, step.seconds, step.speed_m_s, step.code,
+                   hex_of(step.figure)});
   return out;
 }
 
-/// Throws Error where it cannot have been written so.
-MappedMotion restored(StoredMotion motion, const std::string& path, int code_size) {
+StoredMotion stored(const TwoMaps& maps) {
+  const MappedMotion& motion = maps.steps;
+  StoredMotion out{motion.clip, motion.name, motion.action, motion.is_longest, motion.fps, motion.frames, {},
+                   {},          {}};
+  out.rest.assign(motion.rest.data(), motion.rest.data() + motion.rest.size());
+  out.steps = stored(motion.steps), out.others = stored(maps.others.steps);
+  return out;
+}
+
+/// Throws Error where they cannot have been written so.
+std::vector<MappedStep> restored(std::vector<StoredStep> steps, int frames, int code_size) {
+  std::vector<MappedStep> out;
+  for (StoredStep& step : steps) {
+    US_CHECK(step.first < step.last && step.last < frames, "a step that is not in its motion");
+    US_CHECK(ssize(step.code) == code_size, "a code of ", step.code.size(), " numbers");
+    US_CHECK(step.seconds > 0, "a step that takes no time");
+    out.push_back({step.first, step.last, step.left_first, step.seconds, step.speed_m_s, std::move(step.code),
+                   numbers_of(step.figure)});
+  }
+  return out;
+}
+
+TwoMaps restored(StoredMotion motion, const std::string& path, MapEncoders& encoders) {
   MappedMotion out;
   out.path = path;
   out.clip = std::move(motion.clip), out.name = std::move(motion.name), out.action = std::move(motion.action);
@@ -191,13 +233,10 @@ MappedMotion restored(StoredMotion motion, const std::string& path, int code_siz
   out.fps = motion.fps, out.frames = motion.frames;
   US_CHECK(ssize(motion.rest) == out.rest.size(), "a body of ", motion.rest.size(), " numbers");
   std::copy(motion.rest.begin(), motion.rest.end(), out.rest.data());
-  for (StoredStep& step : motion.steps) {
-    US_CHECK(step.first < step.last && step.last < motion.frames, "a step that is not in its motion");
-    US_CHECK(ssize(step.code) == code_size, "a code of ", step.code.size(), " numbers");
-    out.steps.push_back({step.first, step.last, step.left_first, step.seconds, step.speed_m_s,
-                         std::move(step.code), numbers_of(step.figure)});
-  }
-  return out;
+  TwoMaps maps{out, out};
+  maps.steps.steps = restored(std::move(motion.steps), out.frames, encoders.of(MapOf::Steps).size());
+  maps.others.steps = restored(std::move(motion.others), out.frames, encoders.of(MapOf::Others).size());
+  return maps;
 }
 
 /// The actions that an AMASS-format file tells, else the words of its name.
@@ -215,7 +254,7 @@ std::string time_of(const std::string& path) {
 }
 
 /// Tells coders apart: what it makes of the built-in walk.
-std::string mark_of(MotionCoder& coder) {
+std::string mark_of(MovementEncoder& coder) {
   const Joints rest = builtin_joints();
   std::string text;
   for (const float number : coder.encode(movement_of(builtin_motion("walk", rest), 10, 44), rest).mean)
@@ -226,8 +265,10 @@ std::string mark_of(MotionCoder& coder) {
 /// The index while files are looked up in it.
 class Index {
  public:
-  Index(MotionCoder& coder, const std::string& folder)
-      : coder_(coder), mark_(mark_of(coder)), folder_(folder) {
+  Index(MapEncoders& encoders, const std::string& folder)
+      : encoders_(encoders),
+        mark_(mark_of(encoders.of(MapOf::Steps)) + ", " + mark_of(encoders.of(MapOf::Others))),
+        folder_(folder) {
     if (folder_.empty()) return;
     std::error_code failed;
     fs::create_directories(folder_, failed);
@@ -238,7 +279,7 @@ class Index {
   /// What is known of a file, from the index or read now.
   void add(const std::string& path, IndexedSteps& all) {
     Entry entry;
-    std::vector<MappedMotion> motions;
+    std::vector<TwoMaps> motions;
     std::string problem;
     if (!known(path, entry, motions, all)) {
       problem = failure_of([&] { read(path, entry, motions); });
@@ -249,8 +290,10 @@ class Index {
     ++all.files;
     if (!problem.empty()) return all.problems.push_back(problem);
     const size_t before = all.motions.size();
-    for (MappedMotion& motion : motions)
-      if (!motion.steps.empty()) all.motions.push_back(std::move(motion));
+    for (TwoMaps& motion : motions) {
+      if (!motion.steps.steps.empty()) all.motions.push_back(std::move(motion.steps));
+      if (!motion.others.steps.empty()) all.others.push_back(std::move(motion.others));
+    }
     if (all.motions.size() == before) all.without_steps.push_back(path);
   }
 
@@ -259,7 +302,7 @@ class Index {
     return folder_ + "/" + checksum_text(fnv1a(path)) + ".json";
   }
 
-  bool known(const std::string& path, Entry& entry, std::vector<MappedMotion>& motions, IndexedSteps& all) {
+  bool known(const std::string& path, Entry& entry, std::vector<TwoMaps>& motions, IndexedSteps& all) {
     std::error_code failed;
     if (folder_.empty() || !fs::exists(place(path), failed)) return false;
     try {
@@ -273,11 +316,11 @@ class Index {
       const bool same_time = entry.modified == modified;
       if (!same_time && entry.checksum != checksum_of_file(path)) return false;
       for (StoredMotion& motion : entry.motions)
-        motions.push_back(restored(std::move(motion), path, coder_.size()));
+        motions.push_back(restored(std::move(motion), path, encoders_));
       entry.modified = modified;
       if (!same_time) {
         entry.motions.clear();
-        for (const MappedMotion& motion : motions) entry.motions.push_back(stored(motion));
+        for (const TwoMaps& motion : motions) entry.motions.push_back(stored(motion));
         keep(entry);
       }
       return true;
@@ -288,7 +331,7 @@ class Index {
     }
   }
 
-  void read(const std::string& path, Entry& entry, std::vector<MappedMotion>& motions) {
+  void read(const std::string& path, Entry& entry, std::vector<TwoMaps>& motions) {
     entry = {};
     entry.path = path, entry.coder = mark_;
     std::error_code failed;
@@ -298,10 +341,10 @@ class Index {
     entry.is_motion = is_motion_file(path) || is_animated_gltf(path, UINT64_MAX).value_or(false);
     if (!entry.is_motion) return;
     for (const FileMotion& file : read_file_motions(path)) motions.push_back(mapped(file, path));
-    for (const MappedMotion& motion : motions) entry.motions.push_back(stored(motion));
+    for (const TwoMaps& motion : motions) entry.motions.push_back(stored(motion));
   }
 
-  MappedMotion mapped(const FileMotion& file, const std::string& path) {
+  TwoMaps mapped(const FileMotion& file, const std::string& path) {
     MappedMotion motion;
     motion.path = path, motion.clip = file.clip, motion.is_longest = file.is_longest;
     motion.name = file_name(path);
@@ -309,8 +352,10 @@ class Index {
     motion.action = action_of(path);
     motion.fps = file.motion.fps, motion.frames = static_cast<int>(ssize(file.motion.poses));
     motion.rest = file.rest;
-    motion.steps = coded_steps(file.motion, file.rest, coder_);
-    return motion;
+    TwoMaps maps{motion, motion};
+    maps.steps.steps = coded_steps(file.motion, file.rest, encoders_.of(MapOf::Steps));
+    maps.others.steps = coded_movements(file.motion, file.rest, encoders_.of(MapOf::Others));
+    return maps;
   }
 
   void keep(const Entry& entry) {
@@ -330,7 +375,7 @@ class Index {
     is_refused_ = true;
   }
 
-  MotionCoder& coder_;
+  MapEncoders& encoders_;
   const std::string mark_;
   const std::string folder_;
   bool is_refused_ = false;
@@ -338,10 +383,10 @@ class Index {
 
 }  // namespace
 
-IndexedSteps index_steps(const std::vector<std::string>& files, MotionCoder& coder,
+IndexedSteps index_steps(const std::vector<std::string>& files, MapEncoders& encoders,
                          const StepIndexOptions& options) {
   IndexedSteps all;
-  Index index(coder, options.folder);
+  Index index(encoders, options.folder);
   all.coder = index.coder();
   const int count = static_cast<int>(ssize(files));
   for (int i = 0; i < count; ++i) {
@@ -352,18 +397,21 @@ IndexedSteps index_steps(const std::vector<std::string>& files, MotionCoder& cod
   return all;
 }
 
-std::vector<NearStep> like_this(const MotionMap& map, const MotionRange& range, MotionCoder& coder,
-                                int count) {
+std::vector<NearStep> like_this(const MotionMap& map, MapOf kind, const MotionRange& range,
+                                MapEncoders& encoders, int count) {
   const Motion& motion = range.motion.motion;
   const std::string name = range.path.empty() ? "the open motion" : range.path;
   const int frames = static_cast<int>(ssize(motion.poses));
   US_CHECK(range.first >= 0 && range.first < range.last && range.last < frames, name, ": has no frames ",
            range.first, " to ", range.last, ", there are 0 to ", frames - 1);
+  const auto coded = kind == MapOf::Steps ? coded_steps : coded_stretches;
   std::vector<std::vector<float>> codes;
-  for (MappedStep& step : coded_steps(motion, range.motion.rest, coder, range.first, range.last))
+  for (MappedStep& step : coded(motion, range.motion.rest, encoders.of(kind), range.first, range.last))
     codes.push_back(std::move(step.code));
-  US_CHECK(!codes.empty(), name, ": nobody makes a whole step (0.3 to 3 s) in frames ", range.first, " to ",
-           range.last);
+  US_CHECK(
+      !codes.empty(), name, ": ",
+      kind == MapOf::Steps ? "nobody makes a whole step (0.3 to 3 s) in" : "less than half a second is in",
+      " frames ", range.first, " to ", range.last);
   return map.nearest(codes, count, [&](int i) {
     const MappedMotion& other = map.motion_of(i);
     return other.path == range.path && other.clip == range.motion.clip && map.step(i).first <= range.last &&
@@ -377,11 +425,13 @@ std::string step_words(const MotionMap& map, int step) {
 }
 
 std::string index_words(const IndexedSteps& indexed) {
-  int64_t steps = 0;
+  int64_t steps = 0, others = 0;
   for (const MappedMotion& motion : indexed.motions) steps += ssize(motion.steps);
+  for (const MappedMotion& motion : indexed.others) others += ssize(motion.steps);
   std::string words = grouped(indexed.files) + (indexed.files == 1 ? " file, " : " files, ") +
                       grouped(indexed.read) + " read anew, " + grouped(steps) + " steps in " +
                       grouped(ssize(indexed.motions)) + " motions";
+  if (others > 0) words += ", " + grouped(others) + (others == 1 ? " other movement" : " other movements");
   if (indexed.damaged == 1) words += "; 1 entry of the index was damaged and is made again";
   if (indexed.damaged > 1)
     words += "; " + grouped(indexed.damaged) + " entries of the index were damaged and are made again";

@@ -1,11 +1,13 @@
-// An index of the steps in files of skeletal motion: what is unchanged is not read again.
+// An index of the steps and other movements in files of skeletal motion: what is unchanged is not read again.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "retarget/motion_space/motion_map.hpp"
+#include "retarget/pipeline/motion_space.hpp"
 
 namespace understudy::app {
 
@@ -28,6 +30,19 @@ FileMotion read_file_motion(const std::string& path, const std::string& clip);
 /// not there.
 std::vector<std::string> motion_files(const std::vector<std::string>& paths);
 
+/// What codes movements: the learned coders; pose by pose where there are none, which is warned of.
+class MapEncoders {
+ public:
+  MapEncoders(const std::function<std::shared_ptr<MotionCoder>()>& load_coder,
+              const std::function<std::shared_ptr<MotionSpace>()>& load_space);
+  MovementEncoder& of(MapOf kind);
+
+ private:
+  std::shared_ptr<MotionCoder> steps_;
+  std::shared_ptr<MotionSpace> space_;
+  std::unique_ptr<MotionCoder> plain_;
+};
+
 struct StepIndexOptions {
   std::string folder;  ///< of the index, made where it is missing; empty: nothing is kept
   /// Before each file, and at the end; what it throws ends the work. What was read before is in the index.
@@ -36,8 +51,9 @@ struct StepIndexOptions {
 
 /// What is told of files.
 struct IndexedSteps {
-  std::string coder;                       ///< that coded them: its name and what tells it from others
+  std::string coder;                       ///< that coded them: their names and what tells them from others
   std::vector<MappedMotion> motions;       ///< in which somebody steps, in the order of the files
+  std::vector<MappedMotion> others;        ///< with what else is in them (coded_movements)
   std::vector<std::string> problems;       ///< a sentence for each file that cannot be read
   std::vector<std::string> without_steps;  ///< files in which nobody steps
   int files = 0;
@@ -49,7 +65,7 @@ struct IndexedSteps {
 /// renamed: a program that is killed loses the file that it was reading, and no more. An entry is good while
 /// the file has the same size and time, or the same checksum, and the coder gives the same codes. A file that
 /// cannot be read has none. An index that cannot be written is warned of, once.
-IndexedSteps index_steps(const std::vector<std::string>& files, MotionCoder& coder,
+IndexedSteps index_steps(const std::vector<std::string>& files, MapEncoders& encoders,
                          const StepIndexOptions& options);
 
 /// Frames of a motion, both inside.
@@ -59,9 +75,10 @@ struct MotionRange {
   int first = 0, last = 0;
 };
 /// The steps of a map that are most like any of those in the range, the likest first; those that share frames
-/// with the range are left out. Throws Error where the motion has no such frames, or nobody steps in them.
-std::vector<NearStep> like_this(const MotionMap& map, const MotionRange& range, MotionCoder& coder,
-                                int count);
+/// with the range are left out. Of a map of other movements those most like the range, whatever it shows.
+/// Throws Error where the motion has no such frames, nobody steps in them, or they are too few.
+std::vector<NearStep> like_this(const MotionMap& map, MapOf kind, const MotionRange& range,
+                                MapEncoders& encoders, int count);
 
 /// "walk.bvh, frames 12 to 45".
 std::string step_words(const MotionMap& map, int step);

@@ -22,7 +22,8 @@ constexpr size_t kMostDemands = 64;  // what was asked for before these is asked
 constexpr size_t kMostPrefetches = 8;
 constexpr size_t kFewestKept = 4;
 constexpr int kSource = -1;
-constexpr int kRest = -1;  // in place of a frame's number
+constexpr int kRest = -1;        // in place of a frame's number
+constexpr int kPerforming = -2;  // and below: less the frame's number there
 
 /// The points that are not in the box.
 Points outside(const Box& box, const Points& points) {
@@ -436,6 +437,15 @@ std::shared_ptr<const PosedPicture> FrameCache::rest(const TakeState& take, int 
   impl_->see(take, k);
   return impl_->posed(
       Request{{k, kRest, false}, {take.generation, take.deformer, take.target, pose, take.weights}});
+}
+
+std::shared_ptr<const PosedPicture> FrameCache::performing(const TakeState& take, int k, int frame,
+                                                           const Pose& pose) {
+  const auto held = impl_->worker.lock();
+  if (!take.deformer || !take.target) return nullptr;
+  impl_->see(take, k);
+  return impl_->posed(
+      Request{{k, kPerforming - frame, false}, {take.generation, take.deformer, take.target, pose}});
 }
 
 void FrameCache::prefetch_scan(int frame) {

@@ -10,35 +10,31 @@
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
 #include "retarget/motion/read_motion.hpp"
-#include "retarget/motion_space/knot_coder.hpp"
+#include "retarget/motion_space/motion_window.hpp"
+#include "retarget/pipeline/copy_transfer.hpp"
+#include "retarget/pipeline/performer.hpp"
 
 namespace understudy::app {
 namespace {
 
 constexpr int kMostAlike = 12;
 
-using LoadCoder = std::function<std::shared_ptr<MotionCoder>()>;
-
-/// What codes steps, loaded when it is first needed; the plain one where there is none. For one job at a
-/// time, each of which waits for the one before.
-class MapCoder {
+/// What codes movements, loaded when it is first needed. For one job at a time, each of which waits for the
+/// one before.
+class LoadedEncoders {
  public:
   template <class Use>
-  auto use(const LoadCoder& load, const Use& with) {
+  auto use(const StudioServices& services, const Use& with) {
     const std::lock_guard lock(mutex_);
-    if (!coder_) {
-      std::string problem = load ? "" : "there is no learned coder of movements";
-      if (load) problem = failure_of([&] { coder_ = load(); });
-      if (!coder_) log::warn(problem + ": on the map steps are compared pose by pose");
-      if (!coder_) coder_ = make_knot_coder();
-    }
-    return with(*coder_);
+    if (!encoders_) encoders_.emplace(services.motion_coder, services.motion_space);
+    return with(*encoders_);
   }
 
  private:
   std::mutex mutex_;
-  std::shared_ptr<MotionCoder> coder_;
+  std::optional<MapEncoders> encoders_;
 };
+using Encoders = std::shared_ptr<LoadedEncoders>;
 
 /// What the open document shows, where it comes from no file that holds a skeletal motion: the current take
 /// as performed.
@@ -62,15 +58,17 @@ bool is_of_file(const SourceOptions& source) {
   return is_motion_file(source.path) || may_hold_motion(source.path);
 }
 
-void set_map(MapState& state, MotionMap map, const std::string& words) {
-  state = {};
-  state.words = words;
-  state.map = std::make_shared<const MotionMap>(std::move(map));
-}
-
 void color_map(MapState& state, MapColour by) {
   state.colour = by;
   state.colouring = state.map ? std::make_shared<const MapColouring>(map_colouring(*state.map, by)) : nullptr;
+}
+
+void show_map(MapState& state, MapOf kind) {
+  state.shown = kind;
+  state.map = state.maps[static_cast<size_t>(kind)];
+  state.like.clear(), state.like_what.clear();
+  state.decoded.reset(), state.performance.reset();
+  color_map(state, state.colour);
 }
 
 struct Indexing {
@@ -78,18 +76,18 @@ struct Indexing {
   std::string index;                // folder
   std::optional<MotionRange> open;  // shown, from no file
   // The job's answer.
-  std::shared_ptr<MotionMap> map;
+  std::array<std::shared_ptr<const MotionMap>, 2> maps;
   std::string words;
 };
 
-void index_all(Indexing& work, MotionCoder& coder, JobControl& control) {
+void index_all(Indexing& work, MapEncoders& encoders, JobControl& control) {
   StepIndexOptions how;
   how.folder = work.index;
   how.progress = [&](int done, int of) {
     control.check();
     control.progress(of > 0 ? 0.99f * static_cast<float>(done) / static_cast<float>(of) : 0);
   };
-  IndexedSteps steps = index_steps(motion_files(work.paths), coder, how);
+  IndexedSteps steps = index_steps(motion_files(work.paths), encoders, how);
   log::Tally left_out;
   for (const std::string& problem : steps.problems) left_out.warn(problem);
   for (const std::string& file : steps.without_steps) left_out.warn(file + ": nobody steps in it");
@@ -99,15 +97,32 @@ void index_all(Indexing& work, MotionCoder& coder, JobControl& control) {
     open.clip = work.open->motion.clip, open.name = "open motion", open.action = "open";
     open.fps = work.open->motion.motion.fps, open.frames = work.open->last + 1;
     open.rest = work.open->motion.rest;
-    open.steps = coded_steps(work.open->motion.motion, open.rest, coder);
+    MappedMotion others = open;
+    open.steps = coded_steps(work.open->motion.motion, open.rest, encoders.of(MapOf::Steps));
+    others.steps = coded_movements(work.open->motion.motion, open.rest, encoders.of(MapOf::Others));
     if (!open.steps.empty()) steps.motions.push_back(std::move(open));
+    if (!others.steps.empty()) steps.others.push_back(std::move(others));
   }
   work.words = index_words(steps);
   control.check();
-  work.map = std::make_shared<MotionMap>(std::move(steps.motions));
+  work.maps = {std::make_shared<const MotionMap>(std::move(steps.motions)),
+               std::make_shared<const MotionMap>(std::move(steps.others))};
 }
 
-void start_indexing(Call& c, const std::shared_ptr<MapCoder>& coder) {
+/// What was read takes the old maps' place.
+void show_indexed(Studio& studio, const Indexing& work) {
+  MapState& state = studio.session().map;
+  MapOf kind = state.shown;
+  state.maps = work.maps, state.words = work.words, state.job = 0;
+  for (const MapOf one : {MapOf::Others, MapOf::Steps})
+    if (work.maps[static_cast<size_t>(kind)]->size() == 0) kind = one;
+  show_map(state, kind);
+  studio.notify(state.any() ? "On the map: " + work.words
+                            : "Nobody moves in any of these motions for a second: " + work.words,
+                !state.any());
+}
+
+void start_indexing(Call& c, const Encoders& encoders) {
   const auto work = std::make_shared<Indexing>();
   for (size_t i = 0; i < c.arguments.size(); ++i) work->paths.push_back(c.path(i));
   for (const std::string& path : work->paths)
@@ -123,18 +138,10 @@ void start_indexing(Call& c, const std::shared_ptr<MapCoder>& coder) {
   if (c.session.map.job != 0) c.studio.jobs().cancel(c.session.map.job);
   c.session.map.job = c.studio.jobs().start(
       "Reading motions",
-      [work, coder, load = c.studio.services().motion_coder](JobControl& control) {
-        coder->use(load, [&](MotionCoder& by) { index_all(*work, by, control); });
+      [work, encoders, services = c.studio.services()](JobControl& control) {
+        encoders->use(services, [&](MapEncoders& by) { index_all(*work, by, control); });
       },
-      [&studio = c.studio, work] {
-        MapState& state = studio.session().map;
-        const MapColour colour = state.colour;
-        set_map(state, std::move(*work->map), work->words);
-        color_map(state, colour);
-        studio.notify(state.any() ? "On the map: " + work->words
-                                  : "Nobody steps in any of these motions: " + work->words,
-                      !state.any());
-      });
+      [&studio = c.studio, work] { show_indexed(studio, *work); });
 }
 
 const MotionMap& open_map(const Call& c) {
@@ -179,7 +186,7 @@ void take_step(Call& c) {
   c.label = "Take " + step_words(map, number);
 }
 
-void ask_alike(Call& c, const std::shared_ptr<MapCoder>& coder) {
+void ask_alike(Call& c, const Encoders& encoders) {
   open_map(c);
   struct Asking {
     std::shared_ptr<const MotionMap> map;
@@ -201,10 +208,11 @@ void ask_alike(Call& c, const std::shared_ptr<MapCoder>& coder) {
   work->range.first = c.number<int>(0, "first frame"), work->range.last = c.number<int>(1, "last frame");
   c.studio.jobs().start(
       "Looking for what is alike",
-      [work, coder, load = c.studio.services().motion_coder](JobControl&) {
+      [work, encoders, kind = c.session.map.shown, services = c.studio.services()](JobControl&) {
         if (work->from_file) work->range.motion = read_file_motion(work->range.path, work->clip);
-        work->like = coder->use(
-            load, [&](MotionCoder& by) { return like_this(*work->map, work->range, by, kMostAlike); });
+        work->like = encoders->use(services, [&](MapEncoders& by) {
+          return like_this(*work->map, kind, work->range, by, kMostAlike);
+        });
       },
       [&studio = c.studio, work] {
         MapState& state = studio.session().map;
@@ -242,19 +250,80 @@ void decode_place(Call& c) {
   c.studio.notify("This place is " + words, blend.known.distance > kFarFromKnown);
 }
 
+/// As one that stands in the middle of where the take is now, and heads as it does.
+Outlook stage_of(const TakeState& take, int frame, const std::vector<StepPerformance::Frame>& frames) {
+  Outlook stage;
+  if (const Pose* const now = at_or_null(take.shown.poses, frame)) stage = Outlook::of(*now);
+  const Vec3 way = 0.5f * (frames.front().pose.root + frames.back().pose.root);
+  stage.place -= stage.heading * way;
+  stage.place.y() = 0;
+  return stage;
+}
+
+/// A step as a take's target performs it, hands' contacts apart.
+std::vector<StepPerformance::Frame> performed(const TakeState& take, const Method& method,
+                                              const MappedMotion& motion, const Motion& step) {
+  RetargetOptions options = retarget_options(method);
+  options.vertices = options.keep_contacts = false;
+  Performer performer(*take.target, std::make_shared<CopyTransfer>(), nullptr, options);
+  std::vector<StepPerformance::Frame> frames;
+  for (const Pose& pose : step.poses) {
+    Observation seen;
+    static_cast<Extraction&>(seen) = exact_extraction(forward_kinematics(motion.rest, pose));
+    const PerformedFrame frame = performer.perform(seen, 1 / step.fps);
+    frames.push_back({frame.pose, frame.joints});
+  }
+  return frames;
+}
+
+void perform_step(Call& c) {
+  MapState& state = c.session.map;
+  if (c.arguments.empty()) return state.performance.reset();
+  StepPerformance performance;
+  performance.step = step_number(c);
+  performance.since = c.session.time;
+  const Motion step = motion_of(state.map->step(performance.step));
+  performance.fps = step.fps;
+  for (size_t k = 0; k < c.session.takes.size(); ++k) {
+    const TakeState& take = c.session.takes[k];
+    auto& frames = performance.takes.emplace_back();
+    if (!take.target || !take.ready) continue;
+    frames = performed(take, c.document.takes[k].method, state.map->motion_of(performance.step), step);
+    const Outlook stage = stage_of(take, shown_frame(c.session), frames);
+    for (StepPerformance::Frame& frame : frames) {
+      frame.pose = stage.placed(frame.pose);
+      frame.joints = forward_kinematics(take.target->joints, frame.pose).joints;
+    }
+  }
+  state.performance = std::move(performance);
+}
+
 }  // namespace
 
+int StepPerformance::frame_at(double time, size_t take) const {
+  const auto* const frames = at_or_null(takes, take);
+  if (frames == nullptr || frames->empty()) return -1;
+  const auto gone = static_cast<int64_t>(std::max(0.0, time - since) * static_cast<double>(fps));
+  return static_cast<int>(gone % ssize(*frames));
+}
+
 void add_map_commands(Commands& commands) {
-  const auto coder = std::make_shared<MapCoder>();
+  const auto encoders = std::make_shared<LoadedEncoders>();
   commands.add({"map.index", "Map motions",
                 "[FOLDER|FILE ...]: reads all skeletal motions there, and the open one, onto the map"},
-               [coder](Call& c) { start_indexing(c, coder); });
+               [encoders](Call& c) { start_indexing(c, encoders); });
+  commands.add(
+      {"map.show", "Choose the map", "steps|others: the steps, or movements that are no steps"},
+      [](Call& c) { show_map(c.session.map, c.choice<MapOf>(0, "what is on the map", kMapOfNames)); });
+  commands.add({"map.perform", "Look at a step",
+                "[STEP]: the targets perform it over and over; without one they are as they were"},
+               perform_step);
   commands.add({"map.color", "Colour the map", "action|speed|duration|file"},
                [](Call& c) { color_map(c.session.map, c.choice<MapColour>(0, "colour", kMapColourNames)); });
   commands.add_edit({"map.take", "Take a step of the map", "STEP: its motion becomes the source"}, take_step);
   commands.add({"map.like", "Find what is alike",
                 "FIRST LAST: the steps of the map that are most like those in these frames"},
-               [coder](Call& c) { ask_alike(c, coder); });
+               [encoders](Call& c) { ask_alike(c, encoders); });
   commands.add({"map.decode", "Take what lies between", "X Y: a place of the map becomes the source"},
                decode_place);
 }

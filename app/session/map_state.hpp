@@ -1,6 +1,8 @@
 // The map of motions while it is open: what is on it, what was asked of it.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,8 +12,26 @@
 
 namespace understudy::app {
 
+/// A step that the targets perform as long as it is pointed at.
+struct StepPerformance {
+  int step = 0;
+  double since = 0;  ///< Session::time
+  float fps = 30;
+  /// A frame of a target.
+  struct Frame {
+    Pose pose;
+    Joints joints;
+  };
+  std::vector<std::vector<Frame>> takes;  ///< of each take, equally long; empty: it has no target yet
+
+  /// The number of the frame at a time of the session; it begins again after the last.
+  int frame_at(double time, size_t take) const;
+};
+
 struct MapState {
-  std::shared_ptr<const MotionMap> map;  ///< null: nothing was indexed
+  std::array<std::shared_ptr<const MotionMap>, 2> maps;  ///< by MapOf
+  MapOf shown = MapOf::Steps;
+  std::shared_ptr<const MotionMap> map;  ///< that of what is shown; null: nothing was indexed
   MapColour colour = MapColour::Action;
   std::shared_ptr<const MapColouring> colouring;  ///< of the map, by `colour`
   std::string words;                              ///< what is on it, one sentence
@@ -25,9 +45,13 @@ struct MapState {
     MapBlend blend;
   };
   std::optional<Decoded> decoded;
+  std::optional<StepPerformance> performance;
 
-  /// Whether there are steps to look at.
+  /// Whether there is something to look at.
   bool any() const { return map && map->size() > 0; }
+  bool any_of_both() const {
+    return std::any_of(maps.begin(), maps.end(), [](const auto& one) { return one && one->size() > 0; });
+  }
 };
 
 }  // namespace understudy::app

@@ -94,6 +94,7 @@ std::vector<std::pair<std::string, std::string>> facts(const Session& session) {
       {"loop", looped(session)},
       {"map_steps", std::to_string(session.map.map ? session.map.map->size() : 0)},
       {"map_like", count(session.map.like.size())},
+      {"map_performs", session.map.performance ? std::to_string(session.map.performance->step) : ""},
       {"layout", kLayoutNames[static_cast<size_t>(session.view.layout)]},
       {"active_pane", std::to_string(session.view.active_pane)},
       {"tool", kToolNames[static_cast<size_t>(session.tool)]},

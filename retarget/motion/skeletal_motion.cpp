@@ -258,11 +258,8 @@ Eigen::Matrix4d SkeletalMotion::to_file() const {
 
 Extraction SkeletalMotion::skeleton(int64_t frame) const {
   const PosedSkeleton skeleton = joints(posed(frame));
-  Extraction out;
-  out.joints = skeleton.joints;
-  out.global = skeleton.global;
+  Extraction out = exact_extraction(skeleton);
   out.sole_height = lowest(skeleton);
-  out.exact = true;
   for (int j = 0; j < kJointCount; ++j) out.confidence[j] = c_.map.has(j) ? 1.0f : 0.5f;
   return out;
 }

@@ -1,12 +1,12 @@
 #include "retarget/motion_space/learned_space.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/math/rotation.hpp"
-#include "retarget/motion_space/curve_bend.hpp"
 #include "retarget/skeleton/curve_doubt.hpp"
 #include "retarget/skeleton/foot_hold.hpp"
 
@@ -18,6 +18,9 @@ constexpr float kStands = 0.3f;
 
 /// Up to so long, between wholly known frames, a gap stays the curve: on dev that is nearer to the truth.
 constexpr float kShortGap_s = 0.17f;
+
+/// How far other answers' codes lie from the best one's, in each number.
+constexpr float kCodeStep = 1;
 
 /// What is added to a pose of the curve: turns in the joints' own frames, and a way of the root.
 using Change = std::array<Vec3, kPartCount>;
@@ -64,30 +67,68 @@ Joints joints_of(const MotionWindow& window, size_t i, const Sample& sample) {
   return forward_kinematics(window.rest, pose).joints;
 }
 
-/// What another answer tells beside the best one: that it is as doubtful as that, and off by the way between
-/// both, too. A foot that stands in one of them stands.
+/// What another answer tells beside the best one: that it is as doubtful as that (told a code, the network is
+/// surer than it should be), and off by the way between both, too. A foot that stands in one of them stands.
 std::vector<Sample> beside_the_best(const MotionWindow& window, const std::vector<Sample>& best,
                                     std::vector<Sample> other) {
   for (size_t i = 0; i < other.size(); ++i) {
     const Joints here = joints_of(window, i, best[i]), there = joints_of(window, i, other[i]);
-    other[i].doubt_m = std::hypot(other[i].doubt_m, (there - here).rowwise().norm().mean());
+    other[i].doubt_m = std::hypot(best[i].doubt_m, (there - here).rowwise().norm().mean());
     for (size_t side = 0; side < 2; ++side)
       other[i].standing[side] = std::max(other[i].standing[side], best[i].standing[side]);
   }
   return other;
 }
 
+WindowCode in_mirror(WindowCode code) {
+  for (size_t i = code.size() / 2; i < code.size(); ++i) code[i] = -code[i];
+  return code;
+}
+
+/// The window with the movement of these samples in place of its curve.
+MotionWindow of_movement(MotionWindow window, const std::vector<Sample>& samples) {
+  const std::vector<KnownParts> known = known_of(window);
+  for (size_t i = 0; i < samples.size(); ++i) change(samples[i], known[i], Mat3::Identity(), window.curve[i]);
+  return window;
+}
+
+/// Codes about that of the best answer, in directions that are at right angles to each other: rows of
+/// Hadamard's matrix. Numbers that a mirror changes go away from the middle, or towards it, so that the
+/// mirrored question has the mirrored answers.
+WindowCode other_code(WindowCode best, int variation) {
+  for (size_t i = 0; i < best.size(); ++i) {
+    const int ones = std::bitset<32>(i & static_cast<size_t>(variation)).count() % 2;
+    const float way = ones == 0 ? kCodeStep : -kCodeStep;
+    best[i] += i >= best.size() / 2 && best[i] < 0 ? -way : way;
+  }
+  return best;
+}
+
 std::vector<Sample> answered(WindowNetwork& network, const MotionWindow& window, int variation) {
-  const auto ask = [&](const MotionWindow& about) {
-    const auto answers = network.answer({about, mirrored(about)});
+  const auto ask = [&](const WindowCode& code) {
+    std::vector<WindowCode> codes;
+    if (!code.empty()) codes = {code, in_mirror(code)};
+    const auto answers = network.answer({window, mirrored(window)}, codes);
     return samples_of(window, answers[0], answers[1]);
   };
-  std::vector<Sample> best = ask(window);
-  if (variation <= 0 || variation > kCurveBends) return best;
-  std::vector<float> doubt_m;
-  doubt_m.reserve(best.size());
-  for (const Sample& sample : best) doubt_m.push_back(sample.doubt_m);
-  return beside_the_best(window, best, ask(bent(window, variation, doubt_m)));
+  std::vector<Sample> best = ask({});
+  if (variation <= 0 || variation >= kMostVariations || network.code_size() == 0) return best;
+  const WindowCode code = network.code_of(of_movement(window, best));
+  return beside_the_best(window, best, ask(other_code(code, variation)));
+}
+
+/// Without what changes from sample to sample: that is the network's noise, and shakes more than people do.
+/// Twice a quarter of both neighbours.
+std::vector<Sample> smoothed(std::vector<Sample> samples, const std::vector<KnownParts>& known) {
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::vector<Sample> rough = samples;
+    for (size_t i = 1; i + 1 < samples.size(); ++i)
+      for (size_t part = 0; part < kPartCount; ++part)
+        if (!known[i][part])
+          samples[i].change[part] = 0.5f * rough[i].change[part] +
+                                    0.25f * (rough[i - 1].change[part] + rough[i + 1].change[part]);
+  }
+  return samples;
 }
 
 /// Between four values in a row, `share` of the way from b to c (Catmull and Rom): through all of them.
@@ -154,7 +195,36 @@ void hold_made(const KnownMotion& question, const std::vector<MotionWindow>& win
     }
 }
 
+/// Codes movements of 8 to 110 samples (0.24 to 3.6 s).
+class WindowEncoder final : public MovementEncoder {
+ public:
+  explicit WindowEncoder(WindowNetwork& network) : network_(network) {}
+  int size() const override { return network_.code_size(); }
+  std::string name() const override { return "space"; }
+  MotionCode encode(const TimedPoses& movement, const Joints& rest) override {
+    const auto samples = static_cast<int>(movement.duration() * kWindowRate + 1e-3f) + 1;
+    US_CHECK(samples >= kShortestMovement && samples <= kLongestWindow, "a movement of ", movement.duration(),
+             " s cannot be coded, only one of ", (kShortestMovement - 1) / kWindowRate, " to ",
+             (kLongestWindow - 1) / kWindowRate, " s");
+    MotionWindow window;
+    window.rest = rest;
+    window.outlook = Outlook::of(movement.poses.front());
+    for (int i = 0; i < samples; ++i)
+      window.curve.push_back(window.outlook.seen(pose_at(movement, static_cast<float>(i) / kWindowRate)));
+    window.distance.resize(window.curve.size());
+    return {network_.code_of(window), {}};
+  }
+
+ private:
+  static constexpr int kShortestMovement = 8;
+  WindowNetwork& network_;
+};
+
 }  // namespace
+
+LearnedSpace::LearnedSpace(std::unique_ptr<WindowNetwork> network) : network_(std::move(network)) {
+  if (network_->code_size() > 0) encoder_ = std::make_unique<WindowEncoder>(*network_);
+}
 
 Completion LearnedSpace::complete(const KnownMotion& question) {
   check(question);
@@ -172,7 +242,8 @@ Completion LearnedSpace::complete(const KnownMotion& question) {
     made_frames.erase(std::remove_if(made_frames.begin(), made_frames.end(), [&](int t) { return stays[t]; }),
                       made_frames.end());
     if (made_frames.empty()) continue;
-    const std::vector<Sample> samples = answered(*network_, window, question.variation);
+    const std::vector<Sample> samples =
+        smoothed(answered(*network_, window, question.variation), known_of(window));
     for (const int t : made_frames) {
       const Sample sample = at(samples, (static_cast<float>(t) - window.first) / window.step);
       change(sample, question.known[t], window.outlook.heading, motion.poses[t]);

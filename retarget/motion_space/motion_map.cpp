@@ -10,69 +10,125 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/math/rotation.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kAsked = 256;           // steps whose neighbours tell how far neighbours are
+constexpr int kAsked = 256;  // steps whose neighbours tell how far neighbours are
+constexpr Eigen::Index kLongCode = 256;
 constexpr float kLeastShare = 0.02f;  // of a step in a blend
 
-std::vector<int16_t> figure_of(const TimedPoses& movement, const Joints& rest) {
+constexpr int kBetween = 2;  // frames of motion_of() from one moment to the next
+constexpr float kStretch_s = 2, kShortestStretch_s = 0.5f;
+constexpr float kShortestMovement_s = 1;  // that is on the map beside steps
+constexpr float kAngleUnit = 1e-4f, kLengthUnit = 1e-3f;
+
+std::vector<int16_t> figure_of(const TimedPoses& movement) {
   std::vector<int16_t> figure;
-  figure.reserve(kFigureMoments * kJointCount * 3);
+  figure.reserve(kFigureNumbers);
+  const auto put = [&figure](const Vec3& values, float unit) {
+    for (const float value : values)
+      figure.push_back(static_cast<int16_t>(std::lround(std::clamp(value / unit, -32e3f, 32e3f))));
+  };
   for (int k = 0; k < kFigureMoments; ++k) {
     const float share = static_cast<float>(k) / (kFigureMoments - 1);
-    const Joints joints = forward_kinematics(rest, pose_at(movement, share * movement.duration())).joints;
-    for (Eigen::Index i = 0; i < joints.size(); ++i)
-      figure.push_back(static_cast<int16_t>(std::lround(std::clamp(1000 * joints.data()[i], -32e3f, 32e3f))));
+    const Pose pose = pose_at(movement, share * movement.duration());
+    for (const Mat3& turn : pose.local) put(rotation_to_axis_angle(turn), kAngleUnit);
+    put(pose.root, kLengthUnit);
   }
   return figure;
 }
 
-Joints moment_of(const MappedStep& step, int k) {
-  // Before the first and after the last it goes on as it did there.
-  if (k < 0) return 2 * moment_of(step, 0) - moment_of(step, 1);
-  if (k >= kFigureMoments)
-    return 2 * moment_of(step, kFigureMoments - 1) - moment_of(step, kFigureMoments - 2);
-  const auto* const values = step.figure.data() + k * kJointCount * 3;
-  return Eigen::Map<const Eigen::Matrix<int16_t, kJointCount, 3, Eigen::RowMajor>>(values).cast<float>() /
-         1000;
+Pose moment_of(const MappedStep& step, int k) {
+  const int16_t* at = step.figure.data() + k * (kJointCount + 1) * 3;
+  const auto next = [&at](float unit) {
+    const Vec3 values(at[0], at[1], at[2]);
+    at += 3;
+    return Vec3(unit * values);
+  };
+  Pose pose;
+  for (Mat3& turn : pose.local) turn = rotation_from_axis_angle(next(kAngleUnit));
+  pose.root = next(kLengthUnit);
+  return pose;
+}
+
+MappedStep coded(const Motion& motion, const Joints& rest, MovementEncoder& coder, int first, int last) {
+  const TimedPoses movement = movement_of(motion, first, last);
+  MappedStep step;
+  step.first = first, step.last = last;
+  step.seconds = movement.duration();
+  const Vec3 way = movement.poses.back().root - movement.poses.front().root;
+  step.speed_m_s = std::hypot(way.x(), way.z()) / step.seconds;
+  step.code = coder.encode(movement, rest).mean;
+  step.figure = figure_of(movement);
+  return step;
 }
 
 }  // namespace
 
-std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MotionCoder& coder, int first,
-                                    int last) {
+std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MovementEncoder& coder,
+                                    int first, int last) {
   std::vector<MappedStep> steps;
   for (const Step& found : find_steps(motion)) {
     if (found.first < first || found.last > last) continue;
-    const TimedPoses movement = movement_of(motion, found.first, found.last);
-    MappedStep step;
-    step.first = found.first, step.last = found.last, step.left_first = found.left_first;
-    step.seconds = movement.duration();
-    const Vec3 way = movement.poses.back().root - movement.poses.front().root;
-    step.speed_m_s = std::hypot(way.x(), way.z()) / step.seconds;
-    step.code = coder.encode(movement, rest).mean;
-    step.figure = figure_of(movement, rest);
-    steps.push_back(std::move(step));
+    steps.push_back(coded(motion, rest, coder, found.first, found.last));
+    steps.back().left_first = found.left_first;
   }
   return steps;
 }
 
-Joints figure_at(const MappedStep& step, float seconds, bool in_place) {
+std::vector<MappedStep> coded_stretches(const Motion& motion, const Joints& rest, MovementEncoder& encoder,
+                                        int first, int last) {
+  std::vector<MappedStep> stretches;
+  const float seconds = static_cast<float>(last - first) / motion.fps;
+  if (seconds < kShortestStretch_s) return stretches;
+  const int count = std::max(1, static_cast<int>(std::lround(seconds / kStretch_s)));
+  for (int i = 0; i < count; ++i) {
+    const auto frame = [&](int k) {
+      return first + static_cast<int>(static_cast<int64_t>(last - first) * k / count);
+    };
+    stretches.push_back(coded(motion, rest, encoder, frame(i), frame(i + 1)));
+  }
+  return stretches;
+}
+
+std::vector<MappedStep> coded_movements(const Motion& motion, const Joints& rest, MovementEncoder& encoder) {
+  std::vector<char> taken(motion.poses.size(), 0);
+  for (size_t t = 0; t < motion.flags.size(); ++t) taken[t] = motion.flags[t] != 0;
+  for (const Step& step : find_steps(motion))
+    std::fill(taken.begin() + step.first, taken.begin() + step.last + 1, 1);
+  std::vector<MappedStep> movements;
+  for (int first = 0, end = 0; first < ssize(taken); first = end) {
+    while (end < ssize(taken) && taken[end] == taken[first]) ++end;
+    if (taken[first] != 0 || static_cast<float>(end - 1 - first) < kShortestMovement_s * motion.fps) continue;
+    for (MappedStep& one : coded_stretches(motion, rest, encoder, first, end - 1))
+      movements.push_back(std::move(one));
+  }
+  return movements;
+}
+
+Motion motion_of(const MappedStep& step) {
+  constexpr int kFrames = (kFigureMoments - 1) * kBetween + 1;
+  Motion motion;
+  motion.fps = static_cast<float>(kFrames - 1) / step.seconds;
+  motion.poses.resize(kFrames);
+  std::vector<KnownParts> known(kFrames, all_parts(false));
+  for (int k = 0; k < kFigureMoments; ++k) {
+    motion.poses[kBetween * k] = moment_of(step, k);
+    known[kBetween * k] = all_parts(true);
+  }
+  fill_curves(known, 0, kFrames - 1, motion);
+  return motion;
+}
+
+Joints figure_at(const MappedStep& step, const Joints& rest, float seconds, bool in_place) {
   const float turn = step.seconds > 0 ? seconds / step.seconds : 0;
   const float at = (turn - std::floor(turn)) * (kFigureMoments - 1);
   const int k = std::min(static_cast<int>(at), kFigureMoments - 2);
-  const float t = at - static_cast<float>(k);
-  const Joints a = moment_of(step, k - 1), b = moment_of(step, k), c = moment_of(step, k + 1),
-               d = moment_of(step, k + 2);
-  // Catmull and Rom's curve through b and c.
-  Joints joints = b + 0.5f * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
-  if (in_place) {
-    const Eigen::RowVector3f pelvis = joints.row(Pelvis);
-    joints.rowwise() -= Eigen::RowVector3f(pelvis.x(), 0, pelvis.z());
-  }
-  return joints;
+  Pose pose = pose_at({{moment_of(step, k), moment_of(step, k + 1)}, {0, 1}}, at - static_cast<float>(k));
+  if (in_place) pose.root.x() = pose.root.z() = 0;
+  return forward_kinematics(rest, pose).joints;
 }
 
 std::string action_of_name(const std::string& path) {
@@ -105,22 +161,29 @@ MotionMap::MotionMap(std::vector<MappedMotion> motions) : motions_(std::move(mot
   find_unit();
 }
 
-/// Principal components; of both directions of an axis that one whose largest part is positive.
+/// Principal components; of both directions of an axis that one whose largest part is positive. Of long codes
+/// (the plain coder's) those of some of the steps: what takes seconds else takes a tenth of one.
 void MotionMap::find_axes() {
   mean_ = codes_.cast<double>().colwise().mean().cast<float>();
-  const Eigen::MatrixXd centred = (codes_.rowwise() - mean_).cast<double>();
-  const Eigen::MatrixXd covariance = centred.transpose() * centred / std::max(1, size() - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-  const Eigen::Index d = codes_.cols();
+  const Eigen::Index d = codes_.cols(),
+                     n = d > kLongCode ? std::min<Eigen::Index>(size(), kLongCode) : size();
+  Eigen::MatrixXd centred(n, d);
+  for (Eigen::Index i = 0; i < n; ++i) centred.row(i) = (codes_.row(i * size() / n) - mean_).cast<double>();
+  const bool dual = n < d;  // both products have the same eigenvalues above 0
+  const Eigen::MatrixXd product =
+      dual ? Eigen::MatrixXd(centred * centred.transpose()) : Eigen::MatrixXd(centred.transpose() * centred);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(product);
+  const Eigen::Index count = product.cols();
   axes_.setZero(d, 2);
   const double all = std::max(solver.eigenvalues().sum(), 1e-30);
-  for (Eigen::Index k = 0; k < std::min<Eigen::Index>(2, d); ++k) {
-    Eigen::VectorXd axis = solver.eigenvectors().col(d - 1 - k);
+  for (Eigen::Index k = 0; k < std::min<Eigen::Index>(2, count); ++k) {
+    Eigen::VectorXd axis = solver.eigenvectors().col(count - 1 - k);
+    if (dual) axis = (centred.transpose() * axis).normalized();
     Eigen::Index largest = 0;
     axis.cwiseAbs().maxCoeff(&largest);
     if (axis[largest] < 0) axis = -axis;
     axes_.col(k) = axis.cast<float>();
-    shares_[k] = static_cast<float>(std::max(0.0, solver.eigenvalues()[d - 1 - k]) / all);
+    shares_[k] = static_cast<float>(std::max(0.0, solver.eigenvalues()[count - 1 - k]) / all);
   }
   places_ = (codes_.rowwise() - mean_) * axes_;
 }

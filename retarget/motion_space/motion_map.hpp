@@ -1,5 +1,5 @@
-// A map of movements: the steps of many motions by their codes; which are alike, and where each lies on a
-// plane.
+// A map of movements: the steps of many motions, or what else is in them, by their codes; which are alike,
+// and where each lies on a plane.
 #pragma once
 
 #include <array>
@@ -13,21 +13,27 @@
 
 namespace understudy {
 
-constexpr int kFigureMoments = 12;  ///< of a step that are kept to be shown
+constexpr int kFigureMoments = 16;  ///< of a step that are kept to be shown
+constexpr size_t kFigureNumbers = kFigureMoments * (kJointCount + 1) * 3;
 
-/// A step with its code.
+/// A step with its code, or a stretch of another movement.
 struct MappedStep {
   int first = 0, last = 0;  ///< frames of its motion, both inside
-  bool left_first = false;
+  bool left_first = false;  ///< of a step
   float seconds = 0;
   float speed_m_s = 0;      ///< over the floor, from its beginning straight to its end
   std::vector<float> code;  ///< MotionCode::mean
-  /// Joints of evenly many moments, the first and the last frame among them, seen as movement_of sees them:
-  /// [kFigureMoments * 22 * 3] millimetres.
+  /// Poses of evenly many moments, the first and the last frame among them, seen as movement_of sees them:
+  /// [kFigureMoments * 23 * 3], of each joint's local rotation axis times angle in 1e-4 radians, then the
+  /// root in millimetres.
   std::vector<int16_t> figure;
 };
 
-/// A motion and the steps in it.
+/// What is on a map: steps, or what else is in motions.
+enum class MapOf { Steps, Others };
+constexpr Names<2> kMapOfNames{"steps", "others"};
+
+/// A motion and the steps in it, or its other movements.
 struct MappedMotion {
   std::string path;        ///< its file; empty: it is in none
   std::string clip;        ///< which of the file's animations: a number from 1
@@ -41,12 +47,21 @@ struct MappedMotion {
 };
 
 /// The steps of a motion that lie wholly in frames first .. last, coded. Throws Error as the coder does.
-std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MotionCoder& coder,
+std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, MovementEncoder& coder,
                                     int first = 0, int last = kFrameNumbers.high);
 
-/// The joints of a step after so many seconds of it, again from the start after its end; between the moments
-/// that are kept along a smooth curve. In place: the pelvis stays above the origin.
-Joints figure_at(const MappedStep& step, float seconds, bool in_place);
+/// What else a motion holds: what is in none of its steps and in no flagged frame for a second or more, in
+/// stretches of about two seconds, coded. `encoder` codes movements of 1 to 3 s. Throws Error as it does.
+std::vector<MappedStep> coded_movements(const Motion& motion, const Joints& rest, MovementEncoder& encoder);
+/// Frames first .. last as such stretches, whatever they show; none of less than half a second.
+std::vector<MappedStep> coded_stretches(const Motion& motion, const Joints& rest, MovementEncoder& encoder,
+                                        int first, int last);
+
+/// A step as it is kept, along a smooth curve through its moments.
+Motion motion_of(const MappedStep& step);
+/// Its joints after so many seconds, again from the start after its end; `rest`: of who performs it. In
+/// place: the pelvis stays above the origin.
+Joints figure_at(const MappedStep& step, const Joints& rest, float seconds, bool in_place);
 
 /// The words of a file's name: "walk" for "/clips/walk_03.bvh".
 std::string action_of_name(const std::string& path);

@@ -81,7 +81,8 @@ class StepWindows final : public WindowNetwork {
   explicit StepWindows(std::unique_ptr<MotionCoder> coder)
       : coder_(std::move(coder)), starts_(walk_codes(*coder_)) {}
 
-  std::vector<WindowAnswer> answer(const std::vector<MotionWindow>& windows) override {
+  std::vector<WindowAnswer> answer(const std::vector<MotionWindow>& windows,
+                                   const std::vector<WindowCode>&) override {
     std::vector<WindowAnswer> answers;
     answers.reserve(windows.size());
     for (const MotionWindow& window : windows) answers.push_back(answer(window));

@@ -1,6 +1,9 @@
 #include <torch/torch.h>
 
+#include <algorithm>
+
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
 #include "retarget/motion_space/learned_space.hpp"
 #include "retarget/nn/load.hpp"
 #include "retarget/nn/modules/inbetween_input.hpp"
@@ -12,14 +15,17 @@ namespace {
 
 class InbetweenNetwork final : public WindowNetwork {
  public:
-  explicit InbetweenNetwork(const std::string& path) : net_(options_of(path)) {
+  explicit InbetweenNetwork(const std::string& path)
+      : net_(options_of(path)), code_size_(static_cast<int>(options_of(path).code)) {
     load_weights(path, "motion-space", kInbetweenVersion, *net_);
     net_->eval();
   }
 
-  std::vector<WindowAnswer> answer(const std::vector<MotionWindow>& windows) override {
+  std::vector<WindowAnswer> answer(const std::vector<MotionWindow>& windows,
+                                   const std::vector<WindowCode>& codes) override {
     const torch::InferenceMode only_answers;
-    const InbetweenOutput made = net_->forward(input_of(windows));
+    const auto told = torch::ones({ssize(windows), 1});
+    const InbetweenOutput made = net_->forward(input_of(windows), tensor_of(codes), told);
     US_CHECK(
         torch::isfinite(made.rotations).all().item<bool>() && torch::isfinite(made.root).all().item<bool>(),
         "the motion space's network gave no finite pose");
@@ -39,7 +45,25 @@ class InbetweenNetwork final : public WindowNetwork {
     return answers;
   }
 
+  int code_size() const override { return code_size_; }
+
+  WindowCode code_of(const MotionWindow& movement) override {
+    const torch::InferenceMode only_answers;
+    const auto mean = net_->encode(input_of({movement})).mean.contiguous();
+    US_CHECK(torch::isfinite(mean).all().item<bool>(), "the motion space's network gave no finite code");
+    return {mean.data_ptr<float>(), mean.data_ptr<float>() + mean.numel()};
+  }
+
  private:
+  /// [B, C]; undefined of none.
+  torch::Tensor tensor_of(const std::vector<WindowCode>& codes) const {
+    if (codes.empty()) return {};
+    auto rows = torch::empty({ssize(codes), code_size_});
+    for (int64_t i = 0; i < ssize(codes); ++i)
+      std::copy_n(codes[static_cast<size_t>(i)].begin(), code_size_, rows[i].data_ptr<float>());
+    return rows;
+  }
+
   static InbetweenOptions options_of(const std::string& path) {
     const WeightsHeader header = read_weights_header(path);
     InbetweenOptions options;
@@ -47,11 +71,14 @@ class InbetweenNetwork final : public WindowNetwork {
     options.inner = header_size(path, header, "inner", options.inner, 4096);
     options.layers = header_size(path, header, "layers", options.layers, 32);
     options.heads = header_size(path, header, "heads", options.heads, 64);
+    options.code = header_size(path, header, "code", options.code, 256);
     US_CHECK(options.width % options.heads == 0, path, ": its width is no multiple of its heads");
+    US_CHECK(options.code % 2 == 0, path, ": its codes have an odd number of numbers");
     return options;
   }
 
   InbetweenNet net_;
+  int code_size_;
 };
 
 }  // namespace

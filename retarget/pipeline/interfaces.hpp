@@ -41,6 +41,14 @@ struct Extraction {
   Confidence visibility = Confidence::Ones();
 };
 
+/// A skeleton's own joints and rotations.
+inline Extraction exact_extraction(const PosedSkeleton& posed) {
+  Extraction extraction;
+  extraction.joints = posed.joints, extraction.global = posed.global;
+  extraction.exact = true;
+  return extraction;
+}
+
 /// The joints seen in the last two frames of a stream, world, metres. Those that are not finite are left out.
 struct RecentJoints {
   std::optional<Joints> last, before_last;

@@ -28,20 +28,25 @@ struct MotionCode {
   std::vector<float> deviation;  ///< of each number, how sure the coder is of it; empty: it does not say
 };
 
-/// Codes movements of at most one cycle of the legs (find_steps) with their times and their path over the
-/// floor (paper 2, section 3). A code says nothing of where a movement begins and which way it heads: its
-/// first pose is above the origin and faces +z. Mirrored movements have other codes. One thread at a time.
-class MotionCoder {
+/// Codes movements, so that like ones have like codes. A code says nothing of where a movement begins and
+/// which way it heads. Mirrored movements have other codes. One thread at a time.
+class MovementEncoder {
  public:
-  virtual ~MotionCoder() = default;
+  virtual ~MovementEncoder() = default;
   virtual int size() const = 0;
   /// Of a movement of the body with these T-pose joints, metres. Throws Error for fewer than two poses, times
-  /// that do not rise, or more than ten seconds.
+  /// that do not rise, or a movement that is longer than it can code.
   virtual MotionCode encode(const TimedPoses& movement, const Joints& rest) = 0;
+  virtual std::string name() const = 0;
+};
+
+/// Codes movements of at most one cycle of the legs (find_steps) with their times and their path over the
+/// floor (paper 2, section 3), and makes movements of codes. No more than ten seconds.
+class MotionCoder : public MovementEncoder {
+ public:
   /// The movement of a body with these T-pose joints: evenly many poses with their times. Floor at y = 0.
   /// Throws Error where `code` has another size or is not finite.
   virtual TimedPoses decode(const std::vector<float>& code, const Joints& rest) = 0;
-  virtual std::string name() const = 0;
 };
 
 }  // namespace understudy

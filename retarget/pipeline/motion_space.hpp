@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "retarget/pipeline/motion_coder.hpp"
 #include "retarget/skeleton/pose_curve.hpp"
 
 namespace understudy {
@@ -36,6 +37,8 @@ class MotionSpace {
   virtual std::string name() const = 0;
   /// How many answers a question has; a KnownMotion::variation beyond them is answered like 0.
   virtual int variations() const { return 1; }
+  /// What tells movements of any kind apart; null where it has no codes. On the same thread as complete().
+  virtual MovementEncoder* encoder() { return nullptr; }
 };
 
 }  // namespace understudy

@@ -17,6 +17,12 @@ RootPathOptions root_options(const RetargetOptions& options) {
   return root;
 }
 
+/// Poses alone need no deformer, as long as no hand is to touch the body's surface.
+void check_needs(bool transfer, bool deformer, const RetargetOptions& options) {
+  US_CHECK(transfer, "the pipeline needs a motion transfer");
+  US_CHECK(deformer || (!options.vertices && !options.keep_contacts), "the pipeline needs a deformer");
+}
+
 }  // namespace
 
 Performer::Performer(const RetargetOptions& options)
@@ -33,14 +39,16 @@ Performer::Performer(const RetargetOptions& options)
 Performer::Performer(Target target, std::shared_ptr<MotionTransfer> transfer,
                      std::shared_ptr<Deformer> deformer, const RetargetOptions& options)
     : Performer(options) {
-  US_CHECK(transfer && deformer, "the pipeline needs a motion transfer and a deformer");
+  check_needs(transfer != nullptr, deformer != nullptr, options);
   target_ = std::move(target);
   transfer_ = std::move(transfer);
   deformer_ = std::move(deformer);
   for (const std::string& warning : target_.warnings) log::warn(warning);
-  deformer_->bind(target_.mesh.vertices, target_.joints);
-  now_.hands.bind(target_.mesh, target_.joints, deformer_->weights());
-  surface_ = TornSurface(target_.mesh, deformer_->weights());
+  if (deformer_) {
+    deformer_->bind(target_.mesh.vertices, target_.joints);
+    now_.hands.bind(target_.mesh, target_.joints, deformer_->weights());
+    surface_ = TornSurface(target_.mesh, deformer_->weights());
+  }
   restart();
 }
 
@@ -66,6 +74,7 @@ void Performer::restart() {
 }
 
 void Performer::restart(const RetargetOptions& options) {
+  if (transfer_) check_needs(true, deformer_ != nullptr, options);
   options_ = options;
   now_.filter = JointFilter(options.filter);
   now_.root = RootPath(root_options(options));

@@ -69,7 +69,8 @@ class Performer {
  public:
   /// Has no target: its frames have a `source`, repaired and smoothed, and no pose.
   explicit Performer(const RetargetOptions& options = {});
-  /// Binds the networks to the target. Throws Error when they cannot be, or one is missing.
+  /// Binds the networks to the target. Throws Error when they cannot be, or one is missing. Without vertices
+  /// and contacts (RetargetOptions) no deformer is needed.
   Performer(Target target, std::shared_ptr<MotionTransfer> transfer, std::shared_ptr<Deformer> deformer,
             const RetargetOptions& options = {});
   /// Styles work in the order in which they were added, before all else.

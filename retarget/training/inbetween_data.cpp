@@ -47,8 +47,8 @@ Known random_known(int frames, Rng& rng) {
   const int most = std::min(kMostEnd, (frames - 2) / 2);
   const int before = 1 + rng.below(most), after = 1 + rng.below(most);
   const float kind = rng.uniform();
-  if (kind < 0.68f) return one_gap(frames, before, after);
-  if (kind < 0.78f) return every_nth(frames, rng);
+  if (kind < 0.60f) return one_gap(frames, before, after);
+  if (kind < 0.70f) return every_nth(frames, rng);
   if (kind < 0.90f) return one_gap(frames, 2 + rng.below(std::min(30, frames - 4)), 0);
   return some_joints(one_gap(frames, before, after), rng);
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
@@ -12,14 +14,24 @@ constexpr int kBatchFrames = 3072;
 constexpr int64_t kDevBatch = 64;
 // Of the dev windows: known frames on each side, and how far apart the windows begin.
 constexpr int kEnds = 10, kEvery = 30;
+/// Of the windows so many are told the code of the truth.
+constexpr float kTold = 0.4f;
+/// Weight of the codes' divergence from the standard normal distribution, and after which share of the
+/// training it is reached: from the start on codes would be given up before they tell anything.
+constexpr double kDivergence = 0.003, kDivergenceGrows = 0.6;
 
-Schedule inbetween_schedule() {
+Schedule inbetween_schedule(bool begun) {
   Schedule schedule;
-  schedule.rate = 6e-4;
+  schedule.rate = begun ? 3e-4 : 6e-4;
   schedule.warm_up = 300;
   schedule.average_decay = 0.999;
   schedule.row_seconds = 300;
   return schedule;
+}
+
+/// Of Kullback and Leibler, from the standard normal distribution, [B, C].
+torch::Tensor divergence(const nn::MovementCode& code) {
+  return 0.5 * (code.mean.square() + (2 * code.log_deviation).exp() - 1) - code.log_deviation;
 }
 
 torch::Tensor placed_joints(const torch::Tensor& rest, const torch::Tensor& rotations,
@@ -35,6 +47,7 @@ class InbetweenTrainer final : public TrainingRun {
   Step learn() override;
   Figures evaluate() override { return dev_errors(false); }
   nn::WeightsHeader header() const override;
+  std::string later_part() const override { return nn::kMovementCodes; }
   void put_own(torch::serialize::OutputArchive& archive) const override { put_random(archive, rng_.state()); }
   void take_own(torch::serialize::InputArchive& archive) override { rng_ = Rng(take_random(archive)); }
 
@@ -51,7 +64,7 @@ class InbetweenTrainer final : public TrainingRun {
 };
 
 InbetweenTrainer::InbetweenTrainer(const nn::MotionSpaceTrainOptions& options)
-    : TrainingRun(options, options.kNetwork, inbetween_schedule()),
+    : TrainingRun(options, options.kNetwork, inbetween_schedule(!options.init.empty())),
       rng_(options.seed),
       data_(load_training_data(options.data, Split::Train)),
       dev_(load_training_data(options.data, Split::Dev)),
@@ -68,7 +81,16 @@ InbetweenTrainer::InbetweenTrainer(const nn::MotionSpaceTrainOptions& options)
 
 TrainingRun::Step InbetweenTrainer::learn() {
   const InbetweenBatch batch = data_.batch(frames_, rng_);
-  const LossSum loss = inbetween_loss(net_->forward(batch.input), batch);
+  const int64_t windows = batch.root.size(0);
+  const nn::MovementCode code =
+      net_->encode({batch.rotations, batch.root, batch.input.distance, batch.input.rest});
+  const auto noise = torch::empty({windows, form_.code}), told = torch::empty({windows, 1});
+  std::generate_n(noise.data_ptr<float>(), noise.numel(), [this] { return rng_.normal(); });
+  std::generate_n(told.data_ptr<float>(), windows, [this] { return rng_.chance(kTold) ? 1.f : 0.f; });
+  const auto sample = code.mean + code.log_deviation.exp() * noise.to(device());
+  LossSum loss = inbetween_loss(net_->forward(batch.input, sample, told.to(device())), batch);
+  loss.add("code", (told.to(device()) * divergence(code)).sum() / static_cast<double>(windows),
+           kDivergence * std::min(1.0, done_share() / kDivergenceGrows));
   loss.total.backward();
   return {batch.root.size(0), loss.parts};
 }
@@ -108,7 +130,8 @@ nn::WeightsHeader InbetweenTrainer::header() const {
           {{"width", static_cast<double>(form_.width)},
            {"inner", static_cast<double>(form_.inner)},
            {"layers", static_cast<double>(form_.layers)},
-           {"heads", static_cast<double>(form_.heads)}}};
+           {"heads", static_cast<double>(form_.heads)},
+           {"code", static_cast<double>(form_.code)}}};
 }
 
 }  // namespace

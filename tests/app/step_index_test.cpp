@@ -68,8 +68,9 @@ class StepIndex : public testing::Test {
     StepIndexOptions options;
     options.folder = scratch.path("index");
     options.progress = progress;
+    MapEncoders encoders([this] { return std::make_shared<tests::PlainCoder>(coder); }, {});
     return index_steps(
-        motion_files(paths.empty() ? std::vector<std::string>{scratch.path("motions")} : paths), coder,
+        motion_files(paths.empty() ? std::vector<std::string>{scratch.path("motions")} : paths), encoders,
         options);
   }
   std::vector<std::string> entries() const {
@@ -146,6 +147,11 @@ TEST_F(StepIndex, WhatIsUnchangedIsNotReadAgain) {
   EXPECT_EQ(second.damaged, 0);
   EXPECT_EQ(second.without_steps, std::vector<std::string>{path("stands.bvh")});
   expect_same(first, second);
+  ASSERT_EQ(first.others.size(), 1u) << "who stands makes another movement";
+  ASSERT_EQ(second.others.size(), 1u);
+  EXPECT_EQ(second.others[0].path, path("stands.bvh"));
+  EXPECT_EQ(second.others[0].steps.at(0).code, first.others[0].steps.at(0).code);
+  EXPECT_NE(index_words(second).find(", 1 other movement"), std::string::npos) << index_words(second);
 }
 
 TEST_F(StepIndex, AFileThatWasTouchedIsTheSameAndOneThatHasChangedIsReadAgain) {
@@ -227,7 +233,8 @@ TEST_F(StepIndex, WorksWhereNothingCanBeKept) {
   tests::write_text(scratch.path("index"), "a file in the folder's place");
   EXPECT_EQ(index().motions.size(), 1u);
   StepIndexOptions none;
-  EXPECT_EQ(index_steps(motion_files({path("a.bvh")}), coder, none).read, 1);
+  MapEncoders plain({}, {});
+  EXPECT_EQ(index_steps(motion_files({path("a.bvh")}), plain, none).read, 1);
 }
 
 TEST_F(StepIndex, OfAnEmptyFolderIsEmpty) {

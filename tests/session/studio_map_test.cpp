@@ -1,8 +1,11 @@
 // The map of motions: read in the background, asked for what is alike, taken from as a source.
 #include <algorithm>
+#include <cmath>
 
 #include "app/run/step_index.hpp"
 #include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/math/rotation.hpp"
 #include "tests/app/sample_files.hpp"
 #include "tests/session/studio_fixture.hpp"
 #include "tests/support/plain_coder.hpp"
@@ -172,16 +175,108 @@ TEST_F(StudioMap, WithoutAFolderHoldsTheOpenMotionAlone) {
   EXPECT_EQ(studio.session().map.map->motions().size(), 1u);
 }
 
-TEST_F(StudioMap, OfMotionsInWhichNobodyStepsIsEmptyAndSaysSo) {
+TEST_F(StudioMap, OfMotionsInWhichNobodyStepsShowsWhatElseIsInThem) {
   Studio studio(with_coder());
   studio.run("map.index", {path("motions/still.npz")});
   studio.wait_idle();
-  EXPECT_FALSE(studio.session().map.any());
-  ASSERT_FALSE(studio.session().notices.empty());
-  EXPECT_EQ(studio.session().notices.back().text.find("Nobody steps in any of these motions: 1 file"), 0u);
+  const MapState& map = studio.session().map;
+  EXPECT_EQ(map.shown, MapOf::Others);
+  ASSERT_TRUE(map.any());
+  EXPECT_EQ(map.map->motion_of(0).name, "still.npz");
+  EXPECT_NE(map.words.find("0 steps in 0 motions, "), std::string::npos) << map.words;
+  studio.run("map.take", {"0"});
+  studio.wait_idle();
+  EXPECT_EQ(studio.session().document.source.path, path("motions/still.npz"));
+  studio.run("map.show", {"steps"});
+  EXPECT_FALSE(map.any());
   EXPECT_NE(refused(studio, "map.take", {"0"}), "");
   EXPECT_NE(refused(studio, "map.decode", {"0", "0"}), "");
   EXPECT_NE(refused(studio, "map.like", {"0", "30"}), "");
+}
+
+TEST_F(StudioMap, OfMotionsThatAreTooBriefIsEmptyAndSaysSo) {
+  tests::WalkOptions brief;
+  brief.motion = "still";
+  brief.fps = 1000;
+  tests::write_walk(path("brief.npz"), brief);
+  Studio studio(with_coder());
+  studio.run("map.index", {path("brief.npz")});
+  studio.wait_idle();
+  EXPECT_FALSE(studio.session().map.any());
+  ASSERT_FALSE(studio.session().notices.empty());
+  EXPECT_EQ(studio.session().notices.back().text.find("Nobody moves in any of these motions for a second: 1"),
+            0u);
+}
+
+TEST_F(StudioMap, MovementsThatAreNoStepsAreShownAndComparedByThemselves) {
+  Studio studio(with_coder());
+  studio.run("source.open", {path("motions/still.npz")});
+  read_all(studio);
+  const MapState& map = studio.session().map;
+  EXPECT_EQ(map.shown, MapOf::Steps);
+  studio.run("map.show", {"others"});
+  ASSERT_TRUE(map.any());
+  for (int i = 0; i < map.map->size(); ++i) EXPECT_NE(map.map->motion_of(i).name, "walk.npz");
+  studio.run("map.like", {"0", "40"});
+  studio.wait_idle();
+  EXPECT_TRUE(studio.session().errors.empty());
+  EXPECT_FALSE(map.like.empty());
+  EXPECT_NE(refused(studio, "map.show", {"people"}), "");
+}
+
+TEST_F(StudioMap, ATargetPerformsAStepThatIsPointedAtAndIsAsItWasAfterwards) {
+  Studio studio(with_coder());
+  open_walk(studio);
+  read_all(studio);
+  const Session& session = studio.session();
+  const int step = step_of(studio, "walk.npz");
+  const Pose before = session.takes.at(0).shown.poses.at(static_cast<size_t>(shown_frame(session)));
+  studio.run("map.perform", {std::to_string(step)});
+  ASSERT_TRUE(session.map.performance);
+  const StepPerformance& performance = *session.map.performance;
+  const auto& frames = performance.takes.at(0);
+  ASSERT_GT(frames.size(), 20u);
+  EXPECT_NEAR(static_cast<float>(frames.size() - 1) / performance.fps, session.map.map->step(step).seconds,
+              1e-3f);
+  const Vec3 middle = 0.5f * (frames.front().pose.root + frames.back().pose.root);
+  EXPECT_LT(std::hypot(middle.x() - before.root.x(), middle.z() - before.root.z()), 1e-3f)
+      << "where it stands";
+  EXPECT_GT((frames.back().pose.root - frames.front().pose.root).norm(), 0.5f) << "it walks";
+  EXPECT_EQ(performance.frame_at(performance.since, 0), 0);
+  EXPECT_EQ(performance.frame_at(performance.since + 10.5 / static_cast<double>(performance.fps), 0), 10);
+  const double lap = static_cast<double>(ssize(frames)) / static_cast<double>(performance.fps);
+  EXPECT_EQ(performance.frame_at(performance.since + lap + 1e-4, 0), 0) << "over and over";
+  FrameCache& cache = studio.cache();
+  cache.performing(session.takes[0], 0, 10, frames[10].pose);
+  cache.wait();
+  const auto picture = cache.performing(session.takes[0], 0, 10, frames[10].pose);
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->vertices, session.takes[0].deformer->deform(frames[10].pose));
+  studio.run("map.perform");
+  EXPECT_FALSE(session.map.performance);
+  EXPECT_EQ(session.takes[0].shown.poses.at(static_cast<size_t>(shown_frame(session))).root, before.root);
+}
+
+TEST_F(StudioMap, WhatIsPointedAtIsPerformedAsItIsWhenItIsTaken) {
+  Studio studio(with_coder());
+  open_walk(studio);
+  read_all(studio);
+  const Session& session = studio.session();
+  const int step = step_of(studio, "run.npz");
+  studio.run("map.perform", {std::to_string(step)});
+  const auto pointed = session.map.performance->takes.at(0);
+  studio.run("map.take", {std::to_string(step)});
+  studio.wait_idle();
+  const int first = session.map.map->step(step).first, last = session.map.map->step(step).last;
+  float worst = 0;
+  for (const size_t i : {size_t{5}, pointed.size() / 2, pointed.size() - 1}) {
+    const float share = static_cast<float>(i) / static_cast<float>(pointed.size() - 1);
+    const int frame = first + static_cast<int>(std::lround(share * static_cast<float>(last - first)));
+    const Pose& taken = session.takes.at(0).shown.poses.at(static_cast<size_t>(frame));
+    for (int j = LeftHip; j < LeftShoulder; ++j)
+      worst = std::max(worst, geodesic_angle(taken.local[j], pointed[i].pose.local[j]));
+  }
+  EXPECT_LT(worst, 0.2f) << "radians, of any joint but the arms', whose contacts are kept in takes alone";
 }
 
 TEST_F(StudioMap, RefusesStepsAndFoldersThatAreNotThere) {

@@ -14,12 +14,11 @@ namespace understudy::tests {
 /// of their action. Figures stand.
 inline std::vector<MappedMotion> made_motions(int motions, int steps, int size = 8) {
   static const char* const kActions[] = {"walk", "run", "jump", "dance", "climb"};
-  std::vector<int16_t> figure;
-  for (int k = 0; k < kFigureMoments; ++k)
-    for (Eigen::Index i = 0; i < human_rest().size(); ++i)
-      figure.push_back(static_cast<int16_t>(1000 * human_rest().data()[i] + (i % 3 == 1   ? 1000
-                                                                             : i % 3 == 2 ? 50 * k
-                                                                                          : 0)));
+  std::vector<int16_t> figure(kFigureNumbers, 0);
+  for (int k = 0; k < kFigureMoments; ++k) {
+    int16_t* const root = &figure[static_cast<size_t>((k + 1) * (kJointCount + 1) * 3 - 3)];
+    root[1] = 1000, root[2] = static_cast<int16_t>(50 * k);
+  }
   Rng rng(5);
   std::vector<MappedMotion> all;
   for (int m = 0; m < motions; ++m) {

@@ -18,7 +18,8 @@ class MotionMapPanel : public PanelsTest {
     session.jobs.clear();
   }
   void show_map(int motions = 20, int steps = 4) {
-    session.map.map = std::make_shared<MotionMap>(tests::made_motions(motions, steps));
+    session.map.map = session.map.maps[0] =
+        std::make_shared<const MotionMap>(tests::made_motions(motions, steps));
     session.map.colouring =
         std::make_shared<MapColouring>(map_colouring(*session.map.map, session.map.colour));
     session.map.words = "20 files, 80 steps in 20 motions";
@@ -45,9 +46,8 @@ TEST_F(MotionMapPanel, AClickOnAStepTakesIt) {
   const int step = drawn_step();
   queue.clear();
   click(mark_of(step));
-  const auto lines = asked();
-  ASSERT_EQ(lines.size(), 1u);
-  EXPECT_EQ(lines[0], "map.take " + std::to_string(step));
+  EXPECT_EQ(asked(), (std::vector<std::string>{"map.perform " + std::to_string(step),
+                                               "map.take " + std::to_string(step)}));
 }
 
 TEST_F(MotionMapPanel, AClickBetweenStepsDecodesThatPlace) {
@@ -83,6 +83,28 @@ TEST_F(MotionMapPanel, TheStepUnderThePointerPerforms) {
   EXPECT_NE(picture(), first) << "it performs";
   hover("map.index");
   EXPECT_FALSE(gui.ui().moves()) << "and rests when it is left";
+}
+
+TEST_F(MotionMapPanel, TheTargetsPerformWhatIsPointedAtAndStopWhenItIsLeft) {
+  show_map();
+  const int step = drawn_step();
+  queue.clear();
+  hover(mark_of(step));
+  frame(3);
+  EXPECT_EQ(asked(), (std::vector<std::string>{"map.perform " + std::to_string(step)})) << "once";
+  queue.clear();
+  hover("map.index");
+  EXPECT_EQ(asked(), (std::vector<std::string>{"map.perform"}));
+}
+
+TEST_F(MotionMapPanel, ShowsOtherMovementsWhereTheyAreChosen) {
+  show_map();
+  expect_choice("map.show", 1, {"map.show others"});
+  session.map.maps[1] = std::make_shared<const MotionMap>();
+  session.map.shown = MapOf::Others, session.map.map = session.map.maps[1];
+  frame(2);
+  EXPECT_FALSE(shown("map.canvas")) << "there are none";
+  expect_choice("map.show", 0, {"map.show steps"});
 }
 
 TEST_F(MotionMapPanel, IsSeenToPerformWithinATenthOfASecondOfTenThousandClips) {
@@ -162,7 +184,7 @@ TEST_F(MotionMapPanel, AsksForWhatIsLikeTheMarkedFramesAndTakesIt) {
 TEST_F(MotionMapPanel, OfOneStepOrNoneIsDrawn) {
   show_map(1, 1);
   EXPECT_TRUE(shown("map.canvas"));
-  session.map.map = std::make_shared<MotionMap>();
+  session.map.map = session.map.maps[0] = std::make_shared<const MotionMap>();
   session.map.words = "3 files, 0 steps in 0 motions";
   frame(3);
   EXPECT_FALSE(shown("map.canvas"));

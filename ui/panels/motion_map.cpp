@@ -169,7 +169,8 @@ void draw_small_figures(const MapDrawing& d, ImDrawList& list) {
                       metre,
                       mix(paper, of, strength),
                       mix(paper, of, 0.55f * strength)};
-      draw_figure(list, figure_at(step, share * step.seconds, /*in_place=*/true), look);
+      draw_figure(list, figure_at(step, d.map().motion_of(i).rest, share * step.seconds, /*in_place=*/true),
+                  look);
     };
     ghost(0.1f, -0.22f * height, 0.28f);
     ghost(0.6f, 0, 0.9f);
@@ -245,6 +246,9 @@ void draw_canvas(MapDrawing& d) {
   const int before = state.hovered;
   state.hovered = hovered ? state.view.step_at(d.map(), ImGui::GetIO().MousePos, place, ui.px(kReach)) : -1;
   state.performed = state.hovered == before ? state.performed + ImGui::GetIO().DeltaTime : 0;
+  if (state.hovered >= 0 && state.hovered != before)
+    d.context.ask("map.perform", {std::to_string(state.hovered)});
+  if (state.hovered < 0 && before >= 0) d.context.ask("map.perform");
   const float dragged = ImGui::GetIO().MouseDragMaxDistanceSqr[ImGuiMouseButton_Left];
   if (clicked && dragged < ui.px(4) * ui.px(4)) click_map(d);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -302,7 +306,8 @@ void draw_performer(const MapDrawing& d, const Rect& box) {
   list.AddLine({box.min.x, floor + ui.px(2)}, {box.min.x + box.height(), floor + ui.px(2)},
                color(ui.theme().line), ui.px(1));
   const ImVec4 of = d.color_of(d.state.hovered);
-  draw_figure(list, figure_at(step, d.state.performed, /*in_place=*/true),
+  const Joints& rest = d.map().motion_of(d.state.hovered).rest;
+  draw_figure(list, figure_at(step, rest, d.state.performed, /*in_place=*/true),
               {at, metre, of, mix(ui.theme().backdrop, of, 0.55f)});
   list.PopClipRect();
   ui.keep_moving();
@@ -311,10 +316,10 @@ void draw_performer(const MapDrawing& d, const Rect& box) {
 std::vector<std::string> step_lines(const MotionMap& map, int i) {
   const MappedMotion& motion = map.motion_of(i);
   const MappedStep& step = map.step(i);
-  return {motion.name, motion.action,
-          "frames " + std::to_string(step.first) + "\u2013" + std::to_string(step.last),
-          printed("%.2f s, %.2f m/s", static_cast<double>(step.seconds), static_cast<double>(step.speed_m_s)),
-          step.left_first ? "left foot first" : "right foot first"};
+  return {
+      motion.name, motion.action,
+      "frames " + std::to_string(step.first) + "\u2013" + std::to_string(step.last),
+      printed("%.2f s, %.2f m/s", static_cast<double>(step.seconds), static_cast<double>(step.speed_m_s))};
 }
 
 void draw_preview(const MapDrawing& d) {
@@ -338,11 +343,14 @@ void draw_preview(const MapDrawing& d) {
     bool first = true;
     for (const std::string& line : step_lines(d.map(), d.state.hovered))
       write(line, std::exchange(first, false) ? ui.theme().text : ui.theme().text_dim);
+    if (map.shown == MapOf::Steps)
+      write(d.map().step(d.state.hovered).left_first ? "left foot first" : "right foot first",
+            ui.theme().text_dim);
     return;
   }
   std::string words =
-      "Rest the pointer on a step: it performs. A click takes it, a click between steps takes what "
-      "lies between; the wheel zooms, dragging moves.";
+      "Rest the pointer on a figure: the targets perform it. A click takes it, a click between figures takes "
+      "what lies between; the wheel zooms, dragging moves.";
   if (map.decoded)
     words = "The place that was taken is " + distance_words(map.decoded->blend.known.distance) + ".";
   for (const std::string& line : split(in_lines(words, room), '\n')) write(line, ui.theme().text_dim);
@@ -373,21 +381,28 @@ void draw_alike(const MapDrawing& d) {
 
 void draw_motion_map(const app::Session& session, PanelContext& context) {
   Ui& ui = context.ui;
-  ask_button(context, {"map.index", "Read a folder of motions\u2026",
-                       "Finds the steps of all skeletal motions in a folder, and of the open one",
-                       "dialog.open map_folder"});
+  ask_button(context,
+             {"map.index", "Read a folder of motions\u2026",
+              "Finds the steps and other movements of all skeletal motions in a folder, and of the open one",
+              "dialog.open map_folder"});
   const app::MapState& map = session.map;
   const bool reads = std::any_of(session.jobs.begin(), session.jobs.end(),
                                  [&](const app::JobView& job) { return job.id == map.job && map.job != 0; });
   if (reads) hint(ui, "Motions are being read\u2026");
-  if (!map.any() || !map.colouring) {
+  if (!map.any_of_both()) {
     if (!reads)
       hint(ui, map.words.empty()
                    ? "Shows the steps of many motions at once: what is alike lies near to each other."
-                   : "Nobody steps in these motions: " + map.words);
+                   : "Nobody moves in these motions for a second: " + map.words);
     return;
   }
   hint(ui, map.words);
+  ask_choice(context, {"map.show", "Shows", "What is on the map: steps, or movements that are no steps"},
+             {"Steps", "Other movements"}, {kMapOfNames.begin(), kMapOfNames.end()},
+             kMapOfNames[static_cast<size_t>(map.shown)]);
+  if (!map.any())
+    return hint(ui, map.shown == MapOf::Steps ? "Nobody steps in these motions."
+                                              : "There is nothing but steps in these motions.");
   ask_choice(context, {"map.color", "Colour", "What the colours tell"},
              {"Action", "Speed", "Duration", "File"}, {kMapColourNames.begin(), kMapColourNames.end()},
              kMapColourNames[static_cast<size_t>(map.colour)]);

@@ -28,8 +28,11 @@ const std::vector<Panel>& panels() {
        "and in which order they see the clips.",
        draw_study},
       {"motion_map", "Map", "Alt+6", Dock::Side, false,
-       "The steps of many motions by their likeness: what is alike lies near to each other. A click takes a "
-       "step as the source, a click between steps what lies between them.",
+       "The steps of many motions, or their other movements, by their likeness: what is alike lies near to "
+       "each "
+       "other. The targets perform what the pointer rests on. A click takes it as the source, a click "
+       "between "
+       "figures what lies between them.",
        draw_motion_map},
       {"timeline", "Timeline", "Alt+T", Dock::Timeline, true,
        "The frames and the edits made at them. Thin bars show when the left and the right foot are held on "

@@ -82,6 +82,7 @@ void Workspace::draw(const app::Session& session, PanelContext& context, float f
   draw_below(session, context);
   draw_bottom(session, context, frame_rate);
   draw_side(session, context);
+  if (session.map.performance && !panel_shown(session, "motion_map")) context.ask("map.perform");
   const std::string before = dialog();
   const bool asks = !session.errors.empty() || session.question || !before.empty();
   draw_dialog(session, context);

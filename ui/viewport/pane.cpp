@@ -29,6 +29,16 @@ app::FrameCache::Wanted wanted(const Session& session, int k, int frame) {
   return {k, frame, take_colouring(session) == app::Colouring::Offsets};
 }
 
+/// In what it performs while a step of the map is pointed at, else in a frame.
+std::shared_ptr<const app::PosedPicture> take_picture(const Session& session, app::FrameCache& cache, int k,
+                                                      int frame) {
+  const app::TakeState& take = session.takes[k];
+  const auto& performance = session.map.performance;
+  const int now = performance ? performance->frame_at(session.time, k) : -1;
+  return now < 0 ? cache.posed(take, wanted(session, k, frame))
+                 : cache.performing(take, k, now, performance->takes[k][now].pose);
+}
+
 std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCache& cache,
                                            const PaneContent& pane, int frame) {
   const app::View& view = session.view;
@@ -78,7 +88,7 @@ std::optional<PanePictures> pictures_of(const Session& session, app::FrameCache&
   for (const int k : pane.takes) {
     out.takes.push_back(nullptr);
     if (!wants_take(session, k, frame)) continue;
-    out.takes.back() = cache.posed(session.takes[k], wanted(session, k, frame));
+    out.takes.back() = take_picture(session, cache, k, frame);
     whole = out.takes.back() != nullptr && whole;
   }
   if (take_colouring(session) == app::Colouring::Difference && !pane.takes.empty() &&

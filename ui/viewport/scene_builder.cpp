@@ -224,6 +224,9 @@ void Builder::add_take(size_t i) {
     add_target_surface(i, in_.pictures.takes[i], overlaid_ ? session_.view.overlay.results : 1);
   const Joints* joints = app::pane_joints(session_, k + 1, in_.pictures.frame);
   if (i == 0 && in_.preview.take_joints) joints = &*in_.preview.take_joints;
+  const auto& performance = session_.map.performance;
+  const int performing = performance ? performance->frame_at(session_.time, k) : -1;
+  if (performing >= 0) joints = &performance->takes[k][performing].joints;
   if (joints != nullptr) add_skeleton(*joints, layers, k + 1);
 }
 

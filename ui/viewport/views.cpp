@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/run/step_index.hpp"
 #include "app/session/follow.hpp"
 #include "render/gizmo.hpp"
 #include "retarget/base/index.hpp"
@@ -84,8 +85,9 @@ void Views::forget() {
 }
 
 bool Views::waiting() const {
-  return std::any_of(panes_.begin(), panes_.end(),
-                     [](const auto& pane) { return pane->keeper.waiting() || !pane->canvas.fine(); });
+  return std::any_of(panes_.begin(), panes_.end(), [this](const auto& pane) {
+    return pane->keeper.waiting() || (!pane->canvas.fine() && !performing_);
+  });
 }
 
 bool Views::shows_take(int k) const {
@@ -100,6 +102,7 @@ bool Views::shows_take(int k) const {
 
 void Views::draw(const Session& session, app::FrameCache& cache, PanelContext& context) {
   const Frame f{session, cache, context};
+  performing_ = session.map.performance.has_value();
   constexpr int kFlags = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
   if (ImGui::BeginChild("##views", {0, 0}, false, kFlags)) {
@@ -366,7 +369,8 @@ bool Views::steering() const {
 }
 
 bool Views::moving(const Session& session) const {
-  return session.playback.playing || is_live(session) || steering() || session.view.turntable_deg_s != 0;
+  return session.playback.playing || session.map.performance || is_live(session) || steering() ||
+         session.view.turntable_deg_s != 0;
 }
 
 void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
@@ -404,6 +408,10 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
     if (!method.empty()) overlay.subtitle += (overlay.subtitle.empty() ? "" : " \u00b7 ") + method;
     if (!legend_beside_ || pane.made.legend.categories.empty()) overlay.legend = pane.made.legend;
   }
+  const auto& performance = session.map.performance;
+  if (!rest && performance && !pane.content.takes.empty() &&
+      performance->frame_at(session.time, pane.content.takes[0]) >= 0)
+    overlay.subtitle = "performs " + app::step_words(*session.map.map, performance->step);
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
   const std::string made = rest ? "" : pane_made(session, pane.content, frame);
   if (!made.empty()) overlay.subtitle += " \u00b7 " + made;

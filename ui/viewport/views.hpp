@@ -79,6 +79,7 @@ class Views {
   ViewMenuPlace menu_;  ///< of the menu that is open
   std::optional<bool> followed_;
   bool legend_beside_ = false;  ///< the joints' colours stand beside the views, not in each
+  bool performing_ = false;     ///< a step of the map: what moves is never drawn finely
   bool hold_ = false;           ///< cameras stay for this frame as they were
   int64_t drawn_ = 0;
   /// The only pane that may draw a new picture now, -1: all may. Where frames come one after the other while

@@ -10,10 +10,18 @@ namespace understudy::nn {
 
 /// Of the network's form; weights of another version are refused.
 constexpr int kInbetweenVersion = 1;
+/// How the names begin of what codes movements; weights from before that lack it.
+constexpr const char* kMovementCodes = "movement_";
 
-struct InbetweenOptions {
+/// A row of transformer layers.
+struct WindowLayers {
   int64_t width = 192, inner = 512;  ///< of a frame, and inside each layer
   int64_t layers = 6, heads = 6;
+};
+
+struct InbetweenOptions : WindowLayers {
+  int64_t code = 16;                       ///< numbers of a movement's code; even
+  WindowLayers encoder = {80, 192, 2, 4};  ///< what finds it
 };
 
 /// B windows of T frames at 30 frames/s, seen from their outlooks.
@@ -31,23 +39,52 @@ struct InbetweenOutput {
   torch::Tensor doubt;      ///< [B, T] logarithm of the expected mean error of joints in metres
 };
 
-/// A frame sees all others, weighed by what they are and by how far away they are. It begins as the curve:
-/// what it adds is zero before training, and fades where something is known.
-class InbetweenNetImpl : public torch::nn::Module {
+/// Which of many movements a window is: each number of a standard normal distribution.
+struct MovementCode {
+  torch::Tensor mean, log_deviation;  ///< [B, InbetweenOptions::code]
+};
+
+/// Codes [B, C] of the movements in a mirror: the second half of the numbers changes its sign.
+torch::Tensor code_in_mirror(const torch::Tensor& code);
+
+/// A frame sees all others, weighed by what they are and by how far away they are.
+class WindowTransformerImpl : public torch::nn::Module {
  public:
-  explicit InbetweenNetImpl(const InbetweenOptions& options = {});
-  InbetweenOutput forward(const InbetweenInput& input);
+  WindowTransformerImpl(const WindowLayers& form, int64_t outputs);
+  /// [B, T, outputs] of a window; `added` [B, 1, width] joins every frame's features, where it is defined.
+  torch::Tensor forward(const InbetweenInput& input, const torch::Tensor& added = {});
 
  private:
   torch::Tensor features(const InbetweenInput& input) const;
   torch::Tensor attended(const torch::Tensor& x, size_t layer);
   torch::Tensor nearness(int64_t frames, size_t layer) const;
 
-  InbetweenOptions options_;
-  torch::nn::Linear embed{nullptr}, head{nullptr};
+  WindowLayers form_;
+  torch::nn::Linear embed{nullptr};
   torch::nn::LayerNorm last_norm{nullptr};
   torch::nn::ModuleList attention_norm, query_key_value, mixed, inner_norm, widen, narrow;
   torch::nn::ParameterList by_distance;  // [heads, 2 kMostApart + 1] a layer
+
+ protected:
+  torch::nn::Linear head{nullptr};
+};
+TORCH_MODULE(WindowTransformer);
+
+/// It begins as the curve: what it adds is zero before training, and fades where something is known. Told a
+/// code, it makes the movement of that code; untold, the mean of what may be.
+class InbetweenNetImpl : public WindowTransformerImpl {
+ public:
+  explicit InbetweenNetImpl(const InbetweenOptions& options = {});
+  /// `code`: [B, code], or undefined; `told`: [B, 1], 0 where a window's code is not to be looked at.
+  InbetweenOutput forward(const InbetweenInput& input, const torch::Tensor& code = {},
+                          const torch::Tensor& told = {});
+  /// Of wholly known movements (distance is not looked at).
+  MovementCode encode(InbetweenInput movement);
+
+ private:
+  int64_t code_size_;
+  WindowTransformer movement_encoder{nullptr};
+  torch::nn::Linear movement_told{nullptr};
 };
 TORCH_MODULE(InbetweenNet);
 

@@ -44,15 +44,68 @@ TEST(CodedSteps, AreShownAsTheyWere) {
   const TimedPoses movement = movement_of(walk, step.first, step.last);
   for (int i = 0; i <= 40; ++i) {
     const float at = 0.999f * step.seconds * static_cast<float>(i) / 40;
-    const Joints seen = figure_at(step, at, /*in_place=*/false);
+    const Joints seen = figure_at(step, rest, at, /*in_place=*/false);
     const Joints truth = forward_kinematics(rest, pose_at(movement, at)).joints;
     EXPECT_LT((seen - truth).rowwise().norm().maxCoeff(), 0.06f) << "at " << at;
-    EXPECT_LT((figure_at(step, at + step.seconds, false) - seen).norm(), 1e-3f) << "it begins again";
-    const Joints in_place = figure_at(step, at, true);
+    EXPECT_LT((figure_at(step, rest, at + step.seconds, false) - seen).norm(), 1e-3f) << "it begins again";
+    const Joints in_place = figure_at(step, rest, at, true);
     EXPECT_NEAR(in_place(Pelvis, 0), 0, 1e-6f);
     EXPECT_NEAR(in_place(Pelvis, 2), 0, 1e-6f);
     EXPECT_NEAR(in_place(Pelvis, 1), seen(Pelvis, 1), 1e-6f);
   }
+}
+
+TEST(CodedSteps, CanBePerformedAsTheyWere) {
+  const Joints rest = builtin_joints();
+  const Motion walk = builtin_motion("walk", rest);
+  tests::PlainCoder coder;
+  const MappedStep step = coded_steps(walk, rest, coder).at(1);
+  const TimedPoses movement = movement_of(walk, step.first, step.last);
+  const Motion kept = motion_of(step);
+  EXPECT_NEAR(static_cast<float>(kept.poses.size() - 1) / kept.fps, step.seconds, 1e-4f);
+  for (size_t t = 0; t < kept.poses.size(); ++t) {
+    const Joints truth = forward_kinematics(rest, pose_at(movement, static_cast<float>(t) / kept.fps)).joints;
+    EXPECT_LT((forward_kinematics(rest, kept.poses[t]).joints - truth).rowwise().norm().maxCoeff(), 0.04f)
+        << t;
+  }
+}
+
+/// Stands for some seconds, then walks, then stands.
+Motion walk_between_rests(int still) {
+  Motion motion = builtin_motion("walk", builtin_joints());
+  motion.poses.insert(motion.poses.begin(), static_cast<size_t>(still), motion.poses.front());
+  motion.poses.insert(motion.poses.end(), static_cast<size_t>(still), motion.poses.back());
+  return motion;
+}
+
+TEST(CodedMovements, AreWhatIsInNoStep) {
+  const Joints rest = builtin_joints();
+  Motion motion = walk_between_rests(100);
+  tests::PlainCoder coder;
+  const auto steps = coded_steps(motion, rest, coder);
+  const auto others = coded_movements(motion, rest, coder);
+  ASSERT_GE(others.size(), 4u) << "two before and two after the walk";
+  for (const MappedStep& other : others) {
+    EXPECT_GT(other.seconds, 1.0f);
+    EXPECT_LE(other.seconds, 3.0f);
+    for (const MappedStep& step : steps) EXPECT_TRUE(other.last < step.first || step.last < other.first);
+  }
+  EXPECT_EQ(others.front().first, 0);
+  motion.flags.assign(motion.poses.size(), 0);
+  for (size_t t = 0; t < 100; ++t) motion.flags[t] = 1;
+  EXPECT_GE(coded_movements(motion, rest, coder).front().first, 100) << "no flagged frames";
+}
+
+TEST(CodedStretches, AreOfAboutTwoSecondsAndNoneOfHardlyAnything) {
+  const Motion motion = walk_between_rests(0);
+  tests::PlainCoder coder;
+  const Joints rest = builtin_joints();
+  const auto stretches = coded_stretches(motion, rest, coder, 3, 139);
+  ASSERT_EQ(stretches.size(), 2u);
+  EXPECT_EQ(stretches[0].first, 3);
+  EXPECT_EQ(stretches[0].last, stretches[1].first);
+  EXPECT_EQ(stretches[1].last, 139);
+  EXPECT_TRUE(coded_stretches(motion, rest, coder, 3, 9).empty());
 }
 
 TEST(MotionMap, GivesTheSamePlacesToTheBit) {

@@ -8,6 +8,7 @@
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/nn/load.hpp"
+#include "retarget/nn/modules/inbetween_input.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "retarget/training/inbetween_data.hpp"
 #include "retarget/training/inbetween_step.hpp"
@@ -20,7 +21,7 @@ namespace {
 using namespace testing;
 using namespace training;
 
-const nn::InbetweenOptions kSmall{24, 32, 2, 2};
+const nn::InbetweenOptions kSmall{{24, 32, 2, 2}};
 
 class Inbetween : public ::testing::Test {
  protected:
@@ -72,8 +73,37 @@ TEST_F(Inbetween, LeavesWhatIsKnownToTheBit) {
   EXPECT_FALSE((moved & known.select(2, kRootPart)).any().item<bool>());
 }
 
+TEST_F(Inbetween, ToldACodeItMakesAnotherMovementAndUntoldTheSame) {
+  nn::InbetweenNet net(kSmall);
+  {
+    const torch::NoGradGuard no_grad;
+    for (auto& parameter : net->parameters()) parameter.normal_(0, 0.3);
+  }
+  const InbetweenBatch seen = batch(64, 3);
+  const auto code = torch::randn({seen.root.size(0), 16}), one = torch::ones({seen.root.size(0), 1});
+  const auto untold = net->forward(seen.input), not_looked_at = net->forward(seen.input, code, 0 * one),
+             told = net->forward(seen.input, code, one);
+  EXPECT_TRUE(torch::equal(untold.rotations, not_looked_at.rotations));
+  EXPECT_FALSE(torch::allclose(untold.rotations, told.rotations, 0, 1e-3));
+}
+
+TEST_F(Inbetween, ACodeOfAMovementInAMirrorIsTheCodeInAMirror) {
+  nn::InbetweenNet net(kSmall);
+  const Motion walk = builtin_motion("walk", builtin_person().joints);
+  MotionWindow window;
+  window.rest = builtin_person().joints;
+  window.outlook = Outlook::of(walk.poses[40]);
+  for (int t = 40; t < 70; ++t)
+    window.curve.push_back(window.outlook.seen(walk.poses[static_cast<size_t>(t)]));
+  window.distance.resize(window.curve.size());
+  const auto code_of = [&](const MotionWindow& seen) { return net->encode(nn::input_of({seen})).mean; };
+  const auto code = code_of(window), mirror = code_of(mirrored(window));
+  EXPECT_TRUE(torch::allclose(nn::code_in_mirror(code), mirror, 1e-3, 1e-4));
+  EXPECT_FALSE(torch::allclose(code, mirror, 1e-2, 1e-3)) << "and it is another";
+}
+
 TEST_F(Inbetween, OneBatchCanBeLearntByHeart) {
-  nn::InbetweenNet net(nn::InbetweenOptions{48, 96, 2, 4});
+  nn::InbetweenNet net(nn::InbetweenOptions{{48, 96, 2, 4}});
   const InbetweenBatch seen = batch(64, 4);
   torch::optim::Adam optimizer(net->parameters(), 3e-3);
   double first = 0, last = 0;

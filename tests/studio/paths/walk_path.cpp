@@ -326,6 +326,10 @@ class Path : public StudioWindow, public testing::WithParamInterface<std::string
     if (word == "out/people.npz") write_people(scratch.path("people.npz"));
     if (word == "out/walk.npz") write_walk(scratch.path("walk.npz"));
     if (word == "out/run.npz") write_walk(scratch.path("run.npz"), {"walk", 48});
+    if (word == "out/motions") {
+      fs::create_directories(scratch.path("motions"));
+      write_walk(scratch.path("motions/walk.npz")), write_walk(scratch.path("motions/run.npz"), {"walk", 48});
+    }
     if (word == "out/gaps") copy_with_a_gap(scratch.path("gaps"));
     if (starts_with(word, "samples/")) return std::string(US_SOURCE_DIR "/assets/") + word;
     return starts_with(word, "out/") ? scratch.path(word.substr(4)) : word;
