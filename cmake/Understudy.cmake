@@ -103,7 +103,7 @@ function(us_tests name folder)
     set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
     if(T_TORCH)
       us_torch(${program})
-    elseif(T_LIGHT)
+    elseif(T_LIGHT AND CMAKE_BUILD_TYPE STREQUAL "Release")  # sanitizers are slow enough
       target_compile_options(${program} PRIVATE -O0)
       us_reads(${program} light_test_pch)
     else()

@@ -50,7 +50,8 @@ std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCac
       PanePictures::Ghost ghost;
       ghost.frame = f;
       if (view.source.ghosts && wants_scan(session, pane)) ghost.scan = cache.scan(f);
-      if (view.take.ghosts && !pane.takes.empty() && wants_take(session, pane.takes[0], f))
+      if (view.take.ghosts && !session.map.performance && !pane.takes.empty() &&
+          wants_take(session, pane.takes[0], f))
         ghost.take = cache.posed(*first_take(session, pane), {pane.takes[0], f, false});
       ghosts.push_back(std::move(ghost));
     }
@@ -95,8 +96,8 @@ std::optional<PanePictures> pictures_of(const Session& session, app::FrameCache&
       wants_take(session, 0, frame))
     whole = (out.reference = cache.posed(session.takes[0], wanted(session, 0, frame))) != nullptr && whole;
   if (!whole) return std::nullopt;
-  const bool ghosts =
-      (pane.source && session.view.source.ghosts) || (!pane.takes.empty() && session.view.take.ghosts);
+  const bool ghosts = (pane.source && session.view.source.ghosts) ||
+                      (!pane.takes.empty() && session.view.take.ghosts && !session.map.performance);
   if (ghosts) out.ghosts = ghosts_of(session, cache, pane, frame);
   return out;
 }
@@ -104,7 +105,8 @@ std::optional<PanePictures> pictures_of(const Session& session, app::FrameCache&
 bool ghosts_ready(const Session& session, const PaneContent& pane, const PanePictures& pictures) {
   return std::all_of(pictures.ghosts.begin(), pictures.ghosts.end(), [&](const PanePictures::Ghost& ghost) {
     return (ghost.scan != nullptr || !session.view.source.ghosts || !pane.source) &&
-           (ghost.take != nullptr || !session.view.take.ghosts || pane.takes.empty());
+           (ghost.take != nullptr || !session.view.take.ghosts || session.map.performance ||
+            pane.takes.empty());
   });
 }
 
