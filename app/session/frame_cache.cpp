@@ -439,13 +439,21 @@ std::shared_ptr<const PosedPicture> FrameCache::rest(const TakeState& take, int 
       Request{{k, kRest, false}, {take.generation, take.deformer, take.target, pose, take.weights}});
 }
 
-std::shared_ptr<const PosedPicture> FrameCache::performing(const TakeState& take, int k, int frame,
-                                                           const Pose& pose) {
+std::shared_ptr<const PosedPicture> FrameCache::performing(const TakeState& take, int k,
+                                                           const std::vector<StepPerformance::Frame>& frames,
+                                                           int now) {
+  constexpr int kBack = 16;  // frames
   const auto held = impl_->worker.lock();
   if (!take.deformer || !take.target) return nullptr;
   impl_->see(take, k);
-  return impl_->posed(
-      Request{{k, kPerforming - frame, false}, {take.generation, take.deformer, take.target, pose}});
+  const auto request = [&](int frame) {
+    return Request{{k, kPerforming - frame, false},
+                   {take.generation, take.deformer, take.target, frames[frame].pose}};
+  };
+  auto picture = impl_->posed(request(now));
+  for (int frame = now - 1; picture == nullptr && frame >= std::max(0, now - kBack); --frame)
+    if (const Entry* made = impl_->store.find(request(frame))) picture = made->posed;
+  return picture;
 }
 
 void FrameCache::prefetch_scan(int frame) {

@@ -56,8 +56,10 @@ class FrameCache {
   /// The target of the take k in a rest pose, skinned alone;
   /// null while it is being made, and without its weights.
   std::shared_ptr<const PosedPicture> rest(const TakeState& take, int k, const Pose& pose);
-  /// A take in a frame of what it performs for a moment (StepPerformance); null while it is being made.
-  std::shared_ptr<const PosedPicture> performing(const TakeState& take, int k, int frame, const Pose& pose);
+  /// A take in a frame of what it performs for a moment (StepPerformance), or while that is being made in the
+  /// last one before that is; null without one.
+  std::shared_ptr<const PosedPicture> performing(const TakeState& take, int k,
+                                                 const std::vector<StepPerformance::Frame>& frames, int now);
   /// Frames that will be needed soon; made when nothing else waits.
   void prefetch_scan(int frame);
   void prefetch_posed(const TakeState& take, const Wanted& wanted);

@@ -194,8 +194,8 @@ double Application::patience_s() const {
   const Clock::time_point now = Clock::now();
   if (frames_wanted_ > 0 || gui_->pending()) return std::max(0.0, kFastest - seconds_between(drawn_at_, now));
   const Session& s = session();
-  if (s.playback.playing || s.view.turntable_deg_s != 0 || gui_->ui().moves() || !studio_->idle() ||
-      study_pictures_->busy())
+  if (s.playback.playing || s.map.performance || s.view.turntable_deg_s != 0 || gui_->ui().moves() ||
+      !studio_->idle() || study_pictures_->busy())
     return std::clamp(fastest_s() - seconds_between(drawn_at_, now), kBriefest, kListening);
   if (seconds_between(input_at_, now) < kTooltips) return kLookingAround;
   return gui_->wants_text() ? kBlink : kAsleep;

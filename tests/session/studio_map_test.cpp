@@ -247,11 +247,13 @@ TEST_F(StudioMap, ATargetPerformsAStepThatIsPointedAtAndIsAsItWasAfterwards) {
   const double lap = static_cast<double>(ssize(frames)) / static_cast<double>(performance.fps);
   EXPECT_EQ(performance.frame_at(performance.since + lap + 1e-4, 0), 0) << "over and over";
   FrameCache& cache = studio.cache();
-  cache.performing(session.takes[0], 0, 10, frames[10].pose);
+  EXPECT_FALSE(cache.performing(session.takes[0], 0, frames, 10)) << "it is being made";
   cache.wait();
-  const auto picture = cache.performing(session.takes[0], 0, 10, frames[10].pose);
+  const auto picture = cache.performing(session.takes[0], 0, frames, 10);
   ASSERT_TRUE(picture);
   EXPECT_EQ(picture->vertices, session.takes[0].deformer->deform(frames[10].pose));
+  cache.performing(session.takes[0], 0, frames, 12);
+  EXPECT_TRUE(cache.performing(session.takes[0], 0, frames, 14)) << "the last that is made";
   studio.run("map.perform");
   EXPECT_FALSE(session.map.performance);
   EXPECT_EQ(session.takes[0].shown.poses.at(static_cast<size_t>(shown_frame(session))).root, before.root);

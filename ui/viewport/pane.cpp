@@ -36,7 +36,7 @@ std::shared_ptr<const app::PosedPicture> take_picture(const Session& session, ap
   const auto& performance = session.map.performance;
   const int now = performance ? performance->frame_at(session.time, k) : -1;
   return now < 0 ? cache.posed(take, wanted(session, k, frame))
-                 : cache.performing(take, k, now, performance->takes[k][now].pose);
+                 : cache.performing(take, k, performance->takes[k], now);
 }
 
 std::vector<PanePictures::Ghost> ghosts_of(const Session& session, app::FrameCache& cache,
