@@ -197,6 +197,7 @@ struct TwoMaps {
 
 std::vector<StoredStep> stored(const std::vector<MappedStep>& steps) {
   std::vector<StoredStep> out;
+  out.reserve(steps.size());
   for (const MappedStep& step : steps)
     out.push_back({step.first, step.last, step.left_first, step.seconds, step.speed_m_s, step.code,
                    hex_of(step.figure)});
@@ -215,6 +216,7 @@ StoredMotion stored(const TwoMaps& maps) {
 /// Throws Error where they cannot have been written so.
 std::vector<MappedStep> restored(std::vector<StoredStep> steps, int frames, int code_size) {
   std::vector<MappedStep> out;
+  out.reserve(steps.size());
   for (StoredStep& step : steps) {
     US_CHECK(step.first < step.last && step.last < frames, "a step that is not in its motion");
     US_CHECK(ssize(step.code) == code_size, "a code of ", step.code.size(), " numbers");
