@@ -356,7 +356,8 @@ class Index {
     motion.rest = file.rest;
     TwoMaps maps{motion, motion};
     maps.steps.steps = coded_steps(file.motion, file.rest, encoders_.of(MapOf::Steps));
-    maps.others.steps = coded_movements(file.motion, file.rest, encoders_.of(MapOf::Others));
+    maps.others.steps =
+        coded_movements(file.motion, maps.steps.steps, file.rest, encoders_.of(MapOf::Others));
     return maps;
   }
 

@@ -99,7 +99,8 @@ void index_all(Indexing& work, MapEncoders& encoders, JobControl& control) {
     open.rest = work.open->motion.rest;
     MappedMotion others = open;
     open.steps = coded_steps(work.open->motion.motion, open.rest, encoders.of(MapOf::Steps));
-    others.steps = coded_movements(work.open->motion.motion, open.rest, encoders.of(MapOf::Others));
+    others.steps =
+        coded_movements(work.open->motion.motion, open.steps, open.rest, encoders.of(MapOf::Others));
     if (!open.steps.empty()) steps.motions.push_back(std::move(open));
     if (!others.steps.empty()) steps.others.push_back(std::move(others));
   }

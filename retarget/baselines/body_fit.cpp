@@ -252,12 +252,7 @@ Extraction BodyFit::extract(const Mesh& scan) {
     improve(last_, {points, &before, frames_ < options_.shape_frames}, options_.iterations);
   }
   ++frames_;
-  const Posed p = posed(last_);
-  Extraction extraction;
-  extraction.joints = p.skeleton.joints;
-  extraction.global = p.skeleton.global;
-  extraction.exact = true;
-  return extraction;
+  return exact_extraction(posed(last_).skeleton);
 }
 
 }  // namespace understudy

@@ -93,10 +93,11 @@ std::vector<MappedStep> coded_stretches(const Motion& motion, const Joints& rest
   return stretches;
 }
 
-std::vector<MappedStep> coded_movements(const Motion& motion, const Joints& rest, MovementEncoder& encoder) {
+std::vector<MappedStep> coded_movements(const Motion& motion, const std::vector<MappedStep>& steps,
+                                        const Joints& rest, MovementEncoder& encoder) {
   std::vector<char> taken(motion.poses.size(), 0);
   for (size_t t = 0; t < motion.flags.size(); ++t) taken[t] = motion.flags[t] != 0;
-  for (const Step& step : find_steps(motion))
+  for (const MappedStep& step : steps)
     std::fill(taken.begin() + step.first, taken.begin() + step.last + 1, 1);
   std::vector<MappedStep> movements;
   for (int first = 0, end = 0; first < ssize(taken); first = end) {

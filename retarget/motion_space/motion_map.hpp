@@ -52,7 +52,8 @@ std::vector<MappedStep> coded_steps(const Motion& motion, const Joints& rest, Mo
 
 /// What else a motion holds: what is in none of its steps and in no flagged frame for a second or more, in
 /// stretches of about two seconds, coded. `encoder` codes movements of 1 to 3 s. Throws Error as it does.
-std::vector<MappedStep> coded_movements(const Motion& motion, const Joints& rest, MovementEncoder& encoder);
+std::vector<MappedStep> coded_movements(const Motion& motion, const std::vector<MappedStep>& steps,
+                                        const Joints& rest, MovementEncoder& encoder);
 /// Frames first .. last as such stretches, whatever they show; none of less than half a second.
 std::vector<MappedStep> coded_stretches(const Motion& motion, const Joints& rest, MovementEncoder& encoder,
                                         int first, int last);

@@ -15,8 +15,9 @@ namespace {
 
 class InbetweenNetwork final : public WindowNetwork {
  public:
-  explicit InbetweenNetwork(const std::string& path)
-      : net_(options_of(path)), code_size_(static_cast<int>(options_of(path).code)) {
+  explicit InbetweenNetwork(const std::string& path) : InbetweenNetwork(path, options_of(path)) {}
+  InbetweenNetwork(const std::string& path, const InbetweenOptions& options)
+      : net_(options), code_size_(static_cast<int>(options.code)) {
     load_weights(path, "motion-space", kInbetweenVersion, *net_);
     net_->eval();
   }

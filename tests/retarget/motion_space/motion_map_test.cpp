@@ -83,7 +83,7 @@ TEST(CodedMovements, AreWhatIsInNoStep) {
   Motion motion = walk_between_rests(100);
   tests::PlainCoder coder;
   const auto steps = coded_steps(motion, rest, coder);
-  const auto others = coded_movements(motion, rest, coder);
+  const auto others = coded_movements(motion, steps, rest, coder);
   ASSERT_GE(others.size(), 4u) << "two before and two after the walk";
   for (const MappedStep& other : others) {
     EXPECT_GT(other.seconds, 1.0f);
@@ -93,7 +93,8 @@ TEST(CodedMovements, AreWhatIsInNoStep) {
   EXPECT_EQ(others.front().first, 0);
   motion.flags.assign(motion.poses.size(), 0);
   for (size_t t = 0; t < 100; ++t) motion.flags[t] = 1;
-  EXPECT_GE(coded_movements(motion, rest, coder).front().first, 100) << "no flagged frames";
+  EXPECT_GE(coded_movements(motion, coded_steps(motion, rest, coder), rest, coder).front().first, 100)
+      << "no flagged frames";
 }
 
 TEST(CodedStretches, AreOfAboutTwoSecondsAndNoneOfHardlyAnything) {
