@@ -125,8 +125,8 @@ std::vector<Sample> smoothed(std::vector<Sample> samples, const std::vector<Know
     for (size_t i = 1; i + 1 < samples.size(); ++i)
       for (size_t part = 0; part < kPartCount; ++part)
         if (!known[i][part])
-          samples[i].change[part] = 0.5f * rough[i].change[part] +
-                                    0.25f * (rough[i - 1].change[part] + rough[i + 1].change[part]);
+          samples[i].change[part] =
+              0.5f * rough[i].change[part] + 0.25f * (rough[i - 1].change[part] + rough[i + 1].change[part]);
   }
   return samples;
 }
