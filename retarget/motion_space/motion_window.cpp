@@ -38,7 +38,9 @@ std::vector<KnownParts> known_of(const MotionWindow& window) {
 
 namespace {
 
-constexpr int kContext = 12;  // known samples on each side
+// Known samples on each side of gaps; on the one side where there is no other; from how many on gaps are apart.
+// On dev few are best between, and all that there are where a motion goes on.
+constexpr int kContext = 4, kOneSided = 24, kApart = 12;
 
 /// Frames first .. last that are not wholly known.
 struct Gap {
@@ -81,7 +83,7 @@ class WindowMaker {
   bool fits(const Gap& gap) const { return ends(gap, gap).samples <= kLongestWindow; }
   /// Gaps with so few known frames between that one is to know of the other.
   bool belong_together(const std::vector<Gap>& gaps, const Gap& next) const {
-    return static_cast<float>(next.first - gaps.back().last) <= kContext * step() &&
+    return static_cast<float>(next.first - gaps.back().last) <= kApart * step() &&
            ends(gaps.front(), next).samples <= kLongestWindow;
   }
 
@@ -114,7 +116,7 @@ class WindowMaker {
     const float from = static_cast<float>(before ? first.first - 1 : first.first);
     const float to = std::min(static_cast<float>(last.last + 1), last_frame());
     const float room_before = std::floor(from / step()), room_after = (last_frame() - to) / step();
-    const auto context = static_cast<float>(before && after ? kContext : 2 * kContext);
+    const auto context = static_cast<float>(before && after ? kContext : kOneSided);
     Ends ends;
     ends.first = from - std::min(room_before, context - 1) * step();
     ends.samples =

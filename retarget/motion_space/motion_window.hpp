@@ -35,8 +35,8 @@ struct MotionWindow {
   std::vector<KnownDistance> distance;  ///< of each sample, in samples
 };
 
-/// As many windows as all gaps (frames that are not wholly known) need, each with a dozen known samples on
-/// both sides, or twice as many where there is but one side. `curve`: the motion with its gaps filled by
+/// As many windows as all gaps (frames that are not wholly known) need, each with four known samples on
+/// both sides, or two dozen where there is but one side. `curve`: the motion with its gaps filled by
 /// fill_curves. A gap that does not fit into a window has none.
 std::vector<MotionWindow> windows_of(const std::vector<KnownParts>& known, const Motion& curve,
                                      const Joints& rest);

@@ -8,7 +8,8 @@
 namespace understudy {
 namespace {
 
-constexpr float kUsualSpeed = 0.5f, kStill = 0.1f;  // m/s
+constexpr float kUsualSpeed = 0.5f, kStill = 0.1f, kEven = 0.005f;  // m/s
+constexpr float kOfSpeed = 0.2f;
 
 /// The frames of which all is known.
 std::vector<int> whole_frames(const std::vector<KnownParts>& known) {
@@ -18,48 +19,68 @@ std::vector<int> whole_frames(const std::vector<KnownParts>& known) {
   return frames;
 }
 
-}  // namespace
-
-float DoubtLaw::metres(float seconds, float speed) const {
-  return size * std::pow(seconds, by_time) * std::pow(speed + kStill, by_speed);
-}
-
-std::vector<float> known_speeds(const std::vector<KnownParts>& known, const Motion& motion,
-                                const Joints& rest) {
-  const std::vector<int> frames = whole_frames(known);
-  std::vector<float> speeds(known.size(), kUsualSpeed);
-  if (frames.size() < 2) return speeds;
+/// From each of these frames to the next, m/s.
+std::vector<Joints> velocities_between(const std::vector<int>& frames, const Motion& motion,
+                                       const Joints& rest) {
   const auto joints_at = [&](int i) { return forward_kinematics(rest, motion.poses[frames[i]]).joints; };
-  std::vector<float> steps;  // from each known frame to the next
+  std::vector<Joints> velocities;
   Joints here = joints_at(0);
   for (int i = 0; i + 1 < ssize(frames); ++i) {
     const Joints next = joints_at(i + 1);
-    const float seconds = static_cast<float>(frames[i + 1] - frames[i]) / motion.fps;
-    steps.push_back((next - here).rowwise().norm().mean() / seconds);
+    velocities.push_back((next - here) * (motion.fps / static_cast<float>(frames[i + 1] - frames[i])));
     here = next;
   }
-  for (int t = 0; t < ssize(speeds); ++t) {
+  return velocities;
+}
+
+float mean_length(const Joints& ways) {
+  return ways.rowwise().norm().mean();
+}
+
+/// Of numbers one after the other.
+struct Mean {
+  float sum = 0;
+  int count = 0;
+  void add(float number) { sum += number, ++count; }
+  float value() const { return sum / static_cast<float>(count); }
+};
+
+}  // namespace
+
+float DoubtLaw::metres(float seconds, const JointsGoing& going) const {
+  const float v = follows ? going.change + kOfSpeed * going.speed + kEven : going.speed + kStill;
+  return size * std::pow(seconds, by_time) * std::pow(v, by_speed);
+}
+
+std::vector<JointsGoing> joints_going(const std::vector<KnownParts>& known, const Motion& motion,
+                                      const Joints& rest) {
+  const std::vector<int> frames = whole_frames(known);
+  std::vector<JointsGoing> going(known.size(), {kUsualSpeed, kUsualSpeed});
+  if (frames.size() < 2) return going;
+  const std::vector<Joints> velocities = velocities_between(frames, motion, rest);
+  for (int t = 0; t < ssize(going); ++t) {
     const auto after = std::upper_bound(frames.begin(), frames.end(), t) - frames.begin();
-    float sum = 0;
-    int count = 0;
-    for (auto i = after - 2; i <= after; ++i)
-      if (i >= 0 && i < ssize(steps)) sum += steps[i], ++count;
-    speeds[t] = sum / static_cast<float>(count);
+    const auto first = std::max<std::ptrdiff_t>(0, after - 2), last = std::min(after, ssize(velocities) - 1);
+    Mean speed, change;
+    for (auto i = first; i <= last; ++i) speed.add(mean_length(velocities[i]));
+    for (auto i = first; i < last; ++i) change.add(mean_length(velocities[i + 1] - velocities[i]));
+    const bool between = after > 0 && after < ssize(frames) && first < last;
+    going[t] = {speed.value(), between ? change.value() : speed.value()};
   }
-  return speeds;
+  return going;
 }
 
 std::vector<float> doubt_of(const DoubtLaw& law, const std::vector<KnownParts>& known, const Motion& motion,
                             const Joints& rest) {
   const std::vector<KnownDistance> distances = known_distances(known);
-  const std::vector<float> speeds = known_speeds(known, motion, rest);
+  const std::vector<JointsGoing> going = joints_going(known, motion, rest);
   std::vector<float> doubt(known.size(), 0.0f);
   for (size_t t = 0; t < known.size(); ++t)
     for (size_t part = 0; part < kPartCount; ++part) {
       if (known[t][part]) continue;
       const auto& [since, until] = distances[t][part];
       const float frames = law.since_last && since < kFarFrames ? since : std::min(since, until);
-      doubt[t] += law.metres(frames / motion.fps, speeds[t]) / kPartCount;
+      doubt[t] += law.metres(frames / motion.fps, going[t]) / kPartCount;
     }
   return doubt;
 }

@@ -274,6 +274,20 @@ TEST_F(Browser, SavingTakesTheNameTypedWithEnter) {
   EXPECT_EQ(chosen, path("mine.understudy"));
 }
 
+TEST_F(Browser, AParentThatIsTypedIsWhatIsChosen) {
+  open({filter_of(FileKind::Folder)});
+  key(Key::L, {false, true});
+  type(path("walk"));
+  key(Key::Enter);
+  settle();
+  key(Key::L, {false, true});
+  type(root.string());
+  key(Key::Enter);
+  settle();
+  click("browser.accept");
+  EXPECT_EQ(chosen, root.string());
+}
+
 TEST_F(Browser, MakesFolders) {
   open({filter_of(FileKind::Document)}, true, "new");
   click("browser.new_folder");

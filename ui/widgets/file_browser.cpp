@@ -103,18 +103,23 @@ void FileBrowser::open(BrowseRequest request) {
   go_to(start);
 }
 
-void FileBrowser::go_to(const std::string& folder) {
+void FileBrowser::go_to(const std::string& folder, const std::string& selected) {
   std::error_code error;
   const fs::path whole = fs::absolute(folder, error).lexically_normal();
   std::string path = error ? folder : whole.string();
   if (path.size() > 1 && path.back() == '/') path.pop_back();
-  const bool up = folder_.size() > path.size() && fs::path(folder_).parent_path() == path;
-  selected_name_ = up ? fs::path(folder_).filename().string() : "";  // coming out of a folder, it is selected
-  scroll_to_selected_ = up;
+  selected_name_ = selected;
+  scroll_to_selected_ = !selected.empty();
   folder_ = path;
   editing_path_ = path_begun_ = naming_folder_ = false;
   problem_.clear(), found_.clear();
   refresh();
+}
+
+/// What it came out of is selected.
+void FileBrowser::go_up() {
+  const fs::path left = folder_;
+  wanted_ = left.parent_path().string(), left_ = left.filename().string();
 }
 
 void FileBrowser::refresh() {
@@ -200,7 +205,7 @@ std::optional<std::string> FileBrowser::draw(Ui& ui) {
   draw_overwrite(ui);
   if (!open_) ImGui::CloseCurrentPopup();
   end_dialog();
-  if (!wanted_.empty()) go_to(std::exchange(wanted_, {}));
+  if (!wanted_.empty()) go_to(std::exchange(wanted_, {}), std::exchange(left_, {}));
   return std::exchange(chosen_, std::nullopt);
 }
 
@@ -208,7 +213,7 @@ void FileBrowser::draw_header(Ui& ui) {
   IconButtonOptions up;
   up.tooltip = "One folder up", up.shortcut = "Backspace", up.disabled = folder_ == "/",
   up.size = ImGui::GetFrameHeight() / ui.scale();
-  if (icon_button(ui, "browser.up", Icon::ChevronUp, up)) wanted_ = fs::path(folder_).parent_path().string();
+  if (icon_button(ui, "browser.up", Icon::ChevronUp, up)) go_up();
   ImGui::SameLine();
   draw_path(ui);
   if (naming_folder_) draw_new_folder(ui);
@@ -473,7 +478,7 @@ void FileBrowser::take_keys(Focus& focus) {
   if (key_pressed(Key::PageUp)) select(row_number - 12);
   if (pressed(Key::Home)) select(0);
   if (pressed(Key::End)) select(static_cast<int>(rows_.size()) - 1);
-  if (pressed(Key::Backspace) && folder_ != "/") wanted_ = fs::path(folder_).parent_path().string();
+  if (pressed(Key::Backspace) && folder_ != "/") go_up();
   const FolderEntry* entry = selected();
   if (entry != nullptr && entry->is_folder && pressed(Key::Right)) wanted_ = path_of(*entry);
   if (entry != nullptr && (pressed(Key::Enter) || pressed(Key::KeypadEnter))) activate(*entry);

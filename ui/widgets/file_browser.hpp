@@ -63,7 +63,8 @@ class FileBrowser {
   std::optional<std::string> draw(Ui& ui);
 
  private:
-  void go_to(const std::string& folder);
+  void go_to(const std::string& folder, const std::string& selected = "");
+  void go_up();
   void refresh();
   const FileFilter& filter() const;
   bool can_choose(const FolderEntry& entry) const;
@@ -96,7 +97,7 @@ class FileBrowser {
   bool path_begun_ = false;  ///< by a key: what is typed goes behind it
   ImGuiID path_id_ = 0;
   int filter_ = 0;
-  std::string folder_, typed_path_, name_, new_folder_, problem_, overwrite_, wanted_;
+  std::string folder_, typed_path_, name_, new_folder_, problem_, overwrite_, wanted_, left_;
   std::unique_ptr<FolderListing> listing_;
   std::shared_ptr<const FolderContents> contents_;
   std::vector<int> rows_;  ///< entries that the filter lets through

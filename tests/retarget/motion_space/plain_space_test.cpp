@@ -186,7 +186,8 @@ TEST(PlainSpaces, DoubtTellsTheErrorAndItsSize) {
   EXPECT_LT(doubt_sum, error_sum * 4);
 }
 
-TEST(KnownSpeeds, AreThoseOfKnownFramesAlone) {
+/// Somebody who glides along x at 3 m/s; of frames 3 to 5 nothing is known.
+KnownMotion gliding() {
   KnownMotion question{
       {30, std::vector<Pose>(9), {}}, std::vector<KnownParts>(9, all_parts(true)), dance().rest};
   for (int t = 0; t < 9; ++t) question.motion.poses[t].root.x() = 0.1f * static_cast<float>(t);
@@ -194,11 +195,36 @@ TEST(KnownSpeeds, AreThoseOfKnownFramesAlone) {
     question.known[t] = all_parts(false);
     question.motion.poses[t].root.x() = 100;
   }
-  for (const float speed : known_speeds(question.known, question.motion, question.rest))
-    EXPECT_NEAR(speed, 3, 1e-4f);
+  return question;
+}
+
+TEST(JointsGoing, IsWhatKnownFramesShow) {
+  KnownMotion question = gliding();
+  const auto going = [&] { return joints_going(question.known, question.motion, question.rest); };
+  EXPECT_NEAR(going()[4].speed, 3, 1e-4f);
+  EXPECT_NEAR(going()[4].change, 0, 1e-4f);
+  for (int t = 6; t < 9; ++t) question.motion.poses[t].root = Vec3(0.2f, 0, 0.1f * static_cast<float>(t - 2));
+  const JointsGoing turned = going()[4];  // off along x, standing across the gap but for 0.4 m along z
+  EXPECT_NEAR(turned.speed, 3, 1e-4f);
+  EXPECT_NEAR(turned.change, 0.5f * std::sqrt(18.0f), 1e-3f);
+}
+
+TEST(JointsGoing, OfOneSideIsItsSpeed) {
+  KnownMotion question = gliding();
+  for (int t = 6; t < 9; ++t) question.known[t] = all_parts(false);
+  const JointsGoing ahead = joints_going(question.known, question.motion, question.rest)[7];
+  EXPECT_NEAR(ahead.speed, 3, 1e-4f);
+  EXPECT_NEAR(ahead.change, 3, 1e-4f);
+}
+
+TEST(JointsGoing, IsUsualWhereTooLittleIsKnown) {
+  KnownMotion question = gliding();
   question.known.assign(9, all_parts(false));
   question.known[2] = all_parts(true);
-  EXPECT_EQ(known_speeds(question.known, question.motion, question.rest), std::vector<float>(9, 0.5f));
+  for (const JointsGoing& usual : joints_going(question.known, question.motion, question.rest)) {
+    EXPECT_EQ(usual.speed, 0.5f);
+    EXPECT_EQ(usual.change, 0.5f);
+  }
 }
 
 }  // namespace
