@@ -46,7 +46,11 @@ void add_own(CLI::App& command, nn::MotionTrainOptions& options) {
       ->check(CLI::Range(3, 60));
 }
 
-void add_own(CLI::App&, nn::PartTrainOptions&) {}
+void add_own(CLI::App& command, nn::PartTrainOptions& options) {
+  command.add_option("--kinds", options.kinds, "hand, head, foot, arm, leg: which to train (default: all)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"hand", "head", "foot", "arm", "leg"}));
+}
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
 void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {
   command

@@ -38,8 +38,8 @@ std::vector<KnownParts> known_of(const MotionWindow& window) {
 
 namespace {
 
-// Known samples on each side of gaps; on the one side where there is no other; from how many on gaps are apart.
-// On dev few are best between, and all that there are where a motion goes on.
+// Known samples on each side of gaps; on the one side where there is no other; from how many on gaps are
+// apart. On dev few are best between, and all that there are where a motion goes on.
 constexpr int kContext = 4, kOneSided = 24, kApart = 12;
 
 /// Frames first .. last that are not wholly known.

@@ -91,15 +91,17 @@ std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, con
   const Vec3 middle = joint + size * (R * side.cwiseProduct(reach.middle));
   const std::vector<int> near = points_within(scan, middle, size * reach.radius);
   if (static_cast<int>(near.size()) < kFewest || !(size > 1e-4f)) return std::nullopt;
-  PartCrop crop;
-  crop.points.resize(kPartPoints, 3);
-  const size_t count = near.size();
-  for (size_t i = 0; i < kPartPoints; ++i) {
-    // Spread over all of them: scans are often sorted along the body.
-    const size_t at = count > kPartPoints ? (i * count / kPartPoints + first) % count : i % count;
+  // Spread over all of them: scans are often sorted along the body.
+  const size_t count = near.size(), most = seen_in_patches(part.kind) ? kFinePoints : kPartPoints,
+               taken = seen_in_patches(part.kind) ? std::min(count, most) : most;
+  Points points(taken, 3);
+  for (size_t i = 0; i < taken; ++i) {
+    const size_t at = count > most ? (i * count / most + first) % count : i % count;
     const Vec3 x = R.transpose() * (scan.row(near[at]).transpose() - joint) / size;
-    crop.points.row(i) = x.cwiseProduct(side).transpose();
+    points.row(i) = x.cwiseProduct(side).transpose();
   }
+  PartCrop crop;
+  crop.points = seen_in_patches(part.kind) ? cut_part_patches(points) : std::move(points);
   const int parent = kParents[part.joint];
   const Vec3 bone = R.transpose() * (seen.joints.row(parent).transpose() - joint) / size;
   crop.context.head<3>() = bone.cwiseProduct(side);
@@ -107,7 +109,7 @@ std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, con
   const int second = part.corrects[1] < 0 ? part.joint : part.corrects[1];
   crop.context.segment<3>(9) =
       vector_into_part((seen.joints.row(second) - seen.joints.row(part.joint)).transpose(), seen, part);
-  crop.context[12] = std::min(1.0f, static_cast<float>(count) / kPartPoints);
+  crop.context[12] = std::min(1.0f, static_cast<float>(count) / most);
   return crop;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "retarget/geometry/mesh.hpp"
+#include "retarget/networks/part_patches.hpp"
 #include "retarget/pipeline/interfaces.hpp"
 
 namespace understudy::nn {
@@ -12,8 +13,18 @@ namespace understudy::nn {
 enum class PartKind { Hand, Head, Foot, Arm, Leg };
 constexpr int kPartKinds = 5;
 constexpr int kPartPoints = 128;  ///< points of a crop
+constexpr int kFinePoints = 256;  ///< points that patches are cut from, at most
 constexpr int kPartContext = 13;  ///< numbers beside the points
 constexpr int kPartJoints = 2;    ///< joints that a crop corrects, at most
+
+/// Hands and heads are small and have many shapes: they are seen in patches, the rest as points.
+constexpr bool seen_in_patches(PartKind kind) {
+  return kind == PartKind::Hand || kind == PartKind::Head;
+}
+/// Rows of a crop.
+constexpr int rows_of(PartKind kind) {
+  return seen_in_patches(kind) ? kPartPatchRows : kPartPoints;
+}
 
 /// A joint with a crop of its own, and the joints that are corrected there.
 struct Part {
@@ -36,7 +47,7 @@ constexpr std::array<Part, 9> kCroppedParts = {
 
 /// Input of the part network.
 struct PartCrop {
-  Points points;  ///< [kPartPoints, 3] in the joint's frame, in leg lengths
+  Points points;  ///< [rows_of(kind), 3] points or patches, in the joint's frame, in leg lengths
   /// parent's bone and rotation in that frame, the second joint, how full it is
   Eigen::Matrix<float, kPartContext, 1> context;
 };

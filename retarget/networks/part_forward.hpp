@@ -13,6 +13,8 @@ namespace understudy::nn {
 
 constexpr int kPartVersion = 2;
 constexpr const char* kPartFileKind = "leaf";  ///< as its files have it
+/// How the names of their tensors begin, in the order of PartKind.
+constexpr std::array<const char*, kPartKinds> kPartNames = {"hand", "skull", "foot", "arm", "leg"};
 /// Outputs for a joint: its rotation in the crop's frame as 6D, its displacement from where it was extracted,
 /// and the log of the expected error of that, both in leg lengths.
 constexpr int kPartNumbers = 10;

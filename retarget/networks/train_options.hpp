@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace understudy::nn {
 
@@ -31,6 +32,7 @@ struct SkeletonTrainOptions : TrainOptions {
 
 struct PartTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "part";
+  std::vector<std::string> kinds;  ///< hand, head, foot, arm, leg; empty: all. The others stay as they are
 };
 
 struct MotionTrainOptions : TrainOptions {

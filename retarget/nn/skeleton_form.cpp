@@ -1,6 +1,7 @@
 #include "retarget/nn/skeleton_form.hpp"
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/nn/modules/point_transformer.hpp"
 #include "retarget/nn/modules/tensor_of.hpp"
 
@@ -50,7 +51,8 @@ WeightsHeader skeleton_header(const std::string& name) {
 }
 
 bool load_skeleton_form(const std::string& path, const std::string& name, SkeletonForm& form) {
-  return load_weights(path, "skeleton-" + name, kSkeletonVersion, form, kVisibilityHead).lacking.empty();
+  const auto may_lack = [](const std::string& tensor) { return starts_with(tensor, kVisibilityHead); };
+  return load_weights(path, "skeleton-" + name, kSkeletonVersion, form, may_lack).lacking.empty();
 }
 
 ExtractorInput extractor_input(const std::vector<ScanPatches>& patches,

@@ -73,7 +73,7 @@ int64_t header_size(const std::string& path, const WeightsHeader& header, const 
 }
 
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,
-                           torch::nn::Module& module, const std::string& later) {
+                           torch::nn::Module& module, const TensorCheck& may_lack) {
   const std::string bytes = read_file(path);
   const StoredWeights stored = parse_weights(bytes, path);
   US_CHECK(stored.kind == kind, path, ": holds weights for '", stored.kind, "', not for '", kind, "'");
@@ -83,7 +83,7 @@ WeightsHeader load_weights(const std::string& path, const std::string& kind, int
   const torch::NoGradGuard no_grad;
   each_tensor(module, [&](const std::string& name, torch::Tensor tensor) {
     const auto found = stored.tensors.find(name);
-    if (found == stored.tensors.end() && !later.empty() && starts_with(name, later)) {
+    if (found == stored.tensors.end() && may_lack && may_lack(name)) {
       header.lacking.push_back(name);
       return;
     }

@@ -3,6 +3,7 @@
 
 #include <torch/torch.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,10 +28,11 @@ WeightsHeader read_weights_header(const std::string& path);
 /// the file when it is no whole number from 1 to `most`.
 int64_t header_size(const std::string& path, const WeightsHeader& header, const char* key, int64_t usual,
                     int64_t most);
+using TensorCheck = std::function<bool(const std::string& name)>;
 /// Fills the module. Throws Error naming the file when kind or version differ, or a tensor is missing or of
-/// another shape. Tensors whose names begin with `later`, if that is not empty, may be missing, as files from
-/// before they existed lack them: they stay as they are, and the header names them.
+/// another shape. Tensors of which `may_lack` says so may be missing, as files from before they existed lack
+/// them: they stay as they are, and the header names them.
 WeightsHeader load_weights(const std::string& path, const std::string& kind, int version,
-                           torch::nn::Module& module, const std::string& later = "");
+                           torch::nn::Module& module, const TensorCheck& may_lack = {});
 
 }  // namespace understudy::nn

@@ -16,9 +16,9 @@ struct JointsGoing {
 std::vector<JointsGoing> joints_going(const std::vector<KnownParts>& known, const Motion& motion,
                                       const Joints& rest);
 
-/// How far off a plain way to fill frames is on average: metres = size * s^by_time * v^by_speed, where s is the
-/// time to the nearest known frame in seconds. v is the speed of the joints + 0.1 m/s; of a way that follows
-/// them as they go, the change of their velocity + 0.2 of their speed + 0.005 m/s.
+/// How far off a plain way to fill frames is on average: metres = size * s^by_time * v^by_speed, where s is
+/// the time to the nearest known frame in seconds. v is the speed of the joints + 0.1 m/s; of a way that
+/// follows them as they go, the change of their velocity + 0.2 of their speed + 0.005 m/s.
 struct DoubtLaw {
   float size, by_time, by_speed;
   bool since_last = false;  ///< s is the time since the last known frame, where there is one

@@ -3,6 +3,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/training/inbetween_step.hpp"
 #include "retarget/training/losses/inbetween_losses.hpp"
 #include "retarget/training/training_run.hpp"
@@ -47,7 +48,7 @@ class InbetweenTrainer final : public TrainingRun {
   Step learn() override;
   Figures evaluate() override { return dev_errors(false); }
   nn::WeightsHeader header() const override;
-  std::string later_part() const override { return nn::kMovementCodes; }
+  bool may_lack(const std::string& tensor) const override { return starts_with(tensor, nn::kMovementCodes); }
   void put_own(torch::serialize::OutputArchive& archive) const override { put_random(archive, rng_.state()); }
   void take_own(torch::serialize::InputArchive& archive) override { rng_ = Rng(take_random(archive)); }
 

@@ -11,12 +11,11 @@ namespace {
 
 constexpr float kRadians = kPi / 180;
 
-using Label = Eigen::Matrix<float, 9, 1>;
+/// Making a scan costs more than cutting and learning: each is looked at from so many wrong extractions.
+constexpr int kLooks = 2;
 
-struct Crops {
-  std::vector<nn::PartCrop> crops;
-  std::vector<std::array<Label, nn::kPartJoints>> truth, before;
-};
+using Label = PartSampler::Label;
+using Crops = PartSampler::Crops;
 
 ScanMaker maker(const TrainingData& data, int points, uint64_t seed) {
   ScanMakerOptions options;
@@ -40,9 +39,9 @@ torch::Tensor tensor_of(const std::vector<std::array<Label, nn::kPartJoints>>& r
   return tensor;
 }
 
-PartBatch batch_of(const Crops& made) {
+PartBatch batch_of(const Crops& made, nn::PartKind kind) {
   const auto B = static_cast<int64_t>(made.crops.size());
-  PartBatch batch{torch::empty({B, nn::kPartPoints, 3}), torch::empty({B, nn::kPartContext}),
+  PartBatch batch{torch::empty({B, nn::rows_of(kind), 3}), torch::empty({B, nn::kPartContext}),
                   tensor_of(made.truth), tensor_of(made.before)};
   for (int64_t b = 0; b < B; ++b) {
     const nn::PartCrop& crop = made.crops[b];
@@ -56,8 +55,9 @@ PartBatch batch_of(const Crops& made) {
 
 }  // namespace
 
-PartSampler::PartSampler(const TrainingData& data, uint64_t seed)
-    : makers_{maker(data, 2500, seed), maker(data, 5000, seed + 1), maker(data, 9000, seed + 2)},
+PartSampler::PartSampler(const TrainingData& data, const PartKinds& kinds, uint64_t seed)
+    : kinds_(kinds),
+      makers_{maker(data, 2500, seed), maker(data, 5000, seed + 1), maker(data, 9000, seed + 2)},
       rng_(seed + 3) {}
 
 Extraction PartSampler::pretend(const PosedSkeleton& truth) {
@@ -86,35 +86,41 @@ Extraction PartSampler::pretend(const PosedSkeleton& truth) {
   return seen;
 }
 
+/// The crops of a scan that is extracted so, of the kinds that are wanted.
+void PartSampler::add_crops(const MadeScan& scan, const Extraction& seen,
+                            std::array<Crops, nn::kPartKinds>& made) const {
+  for (const nn::Part& part : nn::kCroppedParts) {
+    if (!kinds_[static_cast<size_t>(part.kind)]) continue;
+    const auto crop = nn::cut_part(scan.points, seen, part);
+    if (!crop) continue;
+    std::array<Label, nn::kPartJoints> truth, before;
+    Label none = Label::Zero();
+    none[0] = none[4] = 1;
+    truth.fill(none);
+    before = truth;
+    for (size_t k = 0; k < nn::kPartJoints; ++k) {
+      const int j = part.corrects[k];
+      if (j < 0) continue;
+      const Vec3 displacement = (scan.truth.joints.row(j) - seen.joints.row(j)).transpose();
+      truth[k] = label_of(scan.truth.global[j], displacement, seen, part);
+      before[k] = label_of((*seen.global)[j], Vec3::Zero(), seen, part);
+    }
+    Crops& to = made[static_cast<size_t>(part.kind)];
+    to.crops.push_back(*crop);
+    to.truth.push_back(truth);
+    to.before.push_back(before);
+  }
+}
+
 PartBatches PartSampler::next(int scans) {
   std::array<Crops, nn::kPartKinds> made;
   for (int n = 0; n < scans; ++n) {
     const MadeScan scan = makers_[rng_.below(3)].next();
-    const Extraction seen = pretend(scan.truth);
-    for (const nn::Part& part : nn::kCroppedParts) {
-      const auto crop = nn::cut_part(scan.points, seen, part);
-      if (!crop) continue;
-      Crops& to = made[static_cast<int>(part.kind)];
-      std::array<Label, nn::kPartJoints> truth, before;
-      Label none = Label::Zero();
-      none[0] = none[4] = 1;
-      truth.fill(none);
-      before = truth;
-      for (size_t k = 0; k < nn::kPartJoints; ++k) {
-        if (part.corrects[k] < 0) continue;
-        const auto j = part.corrects[k];
-        const Vec3 displacement =
-            (scan.truth.joints.row(part.corrects[k]) - seen.joints.row(part.corrects[k])).transpose();
-        truth[k] = label_of(scan.truth.global[j], displacement, seen, part);
-        before[k] = label_of((*seen.global)[j], Vec3::Zero(), seen, part);
-      }
-      to.crops.push_back(*crop);
-      to.truth.push_back(truth);
-      to.before.push_back(before);
-    }
+    for (int look = 0; look < kLooks; ++look) add_crops(scan, pretend(scan.truth), made);
   }
   PartBatches batches;
-  for (size_t kind = 0; kind < made.size(); ++kind) batches[kind] = batch_of(made[kind]);
+  for (size_t kind = 0; kind < made.size(); ++kind)
+    batches[kind] = batch_of(made[kind], static_cast<nn::PartKind>(kind));
   return batches;
 }
 

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <future>
 
+#include "retarget/base/text.hpp"
 #include "retarget/nn/modules/part_refiner.hpp"
 #include "retarget/training/losses/skeleton_losses.hpp"
 #include "retarget/training/part_data.hpp"
@@ -8,7 +10,15 @@
 namespace understudy::training {
 namespace {
 
-constexpr int kScansAStep = 24, kDevCrops = 120;
+constexpr int kScansAStep = 24, kDevScans = 120;
+constexpr std::array<const char*, nn::kPartKinds> kKinds = {"hand", "head", "foot", "arm", "leg"};
+
+PartKinds kinds_of(const std::vector<std::string>& names) {
+  PartKinds kinds;
+  for (size_t k = 0; k < kinds.size(); ++k)
+    kinds[k] = names.empty() || std::find(names.begin(), names.end(), kKinds[k]) != names.end();
+  return kinds;
+}
 
 Schedule part_schedule() {
   Schedule schedule;
@@ -24,8 +34,9 @@ class PartTrainer final : public TrainingRun {
       : TrainingRun(options, options.kNetwork, part_schedule()),
         scans_(options.batch > 0 ? options.batch : kScansAStep),
         seed_(options.seed),
+        kinds_(kinds_of(options.kinds)),
         train_(load_training_data(options.data, Split::Train)),
-        dev_(PartSampler(load_training_data(options.data, Split::Dev), 12345).next(kDevCrops)) {
+        dev_(PartSampler(load_training_data(options.data, Split::Dev), kinds_, 12345).next(kDevScans)) {
     net_->to(device());
     own(net_.ptr(), average_.ptr(),
         std::make_unique<torch::optim::AdamW>(net_->parameters(),
@@ -36,10 +47,17 @@ class PartTrainer final : public TrainingRun {
   PartBatches next_batches();
   Step learn() override;
   Figures evaluate() override;
+  /// Kinds that are trained may be of another form there.
+  bool may_lack(const std::string& tensor) const override {
+    for (size_t k = 0; k < kinds_.size(); ++k)
+      if (kinds_[k] && starts_with(tensor, std::string(nn::kPartNames[k]) + '.')) return true;
+    return false;
+  }
   nn::WeightsHeader header() const override { return {nn::kPartFileKind, nn::kPartVersion, {}}; }
 
   int scans_;
   uint64_t seed_;
+  PartKinds kinds_;
   TrainingData train_;
   PartBatches dev_;
   nn::PartRefinerNet net_, average_;
@@ -50,7 +68,8 @@ class PartTrainer final : public TrainingRun {
 PartBatches PartTrainer::next_batches() {
   const auto make = [this] { return sampler_->next(scans_); };
   if (!sampler_) {  // a resumed run makes other scans than those that were seen before
-    sampler_ = std::make_unique<PartSampler>(train_, seed_ + static_cast<uint64_t>(progress().step) * 7919);
+    sampler_ =
+        std::make_unique<PartSampler>(train_, kinds_, seed_ + static_cast<uint64_t>(progress().step) * 7919);
     coming_ = std::async(std::launch::async, make);
   }
   PartBatches batches = coming_.get();
@@ -65,7 +84,7 @@ TrainingRun::Step PartTrainer::learn() {
     const PartBatch& batch = batches[kind];
     if (batch.points.size(0) == 0) continue;
     const auto output = net_->of(static_cast<nn::PartKind>(kind))
-                            ->forward(batch.points.to(device()), batch.context.to(device()));
+                            .forward(batch.points.to(device()), batch.context.to(device()));
     loss = loss + part_loss(output, batch.truth.to(device()));
   }
   loss.backward();
@@ -75,11 +94,11 @@ TrainingRun::Step PartTrainer::learn() {
 /// Of every kind, without looking and after it: degrees of its first joint, how far off its two joints, leg
 /// lengths.
 Figures PartTrainer::evaluate() {
-  constexpr const char* kKinds[] = {"hand", "head", "foot", "arm", "leg"};
   Figures figures;
   for (size_t kind = 0; kind < nn::kPartKinds; ++kind) {
     const PartBatch& batch = dev_[kind];
-    const auto output = average_->of(static_cast<nn::PartKind>(kind))->forward(batch.points, batch.context);
+    if (!kinds_[kind]) continue;
+    const auto output = average_->of(static_cast<nn::PartKind>(kind)).forward(batch.points, batch.context);
     const auto add = [&](const char* what, double before, double now) {
       const std::string name = std::string(kKinds[kind]) + "_" + what;
       figures.push_back({name + "_before", before});

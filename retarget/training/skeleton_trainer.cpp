@@ -2,6 +2,7 @@
 #include <thread>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/text.hpp"
 #include "retarget/metrics/joint_metrics.hpp"
 #include "retarget/nn/skeleton_form.hpp"
 #include "retarget/training/scan_streams.hpp"
@@ -60,7 +61,7 @@ class SkeletonTrainer final : public TrainingRun {
   Step learn() override;
   Figures evaluate() override;
   nn::WeightsHeader header() const override { return nn::skeleton_header(options_.form); }
-  std::string later_part() const override { return nn::kVisibilityHead; }
+  bool may_lack(const std::string& tensor) const override { return starts_with(tensor, nn::kVisibilityHead); }
 
   nn::SkeletonTrainOptions options_;
   TrainingData train_, dev_;

@@ -58,7 +58,8 @@ void TrainingRun::own(std::shared_ptr<torch::nn::Module> net, std::shared_ptr<to
   average_ = std::move(average);
   optimizer_ = std::move(optimizer);
   if (!options_.init.empty()) {
-    const auto begun = nn::load_weights(options_.init, header().kind, header().version, *net_, later_part());
+    const auto begun = nn::load_weights(options_.init, header().kind, header().version, *net_,
+                                        [this](const std::string& tensor) { return may_lack(tensor); });
     for (const std::string& name : begun.lacking)
       log::info(options_.init + " has no '" + name + "': trained from new");
   }

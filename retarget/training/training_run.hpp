@@ -87,8 +87,8 @@ class TrainingRun {
   virtual Figures evaluate() = 0;
   /// Kind, version and sizes in the header of the weights.
   virtual nn::WeightsHeader header() const = 0;
-  /// How the names of tensors begin that weights to start from may lack; empty: none.
-  virtual std::string later_part() const { return {}; }
+  /// Whether weights to start from may lack that tensor.
+  virtual bool may_lack(const std::string&) const { return false; }
   /// What else the next step depends on, in the checkpoint; progress() is known when it is taken.
   virtual void put_own(torch::serialize::OutputArchive&) const {}
   virtual void take_own(torch::serialize::InputArchive&) {}

@@ -10,33 +10,29 @@ namespace {
 constexpr int64_t J = kJointCount;
 constexpr int64_t kParts = J + 1;
 constexpr int64_t C = 192, kAttentionHeads = 6;  // C: width of every token
-constexpr int64_t kEncoderLayers = 4, kDecoderLayers = 2, kFeedForward = 384;
+constexpr int64_t kEncoderLayers = 4, kDecoderLayers = 2;
 constexpr double kFarthest = 1.5;  // beyond that the frame before is of somebody else
 
-torch::nn::LayerNorm layer_norm() {
-  return torch::nn::LayerNorm(torch::nn::LayerNormOptions({C}));
-}
-
-torch::Tensor squared_distance(const torch::Tensor& a,
-                               const torch::Tensor& b) {  // [B, Q, 3], [B, K, 3] -> [B, Q, K]
-  return a.square().sum(-1, true) + b.square().sum(-1).unsqueeze(1) - 2 * torch::matmul(a, b.transpose(1, 2));
+torch::nn::LayerNorm layer_norm(int64_t width = C) {
+  return torch::nn::LayerNorm(torch::nn::LayerNormOptions({width}));
 }
 
 }  // namespace
 
-DistanceAttentionImpl::DistanceAttentionImpl() {
-  to_q = register_module("to_q", torch::nn::Linear(C, C));
-  to_k = register_module("to_k", torch::nn::Linear(C, C));
-  to_v = register_module("to_v", torch::nn::Linear(C, C));
-  to_out = register_module("to_out", torch::nn::Linear(C, C));
-  nearness = register_parameter("nearness",
-                                torch::linspace(-3.0, 2.0, kAttentionHeads).view({1, kAttentionHeads, 1, 1}));
+torch::Tensor squared_distance(const torch::Tensor& a, const torch::Tensor& b) {
+  return a.square().sum(-1, true) + b.square().sum(-1).unsqueeze(1) - 2 * torch::matmul(a, b.transpose(1, 2));
+}
+
+DistanceAttentionImpl::DistanceAttentionImpl(int64_t width, int64_t heads) : heads_(heads) {
+  for (auto [layer, name] : {std::pair{&to_q, "to_q"}, {&to_k, "to_k"}, {&to_v, "to_v"}, {&to_out, "to_out"}})
+    *layer = register_module(name, torch::nn::Linear(width, width));
+  nearness = register_parameter("nearness", torch::linspace(-3.0, 2.0, heads).view({1, heads, 1, 1}));
 }
 
 torch::Tensor DistanceAttentionImpl::forward(const torch::Tensor& q, const torch::Tensor& k,
                                              const torch::Tensor& v, const torch::Tensor& squared) {
-  const auto split = [](const torch::Tensor& x) {  // [B, N, C] -> [B, H, N, C/H]
-    return x.view({x.size(0), x.size(1), kAttentionHeads, -1}).transpose(1, 2);
+  const auto split = [this](const torch::Tensor& x) {  // [B, N, C] -> [B, H, N, C/H]
+    return x.view({x.size(0), x.size(1), heads_, -1}).transpose(1, 2);
   };
   const auto Q = split(to_q(q)), K = split(to_k(k)), V = split(to_v(v));
   const double scale = 1.0 / std::sqrt(static_cast<double>(Q.size(3)));
@@ -46,20 +42,20 @@ torch::Tensor DistanceAttentionImpl::forward(const torch::Tensor& q, const torch
   return to_out(mixed.transpose(1, 2).reshape({q.size(0), q.size(1), -1}));
 }
 
-FeedForwardImpl::FeedForwardImpl() {
-  up = register_module("up", torch::nn::Linear(C, kFeedForward));
-  down = register_module("down", torch::nn::Linear(kFeedForward, C));
+FeedForwardImpl::FeedForwardImpl(int64_t width) {
+  up = register_module("up", torch::nn::Linear(width, 2 * width));
+  down = register_module("down", torch::nn::Linear(2 * width, width));
 }
 
 torch::Tensor FeedForwardImpl::forward(const torch::Tensor& x) {
   return down(torch::relu(up(x)));
 }
 
-EncoderLayerImpl::EncoderLayerImpl() {
-  norm1 = register_module("norm1", layer_norm());
-  norm2 = register_module("norm2", layer_norm());
-  attention = register_module("attention", DistanceAttention());
-  feed = register_module("feed", FeedForward());
+EncoderLayerImpl::EncoderLayerImpl(int64_t width, int64_t heads) {
+  norm1 = register_module("norm1", layer_norm(width));
+  norm2 = register_module("norm2", layer_norm(width));
+  attention = register_module("attention", DistanceAttention(width, heads));
+  feed = register_module("feed", FeedForward(width));
 }
 
 torch::Tensor EncoderLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& position,
@@ -73,9 +69,9 @@ JointDecoderLayerImpl::JointDecoderLayerImpl() {
   norm1 = register_module("norm1", layer_norm());
   norm2 = register_module("norm2", layer_norm());
   norm3 = register_module("norm3", layer_norm());
-  self_attention = register_module("self_attention", DistanceAttention());
-  cross_attention = register_module("cross_attention", DistanceAttention());
-  feed = register_module("feed", FeedForward());
+  self_attention = register_module("self_attention", DistanceAttention(C, kAttentionHeads));
+  cross_attention = register_module("cross_attention", DistanceAttention(C, kAttentionHeads));
+  feed = register_module("feed", FeedForward(C));
 }
 
 torch::Tensor JointDecoderLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& x_position,
@@ -97,7 +93,7 @@ SkeletonExtractorNetImpl::SkeletonExtractorNetImpl() {
   torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->weight);
   torch::nn::init::zeros_(recent_mlp[2]->as<torch::nn::LinearImpl>()->bias);
   encoder = register_module("encoder", torch::nn::ModuleList());
-  for (int64_t i = 0; i < kEncoderLayers; ++i) encoder->push_back(EncoderLayer());
+  for (int64_t i = 0; i < kEncoderLayers; ++i) encoder->push_back(EncoderLayer(C, kAttentionHeads));
   token_norm = register_module("token_norm", layer_norm());
   vote_head =
       register_module("vote_head", Sequential(Linear(C, 256), ReLU(), Linear(256, kParts + J + 3 * J)));

@@ -27,15 +27,19 @@ struct ExtractorOutput {
   torch::Tensor visibility;  ///< [B, 22] logits: whether the scan shows the surface about the joint
 };
 
+/// [B, Q, 3], [B, K, 3] -> [B, Q, K]
+torch::Tensor squared_distance(const torch::Tensor& a, const torch::Tensor& b);
+
 /// Multi-head attention with a learned preference for near tokens: score -= softplus(a_head) * distance^2.
 class DistanceAttentionImpl : public torch::nn::Module {
  public:
-  DistanceAttentionImpl();
+  DistanceAttentionImpl(int64_t width, int64_t heads);
   /// q, k, v [B, Q or K, width]; squared_distance [B, Q, K] -> [B, Q, width]
   torch::Tensor forward(const torch::Tensor& q, const torch::Tensor& k, const torch::Tensor& v,
                         const torch::Tensor& squared_distance);
 
  private:
+  int64_t heads_;
   torch::nn::Linear to_q{nullptr}, to_k{nullptr}, to_v{nullptr}, to_out{nullptr};
   torch::Tensor nearness;
 };
@@ -43,7 +47,7 @@ TORCH_MODULE(DistanceAttention);
 
 class FeedForwardImpl : public torch::nn::Module {
  public:
-  FeedForwardImpl();
+  explicit FeedForwardImpl(int64_t width);
   torch::Tensor forward(const torch::Tensor& x);
 
  private:
@@ -53,7 +57,7 @@ TORCH_MODULE(FeedForward);
 
 class EncoderLayerImpl : public torch::nn::Module {
  public:
-  EncoderLayerImpl();
+  EncoderLayerImpl(int64_t width, int64_t heads);
   torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& position,
                         const torch::Tensor& squared_distance);
 

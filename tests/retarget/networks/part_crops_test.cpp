@@ -33,10 +33,18 @@ TEST(PartCrops, HoldThePointsNearTheJointInItsFrame) {
   const Scene s = scene(1);
   const auto crop = cut_part(s.points, s.seen, kLeftHand);
   ASSERT_TRUE(crop);
-  EXPECT_EQ(crop->points.rows(), kPartPoints);
-  EXPECT_LT(crop->points.rowwise().norm().maxCoeff(), 0.18f + 0.085f + 1e-4f);
+  EXPECT_EQ(crop->points.rows(), kPartPatchRows);
+  EXPECT_LT(crop->points.topRows(kPartPatches).rowwise().norm().maxCoeff(), 0.18f + 0.085f + 1e-4f);
   // The elbow lies at the other side of a left wrist than +x.
   EXPECT_LT(crop->context[0], -0.1f);
+}
+
+TEST(PartCrops, OfLegsHoldPoints) {
+  const Scene s = scene(1);
+  const auto crop = cut_part(s.points, s.seen, kCroppedParts[0]);
+  ASSERT_TRUE(crop);
+  EXPECT_EQ(crop->points.rows(), kPartPoints);
+  EXPECT_LT(crop->points.rowwise().norm().maxCoeff(), 0.30f + 1e-4f);
 }
 
 TEST(PartCrops, StayTheSameWhenTheWorldTurnsAndGrows) {

@@ -5,19 +5,26 @@
 #include <filesystem>
 
 #include "retarget/nn/modules/part_refiner.hpp"
+#include "retarget/nn/modules/tensor_of.hpp"
 #include "retarget/nn/weights_file.hpp"
 #include "tests/retarget/pipeline/fixtures.hpp"
 
 namespace understudy::nn {
 namespace {
 
-TEST(PartNet, IgnoresTheOrderOfPoints) {
+TEST(PartNets, IgnoreTheOrderOfPoints) {
   torch::manual_seed(1);
   const torch::NoGradGuard no_grad;
-  PartNet net;
-  const auto points = torch::randn({2, kPartPoints, 3}), context = torch::randn({2, kPartContext});
-  const auto shuffled = points.index_select(1, torch::randperm(kPartPoints));
-  EXPECT_TRUE(torch::allclose(net(points, context), net(shuffled, context), 0, 1e-5));
+  PartRefinerNet net;
+  const auto context = torch::randn({1, kPartContext});
+  const Points points = 0.1f * Points::Random(kPartPoints, 3);
+  for (const PartKind kind : {PartKind::Hand, PartKind::Leg}) {
+    const auto seen = [&](const Points& cloud) {
+      const Points rows = seen_in_patches(kind) ? cut_part_patches(cloud) : cloud;
+      return net->of(kind).forward(tensor_of(rows).unsqueeze(0), context);
+    };
+    EXPECT_TRUE(torch::allclose(seen(points), seen(points.colwise().reverse()), 0, 1e-5));
+  }
 }
 
 class PartRefinerFile : public testing::Test {

@@ -47,16 +47,19 @@ TEST(WeightsFile, LaterPartsMayBeMissingAndStayAsTheyAre) {
   using torch::nn::Linear, torch::nn::Sequential;
   Sequential before(Linear(3, 3)), after(Linear(3, 3), Linear(3, 1));
   const std::string path = path_for("later");
+  const auto begins_with = [](char part) {
+    return [part](const std::string& name) { return name[0] == part; };
+  };
   save_weights(path, {"test", 2, {}}, *before, /*half=*/false);
   EXPECT_THROW(load_weights(path, "test", 2, *after), Error);
-  EXPECT_THROW(load_weights(path, "test", 2, *after, "2."), Error);
+  EXPECT_THROW(load_weights(path, "test", 2, *after, begins_with('2')), Error);
   const auto own = after->parameters()[2].clone();
-  const WeightsHeader header = load_weights(path, "test", 2, *after, "1.");
+  const WeightsHeader header = load_weights(path, "test", 2, *after, begins_with('1'));
   EXPECT_EQ(header.lacking, (std::vector<std::string>{"1.weight", "1.bias"}));
   EXPECT_TRUE(torch::equal(after->parameters()[0], before->parameters()[0]));
   EXPECT_TRUE(torch::equal(after->parameters()[2], own));
   save_weights(path, {"test", 2, {}}, *after, /*half=*/false);
-  EXPECT_TRUE(load_weights(path, "test", 2, *after, "1.").lacking.empty());
+  EXPECT_TRUE(load_weights(path, "test", 2, *after, begins_with('1')).lacking.empty());
   fs::remove(path);
 }
 

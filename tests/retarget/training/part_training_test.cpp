@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr PartKinds kAll = {true, true, true, true, true};
+
 class PartTraining : public testing::Test {
  protected:
   void SetUp() override {
@@ -37,7 +39,7 @@ class PartTraining : public testing::Test {
 
 TEST_F(PartTraining, CropsComeWithRotationsAndWaysInTheirFrame) {
   const TrainingData data = load_training_data(folder_.string(), Split::Train);
-  PartSampler a(data, 7), b(data, 7);
+  PartSampler a(data, kAll, 7), b(data, kAll, 7);
   const PartBatches batches = a.next(6), again = b.next(6);
   int64_t crops = 0;
   for (size_t kind = 0; kind < nn::kPartKinds; ++kind) {
@@ -67,6 +69,32 @@ TEST_F(PartTraining, WritesWeightsAndGoesOnFromItsCheckpoint) {
   nn::PartRefinerNet net;
   nn::load_weights(options(0).out, nn::kPartFileKind, nn::kPartVersion, *net);
   for (const auto& p : net->parameters()) EXPECT_TRUE(torch::isfinite(p).all().item<bool>());
+}
+
+TEST_F(PartTraining, LooksAtEachScanTwiceAndOnlyAtWhatIsWanted) {
+  const TrainingData data = load_training_data(folder_.string(), Split::Train);
+  const PartBatches legs = PartSampler(data, {false, false, false, false, true}, 7).next(5);
+  EXPECT_GT(legs[4].points.size(0), 5 * 2);  // but for legs that are not seen, two looks at both
+  EXPECT_LE(legs[4].points.size(0), 5 * 2 * 2);
+  for (size_t kind = 0; kind < 4; ++kind) EXPECT_EQ(legs[kind].points.size(0), 0);
+}
+
+TEST_F(PartTraining, LeavesKindsAloneThatAreNotTrained) {
+  EXPECT_EQ(train(options(8)), 0);
+  nn::PartTrainOptions hands = options(8);
+  hands.init = options(0).out;
+  hands.out = (folder_ / "hands.weights").string();
+  hands.kinds = {"hand"};
+  EXPECT_EQ(train(hands), 0);
+  nn::PartRefinerNet before, after;
+  nn::load_weights(hands.init, nn::kPartFileKind, nn::kPartVersion, *before);
+  nn::load_weights(hands.out, nn::kPartFileKind, nn::kPartVersion, *after);
+  for (const auto& parameter : before->named_parameters()) {
+    const bool same = torch::equal(parameter.value(), after->named_parameters()[parameter.key()]);
+    const bool of_hand = parameter.key().rfind("hand.", 0) == 0;
+    if (!of_hand) EXPECT_TRUE(same) << parameter.key();
+    if (parameter.key() == "hand.head.4.bias") EXPECT_FALSE(same);
+  }
 }
 
 TEST_F(PartTraining, RefusesToTrainWithoutAnEnd) {
