@@ -49,7 +49,7 @@ void add_own(CLI::App& command, nn::MotionTrainOptions& options) {
 void add_own(CLI::App& command, nn::PartTrainOptions& options) {
   command.add_option("--kinds", options.kinds, "hand, head, foot, arm, leg: which to train (default: all)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"hand", "head", "foot", "arm", "leg"}));
+      ->check(CLI::IsMember(std::vector<std::string>(nn::kPartKindNames.begin(), nn::kPartKindNames.end())));
 }
 void add_own(CLI::App&, nn::DeformationTrainOptions&) {}
 void add_own(CLI::App& command, nn::MotionSpaceTrainOptions& options) {

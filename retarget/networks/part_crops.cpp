@@ -92,8 +92,9 @@ std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, con
   const std::vector<int> near = points_within(scan, middle, size * reach.radius);
   if (static_cast<int>(near.size()) < kFewest || !(size > 1e-4f)) return std::nullopt;
   // Spread over all of them: scans are often sorted along the body.
-  const size_t count = near.size(), most = seen_in_patches(part.kind) ? kFinePoints : kPartPoints,
-               taken = seen_in_patches(part.kind) ? std::min(count, most) : most;
+  const bool in_patches = seen_in_patches(part.kind);
+  const size_t count = near.size(), most = in_patches ? kFinePoints : kPartPoints,
+               taken = in_patches ? std::min(count, most) : most;
   Points points(taken, 3);
   for (size_t i = 0; i < taken; ++i) {
     const size_t at = count > most ? (i * count / most + first) % count : i % count;
@@ -101,7 +102,7 @@ std::optional<PartCrop> cut_part(const Points& scan, const Extraction& seen, con
     points.row(i) = x.cwiseProduct(side).transpose();
   }
   PartCrop crop;
-  crop.points = seen_in_patches(part.kind) ? cut_part_patches(points) : std::move(points);
+  crop.points = in_patches ? cut_part_patches(points) : std::move(points);
   const int parent = kParents[part.joint];
   const Vec3 bone = R.transpose() * (seen.joints.row(parent).transpose() - joint) / size;
   crop.context.head<3>() = bone.cwiseProduct(side);

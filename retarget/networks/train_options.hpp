@@ -1,6 +1,7 @@
 // What can be trained, without LibTorch: the options of each network's training, and the call that runs one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -30,9 +31,12 @@ struct SkeletonTrainOptions : TrainOptions {
   std::string poses = "all";   ///< "all", or "rest": people in T-pose, for the joints of targets
 };
 
+/// Kinds of parts, in the order of PartKind.
+constexpr std::array<const char*, 5> kPartKindNames = {"hand", "head", "foot", "arm", "leg"};
+
 struct PartTrainOptions : TrainOptions {
   static constexpr const char* kNetwork = "part";
-  std::vector<std::string> kinds;  ///< hand, head, foot, arm, leg; empty: all. The others stay as they are
+  std::vector<std::string> kinds;  ///< of kPartKindNames; empty: all. The others stay as they are
 };
 
 struct MotionTrainOptions : TrainOptions {

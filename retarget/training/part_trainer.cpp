@@ -11,12 +11,12 @@ namespace understudy::training {
 namespace {
 
 constexpr int kScansAStep = 24, kDevScans = 120;
-constexpr std::array<const char*, nn::kPartKinds> kKinds = {"hand", "head", "foot", "arm", "leg"};
+static_assert(nn::kPartKindNames.size() == nn::kPartKinds);
 
 PartKinds kinds_of(const std::vector<std::string>& names) {
   PartKinds kinds;
   for (size_t k = 0; k < kinds.size(); ++k)
-    kinds[k] = names.empty() || std::find(names.begin(), names.end(), kKinds[k]) != names.end();
+    kinds[k] = names.empty() || std::find(names.begin(), names.end(), nn::kPartKindNames[k]) != names.end();
   return kinds;
 }
 
@@ -100,7 +100,7 @@ Figures PartTrainer::evaluate() {
     if (!kinds_[kind]) continue;
     const auto output = average_->of(static_cast<nn::PartKind>(kind)).forward(batch.points, batch.context);
     const auto add = [&](const char* what, double before, double now) {
-      const std::string name = std::string(kKinds[kind]) + "_" + what;
+      const std::string name = std::string(nn::kPartKindNames[kind]) + "_" + what;
       figures.push_back({name + "_before", before});
       figures.push_back({name, now});
     };
