@@ -109,8 +109,7 @@ void BoneFit::match(float radius, const BoneMotions& bones) {
   }
   const float reach2 = kMatchReach * kMatchReach * radius * radius;
   const auto agree = [&](Eigen::Index point, Eigen::Index of_scan) {
-    const float cosine = normals_.row(point).dot(scan_.normals.row(of_scan));
-    return (scan_.oriented ? cosine : std::abs(cosine)) > 0.3f;
+    return normals_.row(point).dot(scan_.normals.row(of_scan)) > 0.3f;
   };
   for (Eigen::Index i = 0; i < posed_.rows(); ++i) {
     const PointTree::Near near = scan_.tree.nearest(posed_.row(i).transpose());

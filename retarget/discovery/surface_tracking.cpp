@@ -194,11 +194,7 @@ void Follower::match_points(const ThinnedFrame& scan, float radius, const NodeMo
   posed_ = deformed(graph_, motions);
   normals_ = normals_now(motions);
   const float reach2 = kReach * kReach * radius * radius;
-  const bool oriented = scan.oriented;
-  const auto agree = [&](const auto& a, const auto& b) {
-    const float cosine = a.dot(b);
-    return (oriented ? cosine : std::abs(cosine)) > 0.3f;
-  };
+  const auto agree = [](const auto& a, const auto& b) { return a.dot(b) > 0.3f; };
   for (int i = 0; i < static_cast<int>(posed_.rows()); ++i) {
     const PointTree::Near near = scan.tree.nearest(posed_.row(i).transpose());
     if (near.squared > reach2 || !agree(normals_.row(i), scan.normals.row(near.point))) continue;

@@ -69,17 +69,16 @@ void join_pieces(const Points& points, SurfaceGraph& graph) {
 ThinnedFrame thinned(const Mesh& scan, int count, uint64_t seed) {
   Points points = finite_points(scan.vertices), normals(0, 3);
   US_CHECK(points.rows() >= kFewest, "a scan of ", points.rows(), " points is too few to find a skeleton in");
-  const bool surface = !scan.is_cloud() && points.rows() == scan.vertices.rows();
-  if (surface)
+  if (!scan.is_cloud() && points.rows() == scan.vertices.rows())
     std::tie(points, normals) = drawn_from(scan, kDensity * count, seed);
   else
-    normals = estimated_normals(points);
+    normals = pointed_outwards(points, estimated_normals(points));
   Rng rng(seed);
   const auto first = rng.below(static_cast<int>(points.rows()));
   const std::vector<int> chosen =
       farthest_points(points, static_cast<int>(std::min<Eigen::Index>(count, points.rows())), first);
   Points kept = rows_of(points, chosen);
-  return {kept, rows_of(normals, chosen), surface, PointTree(kept)};
+  return {kept, rows_of(normals, chosen), PointTree(kept)};
 }
 
 float box_diagonal(const Points& points) {
@@ -92,8 +91,11 @@ SurfaceGraph surface_graph(const ThinnedFrame& frame) {
   graph.edges.resize(static_cast<size_t>(count));
   std::vector<PointTree::Near> near;
   const auto opposed = [&](int a, int b) {
-    const float cosine = frame.normals.row(a).dot(frame.normals.row(b));
-    return frame.oriented && cosine < -0.3f;
+    const auto na = frame.normals.row(a), nb = frame.normals.row(b);
+    const auto along = (frame.points.row(b) - frame.points.row(a)).normalized();
+    constexpr float kAcross = 0.6f;  // cosine: what lies before a surface, not in it
+    const bool across = std::abs(along.dot(na)) > kAcross && std::abs(along.dot(nb)) > kAcross;
+    return across || na.dot(nb) < -0.3f;
   };
   const auto add = [&](int a, int b, float length) {
     auto& edges = graph.edges[static_cast<size_t>(a)];

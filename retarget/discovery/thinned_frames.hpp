@@ -11,8 +11,7 @@ namespace understudy {
 /// Points of one scan, evenly spread.
 struct ThinnedFrame {
   Points points;   ///< [N, 3] metres
-  Points normals;  ///< [N, 3] unit length; zero where there are too few points about
-  bool oriented;   ///< whether normals point outwards: a cloud's may point inwards
+  Points normals;  ///< [N, 3] outwards, unit length; zero where there are too few points about
   PointTree tree;  ///< of the points
 };
 
