@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "retarget/body/builtin_person.hpp"
-#include "retarget/body/builtin_surface.hpp"
+#include "retarget/geometry/implicit_surface.hpp"
 
 namespace understudy {
 

@@ -1,4 +1,4 @@
-#include "retarget/body/builtin_surface.hpp"
+#include "retarget/geometry/implicit_surface.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -28,8 +28,8 @@ Vec3 gradient(const ImplicitSolid& solid, const Vec3& p) {
 
 /// One Newton step to the surface, no longer than `limit`. Points of the mirror plane stay in it.
 Vec3 projected(const ImplicitSolid& solid, const Vec3& p, float limit) {
-  const bool on_plane = p.x() == 0;
-  const Vec3 inside_half(std::max(p.x(), 0.0f), p.y(), p.z());
+  const bool on_plane = solid.mirrored && p.x() == 0;
+  const Vec3 inside_half(solid.mirrored ? std::max(p.x(), 0.0f) : p.x(), p.y(), p.z());
   Vec3 g = gradient(solid, inside_half);
   if (on_plane) g.x() = 0;
   const Vec3 step = -solid.value(inside_half) / std::max(g.squaredNorm(), 0.04f) * g;
@@ -219,7 +219,10 @@ class MarchingTetrahedra {
 class Remesher {
  public:
   Remesher(TriangleSoup soup, const ImplicitSolid& solid)
-      : v_(std::move(soup.vertices)), f_(std::move(soup.faces)), solid_(solid) {}
+      : v_(std::move(soup.vertices)),
+        f_(std::move(soup.faces)),
+        solid_(solid),
+        edge_length_(solid.vertices > 0 ? edge_length_for(solid.vertices) : solid.edge_length) {}
 
   TriangleSoup run() {
     for (int pass = 0; pass < 3; ++pass) smooth(0.5f, false);
@@ -237,9 +240,18 @@ class Remesher {
   }
 
  private:
-  bool on_plane(int v) const { return v_[v].x() == 0; }
+  bool on_plane(int v) const { return solid_.mirrored && v_[v].x() == 0; }
   bool alive(int f) const { return f_[f][0] >= 0; }
   bool has(int f, int v) const { return alive(f) && std::find(f_[f].begin(), f_[f].end(), v) != f_[f].end(); }
+  /// So that the whole surface has about so many vertices, each the middle of six equal triangles.
+  float edge_length_for(int vertices) const {
+    double patches = 0;  // area over that of one vertex, were the edge length 1
+    for (const Triangle& t : f_) {
+      const float detail = solid_.detail((v_[t[0]] + v_[t[1]] + v_[t[2]]) / 3);
+      patches += 0.5 * normal(t).norm() / (0.866 * detail * detail);
+    }
+    return static_cast<float>(std::sqrt((solid_.mirrored ? 2 : 1) * patches / vertices));
+  }
   float wanted(int a, int b) const { return 0.5f * (size_[a] + size_[b]); }
 
   void rebuild() {
@@ -249,7 +261,7 @@ class Remesher {
       if (alive(f))
         for (int v : f_[f]) around_[v].push_back(f);
     size_.resize(v_.size());
-    for (size_t v = 0; v < v_.size(); ++v) size_[v] = solid_.edge_length * solid_.detail(v_[v]);
+    for (size_t v = 0; v < v_.size(); ++v) size_[v] = edge_length_ * solid_.detail(v_[v]);
   }
 
   struct Edge {
@@ -431,7 +443,7 @@ class Remesher {
       if (onto_surface) next[v] = projected(solid_, next[v], 0.4f * size_[v]);
       if (plane)
         next[v].x() = 0;
-      else
+      else if (solid_.mirrored)
         next[v].x() = std::max(next[v].x(), 2e-4f);
     }
     v_ = std::move(next);
@@ -459,7 +471,19 @@ class Remesher {
   std::vector<std::vector<int>> around_;  // faces at each vertex, dead ones included
   std::vector<float> size_;               // wanted edge length at each vertex
   const ImplicitSolid& solid_;
+  float edge_length_;
 };
+
+Mesh as_mesh(const TriangleSoup& soup) {
+  Mesh mesh;
+  mesh.vertices.resize(static_cast<Eigen::Index>(soup.vertices.size()), 3);
+  mesh.faces.resize(static_cast<Eigen::Index>(soup.faces.size()), 3);
+  int row = 0;
+  for (const Vec3& v : soup.vertices) mesh.vertices.row(row++) = v.transpose();
+  row = 0;
+  for (const Triangle& t : soup.faces) mesh.faces.row(row++) << t[0], t[1], t[2];
+  return mesh;
+}
 
 Mesh with_mirror_image(const TriangleSoup& half) {
   const int count = half.vertices.size();
@@ -487,7 +511,8 @@ Mesh with_mirror_image(const TriangleSoup& half) {
 Mesh polygonise(const ImplicitSolid& solid) {
   MarchingTetrahedra marching(solid);
   US_CHECK(!marching.soup.faces.empty(), "the solid has no surface inside its box");
-  return with_mirror_image(Remesher(std::move(marching.soup), solid).run());
+  const TriangleSoup made = Remesher(std::move(marching.soup), solid).run();
+  return solid.mirrored ? with_mirror_image(made) : as_mesh(made);
 }
 
 }  // namespace understudy

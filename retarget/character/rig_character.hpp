@@ -1,0 +1,23 @@
+// Rigs of any kind to and from characters: a found rig is a GLB, and opens again.
+#pragma once
+
+#include "retarget/character/character.hpp"
+#include "retarget/rig/rig.hpp"
+
+namespace understudy {
+
+/// A node a joint, named as it, and one for the surface; one skin; the motion as one animation with a
+/// rotation track for each joint that turns, and translations of the root and of sliders. Files keep no kinds
+/// of joints: from_character() sees them in the motion. Throws Error for a bad rig, or poses that do not fit.
+Character to_character(const RiggedMotion& performed);
+
+/// The bones that carry weights or parts, and what those hang on, as a rig in its bind pose, units and axes
+/// the file's; all parts as one surface. Above several bones without a common one there is a joint of its
+/// own, "root". The motion is the animation, `fps` times a second; -1: the nodes' own pose, one frame.
+/// A joint that turns about one line of the parent alone is a Hinge, one that goes along one alone a Slider,
+/// others are Balls; of what else the file moves (a bone that leaves its parent, morph targets) a warning
+/// tells. Of more than four bones of a vertex the four of largest weight count. Throws Error where there is
+/// no skin, bones scale, or the animation has more than 100,000 frames.
+RiggedMotion from_character(const Character& character, int animation, double fps);
+
+}  // namespace understudy

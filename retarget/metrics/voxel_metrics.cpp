@@ -1,0 +1,103 @@
+#include "retarget/metrics/voxel_metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "retarget/base/error.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr int kDrawnPoints = 20000;
+constexpr double kOneEmpty = 4;
+
+double mean_squared(const Points& from, const Points& to) {
+  const IntMatrix nearest = nearest_neighbours(to, from, 1);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < from.rows(); ++i)
+    sum += static_cast<double>((from.row(i) - to.row(nearest(i, 0))).squaredNorm());
+  return sum / static_cast<double>(from.rows());
+}
+
+/// Those of a that are not in b.
+VoxelSet without(const VoxelSet& a, const VoxelSet& b) {
+  VoxelSet rest;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
+  return rest;
+}
+
+std::vector<VoxelSet> cells_of(const std::vector<Points>& vertices, const Faces& faces,
+                               const VoxelGrid& grid) {
+  std::vector<VoxelSet> sets;
+  for (const Points& frame : vertices) {
+    Rng rng(1);  // the same surface is drawn alike, whoever has it
+    sets.push_back(grid.cells(faces.rows() > 0 ? sample_points({frame, faces}, kDrawnPoints, rng) : frame));
+  }
+  return sets;
+}
+
+}  // namespace
+
+VoxelGrid::VoxelGrid(const std::vector<Points>& frames) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<float>::infinity()), high = -low;
+  for (const Points& frame : frames) {
+    if (frame.rows() == 0) continue;
+    low = low.cwiseMin(frame.colwise().minCoeff().transpose());
+    high = high.cwiseMax(frame.colwise().maxCoeff().transpose());
+  }
+  US_CHECK(low.allFinite() && high.allFinite() && low != high, "no box is about these frames");
+  middle_ = (low + high) / 2;
+  half_ = (high - low).maxCoeff() / 2;
+}
+
+VoxelSet VoxelGrid::cells(const Points& points) const {
+  VoxelSet cells;
+  for (const auto& point : points.rowwise()) {
+    if (!point.allFinite()) continue;
+    const Vec3 at = ((point.transpose() - middle_) / half_).cwiseMax(-1.0f).cwiseMin(1.0f);
+    const Eigen::Array3i cell = ((at.array() + 1) * (0.5f * (kVoxels - 1))).round().cast<int>();
+    cells.push_back((cell.z() * kVoxels + cell.y()) * kVoxels + cell.x());
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+Points VoxelGrid::centres(const VoxelSet& cells) {
+  Points centres(cells.size(), 3);
+  for (size_t i = 0; i < cells.size(); ++i)
+    centres.row(i) << cells[i] % kVoxels, cells[i] / kVoxels % kVoxels, cells[i] / (kVoxels * kVoxels);
+  return (centres.array() * (2.0f / (kVoxels - 1)) - 1).matrix();
+}
+
+double voxel_distance(const VoxelSet& a, const VoxelSet& b) {
+  if (a.empty() && b.empty()) return 0;
+  if (a.empty() || b.empty()) return kOneEmpty;
+  const Points in_a = VoxelGrid::centres(a), in_b = VoxelGrid::centres(b);
+  return mean_squared(in_a, in_b) + mean_squared(in_b, in_a);
+}
+
+VoxelErrors voxel_errors(const std::vector<VoxelSet>& found, const std::vector<VoxelSet>& truth) {
+  US_CHECK(!truth.empty() && found.size() == truth.size(), found.size(), " frames cannot be compared with ",
+           truth.size());
+  const auto frames = static_cast<double>(truth.size());
+  VoxelErrors errors;
+  for (size_t t = 0; t < truth.size(); ++t) {
+    errors.cd_1e4 += 1e4 * voxel_distance(found[t], truth[t]) / frames;
+    if (t == 0) continue;
+    errors.m_cd += voxel_distance(without(found[t], found[t - 1]), without(truth[t], truth[t - 1])) +
+                   voxel_distance(without(found[t - 1], found[t]), without(truth[t - 1], truth[t]));
+  }
+  errors.m_cd = truth.size() > 1 ? errors.m_cd / (frames - 1) : std::nan("");
+  return errors;
+}
+
+VoxelErrors voxel_errors(const std::vector<Points>& found, const Faces& found_faces,
+                         const std::vector<Points>& truth, const Faces& true_faces) {
+  const VoxelGrid grid(truth);
+  return voxel_errors(cells_of(found, found_faces, grid), cells_of(truth, true_faces, grid));
+}
+
+}  // namespace understudy
