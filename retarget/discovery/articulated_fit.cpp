@@ -188,20 +188,40 @@ void BoneFit::round(float radius, BoneMotions& bones) {
 
 }  // namespace
 
-float fit_bones(const Rig& rig, const FittedSurface& surface, const ThinnedFrame& scan,
-                const ArticulatedFitOptions& options, BoneMotions& bones) {
+void fit_bones(const Rig& rig, const FittedSurface& surface, const ThinnedFrame& scan,
+               const ArticulatedFitOptions& options, BoneMotions& bones) {
   BoneFit fit(rig, surface, scan, options.joint_stiffness);
+  const float shrinks = options.last_radius_m / options.first_radius_m;
   for (int round = 0; round < options.rounds; ++round) {
     const float share =
         options.rounds > 1 ? static_cast<float>(round) / static_cast<float>(options.rounds - 1) : 1;
-    fit.round(options.first_radius_m * std::pow(options.last_radius_m / options.first_radius_m, share),
-              bones);
+    fit.round(options.first_radius_m * std::pow(shrinks, share), bones);
   }
+}
+
+Eigen::VectorXf distances_to(const ThinnedFrame& scan, const FittedSurface& surface,
+                             const BoneMotions& bones) {
   const Points posed = skinned(surface.points, surface.skin, bones);
-  double sum = 0;
+  Eigen::VectorXf distances(posed.rows());
   for (Eigen::Index i = 0; i < posed.rows(); ++i)
-    sum += std::sqrt(scan.tree.nearest(posed.row(i).transpose()).squared);
-  return static_cast<float>(sum / static_cast<double>(posed.rows()));
+    distances[i] = std::sqrt(scan.tree.nearest(posed.row(i).transpose()).squared);
+  return distances;
+}
+
+SkinWeights weights_between(const Points& places, const Points& known, const SkinWeights& weights,
+                            int bones) {
+  constexpr int kNear = 6;
+  const PointTree tree(known);
+  RowMatrix dense = RowMatrix::Zero(places.rows(), bones);
+  std::vector<PointTree::Near> near;
+  for (Eigen::Index v = 0; v < places.rows(); ++v) {
+    tree.nearest(places.row(v).transpose(), kNear, near);
+    const float softness = 0.01f * near.back().squared + 1e-12f;
+    for (const PointTree::Near& n : near)
+      for (int k = 0; k < kSkinBones; ++k)
+        dense(v, weights.bones(n.point, k)) += weights.weights(n.point, k) / (n.squared + softness);
+  }
+  return SkinWeights::from(dense);
 }
 
 }  // namespace understudy

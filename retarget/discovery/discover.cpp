@@ -5,24 +5,29 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <utility>
 
 #include "retarget/base/error.hpp"
-#include "retarget/discovery/articulated_fit.hpp"
 #include "retarget/discovery/part_tree.hpp"
+#include "retarget/discovery/rig_follower.hpp"
 #include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kTrackedPoints = 2000, kNodes = 200;
-constexpr int kRounds = 2;  // of parts, bones and tracks: each makes the next better
+static const int kTrackedPoints = getenv("POINTS") ? atoi(getenv("POINTS")) : 2000, kNodes = getenv("NODES") ? atoi(getenv("NODES")) : 200;
+constexpr int kKeyFrames = 60;
+constexpr double kKeyRate = 12;  // frames/s: what moves between fewer cannot be followed
+constexpr int kRounds = 2;       // of parts, bones and tracks: each makes the next better
 constexpr uint64_t kSeed = 20240607;
+// Joints while they are looked for give a little, then less.
+constexpr float kLooseJoints = 0.3f, kFirmJoints = 3;
+// Shares of the work at which its stages begin.
+constexpr float kReadingEnds = 0.1f, kTrackingEnds = 0.5f, kTrackedAgain = 0.7f, kBonesEnd = 0.9f;
 
-/// f(i) for 0 .. count - 1 on two threads, each from its own end.
+/// f(i) for 0 .. count - 1 on two threads, a half each.
 template <class Function>
 void in_halves(size_t count, const Function& f) {
   std::thread first([&] {
@@ -32,60 +37,53 @@ void in_halves(size_t count, const Function& f) {
   first.join();
 }
 
-std::vector<ThinnedFrame> thinned_frames(const std::vector<Mesh>& frames) {
-  std::vector<std::optional<ThinnedFrame>> made(frames.size());
-  std::vector<std::string> wrong(frames.size());
-  in_halves(frames.size(), [&](size_t t) {
-    try {
-      made[t] = thinned(frames[t], kTrackedPoints, kSeed + t);
-    } catch (const Error& error) {
-      wrong[t] = error.what();
-    }
-  });
-  std::vector<ThinnedFrame> thin;
-  for (size_t t = 0; t < frames.size(); ++t) {
-    US_CHECK(wrong[t].empty(), "frame ", t, ": ", wrong[t]);
-    thin.push_back(std::move(*made[t]));
-  }
-  return thin;
+/// All frames of a short sequence; of a long one every second or third, from the first on.
+std::vector<int> key_frames_of(int count, double fps) {
+  const int needed = (count + kKeyFrames - 1) / kKeyFrames,
+            widest = std::max(1, static_cast<int>(std::floor(fps / kKeyRate)));
+  const int stride = std::clamp(needed, 1, widest);
+  std::vector<int> frames;
+  for (int t = 0; t < count && static_cast<int>(frames.size()) < kKeyFrames; t += stride) frames.push_back(t);
+  return frames;
 }
 
-int most_open(const std::vector<ThinnedFrame>& frames) {
-  std::vector<float> open(frames.size());
-  in_halves(frames.size(), [&](size_t t) { open[t] = openness(frames[t]); });
-  return static_cast<int>(std::max_element(open.begin(), open.end()) - open.begin());
+/// The bone of each part.
+std::vector<int> bone_of_part(const PartTree& tree) {
+  std::vector<int> bone(tree.part_of_bone.size());
+  for (size_t b = 0; b < bone.size(); ++b)
+    bone[static_cast<size_t>(tree.part_of_bone[b])] = static_cast<int>(b);
+  return bone;
 }
 
 /// Makes a rig from scans step by step.
 class Discovery {
  public:
-  Discovery(const std::vector<Mesh>& scans, double fps, const DiscoveryOptions& options)
-      : scans_(scans), fps_(fps), options_(options), frames_(thinned_frames(scans)) {}
+  Discovery(const ScanSequence& scans, const DiscoveryOptions& options) : scans_(scans), options_(options) {}
   DiscoveredRig run();
 
  private:
   bool report(const char* stage, float share);
   TrackingProgress tracking_progress(float from, float to);
+  void read_key_frames();
+  int most_open() const;
   void find_bones();
   void bind_points();
   void fit_all(float stiffness);
   void find_joints_again();
   void track_from_bones();
+  void follow_others(DiscoveredRig& result);
   DiscoveredRig finished();
-  void judge(DiscoveredRig& result) const;
-  SkinWeights skin_of(const Points& vertices) const;
-  float length(float spacings) const { return spacings * tracks_.graph.spacing; }
+  void judge_bones(DiscoveredRig& result) const;
 
-  const std::vector<Mesh>& scans_;
-  double fps_;
+  const ScanSequence& scans_;
   const DiscoveryOptions& options_;
-  std::vector<ThinnedFrame> frames_;
+  std::vector<int> numbers_;          // of the key frames
+  std::vector<ThinnedFrame> frames_;  // the key frames
   SurfaceTracks tracks_;
   RigidParts parts_;
   PartTree tree_;
   FittedSurface surface_;
-  std::vector<BoneMotions> bones_;  // [T]
-  std::vector<float> off_m_;        // [T]
+  std::vector<BoneMotions> bones_;  // [key frames]
   std::mutex reporting_;
   bool goes_on_ = true;
 };
@@ -103,13 +101,34 @@ TrackingProgress Discovery::tracking_progress(float from, float to) {
   };
 }
 
+void Discovery::read_key_frames() {
+  const std::vector<int> wanted = key_frames_of(scans_.count, scans_.fps);
+  std::string wrong;
+  for (const int t : wanted) {
+    try {
+      frames_.push_back(thinned(scans_.scan(t), kTrackedPoints, kSeed + static_cast<uint64_t>(t)));
+      numbers_.push_back(t);
+    } catch (const Error& error) {
+      wrong = "; frame " + std::to_string(t) + ": " + error.what();
+    }
+    const float share = static_cast<float>(t) / static_cast<float>(wanted.back() + 1);
+    US_CHECK(report("Reading", kReadingEnds * share), "ended before a skeleton was found");
+  }
+  US_CHECK(frames_.size() >= 2, "a skeleton is found in how a thing moves: that takes two frames or more, not ",
+           frames_.size(), wrong);
+}
+
+int Discovery::most_open() const {
+  std::vector<float> open(frames_.size());
+  in_halves(frames_.size(), [&](size_t t) { open[t] = openness(frames_[t]); });
+  return static_cast<int>(std::max_element(open.begin(), open.end()) - open.begin());
+}
+
 /// Each point follows the parts of the nodes about it.
 void Discovery::bind_points() {
   const DeformationGraph& graph = tracks_.graph;
-  std::vector<int> bone(tree_.part_of_bone.size());
-  for (size_t b = 0; b < bone.size(); ++b)
-    bone[static_cast<size_t>(tree_.part_of_bone[b])] = static_cast<int>(b);
-  RowMatrix weights = RowMatrix::Zero(graph.points.rows(), static_cast<Eigen::Index>(bone.size()));
+  const std::vector<int> bone = bone_of_part(tree_);
+  RowMatrix weights = RowMatrix::Zero(graph.points.rows(), tree_.rig.count());
   for (Eigen::Index i = 0; i < weights.rows(); ++i)
     for (int k = 0; k < kNodesOfPoint; ++k) {
       const int part = parts_.of_node[static_cast<size_t>(graph.near(i, k))];
@@ -130,12 +149,10 @@ void Discovery::find_bones() {
 
 void Discovery::fit_all(float stiffness) {
   ArticulatedFitOptions fit;
-  fit.first_radius_m = length(0.6f);
-  fit.last_radius_m = length(0.25f);
+  fit.first_radius_m = 0.6f * tracks_.graph.spacing;
+  fit.last_radius_m = 0.25f * tracks_.graph.spacing;
   fit.joint_stiffness = stiffness;
-  off_m_.assign(frames_.size(), 0);
-  in_halves(frames_.size(),
-            [&](size_t t) { off_m_[t] = fit_bones(tree_.rig, surface_, frames_[t], fit, bones_[t]); });
+  in_halves(frames_.size(), [&](size_t t) { fit_bones(tree_.rig, surface_, frames_[t], fit, bones_[t]); });
 }
 
 /// The joints of bones that have been fitted with joints that give.
@@ -155,80 +172,118 @@ void Discovery::find_joints_again() {
 }
 
 void Discovery::track_from_bones() {
-  std::vector<int> bone(tree_.part_of_bone.size());
-  for (size_t b = 0; b < bone.size(); ++b)
-    bone[static_cast<size_t>(tree_.part_of_bone[b])] = static_cast<int>(b);
+  const std::vector<int> bone = bone_of_part(tree_);
   for (size_t t = 0; t < frames_.size(); ++t)
     for (size_t k = 0; k < parts_.of_node.size(); ++k)
       tracks_.motions[t][k] = bones_[t][static_cast<size_t>(bone[static_cast<size_t>(parts_.of_node[k])])];
-  track_again(frames_, tracks_, tracking_progress(0.55f, 0.7f));
+  track_again(frames_, tracks_, tracking_progress(kTrackingEnds, kTrackedAgain));
 }
 
-/// Of each vertex: of the tracked points about it, on its side of the surface.
-SkinWeights Discovery::skin_of(const Points& vertices) const {
-  constexpr int kNear = 6;
-  const PointTree tree(surface_.points);
-  RowMatrix weights = RowMatrix::Zero(vertices.rows(), tree_.rig.count());
-  std::vector<PointTree::Near> near;
-  for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
-    tree.nearest(vertices.row(v).transpose(), kNear, near);
-    for (const PointTree::Near& n : near)
-      for (int k = 0; k < kSkinBones; ++k)
-        weights(v, surface_.skin.bones(n.point, k)) +=
-            surface_.skin.weights(n.point, k) / (n.squared + 1e-6f * tracks_.graph.spacing);
-  }
-  return SkinWeights::from(weights);
-}
-
-void Discovery::judge(DiscoveredRig& result) const {
+void Discovery::judge_bones(DiscoveredRig& result) const {
   const Rig& rig = result.found.rig;
+  std::vector<double> off(rig.joints.size(), 0), weight(rig.joints.size(), 1e-9);
+  for (size_t t = 0; t < frames_.size(); ++t) {
+    const Eigen::VectorXf distances = distances_to(frames_[t], surface_, bones_[t]);
+    for (Eigen::Index i = 0; i < distances.size(); ++i)
+      for (int k = 0; k < kSkinBones; ++k) {
+        const auto bone = static_cast<size_t>(surface_.skin.bones(i, k));
+        off[bone] += surface_.skin.weights(i, k) * distances[i];
+        weight[bone] += surface_.skin.weights(i, k);
+      }
+    result.off_m[static_cast<size_t>(numbers_[t])] = distances.mean();
+  }
   result.bones.resize(rig.joints.size());
-  for (const RigPose& pose : result.found.motion.poses)
-    for (size_t j = 1; j < rig.joints.size(); ++j)
-      result.bones[j].turned_deg =
-          std::max(result.bones[j].turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
-  result.off_m = off_m_;
-  constexpr double kMuch = 2;
-  const double usual = percentile({off_m_.begin(), off_m_.end()}, 50);
-  for (const float off : off_m_) result.doubted.push_back(off > kMuch * usual);
+  for (size_t j = 0; j < rig.joints.size(); ++j) {
+    FoundBone& bone = result.bones[j];
+    bone.off_m = static_cast<float>(off[j] / weight[j]);
+    if (j == 0) continue;
+    for (const RigPose& pose : result.found.motion.poses) {
+      bone.turned_deg = std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
+      bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
+    }
+  }
+}
+
+/// Frames that are no key frames: from the key frame before them on. What cannot be used repeats the pose
+/// before.
+void Discovery::follow_others(DiscoveredRig& result) {
+  RigFollower follower(result.found.rig);
+  std::vector<RigPose>& poses = result.found.motion.poses;
+  size_t next = 0;  // key frame
+  RigPose last = poses[static_cast<size_t>(numbers_.front())];
+  for (int t = 0; t < scans_.count; ++t) {
+    RigPose& pose = poses[static_cast<size_t>(t)];
+    if (next < numbers_.size() && numbers_[next] == t) {
+      follower.start_from(last = pose);
+      ++next;
+      continue;
+    }
+    pose = last;
+    if (!report("Following", kBonesEnd + (1 - kBonesEnd) * static_cast<float>(t) / static_cast<float>(scans_.count)))
+      continue;
+    try {
+      const RigFollower::Followed followed = follower.follow(scans_.scan(t));
+      pose = last = followed.pose;
+      result.off_m[static_cast<size_t>(t)] = followed.off_m;
+    } catch (const Error&) {  // no points: repeated
+    }
+  }
 }
 
 DiscoveredRig Discovery::finished() {
   DiscoveredRig result;
-  result.rest_frame = tracks_.rest_frame;
+  result.rest_frame = numbers_[static_cast<size_t>(tracks_.rest_frame)];
+  result.key_frames = numbers_;
   Rig& rig = result.found.rig;
   rig = tree_.rig;
   rig.name = "found";
-  rig.surface = scans_[static_cast<size_t>(tracks_.rest_frame)];
-  rig.skin = skin_of(rig.surface.vertices);
-  result.found.motion.fps = fps_;
-  for (const BoneMotions& bones : bones_) result.found.motion.poses.push_back(pose_of(rig, bones));
-  judge(result);
+  rig.surface = scans_.scan(result.rest_frame);
+  rig.skin = weights_between(rig.surface.vertices, surface_.points, surface_.skin, rig.count());
+  RigMotion& motion = result.found.motion;
+  motion.fps = scans_.fps;
+  motion.poses.resize(static_cast<size_t>(scans_.count));
+  result.off_m.assign(motion.poses.size(), -1);  // not known
+  for (size_t t = 0; t < frames_.size(); ++t) {
+    RigPose& pose = motion.poses[static_cast<size_t>(numbers_[t])];
+    pose = pose_of(rig, bones_[t]);
+    bones_[t] = bone_motions(rig, pose);
+  }
+  if (static_cast<int>(frames_.size()) < scans_.count) follow_others(result);
+  judge_bones(result);
+  constexpr float kMuch = 2;
+  std::vector<double> known;
+  for (const float off : result.off_m)
+    if (off >= 0) known.push_back(off);
+  const auto usual = static_cast<float>(percentile(known, 50));
+  for (const float off : result.off_m) result.doubted.push_back(off < 0 || off > kMuch * usual);
+  result.complete = goes_on_;
   return result;
 }
 
 DiscoveredRig Discovery::run() {
-  tracks_ = track_surface(frames_, most_open(frames_), kNodes, tracking_progress(0.05f, 0.5f));
+  read_key_frames();
+  tracks_ = track_surface(frames_, most_open(), kNodes, tracking_progress(kReadingEnds, kTrackingEnds));
   for (int round = 0; round < kRounds; ++round) {
     find_bones();
-    fit_all(0.3f);
+    if (!goes_on_) return finished();
+    fit_all(kLooseJoints);
     find_joints_again();
     if (round + 1 < kRounds) track_from_bones();
   }
-  report("Bones", 0.75f);
-  fit_all(3);
+  report("Bones", kTrackedAgain);
+  fit_all(kFirmJoints);
   find_joints_again();
-  fit_all(1000);
-  report("Skin", 0.95f);
+  report("Bones", (kTrackedAgain + kBonesEnd) / 2);
+  fit_all(kRigidJoints);
   return finished();
 }
 
 }  // namespace
 
-DiscoveredRig discover(const std::vector<Mesh>& frames, double fps, const DiscoveryOptions& options) {
-  US_CHECK(frames.size() >= 2,
-           "a skeleton is found in how a thing moves: that takes two frames or more, not ", frames.size());
-  return Discovery(frames, fps, options).run();
+DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options) {
+  US_CHECK(scans.count >= 2, "a skeleton is found in how a thing moves: that takes two frames or more, not ",
+           scans.count);
+  return Discovery(scans, options).run();
 }
 
 }  // namespace understudy

@@ -17,7 +17,7 @@ namespace {
 using Vec3d = Eigen::Vector3d;
 using Mat3d = Eigen::Matrix3d;
 
-constexpr float kLeastNoise = 0.002f;  // of the body's diagonal: nothing is followed better than that
+static const float kLeastNoise = getenv("NOISE")?atof(getenv("NOISE")):0.002f;  // of the body's diagonal: nothing is followed better than that
 constexpr int kSettlingRounds = 6;
 
 /// What is known of a set of points in every frame: all that the best rigid motion depends on.
@@ -269,7 +269,7 @@ RigidParts find_rigid_parts(const SurfaceTracks& tracks, int most) {
   parts.noise_m = noise_of(tracks, nodes);
   // Six numbers a frame, each known as well as so many nodes tell it: 6 T / 2 log G.
   const double frames = static_cast<double>(tracks.motions.size());
-  const double price = 3 * frames * std::log(static_cast<double>(nodes.size()));
+  const double price = (getenv("PRICE")?atof(getenv("PRICE")):3.0) * frames * std::log(static_cast<double>(nodes.size()));
   Agglomeration sets(tracks, nodes);
   sets.join_while(2 * parts.noise_m * parts.noise_m * price, most);
   parts.of_node = sets.labels();

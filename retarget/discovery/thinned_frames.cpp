@@ -146,7 +146,7 @@ float openness(const ThinnedFrame& frame) {
     const std::vector<float> distance = distances_along(graph, from, kFar);
     for (const int to : landmarks) sum += distance[static_cast<size_t>(to)];
   }
-  return static_cast<float>(sum / (count * count)) / box_diagonal(frame.points);
+  return static_cast<float>(sum / (count * count));
 }
 
 }  // namespace understudy
