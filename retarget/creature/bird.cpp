@@ -62,14 +62,14 @@ void bird_wing(CreaturePlan& plan, const BirdSizes& size, float side) {
              Vec3(0, 0, 1));
   plan.joint(of + "wrist", of + "elbow", JointKind::Hinge, at(0.09f + 0.48f * s, 0.125f, 0.11f),
              Vec3(0, 0, 1));
-  bird_wing_piece(plan, of + "shoulder", plan.at(of + "elbow"), {0.11f * c, 0.12f * c});
-  bird_wing_piece(plan, of + "elbow", plan.at(of + "wrist"), {0.12f * c, 0.105f * c});
+  bird_wing_piece(plan, of + "shoulder", plan.at(of + "elbow"), {0.125f * c, 0.135f * c});
+  bird_wing_piece(plan, of + "elbow", plan.at(of + "wrist"), {0.135f * c, 0.12f * c});
   const Vec3 wrist = plan.at(of + "wrist"), tip = at(0.09f + 0.86f * s, 0.115f, 0.0f);
-  bird_wing_piece(plan, of + "wrist", wrist + 0.4f * (tip - wrist), {0.105f * c, 0.08f * c});
+  bird_wing_piece(plan, of + "wrist", wrist + 0.4f * (tip - wrist), {0.12f * c, 0.09f * c});
   const Vec3 root = wrist + Vec3(side * 0.05f, 0, -0.09f * c);
-  for (int feather = 0; feather < 3; ++feather) {
+  for (int feather = 0; feather < 4; ++feather) {
     const auto f = static_cast<float>(feather);
-    const Vec3 end = tip + Vec3(-side * 0.09f * f * s, 0, -0.105f * f * c);
+    const Vec3 end = tip + Vec3(-side * 0.085f * f * s, 0, -0.09f * f * c);
     plan.add(of + "wrist", blade_part(root, 0.05f, end, 0.028f, {Vec3::UnitY(), 0.017f}), 0.01f);
   }
 }
@@ -208,10 +208,10 @@ Performance bird_preens(const Rig& rig, Rng& rng) {
     for (const float side : {1.0f, -1.0f}) {
       const std::string of = side > 0 ? "left_" : "right_";
       const float phase = side > 0 ? 0.0f : 0.5f;
-      puppet.turn(of + "shoulder", Vec3::UnitZ(), side * (0.15f + 0.3f * wave(t, period, phase)));
+      puppet.turn(of + "shoulder", Vec3::UnitZ(), side * (0.22f + 0.26f * wave(t, period, phase)));
       puppet.turn(of + "shoulder", Vec3::UnitY(), side * 0.2f * wave(t, 0.8f * period, phase));
-      puppet.turn(of + "elbow", side * (0.35f * wave(t, 0.8f * period, phase) - 0.15f));
-      puppet.turn(of + "wrist", side * (0.4f * wave(t, 0.7f * period, phase) - 0.1f));
+      puppet.turn(of + "elbow", side * (0.3f * wave(t, 0.8f * period, phase) - 0.12f));
+      puppet.turn(of + "wrist", side * (0.32f * wave(t, 0.7f * period, phase) - 0.1f));
     }
     for (const Limb& limb : limbs) puppet.plant(limb, limb.contact, Mat3::Identity());
   };

@@ -32,8 +32,10 @@ void excavator_house(CreaturePlan& plan) {
   plan.add("cab", box_part({0, 0.33f, -0.08f}, {0.29f, 0.08f, 0.34f}, 0.04f));
   plan.add("cab", box_part({0, 0.45f, -0.31f}, {0.28f, 0.1f, 0.12f}, 0.05f));
   plan.add("cab", box_part({0.17f, 0.54f, 0.07f}, {0.115f, 0.18f, 0.16f}, 0.04f));
-  plan.carve("cab", box_part({0.17f, 0.6f, 0.26f}, {0.085f, 0.075f, 0.05f}, 0.02f), 0.03f));
-  plan.carve("cab", box_part({0.31f, 0.6f, 0.07f}, {0.05f, 0.075f, 0.11f}, 0.02f), 0.03f));
+  plan.carve("cab", box_part({0.17f, 0.6f, 0.26f}, {0.085f, 0.075f, 0.05f}, 0.015f), 0.015f).thickness =
+      0.035f;
+  plan.carve("cab", box_part({0.31f, 0.6f, 0.07f}, {0.05f, 0.075f, 0.11f}, 0.015f), 0.015f).thickness =
+      0.035f;
 }
 
 /// A scoop that is open towards the cab, with teeth.
@@ -62,7 +64,7 @@ CreaturePlan excavator_plan(Rng& rng) {
   plan.mirrored = false;  // the driver sits on the left
   plan.vertices = 8500;
   plan.scale = rng.uniform(1.8f, 2.6f);
-  plan.cell = 0.0105f;
+  plan.cell = 0.0115f;
   excavator_joints(plan, size);
   excavator_house(plan);
   const Vec3 foot = plan.at("boom"), top = plan.at("stick");
@@ -84,7 +86,7 @@ Performance excavator_digs(const Rig& rig, Rng& rng) {
   return [=](Puppet& puppet, float seconds) {
     const float t = seconds + begin;
     puppet.turn("cab", side * wave(t, period));
-    puppet.turn("boom", -0.12f + 0.2f * wave(t, 0.5f * period));
+    puppet.turn("boom", -0.26f + 0.2f * wave(t, 0.5f * period));
     puppet.turn("stick", visiting(t, period, {-0.3f, 0.3f, 0.2f, -0.35f}));
     puppet.slide("extension", visiting(t, period, {out, 0.2f * out, 0, 0.8f * out}));
     puppet.turn("bucket", visiting(t, period, {-0.3f, 0.7f, 0.5f, -0.5f}));
@@ -98,7 +100,7 @@ Performance excavator_swings(const Rig& rig, Rng& rng) {
     const float t = pace * seconds + begin;
     puppet.turn("tracks", Vec3::UnitY(), 0.15f * wave(t, 5, 0.3f));
     puppet.turn("cab", 0.5f * wave(t, 4.4f));
-    puppet.turn("boom", -0.12f + 0.2f * wave(t, 3.2f, 0.2f));
+    puppet.turn("boom", -0.22f + 0.2f * wave(t, 3.2f, 0.2f));
     puppet.turn("stick", -0.1f + 0.4f * wave(t, 2.8f, 0.5f));
     puppet.slide("extension", out + out * wave(t, 2.6f));
     puppet.turn("bucket", 0.6f * wave(t, 2.1f, 0.7f));

@@ -7,12 +7,13 @@
 #include "retarget/creature/puppet.hpp"
 #include "retarget/math/directions.hpp"
 #include "retarget/math/segment.hpp"
+#include "retarget/math/smooth_step.hpp"
 
 namespace understudy {
 namespace {
 
 constexpr float kBreath = 0.007f, kWobble = 0.004f;  // share of the body's size
-constexpr float kThick = 0.08f;                      // flesh this thick, share of the size, wobbles fully
+constexpr float kThin = 0.02f, kThick = 0.09f;       // flesh so thin does not wobble, so thick fully
 
 /// How far each point is from the bones, [V].
 Eigen::VectorXf depths(const Rig& rig) {
@@ -42,7 +43,7 @@ Flesh::Flesh(const Rig& rig, const std::vector<std::string>& breathing, uint64_t
   for (const std::string& name : breathing) breathes += weights.col(puppet.joint(name));
   breath_ = vertex_normals(rest_, rig.surface.faces);
   for (Eigen::Index v = 0; v < rest_.rows(); ++v) breath_.row(v) *= kBreath * size * breathes[v];
-  softness_ = (depths(rig) / (kThick * size)).cwiseMin(1.0f);
+  softness_ = depths(rig).unaryExpr([size](float d) { return smooth_step(kThin, kThick, d / size); });
   breaths_ = rng.uniform(0.3f, 0.6f);
   begin_ = rng.uniform(0, 2 * kPi);
   for (int i = 0; i < 3; ++i) {

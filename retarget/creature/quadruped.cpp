@@ -4,6 +4,7 @@
 
 #include "retarget/creature/forms.hpp"
 #include "retarget/creature/gait.hpp"
+#include "retarget/math/smooth_step.hpp"
 
 namespace understudy {
 namespace {
@@ -15,7 +16,7 @@ struct QuadrupedLook {
 constexpr QuadrupedLook kCat = {0.36f, 0.105f, 0.14f, 38, 0.092f, 0.05f,
                                 18,    0.085f, 0.62f, 28, 0.026f, 0.45f};
 constexpr QuadrupedLook kDog = {0.47f, 0.118f, 0.21f, 48, 0.078f, 0.13f, 20, 0.1f, 0.42f, 20, 0.028f, 0.9f};
-constexpr QuadrupedLook kHorse = {0.64f, 0.16f, 0.40f, 50, 0.078f, 0.22f, 42, 0.075f, 0.5f, -58, 0.04f, 1.9f};
+constexpr QuadrupedLook kHorse = {0.68f, 0.16f, 0.42f, 52, 0.082f, 0.2f, 42, 0.075f, 0.5f, -58, 0.04f, 1.9f};
 
 QuadrupedLook between(const QuadrupedLook& a, const QuadrupedLook& b, float way) {
   const auto mix = [way](float from, float to) { return from + way * (to - from); };
@@ -57,8 +58,9 @@ void quadruped_head(CreaturePlan& plan, const QuadrupedLook& look) {
   plan.add("upper_neck", cone_part(middle, 0.5f * (thick + thin), head, thin), 0.04f);
   const Vec3 ahead(0, -std::sin(down), std::cos(down)), skull = head + Vec3(0, 0.3f * s, 0.55f * s);
   plan.add("head", ellipsoid_part(skull, {0.95f * s, 0.95f * s, 1.1f * s}), 0.03f);
+  const float blunt = 0.5f + 0.12f * smooth_step(30, 42, look.muzzle_deg);
   const Vec3 nose = skull + (0.75f * s + look.muzzle) * ahead - Vec3(0, 0.15f * s, 0);
-  plan.add("head", cone_part(skull + 0.2f * s * ahead, 0.72f * s, nose, 0.5f * s), 0.04f);
+  plan.add("head", cone_part(skull + 0.2f * s * ahead, 0.72f * s, nose, blunt * s), 0.04f);
   for (const float side : {1.0f, -1.0f}) {
     const std::string name = side > 0 ? "left_ear" : "right_ear";
     const Vec3 base = skull + s * Vec3(side * 0.6f, 0.72f, -0.15f);
@@ -98,7 +100,7 @@ void quadruped_paw(CreaturePlan& plan, const std::string& name, bool hoof) {
 }
 
 void quadruped_legs(CreaturePlan& plan, const QuadrupedLook& look, bool hoof) {
-  const float h = look.leg, w = 0.68f * look.girth, bulk = look.girth / 0.12f;
+  const float h = look.leg, w = 0.68f * look.girth, bulk = std::sqrt(look.girth / 0.12f);
   for (const float side : {1.0f, -1.0f}) {
     const std::string of = side > 0 ? "left_" : "right_";
     const auto at = [&](float y, float z) { return Vec3(side * w, y, z); };

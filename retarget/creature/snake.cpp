@@ -100,7 +100,7 @@ Performance snake_slithers(const Rig& rig, Rng& rng) {
 Performance snake_rears(const Rig& rig, Rng& rng) {
   const float length = size_of(rig);
   const float swing = length * rng.uniform(0.08f, 0.1f), wavelength = length * rng.uniform(0.42f, 0.5f),
-              period = rng.uniform(2.4f, 3.2f), up = length * rng.uniform(0.2f, 0.26f);
+              period = rng.uniform(2.4f, 3.2f), up = length * rng.uniform(0.26f, 0.34f);
   return [=, &rig](Puppet& puppet, float seconds) {
     const float raised = up * (0.75f + 0.25f * wave(seconds, 1.3f * period)), sway = wave(seconds, period);
     lay_along(puppet, rig, -0.5f * length, [=](float s) {
