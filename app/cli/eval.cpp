@@ -31,6 +31,13 @@ std::string one_line(const CaseResult& result) {
                           "people_alone_mm",
                           "hand_contact_kept",
                           "arm_buried_added",
+                          "joint_recall",
+                          "joint_precision",
+                          "joint_error_pct",
+                          "part_ri",
+                          "tree_f1",
+                          "track_pct",
+                          "cd_1e4",
                           "gap_mpjpe_m",
                           "chamfer_m",
                           "seam_m",
@@ -78,8 +85,10 @@ Action declare_eval(CLI::App& command) {
       .add_option(
           "--baseline", options->baseline,
           "fit: fit a body to each scan instead of extracting a skeleton; complete: fit one body to all "
-          "known frames of a case at once, as --complete does (sparse)")
-      ->check(CLI::IsMember({"fit", "complete"}));
+          "known frames of a case at once, as --complete does (sparse); nodes: follow far-apart points of "
+          "the "
+          "first frame instead of finding a rig (creatures)")
+      ->check(CLI::IsMember({"fit", "complete", "nodes"}));
   command
       .add_option("--file", options->file_shapes,
                   "evaluates the exported GLB, too, with this many morph targets: file_medl_mm, ...")

@@ -14,6 +14,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/baselines/body_fit.hpp"
+#include "retarget/baselines/node_rig.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 #include "retarget/motion_space/person_fitter.hpp"
 #include "retarget/scene/scene.hpp"
@@ -335,6 +336,28 @@ void evaluate_gap_case(Bench& bench, const Case& c, CaseResult& result) {
   result.gaps = evaluator.gaps();
 }
 
+FoundRig find_nodes(const std::vector<Mesh>& scans, double fps) {
+  std::vector<Points> frames;
+  for (const Mesh& scan : scans) frames.push_back(scan.vertices);
+  return {node_rig(frames, fps), 0};
+}
+
+/// A case of a body of any kind: its rig is found in all of its scans together.
+void evaluate_rig_case(const EvalOptions& options, const Case& c, const RigTruth& truth, CaseResult& result,
+                       Breakdown& breakdown) {
+  US_CHECK(options.baseline.empty() || options.baseline == "nodes", c.name, ": --baseline ", options.baseline,
+           " is of people, and this is any body");
+  const RigFinder find = options.baseline == "nodes" ? RigFinder(find_nodes) : options.find_rig;
+  US_CHECK(find, c.name, ": its rig is to be found, and only --baseline nodes can");
+  const RigEvaluation evaluation = evaluate_rig(c, truth, find);
+  FrameTimes times;
+  times.extract = times.total = evaluation.found_ms / static_cast<double>(evaluation.frames);
+  for (int64_t t = 0; t < evaluation.frames; ++t) result.latency.add(times);
+  result.frames = evaluation.frames;
+  result.metrics = evaluation.metrics;
+  breakdown.add_kind(c.tags.size() > 1 ? c.tags[1] : c.name, result.metrics);
+}
+
 void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseResult& result,
                    Breakdown& breakdown) {
   const EvalOptions& options = bench.options;
@@ -342,6 +365,8 @@ void evaluate_case(Bench& bench, const std::string& folder, const Case& c, CaseR
   if (c.gaps) return evaluate_gap_case(bench, c, result);
   std::optional<Truth> truth;
   if (!c.truth.empty()) truth = read_truth(c.truth);
+  if (truth && truth->rig) return evaluate_rig_case(options, c, *truth->rig, result, breakdown);
+  US_CHECK(options.baseline != "nodes", c.name, ": --baseline nodes is of bodies whose rig is to be found");
   US_CHECK(options.oracle.empty() || truth, c.name, ": --oracle needs a ground truth");
   std::optional<Mesh> mesh;  // with the file's own vertices
   std::shared_ptr<const PreparedCharacter> target;

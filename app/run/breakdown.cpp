@@ -161,6 +161,7 @@ Json Breakdown::json() const {
     for (const auto& [motion, counts] : motion_failures_)
       if (counts[f] > 0) failure["motions"][motion] = counts[f];
   }
+  if (!kinds_.empty()) json["kinds"] = groups(kinds_);
   if (!confidence_.confidence.empty()) json["confidence"] = confidence_.figures();
   json["worst"] = Json::array();
   for (const WorstFrame& w : worst_)

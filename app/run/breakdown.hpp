@@ -40,8 +40,11 @@ class Breakdown {
   /// A case with its truth, after all of its frames were evaluated. `folder` is the case's. Cases named
   /// BODY_MOTION, the motion being the last tag, count for both.
   void add(const std::string& folder, const Case& c, const Evaluator& evaluator, const Truth& truth);
+  /// Figures of a case whose body is of some kind: its rig was found.
+  void add_kind(const std::string& kind, const Metrics& metrics) { kinds_[kind].push_back(metrics); }
   /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
-  /// {"jolt": {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...]};
+  /// {"jolt": {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...], "kinds":
+  /// {"hand": {figures}}};
   /// without what is unknown.
   Json json() const;
   const ConfidenceRecord& confidence() const { return confidence_; }
@@ -56,7 +59,7 @@ class Breakdown {
 
   size_t keep_;
   std::array<MeanMetrics, kJointCount> joints_;
-  std::map<std::string, std::vector<Metrics>> motions_, bodies_;
+  std::map<std::string, std::vector<Metrics>> motions_, bodies_, kinds_;
   std::map<std::string, std::array<int64_t, kFailureCount>> motion_failures_;
   std::array<int64_t, kFailureCount> failures_{}, evaluated_{};  // frames with it, and looked at for it
   ConfidenceRecord confidence_;

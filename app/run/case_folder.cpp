@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "app/run/rig_truth_file.hpp"
 #include "retarget/base/error.hpp"
 #include "retarget/base/file.hpp"
 #include "retarget/base/index.hpp"
@@ -192,6 +193,11 @@ Case read_case(const std::string& folder) {
 Truth read_truth(const std::string& path) {
   const Npz npz = read_npz(path);
   Truth truth;
+  if (is_rig_truth(npz)) {
+    truth.rig = rig_truth_of(npz, path);
+    truth.frames = truth.rig->frames();
+    return truth;
+  }
   const auto vertices = npz.find("vertices");
   if (vertices != npz.end()) {
     US_CHECK(vertices->second.shape.size() == 3 && vertices->second.shape[1] > 0, path,

@@ -8,6 +8,7 @@
 #include "app/run/gap_plan.hpp"
 #include "retarget/geometry/mesh.hpp"
 #include "retarget/metrics/hand_contact.hpp"
+#include "retarget/metrics/rig_truth.hpp"
 #include "retarget/metrics/scene_score.hpp"
 #include "retarget/skeleton/skeleton.hpp"
 
@@ -45,6 +46,7 @@ struct Truth {
   std::vector<float> source_buried;   ///< [T] share of the source's hands and forearms inside its own body
   std::vector<SeenJoints> source_seen;  ///< which of the source's joints the scan shows
   std::vector<TruePeople> scene;  ///< of scans with several people and things; there source_joints is empty
+  std::optional<RigTruth> rig{};  ///< of a body that need not be a person; then there is nothing else
   /// The vertices of one frame, [V, 3].
   Points frame_vertices(int64_t t) const;
 };

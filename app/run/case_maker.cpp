@@ -10,6 +10,7 @@
 
 #include "app/run/capture_suites.hpp"
 #include "app/run/case_writer.hpp"
+#include "app/run/creature_suites.hpp"
 #include "app/run/inbetween_suite.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/report.hpp"
@@ -386,12 +387,14 @@ std::vector<EvaluatedMotion> motions_of(const DataSplit& split) {
 }  // namespace
 
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string&)>& done) {
+  if (is_creature_suite(options.suite) && options.data.empty()) return make_creature_suite(options, {}, done);
   DataSplit split = read_split(options.data, options.split);
   if (options.suite == "inbetween" || options.suite == "predict")
     return make_inbetween_suite(options, split, done);
   if (options.suite == "sparse") return make_sparse_suite(options, split, done);
   split.motions = motions_of(split);
   US_CHECK(!split.motions.empty(), options.data, ": the split \"", options.split, "\" names no motion");
+  if (is_creature_suite(options.suite)) return make_creature_suite(options, std::move(split), done);
   US_CHECK(options.points >= 100, "a scan of ", options.points, " points shows nobody: at least 100");
   if (is_capture_suite(options.suite)) return make_capture_suite(options, std::move(split), done);
   const bool dressed = options.suite == "clothed" || options.suite == "captured";

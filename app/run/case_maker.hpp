@@ -8,8 +8,8 @@
 namespace understudy::app {
 
 struct SuiteOptions {
-  std::string data;             ///< folder with splits.json, see retarget/body/data_folder.hpp
-  std::string out;              ///< folder; a case a folder is made in it
+  std::string data;  ///< folder with splits.json, see retarget/body/data_folder.hpp; creatures need none
+  std::string out;   ///< folder; a case a folder is made in it
   std::string suite = "naked";  ///< see make_suite
   std::string split = "dev";
   std::string body;  ///< SMPL-format; empty: the data folder's own
@@ -49,6 +49,9 @@ struct SuiteOptions {
 ///     at most `frames` frames, gap after gap; the known frames have scans, the others' numbers are missing
 ///   predict: the same, but of each window the first 8 frames are known and the rest is not
 ///   sparse: see make_sparse_suite
+///   creatures: robots, animals and hands made by code, with people where there is a data folder, as bodies
+///     whose rig is to be found: see make_creature_suite. Truths hold the rig (rig_truth_file.hpp)
+///   creatures-captured: the same as a rig of cameras would see them, scaled to a body of 1.5 m
 int make_suite(const SuiteOptions& options, const std::function<void(const std::string& name)>& done);
 
 }  // namespace understudy::app

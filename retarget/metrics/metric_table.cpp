@@ -156,6 +156,29 @@ std::vector<Metric> rows_of_gaps() {
           {"spread", "Correlation of doubt and error in gaps", "", 2, whole, higher, kNeedsGaps}};
 }
 
+/// Of rigs found in scans (rig_metrics.hpp).
+std::vector<Metric> rows_of_rigs() {
+  const Better lower = Better::Lower, higher = Better::Higher, neither = Better::Neither;
+  const bool whole = false;
+  return {
+      {"joint_recall", "True joints found", "", 3, whole, higher, kNeedsRig},
+      {"joint_precision", "Found joints that are true", "", 3, whole, higher, kNeedsRig},
+      {"joint_error_pct", "Error of joints found, of the body", "%", 2, whole, lower, kNeedsRig},
+      {"hinge_deg", "Axis error of hinges", "deg", 1, whole, lower, kNeedsRig},
+      {"part_ri", "Rand index of parts", "", 3, whole, higher, kNeedsRig},
+      {"part_ari", "Adjusted Rand index of parts", "", 3, whole, higher, kNeedsRig},
+      {"tree_f1", "F1 of the tree's edges", "", 3, whole, higher, kNeedsRig},
+      {"track_pct", "Error of points carried along, of the body", "%", 2, whole, lower, kNeedsRig},
+      {"surface_pct", "Surface off the scan, of the body", "%", 2, whole, lower, kNeedsRig},
+      {"retarget_pct", "Error of another body's performance, of the body", "%", 2, whole, lower, kNeedsRig},
+      {"sc", "Semantic consistency", "", 3, whole, higher, kNeedsRig},
+      {"sc_keypoints", "Keypoints of the semantic consistency", "", 0, whole, neither, kNeedsRig},
+      {"cd_1e4", "Voxel Chamfer distance x 1e4", "", 2, whole, lower, kNeedsRig},
+      {"m_cd", "Voxel Chamfer distance of what moves", "", 4, whole, lower, kNeedsRig},
+      {"true_parts", "True parts", "", 0, whole, neither, kNeedsRig},
+      {"found_parts", "Parts found", "", 0, whole, neither, kNeedsRig}};
+}
+
 std::vector<Metric> rows_of_one() {
   using S = const Sequence&;
   const Better lower = Better::Lower, higher = Better::Higher, neither = Better::Neither;
@@ -223,6 +246,7 @@ const std::vector<Metric>& metric_table() {
     std::vector<Metric> all = rows_of_one();
     for (const Metric& row : rows_of_scenes()) all.push_back(row);
     for (const Metric& row : rows_of_gaps()) all.push_back(row);
+    for (const Metric& row : rows_of_rigs()) all.push_back(row);
     return all;
   }();
   return table;

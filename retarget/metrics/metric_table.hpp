@@ -32,6 +32,7 @@ enum MetricNeeds : unsigned {
   kNeedsScene = 128,  ///< the truth of a scene: who is in it, and whose each point is
   kNeedsLegs = 256,   ///< seen
   kNeedsGaps = 512,   ///< frames that were not known, and their truth
+  kNeedsRig = 1024,   ///< the true rig of a body of whatever kind
 };
 
 enum class Better { Lower, Higher, Neither };

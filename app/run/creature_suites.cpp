@@ -1,0 +1,178 @@
+#include "app/run/creature_suites.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/run/case_writer.hpp"
+#include "app/run/interrupt.hpp"
+#include "app/run/report.hpp"
+#include "app/run/rig_truth_file.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/body/capture.hpp"
+#include "retarget/body/exact_body.hpp"
+#include "retarget/creature/creature.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFps = 30;
+constexpr int kPeople = 10;
+constexpr float kCapturedLength = 1.5f;  // metres: the cameras stand about a body as long as that
+
+struct Seeds {
+  uint64_t first, count;
+};
+Seeds seeds_of(const std::string& split) {
+  US_CHECK(split == "dev" || split == "train", "creatures have the splits dev and train, not \"", split,
+           "\"");
+  return split == "dev" ? Seeds{100, 10} : Seeds{0, 100};
+}
+
+/// A case and what makes it.
+struct CreaturePlan {
+  std::string name, kind, motion;
+  std::function<RigTruth()> make;
+};
+
+RigTruth creature_truth(CreatureKind kind, uint64_t seed, int motion, int frames) {
+  const understudy::Rig rig = make_creature(kind, seed);
+  const RiggedMotion performed{rig, creature_motion(kind, rig, motion, frames, kFps, seed)};
+  RigTruth truth = truth_of(performed);
+  truth.vertices = creature_surfaces(kind, rig, performed.motion, seed);  // with what the bones do not move
+  return truth;
+}
+
+CreaturePlan creature_plan(size_t which, uint64_t seed, int frames) {
+  const auto kind = static_cast<CreatureKind>(which);
+  const std::vector<std::string>& motions = creature_motions(kind);
+  const auto motion = static_cast<size_t>(seed % motions.size());
+  return {printed("%s%03d_%s", kCreatureNames[which], static_cast<int>(seed), motions[motion].c_str()),
+          kCreatureNames[which], motions[motion],
+          [=] { return creature_truth(kind, seed, static_cast<int>(motion), frames); }};
+}
+
+/// Bodies of the data folder, as the suite naked has them.
+class People {
+ public:
+  People(const SuiteOptions& options, const DataSplit& split)
+      : frames_(options.frames),
+        split_(split),
+        body_(read_smpl_body(options.body.empty() ? split.body : options.body)),
+        shapes_(body_),
+        template_leg_(shapes_.shaped({}).leg()) {
+    US_CHECK(!split.betas.empty() && !split.motions.empty(), options.data, ": the split \"", options.split,
+             "\" has no people or no motions");
+  }
+
+  CreaturePlan plan(size_t number) const {
+    const EvaluatedMotion& motion = split_.motions[number % split_.motions.size()];
+    return {printed("person%03zu_%s", number, motion.tag.c_str()), "person", motion.tag,
+            [this, number, motion] { return truth(number, motion); }};
+  }
+
+ private:
+  RigTruth truth(size_t number, const EvaluatedMotion& clip) const {
+    const ExactPerson person = shapes_.shaped(split_.betas[7 * number % split_.betas.size()]);
+    const ExactMotion motion = read_exact_motion(clip.path, clip.start, frames_);
+    const Performance shown = perform(person, motion, person.leg() / template_leg_);
+    RigTruth truth;
+    truth.faces = person.faces;
+    truth.rest = person.vertices.cast<float>();
+    truth.weights = person.weights;
+    truth.parents.assign(kParents.begin(), kParents.end());
+    truth.axes.assign(kJointCount, Vec3::Zero());
+    for (size_t t = 0; t < shown.vertices.size(); ++t) {
+      truth.vertices.emplace_back(shown.vertices[t].cast<float>());
+      truth.joints.emplace_back(shown.joints[t].cast<float>());
+      truth.bones.push_back(bones(person, motion.local[t], shown.joints[t]));
+    }
+    return truth;
+  }
+
+  static BoneMotions bones(const ExactPerson& person, const Rotations64& local, const Joints64& joints) {
+    BoneMotions bones(kJointCount);
+    std::array<Eigen::Matrix3d, kJointCount> global;
+    for (int j = 0; j < kJointCount; ++j) {
+      global[j] = j == 0 ? local[j] : Eigen::Matrix3d(global[kParents[j]] * local[j]);
+      const Eigen::Vector3d t = joints.row(j).transpose() - global[j] * person.joints.row(j).transpose();
+      bones[j] = {global[j].cast<float>(), t.cast<float>()};
+    }
+    return bones;
+  }
+
+  int frames_;
+  const DataSplit& split_;
+  Body body_;
+  ExactBody shapes_;
+  double template_leg_;
+};
+
+/// Points drawn evenly on the surface, about so many, in no order.
+Points even_scan(NumpyRandom& random, const Points& vertices, const Faces& faces, int points) {
+  const auto count = static_cast<int64_t>(points * random.uniform(0.8, 1.2));
+  return points_on_surface(random, vertices.cast<double>(), faces, count).cast<float>();
+}
+
+float longest_side(const Points& vertices) {
+  return (vertices.colwise().maxCoeff() - vertices.colwise().minCoeff()).maxCoeff();
+}
+
+void write_scans(const fs::path& folder, const RigTruth& truth, const SuiteOptions& options, uint64_t seed) {
+  make_scan_folder(folder);
+  NumpyRandom random(seed);
+  CaptureOptions capture;
+  capture.points = options.points;
+  capture.seed = seed;
+  const float scale = kCapturedLength / longest_side(truth.vertices[0]);
+  for (int t = 0; t < truth.frames(); ++t)
+    write_scan(
+        folder, static_cast<size_t>(t),
+        options.suite == "creatures"
+            ? even_scan(random, truth.vertices[t], truth.faces, options.points)
+            : Points(simulated_capture(scale * truth.vertices[t], truth.faces, t, capture).vertices / scale));
+}
+
+void make_case(const CreaturePlan& plan, const SuiteOptions& options) {
+  const fs::path folder = fs::path(options.out) / plan.name;
+  const RigTruth truth = plan.make();
+  write_scans(folder / "source", truth, options, case_seed(plan.name, options.seed));
+  write_npz((folder / "truth.npz").string(), rig_truth_arrays(truth));
+  write_json((folder / "case.json").string(), {{"fps", kFps},
+                                               {"source", "source"},
+                                               {"truth", "truth.npz"},
+                                               {"tags", {options.suite, plan.kind, plan.motion}}});
+}
+
+}  // namespace
+
+bool is_creature_suite(const std::string& suite) {
+  return suite == "creatures" || suite == "creatures-captured";
+}
+
+int make_creature_suite(const SuiteOptions& options, const std::optional<DataSplit>& people,
+                        const std::function<void(const std::string&)>& done) {
+  US_CHECK(options.points >= 100, "a scan of ", options.points, " points shows nothing: at least 100");
+  const Seeds seeds = seeds_of(options.split);
+  std::optional<People> person;
+  if (people) person.emplace(options, *people);
+  std::vector<CreaturePlan> plans;  // a seed of each kind after the other: few cases show all kinds
+  for (uint64_t i = 0; i < seeds.count; ++i) {
+    for (size_t kind = 0; kind < kCreatureNames.size(); ++kind)
+      plans.push_back(creature_plan(kind, seeds.first + i, options.frames));
+    if (person && i < kPeople) plans.push_back(person->plan(i));
+  }
+  if (options.cases > 0 && ssize(plans) > options.cases) plans.resize(options.cases);
+  for (const CreaturePlan& plan : plans) {
+    check_interrupt("before case " + plan.name);
+    make_case(plan, options);
+    done(plan.name);
+  }
+  return static_cast<int>(plans.size());
+}
+
+}  // namespace understudy::app

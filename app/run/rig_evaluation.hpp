@@ -1,0 +1,33 @@
+// Evaluates rigs that are found in the scans of a case.
+#pragma once
+
+#include <functional>
+
+#include "app/run/case_folder.hpp"
+#include "app/run/evaluator.hpp"
+#include "retarget/metrics/rig_truth.hpp"
+
+namespace understudy::app {
+
+/// A rig and how it performs the scans, frame by frame; its surface is the scan of rest_frame.
+struct FoundRig {
+  RiggedMotion found;
+  int rest_frame = 0;
+};
+/// Finds a rig in scans, metres, so many a second.
+using RigFinder = std::function<FoundRig(const std::vector<Mesh>& scans, double fps)>;
+
+/// The scans of a case, one a frame; those that cannot be used are empty. Throws Error naming what cannot be
+/// read.
+std::vector<Mesh> scans_of(const Case& c);
+
+/// What a finder made of a case.
+struct RigEvaluation {
+  Metrics metrics;      ///< rig_figures()
+  double found_ms = 0;  ///< how long finding took
+  int64_t frames = 0;
+};
+/// Throws Error where the scans, the finder's frames and the truth's are of different numbers.
+RigEvaluation evaluate_rig(const Case& c, const RigTruth& truth, const RigFinder& find);
+
+}  // namespace understudy::app
