@@ -23,6 +23,7 @@ constexpr Subcommand kSubcommands[] = {
     {"play", "plays a script of the studio without a window", declare_play},
     {"retarget", "lets a target perform what a source does", declare_retarget},
     {"export", "a character performs motions, as an animated GLB or glTF", declare_export},
+    {"discover", "finds the bones of anything that moves in its scans", declare_discover},
     {"fill", "makes the frames of a motion that were not captured, or not well", declare_fill},
     {"blend", "makes what lies between two to four motions", declare_blend},
     {"map", "shows the steps of many motions by their likeness, and finds those like a given one",

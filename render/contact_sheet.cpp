@@ -27,34 +27,39 @@ struct Cell {
   Points outline;  ///< what must be seen
 };
 
-/// Finite points of the person: a stray far from all joints, or a piece of floor, must not make everyone
-/// small.
-Points outline(const Points& vertices, const std::optional<Joints>& joints) {
+/// Finite points of what is shown. With strays those far from all joints are left out: they must not make
+/// everyone small.
+Points outline(const Points& vertices, const std::optional<SkeletonView>& skeleton, bool strays) {
   constexpr float kReach = 0.35f;  // metres from a joint's box to fingertips, toes and hair
   Eigen::RowVector3f low = Eigen::RowVector3f::Constant(-1e6f), high = Eigen::RowVector3f::Constant(1e6f);
-  if (joints && joints->allFinite()) {
-    low = joints->colwise().minCoeff().array() - kReach;
-    high = joints->colwise().maxCoeff().array() + kReach;
+  const bool with_joints = skeleton && skeleton->joints.rows() > 0 && skeleton->joints.allFinite();
+  if (with_joints && strays) {
+    low = skeleton->joints.colwise().minCoeff().array() - kReach;
+    high = skeleton->joints.colwise().maxCoeff().array() + kReach;
   }
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < vertices.rows(); ++i)
     if ((vertices.row(i).array() >= low.array()).all() && (vertices.row(i).array() <= high.array()).all())
       kept.push_back(i);
-  const bool with_joints = joints && joints->allFinite();
-  Points points(kept.size() + (with_joints ? kJointCount : 0), 3);
-  if (with_joints) points.bottomRows(kJointCount) = *joints;
+  const Eigen::Index joints = with_joints ? skeleton->joints.rows() : 0;
+  Points points(static_cast<Eigen::Index>(kept.size()) + joints, 3);
+  if (with_joints) points.bottomRows(joints) = skeleton->joints;
   for (size_t i = 0; i < kept.size(); ++i) points.row(i) = vertices.row(kept[i]);
   return points;
 }
 
-Cell make_cell(const Mesh& mesh, const std::optional<Joints>& joints, const Vec3& color) {
+Cell make_cell(const Mesh& mesh, const std::optional<SkeletonView>& skeleton, const Vec3& color,
+               bool strays) {
+  constexpr float kGround = 2.2f;  // metres: about a person
   Cell cell;
-  cell.scene.ground.radius = 2.2f;
   if (mesh.vertices.rows() > 0) add(cell.scene, mesh);
   for (auto& view : cell.scene.meshes) view.color = color;
   for (auto& view : cell.scene.clouds) view.color = color;
-  if (joints) cell.scene.skeletons.push_back(skeleton_view(*joints));
-  cell.outline = outline(mesh.vertices, joints);
+  if (skeleton) cell.scene.skeletons.push_back(*skeleton);
+  cell.outline = outline(mesh.vertices, skeleton, strays);
+  cell.scene.ground.radius = kGround;
+  if (!strays && cell.outline.rows() > 0)
+    cell.scene.ground.radius = (cell.outline.colwise().maxCoeff() - cell.outline.colwise().minCoeff()).norm();
   return cell;
 }
 
@@ -196,10 +201,10 @@ void draw_title(Image& sheet, const Font& font, const std::string& title) {
 
 std::vector<Cell> source_cells(const std::vector<SheetMoment>& moments, const SheetOptions& options) {
   std::vector<Cell> cells;
-  const auto shown = [](const SheetMoment& m) { return m.source.vertices.rows() > 0 || m.source_joints; };
+  const auto shown = [](const SheetMoment& m) { return m.source.vertices.rows() > 0 || m.skeleton; };
   if (std::none_of(moments.begin(), moments.end(), shown)) return cells;
   for (const SheetMoment& m : moments)
-    cells.push_back(make_cell(m.source, m.source_joints, options.source_color));
+    cells.push_back(make_cell(m.source, m.skeleton, options.source_color, options.strays));
   return cells;
 }
 
@@ -208,7 +213,7 @@ std::vector<Cell> target_cells(const std::vector<SheetMoment>& moments, const Sh
   if (std::none_of(moments.begin(), moments.end(), [](const SheetMoment& m) { return m.target.has_value(); }))
     return cells;
   for (const SheetMoment& m : moments)
-    cells.push_back(make_cell(m.target.value_or(Mesh{}), std::nullopt, options.target_color));
+    cells.push_back(make_cell(m.target.value_or(Mesh{}), std::nullopt, options.target_color, options.strays));
   return cells;
 }
 

@@ -13,8 +13,8 @@ namespace understudy::render {
 struct SheetMoment {
   int frame = 0;
   double seconds = 0;
-  Mesh source;                          ///< the scan, a mesh or a cloud; empty: not shown
-  std::optional<Joints> source_joints;  ///< extracted from it
+  Mesh source;                           ///< the scan, a mesh or a cloud; empty: not shown
+  std::optional<SkeletonView> skeleton;  ///< extracted from it
   std::optional<Mesh> target;  ///< the target performing it, a mesh or a cloud; in none: no target rows
 };
 
@@ -23,6 +23,8 @@ struct SheetOptions {
   int width = 1800;   ///< pixels; the height follows from the people shown
   int columns = 6;    ///< moments in a row; more continue below
   float heading = 0;  ///< radians about +y that the person faces, 0 is +z; the sheet looks from there
+  bool strays =
+      true;  ///< what is far from all joints, a stray or a piece of floor, may lie outside the picture
   std::string source_caption = "Scan, extracted skeleton", target_caption = "Target";
   Vec3 source_color = Vec3(0.66f, 0.71f, 0.76f), target_color = Vec3(0.80f, 0.75f, 0.69f);
 };

@@ -36,7 +36,7 @@ struct StandingStill {
 void add_t_poses(const std::vector<StandingStill>& cast, render::SheetMoment& moment) {
   moment.source = cast[0].mesh;
   if (cast.size() == 1) {
-    moment.source_joints = cast[0].joints;
+    moment.skeleton = render::skeleton_view(cast[0].joints);
     return;
   }
   Mesh all;

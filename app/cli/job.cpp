@@ -40,7 +40,7 @@ render::SheetMoment source_moment(const RetargetedFrame& frame, double fps) {
   moment.frame = frame.index;
   moment.seconds = static_cast<double>(frame.index) / fps;
   moment.source = frame.scan.mesh;
-  moment.source_joints = frame.result.source.joints;
+  moment.skeleton = render::skeleton_view(frame.result.source.joints);
   return moment;
 }
 

@@ -37,7 +37,7 @@ std::vector<render::SheetMoment> PreviewMoments::take() {
 namespace {
 
 /// Radians about +y that a body faces, 0 is +z: across its hips, turned by a right angle.
-float heading_of(const Joints& joints) {
+float heading_of(const Points& joints) {
   const Vec3 left = (joints.row(LeftHip) - joints.row(RightHip)).transpose();
   return std::atan2(-left.z(), left.x());
 }
@@ -51,8 +51,8 @@ void write_preview(const std::string& path, const std::vector<render::SheetMomen
   options.title = title;
   options.columns = columns;
   for (const auto& moment : moments)
-    if (moment.source_joints) {
-      options.heading = heading_of(*moment.source_joints);
+    if (moment.skeleton) {
+      options.heading = heading_of(moment.skeleton->joints);
       break;
     }
   render::write_png(path, render::contact_sheet(moments, options));

@@ -118,7 +118,7 @@ void BoneFit::match(float radius, const BoneMotions& bones) {
               scan_.normals.row(near.point).transpose(), radius, bones);
   }
   const PointTree tree(posed_);
-  for (Eigen::Index q = 0; q < scan_.points.rows(); ++q) {
+  for (int q = 0; q < scan_.spread; ++q) {
     const PointTree::Near near = tree.nearest(scan_.points.row(q).transpose());
     if (near.squared > reach2 || !agree(near.point, q)) continue;
     add_match(near.point, scan_.points.row(q).transpose(), scan_.normals.row(q).transpose(), radius, bones);

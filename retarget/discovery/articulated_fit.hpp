@@ -26,10 +26,11 @@ struct ArticulatedFitOptions {
 /// surface's points come to lie on the scan and the scan on them (point to plane, Geman-McClure), joints hold
 /// what their kind does not let go. What turns freely on a round limb stays as it was.
 void fit_bones(const Rig& rig, const FittedSurface& surface, const ThinnedFrame& scan,
-                const ArticulatedFitOptions& options, BoneMotions& bones);
+               const ArticulatedFitOptions& options, BoneMotions& bones);
 
 /// How far each of the surface's points is from the scan, [N] metres.
-Eigen::VectorXf distances_to(const ThinnedFrame& scan, const FittedSurface& surface, const BoneMotions& bones);
+Eigen::VectorXf distances_to(const ThinnedFrame& scan, const FittedSurface& surface,
+                             const BoneMotions& bones);
 
 /// Weights at places between points whose weights are known: of the nearest ones, the more the nearer.
 SkinWeights weights_between(const Points& places, const Points& known, const SkinWeights& weights, int bones);

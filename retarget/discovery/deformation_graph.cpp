@@ -70,11 +70,13 @@ void connect(const std::vector<NearNodes>& near, const std::vector<int>& nodes, 
 
 }  // namespace
 
-DeformationGraph deformation_graph(const ThinnedFrame& rest, int nodes) {
-  const SurfaceGraph surface = surface_graph(rest);
+DeformationGraph deformation_graph(const ThinnedFrame& whole, int nodes) {
+  const ThinnedFrame rest = spread_part(whole);
   const std::vector<int> chosen =
       farthest_points(rest.points, static_cast<int>(std::min<Eigen::Index>(nodes, rest.points.rows())));
   DeformationGraph graph;
+  graph.surface = surface_graph(rest);
+  graph.node_points = chosen;
   graph.points = rest.points;
   graph.normals = rest.normals;
   graph.nodes = rest.points(chosen, Eigen::all);
@@ -86,7 +88,7 @@ DeformationGraph deformation_graph(const ThinnedFrame& rest, int nodes) {
       widest = std::max(widest, tree.nearest(rest.points.row(i).transpose()).squared);
     return std::sqrt(widest);
   }();
-  const std::vector<NearNodes> near = nodes_near_points(rest.points, chosen, surface, 5 * gap);
+  const std::vector<NearNodes> near = nodes_near_points(rest.points, chosen, graph.surface, 5 * gap);
   bind(near, graph);
   connect(near, chosen, graph);
   return graph;

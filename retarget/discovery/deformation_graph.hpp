@@ -11,9 +11,11 @@ namespace understudy {
 constexpr int kNodesOfPoint = 4;
 
 struct DeformationGraph {
-  Points nodes;                                                             ///< [G, 3] at rest, metres
-  Points points, normals;                                                   ///< [N, 3] of the surface at rest
-  Eigen::Matrix<int, Eigen::Dynamic, kNodesOfPoint, Eigen::RowMajor> near;  ///< [N, 4] nodes of a point
+  Points nodes;                  ///< [G, 3] at rest, metres
+  std::vector<int> node_points;  ///< [G] each node is one of the points
+  Points points, normals;        ///< [N, 3] of the surface at rest
+  SurfaceGraph surface;          ///< of the points
+  Eigen::Matrix<int, Eigen::Dynamic, kNodesOfPoint, Eigen::RowMajor> near;      ///< [N, 4] nodes of a point
   Eigen::Matrix<float, Eigen::Dynamic, kNodesOfPoint, Eigen::RowMajor> shares;  ///< [N, 4], rows sum to 1
   struct Edge {
     int a, b;
@@ -23,11 +25,9 @@ struct DeformationGraph {
   float spacing;            ///< of neighbouring nodes, metres, mean
 
   int count() const { return static_cast<int>(nodes.rows()); }
-  /// The node that has the largest share in each point, [N].
-  std::vector<int> nearest_nodes() const { return {near.col(0).begin(), near.col(0).end()}; }
 };
 
-/// About `nodes` nodes, far apart on the surface.
+/// `nodes` nodes, far apart on the surface of the frame's spread points.
 DeformationGraph deformation_graph(const ThinnedFrame& rest, int nodes);
 
 /// Where each node takes what is about it, from rest, [G].

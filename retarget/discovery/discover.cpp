@@ -17,7 +17,9 @@
 namespace understudy {
 namespace {
 
-static const int kTrackedPoints = getenv("POINTS") ? atoi(getenv("POINTS")) : 2000, kNodes = getenv("NODES") ? atoi(getenv("NODES")) : 200;
+static const int kTrackedPoints = getenv("POINTS") ? atoi(getenv("POINTS")) : 2000,
+                 kNodes = getenv("NODES") ? atoi(getenv("NODES")) : 200;
+static const int kSurfacePoints = getenv("SURFACE") ? atoi(getenv("SURFACE")) : 6000;
 constexpr int kKeyFrames = 60;
 constexpr double kKeyRate = 12;  // frames/s: what moves between fewer cannot be followed
 constexpr int kRounds = 2;       // of parts, bones and tracks: each makes the next better
@@ -106,7 +108,8 @@ void Discovery::read_key_frames() {
   std::string wrong;
   for (const int t : wanted) {
     try {
-      frames_.push_back(thinned(scans_.scan(t), kTrackedPoints, kSeed + static_cast<uint64_t>(t)));
+      frames_.push_back(
+          thinned(scans_.scan(t), kTrackedPoints, kSurfacePoints, kSeed + static_cast<uint64_t>(t)));
       numbers_.push_back(t);
     } catch (const Error& error) {
       wrong = "; frame " + std::to_string(t) + ": " + error.what();
@@ -114,8 +117,9 @@ void Discovery::read_key_frames() {
     const float share = static_cast<float>(t) / static_cast<float>(wanted.back() + 1);
     US_CHECK(report("Reading", kReadingEnds * share), "ended before a skeleton was found");
   }
-  US_CHECK(frames_.size() >= 2, "a skeleton is found in how a thing moves: that takes two frames or more, not ",
-           frames_.size(), wrong);
+  US_CHECK(frames_.size() >= 2,
+           "a skeleton is found in how a thing moves: that takes two frames or more, not ", frames_.size(),
+           wrong);
 }
 
 int Discovery::most_open() const {
@@ -124,21 +128,22 @@ int Discovery::most_open() const {
   return static_cast<int>(std::max_element(open.begin(), open.end()) - open.begin());
 }
 
-/// Each point follows the parts of the nodes about it.
+/// Each point follows its part, and those of the points about it.
 void Discovery::bind_points() {
   const DeformationGraph& graph = tracks_.graph;
   const std::vector<int> bone = bone_of_part(tree_);
   RowMatrix weights = RowMatrix::Zero(graph.points.rows(), tree_.rig.count());
-  for (Eigen::Index i = 0; i < weights.rows(); ++i)
-    for (int k = 0; k < kNodesOfPoint; ++k) {
-      const int part = parts_.of_node[static_cast<size_t>(graph.near(i, k))];
-      weights(i, bone[static_cast<size_t>(part)]) += graph.shares(i, k);
-    }
+  for (Eigen::Index i = 0; i < weights.rows(); ++i) {
+    const auto own = static_cast<size_t>(parts_.of_point[static_cast<size_t>(i)]);
+    weights(i, bone[own]) += 1;
+    for (const SurfaceGraph::Edge& edge : graph.surface.edges[static_cast<size_t>(i)])
+      weights(i, bone[static_cast<size_t>(parts_.of_point[static_cast<size_t>(edge.to)])]) += 0.5f;
+  }
   surface_ = {graph.points, graph.normals, SkinWeights::from(weights)};
 }
 
 void Discovery::find_bones() {
-  parts_ = find_rigid_parts(tracks_, options_.parts);
+  parts_ = find_rigid_parts(frames_, tracks_, options_.parts);
   tree_ = find_part_tree(tracks_, parts_);
   bind_points();
   bones_.assign(frames_.size(), BoneMotions(tree_.part_of_bone.size()));
@@ -174,8 +179,10 @@ void Discovery::find_joints_again() {
 void Discovery::track_from_bones() {
   const std::vector<int> bone = bone_of_part(tree_);
   for (size_t t = 0; t < frames_.size(); ++t)
-    for (size_t k = 0; k < parts_.of_node.size(); ++k)
-      tracks_.motions[t][k] = bones_[t][static_cast<size_t>(bone[static_cast<size_t>(parts_.of_node[k])])];
+    for (size_t k = 0; k < tracks_.graph.node_points.size(); ++k) {
+      const int part = parts_.of_point[static_cast<size_t>(tracks_.graph.node_points[k])];
+      tracks_.motions[t][k] = bones_[t][static_cast<size_t>(bone[static_cast<size_t>(part)])];
+    }
   track_again(frames_, tracks_, tracking_progress(kTrackingEnds, kTrackedAgain));
 }
 
@@ -198,7 +205,8 @@ void Discovery::judge_bones(DiscoveredRig& result) const {
     bone.off_m = static_cast<float>(off[j] / weight[j]);
     if (j == 0) continue;
     for (const RigPose& pose : result.found.motion.poses) {
-      bone.turned_deg = std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
+      bone.turned_deg =
+          std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
       bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
     }
   }
@@ -219,7 +227,8 @@ void Discovery::follow_others(DiscoveredRig& result) {
       continue;
     }
     pose = last;
-    if (!report("Following", kBonesEnd + (1 - kBonesEnd) * static_cast<float>(t) / static_cast<float>(scans_.count)))
+    if (!report("Following",
+                kBonesEnd + (1 - kBonesEnd) * static_cast<float>(t) / static_cast<float>(scans_.count)))
       continue;
     try {
       const RigFollower::Followed followed = follower.follow(scans_.scan(t));

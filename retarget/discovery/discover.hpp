@@ -36,13 +36,14 @@ struct FoundBone {
 };
 
 struct DiscoveredRig {
-  RiggedMotion found;              ///< a pose for each frame; the surface is the rest frame's scan
-  int rest_frame = 0;              ///< in which no bone is turned
-  std::vector<int> key_frames;     ///< that the skeleton was found in; the others were followed
-  std::vector<FoundBone> bones;    ///< one a joint
-  std::vector<float> off_m;        ///< [T] of the surface from the scan, mean over its points, metres
-  std::vector<bool> doubted;       ///< [T] frames that it fits clearly worse than the others, or that could not be used
-  bool complete = true;            ///< false: ended early
+  RiggedMotion found;            ///< a pose for each frame; the surface is the rest frame's scan
+  int rest_frame = 0;            ///< in which no bone is turned
+  std::vector<int> key_frames;   ///< that the skeleton was found in; the others were followed
+  std::vector<FoundBone> bones;  ///< one a joint
+  std::vector<float> off_m;      ///< [T] of the surface from the scan, mean over its points, metres
+  std::vector<bool>
+      doubted;           ///< [T] frames that it fits clearly worse than the others, or that could not be used
+  bool complete = true;  ///< false: ended early
 };
 
 /// Tracks the surface of the most open frame through up to 60 key frames, joins what moves alike to rigid

@@ -22,7 +22,8 @@ constexpr float kSeamSpread = 0.04f;  // of the diagonal: how far a joint may be
 constexpr float kHingeShare = 0.2f;   // of the main turn: what else a hinge turns, noise
 constexpr float kHingeNoise_deg = 2;
 constexpr float kSeamCost = 0.25f;      // of a metre from the seam, in metres carried apart
-constexpr float kShortSeamCost = 0.1f;  // of a seam of one edge, in node spacings
+constexpr float kShortSeamCost = 0.1f;  // of the shortest seam, in node spacings,
+constexpr int kWideSeam = 10;           // and of one of so many edges half as much
 
 Mat3 mean_rotation(const std::vector<Mat3>& turns) {
   Mat3 sum = Mat3::Zero();
@@ -62,29 +63,32 @@ Vec3 shared_place(const std::vector<RigidMotion>& parent, const std::vector<Rigi
   return A.ldlt().solve(b).cast<float>();
 }
 
-/// The middles of the graph's edges that cross from one part to another, by the two parts.
+/// The middles of the surface's edges that cross from one part to another, by the two parts.
 struct Seam {
   Vec3 sum = Vec3::Zero();
   int edges = 0;
   Vec3 middle() const { return sum / static_cast<float>(edges); }
 };
-std::map<Pair, Seam> find_seams(const SurfaceTracks& tracks, const std::vector<int>& of_node) {
-  constexpr float kTorn = 1.6f;  // of its length at rest: what only touched
+std::map<Pair, Seam> find_seams(const SurfaceTracks& tracks, const RigidParts& parts) {
+  constexpr float kTorn = 0.3f;  // of the spacing of nodes, longer than at rest: what only touched
   const DeformationGraph& graph = tracks.graph;
   std::map<Pair, Seam> seams, torn;
-  for (const DeformationGraph::Edge& edge : graph.edges) {
-    const int a = of_node[static_cast<size_t>(edge.a)], b = of_node[static_cast<size_t>(edge.b)];
-    if (a == b) continue;
-    const Vec3 ga = graph.nodes.row(edge.a).transpose(), gb = graph.nodes.row(edge.b).transpose();
-    const bool holds = std::all_of(tracks.motions.begin(), tracks.motions.end(), [&](const NodeMotions& m) {
-      return (m[static_cast<size_t>(edge.a)](ga) - m[static_cast<size_t>(edge.b)](gb)).norm() <
-             kTorn * edge.length;
-    });
-    Seam& seam = (holds ? seams : torn)[std::minmax(a, b)];
-    seam.sum += (ga + gb) / 2;
-    ++seam.edges;
-  }
-  UnionFind sets(static_cast<size_t>(*std::max_element(of_node.begin(), of_node.end()) + 1));
+  for (size_t i = 0; i < parts.of_point.size(); ++i)
+    for (const SurfaceGraph::Edge& edge : graph.surface.edges[i]) {
+      const int a = parts.of_point[i], b = parts.of_point[static_cast<size_t>(edge.to)];
+      if (a >= b) continue;  // each edge is there both ways
+      const Vec3 pa = graph.points.row(static_cast<Eigen::Index>(i)).transpose(),
+                 pb = graph.points.row(edge.to).transpose();
+      float widest = 0;
+      for (size_t t = 0; t < tracks.motions.size(); ++t)
+        widest = std::max(widest, (parts.motions[static_cast<size_t>(a)][t](pa) -
+                                   parts.motions[static_cast<size_t>(b)][t](pb))
+                                      .norm());
+      Seam& seam = (widest < edge.length + kTorn * graph.spacing ? seams : torn)[{a, b}];
+      seam.sum += (pa + pb) / 2;
+      ++seam.edges;
+    }
+  UnionFind sets(static_cast<size_t>(parts.count()));
   for (const auto& [pair, seam] : seams) sets.join(pair.first, pair.second);
   for (const auto& [pair, seam] : torn)  // a piece that nothing else holds
     if (sets.root(pair.first) != sets.root(pair.second)) {
@@ -95,11 +99,7 @@ std::map<Pair, Seam> find_seams(const SurfaceTracks& tracks, const std::vector<i
 }
 
 void relabel(RigidParts& parts, int from, int to) {
-  std::map<int, int> number;
-  for (int& part : parts.of_node) {
-    if (part == from) part = to;
-    part = number.emplace(part, static_cast<int>(number.size())).first->second;
-  }
+  std::replace(parts.of_point.begin(), parts.of_point.end(), from, to);
 }
 
 struct Link {
@@ -111,14 +111,15 @@ struct Link {
 std::vector<Link> links_of(const SurfaceTracks& tracks, const RigidParts& parts) {
   const float size = box_diagonal(tracks.graph.points);
   std::vector<Link> links;
-  for (const auto& [pair, seam] : find_seams(tracks, parts.of_node)) {
+  for (const auto& [pair, seam] : find_seams(tracks, parts)) {
     const auto [a, b] = pair;
     Link link{a, b,
               find_joint(parts.motions[static_cast<size_t>(a)], parts.motions[static_cast<size_t>(b)],
                          seam.middle(), parts.noise_m, size),
               0};
-    link.cost = link.joint.off_m + kSeamCost * (link.joint.rest - seam.middle()).norm() +
-                kShortSeamCost * tracks.graph.spacing / static_cast<float>(seam.edges);
+    link.cost =
+        link.joint.off_m + kSeamCost * (link.joint.rest - seam.middle()).norm() +
+        kShortSeamCost * tracks.graph.spacing * kWideSeam / static_cast<float>(kWideSeam + seam.edges);
     links.push_back(link);
   }
   std::stable_sort(links.begin(), links.end(), [](const Link& x, const Link& y) { return x.cost < y.cost; });
@@ -167,11 +168,11 @@ int central_part(const std::vector<Link>& tree, const std::vector<int>& sizes) {
   return best;
 }
 
-Vec3 centre_of(const DeformationGraph& graph, const std::vector<int>& of_node, int part) {
+Vec3 centre_of(const Points& points, const std::vector<int>& of_point, int part) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
-  for (int k = 0; k < graph.count(); ++k)
-    if (of_node[static_cast<size_t>(k)] == part) sum += graph.nodes.row(k).transpose(), ++count;
+  for (size_t i = 0; i < of_point.size(); ++i)
+    if (of_point[i] == part) sum += points.row(static_cast<Eigen::Index>(i)).transpose(), ++count;
   return sum / static_cast<float>(std::max(count, 1));
 }
 
@@ -225,11 +226,11 @@ PartTree find_part_tree(const SurfaceTracks& tracks, RigidParts& parts) {
   while (parts.count() > 1 && join_fixed(tracks, parts)) refit(tracks, parts);
   const std::vector<Link> tree = spanning_tree(links_of(tracks, parts), parts.count());
   std::vector<int> sizes(static_cast<size_t>(parts.count()), 0), bone(sizes.size(), -1);
-  for (const int part : parts.of_node) ++sizes[static_cast<size_t>(part)];
+  for (const int part : parts.of_point) ++sizes[static_cast<size_t>(part)];
   PartTree found;
   for (const auto& [part, l] : outwards_from(central_part(tree, sizes), tree)) {
     RigJoint joint{"bone " + std::to_string(found.rig.count()), -1, JointKind::Free,
-                   centre_of(tracks.graph, parts.of_node, part), Vec3::UnitY()};
+                   centre_of(tracks.graph.points, parts.of_point, part), Vec3::UnitY()};
     if (l >= 0) {
       const Link& link = tree[static_cast<size_t>(l)];
       joint.parent = bone[static_cast<size_t>(link.a == part ? link.b : link.a)];

@@ -8,7 +8,7 @@
 namespace understudy {
 namespace {
 
-constexpr int kFollowedPoints = 2000;
+constexpr int kFollowedPoints = 2000, kFollowedSurface = 6000;
 constexpr uint64_t kFollowerSeed = 20240611;
 
 /// As the bones moved last, they go on, a little slower.
@@ -28,7 +28,7 @@ BoneMotions led_on(const Rig& rig, const BoneMotions& before, const BoneMotions&
 }  // namespace
 
 RigFollower::RigFollower(const Rig& rig) : rig_(rig) {
-  const ThinnedFrame thin = thinned(rig.surface, kFollowedPoints, kFollowerSeed);
+  const ThinnedFrame thin = thinned(rig.surface, kFollowedPoints, kFollowedPoints, kFollowerSeed);
   surface_ = {thin.points, thin.normals,
               weights_between(thin.points, rig.surface.vertices, rig.skin, rig.count())};
   // As a surface of so many points has them side by side.
@@ -48,13 +48,13 @@ void RigFollower::start_from(const RigPose& pose) {
 
 RigFollower::Followed RigFollower::follow(const Mesh& scan) {
   Followed followed =
-      fit(thinned(scan, kFollowedPoints, kFollowerSeed), led_on(rig_, before_, last_));
+      fit(thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed), led_on(rig_, before_, last_));
   before_ = std::exchange(last_, bone_motions(rig_, followed.pose));
   return followed;
 }
 
 RigFollower::Followed RigFollower::fit(const Mesh& scan, const RigPose& near) const {
-  return fit(thinned(scan, kFollowedPoints, kFollowerSeed), bone_motions(rig_, near));
+  return fit(thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed), bone_motions(rig_, near));
 }
 
 RigFollower::Followed RigFollower::fit(const ThinnedFrame& scan, BoneMotions bones) const {

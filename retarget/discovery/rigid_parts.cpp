@@ -17,8 +17,17 @@ namespace {
 using Vec3d = Eigen::Vector3d;
 using Mat3d = Eigen::Matrix3d;
 
-static const float kLeastNoise = getenv("NOISE")?atof(getenv("NOISE")):0.002f;  // of the body's diagonal: nothing is followed better than that
+static const float kLeastNoise =
+    getenv("NOISE") ? atof(getenv("NOISE"))
+                    : 0.002f;  // of the body's diagonal: nothing is followed better than that
 constexpr int kSettlingRounds = 6;
+constexpr int kPatches = 400;
+constexpr double kUnits = 200;
+static const double kRigidShare =
+    getenv("SHARE") ? atof(getenv("SHARE")) : 25;  // percent of the patches that lie in the middle of a part
+constexpr int kJudgedFrames = 20;
+static const double kScanShare = getenv("SCAN") ? atof(getenv("SCAN")) : 1;
+static const double kPrice = getenv("PRICE") ? atof(getenv("PRICE")) : 3;
 
 /// What is known of a set of points in every frame: all that the best rigid motion depends on.
 struct Moments {
@@ -73,63 +82,87 @@ RigidMotion Moments::best(size_t t) const {
   return motion;
 }
 
-/// Of every node: its points weigh 1 together, since they move alike.
-std::vector<Moments> node_moments(const SurfaceTracks& tracks) {
-  const DeformationGraph& graph = tracks.graph;
-  const std::vector<int> node = graph.nearest_nodes();
-  std::vector<double> points(static_cast<size_t>(graph.count()), 0);
-  for (const int k : node) points[static_cast<size_t>(k)] += 1;
-  std::vector<Moments> moments(points.size());
-  const size_t frames = tracks.motions.size();
-  for (Moments& m : moments) m.frames.resize(frames);
-  for (size_t i = 0; i < node.size(); ++i) {
-    Moments& m = moments[static_cast<size_t>(node[i])];
-    const double w = 1 / points[static_cast<size_t>(node[i])];
-    const Vec3d x = graph.points.row(static_cast<Eigen::Index>(i)).transpose().cast<double>();
-    m.weight += w, m.sum += w * x, m.squared += w * x.squaredNorm();
+/// The surface's points in all frames. Together they weigh kUnits: neighbours move alike, and so many of them
+/// would tell as much if each moved on its own.
+struct Trajectories {
+  explicit Trajectories(const SurfaceTracks& tracks) : rest(tracks.graph.points) {
+    weight = kUnits / static_cast<double>(rest.rows());
+    for (size_t t = 0; t < tracks.motions.size(); ++t) posed.push_back(tracks.at(static_cast<int>(t)));
   }
-  for (size_t t = 0; t < frames; ++t) {
-    const Points posed = tracks.at(static_cast<int>(t));
-    for (size_t i = 0; i < node.size(); ++i) {
-      Moments::Frame& m = moments[static_cast<size_t>(node[i])].frames[t];
-      const double w = 1 / points[static_cast<size_t>(node[i])];
-      const auto row = static_cast<Eigen::Index>(i);
-      const Vec3d x = graph.points.row(row).transpose().cast<double>(),
-                  y = posed.row(row).transpose().cast<double>();
-      m.sum += w * y, m.cross += w * y * x.transpose(), m.squared += w * y.squaredNorm();
-    }
+  void add(int point, Moments& to) const;
+  /// Of a point, if it moved so: weighted squared distances, all frames.
+  double residual(int point, const std::vector<RigidMotion>& motions) const {
+    const Vec3 x = rest.row(point).transpose();
+    double sum = 0;
+    for (size_t t = 0; t < posed.size(); ++t)
+      sum += (motions[t](x) - posed[t].row(point).transpose()).squaredNorm();
+    return weight * sum;
   }
-  return moments;
+
+  const Points& rest;
+  std::vector<Points> posed;  // [T]
+  double weight;              // of a point
+};
+
+void Trajectories::add(int point, Moments& to) const {
+  const Vec3d x = rest.row(point).transpose().cast<double>();
+  to.weight += weight, to.sum += weight * x, to.squared += weight * x.squaredNorm();
+  to.frames.resize(posed.size());
+  for (size_t t = 0; t < posed.size(); ++t) {
+    const Vec3d y = posed[t].row(point).transpose().cast<double>();
+    to.frames[t].sum += weight * y;
+    to.frames[t].cross += weight * y * x.transpose();
+    to.frames[t].squared += weight * y.squaredNorm();
+  }
 }
 
-std::vector<std::vector<int>> neighbours_of(const DeformationGraph& graph) {
-  std::vector<std::vector<int>> near(static_cast<size_t>(graph.count()));
-  for (const DeformationGraph::Edge& edge : graph.edges) {
-    near[static_cast<size_t>(edge.a)].push_back(edge.b);
-    near[static_cast<size_t>(edge.b)].push_back(edge.a);
+/// Points that are joined first: those nearest to points far apart, and which patches touch.
+struct Patches {
+  std::vector<int> of_point;
+  std::vector<std::set<int>> near;
+  std::vector<Moments> moments;
+};
+Patches patches_of(const DeformationGraph& graph, const Trajectories& tracks) {
+  const auto count = static_cast<int>(std::min<Eigen::Index>(kPatches, graph.points.rows()));
+  const std::vector<int> seeds = farthest_points(graph.points, count);
+  std::vector<float> least(static_cast<size_t>(graph.points.rows()), std::numeric_limits<float>::infinity());
+  Patches patches;
+  patches.of_point.assign(least.size(), 0);
+  const float reach = 4 * box_diagonal(graph.points) / std::sqrt(static_cast<float>(count));
+  for (int p = 0; p < count; ++p) {
+    const std::vector<float> distance = distances_along(graph.surface, seeds[static_cast<size_t>(p)], reach);
+    for (size_t i = 0; i < least.size(); ++i)
+      if (distance[i] < least[i]) least[i] = distance[i], patches.of_point[i] = p;
   }
-  return near;
+  patches.near.resize(static_cast<size_t>(count));
+  patches.moments.resize(static_cast<size_t>(count));
+  for (size_t i = 0; i < least.size(); ++i) {
+    const int p = patches.of_point[i];
+    tracks.add(static_cast<int>(i), patches.moments[static_cast<size_t>(p)]);
+    for (const SurfaceGraph::Edge& edge : graph.surface.edges[i])
+      if (const int q = patches.of_point[static_cast<size_t>(edge.to)]; q != p) {
+        patches.near[static_cast<size_t>(p)].insert(q);
+        patches.near[static_cast<size_t>(q)].insert(p);
+      }
+  }
+  return patches;
 }
 
-/// How far points are from rigid motions where the surface is most nearly rigid: about a quarter of the nodes
-/// lies in the middle of a part.
-float noise_of(const SurfaceTracks& tracks, const std::vector<Moments>& moments) {
-  const auto near = neighbours_of(tracks.graph);
+/// How far points are from rigid motions where the surface is most nearly rigid: in the middle of parts.
+float noise_of(const Patches& patches, float size) {
   std::vector<double> off;
-  for (size_t k = 0; k < moments.size(); ++k) {
-    if (moments[k].weight <= 0) continue;
-    Moments ring;
-    ring.add(moments[k]);
-    for (const int n : near[k]) ring.add(moments[static_cast<size_t>(n)]);
+  for (size_t k = 0; k < patches.moments.size(); ++k) {
+    Moments ring = patches.moments[k];
+    for (const int n : patches.near[k]) ring.add(patches.moments[static_cast<size_t>(n)]);
     off.push_back(std::sqrt(ring.residual() / (ring.weight * static_cast<double>(ring.frames.size()))));
   }
-  return std::max(static_cast<float>(percentile(off, 25)), kLeastNoise * box_diagonal(tracks.graph.points));
+  return std::max(static_cast<float>(percentile(off, kRigidShare)), kLeastNoise * size);
 }
 
-/// Sets of nodes that grow by joining.
+/// Sets of patches that grow by joining.
 class Agglomeration {
  public:
-  Agglomeration(const SurfaceTracks& tracks, std::vector<Moments> moments);
+  explicit Agglomeration(const Patches& patches);
   /// Joins the two sets that lose least by it while they lose less than `allowed`, or are more than `most`.
   void join_while(double allowed, int most);
   std::vector<int> labels() const;
@@ -142,29 +175,28 @@ class Agglomeration {
   std::vector<Moments> moments_;
   std::vector<double> residual_;
   std::vector<std::set<int>> near_;
-  std::vector<int> set_of_;  // of each node
+  std::vector<int> set_of_;  // of each patch
   std::map<Pair, double> cost_;
   std::set<std::pair<double, Pair>> queue_;
   int count_;
 };
 
-Agglomeration::Agglomeration(const SurfaceTracks& tracks, std::vector<Moments> moments)
-    : moments_(std::move(moments)), near_(moments_.size()), count_(0) {
+Agglomeration::Agglomeration(const Patches& patches)
+    : moments_(patches.moments), near_(moments_.size()), count_(static_cast<int>(moments_.size())) {
   for (size_t k = 0; k < moments_.size(); ++k) {
     set_of_.push_back(static_cast<int>(k));
-    residual_.push_back(moments_[k].weight > 0 ? moments_[k].residual() : 0);
-    ++count_;
+    residual_.push_back(moments_[k].residual());
   }
-  for (const DeformationGraph::Edge& edge : tracks.graph.edges) price(edge.a, edge.b);
+  for (size_t k = 0; k < moments_.size(); ++k)
+    for (const int n : patches.near[k])
+      if (n > static_cast<int>(k)) price(static_cast<int>(k), n);
 }
 
 void Agglomeration::price(int a, int b) {
   if (a > b) std::swap(a, b);
   Moments both = moments_[static_cast<size_t>(a)];
   both.add(moments_[static_cast<size_t>(b)]);
-  const double cost = both.weight > 0 ? both.residual() - residual_[static_cast<size_t>(a)] -
-                                            residual_[static_cast<size_t>(b)]
-                                      : 0;
+  const double cost = both.residual() - residual_[static_cast<size_t>(a)] - residual_[static_cast<size_t>(b)];
   near_[static_cast<size_t>(a)].insert(b);
   near_[static_cast<size_t>(b)].insert(a);
   cost_[{a, b}] = cost;
@@ -173,8 +205,7 @@ void Agglomeration::price(int a, int b) {
 
 void Agglomeration::join(int a, int b) {
   moments_[static_cast<size_t>(a)].add(moments_[static_cast<size_t>(b)]);
-  residual_[static_cast<size_t>(a)] =
-      moments_[static_cast<size_t>(a)].weight > 0 ? moments_[static_cast<size_t>(a)].residual() : 0;
+  residual_[static_cast<size_t>(a)] = moments_[static_cast<size_t>(a)].residual();
   std::set<int> near = near_[static_cast<size_t>(a)];
   near.insert(near_[static_cast<size_t>(b)].begin(), near_[static_cast<size_t>(b)].end());
   near.erase(a), near.erase(b);
@@ -209,76 +240,160 @@ std::vector<int> Agglomeration::labels() const {
   return labels;
 }
 
-std::vector<Moments> part_moments(const std::vector<Moments>& nodes, const std::vector<int>& of_node) {
-  std::vector<Moments> parts(static_cast<size_t>(*std::max_element(of_node.begin(), of_node.end()) + 1));
-  for (size_t k = 0; k < nodes.size(); ++k) parts[static_cast<size_t>(of_node[k])].add(nodes[k]);
-  return parts;
+/// Labels without gaps, in the order of their first points.
+void number_anew(std::vector<int>& labels) {
+  std::map<int, int> number;
+  for (int& label : labels) label = number.emplace(label, static_cast<int>(number.size())).first->second;
 }
 
-/// Of a node's points under the motions of a part.
-double residual_under(const Moments& node, const std::vector<RigidMotion>& motions) {
-  double total = 0;
-  for (size_t t = 0; t < node.frames.size(); ++t) {
-    const Mat3d R = motions[t].R.cast<double>();
-    const Vec3d shift = motions[t].t.cast<double>();
-    const Moments::Frame& f = node.frames[t];
-    // sum |y - R x - s|^2
-    total += f.squared + node.squared + node.weight * shift.squaredNorm() -
-             2 * (R.array() * f.cross.array()).sum() - 2 * shift.dot(f.sum) + 2 * shift.dot(R * node.sum);
+void find_motions(const Trajectories& tracks, RigidParts& parts) {
+  number_anew(parts.of_point);
+  std::vector<Moments> moments;
+  for (size_t i = 0; i < parts.of_point.size(); ++i) {
+    const auto part = static_cast<size_t>(parts.of_point[i]);
+    if (part >= moments.size()) moments.resize(part + 1);
+    tracks.add(static_cast<int>(i), moments[part]);
   }
-  return total;
+  parts.motions.assign(moments.size(), {});
+  for (size_t p = 0; p < moments.size(); ++p)
+    for (size_t t = 0; t < tracks.posed.size(); ++t) parts.motions[p].push_back(moments[p].best(t));
 }
 
-std::vector<std::vector<RigidMotion>> motions_of(const std::vector<Moments>& parts) {
-  std::vector<std::vector<RigidMotion>> motions(parts.size());
-  for (size_t p = 0; p < parts.size(); ++p)
-    for (size_t t = 0; t < parts[p].frames.size(); ++t) motions[p].push_back(parts[p].best(t));
-  return motions;
+/// Of each point the parts about it: those within two steps along the surface, its own first.
+std::vector<int> parts_about(const SurfaceGraph& surface, const std::vector<int>& of_point, int point) {
+  std::vector<int> about{of_point[static_cast<size_t>(point)]};
+  const auto see = [&](int other) {
+    const int part = of_point[static_cast<size_t>(other)];
+    if (std::find(about.begin(), about.end(), part) == about.end()) about.push_back(part);
+  };
+  for (const SurfaceGraph::Edge& edge : surface.edges[static_cast<size_t>(point)]) {
+    see(edge.to);
+    for (const SurfaceGraph::Edge& further : surface.edges[static_cast<size_t>(edge.to)]) see(further.to);
+  }
+  return about;
 }
 
-/// Nodes at seams go to the part beside them that explains them best.
-void settle_seams(const DeformationGraph& graph, const std::vector<Moments>& nodes, RigidParts& parts) {
-  const auto near = neighbours_of(graph);
+/// Points go to the part about them that explains them best.
+void settle_seams(const SurfaceGraph& surface, const Trajectories& tracks, RigidParts& parts) {
   for (int round = 0; round < kSettlingRounds; ++round) {
-    parts.motions = motions_of(part_moments(nodes, parts.of_node));
-    std::vector<int> held(parts.motions.size(), 0);
-    for (const int part : parts.of_node) ++held[static_cast<size_t>(part)];
-    std::vector<int> next = parts.of_node;
-    for (size_t k = 0; k < nodes.size(); ++k) {
-      const int own = parts.of_node[k];
-      double least = residual_under(nodes[k], parts.motions[static_cast<size_t>(own)]);
-      for (const int n : near[k]) {
-        const int other = parts.of_node[static_cast<size_t>(n)];
-        if (other == own || other == next[k] || held[static_cast<size_t>(own)] < 2) continue;
-        const double cost = residual_under(nodes[k], parts.motions[static_cast<size_t>(other)]);
-        if (cost < least) least = cost, next[k] = other;
-      }
-      if (next[k] != own) --held[static_cast<size_t>(own)], ++held[static_cast<size_t>(next[k])];
+    find_motions(tracks, parts);
+    std::vector<int> next = parts.of_point;
+    for (int i = 0; i < static_cast<int>(next.size()); ++i) {
+      const std::vector<int> about = parts_about(surface, parts.of_point, i);
+      if (about.size() < 2) continue;
+      double least = std::numeric_limits<double>::infinity();
+      for (const int part : about)
+        if (const double off = tracks.residual(i, parts.motions[static_cast<size_t>(part)]); off < least)
+          least = off, next[static_cast<size_t>(i)] = part;
     }
-    if (next == parts.of_node) break;
-    parts.of_node = std::move(next);
+    if (next == parts.of_point) break;
+    parts.of_point = std::move(next);
   }
-  parts.motions = motions_of(part_moments(nodes, parts.of_node));
+  find_motions(tracks, parts);
+}
+
+/// How well the scans are explained by points that move with a part.
+class ScanEvidence {
+ public:
+  ScanEvidence(const std::vector<ThinnedFrame>& frames, const SurfaceTracks& tracks)
+      : frames_(frames), graph_(tracks.graph) {
+    const auto count = static_cast<int>(frames.size()), used = std::min(count, kJudgedFrames);
+    for (int k = 0; k < used; ++k) judged_.push_back(k * count / used);
+    share_ = kUnits / static_cast<double>(graph_.points.rows()) * count / used;
+    const float most = 0.5f * graph_.spacing;
+    most_ = most * most;
+  }
+  /// Weighted squared distances along the normals, all frames; no more than for a point that is lost.
+  double off(int point, const std::vector<RigidMotion>& motions) const {
+    const Vec3 x = graph_.points.row(point).transpose(), n = graph_.normals.row(point).transpose();
+    double sum = 0;
+    for (const int t : judged_) {
+      const RigidMotion& motion = motions[static_cast<size_t>(t)];
+      const ThinnedFrame& scan = frames_[static_cast<size_t>(t)];
+      const Vec3 y = motion(x);
+      const PointTree::Near near = scan.tree.nearest(y);
+      const Vec3 normal = scan.normals.row(near.point).transpose();
+      const float along = normal.dot(y - scan.points.row(near.point).transpose());
+      const bool faces = normal.dot(motion.R * n) > 0.2f && near.squared < 4 * most_;
+      sum += faces ? std::min(along * along, most_) : most_;
+    }
+    return share_ * sum;
+  }
+
+ private:
+  const std::vector<ThinnedFrame>& frames_;
+  const DeformationGraph& graph_;
+  std::vector<int> judged_;
+  double share_;
+  float most_;
+};
+
+/// The part that is missed least, and what it explains beyond what the parts about it would.
+struct Removal {
+  int part = -1;
+  double loss = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<int, int>> moves;  // points and where they go
+};
+Removal least_missed(const SurfaceGraph& surface, const ScanEvidence& scans, const RigidParts& parts) {
+  const auto count = static_cast<size_t>(parts.count());
+  std::vector<std::set<int>> near(count);
+  std::vector<std::vector<int>> points(count);
+  for (int i = 0; i < static_cast<int>(parts.of_point.size()); ++i) {
+    const int own = parts.of_point[static_cast<size_t>(i)];
+    points[static_cast<size_t>(own)].push_back(i);
+    for (const SurfaceGraph::Edge& edge : surface.edges[static_cast<size_t>(i)])
+      if (const int other = parts.of_point[static_cast<size_t>(edge.to)]; other != own)
+        near[static_cast<size_t>(own)].insert(other);
+  }
+  Removal best;
+  for (size_t p = 0; p < count; ++p) {
+    if (near[p].empty()) continue;
+    Removal removal{static_cast<int>(p), 0, {}};
+    for (const int i : points[p]) {
+      double least = std::numeric_limits<double>::infinity();
+      int to = -1;
+      for (const int other : near[p])
+        if (const double off = scans.off(i, parts.motions[static_cast<size_t>(other)]); off < least)
+          least = off, to = other;
+      removal.loss += std::max(0.0, least - scans.off(i, parts.motions[p]));
+      removal.moves.push_back({i, to});
+    }
+    if (removal.loss < best.loss) best = std::move(removal);
+  }
+  return best;
 }
 
 }  // namespace
 
-RigidParts find_rigid_parts(const SurfaceTracks& tracks, int most) {
-  const std::vector<Moments> nodes = node_moments(tracks);
+RigidParts find_rigid_parts(const std::vector<ThinnedFrame>& frames, const SurfaceTracks& tracks, int most) {
+  const Trajectories trajectories(tracks);
+  const SurfaceGraph& surface = tracks.graph.surface;
+  const Patches patches = patches_of(tracks.graph, trajectories);
   RigidParts parts;
-  parts.noise_m = noise_of(tracks, nodes);
-  // Six numbers a frame, each known as well as so many nodes tell it: 6 T / 2 log G.
-  const double frames = static_cast<double>(tracks.motions.size());
-  const double price = (getenv("PRICE")?atof(getenv("PRICE")):3.0) * frames * std::log(static_cast<double>(nodes.size()));
-  Agglomeration sets(tracks, nodes);
-  sets.join_while(2 * parts.noise_m * parts.noise_m * price, most);
-  parts.of_node = sets.labels();
-  settle_seams(tracks.graph, nodes, parts);
+  parts.noise_m = noise_of(patches, box_diagonal(tracks.graph.points));
+  // Six numbers a frame, each known as well as so many units tell it: 6 T / 2 log units.
+  const double price = kPrice * static_cast<double>(tracks.motions.size()) * std::log(kUnits);
+  const double allowed = 2 * parts.noise_m * parts.noise_m * price;
+  Agglomeration sets(patches);
+  sets.join_while(allowed, most);
+  const std::vector<int> of_patch = sets.labels();
+  for (const int patch : patches.of_point) parts.of_point.push_back(of_patch[static_cast<size_t>(patch)]);
+  settle_seams(surface, trajectories, parts);
+  const ScanEvidence scans(frames, tracks);
+  while (parts.count() > 1) {
+    const Removal removal = least_missed(surface, scans, parts);
+    if (getenv("VV"))
+      printf("removal %d of %d loss %.4g allowed %.4g\n", removal.part, parts.count(), removal.loss,
+             kScanShare * allowed);
+    if (removal.part < 0 || removal.loss > kScanShare * allowed) break;
+    for (const auto& [point, to] : removal.moves) parts.of_point[static_cast<size_t>(point)] = to;
+    settle_seams(surface, trajectories, parts);
+  }
   return parts;
 }
 
 void refit(const SurfaceTracks& tracks, RigidParts& parts) {
-  parts.motions = motions_of(part_moments(node_moments(tracks), parts.of_node));
+  find_motions(Trajectories(tracks), parts);
 }
 
 }  // namespace understudy

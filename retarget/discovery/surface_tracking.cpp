@@ -15,7 +15,6 @@
 namespace understudy {
 namespace {
 
-using Vec6d = Eigen::Matrix<double, 6, 1>;
 using Block = Eigen::Matrix<double, 6, 6>;
 using Rows3x6 = Eigen::Matrix<double, 3, 6>;
 
@@ -25,10 +24,12 @@ struct Schedule {
   float first_radius, last_radius;         // scale of what counts as off the scan
   double first_stiffness, last_stiffness;  // of an edge, in matches
 };
-constexpr Schedule kFromTheFrameBefore = {10, 1.2f, 0.35f, 40, 4}, kFromAFit = {4, 0.5f, 0.35f, 8, 4};
+static float E(const char* n, float d);
+static const Schedule kFromTheFrameBefore = {(int)E("ROUNDS",10), 1.2f, E("LR",0.35f), E("FS",40), E("LS",4)}, kFromAFit = {4, 0.5f, 0.35f, 8, 4};
 constexpr float kReach = 2.5f;        // in radii: no match beyond
-constexpr float kJointScale = 0.12f;  // neighbours that disagree so much count a quarter
-constexpr float kPlain = 0.04f;       // weight of the distance beside that along the normal
+static float E(const char* n, float d) { return getenv(n) ? atof(getenv(n)) : d; }
+static const float kJointScale = E("JS", 0.12f);  // neighbours that disagree so much count a quarter
+static const float kPlain = E("PLAIN", 0.04f);       // weight of the distance beside that along the normal
 constexpr float kTorn = 0.6f;         // of an edge's length: neighbours further off are torn apart
 constexpr float kDamping = 1e-3f;
 
@@ -42,9 +43,9 @@ class NodeEquations {
  public:
   explicit NodeEquations(const DeformationGraph& graph);
   void clear();
-  /// weight |J dx + r|^2 for one row r: of node nodes[k] the row rows[k] = shares[k] * row.
-  template <int K>
-  void add(const std::array<int, K>& nodes, const std::array<Vec6d, K>& rows, double residual, double weight);
+  /// r^T W r for a point at r that is moved by the step J dx: of node nodes[k] J is rows[k].
+  void add_point(const std::array<int, kNodesOfPoint>& nodes, const std::array<Rows3x6, kNodesOfPoint>& rows,
+                 const Eigen::Vector3d& residual, const Eigen::Matrix3d& weight);
   /// The same for three rows that two nodes have part in.
   void add_pair(int a, int b, const Rows3x6& of_a, const Rows3x6& of_b, const Eigen::Vector3d& residual,
                 double weight);
@@ -85,17 +86,16 @@ void NodeEquations::clear() {
   gradient_.setZero();
 }
 
-template <int K>
-void NodeEquations::add(const std::array<int, K>& nodes, const std::array<Vec6d, K>& rows, double residual,
-                        double weight) {
-  for (size_t k = 0; k < K; ++k) {
-    gradient_.segment<6>(6 * nodes[k]) -= weight * residual * rows[k];
-    for (size_t l = 0; l < K; ++l)
-      if (nodes[k] >= nodes[l] && (nodes[k] != nodes[l] || l <= k)) {
-        Block& block = blocks_[static_cast<size_t>(block_of(nodes[k], nodes[l]))];
-        block.noalias() += weight * rows[k] * rows[l].transpose();
-        if (nodes[k] == nodes[l] && k != l) block.noalias() += weight * rows[l] * rows[k].transpose();
-      }
+void NodeEquations::add_point(const std::array<int, kNodesOfPoint>& nodes,
+                              const std::array<Rows3x6, kNodesOfPoint>& rows, const Eigen::Vector3d& residual,
+                              const Eigen::Matrix3d& weight) {
+  const Eigen::Vector3d pull = weight * residual;
+  for (size_t k = 0; k < kNodesOfPoint; ++k) {
+    gradient_.segment<6>(6 * nodes[k]).noalias() -= rows[k].transpose() * pull;
+    const Eigen::Matrix<double, 6, 3> weighed = rows[k].transpose() * weight;
+    for (size_t l = 0; l < kNodesOfPoint; ++l)  // a point's nodes differ; pairs are kept once
+      if (nodes[k] >= nodes[l])
+        blocks_[static_cast<size_t>(block_of(nodes[k], nodes[l]))].noalias() += weighed * rows[l];
   }
 }
 
@@ -166,28 +166,20 @@ Points Follower::normals_now(const NodeMotions& motions) const {
 void Follower::add_match(int point, const Vec3& to, const Vec3& normal, float radius,
                          const NodeMotions& motions) {
   const Vec3 x = posed_.row(point).transpose(), off = x - to;
-  const double along = normal.squaredNorm() > 0.5f ? off.dot(normal) : 0.0;
-  const double weight = robust(off.squaredNorm(), radius);
+  const Eigen::Vector3d n = normal.cast<double>();
+  const Eigen::Matrix3d weight =
+      robust(off.squaredNorm(), radius) * (n * n.transpose() + kPlain * Eigen::Matrix3d::Identity());
   std::array<int, kNodesOfPoint> nodes;
-  std::array<Eigen::Vector3d, kNodesOfPoint> arms;
+  std::array<Rows3x6, kNodesOfPoint> rows;
   for (int k = 0; k < kNodesOfPoint; ++k) {
-    nodes[static_cast<size_t>(k)] = graph_.near(point, k);
-    const auto node = static_cast<size_t>(graph_.near(point, k));
-    const Vec3 rest = graph_.points.row(point).transpose(),
-               g = graph_.nodes.row(graph_.near(point, k)).transpose();
-    arms[static_cast<size_t>(k)] = (motions[node].R * (rest - g)).cast<double>();
+    const int node = graph_.near(point, k);
+    const Vec3 arm = motions[static_cast<size_t>(node)].R *
+                     (graph_.points.row(point) - graph_.nodes.row(node)).transpose();
+    nodes[static_cast<size_t>(k)] = node;
+    rows[static_cast<size_t>(k)] << -cross_matrix(arm), Eigen::Matrix3d::Identity();
+    rows[static_cast<size_t>(k)] *= graph_.shares(point, k);
   }
-  const auto row = [&](const Eigen::Vector3d& direction) {
-    std::array<Vec6d, kNodesOfPoint> rows;
-    for (size_t k = 0; k < kNodesOfPoint; ++k) {
-      const double share = graph_.shares(point, static_cast<Eigen::Index>(k));
-      rows[k] << share * arms[k].cross(direction), share * direction;
-    }
-    return rows;
-  };
-  equations_.add<kNodesOfPoint>(nodes, row(normal.cast<double>()), along, weight);
-  for (int axis = 0; axis < 3; ++axis)
-    equations_.add<kNodesOfPoint>(nodes, row(Eigen::Vector3d::Unit(axis)), off[axis], kPlain * weight);
+  equations_.add_point(nodes, rows, off.cast<double>(), weight);
 }
 
 void Follower::match_points(const ThinnedFrame& scan, float radius, const NodeMotions& motions) {
@@ -202,7 +194,7 @@ void Follower::match_points(const ThinnedFrame& scan, float radius, const NodeMo
               motions);
   }
   const PointTree tree(posed_);
-  for (Eigen::Index q = 0; q < scan.points.rows(); ++q) {
+  for (int q = 0; q < scan.spread; ++q) {
     const Vec3 at = scan.points.row(q).transpose();
     const PointTree::Near near = tree.nearest(at);
     if (near.squared > reach2 || !agree(normals_.row(near.point), scan.normals.row(q))) continue;
@@ -224,7 +216,7 @@ void Follower::hold_together(double stiffness, const NodeMotions& motions) {
       rows_a << -cross_matrix(of_a - pa), Eigen::Matrix3d::Identity();
       rows_b << cross_matrix(of_b - pb), -Eigen::Matrix3d::Identity();
       equations_.add_pair(a, b, rows_a, rows_b, off.cast<double>(),
-                          stiffness * pull_[e] * std::max(0.1, std::sqrt(robust(off.squaredNorm(), scale))));
+                          stiffness * pull_[e] * std::max((double)E("FLOOR",0.1), std::sqrt(robust(off.squaredNorm(), scale))));
     }
   }
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr int kFewest = 30;
 constexpr int kSurfaceNeighbours = 7;
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr int kDensity = 4;  // so many times the points are drawn before those far apart are chosen
+constexpr int kDensity = 3;  // so many times the points are drawn before those far apart are chosen
 
 /// Points drawn evenly on a surface, each with its face's normal.
 std::pair<Points, Points> drawn_from(const Mesh& scan, int count, uint64_t seed) {
@@ -66,19 +66,35 @@ void join_pieces(const Points& points, SurfaceGraph& graph) {
 
 }  // namespace
 
-ThinnedFrame thinned(const Mesh& scan, int count, uint64_t seed) {
+ThinnedFrame thinned(const Mesh& scan, int spread, int count, uint64_t seed) {
   Points points = finite_points(scan.vertices), normals(0, 3);
   US_CHECK(points.rows() >= kFewest, "a scan of ", points.rows(), " points is too few to find a skeleton in");
   if (!scan.is_cloud() && points.rows() == scan.vertices.rows())
-    std::tie(points, normals) = drawn_from(scan, kDensity * count, seed);
+    std::tie(points, normals) = drawn_from(scan, std::max(count, kDensity * spread), seed);
   else
     normals = pointed_outwards(points, estimated_normals(points));
   Rng rng(seed);
-  const auto first = rng.below(static_cast<int>(points.rows()));
-  const std::vector<int> chosen =
-      farthest_points(points, static_cast<int>(std::min<Eigen::Index>(count, points.rows())), first);
+  const auto all = static_cast<int>(points.rows());
+  std::vector<int> chosen = farthest_points(points, std::min(spread, all), rng.below(all));
+  const auto first = static_cast<int>(chosen.size());
+  std::vector<char> taken(static_cast<size_t>(all), 0);
+  for (const int i : chosen) taken[static_cast<size_t>(i)] = 1;
+  const int more = std::min(count, all) - first;
+  for (int i = 0, left = all - first; i < all && more > 0; ++i) {  // evenly among what is left
+    if (taken[static_cast<size_t>(i)]) continue;
+    const int have = static_cast<int>(chosen.size()) - first;
+    if (static_cast<int64_t>(have) * (all - first) <= static_cast<int64_t>(all - first - left) * more &&
+        have < more)
+      chosen.push_back(i);
+    --left;
+  }
   Points kept = rows_of(points, chosen);
-  return {kept, rows_of(normals, chosen), PointTree(kept)};
+  return {kept, rows_of(normals, chosen), first, PointTree(kept)};
+}
+
+ThinnedFrame spread_part(const ThinnedFrame& frame) {
+  Points points = frame.points.topRows(frame.spread);
+  return {points, frame.normals.topRows(frame.spread), frame.spread, PointTree(points)};
 }
 
 float box_diagonal(const Points& points) {
@@ -136,8 +152,9 @@ std::vector<float> distances_along(const SurfaceGraph& graph, int from, float re
   return distance;
 }
 
-float openness(const ThinnedFrame& frame) {
+float openness(const ThinnedFrame& whole) {
   constexpr int kLandmarks = 16;
+  const ThinnedFrame frame = spread_part(whole);
   const SurfaceGraph graph = surface_graph(frame);
   const auto count = static_cast<int>(std::min<Eigen::Index>(kLandmarks, frame.points.rows()));
   const std::vector<int> landmarks = farthest_points(frame.points, count);

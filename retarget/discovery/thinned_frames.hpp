@@ -8,16 +8,19 @@
 
 namespace understudy {
 
-/// Points of one scan, evenly spread.
+/// Points of one scan. The first ones lie far apart, evenly spread; the others make its surface denser.
 struct ThinnedFrame {
   Points points;   ///< [N, 3] metres
   Points normals;  ///< [N, 3] outwards, unit length; zero where there are too few points about
+  int spread = 0;  ///< so many of them, from the first on, are those far apart
   PointTree tree;  ///< of the points
 };
 
-/// `count` points of a scan that lie far apart, fewer where it has fewer. The same scan and seed give the same
-/// points. Throws Error for a scan without 30 finite points.
-ThinnedFrame thinned(const Mesh& scan, int count, uint64_t seed);
+/// `spread` points of a scan that lie far apart, and others up to `count`; fewer where it has fewer. The same
+/// scan and seed give the same points. Throws Error for a scan without 30 finite points.
+ThinnedFrame thinned(const Mesh& scan, int spread, int count, uint64_t seed);
+/// Those far apart alone.
+ThinnedFrame spread_part(const ThinnedFrame& frame);
 
 /// Diagonal of the box about the points, metres.
 float box_diagonal(const Points& points);

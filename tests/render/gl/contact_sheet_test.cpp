@@ -19,7 +19,7 @@ std::vector<SheetMoment> moments(int count, bool with_target) {
     moment.source.vertices.col(2).array() += 0.6f * static_cast<float>(i);  // it walks
     Joints joints = make_joints();
     joints.col(2).array() += 0.6f * static_cast<float>(i);
-    moment.source_joints = joints;
+    moment.skeleton = skeleton_view(joints);
     if (with_target) moment.target = make_pear(40, 56, 1.1f);
     result.push_back(moment);
   }
@@ -86,8 +86,8 @@ TEST(ContactSheet, OfCloudsAndBadJointsIsStillDrawn) {
   auto strange = moments(3, true);
   strange[0].source.faces.resize(0, 3);
   strange[1].source = Mesh{};
-  strange[1].source_joints.reset();
-  (*strange[2].source_joints)(4, 1) = std::nanf("");
+  strange[1].skeleton.reset();
+  strange[2].skeleton->joints(4, 1) = std::nanf("");
   strange[2].target.reset();
   EXPECT_GT(red_runs(contact_sheet(strange, red(400)), true).size(), 2u);
 }

@@ -1,0 +1,131 @@
+#include "app/run/rig_finder.hpp"
+
+#include <algorithm>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/formats/npz_writer.hpp"
+
+namespace understudy::app {
+namespace {
+
+std::vector<double> flat(const Points& rows) {
+  return {rows.data(), rows.data() + rows.size()};
+}
+
+/// Rows of points after a 4 x 4 transform.
+Points transformed(const Points& points, const Eigen::Matrix4d& by) {
+  const Mat3 linear = by.topLeftCorner<3, 3>().cast<float>();
+  const Eigen::RowVector3f shift = by.topRightCorner<3, 1>().transpose().cast<float>();
+  return (points * linear.transpose()).rowwise() + shift;
+}
+
+int length_of(Source& source) {
+  if (const auto count = source.count())
+    return static_cast<int>(std::min<int64_t>(*count, kFrameNumbers.high));
+  int count = 0;
+  while (source.next()) ++count;
+  source.seek(0);
+  return count;
+}
+
+}  // namespace
+
+SourceOptions as_it_is(SourceOptions options) {
+  if (options.import.units == "auto") options.import.units = "m";
+  if (options.import.up == "auto") options.import.up = "y";
+  if (!options.import.floor) options.import.floor = 0.0f;
+  return options;
+}
+
+ScanSequence scan_sequence(std::shared_ptr<Source> source) {
+  ScanSequence scans;
+  scans.count = length_of(*source);
+  scans.fps = source->fps();
+  int next = 0;  // that the source hands out
+  scans.scan = [source = std::move(source), next](int frame) mutable {
+    if (frame != next) source->seek(frame);
+    next = frame + 1;
+    const auto read = source->next();
+    US_CHECK(!read || !read->skeleton,
+             "a skeletal motion has its bones already: a skeleton is found in scans");
+    return read && read->usable ? read->mesh : Mesh{};
+  };
+  return scans;
+}
+
+RigFinder rig_finder() {
+  return [](const std::vector<Mesh>& frames, double fps) {
+    ScanSequence scans;
+    scans.count = ssize(frames);
+    scans.fps = fps;
+    scans.scan = [&frames](int frame) { return frames[static_cast<size_t>(frame)]; };
+    DiscoveredRig rig = discover(scans);
+    return FoundRig{std::move(rig.found), rig.rest_frame};
+  };
+}
+
+void write_found_rig(const std::string& path, const DiscoveredRig& rig, const Eigen::Matrix4d& to_file) {
+  const Rig& found = rig.found.rig;
+  const int64_t vertices = found.surface.vertices.rows(), joints = found.count();
+  NpzWriter npz(path);
+  const size_t surface = npz.add_frames("vertices", {vertices, 3}),
+               places = npz.add_frames("joints", {joints, 3});
+  for (const RigPose& pose : rig.found.motion.poses) {
+    const BoneMotions bones = bone_motions(found, pose);
+    npz.push(surface, transformed(skinned(found.surface.vertices, found.skin, bones), to_file).data());
+    npz.push(places, transformed(joint_places(found, bones), to_file).data());
+  }
+  std::vector<double> parents, kinds, axes, off, doubted;
+  for (const RigJoint& joint : found.joints) {
+    parents.push_back(joint.parent);
+    kinds.push_back(static_cast<int>(joint.kind));
+    for (int axis = 0; axis < 3; ++axis) axes.push_back(joint.axis[axis]);
+  }
+  off.assign(rig.off_m.begin(), rig.off_m.end());
+  doubted.assign(rig.doubted.begin(), rig.doubted.end());
+  const RowMatrix weights = found.skin.dense(found.count());
+  npz.add("parents", {joints}, parents);
+  npz.add("weights", {vertices, joints}, {weights.data(), weights.data() + weights.size()});
+  npz.add("faces", {found.surface.faces.rows(), 3},
+          {found.surface.faces.data(), found.surface.faces.data() + found.surface.faces.size()});
+  npz.add("kinds", {joints}, kinds);
+  npz.add("axes", {joints, 3}, axes);
+  npz.add("rest_joints", {joints, 3}, flat(transformed(found.rest_joints(), to_file)));
+  npz.add("off_m", {ssize(off)}, off);
+  npz.add("doubted", {ssize(doubted)}, doubted);
+  npz.add("fps", {}, {rig.found.motion.fps});
+  npz.finish();
+}
+
+Json to_json(const DiscoveredRig& rig) {
+  Json report;
+  const Rig& found = rig.found.rig;
+  report["frames"] = rig.found.motion.poses.size();
+  report["fps"] = rig.found.motion.fps;
+  report["rest_frame"] = rig.rest_frame;
+  report["key_frames"] = rig.key_frames.size();
+  report["complete"] = rig.complete;
+  report["bones"] = Json::array();
+  for (size_t j = 0; j < found.joints.size(); ++j) {
+    const RigJoint& joint = found.joints[j];
+    Json bone = {{"name", joint.name},
+                 {"parent", joint.parent},
+                 {"kind", kJointKindNames[static_cast<size_t>(joint.kind)]},
+                 {"turned_deg", rig.bones[j].turned_deg},
+                 {"off_mm", 1000 * rig.bones[j].off_m}};
+    if (joint.kind == JointKind::Hinge || joint.kind == JointKind::Slider)
+      bone["axis"] = {joint.axis.x(), joint.axis.y(), joint.axis.z()};
+    if (joint.kind == JointKind::Slider) bone["slid_mm"] = 1000 * rig.bones[j].slid_m;
+    report["bones"].push_back(bone);
+  }
+  report["off_mm"] = Json::array();
+  report["doubted"] = Json::array();
+  for (size_t t = 0; t < rig.off_m.size(); ++t) {
+    report["off_mm"].push_back(rig.off_m[t] < 0 ? Json() : Json(1000 * rig.off_m[t]));
+    if (rig.doubted[t]) report["doubted"].push_back(t);
+  }
+  return report;
+}
+
+}  // namespace understudy::app
