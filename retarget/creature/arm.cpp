@@ -55,7 +55,7 @@ CreaturePlan arm_plan(Rng& rng) {
   plan.scale = rng.uniform(0.8f, 1.3f);
   arm_joints(plan, arm);
   const float s = arm.stout;
-  plan.add("base", frustum_part({0, 0, 0}, 0.22f, {0, 0.05f, 0}, 0.21f, 0.012f)).thickness = 0.05f;
+  plan.add("base", meshed_as(0.05f, frustum_part({0, 0, 0}, 0.22f, {0, 0.05f, 0}, 0.21f, 0.015f)));
   plan.add("base", frustum_part({0, 0.02f, 0}, 0.15f, {0, 0.12f, 0}, 0.13f, 0.012f));
   plan.add("turret", frustum_part({0, 0.12f, 0}, 0.15f, {0, 0.19f, 0}, 0.14f, 0.015f));
   plan.add("turret", box_part({0, 0.23f, 0}, {0.1f * s, 0.1f, 0.08f}, 0.02f));
@@ -82,9 +82,9 @@ Performance arm_fetches(const Rig&, Rng& rng) {
   return [=](Puppet& puppet, float seconds) {
     const float t = seconds + begin;
     puppet.turn("turret", far * wave(t, period));
-    puppet.turn("shoulder", 0.5f * low - 0.6f * low * wave(t, 0.5f * period, 0.25f));
-    puppet.turn("elbow", -0.05f - 0.3f * wave(t, 0.5f * period, 0.2f));
-    puppet.turn("wrist_pitch", 0.5f + 0.35f * wave(t, 0.5f * period, 0.3f));
+    puppet.turn("shoulder", 0.3f * low - 0.6f * low * wave(t, 0.5f * period, 0.25f));
+    puppet.turn("elbow", -0.15f - 0.28f * wave(t, 0.5f * period, 0.2f));
+    puppet.turn("wrist_pitch", 0.45f + 0.3f * wave(t, 0.5f * period, 0.3f));
     puppet.turn("wrist_roll", 0.7f * wave(t, period, 0.2f));
     open_fingers(puppet, visiting(t, period, {0.4f, -0.05f, -0.05f, 0.3f}));
   };
@@ -92,12 +92,12 @@ Performance arm_fetches(const Rig&, Rng& rng) {
 
 /// Moves all its joints at once, each at its own pace.
 Performance arm_exercises(const Rig&, Rng& rng) {
-  const float pace = rng.uniform(0.9f, 1.15f), begin = rng.uniform(0, 10);
+  const float pace = rng.uniform(0.85f, 1.05f), begin = rng.uniform(0, 10);
   return [=](Puppet& puppet, float seconds) {
     const float t = pace * seconds + begin;
     puppet.turn("turret", 0.5f * wave(t, 4.6f));
-    puppet.turn("shoulder", 0.15f + 0.25f * wave(t, 3.1f, 0.2f));
-    puppet.turn("elbow", 0.32f * wave(t, 3.6f, 0.6f) - 0.05f);
+    puppet.turn("shoulder", 0.08f + 0.22f * wave(t, 3.1f, 0.2f));
+    puppet.turn("elbow", 0.3f * wave(t, 3.6f, 0.6f) - 0.12f);
     puppet.turn("wrist_pitch", 0.5f * wave(t, 2.7f, 0.1f));
     puppet.turn("wrist_roll", wave(t, 3.3f, 0.4f));
     open_fingers(puppet, 0.18f + 0.22f * wave(t, 1.7f));

@@ -1,5 +1,6 @@
 // A bird with its wings spread: it flies on the spot, struts, and shakes its feathers.
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
 #include "retarget/creature/forms.hpp"
@@ -94,8 +95,8 @@ void bird_leg(CreaturePlan& plan, const BirdSizes& size, float side) {
 }
 
 CreaturePlan bird_plan(Rng& rng) {
-  const BirdSizes size{rng.uniform(0.85f, 1.1f), rng.uniform(1.05f, 1.4f),  rng.uniform(0.24f, 0.36f),
-                       rng.uniform(0.1f, 0.2f),  rng.uniform(0.04f, 0.11f), rng.uniform(0.14f, 0.24f)};
+  const BirdSizes size{rng.uniform(0.85f, 1.1f),  rng.uniform(1.05f, 1.4f),  rng.uniform(0.24f, 0.36f),
+                       rng.uniform(0.13f, 0.22f), rng.uniform(0.04f, 0.11f), rng.uniform(0.14f, 0.24f)};
   CreaturePlan plan;
   plan.scale = rng.uniform(0.4f, 0.8f);
   plan.vertices = 7500;
@@ -200,7 +201,7 @@ Performance bird_preens(const Rig& rig, Rng& rng) {
     puppet.pose.root =
         puppet.rest("body") - leg * Vec3(0.08f * wave(t, 1.3f * period), 0.14f + 0.11f * wave(t, period), 0);
     puppet.turn("body", Vec3::UnitX(), 0.16f * wave(t, period, 0.2f));
-    puppet.turn("body", Vec3::UnitZ(), 0.12f * wave(t, 1.3f * period));
+    puppet.turn("body", Vec3::UnitZ(), 0.08f * wave(t, 1.3f * period));
     puppet.turn("neck", Vec3::UnitY(), 0.4f * wave(t, 1.1f * period));
     puppet.turn("upper_neck", Vec3::UnitX(), 0.3f * wave(t, 0.7f * period));
     puppet.turn("head", Vec3::UnitY(), 0.5f * wave(t, 0.9f * period, 0.2f));
@@ -208,7 +209,7 @@ Performance bird_preens(const Rig& rig, Rng& rng) {
     for (const float side : {1.0f, -1.0f}) {
       const std::string of = side > 0 ? "left_" : "right_";
       const float phase = side > 0 ? 0.0f : 0.5f;
-      puppet.turn(of + "shoulder", Vec3::UnitZ(), side * (0.22f + 0.26f * wave(t, period, phase)));
+      puppet.turn(of + "shoulder", Vec3::UnitZ(), side * (0.3f + 0.24f * wave(t, period, phase)));
       puppet.turn(of + "shoulder", Vec3::UnitY(), side * 0.2f * wave(t, 0.8f * period, phase));
       puppet.turn(of + "elbow", side * (0.3f * wave(t, 0.8f * period, phase) - 0.12f));
       puppet.turn(of + "wrist", side * (0.32f * wave(t, 0.7f * period, phase) - 0.1f));

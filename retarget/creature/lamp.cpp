@@ -8,9 +8,10 @@ void lamp_shade(CreaturePlan& plan, float wide) {
   const Vec3 head = plan.at("shade"), ahead = Vec3(0, -0.75f, 0.66f).normalized();
   const Vec3 back = head - 0.03f * ahead, rim = head + 0.24f * ahead;
   plan.add("shade", frustum_part(back - 0.07f * ahead, 0.05f, back + 0.06f * ahead, 0.07f, 0.015f));
-  plan.add("shade", frustum_part(head + 0.01f * ahead, 0.075f, rim, wide, 0.016f), 0.02f).thickness = 0.035f;
-  plan.carve("shade", frustum_part(head + 0.12f * ahead, 0.06f, rim + 0.06f * ahead, wide, 0.01f), 0.015f)
-      .thickness = 0.03f;
+  plan.add("shade", meshed_as(0.035f, frustum_part(head + 0.01f * ahead, 0.075f, rim, wide, 0.02f)), 0.02f);
+  plan.carve("shade",
+             meshed_as(0.03f, frustum_part(head + 0.12f * ahead, 0.06f, rim + 0.06f * ahead, wide, 0.01f)),
+             0.015f);
   plan.add("shade", ellipsoid_part(head + 0.15f * ahead, Vec3(0.055f, 0.055f, 0.055f)));
 }
 
@@ -20,21 +21,21 @@ CreaturePlan lamp_plan(Rng& rng) {
   CreaturePlan plan;
   plan.machine = true;
   plan.scale = rng.uniform(0.4f, 0.6f);
-  plan.vertices = 6000;
+  plan.vertices = 7500;
   plan.cell = 0.008f;
-  const Vec3 knee(0, 0.1f, 0), elbow = knee + lower * Vec3(0, 0.9f, -0.43f),
-                               head = elbow + upper * Vec3(0, 0.55f, 0.83f);
+  const Vec3 knee(0, 0.115f, 0), elbow = knee + lower * Vec3(0, 0.9f, -0.43f),
+                                 head = elbow + upper * Vec3(0, 0.55f, 0.83f);
   plan.joint("foot", "", JointKind::Free, Vec3::Zero());
-  plan.joint("swivel", "foot", JointKind::Hinge, Vec3(0, 0.05f, 0), Vec3::UnitY());
+  plan.joint("swivel", "foot", JointKind::Hinge, Vec3(0, 0.06f, 0), Vec3::UnitY());
   plan.joint("lower_arm", "swivel", JointKind::Hinge, knee);
   plan.joint("elbow", "lower_arm", JointKind::Hinge, elbow);
   plan.joint("shade", "elbow", JointKind::Ball, head);
   const Vec3 x = Vec3::UnitX();
-  plan.add("foot", frustum_part({0, 0, 0}, 0.24f, {0, 0.05f, 0}, 0.2f, 0.015f)).thickness = 0.05f;
-  plan.add("swivel", frustum_part({0, 0.045f, 0}, 0.075f, {0, 0.1f, 0}, 0.05f, 0.012f));
-  plan.add("swivel", frustum_part(knee - 0.06f * x, 0.05f, knee + 0.06f * x, 0.05f, 0.01f));
+  plan.add("foot", meshed_as(0.04f, frustum_part({0, 0, 0}, 0.235f, {0, 0.065f, 0}, 0.23f, 0.024f)));
+  plan.add("swivel", frustum_part({0, 0.055f, 0}, 0.075f, {0, 0.11f, 0}, 0.05f, 0.015f));
+  plan.add("swivel", cone_part(knee - 0.02f * x, 0.052f, knee + 0.02f * x, 0.052f));
   plan.add("lower_arm", cone_part(knee, rod, elbow, rod));
-  plan.add("lower_arm", frustum_part(elbow - 0.05f * x, 0.045f, elbow + 0.05f * x, 0.045f, 0.01f));
+  plan.add("lower_arm", frustum_part(elbow - 0.05f * x, 0.048f, elbow + 0.05f * x, 0.048f, 0.02f));
   plan.add("elbow", cone_part(elbow, rod, head, rod));
   plan.add("elbow", cone_part(head, 0.04f, head + 0.001f * x, 0.04f));
   lamp_shade(plan, wide);

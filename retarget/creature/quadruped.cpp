@@ -59,7 +59,7 @@ void quadruped_head(CreaturePlan& plan, const QuadrupedLook& look) {
   const Vec3 ahead(0, -std::sin(down), std::cos(down)), skull = head + Vec3(0, 0.3f * s, 0.55f * s);
   plan.add("head", ellipsoid_part(skull, {0.95f * s, 0.95f * s, 1.1f * s}), 0.03f);
   const float blunt = 0.5f + 0.12f * smooth_step(30, 42, look.muzzle_deg);
-  const Vec3 nose = skull + (0.75f * s + look.muzzle) * ahead - Vec3(0, 0.15f * s, 0);
+  const Vec3 nose = skull + (0.6f * s + look.muzzle) * ahead - Vec3(0, 0.15f * s, 0);
   plan.add("head", cone_part(skull + 0.2f * s * ahead, 0.72f * s, nose, blunt * s), 0.04f);
   for (const float side : {1.0f, -1.0f}) {
     const std::string name = side > 0 ? "left_ear" : "right_ear";
@@ -128,8 +128,8 @@ void quadruped_legs(CreaturePlan& plan, const QuadrupedLook& look, bool hoof) {
 CreaturePlan quadruped_plan(Rng& rng) {
   const float size = rng.uniform();
   QuadrupedLook look = size < 0.5f ? between(kCat, kDog, 2 * size) : between(kDog, kHorse, 2 * size - 1);
-  look.leg *= rng.uniform(0.95f, 1.06f);
-  look.girth *= rng.uniform(0.92f, 1.12f);
+  look.leg *= rng.uniform(0.92f, 1.06f);
+  look.girth *= rng.uniform(0.9f, 1.25f);
   look.ear *= rng.uniform(0.85f, 1.25f);
   look.tail *= rng.uniform(0.85f, 1.15f);
   CreaturePlan plan;
@@ -190,8 +190,8 @@ Performance quadruped_goes(const Rig& rig, Rng& rng, const QuadrupedPace& pace) 
     puppet.pose.root = body(root);
     puppet.pose.turns[0] = body.R;
     puppet.turn("pelvis", Vec3::UnitZ(), 0.04f * wave(t, period));
-    puppet.turn("spine", Vec3::UnitY(), 0.13f * wave(t, period, 0.1f));
-    puppet.turn("chest", Vec3::UnitY(), -0.13f * wave(t, period, 0.1f));
+    puppet.turn("spine", Vec3::UnitY(), 0.17f * wave(t, period, 0.1f));
+    puppet.turn("chest", Vec3::UnitY(), -0.17f * wave(t, period, 0.1f));
     puppet.turn("chest", Vec3::UnitZ(), -0.05f * wave(t, period));
     puppet.turn("neck", Vec3::UnitX(), 0.1f + 0.16f * wave(t, 0.5f * period, 0.2f));
     puppet.turn("upper_neck", Vec3::UnitY(), 0.25f * wave(t, 2.3f * period));
@@ -207,7 +207,7 @@ Performance quadruped_walks(const Rig& rig, Rng& rng) {
 }
 
 Performance quadruped_trots(const Rig& rig, Rng& rng) {
-  return quadruped_goes(rig, rng, {0.85f, 0.4f, 0.54f, 0.04f, {0, 0.5f, 0.5f, 0}});
+  return quadruped_goes(rig, rng, {0.85f, 0.36f, 0.54f, 0.04f, {0, 0.5f, 0.5f, 0}});
 }
 
 /// Stands, bows to the floor and stretches up, looks about, wags its tail, lifts a paw.

@@ -38,6 +38,12 @@ struct BladeShape {
 };
 SolidPart blade_part(const Vec3& a, float from, const Vec3& b, float to, const BladeShape& shape);
 
+/// The same piece with edges of the mesh as fine, or as coarse, as where a body is `thickness` thick.
+inline SolidPart meshed_as(float thickness, SolidPart part) {
+  part.thickness = thickness;
+  return part;
+}
+
 /// About how far p lies outside, negative inside.
 float distance_to(const SolidPart& part, const Vec3& p);
 /// How far p lies beyond the ends of a piece that has a length; 0 of the others.
