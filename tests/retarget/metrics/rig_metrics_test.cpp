@@ -103,6 +103,16 @@ TEST(JointPairs, CountWhatIsNear) {
   EXPECT_NEAR(pairs.error_pct(), 2, 1e-4);  // the median of 1 and 3
 }
 
+// A leg's last joint is missed and one before its first is too many: together all three would be nearer if
+// each went one further.
+TEST(JointPairs, OfAChainStayWhereTheyAreNear) {
+  const RigTruth truth = with_joints({{0.3f, 0, 0}, {0.6f, 0, 0}, {0.9f, 0, 0}}),
+                 found = with_joints({{0, 0, 0}, {0.31f, 0, 0}, {0.61f, 0, 0}});
+  const JointPairs pairs = pair_joints(found, truth);
+  EXPECT_EQ(pairs.found, (std::vector<int>{-1, 2, 3, 1}));
+  EXPECT_NEAR(pairs.recall(), 2.0 / 3, 1e-9);
+}
+
 TEST(JointPairs, WithoutJointsAreUndefined) {
   const RigTruth none = with_joints({}), one = with_joints({{0.5f, 0, 0}});
   EXPECT_TRUE(std::isnan(pair_joints(one, none).recall()));
