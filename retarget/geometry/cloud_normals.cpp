@@ -1,6 +1,7 @@
 #include "retarget/geometry/cloud_normals.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +9,9 @@
 #include <limits>
 #include <utility>
 #include <vector>
+
+#include "retarget/geometry/point_tree.hpp"
+#include "retarget/math/directions.hpp"
 
 namespace understudy {
 namespace {
@@ -100,6 +104,49 @@ float sixth_nearest(const Points& points, Eigen::Index i) {
   return least.back();
 }
 
+/// What is seen of points far away along a direction, each a disc.
+class DiscMap {
+ public:
+  DiscMap(const Points& points, float disc_m) : points_(points), disc_(disc_m) {}
+
+  void draw(const Vec3& towards_eye) {
+    const Vec3 u = towards_eye.unitOrthogonal(), v = towards_eye.cross(u);
+    Mat3 axes;
+    axes << u, v, towards_eye;
+    seen_.noalias() = points_ * axes;
+    low_ = seen_.colwise().minCoeff();
+    const Eigen::RowVector3f high = seen_.colwise().maxCoeff();
+    // Clouds that are thin for their size get larger discs: a map has 4 million pixels at most.
+    pixel_ = std::max({disc_, (high.x() - low_.x()) / kMostSide, (high.y() - low_.y()) / kMostSide, 1e-9f});
+    width_ = static_cast<int>((high.x() - low_.x()) / pixel_) + 3;
+    height_ = static_cast<int>((high.y() - low_.y()) / pixel_) + 3;
+    nearest_.assign(static_cast<size_t>(width_) * static_cast<size_t>(height_),
+                    -std::numeric_limits<float>::infinity());
+    for (Eigen::Index i = 0; i < seen_.rows(); ++i)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          float& nearest = nearest_[pixel(i, dx, dy)];
+          nearest = std::max(nearest, seen_(i, 2));
+        }
+  }
+  bool shows(Eigen::Index i) const { return nearest_[pixel(i, 0, 0)] <= seen_(i, 2) + 2.5f * pixel_; }
+
+ private:
+  static constexpr int kMostSide = 2000;
+  size_t pixel(Eigen::Index i, int dx, int dy) const {
+    const int x = static_cast<int>((seen_(i, 0) - low_.x()) / pixel_) + 1 + dx,
+              y = static_cast<int>((seen_(i, 1) - low_.y()) / pixel_) + 1 + dy;
+    return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
+  }
+
+  const Points& points_;
+  float disc_, pixel_ = 0;
+  Points seen_;
+  Eigen::RowVector3f low_;
+  int width_ = 0, height_ = 0;
+  std::vector<float> nearest_;
+};
+
 }  // namespace
 
 float point_spacing(const Points& points) {
@@ -130,6 +177,38 @@ Points estimated_normals(const Points& points, float radius) {
       normals.row(cubes.point(begin)) = flattest_direction(cubes.position(begin), around, radius);
   }
   return normals;
+}
+
+Points pointed_outwards(const Points& points, const Points& normals) {
+  constexpr int kViews = 60;
+  constexpr float kClear = 1;  // sum of cosines to views from which a point is seen, one side less the other
+  if (points.rows() == 0) return normals;
+  DiscMap map(points, point_spacing(points));
+  Eigen::VectorXf seen = Eigen::VectorXf::Zero(points.rows());
+  for (int view = 0; view < kViews; ++view) {
+    const Vec3 towards_eye = spread_direction(view, kViews);
+    map.draw(towards_eye);
+    const Eigen::VectorXf cosines = normals * towards_eye;
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      if (map.shows(i)) seen[i] += cosines[i];
+  }
+  Points pointed = normals;
+  std::vector<int> clear, rest;
+  for (int i = 0; i < static_cast<int>(points.rows()); ++i) {
+    if (seen[i] < 0) pointed.row(i) *= -1;
+    (std::abs(seen[i]) > kClear ? clear : rest).push_back(i);
+  }
+  if (clear.empty()) return pointed;
+  const PointTree tree(points(clear, Eigen::all));
+  std::vector<PointTree::Near> near;
+  for (const int i : rest) {
+    tree.nearest(points.row(i).transpose(), 5, near);
+    float agree = 0;
+    for (const PointTree::Near& n : near)
+      agree += pointed.row(i).dot(pointed.row(clear[static_cast<size_t>(n.point)]));
+    if (agree < 0) pointed.row(i) *= -1;
+  }
+  return pointed;
 }
 
 }  // namespace understudy

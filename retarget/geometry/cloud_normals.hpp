@@ -12,4 +12,9 @@ float point_spacing(const Points& points);
 /// Neighbours are the points within `radius` metres; 0 picks a few times the spacing.
 Points estimated_normals(const Points& points, float radius = 0);
 
+/// The same normals, each pointing to the side from which its place is seen: depth maps of the cloud from all
+/// around, its points as discs. Where nothing looks in, as the points about it point. Works for clouds with
+/// holes; the two sides of a narrow gap face each other.
+Points pointed_outwards(const Points& points, const Points& normals);
+
 }  // namespace understudy

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 #include <numeric>
 
 #include "retarget/base/error.hpp"
+#include "retarget/geometry/point_tree.hpp"
 
 namespace understudy {
 
@@ -129,33 +129,14 @@ Eigen::Index finite_count(const Points& points) {
   return points.array().isFinite().rowwise().all().count();
 }
 
-namespace {
-
-/// nanoflann's view of our points.
-struct TreePoints {
-  const Points& points;
-  size_t kdtree_get_point_count() const { return static_cast<size_t>(points.rows()); }
-  float kdtree_get_pt(size_t i, size_t axis) const { return points(i, axis); }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, TreePoints>, TreePoints,
-                                                 3, uint32_t>;
-
-}  // namespace
-
 IntMatrix nearest_neighbours(const Points& points, const Points& queries, int k) {
   US_CHECK(k <= points.rows(), k, " neighbours wanted of ", points.rows(), " points");
-  const TreePoints seen{points};
-  const Tree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(/*part_max_size=*/16));
+  const PointTree tree(points);
   IntMatrix result(queries.rows(), k);
-  std::vector<uint32_t> found(k);
-  std::vector<float> squared(k);
+  std::vector<PointTree::Near> found;
   for (Eigen::Index q = 0; q < queries.rows(); ++q) {
-    tree.knnSearch(queries.row(q).data(), found.size(), found.data(), squared.data());
-    for (int i = 0; i < k; ++i) result(q, i) = static_cast<int>(found[i]);
+    tree.nearest(queries.row(q).transpose(), k, found);
+    for (int i = 0; i < k; ++i) result(q, i) = found[static_cast<size_t>(i)].point;
   }
   return result;
 }

@@ -1,0 +1,289 @@
+#include "retarget/discovery/discover.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "retarget/base/error.hpp"
+#include "retarget/discovery/part_tree.hpp"
+#include "retarget/discovery/rig_follower.hpp"
+#include "retarget/math/percentile.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+static const int kTrackedPoints = getenv("POINTS") ? atoi(getenv("POINTS")) : 2000, kNodes = getenv("NODES") ? atoi(getenv("NODES")) : 200;
+constexpr int kKeyFrames = 60;
+constexpr double kKeyRate = 12;  // frames/s: what moves between fewer cannot be followed
+constexpr int kRounds = 2;       // of parts, bones and tracks: each makes the next better
+constexpr uint64_t kSeed = 20240607;
+// Joints while they are looked for give a little, then less.
+constexpr float kLooseJoints = 0.3f, kFirmJoints = 3;
+// Shares of the work at which its stages begin.
+constexpr float kReadingEnds = 0.1f, kTrackingEnds = 0.5f, kTrackedAgain = 0.7f, kBonesEnd = 0.9f;
+
+/// f(i) for 0 .. count - 1 on two threads, a half each.
+template <class Function>
+void in_halves(size_t count, const Function& f) {
+  std::thread first([&] {
+    for (size_t i = 0; i < count / 2; ++i) f(i);
+  });
+  for (size_t i = count / 2; i < count; ++i) f(i);
+  first.join();
+}
+
+/// All frames of a short sequence; of a long one every second or third, from the first on.
+std::vector<int> key_frames_of(int count, double fps) {
+  const int needed = (count + kKeyFrames - 1) / kKeyFrames,
+            widest = std::max(1, static_cast<int>(std::floor(fps / kKeyRate)));
+  const int stride = std::clamp(needed, 1, widest);
+  std::vector<int> frames;
+  for (int t = 0; t < count && static_cast<int>(frames.size()) < kKeyFrames; t += stride) frames.push_back(t);
+  return frames;
+}
+
+/// The bone of each part.
+std::vector<int> bone_of_part(const PartTree& tree) {
+  std::vector<int> bone(tree.part_of_bone.size());
+  for (size_t b = 0; b < bone.size(); ++b)
+    bone[static_cast<size_t>(tree.part_of_bone[b])] = static_cast<int>(b);
+  return bone;
+}
+
+/// Makes a rig from scans step by step.
+class Discovery {
+ public:
+  Discovery(const ScanSequence& scans, const DiscoveryOptions& options) : scans_(scans), options_(options) {}
+  DiscoveredRig run();
+
+ private:
+  bool report(const char* stage, float share);
+  TrackingProgress tracking_progress(float from, float to);
+  void read_key_frames();
+  int most_open() const;
+  void find_bones();
+  void bind_points();
+  void fit_all(float stiffness);
+  void find_joints_again();
+  void track_from_bones();
+  void follow_others(DiscoveredRig& result);
+  DiscoveredRig finished();
+  void judge_bones(DiscoveredRig& result) const;
+
+  const ScanSequence& scans_;
+  const DiscoveryOptions& options_;
+  std::vector<int> numbers_;          // of the key frames
+  std::vector<ThinnedFrame> frames_;  // the key frames
+  SurfaceTracks tracks_;
+  RigidParts parts_;
+  PartTree tree_;
+  FittedSurface surface_;
+  std::vector<BoneMotions> bones_;  // [key frames]
+  std::mutex reporting_;
+  bool goes_on_ = true;
+};
+
+bool Discovery::report(const char* stage, float share) {
+  const std::lock_guard<std::mutex> lock(reporting_);
+  if (goes_on_ && options_.progress) goes_on_ = options_.progress({stage, share});
+  return goes_on_;
+}
+
+TrackingProgress Discovery::tracking_progress(float from, float to) {
+  return [this, from, to, done = std::make_shared<std::atomic<int>>(0)] {
+    const float share = static_cast<float>(++*done) / static_cast<float>(frames_.size());
+    return report("Surface", from + (to - from) * share);
+  };
+}
+
+void Discovery::read_key_frames() {
+  const std::vector<int> wanted = key_frames_of(scans_.count, scans_.fps);
+  std::string wrong;
+  for (const int t : wanted) {
+    try {
+      frames_.push_back(thinned(scans_.scan(t), kTrackedPoints, kSeed + static_cast<uint64_t>(t)));
+      numbers_.push_back(t);
+    } catch (const Error& error) {
+      wrong = "; frame " + std::to_string(t) + ": " + error.what();
+    }
+    const float share = static_cast<float>(t) / static_cast<float>(wanted.back() + 1);
+    US_CHECK(report("Reading", kReadingEnds * share), "ended before a skeleton was found");
+  }
+  US_CHECK(frames_.size() >= 2, "a skeleton is found in how a thing moves: that takes two frames or more, not ",
+           frames_.size(), wrong);
+}
+
+int Discovery::most_open() const {
+  std::vector<float> open(frames_.size());
+  in_halves(frames_.size(), [&](size_t t) { open[t] = openness(frames_[t]); });
+  return static_cast<int>(std::max_element(open.begin(), open.end()) - open.begin());
+}
+
+/// Each point follows the parts of the nodes about it.
+void Discovery::bind_points() {
+  const DeformationGraph& graph = tracks_.graph;
+  const std::vector<int> bone = bone_of_part(tree_);
+  RowMatrix weights = RowMatrix::Zero(graph.points.rows(), tree_.rig.count());
+  for (Eigen::Index i = 0; i < weights.rows(); ++i)
+    for (int k = 0; k < kNodesOfPoint; ++k) {
+      const int part = parts_.of_node[static_cast<size_t>(graph.near(i, k))];
+      weights(i, bone[static_cast<size_t>(part)]) += graph.shares(i, k);
+    }
+  surface_ = {graph.points, graph.normals, SkinWeights::from(weights)};
+}
+
+void Discovery::find_bones() {
+  parts_ = find_rigid_parts(tracks_, options_.parts);
+  tree_ = find_part_tree(tracks_, parts_);
+  bind_points();
+  bones_.assign(frames_.size(), BoneMotions(tree_.part_of_bone.size()));
+  for (size_t t = 0; t < frames_.size(); ++t)
+    for (size_t b = 0; b < tree_.part_of_bone.size(); ++b)
+      bones_[t][b] = parts_.motions[static_cast<size_t>(tree_.part_of_bone[b])][t];
+}
+
+void Discovery::fit_all(float stiffness) {
+  ArticulatedFitOptions fit;
+  fit.first_radius_m = 0.6f * tracks_.graph.spacing;
+  fit.last_radius_m = 0.25f * tracks_.graph.spacing;
+  fit.joint_stiffness = stiffness;
+  in_halves(frames_.size(), [&](size_t t) { fit_bones(tree_.rig, surface_, frames_[t], fit, bones_[t]); });
+}
+
+/// The joints of bones that have been fitted with joints that give.
+void Discovery::find_joints_again() {
+  const float size = box_diagonal(tracks_.graph.points);
+  for (int j = 1; j < tree_.rig.count(); ++j) {
+    RigJoint& joint = tree_.rig.joints[static_cast<size_t>(j)];
+    std::vector<RigidMotion> parent, child;
+    for (const BoneMotions& bones : bones_) {
+      parent.push_back(bones[static_cast<size_t>(joint.parent)]);
+      child.push_back(bones[static_cast<size_t>(j)]);
+    }
+    const PartJoint found = find_joint(parent, child, joint.rest, parts_.noise_m, size);
+    joint.rest = found.rest;
+    if (found.kind != JointKind::Fixed) joint.kind = found.kind, joint.axis = found.axis;
+  }
+}
+
+void Discovery::track_from_bones() {
+  const std::vector<int> bone = bone_of_part(tree_);
+  for (size_t t = 0; t < frames_.size(); ++t)
+    for (size_t k = 0; k < parts_.of_node.size(); ++k)
+      tracks_.motions[t][k] = bones_[t][static_cast<size_t>(bone[static_cast<size_t>(parts_.of_node[k])])];
+  track_again(frames_, tracks_, tracking_progress(kTrackingEnds, kTrackedAgain));
+}
+
+void Discovery::judge_bones(DiscoveredRig& result) const {
+  const Rig& rig = result.found.rig;
+  std::vector<double> off(rig.joints.size(), 0), weight(rig.joints.size(), 1e-9);
+  for (size_t t = 0; t < frames_.size(); ++t) {
+    const Eigen::VectorXf distances = distances_to(frames_[t], surface_, bones_[t]);
+    for (Eigen::Index i = 0; i < distances.size(); ++i)
+      for (int k = 0; k < kSkinBones; ++k) {
+        const auto bone = static_cast<size_t>(surface_.skin.bones(i, k));
+        off[bone] += surface_.skin.weights(i, k) * distances[i];
+        weight[bone] += surface_.skin.weights(i, k);
+      }
+    result.off_m[static_cast<size_t>(numbers_[t])] = distances.mean();
+  }
+  result.bones.resize(rig.joints.size());
+  for (size_t j = 0; j < rig.joints.size(); ++j) {
+    FoundBone& bone = result.bones[j];
+    bone.off_m = static_cast<float>(off[j] / weight[j]);
+    if (j == 0) continue;
+    for (const RigPose& pose : result.found.motion.poses) {
+      bone.turned_deg = std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
+      bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
+    }
+  }
+}
+
+/// Frames that are no key frames: from the key frame before them on. What cannot be used repeats the pose
+/// before.
+void Discovery::follow_others(DiscoveredRig& result) {
+  RigFollower follower(result.found.rig);
+  std::vector<RigPose>& poses = result.found.motion.poses;
+  size_t next = 0;  // key frame
+  RigPose last = poses[static_cast<size_t>(numbers_.front())];
+  for (int t = 0; t < scans_.count; ++t) {
+    RigPose& pose = poses[static_cast<size_t>(t)];
+    if (next < numbers_.size() && numbers_[next] == t) {
+      follower.start_from(last = pose);
+      ++next;
+      continue;
+    }
+    pose = last;
+    if (!report("Following", kBonesEnd + (1 - kBonesEnd) * static_cast<float>(t) / static_cast<float>(scans_.count)))
+      continue;
+    try {
+      const RigFollower::Followed followed = follower.follow(scans_.scan(t));
+      pose = last = followed.pose;
+      result.off_m[static_cast<size_t>(t)] = followed.off_m;
+    } catch (const Error&) {  // no points: repeated
+    }
+  }
+}
+
+DiscoveredRig Discovery::finished() {
+  DiscoveredRig result;
+  result.rest_frame = numbers_[static_cast<size_t>(tracks_.rest_frame)];
+  result.key_frames = numbers_;
+  Rig& rig = result.found.rig;
+  rig = tree_.rig;
+  rig.name = "found";
+  rig.surface = scans_.scan(result.rest_frame);
+  rig.skin = weights_between(rig.surface.vertices, surface_.points, surface_.skin, rig.count());
+  RigMotion& motion = result.found.motion;
+  motion.fps = scans_.fps;
+  motion.poses.resize(static_cast<size_t>(scans_.count));
+  result.off_m.assign(motion.poses.size(), -1);  // not known
+  for (size_t t = 0; t < frames_.size(); ++t) {
+    RigPose& pose = motion.poses[static_cast<size_t>(numbers_[t])];
+    pose = pose_of(rig, bones_[t]);
+    bones_[t] = bone_motions(rig, pose);
+  }
+  if (static_cast<int>(frames_.size()) < scans_.count) follow_others(result);
+  judge_bones(result);
+  constexpr float kMuch = 2;
+  std::vector<double> known;
+  for (const float off : result.off_m)
+    if (off >= 0) known.push_back(off);
+  const auto usual = static_cast<float>(percentile(known, 50));
+  for (const float off : result.off_m) result.doubted.push_back(off < 0 || off > kMuch * usual);
+  result.complete = goes_on_;
+  return result;
+}
+
+DiscoveredRig Discovery::run() {
+  read_key_frames();
+  tracks_ = track_surface(frames_, most_open(), kNodes, tracking_progress(kReadingEnds, kTrackingEnds));
+  for (int round = 0; round < kRounds; ++round) {
+    find_bones();
+    if (!goes_on_) return finished();
+    fit_all(kLooseJoints);
+    find_joints_again();
+    if (round + 1 < kRounds) track_from_bones();
+  }
+  report("Bones", kTrackedAgain);
+  fit_all(kFirmJoints);
+  find_joints_again();
+  report("Bones", (kTrackedAgain + kBonesEnd) / 2);
+  fit_all(kRigidJoints);
+  return finished();
+}
+
+}  // namespace
+
+DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options) {
+  US_CHECK(scans.count >= 2, "a skeleton is found in how a thing moves: that takes two frames or more, not ",
+           scans.count);
+  return Discovery(scans, options).run();
+}
+
+}  // namespace understudy

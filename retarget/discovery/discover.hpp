@@ -1,0 +1,55 @@
+// Finds the skeleton of anything that moves in a sequence of its raw scans.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "retarget/rig/rig.hpp"
+
+namespace understudy {
+
+/// Scans of one thing alone, in the order of time, read when they are asked for.
+struct ScanSequence {
+  int count = 0;
+  double fps = 30;
+  std::function<Mesh(int)> scan;  ///< by number, on one thread; empty: the frame cannot be used
+};
+
+/// How far the work is.
+struct DiscoveryProgress {
+  const char* stage;  ///< "Reading", "Surface", "Bones", "Following"
+  float share;        ///< 0 .. 1 of all
+};
+
+struct DiscoveryOptions {
+  int parts = 0;  ///< at most; 0: as many as the motion shows
+  /// Called from several threads, one at a time; false ends the work with the best found so far.
+  std::function<bool(const DiscoveryProgress&)> progress = {};
+};
+
+/// What is known of a bone, for tables.
+struct FoundBone {
+  float turned_deg = 0;  ///< against its parent, furthest from rest
+  float slid_m = 0;      ///< of a slider
+  float off_m = 0;       ///< of its surface from the scans, mean over the key frames
+};
+
+struct DiscoveredRig {
+  RiggedMotion found;              ///< a pose for each frame; the surface is the rest frame's scan
+  int rest_frame = 0;              ///< in which no bone is turned
+  std::vector<int> key_frames;     ///< that the skeleton was found in; the others were followed
+  std::vector<FoundBone> bones;    ///< one a joint
+  std::vector<float> off_m;        ///< [T] of the surface from the scan, mean over its points, metres
+  std::vector<bool> doubted;       ///< [T] frames that it fits clearly worse than the others, or that could not be used
+  bool complete = true;            ///< false: ended early
+};
+
+/// Tracks the surface of the most open frame through up to 60 key frames, joins what moves alike to rigid
+/// parts, finds their joints and tree, and fits the rig to the scans; other frames are followed. After Chang
+/// and Zwicker 2011 and Le and Deng 2014, without correspondence. Looks at all frames, unlike RigFollower. The
+/// same scans give the same bytes. Throws Error where fewer than two frames can be used, and where it is ended
+/// before a skeleton was found.
+DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options = {});
+
+}  // namespace understudy

@@ -1,0 +1,247 @@
+#include "retarget/discovery/part_tree.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "retarget/base/union_find.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+using Pair = std::pair<int, int>;
+
+constexpr float kDegrees = 180 / kPi;
+constexpr float kFixedTurn_deg = 4, kFixedSlide = 0.008f;  // of the body's diagonal: less is no joint
+constexpr float kSeamSpread = 0.04f;  // of the diagonal: how far a joint may be from its seam
+constexpr float kHingeShare = 0.2f;   // of the main turn: what else a hinge turns, noise
+constexpr float kHingeNoise_deg = 2;
+constexpr float kSeamCost = 0.25f;      // of a metre from the seam, in metres carried apart
+constexpr float kShortSeamCost = 0.1f;  // of a seam of one edge, in node spacings
+
+Mat3 mean_rotation(const std::vector<Mat3>& turns) {
+  Mat3 sum = Mat3::Zero();
+  for (const Mat3& R : turns) sum += R;
+  return nearest_rotation(sum);
+}
+
+/// The direction in which vectors about their mean go most, and root mean squares along it and the next.
+struct MainDirection {
+  Vec3 axis = Vec3::UnitY();
+  float first = 0, second = 0;
+};
+MainDirection main_direction(const std::vector<Vec3>& vectors) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& v : vectors) mean += v / static_cast<float>(vectors.size());
+  Mat3 scatter = Mat3::Zero();
+  for (const Vec3& v : vectors)
+    scatter += (v - mean) * (v - mean).transpose() / static_cast<float>(vectors.size());
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(scatter);
+  const Vec3 spread = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+  Vec3 axis = solver.eigenvectors().col(2);
+  Eigen::Index largest;
+  axis.cwiseAbs().maxCoeff(&largest);
+  if (axis[largest] < 0) axis = -axis;  // one of the two, always the same
+  return {axis, spread[2], spread[1]};
+}
+
+Vec3 shared_place(const std::vector<RigidMotion>& parent, const std::vector<RigidMotion>& child,
+                  const Vec3& seam, double seam_weight) {
+  Eigen::Matrix3d A = seam_weight * static_cast<double>(parent.size()) * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d b = A * seam.cast<double>();
+  for (size_t t = 0; t < parent.size(); ++t) {
+    const Eigen::Matrix3d M = (parent[t].R - child[t].R).cast<double>();
+    A += M.transpose() * M;
+    b += M.transpose() * (child[t].t - parent[t].t).cast<double>();
+  }
+  return A.ldlt().solve(b).cast<float>();
+}
+
+/// The middles of the graph's edges that cross from one part to another, by the two parts.
+struct Seam {
+  Vec3 sum = Vec3::Zero();
+  int edges = 0;
+  Vec3 middle() const { return sum / static_cast<float>(edges); }
+};
+std::map<Pair, Seam> find_seams(const SurfaceTracks& tracks, const std::vector<int>& of_node) {
+  constexpr float kTorn = 1.6f;  // of its length at rest: what only touched
+  const DeformationGraph& graph = tracks.graph;
+  std::map<Pair, Seam> seams, torn;
+  for (const DeformationGraph::Edge& edge : graph.edges) {
+    const int a = of_node[static_cast<size_t>(edge.a)], b = of_node[static_cast<size_t>(edge.b)];
+    if (a == b) continue;
+    const Vec3 ga = graph.nodes.row(edge.a).transpose(), gb = graph.nodes.row(edge.b).transpose();
+    const bool holds = std::all_of(tracks.motions.begin(), tracks.motions.end(), [&](const NodeMotions& m) {
+      return (m[static_cast<size_t>(edge.a)](ga) - m[static_cast<size_t>(edge.b)](gb)).norm() <
+             kTorn * edge.length;
+    });
+    Seam& seam = (holds ? seams : torn)[std::minmax(a, b)];
+    seam.sum += (ga + gb) / 2;
+    ++seam.edges;
+  }
+  UnionFind sets(static_cast<size_t>(*std::max_element(of_node.begin(), of_node.end()) + 1));
+  for (const auto& [pair, seam] : seams) sets.join(pair.first, pair.second);
+  for (const auto& [pair, seam] : torn)  // a piece that nothing else holds
+    if (sets.root(pair.first) != sets.root(pair.second)) {
+      seams[pair] = seam;
+      sets.join(pair.first, pair.second);
+    }
+  return seams;
+}
+
+void relabel(RigidParts& parts, int from, int to) {
+  std::map<int, int> number;
+  for (int& part : parts.of_node) {
+    if (part == from) part = to;
+    part = number.emplace(part, static_cast<int>(number.size())).first->second;
+  }
+}
+
+struct Link {
+  int a, b;
+  PartJoint joint;
+  float cost;
+};
+
+std::vector<Link> links_of(const SurfaceTracks& tracks, const RigidParts& parts) {
+  const float size = box_diagonal(tracks.graph.points);
+  std::vector<Link> links;
+  for (const auto& [pair, seam] : find_seams(tracks, parts.of_node)) {
+    const auto [a, b] = pair;
+    Link link{a, b,
+              find_joint(parts.motions[static_cast<size_t>(a)], parts.motions[static_cast<size_t>(b)],
+                         seam.middle(), parts.noise_m, size),
+              0};
+    link.cost = link.joint.off_m + kSeamCost * (link.joint.rest - seam.middle()).norm() +
+                kShortSeamCost * tracks.graph.spacing / static_cast<float>(seam.edges);
+    links.push_back(link);
+  }
+  std::stable_sort(links.begin(), links.end(), [](const Link& x, const Link& y) { return x.cost < y.cost; });
+  return links;
+}
+
+std::vector<Link> spanning_tree(const std::vector<Link>& links, int parts) {
+  UnionFind sets(static_cast<size_t>(parts));
+  std::vector<Link> tree;
+  for (const Link& link : links) {
+    if (sets.root(link.a) == sets.root(link.b)) continue;
+    sets.join(link.a, link.b);
+    tree.push_back(link);
+  }
+  return tree;
+}
+
+/// Part by part from the root outwards, with the link that leads to it (-1: the root).
+std::vector<Pair> outwards_from(int root, const std::vector<Link>& tree) {
+  std::vector<Pair> order{{root, -1}};
+  for (size_t at = 0; at < order.size(); ++at)
+    for (size_t l = 0; l < tree.size(); ++l) {
+      const Link& link = tree[l];
+      const int here = order[at].first;
+      if (static_cast<int>(l) == order[at].second || (link.a != here && link.b != here)) continue;
+      order.push_back({link.a == here ? link.b : link.a, static_cast<int>(l)});
+    }
+  return order;
+}
+
+int central_part(const std::vector<Link>& tree, const std::vector<int>& sizes) {
+  int best = 0;
+  double least = -1;
+  for (int root = 0; root < static_cast<int>(sizes.size()); ++root) {
+    std::vector<int> steps(sizes.size(), 0);
+    double sum = 0;
+    for (const auto& [part, link] : outwards_from(root, tree)) {
+      if (link < 0) continue;
+      const int before = tree[static_cast<size_t>(link)].a == part ? tree[static_cast<size_t>(link)].b
+                                                                   : tree[static_cast<size_t>(link)].a;
+      steps[static_cast<size_t>(part)] = steps[static_cast<size_t>(before)] + 1;
+      sum += steps[static_cast<size_t>(part)] * sizes[static_cast<size_t>(part)];
+    }
+    if (least < 0 || sum < least) least = sum, best = root;
+  }
+  return best;
+}
+
+Vec3 centre_of(const DeformationGraph& graph, const std::vector<int>& of_node, int part) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (int k = 0; k < graph.count(); ++k)
+    if (of_node[static_cast<size_t>(k)] == part) sum += graph.nodes.row(k).transpose(), ++count;
+  return sum / static_cast<float>(std::max(count, 1));
+}
+
+/// A part that hardly moves against one beside it becomes one with it; false where there is none.
+bool join_fixed(const SurfaceTracks& tracks, RigidParts& parts) {
+  const float least = kFixedSlide * box_diagonal(tracks.graph.points);
+  for (const Link& link : spanning_tree(links_of(tracks, parts), parts.count())) {
+    if (link.joint.kind != JointKind::Fixed || link.joint.off_m > least) continue;
+    relabel(parts, link.b, link.a);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+PartJoint find_joint(const std::vector<RigidMotion>& parent, const std::vector<RigidMotion>& child,
+                     const Vec3& seam, float noise_m, float size_m) {
+  const double share = noise_m / (kSeamSpread * size_m);
+  PartJoint joint;
+  joint.rest = shared_place(parent, child, seam, share * share);
+  std::vector<Mat3> turns;
+  std::vector<Vec3> slides, vectors;
+  double off = 0;
+  for (size_t t = 0; t < parent.size(); ++t) {
+    turns.push_back(parent[t].R.transpose() * child[t].R);
+    const Vec3 apart = child[t](joint.rest) - parent[t](joint.rest);
+    slides.push_back(parent[t].R.transpose() * apart);
+    off += apart.squaredNorm();
+  }
+  const Mat3 mean = mean_rotation(turns);
+  for (const Mat3& R : turns) {
+    vectors.push_back(rotation_to_axis_angle(mean.transpose() * R));
+    joint.turn_deg = std::max(joint.turn_deg, 2 * kDegrees * vectors.back().norm());
+  }
+  joint.off_m = static_cast<float>(std::sqrt(off / static_cast<double>(parent.size())));
+  const MainDirection turn = main_direction(vectors), slide = main_direction(slides);
+  joint.slide_m = 2 * std::sqrt(2.0f) * slide.first;  // of a swing: from end to end
+  const bool turns_much = joint.turn_deg > kFixedTurn_deg, slides_much = joint.slide_m > kFixedSlide * size_m;
+  if (!turns_much) {
+    joint.kind = slides_much ? JointKind::Slider : JointKind::Fixed;
+    joint.axis = slide.axis;
+  } else if (turn.second < std::max(kHingeShare * turn.first, kHingeNoise_deg / kDegrees)) {
+    joint.kind = JointKind::Hinge;
+    joint.axis = turn.axis;
+  }
+  return joint;
+}
+
+PartTree find_part_tree(const SurfaceTracks& tracks, RigidParts& parts) {
+  while (parts.count() > 1 && join_fixed(tracks, parts)) refit(tracks, parts);
+  const std::vector<Link> tree = spanning_tree(links_of(tracks, parts), parts.count());
+  std::vector<int> sizes(static_cast<size_t>(parts.count()), 0), bone(sizes.size(), -1);
+  for (const int part : parts.of_node) ++sizes[static_cast<size_t>(part)];
+  PartTree found;
+  for (const auto& [part, l] : outwards_from(central_part(tree, sizes), tree)) {
+    RigJoint joint{"bone " + std::to_string(found.rig.count()), -1, JointKind::Free,
+                   centre_of(tracks.graph, parts.of_node, part), Vec3::UnitY()};
+    if (l >= 0) {
+      const Link& link = tree[static_cast<size_t>(l)];
+      joint.parent = bone[static_cast<size_t>(link.a == part ? link.b : link.a)];
+      joint.kind = link.joint.kind;
+      joint.rest = link.joint.rest;
+      joint.axis = link.joint.axis;
+    }
+    bone[static_cast<size_t>(part)] = found.rig.count();
+    found.rig.joints.push_back(joint);
+    found.part_of_bone.push_back(part);
+  }
+  return found;
+}
+
+}  // namespace understudy

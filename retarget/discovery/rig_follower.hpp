@@ -1,0 +1,35 @@
+// Poses of a rig in scans that come one after the other.
+#pragma once
+
+#include "retarget/discovery/articulated_fit.hpp"
+
+namespace understudy {
+
+/// Lays a rig on each new scan, near where the frames before lead. Looks only back, memory is constant. The
+/// same scans give the same poses. One thread at a time.
+class RigFollower {
+ public:
+  /// Throws Error for a rig without a surface of 30 points.
+  explicit RigFollower(const Rig& rig);
+  /// Where the rig is before the next scan; without it the first scan is thought to show it at rest.
+  void start_from(const RigPose& pose);
+
+  struct Followed {
+    RigPose pose;
+    float off_m = 0;  ///< of the surface from the scan, mean over its points
+  };
+  /// Throws Error for a scan without 30 finite points.
+  Followed follow(const Mesh& scan);
+  /// The same from this pose, which leads nowhere.
+  Followed fit(const Mesh& scan, const RigPose& near) const;
+
+ private:
+  Followed fit(const ThinnedFrame& scan, BoneMotions bones) const;
+
+  Rig rig_;
+  FittedSurface surface_;
+  float spacing_m_;
+  BoneMotions last_, before_;
+};
+
+}  // namespace understudy

@@ -1,0 +1,152 @@
+#include "retarget/discovery/thinned_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/union_find.hpp"
+#include "retarget/geometry/cloud_normals.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr int kFewest = 30;
+constexpr int kSurfaceNeighbours = 7;
+constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr int kDensity = 4;  // so many times the points are drawn before those far apart are chosen
+
+/// Points drawn evenly on a surface, each with its face's normal.
+std::pair<Points, Points> drawn_from(const Mesh& scan, int count, uint64_t seed) {
+  const SurfaceSampler sampler(scan.vertices, scan.faces);
+  Rng rng(seed);
+  Points points(count, 3), normals(count, 3);
+  for (int i = 0; i < count; ++i) {
+    const SurfaceSampler::Sample sample = sampler.sample(rng);
+    const auto corner = [&](int k) {
+      return Vec3(scan.vertices.row(scan.faces(sample.face, k)).transpose());
+    };
+    const Vec3 a = corner(0), b = corner(1), c = corner(2);
+    points.row(i) =
+        (sample.barycentric.x() * a + sample.barycentric.y() * b + sample.barycentric.z() * c).transpose();
+    normals.row(i) = (b - a).cross(c - a).normalized().transpose();
+  }
+  return {points, normals};
+}
+
+Points rows_of(const Points& points, const std::vector<int>& rows) {
+  return points(rows, Eigen::all);
+}
+
+void join_pieces(const Points& points, SurfaceGraph& graph) {
+  const auto count = static_cast<int>(points.rows());
+  UnionFind sets(static_cast<size_t>(count));
+  for (int i = 0; i < count; ++i)
+    for (const SurfaceGraph::Edge& edge : graph.edges[static_cast<size_t>(i)]) sets.join(i, edge.to);
+  for (;;) {  // the first point's set with what is nearest to it
+    std::vector<int> inside, outside;
+    for (int i = 0; i < count; ++i) (sets.root(i) == sets.root(0) ? inside : outside).push_back(i);
+    if (outside.empty()) return;
+    const PointTree tree(rows_of(points, inside));
+    PointTree::Near best{0, kFar};
+    int from = outside.front();
+    for (const int i : outside) {
+      const PointTree::Near near = tree.nearest(points.row(i).transpose());
+      if (near.squared < best.squared) best = near, from = i;
+    }
+    const int to = inside[static_cast<size_t>(best.point)];
+    const float length = std::sqrt(best.squared);
+    graph.edges[static_cast<size_t>(from)].push_back({to, length});
+    graph.edges[static_cast<size_t>(to)].push_back({from, length});
+    sets.join(from, to);
+  }
+}
+
+}  // namespace
+
+ThinnedFrame thinned(const Mesh& scan, int count, uint64_t seed) {
+  Points points = finite_points(scan.vertices), normals(0, 3);
+  US_CHECK(points.rows() >= kFewest, "a scan of ", points.rows(), " points is too few to find a skeleton in");
+  if (!scan.is_cloud() && points.rows() == scan.vertices.rows())
+    std::tie(points, normals) = drawn_from(scan, kDensity * count, seed);
+  else
+    normals = pointed_outwards(points, estimated_normals(points));
+  Rng rng(seed);
+  const auto first = rng.below(static_cast<int>(points.rows()));
+  const std::vector<int> chosen =
+      farthest_points(points, static_cast<int>(std::min<Eigen::Index>(count, points.rows())), first);
+  Points kept = rows_of(points, chosen);
+  return {kept, rows_of(normals, chosen), PointTree(kept)};
+}
+
+float box_diagonal(const Points& points) {
+  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
+}
+
+SurfaceGraph surface_graph(const ThinnedFrame& frame) {
+  const auto count = static_cast<int>(frame.points.rows());
+  SurfaceGraph graph;
+  graph.edges.resize(static_cast<size_t>(count));
+  std::vector<PointTree::Near> near;
+  const auto opposed = [&](int a, int b) {
+    const auto na = frame.normals.row(a), nb = frame.normals.row(b);
+    const auto along = (frame.points.row(b) - frame.points.row(a)).normalized();
+    constexpr float kAcross = 0.6f;  // cosine: what lies before a surface, not in it
+    const bool across = std::abs(along.dot(na)) > kAcross && std::abs(along.dot(nb)) > kAcross;
+    return across || na.dot(nb) < -0.3f;
+  };
+  const auto add = [&](int a, int b, float length) {
+    auto& edges = graph.edges[static_cast<size_t>(a)];
+    const bool known =
+        std::any_of(edges.begin(), edges.end(), [b](const auto& edge) { return edge.to == b; });
+    if (!known) edges.push_back({b, length});
+  };
+  for (int i = 0; i < count; ++i) {
+    frame.tree.nearest(frame.points.row(i).transpose(), kSurfaceNeighbours, near);
+    for (const PointTree::Near& n : near) {
+      if (n.point == i || opposed(i, n.point)) continue;
+      const float length = std::sqrt(n.squared);
+      add(i, n.point, length);
+      add(n.point, i, length);
+    }
+  }
+  join_pieces(frame.points, graph);
+  return graph;
+}
+
+std::vector<float> distances_along(const SurfaceGraph& graph, int from, float reach) {
+  std::vector<float> distance(graph.edges.size(), kFar);
+  using Entry = std::pair<float, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  distance[static_cast<size_t>(from)] = 0;
+  open.push({0.0f, from});
+  while (!open.empty()) {
+    const auto [d, i] = open.top();
+    open.pop();
+    if (d > distance[static_cast<size_t>(i)]) continue;
+    for (const SurfaceGraph::Edge& edge : graph.edges[static_cast<size_t>(i)]) {
+      const float further = d + edge.length;
+      if (further >= distance[static_cast<size_t>(edge.to)] || further > reach) continue;
+      distance[static_cast<size_t>(edge.to)] = further;
+      open.push({further, edge.to});
+    }
+  }
+  return distance;
+}
+
+float openness(const ThinnedFrame& frame) {
+  constexpr int kLandmarks = 16;
+  const SurfaceGraph graph = surface_graph(frame);
+  const auto count = static_cast<int>(std::min<Eigen::Index>(kLandmarks, frame.points.rows()));
+  const std::vector<int> landmarks = farthest_points(frame.points, count);
+  double sum = 0;
+  for (const int from : landmarks) {
+    const std::vector<float> distance = distances_along(graph, from, kFar);
+    for (const int to : landmarks) sum += distance[static_cast<size_t>(to)];
+  }
+  return static_cast<float>(sum / (count * count));
+}
+
+}  // namespace understudy

@@ -1,0 +1,45 @@
+// Scans of a moving thing, thinned to what finding its skeleton looks at.
+#pragma once
+
+#include <vector>
+
+#include "retarget/geometry/mesh.hpp"
+#include "retarget/geometry/point_tree.hpp"
+
+namespace understudy {
+
+/// Points of one scan, evenly spread.
+struct ThinnedFrame {
+  Points points;   ///< [N, 3] metres
+  Points normals;  ///< [N, 3] outwards, unit length; zero where there are too few points about
+  PointTree tree;  ///< of the points
+};
+
+/// `count` points of a scan that lie far apart, fewer where it has fewer. The same scan and seed give the same
+/// points. Throws Error for a scan without 30 finite points.
+ThinnedFrame thinned(const Mesh& scan, int count, uint64_t seed);
+
+/// Diagonal of the box about the points, metres.
+float box_diagonal(const Points& points);
+
+/// Neighbours along a surface: each point with its nearest ones, both ways, [N]. Pieces that do not touch are
+/// joined where they are nearest.
+struct SurfaceGraph {
+  struct Edge {
+    int to;
+    float length;  ///< metres
+  };
+  std::vector<std::vector<Edge>> edges;
+};
+/// Points whose normals face each other are no neighbours: the two sides of a gap are not one surface.
+SurfaceGraph surface_graph(const ThinnedFrame& frame);
+
+/// Lengths of the shortest paths along the graph from one of its points, at most `reach`; infinite where
+/// beyond. [N]
+std::vector<float> distances_along(const SurfaceGraph& graph, int from, float reach);
+
+/// How far apart along the surface the points of a scan are, mean over pairs, metres: limbs that touch shorten
+/// the paths, so the most open pose of a body has the longest.
+float openness(const ThinnedFrame& frame);
+
+}  // namespace understudy
