@@ -11,18 +11,21 @@
 
 namespace understudy::app {
 
-std::vector<Mesh> scans_of(const Case& c) {
+std::vector<Mesh> scans_of(const Case& c, const ScanEdits& edits) {
   const auto source = open_source(case_source(c));
   std::vector<Mesh> scans;
   while (auto frame = source->next()) {
     check_interrupt("in case " + c.name);
-    scans.push_back(frame->usable ? std::move(frame->mesh) : Mesh{Points(0, 3)});
+    scans.push_back(!frame->usable  ? Mesh{Points(0, 3)}
+                    : edits.empty() ? std::move(frame->mesh)
+                                    : apply(edits, frame->mesh));
   }
   return scans;
 }
 
-RigEvaluation evaluate_rig(const Case& c, const RigTruth& truth, const RigFinder& find) {
-  const std::vector<Mesh> scans = scans_of(c);
+RigEvaluation evaluate_rig(const Case& c, const RigTruth& truth, const RigFinder& find,
+                           const ScanEdits& edits) {
+  const std::vector<Mesh> scans = scans_of(c, edits);
   US_CHECK(ssize(scans) == truth.frames(), c.name, ": has ", scans.size(), " scans, the truth ",
            truth.frames(), " frames");
   RigEvaluation evaluation;

@@ -5,6 +5,7 @@
 
 #include "app/run/case_folder.hpp"
 #include "app/run/evaluator.hpp"
+#include "retarget/editing/scan_edits.hpp"
 #include "retarget/metrics/rig_truth.hpp"
 
 namespace understudy::app {
@@ -17,9 +18,9 @@ struct FoundRig {
 /// Finds a rig in scans, metres, so many a second.
 using RigFinder = std::function<FoundRig(const std::vector<Mesh>& scans, double fps)>;
 
-/// The scans of a case, one a frame; those that cannot be used are empty. Throws Error naming what cannot be
+/// The scans of a case, one a frame; after these edits; those that cannot be used are empty. Throws Error naming what cannot be
 /// read.
-std::vector<Mesh> scans_of(const Case& c);
+std::vector<Mesh> scans_of(const Case& c, const ScanEdits& edits = {});
 
 /// What a finder made of a case.
 struct RigEvaluation {
@@ -27,7 +28,9 @@ struct RigEvaluation {
   double found_ms = 0;  ///< how long finding took
   int64_t frames = 0;
 };
-/// Throws Error where the scans, the finder's frames and the truth's are of different numbers.
-RigEvaluation evaluate_rig(const Case& c, const RigTruth& truth, const RigFinder& find);
+/// edits: of each scan, before anything is found. Throws Error where the scans, the finder's frames and the
+/// truth's are of different numbers.
+RigEvaluation evaluate_rig(const Case& c, const RigTruth& truth, const RigFinder& find,
+                           const ScanEdits& edits = {});
 
 }  // namespace understudy::app

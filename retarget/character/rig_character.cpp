@@ -14,7 +14,7 @@
 namespace understudy {
 namespace {
 
-constexpr float kTurnNoise = 3e-4f, kSlideNoise = 1e-4f;  // radians, metres: what floats leave
+constexpr float kTurnNoise = 3e-4f, kSlideNoise = 2e-5f;  // radians, share of the body: what floats leave
 constexpr float kHingeTurn = 0.01f;                       // radians that a hinge turns at least
 constexpr float kScaleNoise = 2e-3f, kLost = 1e-3f;
 constexpr double kMostFrames = 100000;
@@ -180,6 +180,10 @@ Mesh surface_of(const Character& character, const Points& vertices) {
   return mesh;
 }
 
+float size_of(const Points& vertices) {
+  return (vertices.colwise().maxCoeff() - vertices.colwise().minCoeff()).norm();
+}
+
 /// How the nodes moved each joint from the bind pose.
 BoneMotions motions_of(const Character& character, const BoneNodes& bones, const std::vector<Mat4>& bind,
                        const std::vector<Mat4>& world) {
@@ -217,18 +221,26 @@ float longest(const std::vector<Vec3>& vectors) {
   return most;
 }
 
-/// What kind of joint moves so.
-void set_kind(RigJoint& joint, size_t j, const std::vector<BoneMotions>& frames) {
+/// How far apart the first of these vectors and any other are.
+float varied(const std::vector<Vec3>& vectors) {
+  float most = 0;
+  for (const Vec3& v : vectors) most = std::max(most, (v - vectors[0]).norm());
+  return most;
+}
+
+/// What kind of joint moves so. Less than `slide_noise` is no slide; two frames show no line.
+void set_kind(RigJoint& joint, size_t j, const std::vector<BoneMotions>& frames, float slide_noise) {
+  if (frames.size() < 3) return;
   std::vector<Vec3> turns, slides;
   for (const BoneMotions& bones : frames) {
     const RigidMotion& parent = bones[joint.parent];
     turns.push_back(rotation_to_axis_angle(parent.R.transpose() * bones[j].R));
     slides.emplace_back(parent.inverse()(bones[j](joint.rest)) - joint.rest);
   }
-  if (longest(slides) > kSlideNoise && longest(turns) < kTurnNoise) {
-    const std::optional<Vec3> line = common_line(slides, kSlideNoise);
+  if (varied(slides) > slide_noise && longest(turns) < kTurnNoise) {
+    const std::optional<Vec3> line = common_line(slides, slide_noise);
     if (line) joint.kind = JointKind::Slider, joint.axis = *line;
-  } else if (longest(turns) > kHingeTurn) {
+  } else if (varied(turns) > kHingeTurn) {
     const std::optional<Vec3> line = common_line(turns, kTurnNoise);
     if (line) joint.kind = JointKind::Hinge, joint.axis = *line;
   }
@@ -259,8 +271,7 @@ void warn_of_loss(const Character& character, const RiggedMotion& read, int anim
     const Points is = vertices_at(character, animation, times[t]);
     if (is.rows() > 0) lost = std::max(lost, (posed - is).rowwise().norm().maxCoeff());
   }
-  const Points& rest = read.rig.surface.vertices;
-  const float size = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  const float size = size_of(read.rig.surface.vertices);
   if (lost > kLost * size)
     log::warn(character.called() +
               printed(": as a rig its surface is up to %.1f %% of its size off the file's: bones leave their "
@@ -324,7 +335,8 @@ RiggedMotion from_character(const Character& character, int animation, double fp
   std::vector<BoneMotions> frames;
   for (const float time : times)
     frames.push_back(motions_of(character, bones, bind.nodes, nodes_at(character, animation, time).world));
-  for (size_t j = 1; j < read.rig.joints.size(); ++j) set_kind(read.rig.joints[j], j, frames);
+  const float slide_noise = kSlideNoise * size_of(bind.vertices);
+  for (size_t j = 1; j < read.rig.joints.size(); ++j) set_kind(read.rig.joints[j], j, frames, slide_noise);
   check_rig(read.rig);
   read.motion.fps = fps > 0 ? fps : read.motion.fps;
   for (const BoneMotions& moved : frames) read.motion.poses.push_back(pose_of(read.rig, moved));

@@ -14,10 +14,10 @@ Character to_character(const RiggedMotion& performed);
 /// The bones that carry weights or parts, and what those hang on, as a rig in its bind pose, units and axes
 /// the file's; all parts as one surface. Above several bones without a common one there is a joint of its
 /// own, "root". The motion is the animation, `fps` times a second; -1: the nodes' own pose, one frame.
-/// A joint that turns about one line of the parent alone is a Hinge, one that goes along one alone a Slider,
-/// others are Balls; of what else the file moves (a bone that leaves its parent, morph targets) a warning
-/// tells. Of more than four bones of a vertex the four of largest weight count. Throws Error where there is
-/// no skin, bones scale, or the animation has more than 100,000 frames.
+/// A joint that turns about one line of the parent alone is a Hinge, one that goes along one alone a Slider
+/// (three frames show it), others are Balls; a warning tells of what else the file moves (a bone that leaves
+/// its parent, morph targets). Of more than four bones of a vertex the four of largest weight count. Throws
+/// Error where there is no skin, bones scale, or the animation has more than 100,000 frames.
 RiggedMotion from_character(const Character& character, int animation, double fps);
 
 }  // namespace understudy

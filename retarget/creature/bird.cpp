@@ -95,8 +95,8 @@ void bird_leg(CreaturePlan& plan, const BirdSizes& size, float side) {
 }
 
 CreaturePlan bird_plan(Rng& rng) {
-  const BirdSizes size{rng.uniform(0.85f, 1.1f), rng.uniform(1.05f, 1.4f),  rng.uniform(0.24f, 0.36f),
-                       rng.uniform(0.13f, 0.22f),  rng.uniform(0.04f, 0.11f), rng.uniform(0.14f, 0.24f)};
+  const BirdSizes size{rng.uniform(0.85f, 1.1f),  rng.uniform(1.05f, 1.4f),  rng.uniform(0.24f, 0.36f),
+                       rng.uniform(0.13f, 0.22f), rng.uniform(0.04f, 0.11f), rng.uniform(0.14f, 0.24f)};
   CreaturePlan plan;
   plan.scale = rng.uniform(0.4f, 0.8f);
   plan.vertices = 7500;

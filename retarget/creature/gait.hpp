@@ -36,8 +36,8 @@ class Gait {
   GaitStyle style_;
 };
 
-/// Poses the feet of a walk, each by Puppet::plant; the trunk must have its pose. In its swing a foot tips its
-/// toes down by up to `tip` radians.
+/// Poses the feet of a walk, each by Puppet::plant; the trunk must have its pose. In its swing a foot tips
+/// its toes down by up to `tip` radians.
 void plant_feet(Puppet& puppet, const std::vector<Limb>& limbs, const Gait& gait, float seconds, float tip);
 /// The contacts of limbs.
 std::vector<Vec3> contacts_of(const std::vector<Limb>& limbs);

@@ -75,6 +75,7 @@ CreaturePlan hand_plan(Rng& rng) {
   CreaturePlan plan;
   plan.mirrored = false;
   plan.scale = rng.uniform(0.17f, 0.21f);
+  plan.cell = 0.0115f;
   plan.coarse_at = 0.05f;
   plan.finest = 0.7f;
   const Vec3 wrist(0, 0.36f, 0);

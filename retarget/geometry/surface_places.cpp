@@ -65,7 +65,7 @@ Points SurfacePlaces::on(const Points& vertices) const {
 SurfacePlaces nearest_places(const Mesh& surface, const Points& points) {
   US_CHECK(surface.vertices.rows() > 0, "nothing is near on a surface without vertices");
   US_CHECK(points.allFinite(), "a point that is not finite is near nothing");
-  std::vector<int> used(surface.faces.reshaped().begin(), surface.faces.reshaped().end());
+  std::vector<int> used(surface.faces.data(), surface.faces.data() + surface.faces.size());
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   if (surface.is_cloud())

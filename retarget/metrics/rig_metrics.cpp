@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kPartFrames = 5, kPartPoints = 2000, kTrackPoints = 2000, kSurfacePoints = 4000;
 constexpr double kOffSurface = 0.02;  // of s
+constexpr double kFarPair = 2 * kJointFound, kBeyondFar = 1e-3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double share(int part, int whole, double otherwise) {
@@ -139,7 +140,7 @@ JointPairs pair_joints(const RigTruth& found, const RigTruth& truth) {
   JointPairs pairs{std::vector<int>(truth.count(), -1),
                    std::vector<double>(truth.count(), std::numeric_limits<double>::infinity()),
                    found.count() - 1};
-  const std::vector<int> columns = cheapest_pairs(e);
+  const std::vector<int> columns = cheapest_pairs(e.cwiseMin(kFarPair) + kBeyondFar * e);
   for (size_t j = 0; j < columns.size(); ++j) {
     if (columns[j] < 0) continue;
     pairs.found[j + 1] = columns[j] + 1;

@@ -15,7 +15,8 @@ namespace understudy {
 // but its root: where two parts meet.
 
 /// True joints and found ones, one to one, so that the sum of e = mean over frames of |found - true| / s is
-/// least.
+/// least; beyond 0.1 e hardly counts more. Else one joint that is missed and one too many would push all
+/// pairs of the chain between them one further.
 struct JointPairs {
   std::vector<int> found;  ///< [J] of each true joint the found one, -1: none; of the root -1
   std::vector<double> e;   ///< [J] beside it; infinite where there is none

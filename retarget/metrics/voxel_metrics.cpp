@@ -10,7 +10,7 @@
 namespace understudy {
 namespace {
 
-constexpr int kDrawnPoints = 20000;
+constexpr int kDrawnPoints = 20000, kDraws = 10;
 constexpr double kOneEmpty = 4;
 
 double mean_squared(const Points& from, const Points& to) {
@@ -28,12 +28,24 @@ VoxelSet without(const VoxelSet& a, const VoxelSet& b) {
   return rest;
 }
 
-std::vector<VoxelSet> cells_of(const std::vector<Points>& vertices, const Faces& faces,
-                               const VoxelGrid& grid) {
+/// Cells with at least so many of the points.
+VoxelSet full_cells(const VoxelGrid& grid, const Points& points, int least) {
+  std::vector<int> counts(static_cast<size_t>(kVoxels) * kVoxels * kVoxels, 0);
+  for (const int cell : grid.cells_of_each(points)) ++counts[cell];
+  VoxelSet full;
+  for (size_t cell = 0; cell < counts.size(); ++cell)
+    if (counts[cell] >= least) full.push_back(static_cast<int>(cell));
+  return full;
+}
+
+/// Cells that at least `least` of `drawn` points on each surface are in.
+std::vector<VoxelSet> cells_of(const std::vector<Points>& vertices, const Faces& faces, const VoxelGrid& grid,
+                               int drawn, int least) {
   std::vector<VoxelSet> sets;
   for (const Points& frame : vertices) {
-    Rng rng(1);  // the same surface is drawn alike, whoever has it
-    sets.push_back(grid.cells(faces.rows() > 0 ? sample_points({frame, faces}, kDrawnPoints, rng) : frame));
+    Rng rng(1);  // in each frame alike: what stands still has the same points
+    sets.push_back(faces.rows() > 0 ? full_cells(grid, sample_points({frame, faces}, drawn, rng), least)
+                                    : grid.cells(frame));
   }
   return sets;
 }
@@ -53,15 +65,21 @@ VoxelGrid::VoxelGrid(const std::vector<Points>& frames) {
 }
 
 VoxelSet VoxelGrid::cells(const Points& points) const {
-  VoxelSet cells;
+  VoxelSet cells = cells_of_each(points);
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+std::vector<int> VoxelGrid::cells_of_each(const Points& points) const {
+  std::vector<int> cells;
+  cells.reserve(points.rows());
   for (const auto& point : points.rowwise()) {
     if (!point.allFinite()) continue;
     const Vec3 at = ((point.transpose() - middle_) / half_).cwiseMax(-1.0f).cwiseMin(1.0f);
     const Eigen::Array3i cell = ((at.array() + 1) * (0.5f * (kVoxels - 1))).round().cast<int>();
     cells.push_back((cell.z() * kVoxels + cell.y()) * kVoxels + cell.x());
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
 }
 
@@ -97,7 +115,10 @@ VoxelErrors voxel_errors(const std::vector<VoxelSet>& found, const std::vector<V
 VoxelErrors voxel_errors(const std::vector<Points>& found, const Faces& found_faces,
                          const std::vector<Points>& truth, const Faces& true_faces) {
   const VoxelGrid grid(truth);
-  return voxel_errors(cells_of(found, found_faces, grid), cells_of(truth, true_faces, grid));
+  // Of kDrawnPoints none is in a cell with probability exp(-expected number): one half at log 2.
+  const int likely = static_cast<int>(std::ceil(kDraws * std::log(2.0)));
+  return voxel_errors(cells_of(found, found_faces, grid, kDraws * kDrawnPoints, likely),
+                      cells_of(truth, true_faces, grid, kDrawnPoints, 1));
 }
 
 }  // namespace understudy

@@ -18,6 +18,8 @@ class VoxelGrid {
   explicit VoxelGrid(const std::vector<Points>& frames);
   /// Cells that points are in; those outside are put on the border, those not finite left out.
   VoxelSet cells(const Points& points) const;
+  /// The same, each point's own, in their order.
+  std::vector<int> cells_of_each(const Points& points) const;
   /// Centres in [-1, 1]^3, [N, 3].
   static Points centres(const VoxelSet& cells);
 
@@ -38,8 +40,10 @@ struct VoxelErrors {
 };
 /// Throws Error for no frame, or different numbers of frames.
 VoxelErrors voxel_errors(const std::vector<VoxelSet>& found, const std::vector<VoxelSet>& truth);
-/// The same of surfaces (of clouds: of their points) with 20,000 points drawn on each, in the box of the true
-/// ones. [T] of [V, 3].
+/// The same of surfaces, [T] of [V, 3], in the box of the true ones, as the paper has it: the true cells are
+/// those of 20,000 points drawn on the surface, the found ones those that so many points of theirs would more
+/// likely be in than not (a decoder's occupancy above 0.5); of clouds those of their points. Drawn points miss
+/// cells: the true surface itself scores cd_1e4 0.2 to 1.4, the more the larger its share of the box.
 VoxelErrors voxel_errors(const std::vector<Points>& found, const Faces& found_faces,
                          const std::vector<Points>& truth, const Faces& true_faces);
 

@@ -31,7 +31,8 @@ Mat3 allowed_turn(const RigJoint& joint, const Mat3& wanted) {
     case JointKind::Ball:
       break;
   }
-  return wanted;
+  // What a product of floats is off a rotation would double with each joint of a chain.
+  return Eigen::Quaternionf(wanted).normalized().toRotationMatrix();
 }
 
 RigidMotion moved(const RigJoint& joint, const Mat3& R, const Vec3& place) {

@@ -142,6 +142,16 @@ TEST_F(RigCases, CapturedOnesLieAboutTheBody) {
   EXPECT_GT(scan.rows(), 300);
 }
 
+TEST_F(RigCases, AreEditedBeforeAnythingIsFound) {
+  options.cases = 1;
+  ASSERT_EQ(make(), 1);
+  const Case c = made(names[0]);
+  ScanEdits edits;
+  const float middle = scans_of(c)[0].vertices.col(1).mean();
+  edits.crop = Box{Vec3(-9, middle, -9), Vec3(9, 9, 9)};
+  for (const Mesh& scan : scans_of(c, edits)) EXPECT_GE(scan.vertices.col(1).minCoeff(), middle);
+}
+
 TEST_F(RigCases, PeopleAreAKindWhereThereAreAny) {
   test::write_training_folder(scratch.path("data"));
   options.data = scratch.path("data");

@@ -52,6 +52,24 @@ TEST_F(Measuring, ABaselineIsEvaluatedInPlaceOfTheExtractor) {
   expect_clean_failure(run_program({"eval", cases, "--baseline", "fit"}), "--body");
 }
 
+TEST_F(Measuring, CreaturesNeedNoDataAndHaveABaseline) {
+  const Finished made = run_program({"cases", "--suite", "creatures", "--out", scratch.path("cases"),
+                                     "--cases", "1", "--frames", "4", "--points", "500"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Finished run =
+      run_program({"eval", scratch.path("cases"), "--baseline", "nodes", "--out", out("r.json")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(read_bytes(out("r.json")));
+  EXPECT_EQ(report["mean"]["found_parts"], 24);
+  EXPECT_TRUE(report["breakdown"]["kinds"]["arm"].contains("track_pct"));
+  std::filesystem::remove_all(scratch.path("out"));
+  expect_clean_failure(run_program({"cases", "--suite", "naked", "--out", out("cases")}),
+                       "people and motions");
+  expect_clean_failure(
+      run_program({"cases", "--suite", "creatures", "--split", "test", "--out", out("cases")}),
+      "dev and train");
+}
+
 TEST_F(Measuring, ScansAreCleanedAndSkeletonsAreNot) {
   const Finished run = run_program({"measure", scans(), "--out", out("m.json"), "--remove-floor",
                                     "--largest-part", "--crop", "-3,-1,-3,3,3,3"});

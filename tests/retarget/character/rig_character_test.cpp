@@ -118,6 +118,8 @@ TEST(RigCharacter, ReadsOthersFiles) {
     const Character character = tests::make_character(options);
     const RiggedMotion read = from_character(character, -1, 30);
     EXPECT_GT(read.rig.count(), 20);
+    for (const RigJoint& joint : read.rig.joints)
+      EXPECT_TRUE(joint.kind == JointKind::Free || joint.kind == JointKind::Ball) << "one pose shows no axis";
     const Points wanted = vertices_at(character, -1, 0);
     const float size = (wanted.colwise().maxCoeff() - wanted.colwise().minCoeff()).norm();
     EXPECT_LT((posed(read, 0) - wanted).rowwise().norm().maxCoeff(), 1e-4f * size);

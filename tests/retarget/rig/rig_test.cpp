@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -47,6 +49,19 @@ TEST(Rig, PoseIsFoundFromTheMotionsOfItsBones) {
   EXPECT_LT((again.root - pose.root).norm(), 1e-5f);
   EXPECT_NEAR(again.slides[2], 0.25f, 1e-5f);
   for (size_t j = 0; j < 3; ++j) EXPECT_LT(geodesic_angle(again.turns[j], pose.turns[j]), 1e-3f);
+}
+
+TEST(Rig, PoseOfALongChainDoesNotDrift) {
+  Rig rig;
+  for (int j = 0; j < 60; ++j)
+    rig.joints.push_back({"", j - 1, j == 0 ? JointKind::Free : JointKind::Ball,
+                          Vec3(0.1f * static_cast<float>(j), 0, 0), Vec3::UnitY()});
+  RigPose pose = rest_pose(rig);
+  for (size_t j = 0; j < 60; ++j)
+    pose.turns[j] = rotation_from_axis_angle({0.3f, std::sin(static_cast<float>(j)), 0.4f});
+  const BoneMotions bones = bone_motions(rig, pose);
+  const Points again = joint_places(rig, bone_motions(rig, pose_of(rig, bones)));
+  EXPECT_LT((again - joint_places(rig, bones)).cwiseAbs().maxCoeff(), 1e-4f);
 }
 
 TEST(Rig, HingeTurnsAboutItsAxisAlone) {
