@@ -56,7 +56,7 @@ DiscoveredRig found_in(const ScanSequence& scans, const DiscoverOptions& options
 /// The skeleton in the scan, and the surface painted by its bones.
 render::SheetMoment moment_of(const DiscoveredRig& rig, const ScanSequence& scans, int frame,
                               const Points& colors) {
-  const Rig& found = rig.found.rig;
+  const understudy::Rig& found = rig.found.rig;
   const BoneMotions bones = bone_motions(found, rig.found.motion.poses[static_cast<size_t>(frame)]);
   render::SheetMoment moment;
   moment.frame = frame;
@@ -88,7 +88,7 @@ void write_sheet(const DiscoverOptions& options, const DiscoveredRig& rig, const
 }
 
 void tell(const DiscoveredRig& rig) {
-  const Rig& found = rig.found.rig;
+  const understudy::Rig& found = rig.found.rig;
   if (found.count() == 1)
     std::printf("1 bone: nothing moves against anything else\n");
   else

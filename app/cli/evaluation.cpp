@@ -9,7 +9,6 @@
 #include "app/run/file_figures.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/retargeted_source.hpp"
-#include "app/run/rig_finder.hpp"
 #include "app/run/target_file.hpp"
 #include "retarget/base/clock.hpp"
 #include "retarget/base/error.hpp"
@@ -348,7 +347,7 @@ void evaluate_rig_case(const EvalOptions& options, const Case& c, const RigTruth
                        Breakdown& breakdown) {
   US_CHECK(options.baseline.empty() || options.baseline == "nodes", c.name, ": --baseline ", options.baseline,
            " is of people, and this is any body");
-  const RigFinder find = options.baseline == "nodes" ? RigFinder(find_nodes) : rig_finder();
+  const RigFinder find = options.baseline == "nodes" ? RigFinder(find_nodes) : options.find_rig;
   const RigEvaluation evaluation = evaluate_rig(c, truth, find, options.edits);
   FrameTimes times;
   times.extract = times.total = evaluation.found_ms / static_cast<double>(evaluation.frames);

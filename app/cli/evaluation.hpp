@@ -9,6 +9,7 @@
 #include "app/cli/options.hpp"
 #include "app/run/breakdown.hpp"
 #include "app/run/latency.hpp"
+#include "app/run/rig_finder.hpp"
 #include "app/run/source.hpp"
 #include "retarget/motion_space/motion_space_table.hpp"
 
@@ -21,6 +22,7 @@ struct EvalOptions {
   /// "fit": a body is fitted to each scan in place of the extractor; "complete": one to all known frames of a
   /// case at once; "nodes": of bodies of any kind, points of the first frame are followed; empty: none
   std::string baseline;
+  RigFinder find_rig = rig_finder();  ///< of bodies of any kind, where no baseline is asked for
   std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
   std::string body;                ///< SMPL-format, of the baseline "fit"
   std::string fill = kDefaultMotionSpace;  ///< of cases with gaps: one of motion_spaces()

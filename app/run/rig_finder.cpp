@@ -32,8 +32,9 @@ int length_of(Source& source) {
 }  // namespace
 
 SourceOptions as_it_is(SourceOptions options) {
-  if (options.import.units == "auto") options.import.units = "m";
-  if (options.import.up == "auto") options.import.up = "y";
+  const auto guessed = [](const std::string& asked) { return asked.empty() || asked == "auto"; };
+  if (guessed(options.import.units)) options.import.units = "m";
+  if (guessed(options.import.up)) options.import.up = "y";
   if (!options.import.floor) options.import.floor = 0.0f;
   return options;
 }
@@ -66,7 +67,7 @@ RigFinder rig_finder() {
 }
 
 void write_found_rig(const std::string& path, const DiscoveredRig& rig, const Eigen::Matrix4d& to_file) {
-  const Rig& found = rig.found.rig;
+  const understudy::Rig& found = rig.found.rig;
   const int64_t vertices = found.surface.vertices.rows(), joints = found.count();
   NpzWriter npz(path);
   const size_t surface = npz.add_frames("vertices", {vertices, 3}),
@@ -100,7 +101,7 @@ void write_found_rig(const std::string& path, const DiscoveredRig& rig, const Ei
 
 Json to_json(const DiscoveredRig& rig) {
   Json report;
-  const Rig& found = rig.found.rig;
+  const understudy::Rig& found = rig.found.rig;
   report["frames"] = rig.found.motion.poses.size();
   report["fps"] = rig.found.motion.fps;
   report["rest_frame"] = rig.rest_frame;

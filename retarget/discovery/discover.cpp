@@ -17,9 +17,7 @@
 namespace understudy {
 namespace {
 
-static const int kTrackedPoints = getenv("POINTS") ? atoi(getenv("POINTS")) : 2000,
-                 kNodes = getenv("NODES") ? atoi(getenv("NODES")) : 200;
-static const int kSurfacePoints = getenv("SURFACE") ? atoi(getenv("SURFACE")) : 6000;
+constexpr int kTrackedPoints = 2000, kSurfacePoints = 6000, kNodes = 200;
 constexpr int kKeyFrames = 60;
 constexpr double kKeyRate = 12;  // frames/s: what moves between fewer cannot be followed
 constexpr int kRounds = 2;       // of parts, bones and tracks: each makes the next better

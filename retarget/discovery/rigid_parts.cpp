@@ -17,17 +17,15 @@ namespace {
 using Vec3d = Eigen::Vector3d;
 using Mat3d = Eigen::Matrix3d;
 
-static const float kLeastNoise =
-    getenv("NOISE") ? atof(getenv("NOISE"))
-                    : 0.002f;  // of the body's diagonal: nothing is followed better than that
-constexpr int kSettlingRounds = 6;
-constexpr int kPatches = 400;
-constexpr double kUnits = 200;
-static const double kRigidShare =
-    getenv("SHARE") ? atof(getenv("SHARE")) : 25;  // percent of the patches that lie in the middle of a part
-constexpr int kJudgedFrames = 20;
-static const double kScanShare = getenv("SCAN") ? atof(getenv("SCAN")) : 1;
-static const double kPrice = getenv("PRICE") ? atof(getenv("PRICE")) : 3;
+constexpr int kPatches = 400;          // that are joined to parts
+constexpr double kUnits = 200;         // of a surface that tell as much as if each moved on its own
+constexpr double kPrice = 3;           // of a part a frame, in log(units): half of six numbers
+constexpr float kLeastNoise = 0.001f;  // of the body's diagonal: nothing is followed better than that
+constexpr double kRigidShare = 25;     // percent of the patches that lie in the middle of a part
+constexpr int kSettlingRounds = 6, kRobustRounds = 4;
+constexpr int kJudgedFrames = 20;  // evenly spread, in which scans are asked
+// What the scans, and blends of other parts, may explain worse without a part; in its price.
+constexpr double kScanAllowance = 0.3, kBlendAllowance = 0.3;
 
 /// What is known of a set of points in every frame: all that the best rigid motion depends on.
 struct Moments {
@@ -89,7 +87,8 @@ struct Trajectories {
     weight = kUnits / static_cast<double>(rest.rows());
     for (size_t t = 0; t < tracks.motions.size(); ++t) posed.push_back(tracks.at(static_cast<int>(t)));
   }
-  void add(int point, Moments& to) const;
+  /// share: of the point's weight
+  void add(int point, Moments& to, double share = 1) const;
   /// Of a point, if it moved so: weighted squared distances, all frames.
   double residual(int point, const std::vector<RigidMotion>& motions) const {
     const Vec3 x = rest.row(point).transpose();
@@ -104,15 +103,16 @@ struct Trajectories {
   double weight;              // of a point
 };
 
-void Trajectories::add(int point, Moments& to) const {
+void Trajectories::add(int point, Moments& to, double share) const {
+  const double w = share * weight;
   const Vec3d x = rest.row(point).transpose().cast<double>();
-  to.weight += weight, to.sum += weight * x, to.squared += weight * x.squaredNorm();
+  to.weight += w, to.sum += w * x, to.squared += w * x.squaredNorm();
   to.frames.resize(posed.size());
   for (size_t t = 0; t < posed.size(); ++t) {
     const Vec3d y = posed[t].row(point).transpose().cast<double>();
-    to.frames[t].sum += weight * y;
-    to.frames[t].cross += weight * y * x.transpose();
-    to.frames[t].squared += weight * y.squaredNorm();
+    to.frames[t].sum += w * y;
+    to.frames[t].cross += w * y * x.transpose();
+    to.frames[t].squared += w * y.squaredNorm();
   }
 }
 
@@ -246,17 +246,26 @@ void number_anew(std::vector<int>& labels) {
   for (int& label : labels) label = number.emplace(label, static_cast<int>(number.size())).first->second;
 }
 
+/// Where skin bends, at the ends of a part, points are blends of two motions: they hardly count.
 void find_motions(const Trajectories& tracks, RigidParts& parts) {
   number_anew(parts.of_point);
-  std::vector<Moments> moments;
-  for (size_t i = 0; i < parts.of_point.size(); ++i) {
-    const auto part = static_cast<size_t>(parts.of_point[i]);
-    if (part >= moments.size()) moments.resize(part + 1);
-    tracks.add(static_cast<int>(i), moments[part]);
+  const auto count = static_cast<size_t>(*std::max_element(parts.of_point.begin(), parts.of_point.end()) + 1);
+  std::vector<double> shares(parts.of_point.size(), 1);
+  for (int round = 0; round < kRobustRounds; ++round) {
+    std::vector<Moments> moments(count);
+    for (size_t i = 0; i < shares.size(); ++i)
+      tracks.add(static_cast<int>(i), moments[static_cast<size_t>(parts.of_point[i])], shares[i]);
+    parts.motions.assign(count, {});
+    for (size_t p = 0; p < count; ++p)
+      for (size_t t = 0; t < tracks.posed.size(); ++t) parts.motions[p].push_back(moments[p].best(t));
+    const double scale =
+        parts.noise_m * parts.noise_m * tracks.weight * static_cast<double>(tracks.posed.size());
+    for (size_t i = 0; i < shares.size(); ++i) {
+      const double off =
+          tracks.residual(static_cast<int>(i), parts.motions[static_cast<size_t>(parts.of_point[i])]);
+      shares[i] = std::pow(scale / (scale + off), 2);
+    }
   }
-  parts.motions.assign(moments.size(), {});
-  for (size_t p = 0; p < moments.size(); ++p)
-    for (size_t t = 0; t < tracks.posed.size(); ++t) parts.motions[p].push_back(moments[p].best(t));
 }
 
 /// Of each point the parts about it: those within two steps along the surface, its own first.
@@ -328,37 +337,99 @@ class ScanEvidence {
   float most_;
 };
 
-/// The part that is missed least, and what it explains beyond what the parts about it would.
+/// What the points of a part would lose without it, and where they would go.
 struct Removal {
   int part = -1;
-  double loss = std::numeric_limits<double>::infinity();
-  std::vector<std::pair<int, int>> moves;  // points and where they go
+  double loss = std::numeric_limits<double>::infinity();  // weighted squared metres, all frames
+  std::vector<std::pair<int, int>> moves;                 // points and where they go
 };
-Removal least_missed(const SurfaceGraph& surface, const ScanEvidence& scans, const RigidParts& parts) {
+
+/// Each part's points, and the parts that it touches.
+struct PartNeighbours {
+  std::vector<std::vector<int>> points;
+  std::vector<std::vector<int>> near;
+};
+PartNeighbours neighbours_of(const SurfaceGraph& surface, const RigidParts& parts) {
   const auto count = static_cast<size_t>(parts.count());
   std::vector<std::set<int>> near(count);
-  std::vector<std::vector<int>> points(count);
+  PartNeighbours all{std::vector<std::vector<int>>(count), {}};
   for (int i = 0; i < static_cast<int>(parts.of_point.size()); ++i) {
     const int own = parts.of_point[static_cast<size_t>(i)];
-    points[static_cast<size_t>(own)].push_back(i);
+    all.points[static_cast<size_t>(own)].push_back(i);
     for (const SurfaceGraph::Edge& edge : surface.edges[static_cast<size_t>(i)])
       if (const int other = parts.of_point[static_cast<size_t>(edge.to)]; other != own)
         near[static_cast<size_t>(own)].insert(other);
   }
+  for (const std::set<int>& of : near) all.near.emplace_back(of.begin(), of.end());
+  return all;
+}
+
+/// Without the part the scans see its points move with one beside it: what only slid along a surface that
+/// looks the same, as a ring about an axle, loses nothing.
+Removal removal_by_scans(const ScanEvidence& scans, const RigidParts& parts, const PartNeighbours& all,
+                         int part) {
+  const auto p = static_cast<size_t>(part);
+  Removal removal{part, 0, {}};
+  for (const int i : all.points[p]) {
+    double least = std::numeric_limits<double>::infinity();
+    int to = -1;
+    for (const int other : all.near[p])
+      if (const double off = scans.off(i, parts.motions[static_cast<size_t>(other)]); off < least)
+        least = off, to = other;
+    removal.loss += std::max(0.0, least - scans.off(i, parts.motions[p]));
+    removal.moves.push_back({i, to});
+  }
+  return removal;
+}
+
+/// A point as a blend of two parts' motions, as skin bends between them: squared distance left, and the
+/// second part's share.
+std::pair<double, double> blended(const Trajectories& tracks, int point, const std::vector<RigidMotion>& a,
+                                  const std::vector<RigidMotion>& b) {
+  const Vec3 x = tracks.rest.row(point).transpose();
+  double off = 0, along = 0, apart = 0;
+  for (size_t t = 0; t < tracks.posed.size(); ++t) {
+    const Vec3 at = a[t](x), e = at - tracks.posed[t].row(point).transpose(), d = b[t](x) - at;
+    off += e.squaredNorm(), along += e.dot(d), apart += d.squaredNorm();
+  }
+  const double share = apart > 0 ? std::clamp(-along / apart, 0.0, 1.0) : 0.0;
+  return {tracks.weight * (off + 2 * share * along + share * share * apart), share};
+}
+
+/// Without the part its points are blends of those beside it: what is only the bend between two parts loses
+/// nothing.
+Removal removal_by_blends(const Trajectories& tracks, const RigidParts& parts, const PartNeighbours& all,
+                          int part) {
+  const auto p = static_cast<size_t>(part);
+  Removal removal{part, 0, {}};
+  for (const int i : all.points[p]) {
+    double least = std::numeric_limits<double>::infinity();
+    int to = -1;
+    for (const int a : all.near[p])
+      for (const int b : all.near[p]) {
+        if (b < a) continue;
+        const auto [off, share] =
+            blended(tracks, i, parts.motions[static_cast<size_t>(a)], parts.motions[static_cast<size_t>(b)]);
+        if (off < least) least = off, to = share < 0.5 ? a : b;
+      }
+    removal.loss += std::max(0.0, least - tracks.residual(i, parts.motions[p]));
+    removal.moves.push_back({i, to});
+  }
+  return removal;
+}
+
+/// The part that is missed least.
+Removal least_missed(const SurfaceGraph& surface, const Trajectories& tracks, const ScanEvidence& scans,
+                     const RigidParts& parts) {
+  const PartNeighbours all = neighbours_of(surface, parts);
   Removal best;
-  for (size_t p = 0; p < count; ++p) {
-    if (near[p].empty()) continue;
-    Removal removal{static_cast<int>(p), 0, {}};
-    for (const int i : points[p]) {
-      double least = std::numeric_limits<double>::infinity();
-      int to = -1;
-      for (const int other : near[p])
-        if (const double off = scans.off(i, parts.motions[static_cast<size_t>(other)]); off < least)
-          least = off, to = other;
-      removal.loss += std::max(0.0, least - scans.off(i, parts.motions[p]));
-      removal.moves.push_back({i, to});
-    }
-    if (removal.loss < best.loss) best = std::move(removal);
+  for (int part = 0; part < parts.count(); ++part) {
+    if (all.near[static_cast<size_t>(part)].empty()) continue;
+    Removal by_blends = removal_by_blends(tracks, parts, all, part);
+    Removal by_scans = removal_by_scans(scans, parts, all, part);
+    by_scans.loss /= kScanAllowance, by_blends.loss /= kBlendAllowance;
+    if (by_blends.loss < best.loss) best = std::move(by_blends);
+    if (by_scans.loss < best.loss) best = std::move(by_scans);
   }
   return best;
 }
@@ -381,11 +452,8 @@ RigidParts find_rigid_parts(const std::vector<ThinnedFrame>& frames, const Surfa
   settle_seams(surface, trajectories, parts);
   const ScanEvidence scans(frames, tracks);
   while (parts.count() > 1) {
-    const Removal removal = least_missed(surface, scans, parts);
-    if (getenv("VV"))
-      printf("removal %d of %d loss %.4g allowed %.4g\n", removal.part, parts.count(), removal.loss,
-             kScanShare * allowed);
-    if (removal.part < 0 || removal.loss > kScanShare * allowed) break;
+    const Removal removal = least_missed(surface, trajectories, scans, parts);
+    if (removal.part < 0 || removal.loss > allowed) break;
     for (const auto& [point, to] : removal.moves) parts.of_point[static_cast<size_t>(point)] = to;
     settle_seams(surface, trajectories, parts);
   }

@@ -24,12 +24,10 @@ struct Schedule {
   float first_radius, last_radius;         // scale of what counts as off the scan
   double first_stiffness, last_stiffness;  // of an edge, in matches
 };
-static float E(const char* n, float d);
-static const Schedule kFromTheFrameBefore = {(int)E("ROUNDS",10), 1.2f, E("LR",0.35f), E("FS",40), E("LS",4)}, kFromAFit = {4, 0.5f, 0.35f, 8, 4};
+constexpr Schedule kFromTheFrameBefore = {10, 1.2f, 0.35f, 20, 1}, kFromAFit = {4, 0.5f, 0.35f, 2, 1};
 constexpr float kReach = 2.5f;        // in radii: no match beyond
-static float E(const char* n, float d) { return getenv(n) ? atof(getenv(n)) : d; }
-static const float kJointScale = E("JS", 0.12f);  // neighbours that disagree so much count a quarter
-static const float kPlain = E("PLAIN", 0.04f);       // weight of the distance beside that along the normal
+constexpr float kJointScale = 0.06f;  // neighbours that disagree so much count a quarter
+constexpr float kPlain = 0.04f;       // weight of the distance beside that along the normal
 constexpr float kTorn = 0.6f;         // of an edge's length: neighbours further off are torn apart
 constexpr float kDamping = 1e-3f;
 
@@ -216,7 +214,7 @@ void Follower::hold_together(double stiffness, const NodeMotions& motions) {
       rows_a << -cross_matrix(of_a - pa), Eigen::Matrix3d::Identity();
       rows_b << cross_matrix(of_b - pb), -Eigen::Matrix3d::Identity();
       equations_.add_pair(a, b, rows_a, rows_b, off.cast<double>(),
-                          stiffness * pull_[e] * std::max((double)E("FLOOR",0.1), std::sqrt(robust(off.squaredNorm(), scale))));
+                          stiffness * pull_[e] * std::max(0.1, std::sqrt(robust(off.squaredNorm(), scale))));
     }
   }
 }

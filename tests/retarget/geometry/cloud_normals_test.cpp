@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "retarget/base/rng.hpp"
 
@@ -21,6 +22,18 @@ TEST(EstimatedNormals, OfABallPointOutOrIn) {
   const Points points = ball(3000), normals = estimated_normals(points);
   for (Eigen::Index i = 0; i < points.rows(); ++i)
     EXPECT_GT(std::abs(points.row(i).dot(normals.row(i))), 0.97f) << i;
+}
+
+TEST(PointedOutwards, NormalsOfABallWithAHolePointOut) {
+  Points points = ball(3000);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (points(i, 2) < 0.9f) kept.push_back(i);
+  points = Points(points(kept, Eigen::all));
+  const Points normals = pointed_outwards(points, estimated_normals(points));
+  Eigen::Index wrong = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) wrong += points.row(i).dot(normals.row(i)) < 0;
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST(EstimatedNormals, OfTooFewOrBadPointsAreZero) {

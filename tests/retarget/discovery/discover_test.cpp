@@ -1,0 +1,180 @@
+#include "retarget/discovery/discover.hpp"
+
+#include <gtest/gtest.h>
+
+#include "retarget/base/error.hpp"
+#include "retarget/discovery/rig_follower.hpp"
+#include "retarget/discovery/thinned_frames.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+namespace {
+
+/// A tube from a to b with round ends; points on its surface.
+Points tube(const Vec3& a, const Vec3& b, float radius, int count, Rng& rng) {
+  const Vec3 along = (b - a).normalized(), u = along.unitOrthogonal(), v = along.cross(u);
+  const float length = (b - a).norm();
+  Points points(count, 3);
+  for (int i = 0; i < count; ++i) {
+    const float at = rng.uniform(-radius, length + radius), angle = rng.uniform(0, 2 * kPi);
+    const float beyond = std::max({0.0f, -at, at - length});
+    const float r = std::sqrt(std::max(0.0f, radius * radius - beyond * beyond));
+    // Oval, so that a turn about its length is seen.
+    points.row(i) = (a + at * along + r * (std::cos(angle) * u + 0.6f * std::sin(angle) * v)).transpose();
+  }
+  return points;
+}
+
+const Vec3 kElbow(0.5f, 0, 0);
+
+/// Two tubes; the second turns about z at the elbow.
+Mesh bent_arm(float angle, uint64_t seed, const Vec3& moved = Vec3::Zero()) {
+  Rng rng(seed);
+  Points points(4000, 3);
+  points.topRows(2000) = tube(Vec3::Zero(), kElbow, 0.06f, 2000, rng);
+  const Mat3 turn = rotation_from_axis_angle({0, 0, angle});
+  const Points fore = tube(kElbow, {1.0f, 0, 0}, 0.06f, 2000, rng);
+  points.bottomRows(2000) =
+      ((fore.rowwise() - kElbow.transpose()) * turn.transpose()).rowwise() + kElbow.transpose();
+  Mesh mesh;
+  mesh.vertices = points.rowwise() + moved.transpose();
+  return mesh;
+}
+
+ScanSequence sequence(int count, const std::function<Mesh(int)>& scan) {
+  ScanSequence scans;
+  scans.count = count;
+  scans.scan = scan;
+  return scans;
+}
+
+constexpr int kFrames = 16;
+float angle_at(int t) {
+  return 1.2f * static_cast<float>(t) / (kFrames - 1);
+}
+ScanSequence bending_arm() {
+  return sequence(kFrames, [](int t) { return bent_arm(angle_at(t), static_cast<uint64_t>(t)); });
+}
+
+TEST(Discover, FindsTheElbowOfAnArm) {
+  const DiscoveredRig rig = discover(bending_arm());
+  ASSERT_EQ(rig.found.rig.count(), 2);
+  ASSERT_EQ(rig.found.motion.poses.size(), static_cast<size_t>(kFrames));
+  const RigJoint& elbow = rig.found.rig.joints[1];
+  EXPECT_EQ(elbow.kind, JointKind::Hinge);
+  EXPECT_GT(std::abs(elbow.axis.z()), 0.99f);
+  EXPECT_LT((elbow.rest - kElbow).norm(), 0.03f);
+  const float first = rotation_to_axis_angle(rig.found.motion.poses.front().turns[1]).z(),
+              last = rotation_to_axis_angle(rig.found.motion.poses.back().turns[1]).z();
+  EXPECT_NEAR(std::abs(last - first), angle_at(kFrames - 1), 0.08f);
+  EXPECT_TRUE(rig.complete);
+  EXPECT_LT(rig.off_m[5], 0.02f);
+}
+
+TEST(Discover, GivesTheSameBytesForTheSameScans) {
+  const DiscoveredRig a = discover(bending_arm()), b = discover(bending_arm());
+  ASSERT_EQ(a.found.rig.count(), b.found.rig.count());
+  EXPECT_TRUE(a.found.rig.skin.weights == b.found.rig.skin.weights);
+  for (size_t t = 0; t < a.found.motion.poses.size(); ++t) {
+    EXPECT_TRUE(a.found.motion.poses[t].root == b.found.motion.poses[t].root) << t;
+    EXPECT_TRUE(a.found.motion.poses[t].turns[1] == b.found.motion.poses[t].turns[1]) << t;
+  }
+}
+
+TEST(Discover, WhatOnlyTravelsIsOneBone) {
+  const DiscoveredRig rig = discover(sequence(8, [](int t) {
+    return bent_arm(0.3f, static_cast<uint64_t>(t), {0.03f * static_cast<float>(t), 0, 0});
+  }));
+  EXPECT_EQ(rig.found.rig.count(), 1);
+  EXPECT_NEAR(rig.found.motion.poses[7].root.x() - rig.found.motion.poses[0].root.x(), 0.21f, 0.02f);
+}
+
+TEST(Discover, WhatStandsStillIsOneBone) {
+  const DiscoveredRig rig =
+      discover(sequence(6, [](int t) { return bent_arm(0.3f, static_cast<uint64_t>(t)); }));
+  EXPECT_EQ(rig.found.rig.count(), 1);
+}
+
+TEST(Discover, KeepsToTheBonesThatAreAllowed) {
+  DiscoveryOptions options;
+  options.parts = 1;
+  EXPECT_EQ(discover(bending_arm(), options).found.rig.count(), 1);
+}
+
+TEST(Discover, AFrameWithoutPointsRepeatsThePoseBefore) {
+  const DiscoveredRig rig = discover(sequence(
+      kFrames, [](int t) { return t == 9 ? Mesh{} : bent_arm(angle_at(t), static_cast<uint64_t>(t)); }));
+  ASSERT_EQ(rig.found.motion.poses.size(), static_cast<size_t>(kFrames));
+  EXPECT_TRUE(rig.doubted[9]);
+  EXPECT_FALSE(rig.doubted[8]);
+  EXPECT_TRUE(rig.found.motion.poses[9].turns[1] == rig.found.motion.poses[8].turns[1]);
+}
+
+TEST(Discover, FollowsWhatComesAfterItsKeyFrames) {
+  constexpr int kMany = 66;  // bends and stretches slowly
+  const auto at = [](int t) { return 0.6f - 0.6f * std::cos(0.15f * static_cast<float>(t)); };
+  const DiscoveredRig rig =
+      discover(sequence(kMany, [&](int t) { return bent_arm(at(t), static_cast<uint64_t>(t)); }));
+  EXPECT_LT(rig.key_frames.size(), static_cast<size_t>(kMany));
+  ASSERT_EQ(rig.found.rig.count(), 2);
+  const auto turn = [&](int t) {
+    return rotation_to_axis_angle(rig.found.motion.poses[static_cast<size_t>(t)].turns[1]).z();
+  };
+  for (int t = 50; t < kMany; t += 5) EXPECT_NEAR(std::abs(turn(t) - turn(0)), at(t), 0.1f) << t;
+}
+
+TEST(Discover, SaysWhatItCannotUse) {
+  EXPECT_THROW(discover(sequence(1, [](int) { return bent_arm(0, 1); })), Error);
+  try {
+    discover(sequence(5, [](int t) { return t == 2 ? bent_arm(0, 1) : Mesh{}; }));
+    FAIL() << "four frames without points were used";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("frame 4"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Discover, EndsEarlyWithTheBestSoFar) {
+  DiscoveryOptions options;
+  options.progress = [](const DiscoveryProgress& at) { return at.share < 0.5f; };
+  const DiscoveredRig rig = discover(bending_arm(), options);
+  EXPECT_FALSE(rig.complete);
+  EXPECT_EQ(rig.found.motion.poses.size(), static_cast<size_t>(kFrames));
+  options.progress = [](const DiscoveryProgress&) { return false; };
+  EXPECT_THROW(discover(bending_arm(), options), Error);
+}
+
+TEST(RigFollower, LaysAFoundRigOnFurtherScans) {
+  const DiscoveredRig rig = discover(bending_arm());
+  RigFollower follower(rig.found.rig);
+  follower.start_from(rig.found.motion.poses.back());
+  float off = 1;
+  for (int t = 0; t < 4; ++t)
+    off = follower.follow(bent_arm(angle_at(kFrames - 1 - t), 100 + static_cast<uint64_t>(t))).off_m;
+  EXPECT_LT(off, 0.02f);
+}
+
+TEST(SurfaceGraph, DoesNotCrossAGap) {
+  // Two tubes side by side, hardly further apart than neighbouring points.
+  constexpr float kApart = 0.08f;
+  Rng rng(3);
+  Mesh mesh;
+  mesh.vertices.resize(6000, 3);
+  mesh.vertices.topRows(3000) = tube({0, 0, 0}, {1, 0, 0}, 0.06f, 3000, rng);
+  mesh.vertices.bottomRows(3000) = tube({0, kApart, kApart}, {1, kApart, kApart}, 0.06f, 3000, rng);
+  ThinnedFrame frame = spread_part(thinned(mesh, 1500, 1500, 1));
+  const auto lower = [&](int i) { return frame.points(i, 1) + frame.points(i, 2) < kApart; };
+  const auto crossings = [&] {
+    const SurfaceGraph graph = surface_graph(frame);
+    int count = 0;
+    for (size_t i = 0; i < graph.edges.size(); ++i)
+      for (const SurfaceGraph::Edge& edge : graph.edges[i])
+        count += lower(static_cast<int>(i)) != lower(edge.to);
+    return count;
+  };
+  const int with_normals = crossings();
+  frame.normals.setZero();
+  EXPECT_LT(3 * with_normals, crossings());  // the points alone do not tell
+}
+
+}  // namespace
+}  // namespace understudy
