@@ -185,11 +185,11 @@ void draw_disc(Image& image, const Eigen::Vector2f& center, float radius, const 
     }
 }
 
-/// Title on the left; on the right which colour is which side.
-void draw_title(Image& sheet, const Font& font, const std::string& title) {
+/// Title on the left; on the right which colour is which side, unless bones have none.
+void draw_title(Image& sheet, const Font& font, const std::string& title, bool sides) {
   const float base = kMargin + 20;
   font.draw(sheet, title, {static_cast<float>(kMargin + kGutter), base}, 25, kInk);
-  if (!font.found()) return;
+  if (!font.found() || !sides) return;
   float x = static_cast<float>(sheet.width - kMargin);
   for (const auto& [word, color] : {std::pair{"right", kRightColor}, std::pair{"left", kLeftColor}}) {
     x -= font.width(word, 17);
@@ -197,6 +197,11 @@ void draw_title(Image& sheet, const Font& font, const std::string& title) {
     draw_disc(sheet, {x - 13, base - 6}, 6, color);
     x -= 42;
   }
+}
+
+bool have_sides(const std::vector<SheetMoment>& moments) {
+  const auto sided = [](const SheetMoment& m) { return !m.skeleton || !m.skeleton->sides.empty(); };
+  return std::all_of(moments.begin(), moments.end(), sided);
 }
 
 std::vector<Cell> source_cells(const std::vector<SheetMoment>& moments, const SheetOptions& options) {
@@ -244,7 +249,7 @@ Image contact_sheet(Renderer& renderer, const std::vector<SheetMoment>& moments,
 
   const int band = layout.band_height + kBandGap;
   Image sheet(options.width, kTitle + layout.bands * band - kBandGap + kMargin - kGap, kPaper);
-  draw_title(sheet, font, options.title);
+  draw_title(sheet, font, options.title, have_sides(moments));
   for (size_t i = 0; i < moments.size(); ++i) {
     const int column = static_cast<int>(i) % layout.columns;
     const int x = kMargin + kGutter + column * (rows[0].size.width + kGap);

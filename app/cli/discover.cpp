@@ -65,6 +65,11 @@ render::SheetMoment moment_of(const DiscoveredRig& rig, const ScanSequence& scan
   render::SkeletonView& skeleton = moment.skeleton.emplace();
   skeleton.joints = joint_places(found, bones);
   for (const RigJoint& joint : found.joints) skeleton.parents.push_back(joint.parent);
+  for (const BoneTip& tip : bone_tips(found)) {
+    skeleton.joints.conservativeResize(skeleton.joints.rows() + 1, 3);
+    skeleton.joints.bottomRows<1>() = bones[static_cast<size_t>(tip.joint)](tip.rest).transpose();
+    skeleton.parents.push_back(tip.joint);
+  }
   constexpr float kAdult = 2;  // diagonal of an adult's box, metres
   skeleton.thickness =
       (found.surface.vertices.colwise().maxCoeff() - found.surface.vertices.colwise().minCoeff()).norm() /

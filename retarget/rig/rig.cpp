@@ -187,4 +187,29 @@ std::vector<std::vector<int>> children_of(const Rig& rig) {
   return children;
 }
 
+std::vector<BoneTip> bone_tips(const Rig& rig) {
+  const auto children = children_of(rig);
+  std::vector<std::vector<Eigen::Index>> vertices(rig.joints.size());
+  for (Eigen::Index v = 0; v < rig.skin.size(); ++v) {
+    Eigen::Index most;
+    rig.skin.weights.row(v).maxCoeff(&most);
+    vertices[static_cast<size_t>(rig.skin.bones(v, most))].push_back(v);
+  }
+  std::vector<BoneTip> tips;
+  for (int j = 1; j < rig.count(); ++j) {
+    const auto& own = vertices[static_cast<size_t>(j)];
+    if (!children[static_cast<size_t>(j)].empty() || own.empty()) continue;
+    // Through the middle of the bone's vertices as far as the farthest of them.
+    const Vec3 joint = rig.joints[static_cast<size_t>(j)].rest;
+    Vec3 middle = Vec3::Zero();
+    for (const Eigen::Index v : own) middle += rig.surface.vertices.row(v).transpose();
+    const Vec3 along = (middle / static_cast<float>(own.size()) - joint).normalized();
+    float length = 0;
+    for (const Eigen::Index v : own)
+      length = std::max(length, along.dot(rig.surface.vertices.row(v).transpose() - joint));
+    tips.push_back({j, joint + length * along});
+  }
+  return tips;
+}
+
 }  // namespace understudy

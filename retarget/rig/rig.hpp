@@ -83,6 +83,14 @@ Points skinned(const Points& rest, const SkinWeights& skin, const BoneMotions& b
 /// The pose in which every joint allows what these motions ask for, as nearly as its kind lets it.
 RigPose pose_of(const Rig& rig, const BoneMotions& bones);
 
+/// Where the bones that carry no other end, at rest: beyond their farthest vertices. One a such bone, in the
+/// order of the joints; nothing but for what has a surface.
+struct BoneTip {
+  int joint;
+  Vec3 rest;
+};
+std::vector<BoneTip> bone_tips(const Rig& rig);
+
 /// For each joint those that it carries directly.
 std::vector<std::vector<int>> children_of(const Rig& rig);
 

@@ -73,6 +73,13 @@ TEST(Rig, HingeTurnsAboutItsAxisAlone) {
   EXPECT_NEAR(turn.z(), 1.0f, 0.02f);
 }
 
+TEST(Rig, ABoneThatCarriesNoOtherEndsAtItsFarthestVertex) {
+  const std::vector<BoneTip> tips = bone_tips(crane());
+  ASSERT_EQ(tips.size(), 1u);
+  EXPECT_EQ(tips[0].joint, 2);
+  EXPECT_LT((tips[0].rest - Vec3(1.5f, 1, 0)).norm(), 1e-5f);
+}
+
 TEST(SkinWeights, KeepTheFourLargest) {
   RowMatrix dense(1, 6);
   dense << 0.1f, 0.2f, 0.05f, 0.3f, 0.15f, 0.2f;
