@@ -13,6 +13,7 @@
 #include "retarget/discovery/rig_follower.hpp"
 #include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/rig/rig_edits.hpp"
 
 namespace understudy {
 namespace {
@@ -70,6 +71,7 @@ class Discovery {
   void bind_points();
   void fit_all(float stiffness);
   void find_joints_again();
+  void drop_still_bones();
   void track_from_bones();
   void follow_others(DiscoveredRig& result);
   DiscoveredRig finished();
@@ -172,6 +174,25 @@ void Discovery::find_joints_again() {
     joint.rest = found.rest;
     if (found.kind != JointKind::Fixed) joint.kind = found.kind, joint.axis = found.axis;
   }
+}
+
+/// Bones that by now hardly move against their parents: what tracking had moved.
+void Discovery::drop_still_bones() {
+  const float size = box_diagonal(tracks_.graph.points);
+  for (int j = tree_.rig.count() - 1; j > 0; --j) {
+    const RigJoint& joint = tree_.rig.joints[static_cast<size_t>(j)];
+    std::vector<RigidMotion> parent, child;
+    for (const BoneMotions& bones : bones_) {
+      parent.push_back(bones[static_cast<size_t>(joint.parent)]);
+      child.push_back(bones[static_cast<size_t>(j)]);
+    }
+    if (find_joint(parent, child, joint.rest, parts_.noise_m, size).kind != JointKind::Fixed) continue;
+    surface_.skin = renumbered(surface_.skin, merge_into_parent(tree_.rig, j));
+    tree_.part_of_bone.erase(tree_.part_of_bone.begin() + j);
+    for (BoneMotions& bones : bones_) bones.erase(bones.begin() + j);
+  }
+  for (int j = 0; j < tree_.rig.count(); ++j)
+    tree_.rig.joints[static_cast<size_t>(j)].name = "bone " + std::to_string(j);
 }
 
 void Discovery::track_from_bones() {
@@ -280,6 +301,7 @@ DiscoveredRig Discovery::run() {
   report("Bones", kTrackedAgain);
   fit_all(kFirmJoints);
   find_joints_again();
+  drop_still_bones();
   report("Bones", (kTrackedAgain + kBonesEnd) / 2);
   fit_all(kRigidJoints);
   return finished();

@@ -17,7 +17,7 @@ namespace {
 using Pair = std::pair<int, int>;
 
 constexpr float kDegrees = 180 / kPi;
-constexpr float kFixedTurn_deg = 4, kFixedSlide = 0.008f;  // of the body's diagonal: less is no joint
+constexpr float kFixedTurn_deg = 4, kFixedSlide = 0.008f;  // of the diagonal: less is no joint
 constexpr float kSeamSpread = 0.04f;  // of the diagonal: how far a joint may be from its seam
 constexpr float kHingeShare = 0.2f;   // of the main turn: what else a hinge turns, noise
 constexpr float kHingeNoise_deg = 2;

@@ -17,9 +17,10 @@ constexpr int kFinePoints = 256;  ///< points that patches are cut from, at most
 constexpr int kPartContext = 13;  ///< numbers beside the points
 constexpr int kPartJoints = 2;    ///< joints that a crop corrects, at most
 
-/// Hands and heads are small and have many shapes: they are seen in patches, the rest as points.
+/// Hands, heads and feet are small and have many shapes: they are seen in patches. Limbs gain nothing by it,
+/// and are seen as points.
 constexpr bool seen_in_patches(PartKind kind) {
-  return kind == PartKind::Hand || kind == PartKind::Head;
+  return kind == PartKind::Hand || kind == PartKind::Head || kind == PartKind::Foot;
 }
 /// Rows of a crop.
 constexpr int rows_of(PartKind kind) {

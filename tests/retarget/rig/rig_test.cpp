@@ -6,6 +6,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/rig/rig_edits.hpp"
 
 namespace understudy {
 namespace {
@@ -88,6 +89,23 @@ TEST(SkinWeights, KeepTheFourLargest) {
   EXPECT_EQ(kept(0, 2), 0);
   EXPECT_NEAR(kept(0, 3), 0.3f / 0.85f, 1e-6f);
   EXPECT_NEAR(kept.sum(), 1, 1e-6f);
+}
+
+TEST(RigEdits, AMergedBonesChildrenAndSkinAreItsParents) {
+  Rig rig = crane();
+  rig.skin.bones.row(1) << 0, 1, 2, 0;
+  rig.skin.weights.row(1) << 0.25f, 0.5f, 0.25f, 0;
+  EXPECT_EQ(merge_into_parent(rig, 1), (std::vector<int>{0, 0, 1}));
+  ASSERT_EQ(rig.count(), 2);
+  EXPECT_EQ(rig.joints[1].name, "rod");
+  EXPECT_EQ(rig.joints[1].parent, 0);
+  EXPECT_NO_THROW(check_rig(rig));
+  const RowMatrix weights = rig.skin.dense(2);
+  EXPECT_FLOAT_EQ(weights(1, 0), 0.75f);
+  EXPECT_FLOAT_EQ(weights(1, 1), 0.25f);
+  EXPECT_FLOAT_EQ(weights(2, 1), 1);
+  EXPECT_THROW(merge_into_parent(rig, 0), Error);
+  EXPECT_THROW(merge_into_parent(rig, 2), Error);
 }
 
 TEST(Rig, SaysWhatIsWrong) {

@@ -1,0 +1,63 @@
+#include <nlohmann/json.hpp>
+
+#include "retarget/character/read_character.hpp"
+#include "retarget/character/rig_character.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace understudy::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+class DiscoverCommand : public ShippedProgram {
+ protected:
+  static constexpr int kScans = 14;
+  /// Scans of a desk lamp that moves.
+  std::string lamp() {
+    const Finished run =
+        run_program({"cases", "--suite", "creatures", "--out", scratch.path("cases"), "--cases", "7",
+                     "--frames", std::to_string(kScans), "--points", "3000"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    for (const auto& folder : std::filesystem::directory_iterator(scratch.path("cases")))
+      if (folder.path().filename().string().rfind("lamp", 0) == 0) return folder.path().string() + "/source";
+    ADD_FAILURE() << run.out;
+    return {};
+  }
+};
+
+TEST_F(DiscoverCommand, ALampsBonesAreFoundAndItsFileOpensAgain) {
+  const Finished run = run_program({"discover", "--source", lamp(), "--out", out("rig.glb"), "--result",
+                                    out("r.npz"), "--report", out("r.json"), "--preview", out("p.png")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json report = Json::parse(read_bytes(out("r.json")));
+  EXPECT_EQ(report["frames"], kScans);
+  EXPECT_EQ(report["complete"], true);
+  const size_t bones = report["bones"].size();
+  EXPECT_GE(bones, 2u);
+  EXPECT_NE(run.out.find(std::to_string(bones) + " bones"), std::string::npos) << run.out;
+  EXPECT_GT(report["bones"][1]["turned_deg"], 4);
+  const RiggedMotion read = from_character(read_character(out("rig.glb")), 0, 30);
+  EXPECT_EQ(read.rig.joints.size(), bones);
+  EXPECT_EQ(read.motion.poses.size(), static_cast<size_t>(kScans));
+  EXPECT_GT(std::filesystem::file_size(out("p.png")), 10000u);
+  EXPECT_GT(std::filesystem::file_size(out("r.npz")), 10000u);
+}
+
+TEST_F(DiscoverCommand, SaysWhatItCannotDo) {
+  expect_clean_failure(run_program({"discover", "--source", scans()}), "nothing is to be written");
+  expect_clean_failure(run_program({"discover", "--source", scans(), "--out", out("rig.obj")}),
+                       ".glb or .gltf");
+  expect_clean_failure(run_program({"discover", "--source", scratch.path("absent"), "--out", out("rig.glb")}),
+                       "absent");
+  expect_clean_failure(run_program({"discover", "--source", US_SOURCE_DIR "/tests/fuzz/corpus/bvh/walk.bvh",
+                                    "--out", out("rig.glb")}),
+                       "has its bones already");
+  std::filesystem::create_directories(scratch.path("one"));
+  std::filesystem::copy_file(std::filesystem::directory_iterator(scans())->path(),
+                             scratch.path("one/frame_0.ply"));
+  expect_clean_failure(run_program({"discover", "--source", scratch.path("one"), "--out", out("rig.glb")}),
+                       "two frames");
+}
+
+}  // namespace
+}  // namespace understudy::tests
