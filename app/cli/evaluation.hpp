@@ -23,8 +23,8 @@ struct EvalOptions {
   /// case at once; "nodes": of bodies of any kind, points of the first frame are followed; empty: none
   std::string baseline;
   RigFinder find_rig = rig_finder();  ///< of bodies of any kind, where no baseline is asked for
-  std::optional<int> file_shapes;  ///< the exported file is evaluated, too, with so many morph targets
-  std::string body;                ///< SMPL-format, of the baseline "fit"
+  std::optional<int> file_shapes;     ///< the exported file is evaluated, too, with so many morph targets
+  std::string body;                   ///< SMPL-format, of the baseline "fit"
   std::string fill = kDefaultMotionSpace;  ///< of cases with gaps: one of motion_spaces()
   std::string data;                        ///< a data folder for those that need clips
   int worst = 20;                          ///< frames listed as the worst

@@ -43,9 +43,8 @@ class Breakdown {
   /// Figures of a case whose body is of some kind: its rig was found.
   void add_kind(const std::string& kind, const Metrics& metrics) { kinds_[kind].push_back(metrics); }
   /// {"joints": {"left_hip": {figures}}, "motions": {"walk": {figures}}, "bodies": {...}, "failures":
-  /// {"jolt": {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...], "kinds":
-  /// {"hand": {figures}}};
-  /// without what is unknown.
+  /// {"jolt": {"evaluated", "frames", "share"}}, "confidence": ConfidenceRecord::figures(), "worst": [...],
+  /// "kinds": {"hand": {figures}}}; without what is unknown.
   Json json() const;
   const ConfidenceRecord& confidence() const { return confidence_; }
   /// The worst first; those of one case are at least ten frames apart.

@@ -12,9 +12,9 @@ constexpr int kCreatureFrames = 60;
 
 /// Whether a suite is made here: "creatures", "creatures-captured".
 bool is_creature_suite(const std::string& suite);
-/// As make_suite. The split "train" has the seeds 0 to 99 of each kind, "dev" 100 to 109, each with one of the
-/// kind's motions in turn; `people`, whose motions are known, are one kind more, ten of them. Throws Error for
-/// another split.
+/// As make_suite. The split "train" has the seeds 0 to 99 of each kind, "dev" 100 to 109, each with one of
+/// the kind's motions in turn; `people`, whose motions are known, are one kind more, ten of them. Throws
+/// Error for another split.
 int make_creature_suite(const SuiteOptions& options, const std::optional<DataSplit>& people,
                         const std::function<void(const std::string&)>& done);
 

@@ -18,8 +18,8 @@ struct FoundRig {
 /// Finds a rig in scans, metres, so many a second.
 using RigFinder = std::function<FoundRig(const std::vector<Mesh>& scans, double fps)>;
 
-/// The scans of a case, one a frame; after these edits; those that cannot be used are empty. Throws Error naming what cannot be
-/// read.
+/// The scans of a case, one a frame; after these edits; those that cannot be used are empty. Throws Error
+/// naming what cannot be read.
 std::vector<Mesh> scans_of(const Case& c, const ScanEdits& edits = {});
 
 /// What a finder made of a case.

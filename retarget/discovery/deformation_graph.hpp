@@ -1,4 +1,5 @@
-// A surface at rest that follows nodes, each of which moves rigidly (embedded deformation, Sumner et al. 2007).
+// A surface at rest that follows nodes, each of which moves rigidly (embedded deformation, Sumner et al.
+// 2007).
 #pragma once
 
 #include <vector>

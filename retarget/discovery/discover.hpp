@@ -48,9 +48,9 @@ struct DiscoveredRig {
 
 /// Tracks the surface of the most open frame through up to 60 key frames, joins what moves alike to rigid
 /// parts, finds their joints and tree, and fits the rig to the scans; other frames are followed. After Chang
-/// and Zwicker 2011 and Le and Deng 2014, without correspondence. Looks at all frames, unlike RigFollower. The
-/// same scans give the same bytes. Throws Error where fewer than two frames can be used, and where it is ended
-/// before a skeleton was found.
+/// and Zwicker 2011 and Le and Deng 2014, without correspondence. Looks at all frames, unlike RigFollower.
+/// The same scans give the same bytes. Throws Error where fewer than two frames can be used, and where it
+/// is ended before a skeleton was found.
 DiscoveredRig discover(const ScanSequence& scans, const DiscoveryOptions& options = {});
 
 }  // namespace understudy

@@ -18,8 +18,8 @@ struct PartJoint {
   float slide_m = 0;          ///< how far that place moves against the parent, along its main direction
 };
 /// The joint of two bodies that move so, [T] each, which touch at `seam`: the place c that minimises
-/// sum_t |A_t c - B_t c|^2, held near the seam where the motion does not tell (along a hinge's axis). noise_m:
-/// of the motions; size_m: of the whole body. Chang and Zwicker 2011, section 5.
+/// sum_t |A_t c - B_t c|^2, held near the seam where the motion does not tell (along a hinge's axis).
+/// noise_m: of the motions; size_m: of the whole body. Chang and Zwicker 2011, section 5.
 PartJoint find_joint(const std::vector<RigidMotion>& parent, const std::vector<RigidMotion>& child,
                      const Vec3& seam, float noise_m, float size_m);
 

@@ -41,8 +41,8 @@ SurfaceGraph surface_graph(const ThinnedFrame& frame);
 /// beyond. [N]
 std::vector<float> distances_along(const SurfaceGraph& graph, int from, float reach);
 
-/// How far apart along the surface the points of a scan are, mean over pairs, metres: limbs that touch shorten
-/// the paths, so the most open pose of a body has the longest.
+/// How far apart along the surface the points of a scan are, mean over pairs, metres: limbs that touch
+/// shorten the paths, so the most open pose of a body has the longest.
 float openness(const ThinnedFrame& frame);
 
 }  // namespace understudy

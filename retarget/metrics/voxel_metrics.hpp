@@ -42,8 +42,8 @@ struct VoxelErrors {
 VoxelErrors voxel_errors(const std::vector<VoxelSet>& found, const std::vector<VoxelSet>& truth);
 /// The same of surfaces, [T] of [V, 3], in the box of the true ones, as the paper has it: the true cells are
 /// those of 20,000 points drawn on the surface, the found ones those that so many points of theirs would more
-/// likely be in than not (a decoder's occupancy above 0.5); of clouds those of their points. Drawn points miss
-/// cells: the true surface itself scores cd_1e4 0.2 to 1.4, the more the larger its share of the box.
+/// likely be in than not (a decoder's occupancy above 0.5); of clouds those of their points. Drawn points
+/// miss cells: the true surface itself scores cd_1e4 0.2 to 1.4, the more the larger its share of the box.
 VoxelErrors voxel_errors(const std::vector<Points>& found, const Faces& found_faces,
                          const std::vector<Points>& truth, const Faces& true_faces);
 

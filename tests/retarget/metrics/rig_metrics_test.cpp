@@ -212,7 +212,8 @@ TEST(RetargetError, ForgivesASimilarityAlone) {
   EXPECT_THROW(retarget_error_pct({similar}, {cross}), Error);
 }
 
-// Two joints, two keypoints, four frames: the first joint has keypoint 0 in three of them, the second always 1.
+// Two joints, two keypoints, four frames: the first joint has keypoint 0 in three of them, the second
+// always 1.
 TEST(SemanticConsistency, IsTheLargestShareOfAKeypoint) {
   Points keypoints(2, 3), swapped(2, 3), joints(2, 3);
   keypoints << 0, 0, 0, 1, 0, 0;
