@@ -82,6 +82,7 @@ void write_sheet(const DiscoverOptions& options, const DiscoveredRig& rig, const
   const Points colors = render::weight_colors(rig.found.rig.skin.dense(rig.found.rig.count()));
   std::vector<render::SheetMoment> moments;
   const int shown = std::min(PreviewMoments::kShown, scans.count);
+  moments.reserve(static_cast<size_t>(shown));
   for (int i = 0; i < shown; ++i)
     moments.push_back(moment_of(rig, scans, i * (scans.count - 1) / std::max(1, shown - 1), colors));
   render::SheetOptions sheet;

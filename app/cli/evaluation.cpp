@@ -338,6 +338,7 @@ void evaluate_gap_case(Bench& bench, const Case& c, CaseResult& result) {
 
 FoundRig find_nodes(const std::vector<Mesh>& scans, double fps) {
   std::vector<Points> frames;
+  frames.reserve(scans.size());
   for (const Mesh& scan : scans) frames.push_back(scan.vertices);
   return {node_rig(frames, fps), 0};
 }

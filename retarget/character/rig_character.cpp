@@ -257,6 +257,7 @@ std::vector<float> times_of(const Character& character, int animation, double fp
   US_CHECK(frames <= kMostFrames, character.called(), ": the animation has ", frames, " frames, at most ",
            kMostFrames, " are taken");
   std::vector<float> times;
+  times.reserve(static_cast<size_t>(frames));
   for (int t = 0; t < static_cast<int>(frames); ++t) times.push_back(static_cast<float>(t / fps));
   return times;
 }
@@ -333,6 +334,7 @@ RiggedMotion from_character(const Character& character, int animation, double fp
   }
   const std::vector<float> times = times_of(character, animation, fps);
   std::vector<BoneMotions> frames;
+  frames.reserve(times.size());
   for (const float time : times)
     frames.push_back(motions_of(character, bones, bind.nodes, nodes_at(character, animation, time).world));
   const float slide_noise = kSlideNoise * size_of(bind.vertices);

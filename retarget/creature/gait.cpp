@@ -43,6 +43,7 @@ void plant_feet(Puppet& puppet, const std::vector<Limb>& limbs, const Gait& gait
 
 std::vector<Vec3> contacts_of(const std::vector<Limb>& limbs) {
   std::vector<Vec3> contacts;
+  contacts.reserve(limbs.size());
   for (const Limb& limb : limbs) contacts.push_back(limb.contact);
   return contacts;
 }

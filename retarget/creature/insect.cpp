@@ -67,6 +67,7 @@ CreaturePlan insect_plan(Rng& rng) {
 
 std::vector<Limb> insect_limbs(const Rig& rig) {
   std::vector<Limb> limbs;
+  limbs.reserve(std::size(kInsectLegs));
   for (const std::string name : kInsectLegs)
     limbs.push_back(limb_of(rig, {name + "_hip", name + "_knee", name + "_ankle"}));
   return limbs;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "retarget/base/error.hpp"
 #include "retarget/geometry/implicit_surface.hpp"
@@ -210,7 +211,7 @@ SolidPart& CreaturePlan::add(const std::string& name, SolidPart part, float blen
 }
 
 SolidPart& CreaturePlan::carve(const std::string& name, SolidPart part, float blend) {
-  SolidPart& carved = add(name, part, blend);
+  SolidPart& carved = add(name, std::move(part), blend);
   carved.carved = true;
   return carved;
 }

@@ -33,7 +33,7 @@ double degrees(double radians) {
 
 /// At most `count` rows, evenly; those that are finite.
 Points even_rows(const Points& points, int count) {
-  const Points finite = finite_points(points);
+  Points finite = finite_points(points);
   if (finite.rows() <= count) return finite;
   Points chosen(count, 3);
   for (int i = 0; i < count; ++i) chosen.row(i) = finite.row(i * finite.rows() / count);

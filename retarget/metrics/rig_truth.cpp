@@ -16,6 +16,7 @@ constexpr int kComparedFrames = 300;
 /// At most `count` of the frames, evenly from the first to the last.
 std::vector<int> even_frames(int frames, int count) {
   std::vector<int> chosen;
+  chosen.reserve(static_cast<size_t>(std::min(frames, count)));
   for (int i = 0; i < std::min(frames, count); ++i)
     chosen.push_back(frames <= count ? i : i * (frames - 1) / (count - 1));
   return chosen;

@@ -86,7 +86,9 @@ std::vector<int> VoxelGrid::cells_of_each(const Points& points) const {
 Points VoxelGrid::centres(const VoxelSet& cells) {
   Points centres(cells.size(), 3);
   for (size_t i = 0; i < cells.size(); ++i)
-    centres.row(i) << cells[i] % kVoxels, cells[i] / kVoxels % kVoxels, cells[i] / (kVoxels * kVoxels);
+    centres.row(i) =
+        Eigen::RowVector3i(cells[i] % kVoxels, cells[i] / kVoxels % kVoxels, cells[i] / (kVoxels * kVoxels))
+            .cast<float>();
   return (centres.array() * (2.0f / (kVoxels - 1)) - 1).matrix();
 }
 

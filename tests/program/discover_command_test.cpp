@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "retarget/character/read_character.hpp"
 #include "retarget/character/rig_character.hpp"
 #include "tests/app/cli_fixture.hpp"
+#include "tests/retarget/motion/made_motion.hpp"
 
 namespace understudy::tests {
 namespace {
@@ -35,7 +38,9 @@ TEST_F(DiscoverCommand, ALampsBonesAreFoundAndItsFileOpensAgain) {
   const size_t bones = report["bones"].size();
   EXPECT_GE(bones, 2u);
   EXPECT_NE(run.out.find(std::to_string(bones) + " bones"), std::string::npos) << run.out;
-  EXPECT_GT(report["bones"][1]["turned_deg"], 4);
+  double most = 0;
+  for (const Json& bone : report["bones"]) most = std::max(most, bone["turned_deg"].get<double>());
+  EXPECT_GT(most, 5);
   const RiggedMotion read = from_character(read_character(out("rig.glb")), 0, 30);
   EXPECT_EQ(read.rig.joints.size(), bones);
   EXPECT_EQ(read.motion.poses.size(), static_cast<size_t>(kScans));
@@ -49,9 +54,11 @@ TEST_F(DiscoverCommand, SaysWhatItCannotDo) {
                        ".glb or .gltf");
   expect_clean_failure(run_program({"discover", "--source", scratch.path("absent"), "--out", out("rig.glb")}),
                        "absent");
-  expect_clean_failure(run_program({"discover", "--source", US_SOURCE_DIR "/tests/fuzz/corpus/bvh/walk.bvh",
-                                    "--out", out("rig.glb")}),
-                       "has its bones already");
+  const Joints rest = made_joints({});
+  std::ofstream(scratch.path("walk.bvh")) << made_bvh({}, rest, made_motion(4, rest));
+  expect_clean_failure(
+      run_program({"discover", "--source", scratch.path("walk.bvh"), "--out", out("rig.glb")}),
+      "has its bones already");
   std::filesystem::create_directories(scratch.path("one"));
   std::filesystem::copy_file(std::filesystem::directory_iterator(scans())->path(),
                              scratch.path("one/frame_0.ply"));
