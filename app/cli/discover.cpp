@@ -71,9 +71,7 @@ render::SheetMoment moment_of(const DiscoveredRig& rig, const ScanSequence& scan
     skeleton.parents.push_back(tip.joint);
   }
   constexpr float kAdult = 2;  // diagonal of an adult's box, metres
-  skeleton.thickness =
-      (found.surface.vertices.colwise().maxCoeff() - found.surface.vertices.colwise().minCoeff()).norm() /
-      kAdult;
+  skeleton.thickness = box_diagonal(found.surface.vertices) / kAdult;
   moment.target = Mesh{skinned(found.surface.vertices, found.skin, bones), found.surface.faces, colors};
   return moment;
 }

@@ -180,10 +180,6 @@ Mesh surface_of(const Character& character, const Points& vertices) {
   return mesh;
 }
 
-float size_of(const Points& vertices) {
-  return (vertices.colwise().maxCoeff() - vertices.colwise().minCoeff()).norm();
-}
-
 /// How the nodes moved each joint from the bind pose.
 BoneMotions motions_of(const Character& character, const BoneNodes& bones, const std::vector<Mat4>& bind,
                        const std::vector<Mat4>& world) {
@@ -272,7 +268,7 @@ void warn_of_loss(const Character& character, const RiggedMotion& read, int anim
     const Points is = vertices_at(character, animation, times[t]);
     if (is.rows() > 0) lost = std::max(lost, (posed - is).rowwise().norm().maxCoeff());
   }
-  const float size = size_of(read.rig.surface.vertices);
+  const float size = box_diagonal(read.rig.surface.vertices);
   if (lost > kLost * size)
     log::warn(character.called() +
               printed(": as a rig its surface is up to %.1f %% of its size off the file's: bones leave their "
@@ -337,7 +333,7 @@ RiggedMotion from_character(const Character& character, int animation, double fp
   frames.reserve(times.size());
   for (const float time : times)
     frames.push_back(motions_of(character, bones, bind.nodes, nodes_at(character, animation, time).world));
-  const float slide_noise = kSlideNoise * size_of(bind.vertices);
+  const float slide_noise = kSlideNoise * box_diagonal(bind.vertices);
   for (size_t j = 1; j < read.rig.joints.size(); ++j) set_kind(read.rig.joints[j], j, frames, slide_noise);
   check_rig(read.rig);
   read.motion.fps = fps > 0 ? fps : read.motion.fps;

@@ -179,10 +179,7 @@ void BoneFit::round(float radius, BoneMotions& bones) {
   const Eigen::VectorXd step = normal_.ldlt().solve(gradient_);
   for (int b = 0; b < count_; ++b) {
     RigidMotion& bone = bones[static_cast<size_t>(b)];
-    const Vec3 rest = centres_.row(b).transpose(), at = bone(rest);
-    const Vec6 own = step.segment<6>(6 * b).cast<float>();
-    bone.R = nearest_rotation(rotation_from_axis_angle(own.head<3>()) * bone.R);
-    bone.t = at + own.tail<3>() - bone.R * rest;
+    bone = stepped(bone, centres_.row(b).transpose(), step.segment<6>(6 * b).cast<float>());
   }
 }
 

@@ -70,6 +70,7 @@ class Discovery {
   void find_bones();
   void bind_points();
   void fit_all(float stiffness);
+  PartJoint joint_as_fitted(int j) const;
   void find_joints_again();
   void drop_still_bones();
   void track_from_bones();
@@ -160,17 +161,22 @@ void Discovery::fit_all(float stiffness) {
   in_halves(frames_.size(), [&](size_t t) { fit_bones(tree_.rig, surface_, frames_[t], fit, bones_[t]); });
 }
 
+/// The joint that the fitted bones have in common.
+PartJoint Discovery::joint_as_fitted(int j) const {
+  const RigJoint& joint = tree_.rig.joints[static_cast<size_t>(j)];
+  std::vector<RigidMotion> parent, child;
+  for (const BoneMotions& bones : bones_) {
+    parent.push_back(bones[static_cast<size_t>(joint.parent)]);
+    child.push_back(bones[static_cast<size_t>(j)]);
+  }
+  return find_joint(parent, child, joint.rest, parts_.noise_m, box_diagonal(tracks_.graph.points));
+}
+
 /// The joints of bones that have been fitted with joints that give.
 void Discovery::find_joints_again() {
-  const float size = box_diagonal(tracks_.graph.points);
   for (int j = 1; j < tree_.rig.count(); ++j) {
     RigJoint& joint = tree_.rig.joints[static_cast<size_t>(j)];
-    std::vector<RigidMotion> parent, child;
-    for (const BoneMotions& bones : bones_) {
-      parent.push_back(bones[static_cast<size_t>(joint.parent)]);
-      child.push_back(bones[static_cast<size_t>(j)]);
-    }
-    const PartJoint found = find_joint(parent, child, joint.rest, parts_.noise_m, size);
+    const PartJoint found = joint_as_fitted(j);
     joint.rest = found.rest;
     if (found.kind != JointKind::Fixed) joint.kind = found.kind, joint.axis = found.axis;
   }
@@ -178,15 +184,8 @@ void Discovery::find_joints_again() {
 
 /// Bones that by now hardly move against their parents: what tracking had moved.
 void Discovery::drop_still_bones() {
-  const float size = box_diagonal(tracks_.graph.points);
   for (int j = tree_.rig.count() - 1; j > 0; --j) {
-    const RigJoint& joint = tree_.rig.joints[static_cast<size_t>(j)];
-    std::vector<RigidMotion> parent, child;
-    for (const BoneMotions& bones : bones_) {
-      parent.push_back(bones[static_cast<size_t>(joint.parent)]);
-      child.push_back(bones[static_cast<size_t>(j)]);
-    }
-    if (find_joint(parent, child, joint.rest, parts_.noise_m, size).kind != JointKind::Fixed) continue;
+    if (joint_as_fitted(j).kind != JointKind::Fixed) continue;
     surface_.skin = renumbered(surface_.skin, merge_into_parent(tree_.rig, j));
     tree_.part_of_bone.erase(tree_.part_of_bone.begin() + j);
     for (BoneMotions& bones : bones_) bones.erase(bones.begin() + j);

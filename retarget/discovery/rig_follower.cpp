@@ -3,27 +3,11 @@
 #include <cmath>
 #include <utility>
 
-#include "retarget/math/rotation.hpp"
-
 namespace understudy {
 namespace {
 
 constexpr int kFollowedPoints = 2000, kFollowedSurface = 6000;
 constexpr uint64_t kFollowerSeed = 20240611;
-
-/// As the bones moved last, they go on, a little slower.
-BoneMotions led_on(const Rig& rig, const BoneMotions& before, const BoneMotions& last) {
-  constexpr float kKept = 0.8f;
-  BoneMotions next(last.size());
-  for (size_t b = 0; b < last.size(); ++b) {
-    const Vec3 rest = rig.joints[b].rest;
-    const Vec3 turn = rotation_to_axis_angle(last[b].R * before[b].R.transpose());
-    const Vec3 at = last[b](rest) + kKept * (last[b](rest) - before[b](rest));
-    next[b].R = rotation_from_axis_angle(kKept * turn) * last[b].R;
-    next[b].t = at - next[b].R * rest;
-  }
-  return next;
-}
 
 }  // namespace
 
@@ -47,14 +31,10 @@ void RigFollower::start_from(const RigPose& pose) {
 }
 
 RigFollower::Followed RigFollower::follow(const Mesh& scan) {
-  Followed followed =
-      fit(thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed), led_on(rig_, before_, last_));
+  Followed followed = fit(thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed),
+                          led_on(before_, last_, rig_.rest_joints()));
   before_ = std::exchange(last_, bone_motions(rig_, followed.pose));
   return followed;
-}
-
-RigFollower::Followed RigFollower::fit(const Mesh& scan, const RigPose& near) const {
-  return fit(thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed), bone_motions(rig_, near));
 }
 
 RigFollower::Followed RigFollower::fit(const ThinnedFrame& scan, BoneMotions bones) const {

@@ -20,8 +20,6 @@ class RigFollower {
   };
   /// Throws Error for a scan without 30 finite points.
   Followed follow(const Mesh& scan);
-  /// The same from this pose, which leads nowhere.
-  Followed fit(const Mesh& scan, const RigPose& near) const;
 
  private:
   Followed fit(const ThinnedFrame& scan, BoneMotions bones) const;

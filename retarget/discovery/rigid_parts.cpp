@@ -165,7 +165,8 @@ class Agglomeration {
   explicit Agglomeration(const Patches& patches);
   /// Joins the two sets that lose least by it while they lose less than `allowed`, or are more than `most`.
   void join_while(double allowed, int most);
-  std::vector<int> labels() const;
+  /// Of each patch its set, with gaps in the numbers.
+  const std::vector<int>& labels() const { return set_of_; }
 
  private:
   using Pair = std::pair<int, int>;
@@ -230,14 +231,6 @@ void Agglomeration::join_while(double allowed, int most) {
     if (cost > allowed && (most <= 0 || count_ <= most)) return;
     join(pair.first, pair.second);
   }
-}
-
-std::vector<int> Agglomeration::labels() const {
-  std::map<int, int> number;
-  std::vector<int> labels;
-  for (const int set : set_of_)
-    labels.push_back(number.emplace(set, static_cast<int>(number.size())).first->second);
-  return labels;
 }
 
 /// Labels without gaps, in the order of their first points.
@@ -364,24 +357,6 @@ PartNeighbours neighbours_of(const SurfaceGraph& surface, const RigidParts& part
   return all;
 }
 
-/// Without the part the scans see its points move with one beside it: what only slid along a surface that
-/// looks the same, as a ring about an axle, loses nothing.
-Removal removal_by_scans(const ScanEvidence& scans, const RigidParts& parts, const PartNeighbours& all,
-                         int part) {
-  const auto p = static_cast<size_t>(part);
-  Removal removal{part, 0, {}};
-  for (const int i : all.points[p]) {
-    double least = std::numeric_limits<double>::infinity();
-    int to = -1;
-    for (const int other : all.near[p])
-      if (const double off = scans.off(i, parts.motions[static_cast<size_t>(other)]); off < least)
-        least = off, to = other;
-    removal.loss += std::max(0.0, least - scans.off(i, parts.motions[p]));
-    removal.moves.push_back({i, to});
-  }
-  return removal;
-}
-
 /// A point as a blend of two parts' motions, as skin bends between them: squared distance left, and the
 /// second part's share.
 std::pair<double, double> blended(const Trajectories& tracks, int point, const std::vector<RigidMotion>& a,
@@ -396,26 +371,53 @@ std::pair<double, double> blended(const Trajectories& tracks, int point, const s
   return {tracks.weight * (off + 2 * share * along + share * share * apart), share};
 }
 
+/// What explains a point without its part: the weighted squared distance left, and the part that it goes to.
+using Substitute = std::pair<double, int>;
+
+/// without: of a point its best substitute; with: what its own part leaves.
+template <class Without, class With>
+Removal removal_of(const PartNeighbours& all, int part, const Without& without, const With& with) {
+  Removal removal{part, 0, {}};
+  for (const int i : all.points[static_cast<size_t>(part)]) {
+    const auto [off, to] = without(i);
+    removal.loss += std::max(0.0, off - with(i));
+    removal.moves.push_back({i, to});
+  }
+  return removal;
+}
+
+/// Without the part the scans see its points move with one beside it: what only slid along a surface that
+/// looks the same, as a ring about an axle, loses nothing.
+Removal removal_by_scans(const ScanEvidence& scans, const RigidParts& parts, const PartNeighbours& all,
+                         int part) {
+  const auto p = static_cast<size_t>(part);
+  const auto without = [&](int i) {
+    Substitute best{std::numeric_limits<double>::infinity(), -1};
+    for (const int other : all.near[p])
+      if (const double off = scans.off(i, parts.motions[static_cast<size_t>(other)]); off < best.first)
+        best = {off, other};
+    return best;
+  };
+  return removal_of(all, part, without, [&](int i) { return scans.off(i, parts.motions[p]); });
+}
+
 /// Without the part its points are blends of those beside it: what is only the bend between two parts loses
 /// nothing.
 Removal removal_by_blends(const Trajectories& tracks, const RigidParts& parts, const PartNeighbours& all,
                           int part) {
   const auto p = static_cast<size_t>(part);
-  Removal removal{part, 0, {}};
-  for (const int i : all.points[p]) {
-    double least = std::numeric_limits<double>::infinity();
-    int to = -1;
+  const auto without = [&](int i) {
+    Substitute best{std::numeric_limits<double>::infinity(), -1};
     for (const int a : all.near[p])
       for (const int b : all.near[p]) {
         if (b < a) continue;
         const auto [off, share] =
             blended(tracks, i, parts.motions[static_cast<size_t>(a)], parts.motions[static_cast<size_t>(b)]);
-        if (off < least) least = off, to = share < 0.5 ? a : b;
+        if (off < best.first) best = {off, share < 0.5 ? a : b};
       }
-    removal.loss += std::max(0.0, least - tracks.residual(i, parts.motions[p]));
-    removal.moves.push_back({i, to});
-  }
-  return removal;
+    return best;
+  };
+  return removal_of(all, part, without, [&](int i) { return tracks.residual(i, parts.motions[p]); });
 }
 
 /// The part that is missed least.
@@ -447,8 +449,8 @@ RigidParts find_rigid_parts(const std::vector<ThinnedFrame>& frames, const Surfa
   const double allowed = 2 * parts.noise_m * parts.noise_m * price;
   Agglomeration sets(patches);
   sets.join_while(allowed, most);
-  const std::vector<int> of_patch = sets.labels();
-  for (const int patch : patches.of_point) parts.of_point.push_back(of_patch[static_cast<size_t>(patch)]);
+  for (const int patch : patches.of_point)
+    parts.of_point.push_back(sets.labels()[static_cast<size_t>(patch)]);
   settle_seams(surface, trajectories, parts);
   const ScanEvidence scans(frames, tracks);
   while (parts.count() > 1) {

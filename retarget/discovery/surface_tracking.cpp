@@ -138,8 +138,8 @@ class Follower {
  public:
   explicit Follower(const DeformationGraph& graph)
       : graph_(graph), equations_(graph), pull_(graph.edges.size(), 1) {}
-  /// Moves `motions` so that the surface lies on the scan; mean distance of its points from it, metres.
-  float fit(const ThinnedFrame& scan, const Schedule& schedule, NodeMotions& motions);
+  /// Moves `motions` so that the surface lies on the scan.
+  void fit(const ThinnedFrame& scan, const Schedule& schedule, NodeMotions& motions);
 
  private:
   void match_points(const ThinnedFrame& scan, float radius, const NodeMotions& motions);
@@ -222,14 +222,11 @@ void Follower::hold_together(double stiffness, const NodeMotions& motions) {
 void Follower::apply(const Eigen::VectorXd& step, NodeMotions& motions) const {
   for (int k = 0; k < graph_.count(); ++k) {
     RigidMotion& motion = motions[static_cast<size_t>(k)];
-    const Vec3 g = graph_.nodes.row(k).transpose(), at = motion(g);
-    const Eigen::Matrix<float, 6, 1> own = step.segment<6>(6 * k).cast<float>();
-    motion.R = nearest_rotation(rotation_from_axis_angle(own.head<3>()) * motion.R);
-    motion.t = at + own.tail<3>() - motion.R * g;
+    motion = stepped(motion, graph_.nodes.row(k).transpose(), step.segment<6>(6 * k).cast<float>());
   }
 }
 
-float Follower::fit(const ThinnedFrame& scan, const Schedule& schedule, NodeMotions& motions) {
+void Follower::fit(const ThinnedFrame& scan, const Schedule& schedule, NodeMotions& motions) {
   for (int round = 0; round < schedule.rounds; ++round) {
     const float share = static_cast<float>(round) / static_cast<float>(schedule.rounds - 1);
     const float radius = graph_.spacing * schedule.first_radius *
@@ -247,35 +244,15 @@ float Follower::fit(const ThinnedFrame& scan, const Schedule& schedule, NodeMoti
     const float now = (motions[static_cast<size_t>(a)](ga) - motions[static_cast<size_t>(b)](gb)).norm();
     if (now > (1 + kTorn) * length) pull_[e] = std::min(pull_[e], 0.02);
   }
-  double sum = 0;
-  posed_ = deformed(graph_, motions);
-  for (Eigen::Index i = 0; i < posed_.rows(); ++i)
-    sum += std::sqrt(scan.tree.nearest(posed_.row(i).transpose()).squared);
-  return static_cast<float>(sum / static_cast<double>(posed_.rows()));
-}
-
-/// The next frame if nodes go on moving as they did, a little slower.
-NodeMotions led_on(const NodeMotions& before, const NodeMotions& last, const Points& nodes) {
-  constexpr float kKept = 0.8f;
-  NodeMotions next(last.size());
-  for (size_t k = 0; k < last.size(); ++k) {
-    const Vec3 g = nodes.row(static_cast<Eigen::Index>(k)).transpose();
-    const Vec3 turn = rotation_to_axis_angle(last[k].R * before[k].R.transpose());
-    const Vec3 at = last[k](g) + kKept * (last[k](g) - before[k](g));
-    next[k].R = rotation_from_axis_angle(kKept * turn) * last[k].R;
-    next[k].t = at - next[k].R * g;
-  }
-  return next;
 }
 
 }  // namespace
 
 SurfaceTracks track_surface(const std::vector<ThinnedFrame>& frames, int rest_frame, int nodes,
                             const TrackingProgress& progress) {
-  SurfaceTracks tracks{deformation_graph(frames[static_cast<size_t>(rest_frame)], nodes), rest_frame, {}, {}};
+  SurfaceTracks tracks{deformation_graph(frames[static_cast<size_t>(rest_frame)], nodes), rest_frame, {}};
   const NodeMotions still(static_cast<size_t>(tracks.graph.count()));
   tracks.motions.assign(frames.size(), still);
-  tracks.off_m.assign(frames.size(), 0);
   std::atomic<bool> goes_on{true};
   const auto follow = [&](int step) {
     Follower follower(tracks.graph);
@@ -283,9 +260,7 @@ SurfaceTracks track_surface(const std::vector<ThinnedFrame>& frames, int rest_fr
     for (int t = rest_frame + step; t >= 0 && t < static_cast<int>(frames.size()); t += step) {
       NodeMotions& now = tracks.motions[static_cast<size_t>(t)];
       now = goes_on ? led_on(before, last, tracks.graph.nodes) : last;
-      if (goes_on)
-        tracks.off_m[static_cast<size_t>(t)] =
-            follower.fit(frames[static_cast<size_t>(t)], kFromTheFrameBefore, now);
+      if (goes_on) follower.fit(frames[static_cast<size_t>(t)], kFromTheFrameBefore, now);
       before = std::exchange(last, now);
       if (goes_on && progress && !progress()) goes_on = false;
     }
@@ -302,7 +277,7 @@ void track_again(const std::vector<ThinnedFrame>& frames, SurfaceTracks& tracks,
   const auto follow = [&](size_t first, size_t end) {
     Follower follower(tracks.graph);
     for (size_t t = first; t < end && goes_on; ++t) {
-      tracks.off_m[t] = follower.fit(frames[t], kFromAFit, tracks.motions[t]);
+      follower.fit(frames[t], kFromAFit, tracks.motions[t]);
       if (progress && !progress()) goes_on = false;
     }
   };

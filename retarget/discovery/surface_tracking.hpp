@@ -13,7 +13,6 @@ struct SurfaceTracks {
   DeformationGraph graph;  ///< of the rest frame
   int rest_frame = 0;
   std::vector<NodeMotions> motions;  ///< [T]
-  std::vector<float> off_m;          ///< [T] from the points to the scan, mean, metres
   /// The points in a frame, [N, 3].
   Points at(int frame) const { return deformed(graph, motions[static_cast<size_t>(frame)]); }
 };

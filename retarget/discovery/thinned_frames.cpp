@@ -97,10 +97,6 @@ ThinnedFrame spread_part(const ThinnedFrame& frame) {
   return {points, frame.normals.topRows(frame.spread), frame.spread, PointTree(points)};
 }
 
-float box_diagonal(const Points& points) {
-  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
-}
-
 SurfaceGraph surface_graph(const ThinnedFrame& frame) {
   const auto count = static_cast<int>(frame.points.rows());
   SurfaceGraph graph;

@@ -22,9 +22,6 @@ ThinnedFrame thinned(const Mesh& scan, int spread, int count, uint64_t seed);
 /// Those far apart alone.
 ThinnedFrame spread_part(const ThinnedFrame& frame);
 
-/// Diagonal of the box about the points, metres.
-float box_diagonal(const Points& points);
-
 /// Neighbours along a surface: each point with its nearest ones, both ways, [N]. Pieces that do not touch are
 /// joined where they are nearest.
 struct SurfaceGraph {

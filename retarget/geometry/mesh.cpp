@@ -11,6 +11,10 @@
 
 namespace understudy {
 
+float box_diagonal(const Points& points) {
+  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
+}
+
 Points vertex_normals(const Points& vertices, const Faces& faces) {
   Points normals = Points::Zero(vertices.rows(), 3);
   const float* at = vertices.data();  // plain loops: this runs for every frame of a film

@@ -16,6 +16,9 @@ struct Mesh {
   bool is_cloud() const { return faces.rows() == 0; }
 };
 
+/// Diagonal of the box about the points, metres.
+float box_diagonal(const Points& points);
+
 /// Area-weighted vertex normals, [V, 3], unit length (zero where no face touches).
 Points vertex_normals(const Points& vertices, const Faces& faces);
 

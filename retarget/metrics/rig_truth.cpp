@@ -88,7 +88,7 @@ double body_size(const std::vector<Points>& vertices) {
   double sum = 0;
   for (const Points& frame : vertices) {
     US_CHECK(frame.rows() > 0, "a body without vertices has no size");
-    sum += static_cast<double>((frame.colwise().maxCoeff() - frame.colwise().minCoeff()).norm());
+    sum += static_cast<double>(box_diagonal(frame));
   }
   US_CHECK(sum > 0 && std::isfinite(sum), "a body that is one point has no size");
   return sum / static_cast<double>(vertices.size());
