@@ -5,10 +5,13 @@
 #include <tuple>
 #include <utility>
 
+#include "retarget/geometry/inner_balls.hpp"
+
 namespace understudy {
 namespace {
 
 constexpr int kNodeNeighbours = 6;
+constexpr float kThinnest = 0.01f;  // of the body's diagonal: radius; nothing is seen as thinner
 
 using NearNodes = std::vector<std::pair<float, int>>;  // distance along the surface, node
 
@@ -79,6 +82,7 @@ DeformationGraph deformation_graph(const ThinnedFrame& whole, int nodes) {
   graph.node_points = chosen;
   graph.points = rest.points;
   graph.normals = rest.normals;
+  graph.radii = inner_radii(rest.tree, rest.normals).cwiseMax(kThinnest * box_diagonal(rest.points));
   graph.nodes = rest.points(chosen, Eigen::all);
   // Nodes cover the surface: none is further than the last chosen one from those before it.
   const float gap = [&] {

@@ -15,6 +15,7 @@ struct DeformationGraph {
   Points nodes;                  ///< [G, 3] at rest, metres
   std::vector<int> node_points;  ///< [G] each node is one of the points
   Points points, normals;        ///< [N, 3] of the surface at rest
+  Eigen::VectorXf radii;         ///< [N] half as thick as the body is there, metres
   SurfaceGraph surface;          ///< of the points
   Eigen::Matrix<int, Eigen::Dynamic, kNodesOfPoint, Eigen::RowMajor> near;      ///< [N, 4] nodes of a point
   Eigen::Matrix<float, Eigen::Dynamic, kNodesOfPoint, Eigen::RowMajor> shares;  ///< [N, 4], rows sum to 1

@@ -11,6 +11,8 @@
 #include "retarget/base/error.hpp"
 #include "retarget/discovery/part_tree.hpp"
 #include "retarget/discovery/rig_follower.hpp"
+#include "retarget/discovery/scan_evidence.hpp"
+#include "retarget/discovery/turntables.hpp"
 #include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 #include "retarget/rig/rig_edits.hpp"
@@ -146,6 +148,7 @@ void Discovery::bind_points() {
 void Discovery::find_bones() {
   parts_ = find_rigid_parts(frames_, tracks_, options_.parts);
   tree_ = find_part_tree(tracks_, parts_);
+  add_turntables(tracks_, parts_, tree_);
   bind_points();
   bones_.assign(frames_.size(), BoneMotions(tree_.part_of_bone.size()));
   for (size_t t = 0; t < frames_.size(); ++t)
@@ -291,6 +294,7 @@ DiscoveredRig Discovery::run() {
   read_key_frames();
   tracks_ = track_surface(frames_, most_open(), kNodes, tracking_progress(kReadingEnds, kTrackingEnds));
   for (int round = 0; round < kRounds; ++round) {
+    rest_what_may(frames_, tracks_);
     find_bones();
     if (!goes_on_) return finished();
     fit_all(kLooseJoints);

@@ -17,7 +17,7 @@ namespace {
 using Pair = std::pair<int, int>;
 
 constexpr float kDegrees = 180 / kPi;
-constexpr float kFixedTurn_deg = 4, kFixedSlide = 0.008f;  // of the diagonal: less is no joint
+constexpr float kFixedTurn_deg = 5, kFixedSlide = 0.008f;  // of the diagonal: less is no joint
 constexpr float kSeamSpread = 0.04f;  // of the diagonal: how far a joint may be from its seam
 constexpr float kHingeShare = 0.2f;   // of the main turn: what else a hinge turns, noise
 constexpr float kHingeNoise_deg = 2;
@@ -63,11 +63,13 @@ Vec3 shared_place(const std::vector<RigidMotion>& parent, const std::vector<Rigi
   return A.ldlt().solve(b).cast<float>();
 }
 
-/// The middles of the surface's edges that cross from one part to another, by the two parts.
+/// The middles of the surface's edges that cross from one part to another, by the two parts. They count by
+/// how thick the body is there: bones run in the thick of it, as in a wing.
 struct Seam {
   Vec3 sum = Vec3::Zero();
+  float weight = 0;
   int edges = 0;
-  Vec3 middle() const { return sum / static_cast<float>(edges); }
+  Vec3 middle() const { return sum / weight; }
 };
 std::map<Pair, Seam> find_seams(const SurfaceTracks& tracks, const RigidParts& parts) {
   constexpr float kTorn = 0.3f;  // of the spacing of nodes, longer than at rest: what only touched
@@ -85,7 +87,9 @@ std::map<Pair, Seam> find_seams(const SurfaceTracks& tracks, const RigidParts& p
                                    parts.motions[static_cast<size_t>(b)][t](pb))
                                       .norm());
       Seam& seam = (widest < edge.length + kTorn * graph.spacing ? seams : torn)[{a, b}];
-      seam.sum += (pa + pb) / 2;
+      const float radius = std::min(graph.radii[static_cast<Eigen::Index>(i)], graph.radii[edge.to]);
+      const float weight = radius * radius;
+      seam.sum += weight * (pa + pb) / 2, seam.weight += weight;
       ++seam.edges;
     }
   UnionFind sets(static_cast<size_t>(parts.count()));
@@ -176,6 +180,19 @@ Vec3 centre_of(const Points& points, const std::vector<int>& of_point, int part)
   return sum / static_cast<float>(std::max(count, 1));
 }
 
+/// The largest of what stands still, on which the others move; else the central part.
+int root_of(const SurfaceTracks& tracks, const RigidParts& parts, const std::vector<Link>& tree,
+            const std::vector<int>& sizes) {
+  const float size = box_diagonal(tracks.graph.points);
+  int root = -1;
+  for (int p = 0; p < parts.count(); ++p)
+    if (stands_still(parts.motions[static_cast<size_t>(p)], centre_of(tracks.graph.points, parts.of_point, p),
+                     size) &&
+        (root < 0 || sizes[static_cast<size_t>(p)] > sizes[static_cast<size_t>(root)]))
+      root = p;
+  return root >= 0 ? root : central_part(tree, sizes);
+}
+
 /// A part that hardly moves against one beside it becomes one with it; false where there is none.
 bool join_fixed(const SurfaceTracks& tracks, RigidParts& parts) {
   const float least = kFixedSlide * box_diagonal(tracks.graph.points);
@@ -206,11 +223,12 @@ PartJoint find_joint(const std::vector<RigidMotion>& parent, const std::vector<R
   const Mat3 mean = mean_rotation(turns);
   for (const Mat3& R : turns) {
     vectors.push_back(rotation_to_axis_angle(mean.transpose() * R));
-    joint.turn_deg = std::max(joint.turn_deg, 2 * kDegrees * vectors.back().norm());
   }
   joint.off_m = static_cast<float>(std::sqrt(off / static_cast<double>(parent.size())));
   const MainDirection turn = main_direction(vectors), slide = main_direction(slides);
-  joint.slide_m = 2 * std::sqrt(2.0f) * slide.first;  // of a swing: from end to end
+  // Of a swing: from end to end.
+  joint.turn_deg = 2 * std::sqrt(2.0f) * kDegrees * turn.first;
+  joint.slide_m = 2 * std::sqrt(2.0f) * slide.first;
   const bool turns_much = joint.turn_deg > kFixedTurn_deg, slides_much = joint.slide_m > kFixedSlide * size_m;
   if (!turns_much) {
     joint.kind = slides_much ? JointKind::Slider : JointKind::Fixed;
@@ -222,13 +240,20 @@ PartJoint find_joint(const std::vector<RigidMotion>& parent, const std::vector<R
   return joint;
 }
 
+bool stands_still(const std::vector<RigidMotion>& motions, const Vec3& at, float size_m) {
+  constexpr float kMoved = 0.003f, kTurned = 0.02f;
+  return std::all_of(motions.begin(), motions.end(), [&](const RigidMotion& motion) {
+    return (motion(at) - at).norm() < kMoved * size_m && (motion.R - Mat3::Identity()).norm() < kTurned;
+  });
+}
+
 PartTree find_part_tree(const SurfaceTracks& tracks, RigidParts& parts) {
   while (parts.count() > 1 && join_fixed(tracks, parts)) refit(tracks, parts);
   const std::vector<Link> tree = spanning_tree(links_of(tracks, parts), parts.count());
   std::vector<int> sizes(static_cast<size_t>(parts.count()), 0), bone(sizes.size(), -1);
   for (const int part : parts.of_point) ++sizes[static_cast<size_t>(part)];
   PartTree found;
-  for (const auto& [part, l] : outwards_from(central_part(tree, sizes), tree)) {
+  for (const auto& [part, l] : outwards_from(root_of(tracks, parts, tree, sizes), tree)) {
     RigJoint joint{"bone " + std::to_string(found.rig.count()), -1, JointKind::Free,
                    centre_of(tracks.graph.points, parts.of_point, part), Vec3::UnitY()};
     if (l >= 0) {

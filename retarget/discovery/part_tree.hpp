@@ -14,7 +14,7 @@ struct PartJoint {
   Vec3 rest = Vec3::Zero();   ///< the place that both carry alike, at rest, metres
   Vec3 axis = Vec3::UnitY();  ///< of a hinge or slider, at rest
   float off_m = 0;            ///< how far apart both carry it, root of the mean square over the frames
-  float turn_deg = 0;         ///< how far one turns against the other, largest angle from the mean times two
+  float turn_deg = 0;         ///< how far one swings against the other, from end to end, about its main axis
   float slide_m = 0;          ///< how far that place moves against the parent, along its main direction
 };
 /// The joint of two bodies that move so, [T] each, which touch at `seam`: the place c that minimises
@@ -23,14 +23,17 @@ struct PartJoint {
 PartJoint find_joint(const std::vector<RigidMotion>& parent, const std::vector<RigidMotion>& child,
                      const Vec3& seam, float noise_m, float size_m);
 
+/// Whether a part of a body of that size does not move, as at `at`.
+bool stands_still(const std::vector<RigidMotion>& motions, const Vec3& at, float size_m);
+
 /// A rig without a surface, and which part each of its bones is.
 struct PartTree {
   Rig rig;
   std::vector<int> part_of_bone;
 };
-/// The tree of least cost: joints that both sides carry alike, at their seam. The root is the part from which
-/// the others are fewest steps away, weighted by their size. Parts that hardly move against each other become
-/// one: `parts` then has fewer.
+/// The tree of least cost: joints that both sides carry alike, at their seam. The root is what stands still,
+/// else the part from which the others are fewest steps away, weighted by their size. Parts that hardly
+/// move against each other become one: `parts` then has fewer.
 PartTree find_part_tree(const SurfaceTracks& tracks, RigidParts& parts);
 
 }  // namespace understudy

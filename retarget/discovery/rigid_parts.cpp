@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "retarget/discovery/scan_evidence.hpp"
 #include "retarget/math/percentile.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -19,13 +20,13 @@ using Mat3d = Eigen::Matrix3d;
 
 constexpr int kPatches = 400;          // that are joined to parts
 constexpr double kUnits = 200;         // of a surface that tell as much as if each moved on its own
-constexpr double kPrice = 3;           // of a part a frame, in log(units): half of six numbers
+constexpr double kPrice = 2;           // of a part a frame, in log(units): half of what a joint leaves free
 constexpr float kLeastNoise = 0.001f;  // of the body's diagonal: nothing is followed better than that
 constexpr double kRigidShare = 25;     // percent of the patches that lie in the middle of a part
 constexpr int kSettlingRounds = 6, kRobustRounds = 4;
-constexpr int kJudgedFrames = 20;  // evenly spread, in which scans are asked
 // What the scans, and blends of other parts, may explain worse without a part; in its price.
-constexpr double kScanAllowance = 0.3, kBlendAllowance = 0.3;
+constexpr double kScanAllowance = 0.3, kBlendAllowance = 0.4;
+constexpr double kSubstituteCredit = 0.5;  // of what blends explain better than the part
 
 /// What is known of a set of points in every frame: all that the best rigid motion depends on.
 struct Moments {
@@ -80,11 +81,18 @@ RigidMotion Moments::best(size_t t) const {
   return motion;
 }
 
-/// The surface's points in all frames. Together they weigh kUnits: neighbours move alike, and so many of them
-/// would tell as much if each moved on its own.
+/// What each point weighs: the thinner the body there the more, as a millimetre means more on a paw than on a
+/// back. Together kUnits: neighbours move alike, and so many of them would tell as much if each moved on its
+/// own.
+Eigen::VectorXd point_weights(const DeformationGraph& graph) {
+  const Eigen::VectorXd weights = graph.radii.cast<double>().array().square().inverse();
+  return weights * (kUnits / weights.sum());
+}
+
+/// The surface's points in all frames.
 struct Trajectories {
-  explicit Trajectories(const SurfaceTracks& tracks) : rest(tracks.graph.points) {
-    weight = kUnits / static_cast<double>(rest.rows());
+  explicit Trajectories(const SurfaceTracks& tracks)
+      : rest(tracks.graph.points), weight(point_weights(tracks.graph)) {
     for (size_t t = 0; t < tracks.motions.size(); ++t) posed.push_back(tracks.at(static_cast<int>(t)));
   }
   /// share: of the point's weight
@@ -95,16 +103,16 @@ struct Trajectories {
     double sum = 0;
     for (size_t t = 0; t < posed.size(); ++t)
       sum += (motions[t](x) - posed[t].row(point).transpose()).squaredNorm();
-    return weight * sum;
+    return weight[point] * sum;
   }
 
   const Points& rest;
   std::vector<Points> posed;  // [T]
-  double weight;              // of a point
+  Eigen::VectorXd weight;     // of the points
 };
 
 void Trajectories::add(int point, Moments& to, double share) const {
-  const double w = share * weight;
+  const double w = share * weight[point];
   const Vec3d x = rest.row(point).transpose().cast<double>();
   to.weight += w, to.sum += w * x, to.squared += w * x.squaredNorm();
   to.frames.resize(posed.size());
@@ -251,11 +259,11 @@ void find_motions(const Trajectories& tracks, RigidParts& parts) {
     parts.motions.assign(count, {});
     for (size_t p = 0; p < count; ++p)
       for (size_t t = 0; t < tracks.posed.size(); ++t) parts.motions[p].push_back(moments[p].best(t));
-    const double scale =
-        parts.noise_m * parts.noise_m * tracks.weight * static_cast<double>(tracks.posed.size());
+    const double usual = parts.noise_m * parts.noise_m * static_cast<double>(tracks.posed.size());
     for (size_t i = 0; i < shares.size(); ++i) {
-      const double off =
-          tracks.residual(static_cast<int>(i), parts.motions[static_cast<size_t>(parts.of_point[i])]);
+      const auto point = static_cast<int>(i);
+      const double scale = usual * tracks.weight[point],
+                   off = tracks.residual(point, parts.motions[static_cast<size_t>(parts.of_point[i])]);
       shares[i] = std::pow(scale / (scale + off), 2);
     }
   }
@@ -293,42 +301,6 @@ void settle_seams(const SurfaceGraph& surface, const Trajectories& tracks, Rigid
   }
   find_motions(tracks, parts);
 }
-
-/// How well the scans are explained by points that move with a part.
-class ScanEvidence {
- public:
-  ScanEvidence(const std::vector<ThinnedFrame>& frames, const SurfaceTracks& tracks)
-      : frames_(frames), graph_(tracks.graph) {
-    const auto count = static_cast<int>(frames.size()), used = std::min(count, kJudgedFrames);
-    for (int k = 0; k < used; ++k) judged_.push_back(k * count / used);
-    share_ = kUnits / static_cast<double>(graph_.points.rows()) * count / used;
-    const float most = 0.5f * graph_.spacing;
-    most_ = most * most;
-  }
-  /// Weighted squared distances along the normals, all frames; no more than for a point that is lost.
-  double off(int point, const std::vector<RigidMotion>& motions) const {
-    const Vec3 x = graph_.points.row(point).transpose(), n = graph_.normals.row(point).transpose();
-    double sum = 0;
-    for (const int t : judged_) {
-      const RigidMotion& motion = motions[static_cast<size_t>(t)];
-      const ThinnedFrame& scan = frames_[static_cast<size_t>(t)];
-      const Vec3 y = motion(x);
-      const PointTree::Near near = scan.tree.nearest(y);
-      const Vec3 normal = scan.normals.row(near.point).transpose();
-      const float along = normal.dot(y - scan.points.row(near.point).transpose());
-      const bool faces = normal.dot(motion.R * n) > 0.2f && near.squared < 4 * most_;
-      sum += faces ? std::min(along * along, most_) : most_;
-    }
-    return share_ * sum;
-  }
-
- private:
-  const std::vector<ThinnedFrame>& frames_;
-  const DeformationGraph& graph_;
-  std::vector<int> judged_;
-  double share_;
-  float most_;
-};
 
 /// What the points of a part would lose without it, and where they would go.
 struct Removal {
@@ -368,19 +340,22 @@ std::pair<double, double> blended(const Trajectories& tracks, int point, const s
     off += e.squaredNorm(), along += e.dot(d), apart += d.squaredNorm();
   }
   const double share = apart > 0 ? std::clamp(-along / apart, 0.0, 1.0) : 0.0;
-  return {tracks.weight * (off + 2 * share * along + share * share * apart), share};
+  return {tracks.weight[point] * (off + 2 * share * along + share * share * apart), share};
 }
 
 /// What explains a point without its part: the weighted squared distance left, and the part that it goes to.
 using Substitute = std::pair<double, int>;
 
-/// without: of a point its best substitute; with: what its own part leaves.
+/// credit: of what substitutes explain better, the share that counts. without: of a point its best
+/// substitute; with: what its own part leaves.
 template <class Without, class With>
-Removal removal_of(const PartNeighbours& all, int part, const Without& without, const With& with) {
+Removal removal_of(const PartNeighbours& all, int part, const Without& without, const With& with,
+                   double credit) {
   Removal removal{part, 0, {}};
   for (const int i : all.points[static_cast<size_t>(part)]) {
     const auto [off, to] = without(i);
-    removal.loss += std::max(0.0, off - with(i));
+    const double worse = off - with(i);
+    removal.loss += worse > 0 ? worse : credit * worse;
     removal.moves.push_back({i, to});
   }
   return removal;
@@ -388,17 +363,19 @@ Removal removal_of(const PartNeighbours& all, int part, const Without& without, 
 
 /// Without the part the scans see its points move with one beside it: what only slid along a surface that
 /// looks the same, as a ring about an axle, loses nothing.
-Removal removal_by_scans(const ScanEvidence& scans, const RigidParts& parts, const PartNeighbours& all,
-                         int part) {
+Removal removal_by_scans(const ScanEvidence& scans, const Eigen::VectorXd& weights, const RigidParts& parts,
+                         const PartNeighbours& all, int part) {
   const auto p = static_cast<size_t>(part);
   const auto without = [&](int i) {
     Substitute best{std::numeric_limits<double>::infinity(), -1};
     for (const int other : all.near[p])
-      if (const double off = scans.off(i, parts.motions[static_cast<size_t>(other)]); off < best.first)
+      if (const double off = weights[i] * scans.off(i, parts.motions[static_cast<size_t>(other)]);
+          off < best.first)
         best = {off, other};
     return best;
   };
-  return removal_of(all, part, without, [&](int i) { return scans.off(i, parts.motions[p]); });
+  return removal_of(
+      all, part, without, [&](int i) { return weights[i] * scans.off(i, parts.motions[p]); }, 0);
 }
 
 /// Without the part its points are blends of those beside it: what is only the bend between two parts loses
@@ -417,7 +394,8 @@ Removal removal_by_blends(const Trajectories& tracks, const RigidParts& parts, c
       }
     return best;
   };
-  return removal_of(all, part, without, [&](int i) { return tracks.residual(i, parts.motions[p]); });
+  return removal_of(
+      all, part, without, [&](int i) { return tracks.residual(i, parts.motions[p]); }, kSubstituteCredit);
 }
 
 /// The part that is missed least.
@@ -428,7 +406,7 @@ Removal least_missed(const SurfaceGraph& surface, const Trajectories& tracks, co
   for (int part = 0; part < parts.count(); ++part) {
     if (all.near[static_cast<size_t>(part)].empty()) continue;
     Removal by_blends = removal_by_blends(tracks, parts, all, part);
-    Removal by_scans = removal_by_scans(scans, parts, all, part);
+    Removal by_scans = removal_by_scans(scans, tracks.weight, parts, all, part);
     by_scans.loss /= kScanAllowance, by_blends.loss /= kBlendAllowance;
     if (by_blends.loss < best.loss) best = std::move(by_blends);
     if (by_scans.loss < best.loss) best = std::move(by_scans);
@@ -444,7 +422,8 @@ RigidParts find_rigid_parts(const std::vector<ThinnedFrame>& frames, const Surfa
   const Patches patches = patches_of(tracks.graph, trajectories);
   RigidParts parts;
   parts.noise_m = noise_of(patches, box_diagonal(tracks.graph.points));
-  // Six numbers a frame, each known as well as so many units tell it: 6 T / 2 log units.
+  // Of the six numbers a frame a joint leaves about four free, each known as well as so many units tell it:
+  // 4 T / 2 log units.
   const double price = kPrice * static_cast<double>(tracks.motions.size()) * std::log(kUnits);
   const double allowed = 2 * parts.noise_m * parts.noise_m * price;
   Agglomeration sets(patches);
@@ -452,7 +431,7 @@ RigidParts find_rigid_parts(const std::vector<ThinnedFrame>& frames, const Surfa
   for (const int patch : patches.of_point)
     parts.of_point.push_back(sets.labels()[static_cast<size_t>(patch)]);
   settle_seams(surface, trajectories, parts);
-  const ScanEvidence scans(frames, tracks);
+  const ScanEvidence scans(frames, tracks.graph);
   while (parts.count() > 1) {
     const Removal removal = least_missed(surface, trajectories, scans, parts);
     if (removal.part < 0 || removal.loss > allowed) break;
