@@ -68,6 +68,7 @@ class Discovery {
   void read_key_frames();
   int most_open() const;
   void find_bones();
+  void show_parts() const;
   void bind_points();
   void fit_all(float stiffness);
   PartJoint joint_as_fitted(int j) const;
@@ -151,6 +152,16 @@ void Discovery::find_bones() {
   for (size_t t = 0; t < frames_.size(); ++t)
     for (size_t b = 0; b < tree_.part_of_bone.size(); ++b)
       bones_[t][b] = parts_.motions[static_cast<size_t>(tree_.part_of_bone[b])][t];
+  show_parts();
+}
+
+void Discovery::show_parts() const {
+  if (!options_.parts_found) return;
+  const std::vector<int> bone = bone_of_part(tree_);
+  PartsSoFar so_far{numbers_[static_cast<size_t>(tracks_.rest_frame)], tracks_.graph.points, {},
+                    tree_.rig.joints};
+  for (const int part : parts_.of_point) so_far.bone_of.push_back(bone[static_cast<size_t>(part)]);
+  options_.parts_found(std::move(so_far));
 }
 
 void Discovery::fit_all(float stiffness) {
