@@ -54,6 +54,7 @@ struct DiscoveredRig {
   std::vector<bool>
       doubted;           ///< [T] frames that it fits clearly worse than the others, or that could not be used
   bool complete = true;  ///< false: ended early
+  int first_frame = 0;   ///< of the scans: the first pose's, where edits have trimmed it
 };
 
 /// Tracks the surface of the most open frame through up to 60 key frames, joins what moves alike to rigid
