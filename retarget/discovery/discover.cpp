@@ -158,8 +158,8 @@ void Discovery::find_bones() {
 void Discovery::show_parts() const {
   if (!options_.parts_found) return;
   const std::vector<int> bone = bone_of_part(tree_);
-  PartsSoFar so_far{numbers_[static_cast<size_t>(tracks_.rest_frame)], tracks_.graph.points, {},
-                    tree_.rig.joints};
+  PartsSoFar so_far{
+      numbers_[static_cast<size_t>(tracks_.rest_frame)], tracks_.graph.points, {}, tree_.rig.joints};
   for (const int part : parts_.of_point) so_far.bone_of.push_back(bone[static_cast<size_t>(part)]);
   options_.parts_found(std::move(so_far));
 }
