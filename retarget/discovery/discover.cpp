@@ -10,9 +10,8 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/discovery/part_tree.hpp"
+#include "retarget/discovery/rig_figures.hpp"
 #include "retarget/discovery/rig_follower.hpp"
-#include "retarget/math/percentile.hpp"
-#include "retarget/math/rotation.hpp"
 #include "retarget/rig/rig_edits.hpp"
 
 namespace understudy {
@@ -216,29 +215,14 @@ void Discovery::track_from_bones() {
 }
 
 void Discovery::judge_bones(DiscoveredRig& result) const {
-  const Rig& rig = result.found.rig;
-  std::vector<double> off(rig.joints.size(), 0), weight(rig.joints.size(), 1e-9);
+  BoneDistances off(result.found.rig.count());
   for (size_t t = 0; t < frames_.size(); ++t) {
     const Eigen::VectorXf distances = distances_to(frames_[t], surface_, bones_[t]);
-    for (Eigen::Index i = 0; i < distances.size(); ++i)
-      for (int k = 0; k < kSkinBones; ++k) {
-        const auto bone = static_cast<size_t>(surface_.skin.bones(i, k));
-        off[bone] += surface_.skin.weights(i, k) * distances[i];
-        weight[bone] += surface_.skin.weights(i, k);
-      }
+    off.add(surface_.skin, distances);
     result.off_m[static_cast<size_t>(numbers_[t])] = distances.mean();
   }
-  result.bones.resize(rig.joints.size());
-  for (size_t j = 0; j < rig.joints.size(); ++j) {
-    FoundBone& bone = result.bones[j];
-    bone.off_m = static_cast<float>(off[j] / weight[j]);
-    if (j == 0) continue;
-    for (const RigPose& pose : result.found.motion.poses) {
-      bone.turned_deg =
-          std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
-      bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
-    }
-  }
+  measure_motion(result.found, result.bones);
+  for (size_t j = 0; j < result.bones.size(); ++j) result.bones[j].off_m = off.mean(j);
 }
 
 /// Frames that are no key frames: from the key frame before them on. What cannot be used repeats the pose
@@ -288,12 +272,7 @@ DiscoveredRig Discovery::finished() {
   }
   if (static_cast<int>(frames_.size()) < scans_.count) follow_others(result);
   judge_bones(result);
-  constexpr float kMuch = 2;
-  std::vector<double> known;
-  for (const float off : result.off_m)
-    if (off >= 0) known.push_back(off);
-  const auto usual = static_cast<float>(percentile(known, 50));
-  for (const float off : result.off_m) result.doubted.push_back(off < 0 || off > kMuch * usual);
+  result.doubted = doubted_frames(result.off_m);
   result.complete = goes_on_;
   return result;
 }

@@ -8,8 +8,7 @@
 
 namespace understudy {
 
-/// Called after each frame with the share that is done, 0 .. 1, from one of two threads, one at a time; false
-/// ends the work.
+/// Called after each frame or two with the share that is done, 0 .. 1; false ends the work.
 using RefitProgress = std::function<bool(float share)>;
 
 /// Fits the poses of all frames to the scans, each from the one it has, and measures them anew: off_m, doubted

@@ -42,8 +42,8 @@ FieldsOf<S, SplitBone> fields(V& visit, S& edit) {
 }
 
 /// A joint is put somewhere else at rest; the rest surface stays, and every bone keeps its rotation in every
-/// frame. The root's can be anywhere: every posed surface stays as it was. Of any other, the bone and what
-/// hangs on it are shifted in frames that turn it, as far as it did not turn about the new place.
+/// frame. The root's can be anywhere: every posed surface stays as it was. Of any other, the bone now turns
+/// about the new place: with what hangs on it, it is shifted in frames that turn it.
 struct MoveJoint {
   int joint = 0;
   Vec3 to = Vec3::Zero();  ///< at rest, metres
