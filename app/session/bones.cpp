@@ -251,6 +251,7 @@ void Studio::take_in_bones(BonesJob& work) {
   if (!work.problem.empty())
     return work.cancelled ? notify(work.problem, true) : fail(work.problem, "bones.find");
   const int bones = state.rig->found.rig.count();
+  if (session_.source.no_person) session_.view.metric = "bones_off";
   notify(bones == 1 ? "1 bone: nothing moves against anything else"
                     : std::to_string(bones) + " bones" + (state.rig->complete ? "" : ", found so far"),
          bones == 1 || !state.rig->complete);

@@ -247,6 +247,8 @@ struct BadFrame {
   std::string why;
 };
 std::vector<BadFrame> bad_frames(const Session& session);
+/// Those in which found bones are not to be trusted: bad_frames() of a source that is no person.
+std::vector<BadFrame> doubted_frames(const Session& session);
 /// Runs of frames that could not be used, of who is performed by a take, in order of time.
 std::vector<FillEdit> unusable_runs(const Session& session, size_t take);
 

@@ -15,6 +15,7 @@ struct SampleCard {
   std::string title, caption;  ///< "A walk", "3D scans of a person, 60 frames"
   app::Arguments paths;        ///< of the command open
   ImTextureID picture = nullptr;
+  std::string panel{};  ///< that is shown with it; empty: none
 };
 
 /// Fills the current window.

@@ -1,4 +1,4 @@
-#include "retarget/body/builtin_samples.hpp"
+#include "app/run/samples.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
