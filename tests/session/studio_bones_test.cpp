@@ -146,8 +146,8 @@ TEST_F(Bones, NeverMakeTheWindowWaitAndTellTheirStages) {
   do {
     const auto began = std::chrono::steady_clock::now();
     studio.tick(0);
-    longest = std::max(longest,
-                       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    longest =
+        std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
     const BonesState& bones = studio.session().bones;
     stages.insert(bones.stage);
     painted = painted || (bones.so_far && bones.so_far->bone_of.size() > 1000);

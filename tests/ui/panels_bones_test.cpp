@@ -87,6 +87,8 @@ TEST_F(BonesPanel, EditsTheChosenBone) {
   expect_typed("bones.name", "hoof", {"bones.rename 2 hoof"});
   expect_typed("bones.y", "0.25", {"bones.move 2 0 0.25 0"});
   expect_choice("bones.kind", 1, {"bones.kind 2 hinge"});
+  session.falloff = 7;
+  expect_typed("bones.turn_z", "90", {"bones.turn 2 20 0 0 1.5708"});
   session.bones.selected = 0;
   frame(2);
   EXPECT_FALSE(mark("bones.merge").enabled) << "the root hangs on nothing";
@@ -112,7 +114,8 @@ TEST_F(BonesPanel, PaintsTheSurfaceAndExports) {
 TEST_F(BonesPanel, TellsWhoIsNearWhomAndGivesNames) {
   show_found();
   EXPECT_FALSE(shown("bones.name_as_joints")) << "the source is no person";
-  session.bones.near = {{Pelvis, 0.02f, 0.01f, true}, {LeftKnee, 0.03f, 0.02f, true}, {Head, 0.9f, 0.5f, false}};
+  session.bones.near = {
+      {Pelvis, 0.02f, 0.01f, true}, {LeftKnee, 0.03f, 0.02f, true}, {Head, 0.9f, 0.5f, false}};
   frame(2);
   expect_click("bones.near.1", {"bones.select 1"});
   expect_click("bones.name_as_joints", {"bones.name_as_joints"});

@@ -2,7 +2,7 @@
 // person, export.
 // Sections: bones.all, bones.one, bones.motion, bones.near. Marks: bones.auto, bones.most, bones.find,
 // bones.work (.cancel), bones.stage.K; bones.bone.K (a row), bones.surface.K, bones.name, bones.kind, bones.merge,
-// bones.split, bones.root, bones.x, .y, .z; bones.strength, bones.smooth, bones.trim, bones.fit; bones.near.K,
+// bones.split, bones.root, bones.x, .y, .z, bones.turn_x, .turn_y, .turn_z; bones.strength, bones.smooth, bones.trim, bones.fit; bones.near.K,
 // bones.name_as_joints; bones.export, bones.drop.
 #include <algorithm>
 #include <array>
@@ -83,18 +83,16 @@ void draw_stages(const BonesDrawing& d) {
   const auto at = std::find_if(kStages.begin(), kStages.end(),
                                [&](const StageWords& stage) { return now == stage.name; });
   if (at == kStages.end()) return;
+  const Theme& theme = d.ui().theme();
   for (auto stage = kStages.begin(); stage != kStages.end(); ++stage) {
-    const ColorScope color(ImGuiCol_Text, stage == at  ? d.ui().theme().text
-                                          : stage < at ? d.ui().theme().good
-                                                       : d.ui().theme().text_faint);
-    const ImVec2 from = ImGui::GetCursorScreenPos();
-    ImGui::TextUnformatted(((stage < at    ? "\u2713 "
-                             : stage == at ? "\u2022 "
-                                           : "   ") +
-                            std::string(stage->label))
-                               .c_str());
-    d.ui().mark("bones.stage." + std::to_string(stage - kStages.begin()),
-                {from, {from.x + 1, ImGui::GetCursorScreenPos().y}});
+    icon_label(d.ui(), stage < at ? Icon::Check : Icon::Clock,
+               stage < at    ? theme.good
+               : stage == at ? theme.accent
+                             : theme.text_faint);
+    ImGui::SameLine(0, d.ui().px(6));
+    const ColorScope color(ImGuiCol_Text, stage == at ? theme.text : theme.text_dim);
+    ImGui::TextUnformatted(stage->label);
+    d.ui().mark("bones.stage." + std::to_string(stage - kStages.begin()));
   }
 }
 
@@ -135,35 +133,29 @@ void draw_summary(const BonesDrawing& d) {
   if (!found.complete) hint(d.ui(), "Ended early: this is the best that was found by then.");
 }
 
+std::string turned(const RigJoint& joint, const FoundBone& bone) {
+  if (joint.parent < 0) return "";
+  if (joint.kind == JointKind::Slider) return printed("%.0f mm", 1000 * static_cast<double>(bone.slid_m));
+  return printed("%.0f\u00b0", static_cast<double>(bone.turned_deg));
+}
+
 void draw_table(const BonesDrawing& d) {
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-  const float height = line * (static_cast<float>(std::min(d.rig().count(), 16)) + 1.6f);
+  const float height = line * (static_cast<float>(std::min(d.rig().count(), 14)) + 1.6f);
   Table table(d.ui(), "bones.bone",
-              {{"", 14},
-               {"Bone"},
-               {"On"},
-               {"Kind", 44},
-               {"Turns", 44, true},
-               {"Off, mm", 54, true},
-               {"Points", 50, true}},
-              height);
+              {{"Bone"}, {"Hangs on"}, {"Kind", 40}, {"Turns", 44, true}, {"Off, mm", 50, true}}, height);
   if (!table.open()) return;
   for (int j = 0; j < d.rig().count(); ++j) {
     const RigJoint& joint = d.rig().joints[static_cast<size_t>(j)];
     const FoundBone& bone = d.found().bones[static_cast<size_t>(j)];
     if (table.row(j == d.bones().selected))
       d.context.ask("bones.select", {j == d.bones().selected ? "none" : std::to_string(j)});
-    table.cell("");
     color_chip(d.ui(), bone_color(j));
     table.cell(joint.name);
     table.cell(joint.parent < 0 ? "\u2013" : d.rig().joints[static_cast<size_t>(joint.parent)].name);
     table.cell(kJointKindNames[static_cast<size_t>(joint.kind)]);
-    table.cell(j == 0 ? ""
-               : joint.kind == JointKind::Slider
-                   ? figure(1000 * static_cast<double>(bone.slid_m), "mm")
-                   : printed("%.0f\u00b0", static_cast<double>(bone.turned_deg)));
+    table.cell(turned(joint, bone));
     table.cell(printed("%.1f", 1000 * static_cast<double>(bone.off_m)));
-    table.cell(std::to_string(d.state.vertices[static_cast<size_t>(j)]));
   }
 }
 
@@ -195,6 +187,25 @@ void draw_place(const BonesDrawing& d, const RigJoint& joint) {
   }
 }
 
+/// Turned further in the frame that is shown, about an axis of its own.
+void draw_turns(const BonesDrawing& d) {
+  const int frame = app::shown_frame(d.session);
+  if (app::frame_of_rig(d.found(), frame) < 0) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    const auto typed =
+        typed_number_row(d.ui(),
+                         {"bones.turn_" + name, "Turn about " + name + ", \u00b0",
+                          "In this frame; those around it follow less and less, as Falloff in Edit says"},
+                         0, 0);
+    if (!typed || *typed == 0) continue;
+    app::Arguments words = {std::to_string(d.bones().selected), std::to_string(frame)};
+    for (int k = 0; k < 3; ++k)
+      words.push_back(argument(k == axis ? *typed * static_cast<double>(kPi) / 180 : 0));
+    d.context.ask("bones.turn", words);
+  }
+}
+
 /// Edits of the chosen bone.
 void draw_one(const BonesDrawing& d) {
   const int j = d.bones().selected;
@@ -210,7 +221,10 @@ void draw_one(const BonesDrawing& d) {
         d.context, {"bones.kind", "Kind", "How it may move against what it hangs on", "bones.kind " + k},
         {"Ball", "Hinge", "Slider", "Fixed"}, words, kJointKindNames[static_cast<size_t>(joint->kind)]);
   }
+  row_text(d.ui(), "Moves",
+           std::to_string(d.state.vertices[static_cast<size_t>(j)]) + " points of the surface");
   draw_place(d, *joint);
+  draw_turns(d);
   ButtonRow buttons(3);
   buttons.ask(d.context, {"bones.merge", "Merge", "Becomes one with what it hangs on", "bones.merge " + k},
               j > 0);

@@ -58,7 +58,7 @@ void draw_samples(PanelContext& context, const std::vector<SampleCard>& samples)
     if (i % a_line != 0) ImGui::SameLine(0, gap);
     if (!draw_card(ui, "start.sample." + std::to_string(i), samples[i], card)) continue;
     context.ask("open", samples[i].paths);
-    if (!samples[i].panel.empty()) context.ask("panel.show", {samples[i].panel, "on"});
+    for (const std::string& line : samples[i].then) push(context, {line, ""});
   }
 }
 

@@ -39,7 +39,7 @@ Vec3 color_of(int joint) {
 /// Each bone's colour; where one is chosen, its own alone.
 Points surface_colors(const RowMatrix& weights, int selected) {
   if (selected < 0 || selected >= weights.cols()) return render::weight_colors(weights);
-  const Eigen::RowVector3f own = color_of(selected).transpose(), other = kUnselected.transpose();
+  const Eigen::RowVector3f own = kSelectedColor.transpose(), other = kUnselected.transpose();
   const Eigen::VectorXf share = weights.col(selected);
   return share * own + (Eigen::VectorXf::Ones(share.size()) - share) * other;
 }
@@ -78,7 +78,7 @@ void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& sce
   if (mesh.is_cloud()) {
     render::PointsView points;
     points.positions = memory.vertices, points.colors = memory.colors;
-    if (memory.spacing > 0) points.radius = 0.8f * memory.spacing;
+    if (memory.spacing > 0) points.radius = 1.1f * memory.spacing;
     return scene.clouds.push_back(std::move(points));
   }
   render::MeshView view;
