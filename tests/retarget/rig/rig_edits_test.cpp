@@ -150,6 +150,12 @@ TEST(SplitBone, CutsAcrossTheBoneInItsMiddle) {
   EXPECT_GT(apart(before, after), 0.1f);
 }
 
+TEST(SplitBone, PutsTheJointWhereItIsWantedInTheBody) {
+  RiggedMotion tube = moving_tube();
+  apply(tube, SplitBone{1, {1.6f, 0.03f, 0.02f}});
+  EXPECT_LT((tube.rig.joints[2].rest - Vec3(1.6f, 0.03f, 0.02f)).norm(), 1e-6f);
+}
+
 TEST(SplitBone, ChangesNoSurfaceOfACreatureAndIsUndoneByAMerge) {
   const RiggedMotion before = creature(CreatureKind::Quadruped);
   for (int j = 0; j < before.rig.count(); ++j) {
