@@ -8,36 +8,27 @@
 #include "retarget/base/error.hpp"
 #include "retarget/creature/creature.hpp"
 #include "retarget/math/rotation.hpp"
+#include "tests/support/moving_arm.hpp"
 
 namespace understudy {
 namespace {
 
 constexpr float kSame = 1e-4f;  // of a body's size
-constexpr int kRing = 8, kRings = 91;
+constexpr int kRing = test::kArmSides;
 
-/// A tube of three bones along x, each 1 m long, soft at the joints: ball at 1 m, hinge about z at 2 m.
+/// The arm of three bones, soft at its joints: a ball at 1 m, a hinge about z at 2 m.
 Rig tube_rig() {
-  Rig rig;
-  rig.name = "tube";
+  Rig rig = test::moving_arm();
   rig.joints = {{"hip", -1, JointKind::Free, {0, 0, 0}, Vec3::UnitY()},
                 {"knee", 0, JointKind::Ball, {1, 0, 0}, Vec3::UnitY()},
                 {"ankle", 1, JointKind::Hinge, {2, 0, 0}, Vec3::UnitZ()}};
-  rig.surface.vertices.resize(kRing * kRings, 3);
-  RowMatrix weights = RowMatrix::Zero(kRing * kRings, 3);
-  for (int r = 0; r < kRings; ++r)
-    for (int k = 0; k < kRing; ++k) {
-      const int v = r * kRing + k;
-      const float x = 3 * static_cast<float>(r) / (kRings - 1), angle = 2 * kPi * k / kRing;
-      rig.surface.vertices.row(v) << x, 0.1f * std::cos(angle), 0.1f * std::sin(angle);
-      const float second = std::clamp(5 * (x - 0.9f), 0.0f, 1.0f),
-                  third = std::clamp(5 * (x - 1.9f), 0.0f, 1.0f);
-      weights.row(v) << 1 - second, second - third, third;
-    }
+  RowMatrix weights(rig.surface.vertices.rows(), 3);
+  for (Eigen::Index v = 0; v < weights.rows(); ++v) {
+    const float x = rig.surface.vertices(v, 0), second = std::clamp(5 * (x - 0.9f), 0.0f, 1.0f),
+                third = std::clamp(5 * (x - 1.9f), 0.0f, 1.0f);
+    weights.row(v) << 1 - second, second - third, third;
+  }
   rig.skin = SkinWeights::from(weights);
-  rig.surface.faces.resize((kRings - 1) * kRing, 3);
-  for (int r = 0; r + 1 < kRings; ++r)
-    for (int k = 0; k < kRing; ++k)
-      rig.surface.faces.row(r * kRing + k) << r * kRing + k, (r + 1) * kRing + k, r * kRing + (k + 1) % kRing;
   return rig;
 }
 
@@ -302,21 +293,21 @@ TEST(RenameBone, RefusesNamesThatTellNothing) {
 TEST(PaintBone, GrowsAndShrinksTowardsItsRim) {
   const RiggedMotion before = moving_tube();
   RiggedMotion after = before;
-  const Vec3 at = before.rig.surface.vertices.row(45 * kRing).transpose();  // x = 1.5
+  const Vec3 at = before.rig.surface.vertices.row(15 * kRing).transpose();  // x = 1.5
   apply(after, PaintBone{0, at, 0.3f, 0.5f, true});
   expect_sound(after);
   const RowMatrix weights = after.rig.skin.dense(3), was = before.rig.skin.dense(3);
-  EXPECT_NEAR(weights(45 * kRing, 0), 0.5f, 1e-5f);
-  EXPECT_NEAR(weights(45 * kRing, 1), 0.5f, 1e-5f);
-  EXPECT_GT(weights(45 * kRing, 0), weights(48 * kRing, 0));
-  EXPECT_GT(weights(48 * kRing, 0), weights(52 * kRing, 0));
-  EXPECT_EQ(weights.topRows(35 * kRing), was.topRows(35 * kRing));
-  EXPECT_EQ(weights.bottomRows(35 * kRing), was.bottomRows(35 * kRing));
+  EXPECT_NEAR(weights(15 * kRing, 0), 0.5f, 1e-5f);
+  EXPECT_NEAR(weights(15 * kRing, 1), 0.5f, 1e-5f);
+  EXPECT_GT(weights(15 * kRing, 0), weights(16 * kRing, 0));
+  EXPECT_GT(weights(16 * kRing, 0), weights(17 * kRing, 0));
+  EXPECT_EQ(weights.topRows(12 * kRing), was.topRows(12 * kRing));
+  EXPECT_EQ(weights.bottomRows(12 * kRing), was.bottomRows(12 * kRing));
   // All of it taken away, alone at its place: the parent has it.
   apply(after, PaintBone{0, at, 0.3f, 1, false});
-  EXPECT_NEAR(after.rig.skin.dense(3)(45 * kRing, 1), 1, 1e-5f);
+  EXPECT_NEAR(after.rig.skin.dense(3)(15 * kRing, 1), 1, 1e-5f);
   apply(after, PaintBone{1, at, 0.3f, 1, false});
-  EXPECT_NEAR(after.rig.skin.dense(3)(45 * kRing, 0), 1, 1e-5f);
+  EXPECT_NEAR(after.rig.skin.dense(3)(15 * kRing, 0), 1, 1e-5f);
   expect_sound(after);
 }
 
