@@ -355,7 +355,7 @@ void paint_row(SkinWeights& skin, Eigen::Index v, const PaintBone& brush, float 
     if (weights[k] < weights[least]) least = k;
   }
   if (own < 0) {
-    if (!brush.adds) return;
+    if (!brush.adds || amount < weights[least]) return;
     own = least;
     bones[own] = brush.joint;
     weights[own] = 0;

@@ -337,9 +337,11 @@ TEST(PaintBone, OfFiveBonesTheLeastGoes) {
   ASSERT_GT(snake.rig.count(), 5);
   snake.rig.skin.bones.row(0) << 0, 1, 2, 3;
   snake.rig.skin.weights.row(0) << 0.4f, 0.3f, 0.2f, 0.1f;
-  apply(snake, PaintBone{5, snake.rig.surface.vertices.row(0).transpose(), 1e-4f, 0.1f, true});
+  apply(snake, PaintBone{5, snake.rig.surface.vertices.row(0).transpose(), 1e-4f, 0.05f, true});
+  EXPECT_NEAR(snake.rig.skin.dense(snake.rig.count())(0, 3), 0.1f, 1e-6f);  // which is the new one
+  apply(snake, PaintBone{5, snake.rig.surface.vertices.row(0).transpose(), 1e-4f, 0.15f, true});
   const RowMatrix row = snake.rig.skin.dense(snake.rig.count()).row(0);
-  EXPECT_NEAR(row(0, 5), 0.1f, 1e-5f);
+  EXPECT_NEAR(row(0, 5), 0.15f, 1e-5f);
   EXPECT_EQ(row(0, 3), 0);
   EXPECT_NEAR(row(0, 0) / row(0, 1), 4.0f / 3, 1e-4f);
   expect_sound(snake);
