@@ -96,7 +96,8 @@ FieldsOf<S, RenameBone> fields(V& visit, S& edit) {
 /// One dab of a brush on the rest surface. It falls off smoothly to nothing at its radius, and reaches only
 /// what hangs together with its middle within the radius (of clouds: all). The bone's weight grows towards 1
 /// or shrinks towards 0; the others of the vertex share the rest as before, where there are none it is the
-/// parent's (of the root: of the first that hangs on it). Of five bones the least one goes, be it the painted one.
+/// parent's (of the root: of the first that hangs on it). Of five bones the least one goes, be it the painted
+/// one.
 struct PaintBone {
   int joint = 0;
   Vec3 at = Vec3::Zero();  ///< on the rest surface, metres
