@@ -65,14 +65,16 @@ const std::string& name_of_bone(const Call& c, int joint) {
 void export_bones(Call& c) {
   const std::string path = c.path(0);
   const std::string suffix = file_suffix(path);
-  US_CHECK(suffix == ".glb" || suffix == ".gltf", path, ": a found rig is written as .glb or .gltf");
+  const bool is_motion = suffix == ".bvh";
+  US_CHECK(is_motion || suffix == ".glb" || suffix == ".gltf", path,
+           ": a found rig is written as .glb, .gltf or .bvh");
   rig_of(c);
   check_not_read(path, files_read_by(c.document));
   check_writable(path);
   c.studio.jobs().start(
       "Exporting " + file_name(path),
-      [path, rig = c.session.bones.rig](JobControl&) {
-        write_gltf_character(path, to_character(rig->found));
+      [path, is_motion, rig = c.session.bones.rig](JobControl&) {
+        is_motion ? write_rig_bvh(path, rig->found) : write_gltf_character(path, to_character(rig->found));
       },
       [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
   remember_folder(c.studio, path);
@@ -102,7 +104,8 @@ void add_finding(Commands& commands) {
   });
   commands.add({"bones.select", "Select bone", "BONE|none: by name or number"},
                [](Call& c) { c.session.bones.selected = c.word(0, "bone") == "none" ? -1 : bone(c, 0); });
-  commands.add({"bones.export", "Export the found rig", "PATH: .glb or .gltf"}, export_bones);
+  commands.add({"bones.export", "Export the found rig", "PATH: .glb or .gltf; its motion alone as .bvh"},
+               export_bones);
   commands.add_edit({"bones.name_as_joints", "Name bones after a person's joints"}, name_bones);
 }
 

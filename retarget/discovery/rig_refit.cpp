@@ -120,7 +120,7 @@ std::vector<int> apply(DiscoveredRig& rig, const RigEdit& edit, const ScanSequen
     std::iota(same.begin(), same.end(), 0);
     return same;
   }
-  const std::vector<int> numbers = apply(rig.found, edit);
+  std::vector<int> numbers = apply(rig.found, edit);
   const std::vector<FoundBone> known = rig.bones;
   const auto count = rig.found.rig.joints.size();
   rig.bones.assign(count, {});

@@ -11,10 +11,11 @@ namespace understudy {
 /// Called after each frame or two with the share that is done, 0 .. 1; false ends the work.
 using RefitProgress = std::function<bool(float share)>;
 
-/// Fits the poses of all frames to the scans, each from the one it has, and measures them anew: off_m, doubted
-/// and bones. A frame without points keeps its pose. The scans are those of before any trim. Returns false
-/// where progress ended it: nothing has changed then. The same scans give the same bytes. Throws Error for a
-/// rig without a surface of 30 points, or other frames than the scans'.
+/// Fits the poses of all frames to the scans, each from the one it has and from where its neighbour's leads,
+/// and measures them anew: off_m, doubted and bones. A frame without points keeps its pose. The scans are
+/// those of before any trim. Returns false where progress ended it: nothing has changed then. The same scans
+/// give the same bytes. Throws Error for a rig without a surface of 30 points, or other frames than the
+/// scans'.
 bool refit(DiscoveredRig& rig, const ScanSequence& scans, const RefitProgress& progress = {});
 
 /// An edit of what was found. What is known of bones goes with them (a new bone has its other half's), what

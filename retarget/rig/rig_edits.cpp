@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <type_traits>
@@ -19,6 +20,7 @@ namespace understudy {
 namespace {
 
 constexpr float kSoftCut = 0.05f;  // to each side of a cut, of the bone's length
+constexpr float kOnSkin = 0.25f;   // a place so near to a vertex is on the surface, of a limb's thickness
 constexpr float kNoWeight = 1e-4f;
 
 RigJoint& joint_of(Rig& rig, int joint) {
@@ -150,16 +152,19 @@ BoneCut cut_across(const Rig& rig, const SplitBone& edit) {
     beyond = std::max(beyond, height(v));
   });
   cut.soft = kSoftCut * (beyond - before);
-  Vec3 middle = Vec3::Zero();
-  float weight = 0;
-  for_weights(rig.skin, edit.joint, [&](Eigen::Index v, int k) {
-    if (std::abs(height(v)) > cut.soft) return;
-    middle += rig.skin.weights(v, k) * rig.surface.vertices.row(v).transpose();
-    weight += rig.skin.weights(v, k);
+  std::vector<Vec3> section;  // vertices about the cut
+  for_weights(rig.skin, edit.joint, [&](Eigen::Index v, int) {
+    if (std::abs(height(v)) <= cut.soft) section.push_back(rig.surface.vertices.row(v).transpose());
   });
-  if (weight <= 0) return cut;
-  middle /= weight;
-  cut.through = middle - (middle - edit.at).dot(cut.along) * cut.along;
+  if (section.empty()) return cut;
+  const auto count = static_cast<float>(section.size());
+  const Vec3 middle = std::accumulate(section.begin(), section.end(), Vec3(Vec3::Zero())) / count;
+  float thickness = 0, nearest = std::numeric_limits<float>::max();
+  for (const Vec3& place : section) {
+    thickness += (place - middle).norm() / count;
+    nearest = std::min(nearest, (place - edit.at).norm());
+  }
+  if (nearest < kOnSkin * thickness) cut.through = middle - (middle - edit.at).dot(cut.along) * cut.along;
   return cut;
 }
 
@@ -350,7 +355,7 @@ void paint_row(SkinWeights& skin, Eigen::Index v, const PaintBone& brush, float 
     if (weights[k] < weights[least]) least = k;
   }
   if (own < 0) {
-    if (!brush.adds) return;
+    if (!brush.adds || amount < weights[least]) return;
     own = least;
     bones[own] = brush.joint;
     weights[own] = 0;

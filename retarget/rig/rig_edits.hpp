@@ -27,13 +27,13 @@ FieldsOf<S, MergeBone> fields(V& visit, S& edit) {
 }
 
 /// A bone becomes two, where a plane through `at` cuts it across its length. What lies beyond the plane, seen
-/// from the joint, is the new bone's: its number is joint + 1, it hangs on the other by a ball in the middle
-/// of the cut, takes the vertices (the change is soft in a narrow band) and the children there, and is named
-/// after the other. It moves as the other did until it is fitted again: every posed surface stays as it was.
-/// Refused where nothing lies beyond.
+/// from the joint, is the new bone's: its number is joint + 1, it hangs on the other by a ball at `at` (from
+/// there in the middle of the cut, where that is on the skin), takes the vertices (the change is soft in a
+/// narrow band) and the children there, and is named after the other. It moves as the other did until it is
+/// fitted again: every posed surface stays as it was. Refused where one side has nothing.
 struct SplitBone {
   int joint = 0;
-  Vec3 at = Vec3::Zero();  ///< at rest, metres
+  Vec3 at = Vec3::Zero();  ///< at rest, in the body or on its skin, metres
 };
 template <class V, class S>
 FieldsOf<S, SplitBone> fields(V& visit, S& edit) {
@@ -96,7 +96,8 @@ FieldsOf<S, RenameBone> fields(V& visit, S& edit) {
 /// One dab of a brush on the rest surface. It falls off smoothly to nothing at its radius, and reaches only
 /// what hangs together with its middle within the radius (of clouds: all). The bone's weight grows towards 1
 /// or shrinks towards 0; the others of the vertex share the rest as before, where there are none it is the
-/// parent's (of the root: of the first that hangs on it). Of more than four bones the least one goes.
+/// parent's (of the root: of the first that hangs on it). Of five bones the least one goes, be it the painted
+/// one.
 struct PaintBone {
   int joint = 0;
   Vec3 at = Vec3::Zero();  ///< on the rest surface, metres

@@ -272,6 +272,9 @@ TEST_F(Bones, AreExportedAsACharacterThatOpensAgain) {
   ASSERT_TRUE(fs::exists(path("rig.glb")));
   const RiggedMotion again =
       from_character(read_gltf_character(path("rig.glb")), 0, studio.session().bones.rig->found.motion.fps);
+  studio.run("bones.export", {path("rig.bvh")});
+  studio.wait_idle();
+  EXPECT_GT(fs::file_size(path("rig.bvh")), 500u);
   EXPECT_EQ(again.rig.count(), 2);
   EXPECT_EQ(again.motion.poses.size(), static_cast<size_t>(understudy::kFrames));
 }

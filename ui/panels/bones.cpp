@@ -168,7 +168,8 @@ void draw_all(const BonesDrawing& d) {
              {"Off", "Over", "Beside"}, {app::kBoneSurfaceNames.begin(), app::kBoneSurfaceNames.end()},
              app::kBoneSurfaceNames[static_cast<size_t>(d.session.view.bone_surface)]);
   draw_table(d);
-  ask_button(d.context, {"bones.export", "Export GLB\u2026", "The thing with bones, skin and animation",
+  ask_button(d.context, {"bones.export", "Export\u2026",
+                         "As .glb with bones, skin and animation; its motion alone as .bvh",
                          "dialog.open export_bones"});
 }
 
