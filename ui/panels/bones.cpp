@@ -1,9 +1,9 @@
-// The source's own skeleton: finding it, a table of its bones, edits of it, who of them is near which joint of a
-// person, export.
+// The source's own skeleton: finding it, a table of its bones, edits of it, who of them is near which joint
+// of a person, export.
 // Sections: bones.all, bones.one, bones.motion, bones.near. Marks: bones.auto, bones.most, bones.find,
-// bones.work (.cancel), bones.stage.K; bones.bone.K (a row), bones.surface.K, bones.name, bones.kind, bones.merge,
-// bones.split, bones.root, bones.x, .y, .z, bones.turn_x, .turn_y, .turn_z; bones.strength, bones.smooth, bones.trim, bones.fit; bones.near.K,
-// bones.name_as_joints; bones.export, bones.drop.
+// bones.work (.cancel), bones.stage.K; bones.bone.K (a row), bones.surface.K, bones.name, bones.kind,
+// bones.merge, bones.split, bones.root, bones.x, .y, .z, bones.turn_x, .turn_y, .turn_z; bones.strength,
+// bones.smooth, bones.trim, bones.fit; bones.near.K, bones.name_as_joints; bones.export, bones.drop.
 #include <algorithm>
 #include <array>
 

@@ -1,5 +1,5 @@
-// The scan's own skeleton in a view: its bones, its surface painted by them, what is found so far, and what of
-// it is under the pointer.
+// The scan's own skeleton in a view: its bones, its surface painted by them, what is found so far, and what
+// of it is under the pointer.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct BonesMemory {
   float spacing = 0;
 };
 
-/// The found skeleton as it is in a frame of the source: its joints, then where bones that carry no other end.
+/// The found skeleton in a frame of the source: its joints, then where bones that carry no other end.
 struct PosedBones {
   Points places;             ///< [J and tips, 3]
   std::vector<int> parents;  ///< as many

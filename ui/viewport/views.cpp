@@ -243,7 +243,8 @@ PaneView Views::tool_view(const Session& session, const Pane& pane) {
   return pane.view.shifted(aside(session, pane.content, person_of_tool(session, pane.content)));
 }
 
-/// A click, not a drag, on a bone that was found in the scan chooses it, and on somebody makes them the source.
+/// A click, not a drag, on a bone that was found in the scan chooses it; on somebody it makes them the
+/// source.
 void Views::choose_person(const Frame& f, const Pane& pane, const Pointer& now) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool dragged = io.MouseDragMaxDistanceSqr[0] >= io.MouseDragThreshold * io.MouseDragThreshold;
