@@ -196,6 +196,7 @@ void Studio::follow_bones() {
     if (state.job != 0) jobs_.cancel(state.job);
     b.bones_work.reset();
     b.bones_key = key;
+    if (!key.empty()) withdraw_bones_offer();
     const int selected = state.selected;
     state = {};
     state.rig = kept_rig(b.rigs, key);
@@ -211,6 +212,16 @@ void Studio::follow_bones() {
   if (!key.empty() && !state.rig && !b.bones_work && state.problem.empty() && !session_.working)
     start_finding_bones();
   compare_bones();
+}
+
+/// It was answered, whether by its button or not.
+void Studio::withdraw_bones_offer() {
+  auto& notices = session_.notices;
+  notices.erase(std::remove_if(notices.begin(), notices.end(),
+                               [](const Notice& notice) { return notice.offer.command == "bones.find"; }),
+                notices.end());
+  for (Notice& notice : notices)
+    if (notice.also.command == "bones.find") notice.also = {};
 }
 
 void Studio::start_finding_bones() {

@@ -113,6 +113,7 @@ class Studio {
   void offer_fill(size_t k);
   void withdraw_notice(int64_t id);
   void follow_bones();
+  void withdraw_bones_offer();
   void start_finding_bones();
   void take_in_bones(BonesJob& work);
   void compare_bones();

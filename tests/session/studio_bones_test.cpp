@@ -90,7 +90,7 @@ TEST_F(Bones, AreOfferedWhereNoPersonIsSeen) {
   EXPECT_EQ(offer->offer.label, "Clean up") << "what was offered before still is";
   EXPECT_EQ(offer->also.label, "Find its own skeleton");
   EXPECT_TRUE(studio.session().source.no_person);
-  studio.run(offer->also.command);
+  studio.run(std::string(offer->also.command));
   studio.wait_idle();
   ASSERT_TRUE(studio.session().bones.rig);
   EXPECT_EQ(rig(studio).count(), 2);
