@@ -9,6 +9,7 @@
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/discovery/rig_refit.hpp"
+#include "retarget/math/percentile.hpp"
 
 namespace understudy::app {
 
@@ -97,11 +98,17 @@ void find_and_edit(BonesJob& work, JobControl& control) {
   work.cancelled = control.cancelled();
 }
 
-/// The diagonal of the box about the rest surface, metres.
+/// The diagonal of the box about the rest surface, metres; a few strays do not count.
 float size_of(const DiscoveredRig& rig) {
+  constexpr double kStrays = 2;  // per cent at each end
   const Points& points = rig.found.rig.surface.vertices;
-  if (points.rows() == 0) return 0;
-  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
+  Vec3 sides = Vec3::Zero();
+  for (int axis = 0; axis < 3 && points.rows() > 0; ++axis) {
+    std::vector<double> along(static_cast<size_t>(points.rows()));
+    for (Eigen::Index i = 0; i < points.rows(); ++i) along[static_cast<size_t>(i)] = points(i, axis);
+    sides[axis] = static_cast<float>(percentile(along, 100 - kStrays) - percentile(along, kStrays));
+  }
+  return sides.norm();
 }
 
 /// The mean distance of each found joint from each of the 22, [J, 22] metres, over the frames that show both;

@@ -86,7 +86,7 @@ TEST_F(BonesPanel, EditsTheChosenBone) {
   expect_click("bones.root", {"bones.root 2"});
   expect_typed("bones.name", "hoof", {"bones.rename 2 hoof"});
   expect_typed("bones.y", "0.25", {"bones.move 2 0 0.25 0"});
-  expect_choice("bones.kind", 1, {"bones.kind 2 hinge"});
+  expect_click("bones.kind.1", {"bones.kind 2 hinge"});
   session.falloff = 7;
   expect_typed("bones.turn_z", "90", {"bones.turn 2 20 0 0 1.5708"});
   session.bones.selected = 0;

@@ -142,8 +142,10 @@ std::string turned(const RigJoint& joint, const FoundBone& bone) {
 void draw_table(const BonesDrawing& d) {
   const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
   const float height = line * (static_cast<float>(std::min(d.rig().count(), 14)) + 1.6f);
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {d.ui().px(4), ImGui::GetStyle().CellPadding.y});
   Table table(d.ui(), "bones.bone",
               {{"Bone"}, {"Hangs on"}, {"Kind", 40}, {"Turns", 44, true}, {"Off, mm", 50, true}}, height);
+  ImGui::PopStyleVar();
   if (!table.open()) return;
   for (int j = 0; j < d.rig().count(); ++j) {
     const RigJoint& joint = d.rig().joints[static_cast<size_t>(j)];

@@ -18,6 +18,7 @@ const Vec3 kFoundColor(0.0f, 0.62f, 0.45f);  // Okabe and Ito's green: no side o
 const Vec3 kSelectedColor(0.98f, 0.80f, 0.15f);
 const Vec3 kUnselected(0.62f, 0.64f, 0.67f);  // of the surface, where one bone is chosen
 constexpr float kAdult = 2;                   // diagonal of an adult's box, metres
+constexpr float kBesideJoints = 0.6f;         // of the thickness, where a person's joints are shown too
 constexpr float kGapBeside = 1.2f;            // widths of the body
 
 struct Box3 {
@@ -72,6 +73,13 @@ render::SkeletonView selected_bone(const PosedBones& bones, int joint, float siz
 float diagonal(const Points& points) {
   const Box3 box = box_of(points);
   return (box.high - box.low).norm();
+}
+
+/// About the diagonal of the body's box. Joints are inside the body, where its surface may have strays.
+float size_of(const understudy::Rig& rig) {
+  constexpr int kFew = 4;
+  constexpr float kBeyondJoints = 1.15f;
+  return rig.count() < kFew ? diagonal(rig.surface.vertices) : kBeyondJoints * diagonal(rig.rest_joints());
 }
 
 void add_surface(const Mesh& mesh, const BonesMemory& memory, render::Scene& scene) {
@@ -198,8 +206,9 @@ void add_bones(const Session& session, const PaneContent& pane, const PanePictur
   auto bones = posed_bones(session, pane, pictures.frame);
   if (!bones) return;
   bones->places.rowwise() += aside.transpose();
-  const float size = diagonal(session.bones.rig->found.rig.surface.vertices);
+  const float size = size_of(session.bones.rig->found.rig);
   render::SkeletonView view = skeleton_of(bones->places, bones->parents, size);
+  if (session.view.source.skeleton && !hides_person(session)) view.thickness *= kBesideJoints;
   view.x_ray = session.view.source.x_ray;
   scene.skeletons.push_back(view);
   if (session.bones.selected < 0 || session.bones.selected >= bones->joints) return;
