@@ -266,12 +266,14 @@ void draw_near(const BonesDrawing& d) {
       if (table.row(static_cast<int>(j) == d.bones().selected))
         d.context.ask("bones.select", {std::to_string(j)});
       table.cell(d.rig().joints[j].name);
-      table.cell(near[j].joint < 0 ? "\u2013"
-                                   : (near[j].names ? "" : "far from ") + joint_label(near[j].joint));
+      table.cell(near[j].joint < 0
+                     ? "\u2013"
+                     : (near[j].names ? joint_label(near[j].joint) : "(" + joint_label(near[j].joint) + ")"));
       table.cell(near[j].joint < 0 ? "" : printed("%.0f", 1000 * static_cast<double>(near[j].apart_m)));
       table.cell(near[j].joint < 0 ? "" : printed("%.1f", 100 * static_cast<double>(near[j].share)));
     }
   }
+  hint(d.ui(), "In brackets: another bone is nearer to it, or this one is too far.");
   const bool any = std::any_of(near.begin(), near.end(), [](const app::NearJoint& one) { return one.names; });
   ask_button(d.context,
              {"bones.name_as_joints", "Give them the joints' names",
