@@ -29,8 +29,7 @@ std::vector<Metric> carried_metrics(const app::Session& session, const TimelineS
   const auto is_confidence = [](const Metric& m) { return m.key == "confidence"; };
   if (std::none_of(metrics.begin(), metrics.end(), is_confidence))
     metrics.push_back({"confidence", "Confidence", state.confidence});
-  if (!state.bones_off_mm.empty())
-    metrics.push_back({"bones_off", "Bones off, mm", state.bones_off_mm});
+  if (!state.bones_off_mm.empty()) metrics.push_back({"bones_off", "Bones off, mm", state.bones_off_mm});
   return metrics;
 }
 
