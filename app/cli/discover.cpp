@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/options.hpp"
@@ -26,14 +27,27 @@ struct DiscoverOptions {
   int parts = 0;
 };
 
+using RigWriter = void (*)(const std::string& path, const RiggedMotion& found);
+
+void write_rig_gltf(const std::string& path, const RiggedMotion& found) {
+  write_gltf_character(path, to_character(found));
+}
+
+/// By the path's suffix; null where nothing writes such files.
+RigWriter writer_of(const std::string& path) {
+  static const std::map<std::string, RigWriter> writers = {
+      {".glb", write_rig_gltf}, {".gltf", write_rig_gltf}, {".bvh", write_rig_bvh}};
+  const auto found = writers.find(file_suffix(path));
+  return found == writers.end() ? nullptr : found->second;
+}
+
 void check_outputs(const DiscoverOptions& options) {
   US_CHECK(
       !options.out.empty() || !options.result.empty() || !options.report.empty() || !options.preview.empty(),
       "nothing is to be written: name a character (--out), an archive (--result), a report (--report) or "
       "a picture (--preview)");
-  const std::string suffix = file_suffix(options.out);
-  US_CHECK(options.out.empty() || suffix == ".glb" || suffix == ".gltf", options.out,
-           ": a found rig is written as .glb or .gltf");
+  US_CHECK(options.out.empty() || writer_of(options.out) != nullptr, options.out,
+           ": a found rig is written as .glb, .gltf or .bvh");
   for (const std::string& path : {options.out, options.result, options.report, options.preview}) {
     check_not_read(path, {options.source.path});
     check_writable(path);
@@ -116,7 +130,7 @@ int discover_rig(const DiscoverOptions& options) {
   const ScanSequence scans = scan_sequence(source);
   const DiscoveredRig rig = found_in(scans, options);
   tell(rig);
-  if (!options.out.empty()) write_gltf_character(options.out, to_character(rig.found));
+  if (!options.out.empty()) writer_of(options.out)(options.out, rig.found);
   if (!options.result.empty()) write_found_rig(options.result, rig, source->to_file());
   if (!options.report.empty()) {
     Json report = {{"source", options.source.path}};
@@ -137,7 +151,8 @@ Action declare_discover(CLI::App& command) {
                       "), a list or an array")
       ->required();
   add_source_options(command, options->source);
-  command.add_option("--out", options->out, "the thing with bones, skin and animation, as .glb or .gltf");
+  command.add_option("--out", options->out,
+                     "the thing with bones, skin and animation, as .glb or .gltf; its motion alone as .bvh");
   command
       .add_option("--parts", options->parts, "at most so many bones (default: as many as its motion shows)")
       ->check(CLI::Range(1, 300));

@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/run/samples.hpp"
 #include "retarget/base/log.hpp"
-#include "retarget/body/builtin_samples.hpp"
 
 namespace understudy::app {
 

@@ -132,6 +132,13 @@ Json FieldsWriter::json_of(const SkeletonEdit& edit, const std::string& where) {
   return json;
 }
 
+Json FieldsWriter::json_of(const RigEdit& edit, const std::string& where) {
+  Json json{{"kind", kRigEditNames[edit.index()]}};
+  FieldsWriter writer(json, folder_, where + '.');
+  std::visit([&writer](const auto& kind) { fields(writer, kind); }, edit);
+  return json;
+}
+
 void FieldsReader::read(const Json& json, BoneChoices& choices, const std::string& where) {
   US_CHECK(json.is_object(), where, " must be an object");
   choices.clear();
@@ -179,6 +186,30 @@ void FieldsReader::read(const Json& json, SkeletonEdit& edit, const std::string&
   reader("kind", kind);
   US_CHECK(kind == "drag" || kind == "swap", where, ".kind must be drag or swap");
   if (kind == "swap") edit = SwapEdit{};
+  std::visit([&reader](auto& one) { fields(reader, one); }, edit);
+}
+
+namespace {
+
+/// The edit of that number among the kinds.
+template <size_t I = 0>
+RigEdit empty_edit(size_t kind) {
+  if constexpr (I + 1 < std::variant_size_v<RigEdit>)
+    if (kind != I) return empty_edit<I + 1>(kind);
+  return RigEdit(std::in_place_index<I>);
+}
+
+}  // namespace
+
+void FieldsReader::read(const Json& json, RigEdit& edit, const std::string& where) {
+  FieldsReader reader(json, folder_, where + '.');
+  std::string kind, all;
+  reader("kind", kind);
+  size_t number = 0;
+  while (number < kRigEditNames.size() && kind != kRigEditNames[number])
+    append_item(all, kRigEditNames[number++]);
+  US_CHECK(number < kRigEditNames.size(), where, ".kind must be one of ", all);
+  edit = empty_edit(number);
   std::visit([&reader](auto& one) { fields(reader, one); }, edit);
 }
 

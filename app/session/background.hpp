@@ -67,10 +67,18 @@ struct Studio::Background {
   std::string people_of;  // the scans that these are in
   std::vector<PersonSeen> people_before, people_now;  // of them, until they are met again
   std::string told_of;                                // the scans of which it was told who is taken
-  std::string autosave_problem;                       // the last one reported
+  /// What was found and edited, by what it was made from; the last used at the end.
+  std::vector<std::pair<std::string, std::shared_ptr<const DiscoveredRig>>> rigs;
+  std::string bones_key;                 // of what is shown of bones, or on its way
+  std::shared_ptr<BonesJob> bones_work;  // null: none runs
+  std::string near_key;                  // of what BonesState::near was found from
+  std::string autosave_problem;          // the last one reported
   double since_autosave = 0;
   std::shared_ptr<Autosaving> autosaving = std::make_shared<Autosaving>();
 };
+
+/// Leaves what is the person's of a frame's scan. False: that is nothing.
+bool cut_out(const KeptSource& kept, Mesh& scan);
 
 /// Whether all frames of a take are performed.
 bool is_performed(const Session& session, size_t take);

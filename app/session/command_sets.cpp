@@ -107,6 +107,7 @@ void add_all_commands(Commands& commands) {
   add_export_commands(commands);
   add_study_commands(commands);
   add_map_commands(commands);
+  add_bones_commands(commands);
   add_program_commands(commands);
 }
 

@@ -15,6 +15,7 @@ void add_edit_commands(Commands& commands);
 void add_export_commands(Commands& commands);
 void add_study_commands(Commands& commands);
 void add_map_commands(Commands& commands);
+void add_bones_commands(Commands& commands);
 void add_program_commands(Commands& commands);
 void add_all_commands(Commands& commands);
 

@@ -15,6 +15,7 @@
 #include "retarget/editing/scan_edits.hpp"
 #include "retarget/editing/skeleton_edits.hpp"
 #include "retarget/editing/target_edits.hpp"
+#include "retarget/rig/rig_edits.hpp"
 
 namespace understudy::app {
 
@@ -51,11 +52,27 @@ FieldsOf<S, Take> fields(V& visit, S& take) {
   visit("pose_edits", take.pose_edits);
 }
 
+constexpr int kMostBones = 300;  ///< that may be asked for
+
+/// The skeleton of its own that is found in the source's scans, as a recipe: the same is found again.
+struct OwnBones {
+  bool wanted = false;
+  int most = 0;                ///< bones at most; 0: as many as the motion shows
+  std::vector<RigEdit> edits;  ///< of what is found, one after the other
+};
+template <class V, class S>
+FieldsOf<S, OwnBones> fields(V& visit, S& bones) {
+  visit("wanted", bones.wanted);
+  visit("most", bones.most, Within<int>{0, kMostBones});
+  visit("edits", bones.edits);
+}
+
 struct Document {
   SourceOptions source;  ///< path empty: none yet
   std::string truth;     ///< truth.npz of a case; empty: none
   ScanEdits scan_edits;
   std::vector<SkeletonEdit> skeleton_edits;
+  OwnBones bones;
   std::vector<Take> takes;
 };
 template <class V, class S>
@@ -64,6 +81,7 @@ FieldsOf<S, Document> fields(V& visit, S& document) {
   visit("truth", document.truth, FilePath{});
   visit("scan_edits", document.scan_edits);
   visit("skeleton_edits", document.skeleton_edits);
+  visit("bones", document.bones);
   visit("takes", document.takes);
 }
 

@@ -241,6 +241,8 @@ void Studio::replace_document(SavedDocument saved, const std::string& path) {
   background_->followed_take = -1;
   background_->opened_targets.clear();
   background_->opened_source.reset();
+  background_->bones_key.clear();
+  forget_incomplete_bones();
   session_.selected_joint = -1;
   session_.tool = Tool::Look;
   ask_for_missing(session_);

@@ -2,11 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "retarget/base/index.hpp"
 
 namespace understudy::app {
 namespace {
 
 constexpr double kSmoothing = 0.25;  // standard deviation, seconds
+
+/// What the camera of a pane follows in a frame: the pelvis, or the middle of a scan that shows no person.
+std::optional<Vec3> followed(const Session& session, int pane, int frame) {
+  const KeptSource* const seen = at_or_null(session.source.frames, frame);
+  if (pane == 0 && session.source.no_person && seen != nullptr && seen->extent)
+    return Vec3(0.5f * (seen->extent->low + seen->extent->high));
+  const Joints* joints = pane_joints(session, pane, frame);
+  if (joints == nullptr || !joints->row(Pelvis).allFinite()) return std::nullopt;
+  return Vec3(joints->row(Pelvis));
+}
 
 }  // namespace
 
@@ -31,10 +44,10 @@ Vec3 follow_offset(const Session& session, int pane, int frame) {
   Vec3 sum = Vec3::Zero();
   float total = 0;
   for (int f = std::max(0, frame - reach); f <= frame + reach; ++f) {
-    const Joints* joints = pane_joints(session, pane, f);
-    if (joints == nullptr || !joints->row(Pelvis).allFinite()) continue;
+    const auto place = followed(session, pane, f);
+    if (!place) continue;
     const float w = static_cast<float>(std::exp(-0.5 * std::pow((f - frame) / sigma, 2.0)));
-    sum += w * joints->row(Pelvis).transpose();
+    sum += w * *place;
     total += w;
   }
   return total > 0 ? Vec3(sum.x() / total, 0, sum.z() / total) : Vec3::Zero();

@@ -21,6 +21,7 @@ void restore_source(Document& document, const Document& before) {
   document.truth = before.truth;
   document.scan_edits = before.scan_edits;
   document.skeleton_edits = before.skeleton_edits;
+  document.bones = before.bones;
   for (Take& take : document.takes)
     for (const Take& old : before.takes)
       if (old.name == take.name && same(old.target, take.target)) take.pose_edits = old.pose_edits;
@@ -86,9 +87,9 @@ void Studio::roll_back_source() {
 void Studio::offer_clean_up(const std::string& doubt) {
   constexpr std::ptrdiff_t kFewest = 3, kFirst = 60;  // frames
   Background& b = *background_;
-  const SourceState& source = session_.source;
+  SourceState& source = session_.source;
   const ScanEdits& edits = session_.document.scan_edits;
-  if (b.advised == b.source_key || (!source.clips.empty() && !session_.document.source.as_scan)) return;
+  if (!source.clips.empty() && !session_.document.source.as_scan) return;
   std::ptrdiff_t seen = 0, nobody = 0;
   for (std::ptrdiff_t t = 0; t < std::min(kFirst, ssize(source.frames)); ++t) {
     const KeptSource& frame = source.frames[t];
@@ -98,14 +99,20 @@ void Studio::offer_clean_up(const std::string& doubt) {
     nobody += frame.flagged && !elsewhere ? 1 : 0;
   }
   const bool lost = seen >= kFewest && nobody * 5 >= seen * 4;
-  if (doubt.empty() && !lost) return;
+  source.no_person = source.no_person || lost || !doubt.empty();
+  if ((doubt.empty() && !lost) || b.advised == b.source_key) return;
   b.advised = b.source_key;
   const bool cleaned = edits.floor && edits.largest_cluster;
   const std::string sentence = !lost     ? "It may be no person that is seen"
                                : cleaned ? "No person recognised. Crop the scan in Edit > Scan"
                                          : "No person recognised: a floor or things may hide them";
   log::warn(session_.document.source.path + ": " + (doubt.empty() ? sentence : doubt));
-  notify(sentence, true, lost && !cleaned ? Offer{"Clean up", "edit.clean_up", true} : Offer{});
+  const Offer find{"Find its own skeleton", "bones.find", true}, clean{"Clean up", "edit.clean_up", true};
+  const bool has_bones = session_.document.bones.wanted;
+  if (lost && !cleaned)
+    notify(sentence, true, clean, has_bones ? Offer{} : find);
+  else
+    notify(sentence, true, has_bones ? Offer{} : find);
 }
 
 namespace {

@@ -185,7 +185,19 @@ Box shown_crop(const Session& session) {
   return box;
 }
 
+/// What was found is not to be trusted there.
+std::vector<BadFrame> doubted_frames(const Session& session) {
+  std::vector<BadFrame> bad;
+  const auto& rig = session.bones.rig;
+  if (!rig) return bad;
+  for (int t = 0; t < ssize(session.source.frames); ++t)
+    if (const int at = frame_of_rig(*rig, t); at >= 0 && rig->doubted[static_cast<size_t>(at)])
+      bad.push_back({t, "the found bones fit clearly worse than in other frames"});
+  return bad;
+}
+
 std::vector<BadFrame> bad_frames(const Session& session) {
+  if (session.source.no_person && session.document.bones.wanted) return doubted_frames(session);
   std::vector<BadFrame> bad;
   const auto usual = usual_lengths(session.source.frames);
   for (size_t i = 0; i < session.source.frames.size(); ++i) {

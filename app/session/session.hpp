@@ -12,6 +12,7 @@
 #include "app/run/evaluator.hpp"
 #include "app/run/latency.hpp"
 #include "app/run/person_cut.hpp"
+#include "app/session/bones_state.hpp"
 #include "app/session/document.hpp"
 #include "app/session/document_file.hpp"
 #include "app/session/history.hpp"
@@ -67,6 +68,7 @@ struct SourceState {
   std::vector<PersonSeen> people;
   int person = 0;                   ///< who is cut out of them; 0: nobody yet
   bool has_scene = false;           ///< the scans hold more than one person
+  bool no_person = false;           ///< it may be none that is seen
   SharedFrames<KeptSource> frames;  ///< of the extractor of the first take
   bool has_faces = false;
   int64_t generation = 0;  ///< changes whenever earlier frames are no longer valid
@@ -125,6 +127,7 @@ struct Notice {
   double until = 0;     ///< Session::time at which a notice disappears; infinite: it waits
   Offer offer{};
   int64_t id = 0;  ///< of a notice: its number since the start, from 1
+  Offer also{};    ///< a second button
 };
 
 struct LogLine {
@@ -170,6 +173,7 @@ struct Session {
   History history;
   StudyState study;
   MapState map;
+  BonesState bones;
   View view;
   Playback playback;
   Settings settings;
@@ -243,6 +247,8 @@ struct BadFrame {
   std::string why;
 };
 std::vector<BadFrame> bad_frames(const Session& session);
+/// Those in which found bones are not to be trusted: bad_frames() of a source that is no person.
+std::vector<BadFrame> doubted_frames(const Session& session);
 /// Runs of frames that could not be used, of who is performed by a take, in order of time.
 std::vector<FillEdit> unusable_runs(const Session& session, size_t take);
 

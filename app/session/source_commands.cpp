@@ -19,6 +19,7 @@ void set_source(Call& c, SourceOptions source) {
   document.truth.clear();
   document.scan_edits = {};
   document.skeleton_edits.clear();
+  document.bones = {};
   for (Take& take : document.takes) take.pose_edits = {}, take.person.clear();
   c.session.playback = Playback{};
 }

@@ -158,13 +158,13 @@ void Studio::fail(const std::string& sentence, const std::string& details) {
   if (commands_.find(command) != nullptr) session_.failures.push_back({sentence, command});
 }
 
-void Studio::notify(const std::string& sentence, bool warning, const Offer& offer) {
+void Studio::notify(const std::string& sentence, bool warning, const Offer& offer, const Offer& also) {
   const Arguments offered = split_line(offer.command);
   if (offered.size() == 2 && offered[0] == "file.show")
     log::info(offered[1] + ": is written");  // the notice is gone soon, and names no folder
   const auto kind = warning ? Notice::Kind::Warning : Notice::Kind::Info;
   const double until = offer.waits ? std::numeric_limits<double>::infinity() : session_.time + kNoticeSeconds;
-  session_.notices.push_back({kind, sentence, "", until, offer, ++session_.notices_made});
+  session_.notices.push_back({kind, sentence, "", until, offer, ++session_.notices_made, also});
 }
 
 /// Gives the background the plan, and drops what no longer belongs to anything. Where it throws nothing has

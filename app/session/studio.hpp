@@ -13,6 +13,7 @@
 namespace understudy::app {
 
 struct SourceFrames;
+struct BonesJob;
 
 /// Where the networks come from: the program passes the trained ones, tests their own.
 struct StudioServices {
@@ -67,7 +68,8 @@ class Studio {
   /// Shows a sentence in a dialog; details are for "copy details".
   void fail(const std::string& sentence, const std::string& details = "");
   /// Shows a sentence for some seconds, with what can be done about it.
-  void notify(const std::string& sentence, bool warning = false, const Offer& offer = {});
+  void notify(const std::string& sentence, bool warning = false, const Offer& offer = {},
+              const Offer& also = {});
   /// The document as it would be saved now.
   SavedDocument saved_document() const;
   /// Takes back the opening of a take's target. False, and nothing is done, where it came with the document
@@ -84,6 +86,11 @@ class Studio {
   void pause_work(bool paused);
   /// Redoes every frame.
   void restart_work();
+  /// Looks once more for bones that were not found, or not to the end.
+  void look_for_bones_again();
+  /// Does an edit of the found bones, and adds it to the document's. Throws Error while there are none, or
+  /// where it is refused. FitAgain is done in the background.
+  void edit_bones(const RigEdit& edit);
 
  private:
   struct Background;
@@ -105,6 +112,12 @@ class Studio {
   void offer_fills();
   void offer_fill(size_t k);
   void withdraw_notice(int64_t id);
+  void follow_bones();
+  void withdraw_bones_offer();
+  void start_finding_bones();
+  void take_in_bones(BonesJob& work);
+  void compare_bones();
+  void forget_incomplete_bones();
   void note_openings(const Document& before, const std::vector<int64_t>& ids_before, bool changed_before);
   void roll_back_source();
   void note_source_read();

@@ -94,6 +94,14 @@ void merge_series(std::vector<Series>& into, std::vector<Series> newer) {
 
 }  // namespace
 
+bool cut_out(const KeptSource& kept, Mesh& scan) {
+  if (!kept.owners) return true;
+  SceneFrame scene;
+  scene.owner = kept.owners->owners(scan.vertices);
+  if (!scene.owner.empty()) scan = part_of(scan, scene, kept.person);
+  return scan.vertices.rows() > 0;
+}
+
 bool same_poses(PoseEdits a, PoseEdits b) {
   for (PoseEdits* edits : {&a, &b}) edits->trim.reset(), edits->skip.clear();
   return same(a, b);
@@ -405,15 +413,6 @@ struct Measuring {
   std::shared_ptr<MotionBlender> blender;
 };
 
-/// Leaves what is the person's. False: that is nothing.
-bool cut_out(const KeptSource& kept, Mesh& scan) {
-  if (!kept.owners) return true;
-  SceneFrame scene;
-  scene.owner = kept.owners->owners(scan.vertices);
-  if (!scene.owner.empty()) scan = part_of(scan, scene, kept.person);
-  return scan.vertices.rows() > 0;
-}
-
 /// Of the frames that were performed; beyond them there is nothing to measure against.
 void evaluate_all(Measuring& m, JobControl& control) {
   const size_t count = std::min(m.shown.poses.size(), m.source_joints.size());
@@ -498,6 +497,7 @@ void Studio::take_in_results() {
   if (!session_.working && !session_.paused && !b.people_before.empty())
     b.people_before.clear(), session_.source.people = b.people_now;
   offer_fills();
+  follow_bones();
   measure_finished();
 }
 

@@ -91,6 +91,10 @@ FieldsOf<S, LightLook> fields(V& visit, S& light) {
 enum class Background { Theme, White, Black, Custom };
 constexpr Names<4> kBackgroundNames{"theme", "white", "black", "custom"};
 
+/// Where the surface is seen that moves with a found skeleton, painted by bone.
+enum class BoneSurface { Off, Over, Beside };
+constexpr Names<3> kBoneSurfaceNames{"off", "over", "beside"};
+
 /// What a pane draws.
 struct Layers {
   bool surface = true;       ///< the scan, or the target's mesh
@@ -103,6 +107,7 @@ struct Layers {
   bool ghosts = false;     ///< past and coming frames, faint
   bool wireframe = false;  ///< edges of the surface's faces over it
   bool scene = true;       ///< of a scan what is nobody's: ground and things
+  bool bones = true;       ///< the scan's own skeleton that was found
   Colouring colouring = Colouring::Plain;
 };
 template <class V, class S>
@@ -117,6 +122,7 @@ FieldsOf<S, Layers> fields(V& visit, S& layers) {
   visit("ghosts", layers.ghosts);
   visit("wireframe", layers.wireframe);
   visit("scene", layers.scene);
+  visit("bones", layers.bones);
   visit("colouring", layers.colouring, kColouringNames);
 }
 
@@ -141,6 +147,7 @@ struct View {
   Vec3 background_color = Vec3(0.16f, 0.24f, 0.34f);  ///< of Background::Custom, sRGB
   std::string metric = "confidence";                  ///< plotted in the timeline
   bool steps = true;                                  ///< marked there
+  BoneSurface bone_surface = BoneSurface::Off;
 };
 template <class V, class S>
 FieldsOf<S, View> fields(V& visit, S& view) {
@@ -166,6 +173,7 @@ FieldsOf<S, View> fields(V& visit, S& view) {
   visit(MemberName("background_color", "backdrop_color"), view.background_color);
   visit("metric", view.metric);
   visit("steps", view.steps);
+  visit("bone_surface", view.bone_surface, kBoneSurfaceNames);
 }
 
 /// What a pane (0 the source, k the take k - 1) is seen through: the first camera while they are linked, else

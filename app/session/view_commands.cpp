@@ -105,6 +105,7 @@ Extent scan_extent(const Session& session, int pane, int frame, const Joints& jo
   const bool scanned = pane == 0 && frame < ssize(session.source.frames) && !thinned;
   const std::optional<Box> box = scanned ? session.source.frames[frame].extent : std::nullopt;
   if (!box) return grown(kBody);
+  if (session.source.no_person) return Extent(box->low, box->high);
   all = grown(kReach).intersection(Extent(box->low, box->high));
   if (edits.crop) all = all.intersection(Extent(edits.crop->low, edits.crop->high));
   return all.isEmpty() ? grown(kBody) : all;

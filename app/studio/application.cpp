@@ -48,14 +48,19 @@ std::vector<ui::SampleCard> sample_cards(const std::string& folder) {
   const struct {
     const char *title, *caption;
     std::vector<std::string> files;
+    std::vector<std::string> then{};
   } kCards[] = {
       {"A dance, by a heavy man", "87 scans and a target", {"scan", "target_adult.glb"}},
       {"A walk, by a girl of six", "45 scans and a target", {"walk", "target_child.glb"}},
       {"The dance alone", "87 scans, for your own target", {"scan"}},
+      {"An animal's walk",
+       "48 scans, to find its skeleton in",
+       {"animal"},
+       {"source.up y", "panel.show bones on"}},
   };
   std::vector<ui::SampleCard> cards;
   for (const auto& one : kCards) {
-    ui::SampleCard card{one.title, one.caption, {}, nullptr};
+    ui::SampleCard card{one.title, one.caption, {}, nullptr, one.then};
     for (const std::string& file : one.files) card.paths.push_back((fs::path(folder) / file).string());
     const bool all =
         std::all_of(card.paths.begin(), card.paths.end(), [](const auto& p) { return fs::exists(p); });

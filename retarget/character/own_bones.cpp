@@ -34,14 +34,6 @@ std::vector<bool> bone_nodes(const PreparedCharacter& c) {
   return is_bone;
 }
 
-/// As a word of a file.
-std::string word_of(const std::string& name, int node) {
-  std::string word = name.empty() ? "bone_" + std::to_string(node) : name;
-  for (char& c : word)
-    if (static_cast<unsigned char>(c) <= 32 || c == '{' || c == '}') c = '_';
-  return word;
-}
-
 /// Where the bones are in a pose: turned from the bind pose about their parents' axes, and their heads on
 /// their parents, in those, metres; of a bone without a parent in the world.
 struct PosedBones {
@@ -130,12 +122,9 @@ std::vector<OwnBone> own_bones(const PreparedCharacter& c) {
     bone_of[n] = above;
     if (!is_bone[n]) continue;
     bone_of[n] = static_cast<int>(bones.size());
-    const std::string word = word_of(nodes[n].name, static_cast<int>(n));
-    std::string name = word;
-    for (int i = 2; !taken.insert(name).second; ++i) name = word + "_" + std::to_string(i);
     const Vec3 in_file = c.bind.nodes[n].topRightCorner<3, 1>();
-    bones.push_back(
-        {static_cast<int>(n), above, c.to_world.scale * (c.to_world.R * in_file) + c.to_world.t, name});
+    bones.push_back({static_cast<int>(n), above, c.to_world.scale * (c.to_world.R * in_file) + c.to_world.t,
+                     bvh_word(nodes[n].name, n, taken)});
   }
   return bones;
 }

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
 #include "retarget/base/log.hpp"
 #include "retarget/base/text.hpp"
+#include "retarget/formats/motion_writers.hpp"
 #include "retarget/math/rotation.hpp"
 
 namespace understudy {
@@ -340,6 +342,34 @@ RiggedMotion from_character(const Character& character, int animation, double fp
   for (const BoneMotions& moved : frames) read.motion.poses.push_back(pose_of(read.rig, moved));
   warn_of_loss(character, read, animation, times);
   return read;
+}
+
+void write_rig_bvh(const std::string& path, const RiggedMotion& performed) {
+  const Rig& rig = performed.rig;
+  check_rig(rig);
+  std::vector<BvhJoint> joints;
+  std::set<std::string> taken;
+  for (const RigJoint& joint : rig.joints)
+    joints.push_back({bvh_word(joint.name, joints.size(), taken), joint.parent, joint.rest,
+                      joint.kind == JointKind::Slider});
+  for (const BoneTip& tip : bone_tips(rig)) {
+    BvhJoint& joint = joints[static_cast<size_t>(tip.joint)];
+    joint.end = tip.rest - joint.rest;
+  }
+  BvhWriter file(path, joints, performed.motion.fps);
+  Points places(rig.count(), 3);
+  for (const RigPose& pose : performed.motion.poses) {
+    US_CHECK(pose.turns.size() == joints.size() && pose.slides.size() == joints.size(), path, ": a pose of ",
+             pose.turns.size(), " joints for a rig of ", joints.size());
+    places.row(0) = pose.root.transpose();
+    for (size_t j = 1; j < joints.size(); ++j) {
+      const RigJoint& joint = rig.joints[j];
+      const Vec3 still = joint.rest - rig.joints[static_cast<size_t>(joint.parent)].rest;
+      places.row(static_cast<Eigen::Index>(j)) = (still + pose.slides[j] * joint.axis).transpose();
+    }
+    file.push(pose.turns, places);
+  }
+  file.finish();
 }
 
 }  // namespace understudy

@@ -1,4 +1,4 @@
-// Rigs of any kind to and from characters: a found rig is a GLB, and opens again.
+// Rigs of any kind to and from characters: a found rig is a GLB, and opens again. Their motions as BVH.
 #pragma once
 
 #include "retarget/character/character.hpp"
@@ -19,5 +19,9 @@ Character to_character(const RiggedMotion& performed);
 /// its parent, morph targets). Of more than four bones of a vertex the four of largest weight count. Throws
 /// Error where there is no skin, bones scale, or the animation has more than 100,000 frames.
 RiggedMotion from_character(const Character& character, int animation, double fps);
+
+/// The motion alone as BVH, of any tree, see BvhWriter: at rest all angles are zero; the root and sliders have
+/// positions. Throws Error for a bad rig, poses that do not fit, and as BvhWriter.
+void write_rig_bvh(const std::string& path, const RiggedMotion& performed);
 
 }  // namespace understudy

@@ -10,11 +10,10 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/discovery/part_tree.hpp"
+#include "retarget/discovery/rig_figures.hpp"
 #include "retarget/discovery/rig_follower.hpp"
 #include "retarget/discovery/scan_evidence.hpp"
 #include "retarget/discovery/turntables.hpp"
-#include "retarget/math/percentile.hpp"
-#include "retarget/math/rotation.hpp"
 #include "retarget/rig/rig_edits.hpp"
 
 namespace understudy {
@@ -70,6 +69,7 @@ class Discovery {
   void read_key_frames();
   int most_open() const;
   void find_bones();
+  void show_parts() const;
   void bind_points();
   void fit_all(float stiffness);
   PartJoint joint_as_fitted(int j) const;
@@ -154,6 +154,16 @@ void Discovery::find_bones() {
   for (size_t t = 0; t < frames_.size(); ++t)
     for (size_t b = 0; b < tree_.part_of_bone.size(); ++b)
       bones_[t][b] = parts_.motions[static_cast<size_t>(tree_.part_of_bone[b])][t];
+  show_parts();
+}
+
+void Discovery::show_parts() const {
+  if (!options_.parts_found) return;
+  const std::vector<int> bone = bone_of_part(tree_);
+  PartsSoFar so_far{
+      numbers_[static_cast<size_t>(tracks_.rest_frame)], tracks_.graph.points, {}, tree_.rig.joints};
+  for (const int part : parts_.of_point) so_far.bone_of.push_back(bone[static_cast<size_t>(part)]);
+  options_.parts_found(std::move(so_far));
 }
 
 void Discovery::fit_all(float stiffness) {
@@ -208,29 +218,14 @@ void Discovery::track_from_bones() {
 }
 
 void Discovery::judge_bones(DiscoveredRig& result) const {
-  const Rig& rig = result.found.rig;
-  std::vector<double> off(rig.joints.size(), 0), weight(rig.joints.size(), 1e-9);
+  BoneDistances off(result.found.rig.count());
   for (size_t t = 0; t < frames_.size(); ++t) {
     const Eigen::VectorXf distances = distances_to(frames_[t], surface_, bones_[t]);
-    for (Eigen::Index i = 0; i < distances.size(); ++i)
-      for (int k = 0; k < kSkinBones; ++k) {
-        const auto bone = static_cast<size_t>(surface_.skin.bones(i, k));
-        off[bone] += surface_.skin.weights(i, k) * distances[i];
-        weight[bone] += surface_.skin.weights(i, k);
-      }
+    off.add(surface_.skin, distances);
     result.off_m[static_cast<size_t>(numbers_[t])] = distances.mean();
   }
-  result.bones.resize(rig.joints.size());
-  for (size_t j = 0; j < rig.joints.size(); ++j) {
-    FoundBone& bone = result.bones[j];
-    bone.off_m = static_cast<float>(off[j] / weight[j]);
-    if (j == 0) continue;
-    for (const RigPose& pose : result.found.motion.poses) {
-      bone.turned_deg =
-          std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
-      bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
-    }
-  }
+  measure_motion(result.found, result.bones);
+  for (size_t j = 0; j < result.bones.size(); ++j) result.bones[j].off_m = off.mean(j);
 }
 
 /// Frames that are no key frames: from the key frame before them on. What cannot be used repeats the pose
@@ -280,12 +275,7 @@ DiscoveredRig Discovery::finished() {
   }
   if (static_cast<int>(frames_.size()) < scans_.count) follow_others(result);
   judge_bones(result);
-  constexpr float kMuch = 2;
-  std::vector<double> known;
-  for (const float off : result.off_m)
-    if (off >= 0) known.push_back(off);
-  const auto usual = static_cast<float>(percentile(known, 50));
-  for (const float off : result.off_m) result.doubted.push_back(off < 0 || off > kMuch * usual);
+  result.doubted = doubted_frames(result.off_m);
   result.complete = goes_on_;
   return result;
 }

@@ -22,8 +22,18 @@ struct DiscoveryProgress {
   float share;        ///< 0 .. 1 of all
 };
 
+/// What is known while the work goes on: to be drawn.
+struct PartsSoFar {
+  int rest_frame = 0;
+  Points points{0, 3};         ///< [N, 3] of the surface, where they are in the rest frame
+  std::vector<int> bone_of;    ///< [N]
+  std::vector<RigJoint> tree;  ///< at rest; without names
+};
+
 struct DiscoveryOptions {
   int parts = 0;  ///< at most; 0: as many as the motion shows
+  /// Called each time bones have been looked for, on one thread.
+  std::function<void(PartsSoFar)> parts_found = {};
   /// Called from several threads, one at a time; false ends the work with the best found so far.
   std::function<bool(const DiscoveryProgress&)> progress = {};
 };
@@ -44,6 +54,7 @@ struct DiscoveredRig {
   std::vector<bool>
       doubted;           ///< [T] frames that it fits clearly worse than the others, or that could not be used
   bool complete = true;  ///< false: ended early
+  int first_frame = 0;   ///< of the scans: the first pose's, where edits have trimmed it
 };
 
 /// Tracks the surface of the most open frame through up to 60 key frames, joins what moves alike to rigid

@@ -30,9 +30,12 @@ void RigFollower::start_from(const RigPose& pose) {
   last_ = before_ = bone_motions(rig_, pose);
 }
 
+ThinnedFrame RigFollower::seen(const Mesh& scan) {
+  return thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed);
+}
+
 RigFollower::Followed RigFollower::follow(const Mesh& scan) {
-  Followed followed = fit(thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed),
-                          led_on(before_, last_, rig_.rest_joints()));
+  Followed followed = fit(seen(scan), led_on(before_, last_, rig_.rest_joints()));
   before_ = std::exchange(last_, bone_motions(rig_, followed.pose));
   return followed;
 }

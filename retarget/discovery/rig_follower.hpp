@@ -6,7 +6,7 @@
 namespace understudy {
 
 /// Lays a rig on each new scan, near where the frames before lead. Looks only back, memory is constant. The
-/// same scans give the same poses. One thread at a time.
+/// same scans give the same poses. One thread at a time, but for fit().
 class RigFollower {
  public:
   /// Throws Error for a rig without a surface of 30 points.
@@ -21,9 +21,13 @@ class RigFollower {
   /// Throws Error for a scan without 30 finite points.
   Followed follow(const Mesh& scan);
 
- private:
+  /// A scan as it is looked at. Throws Error for one without 30 finite points.
+  static ThinnedFrame seen(const Mesh& scan);
+  /// One scan alone, from where the bones are thought to be. Several threads may.
   Followed fit(const ThinnedFrame& scan, BoneMotions bones) const;
+  const FittedSurface& surface() const { return surface_; }
 
+ private:
   Rig rig_;
   FittedSurface surface_;
   float spacing_m_;

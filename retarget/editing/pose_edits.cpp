@@ -5,54 +5,11 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
-#include "retarget/editing/skeleton_edits.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/time_filter.hpp"
 
 namespace understudy {
 namespace {
-
-using Quat = Eigen::Quaternionf;
-
-/// Half a Gaussian: weights at 0, 1, 2 ... frames away, up to three standard deviations.
-std::vector<float> half_gaussian(float sigma_frames) {
-  std::vector<float> half;
-  for (int k = 0; k <= static_cast<int>(std::ceil(3 * sigma_frames)); ++k)
-    half.push_back(std::exp(-0.5f * std::pow(static_cast<float>(k) / sigma_frames, 2.0f)));
-  return half;
-}
-
-/// Mean over the window at each frame; the window shrinks on both sides alike towards the ends, so that what
-/// moves evenly keeps moving so. T: with + and *.
-template <class T>
-std::vector<T> filtered(const std::vector<T>& in, const std::vector<float>& half, const T& zero) {
-  const int count = in.size(), reach = static_cast<int>(half.size()) - 1;
-  std::vector<T> out(in.size(), zero);
-  for (int t = 0; t < count; ++t) {
-    const int r = std::min({reach, t, count - 1 - t});
-    T sum = half[0] * in[t];
-    float total = half[0];
-    for (int k = 1; k <= r; ++k) {
-      sum += half[k] * (in[t - k] + in[t + k]);
-      total += 2 * half[k];
-    }
-    out[t] = sum / total;
-  }
-  return out;
-}
-
-void smooth_joint(int joint, const std::vector<float>& half, Motion& motion) {
-  std::vector<Eigen::Vector4f> q;
-  q.reserve(motion.poses.size());
-  for (const Pose& pose : motion.poses) {
-    const Eigen::Vector4f now = Quat(pose.local[joint]).coeffs();
-    const bool far = !q.empty() && q.back().dot(now) < 0;  // q and -q are one rotation: keep to the nearer
-    q.push_back(far ? Eigen::Vector4f(-now) : now);
-  }
-  const auto mean = filtered<Eigen::Vector4f>(q, half, Eigen::Vector4f::Zero());
-  for (size_t t = 0; t < q.size(); ++t)
-    if (mean[t].norm() > 1e-3f)  // opposite rotations have no mean
-      motion.poses[t].local[joint] = Quat(mean[t].normalized()).toRotationMatrix();
-}
 
 double mean_acceleration(const std::vector<Joints>& x, float fps) {
   if (x.size() < 3) return 0;
@@ -105,14 +62,16 @@ void rotate(const std::vector<RotateEdit>& edits, const Joints& rest, Motion& mo
 }
 
 void smooth(const SmoothEdit& edit, Motion& motion) {
-  US_CHECK(edit.strength >= 0 && edit.strength <= 1, "smoothing must be in 0..1, not ", edit.strength);
-  const float sigma = edit.strength * kSmoothestSeconds * motion.fps;
-  if (sigma < 0.05f) return;
-  const std::vector<float> half = half_gaussian(sigma);
-  for (int j = 0; j < kJointCount; ++j) smooth_joint(j, half, motion);
+  const std::vector<float> half = half_gaussian(edit.strength, motion.fps);
+  std::vector<Mat3> turns(motion.poses.size());
+  for (int j = 0; j < kJointCount; ++j) {
+    for (size_t t = 0; t < turns.size(); ++t) turns[t] = motion.poses[t].local[j];
+    turns = filtered_rotations(turns, half);
+    for (size_t t = 0; t < turns.size(); ++t) motion.poses[t].local[j] = turns[t];
+  }
   std::vector<Vec3> roots;
   for (const Pose& pose : motion.poses) roots.push_back(pose.root);
-  const auto mean = filtered<Vec3>(roots, half, Vec3::Zero());
+  const std::vector<Vec3> mean = filtered(roots, half);
   for (size_t t = 0; t < roots.size(); ++t) motion.poses[t].root = mean[t];
 }
 

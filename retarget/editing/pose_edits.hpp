@@ -42,7 +42,6 @@ template <class V, class S>
 FieldsOf<S, SmoothEdit> fields(V& visit, S& edit) {
   visit("strength", edit.strength, Within<float>{0, 1});
 }
-constexpr float kSmoothestSeconds = 0.2f;
 
 /// The whole motion moved up or down.
 struct RaiseEdit {

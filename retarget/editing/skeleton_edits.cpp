@@ -1,11 +1,10 @@
 #include "retarget/editing/skeleton_edits.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 
 #include "retarget/base/error.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/time_filter.hpp"
 
 namespace understudy {
 namespace {
@@ -79,13 +78,6 @@ void edit_frame(const SwapEdit& edit, float, Extraction& seen) {
 }
 
 }  // namespace
-
-float falloff_weight(int frame, int edited, int falloff) {
-  const int64_t distance = int64_t{frame} - edited;  // frames come from files: in 64 bits
-  const float reach = static_cast<float>(std::max(falloff, 0)) + 1;
-  const float x = std::abs(static_cast<float>(distance)) / reach;
-  return x >= 1 ? 0.0f : 0.5f + 0.5f * std::cos(kPi * x);
-}
 
 Extraction apply(const std::vector<SkeletonEdit>& edits, Extraction seen, int frame) {
   for (const SkeletonEdit& any : edits)

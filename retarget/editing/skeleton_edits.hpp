@@ -9,10 +9,6 @@
 
 namespace understudy {
 
-/// How much of an edit of frame `edited` there is at another frame: 1 there, then half a cosine down to 0 at
-/// falloff + 1 frames away.
-float falloff_weight(int frame, int edited, int falloff);
-
 /// A joint taken by the hand at one frame; the frames around follow less and less.
 struct DragEdit {
   int frame = 0;

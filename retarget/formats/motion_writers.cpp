@@ -77,9 +77,9 @@ void append_joint(std::string& out, const std::vector<BvhJoint>& joints, size_t 
       append_joint(out, joints, child, depth + 1, order);
       has_child = true;
     }
-  if (!has_child) {  // half as long as the bone before
+  if (!has_child) {
     out += inside + "End Site\n" + inside + "{\n";
-    append_offset(out, inside + "  ", 0.5f * offset);
+    append_offset(out, inside + "  ", one.end.isZero() ? Vec3(0.5f * offset) : one.end);
     out += inside + "}\n";
   }
   out += indent + "}\n";
@@ -113,6 +113,15 @@ Mat3 to_z_up() {
 enum ResultArray : size_t { Vertices, JointsArray, RotationsArray, SourceJoints };
 
 }  // namespace
+
+std::string bvh_word(const std::string& name, size_t number, std::set<std::string>& taken) {
+  std::string word = name.empty() ? "bone_" + std::to_string(number) : name;
+  for (char& c : word)
+    if (static_cast<unsigned char>(c) <= 32 || c == '{' || c == '}') c = '_';
+  std::string free = word;
+  for (int i = 2; !taken.insert(free).second; ++i) free = word + "_" + std::to_string(i);
+  return free;
+}
 
 BvhWriter::BvhWriter(const std::string& path, const Joints& rest, double fps)
     : BvhWriter(path, joints_of(rest, path), fps) {}

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,11 @@ struct BvhJoint {
   int parent = -1;           ///< comes before; below 0: a root
   Vec3 rest = Vec3::Zero();  ///< in the world where all angles are zero, metres
   bool moves = false;        ///< has a position in each frame, as roots have; else it stays on its parent
+  /// Of one that carries no other where it ends, seen from it at rest; zero: half as long as the bone before.
+  Vec3 end = Vec3::Zero();
 };
+/// A bone's name as a word of a BVH file, unlike those taken, which it joins.
+std::string bvh_word(const std::string& name, size_t number, std::set<std::string>& taken);
 
 /// BVH: centimetres, y up; positions X Y Z of roots and of what moves, in place of the offset, and rotations,
 /// Z X Y in degrees, unwound so that curves have no jumps.

@@ -48,10 +48,21 @@ TEST_F(DiscoverCommand, ALampsBonesAreFoundAndItsFileOpensAgain) {
   EXPECT_GT(std::filesystem::file_size(out("r.npz")), 10000u);
 }
 
+TEST_F(DiscoverCommand, ItsMotionAloneIsBvh) {
+  const Finished run = run_program({"discover", "--source", lamp(), "--out", out("rig.bvh")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::string text = read_bytes(out("rig.bvh"));
+  EXPECT_NE(text.find("ROOT bone_0\n"), std::string::npos) << text.substr(0, 200);
+  EXPECT_NE(text.find("JOINT bone_1\n"), std::string::npos) << text.substr(0, 200);
+  const size_t frames = text.find("Frames:");
+  ASSERT_NE(frames, std::string::npos);
+  EXPECT_EQ(std::stoi(text.substr(frames + 7)), kScans);
+}
+
 TEST_F(DiscoverCommand, SaysWhatItCannotDo) {
   expect_clean_failure(run_program({"discover", "--source", scans()}), "nothing is to be written");
   expect_clean_failure(run_program({"discover", "--source", scans(), "--out", out("rig.obj")}),
-                       ".glb or .gltf");
+                       ".glb, .gltf or .bvh");
   expect_clean_failure(run_program({"discover", "--source", scratch.path("absent"), "--out", out("rig.glb")}),
                        "absent");
   const Joints rest = made_joints({});

@@ -103,6 +103,7 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
   const SavedDocument read = from_json(parse_json(text, "doc"), "/a/documents", "doc");
   Document wanted = full_document("/a").document;
   wanted.source.import.height.reset();
+  wanted.bones = {};
   wanted.source = without_people(wanted.source);
   wanted.source.times.clear();
   wanted.source.blend.reset();
@@ -134,13 +135,14 @@ TEST(DocumentFile, OfTheProgramOfBeforeOpensAndIsWrittenAlike) {
     take["pose_edits"].erase("fill");
   }
   auto& view = written["view"];
-  for (const char* added :
-       {"cube", "overlay", "light", "background", "background_color", "ghosts_by_time", "steps"})
+  for (const char* added : {"cube", "overlay", "light", "background", "background_color", "ghosts_by_time",
+                            "steps", "bone_surface"})
     view.erase(added);
   for (const char* layers : {"source", "take"})
-    for (const char* added : {"wireframe", "scene"}) view[layers].erase(added);
+    for (const char* added : {"wireframe", "scene", "bones"}) view[layers].erase(added);
   for (const char* added : {"person", "people", "times", "complete", "markers"})
     written["source"].erase(added);
+  written.erase("bones");
   EXPECT_EQ(json_text(written), without);
 }
 

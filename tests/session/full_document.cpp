@@ -61,6 +61,20 @@ Take take(const std::string& folder) {
   return take;
 }
 
+std::vector<RigEdit> rig_edits() {
+  return {MergeBone{3},
+          SplitBone{2, Vec3(0.1f, 1 / 3.0f, -0.2f)},
+          MoveJoint{1, Vec3(0, 0.5f, 0)},
+          SetJointKind{4, JointKind::Hinge, Vec3(0, 0.6f, 0.8f)},
+          RootAt{2},
+          RenameBone{1, "tail \"one\""},
+          PaintBone{5, Vec3(0.3f, 0.2f, 0.1f), 0.04f, 0.75f, false},
+          TurnBone{3, 17, Vec3(0.1f, 0, -0.2f), 9},
+          SmoothBones{4, 2, 30, 0.25f},
+          KeepFrames{1, 40},
+          FitAgain{}};
+}
+
 View view() {
   View view;
   view.layout = Layout::Wipe;
@@ -68,8 +82,9 @@ View view() {
   view.cameras = {{Vec3(1, 2, 3), -0.5f, 0.25f, 3.3f, 0.6f, true}, {}};
   view.follow = false;
   view.turntable_deg_s = 12;
-  view.source = {false, true, false, false, true, false, true, true, true, false, Colouring::Confidence};
-  view.take = {false, true, false, false, true, false, true, true, true, false, Colouring::Difference};
+  view.source = {false, true, false, false, true,  false,
+                 true,  true, true,  false, false, Colouring::Confidence};
+  view.take = {false, true, false, false, true, false, true, true, true, false, false, Colouring::Difference};
   view.active_pane = 2;
   view.weights_joint = LeftKnee;
   view.trail_joints = {LeftFoot, Head, Pelvis};
@@ -85,6 +100,7 @@ View view() {
   view.background_color = Vec3(0.25f, 0.5f, 0.75f);
   view.metric = "foot_skate";
   view.steps = false;
+  view.bone_surface = BoneSurface::Beside;
   return view;
 }
 
@@ -117,6 +133,7 @@ SavedDocument full_document(const std::string& folder) {
   saved.document.scan_edits = scan_edits();
   saved.document.skeleton_edits = {DragEdit{7, RightAnkle, Vec3(0.01f, 0.02f, -0.03f), 9, true},
                                    SwapEdit{10, 20, SwapEdit::Limbs::Legs}};
+  saved.document.bones = {true, 12, rig_edits()};
   saved.document.takes = {take(folder), Take{}};
   saved.document.takes[1].target.path = folder + "/b.glb";
   saved.view = view();

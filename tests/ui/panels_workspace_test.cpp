@@ -119,7 +119,8 @@ TEST_F(WorkspaceTest, ASmallWindowKeepsTheViewsAndThePlayButton) {
 
 /// The widget of each tab that no other has, in the order of the tabs.
 const Lines kOfTabs = {
-    "inspector.source", "layers.source.surface", "edit.scan", "metrics.curves", "study.new", "map.index"};
+    "inspector.source", "layers.source.surface", "edit.scan", "metrics.curves", "study.new", "map.index",
+    "bones.find"};
 
 TEST_F(WorkspaceTest, EveryClickAtATabShowsThatTabAlone) {
   session.settings.panels = {{"inspector", true}, {"layers", true}, {"metrics", true}};  // kept from long ago

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/colors.hpp"
+
 namespace understudy::ui {
 namespace {
 
@@ -108,6 +110,11 @@ void apply(const Theme& theme, float scale, ImGuiStyle& style) {
 ImVec4 person_color(const Theme& theme, int number) {
   const size_t k = static_cast<size_t>(std::max(number, 1) - 1), n = theme.series.size();
   return k % (2 * n) < n ? theme.series[k % n] : mix(theme.series[k % n], theme.text, 0.5f);
+}
+
+ImVec4 bone_color(int bone) {
+  const Vec3& of = render::kCategories[static_cast<size_t>(std::max(0, bone)) % render::kCategories.size()];
+  return {of.x(), of.y(), of.z(), 1};
 }
 
 ImU32 color(const ImVec4& color, float opacity) {

@@ -29,6 +29,9 @@ const Theme& theme(ThemeKind kind);
 /// Of the person with that number, from 1, in lists and views.
 ImVec4 person_color(const Theme& theme, int number);
 
+/// Of a found bone, in lists and views; one of 22.
+ImVec4 bone_color(int bone);
+
 /// Measures and colours for ImGui. `scale` is 1 to 3.
 void apply(const Theme& theme, float scale, ImGuiStyle& style);
 

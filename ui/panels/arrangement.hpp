@@ -8,7 +8,7 @@ namespace understudy::ui {
 /// The parts to place. Sizes at scale 1.
 struct Parts {
   bool side = true, timeline = true, below = false;
-  float side_width = 328, below_height = 150;
+  float side_width = 372, below_height = 150;
 };
 
 /// In pixels. Parts that are hidden or have no room are empty.

@@ -210,13 +210,14 @@ void draw_notices(const app::Session& session, PanelContext& context, NoticesSta
   for (const app::Notice& notice : shown)
     toasts.push_back({notice.text,
                       notice.kind == app::Notice::Kind::Info ? NoticeKind::Good : NoticeKind::Warning,
-                      notice.offer.label});
+                      notice.offer.label, notice.also.label});
   const Mark* const legend = context.ui.find("view.legend");
   const ToastUse use = draw_toasts(context.ui, toasts, over, legend != nullptr ? legend->rect : Rect());
   state.held.reset();
-  const int answered = std::max(use.clicked, use.offered);
+  const int answered = std::max({use.clicked, use.offered, use.also});
   if (answered >= 0) context.ask("notice.dismiss", {std::to_string(shown[answered].id)});
   if (use.offered >= 0) push(context, {shown[use.offered].offer.command, ""});
+  if (use.also >= 0) push(context, {shown[use.also].also.command, ""});
   if (answered < 0 && use.hovered >= 0) state.held = shown[use.hovered];
 }
 

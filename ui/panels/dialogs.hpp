@@ -3,7 +3,8 @@
 // settings.undo_depth, settings.mouse, settings.close; error.copy, error.close; unsaved.yes, .no, .cancel;
 // recover.K, discard.K, recover.later; missing.K, missing.leave; about.copy, about.close; compare.engine,
 // compare.extractor, compare.offsets, compare.path, compare.apply, compare.cancel; person.yes, person.cancel;
-// notice.0 the newest notice, notice.0.offer its button.
+// notice.0 the newest notice, notice.0.offer and
+// notice.0.also its buttons.
 #pragma once
 
 #include <optional>

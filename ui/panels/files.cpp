@@ -29,6 +29,7 @@ constexpr FileDialog kDialogs[] = {
     {"map_folder", "map.index", "Read the motions of a folder onto the map", "Read", FileKind::Folder},
     {"source_times", "source.times", "Times of the scans", "Use", FileKind::Times},
     {"source_markers", "source.markers", "Markers of the scans", "Use", FileKind::Times},
+    {"export_bones", "bones.export", "Export the found rig", "Export", FileKind::Any, true},
     {"open_target", "target.add", "Add target", "Add", FileKind::Target},
     {"replace_target", "target.replace", "Replace target", "Replace", FileKind::Target},
     {"open_document", "document.open", "Open document", "Open", FileKind::Document},
@@ -76,6 +77,10 @@ std::string document_name(const app::Session& session) {
   return name + ".understudy";
 }
 
+std::string bones_name(const app::Session& session) {
+  return fs::path(session.source.name).stem().string() + " rig.glb";
+}
+
 }  // namespace
 
 std::optional<FilePurpose> purpose_of(const std::string& dialog) {
@@ -99,9 +104,10 @@ void choose_file(const app::Session& session, FilesState& state, FilePurpose pur
   if (purpose == FilePurpose::Relocate || purpose == FilePurpose::BodyMotion)
     state.first = name, request.title += file_name(name);
   if (dialog.save) {
-    const std::string usual = purpose == FilePurpose::Export ? ""
-                              : is_of_study(purpose)         ? study_name(session, purpose)
-                                                             : document_name(session);
+    const std::string usual = purpose == FilePurpose::Export        ? ""
+                              : is_of_study(purpose)                ? study_name(session, purpose)
+                              : purpose == FilePurpose::ExportBones ? bones_name(session)
+                                                                    : document_name(session);
     const fs::path proposed = name.empty() ? usual : name;
     request.name = proposed.filename().string();
     request.folder = proposed.parent_path().string();

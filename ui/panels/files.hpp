@@ -18,6 +18,7 @@ enum class FilePurpose {
   MapFolder,
   SourceTimes,
   SourceMarkers,
+  ExportBones,
   Target,
   ReplaceTarget,
   Document,

@@ -1,8 +1,8 @@
 // What the views show: layers and colours of the source and the takes, cameras.
 // Marks, P being source or take: layers.P.surface, .as_points, .skeleton, .x_ray, .joint_names, .ground,
-// .trails, .ghosts, .wireframe, .scene, .colour; layers.opacity.scan, .skeletons, .results, layers.spread;
-// layers.light.turn, .height, .brightness, layers.background, layers.background_colour; layers.weights_joint,
-// layers.trail_joint, layers.trail.JOINT, layers.ghost_count, layers.ghost_step, layers.ghosts_by_time,
+// .trails, .ghosts, .wireframe, .scene, .bones, .colour; layers.opacity.scan, .skeletons, .results,
+// layers.spread; layers.light.turn, .height, .brightness, layers.background, layers.background_colour;
+// layers.weights_joint, layers.trail_joint, layers.trail.JOINT, layers.ghost_count, layers.ghost_step, layers.ghosts_by_time,
 // layers.error_scale; layers.preset.NAME, layers.fit, layers.ortho, layers.linked, layers.follow,
 // layers.turntable. Sections: layers.source, layers.take, layers.overlay (in that layout), layers.colours,
 // layers.camera, layers.light_and_background.
@@ -220,6 +220,8 @@ std::vector<LayerSwitch> layer_switches(const app::Session& session, bool source
     all.push_back({"wireframe", "Wireframe", "The edges of the surface's faces, over it", layers.wireframe});
   if (faces && source)
     all.push_back({"as_points", "As points", "Shows the scan's points without its faces", layers.as_points});
+  if (source && session.document.bones.wanted)
+    all.push_back({"bones", "Bones", "The skeleton of its own that was found in the scan", layers.bones});
   if (source && session.source.has_scene)
     all.push_back({"scene", "Scene", "The ground and things in the scan, grey", layers.scene});
   return all;

@@ -9,7 +9,7 @@ namespace understudy::ui {
 // Each in the file of its name.
 using DrawPanel = void(const app::Session&, PanelContext&);
 DrawPanel draw_inspector, draw_layers, draw_edit, draw_metrics, draw_study, draw_timeline, draw_log,
-    draw_bad_frames, draw_motion_map;
+    draw_bad_frames, draw_motion_map, draw_bones;
 
 const std::vector<Panel>& panels() {
   using Dock = Panel::Dock;
@@ -34,6 +34,10 @@ const std::vector<Panel>& panels() {
        "between "
        "figures what lies between them.",
        draw_motion_map},
+      {"bones", "Bones", "Alt+7", Dock::Side, false,
+       "A skeleton of its own for whatever moves in the scans: an animal, a machine, a person with skirt and "
+       "tail. A click on a bone, here or in the view, chooses it.",
+       draw_bones},
       {"timeline", "Timeline", "Alt+T", Dock::Timeline, true,
        "The frames and the edits made at them. Thin bars show when the left and the right foot are held on "
        "the floor. Red frames cannot be trusted: rest the pointer on one to read why.",

@@ -56,8 +56,9 @@ void draw_samples(PanelContext& context, const std::vector<SampleCard>& samples)
   const int a_line = std::max(1, static_cast<int>((width + gap) / (card + gap)));
   for (size_t i = 0; i < samples.size(); ++i) {
     if (i % a_line != 0) ImGui::SameLine(0, gap);
-    if (draw_card(ui, "start.sample." + std::to_string(i), samples[i], card))
-      context.ask("open", samples[i].paths);
+    if (!draw_card(ui, "start.sample." + std::to_string(i), samples[i], card)) continue;
+    context.ask("open", samples[i].paths);
+    for (const std::string& line : samples[i].then) push(context, {line, ""});
   }
 }
 

@@ -15,6 +15,7 @@ struct SampleCard {
   std::string title, caption;  ///< "A walk", "3D scans of a person, 60 frames"
   app::Arguments paths;        ///< of the command open
   ImTextureID picture = nullptr;
+  std::vector<std::string> then{};  ///< commands after that, as lines of a script
 };
 
 /// Fills the current window.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "retarget/base/text.hpp"
 #include "ui/panels/bindings.hpp"
@@ -28,6 +29,7 @@ std::vector<Metric> carried_metrics(const app::Session& session, const TimelineS
   const auto is_confidence = [](const Metric& m) { return m.key == "confidence"; };
   if (std::none_of(metrics.begin(), metrics.end(), is_confidence))
     metrics.push_back({"confidence", "Confidence", state.confidence});
+  if (!state.bones_off_mm.empty()) metrics.push_back({"bones_off", "Bones off, mm", state.bones_off_mm});
   return metrics;
 }
 
@@ -182,6 +184,8 @@ void draw_track(const app::Session& session, PanelContext& context, const Timeli
   const std::vector<EditMark> edits = edit_marks(session, state.fills);
   for (const EditMark& edit : edits) data.marks.push_back(edit.mark);
   data.bands = contact_bands(session, state.standing);
+  if (!state.doubted.empty() && !session.source.no_person)
+    data.bands.push_back({"bones_doubted", "The found bones are not to be trusted here", state.doubted, 1});
   if (session.view.steps) data.letters = state.steps.letters;
   const app::Take* take = selected_take(session);
   if (take != nullptr && take->pose_edits.trim)
@@ -206,7 +210,29 @@ std::string without_number(const std::string& why) {
 
 }  // namespace
 
+/// Of bones that have changed.
+void TimelineState::follow_bones(const app::Session& session) {
+  const auto& now = session.bones.rig;
+  if (rig == now && (!now || bones_off_mm.size() == session.source.frames.size())) return;
+  rig = now, looked = false;
+  bones_off_mm.clear(), doubted.clear();
+  if (!now) return;
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  for (int t = 0; t < static_cast<int>(session.source.frames.size()); ++t) {
+    const int at = app::frame_of_rig(*now, t);
+    const float off = at < 0 ? -1 : now->off_m[static_cast<size_t>(at)];
+    bones_off_mm.push_back(off < 0 ? kUnknown : 1000 * off);
+  }
+  for (const app::BadFrame& bad_one : app::doubted_frames(session)) {
+    if (!doubted.empty() && doubted.back().last + 1 == bad_one.frame)
+      doubted.back().last = bad_one.frame;
+    else
+      doubted.push_back({bad_one.frame, bad_one.frame});
+  }
+}
+
 void TimelineState::follow(const app::Session& session) {
+  follow_bones(session);
   standing.follow(session);
   steps.follow(session);
   const app::SourceState& source = session.source;

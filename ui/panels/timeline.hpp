@@ -53,11 +53,17 @@ struct TimelineState {
   std::vector<Fill> fills;  ///< runs of frames without a pose of their own: the last good one fills them
   StandingRuns standing;
   StepLetters steps;
+  std::shared_ptr<const DiscoveredRig> rig;  ///< that what follows is of
+  std::vector<float> bones_off_mm;           ///< of found bones from the scans, a value a frame; empty: none
+  std::vector<LoopRange> doubted;            ///< frames in which they are not to be trusted
 
   /// Updates it from the session.
   void follow(const app::Session& session);
   /// Why a frame is bad; "" where it is not.
   std::string why(int frame) const;
+
+ private:
+  void follow_bones(const app::Session& session);
 };
 
 /// The channel that the hand edits: three values a frame of the selected joint, while a tool for joints or

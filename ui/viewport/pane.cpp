@@ -255,6 +255,12 @@ int person_under(const Session& session, const Pane& pane, const ImVec2& at) {
   return hit && hit->vertex < ssize(owner) ? std::max(0, owner[static_cast<size_t>(hit->vertex)]) : 0;
 }
 
+int bone_under(const Session& session, const Pane& pane, const ImVec2& at) {
+  constexpr float kBoneReach = 9;  // pixels
+  const auto bones = posed_bones(session, pane.content, pane.keeper.pictures().frame);
+  return bones ? bone_at(pane.view.shifted(aside(session, pane.content, 0)), *bones, at, kBoneReach) : -1;
+}
+
 std::optional<Vec3> surface_place(const Session& session, const Pane& pane, const ImVec2& at) {
   const auto& takes = pane.content.takes;
   const Vec3 of_take = aside(session, pane.content, takes.empty() ? 0 : takes[0] + 1),

@@ -98,6 +98,8 @@ std::optional<render::SurfaceHit> take_under(const app::Session& session, const 
 std::string value_under(const app::Session& session, const Pane& pane, const ImVec2& at);
 /// Whose point of a scan with several people is under the pointer; 0: nobody's.
 int person_under(const app::Session& session, const Pane& pane, const ImVec2& at);
+/// The found bone under the pointer; -1: none.
+int bone_under(const app::Session& session, const Pane& pane, const ImVec2& at);
 /// The place on a pane's surface under the pointer.
 std::optional<Vec3> surface_place(const app::Session& session, const Pane& pane, const ImVec2& at);
 

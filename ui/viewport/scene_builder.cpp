@@ -198,7 +198,7 @@ void Builder::add_surface(render::MeshView view, bool as_points, float radius) {
 
 void Builder::add_scan() {
   const app::Layers& layers = session_.view.source;
-  if (layers.surface && in_.pictures.scan != nullptr) {
+  if (layers.surface && in_.pictures.scan != nullptr && !bones_hide_scan(session_, in_.pictures.frame)) {
     const auto& scan = shown_scan().shown;
     const SurfaceColours& made = scan_colors();
     render::MeshView view;
@@ -214,7 +214,8 @@ void Builder::add_scan() {
   add_cropped_away();
   const Joints* joints = app::pane_joints(session_, 0, in_.pictures.frame);
   if (in_.preview.source_joints) joints = &*in_.preview.source_joints;
-  if (joints != nullptr) add_skeleton(*joints, layers, 0);
+  if (joints != nullptr && !hides_person(session_)) add_skeleton(*joints, layers, 0);
+  add_bones(session_, in_.pane, in_.pictures, aside_of(0), memory_.bones, out_.scene);
 }
 
 void Builder::add_take(size_t i) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "render/scene.hpp"
+#include "ui/viewport/bones_view.hpp"
 #include "ui/viewport/panes.hpp"
 #include "ui/viewport/surface_values.hpp"
 #include "ui/viewport/target_look.hpp"
@@ -75,6 +76,7 @@ struct SceneMemory {
   KeptValues<std::pair<MovedLayer, int>, MovedPoints> moved;
   ShownScan scan;
   KeptValues<int, ShownScan> ghosts;  ///< by their number
+  BonesMemory bones;
 };
 
 struct SceneInput {

@@ -243,11 +243,15 @@ PaneView Views::tool_view(const Session& session, const Pane& pane) {
   return pane.view.shifted(aside(session, pane.content, person_of_tool(session, pane.content)));
 }
 
-/// A click, not a drag, on somebody in the scan makes them the source.
+/// A click, not a drag, on a bone that was found in the scan chooses it; on somebody it makes them the
+/// source.
 void Views::choose_person(const Frame& f, const Pane& pane, const Pointer& now) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool dragged = io.MouseDragMaxDistanceSqr[0] >= io.MouseDragThreshold * io.MouseDragThreshold;
   if (dragged || !now.over || f.session.tool != app::Tool::Look) return;
+  if (const int bone = bone_under(f.session, pane, now.at); bone >= 0)
+    return f.context.queue.push_back(
+        {"bones.select", {bone == f.session.bones.selected ? "none" : std::to_string(bone)}});
   const int person = person_under(f.session, pane, now.at);
   if (person > 0 && person != f.session.source.person)
     f.context.queue.push_back({"source.person", {std::to_string(person)}});
@@ -389,6 +393,7 @@ void Views::show(const Frame& f, Pane& pane, const Rect& part, bool right) {
   draw_overlay(f.context.ui, overlay);
   draw_brush(f, pane);
   mark_rings(f, pane);
+  mark_bones(f, pane);
 }
 
 /// The words and labels over a pane.
@@ -415,7 +420,8 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
   const app::KeptSource* seen = at_or_null(session.source.frames, frame);
   const std::string made = rest ? "" : pane_made(session, pane.content, frame);
   if (!made.empty()) overlay.subtitle += " \u00b7 " + made;
-  if (seen != nullptr && seen->flagged && made.empty()) overlay.warning = seen->reason;
+  if (seen != nullptr && seen->flagged && made.empty() && !hides_person(session))
+    overlay.warning = seen->reason;
   const app::Layers& layers = pane.content.source ? session.view.source : session.view.take;
   const int person = person_of_tool(session, pane.content);
   const PaneView view = tool_view(session, pane);
@@ -425,9 +431,18 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
   const auto& moved = person == 0 ? pane.preview.source_joints : pane.preview.take_joints;
   if (moved) joints = &*moved;
   const int selected = pane.preview.gizmo ? session.selected_joint : -1;
-  if (joints != nullptr)
+  const bool no_joints = person == 0 && hides_person(session);
+  if (joints != nullptr && !no_joints)
     overlay.labels = joint_labels(view, *joints, layers.joint_names && layers.skeleton,
                                   hand_.hovered_joint(pane.content), selected);
+  const auto bones = posed_bones(session, pane.content, frame);
+  const int bone = bones && under_ == &pane && session.tool == app::Tool::Look
+                       ? bone_under(session, pane, pointer_.at)
+                       : -1;
+  if (bones)
+    for (Overlay::Label& label :
+         bone_labels(session, pane.view.shifted(aside(session, pane.content, 0)), *bones, bone))
+      overlay.labels.push_back(std::move(label));
   if (session.tool == app::Tool::Crop && pane.content.source) {
     const Points centres = face_centres(pane.preview.crop.value_or(app::shown_crop(session)));
     for (int face = 0; face < 6; ++face)
@@ -440,6 +455,8 @@ void Views::describe(const Session& session, const Pane& pane, const Theme& look
   overlay.tip_at = pointer_.at;
   overlay.tip = hand_.tip();
   if (!overlay.tip.empty() || session.playback.playing) return;
+  if (bone >= 0) overlay.tip = bone_words(session, bone);
+  if (!overlay.tip.empty()) return;
   overlay.tip = value_under(session, pane, pointer_.at);
   if (!overlay.tip.empty() || session.tool != app::Tool::Look) return;
   if (const int number = person_under(session, pane, pointer_.at); number > 0)
@@ -460,6 +477,14 @@ void Views::mark_rings(const Frame& f, const Pane& pane) const {
     const Rect place{{at->x - 1, at->y - 1}, {at->x + 1, at->y + 1}};
     f.context.ui.mark(std::string("view.ring.") + "xyz"[axis], place);
   }
+}
+
+/// In the middle of each bone that was found in the scan.
+void Views::mark_bones(const Frame& f, const Pane& pane) {
+  const auto bones = posed_bones(f.session, pane.content, pane.keeper.pictures().frame);
+  if (!bones) return;
+  for (const auto& [joint, at] : bone_middles(pane.view.shifted(aside(f.session, pane.content, 0)), *bones))
+    f.context.ui.mark("view.bone." + std::to_string(joint), {{at.x - 1, at.y - 1}, {at.x + 1, at.y + 1}});
 }
 
 /// The brush's circle, flat on the surface.

@@ -18,7 +18,8 @@ class Views {
   /// Fills what is left of the current window with the panes of the layout. Redraws a pane only when
   /// its content, camera or size has changed. Marks: "view.0" the source, "view.1" the first take
   /// ..., with "view.0.cube" (.front ... .bottom), "view.wipe" the line of a wipe, "view.legend",
-  /// "view.warning", "view.tip", "view.0.person.N". Throws Error where the context's messages are fatal.
+  /// "view.warning", "view.tip", "view.0.person.N", "view.bone.J". Throws Error where the
+  /// context's messages are fatal.
   void draw(const app::Session& session, app::FrameCache& cache, PanelContext& context);
 
   /// Drops everything shown: the document was closed.
@@ -65,6 +66,7 @@ class Views {
   void describe(const app::Session& session, const Pane& pane, const Theme& look, Overlay& overlay) const;
   void draw_brush(const Frame& f, const Pane& pane);
   void mark_rings(const Frame& f, const Pane& pane) const;
+  static void mark_bones(const Frame& f, const Pane& pane);
   void keep_view_when_following_changes(const Frame& f);
 
   std::optional<render::Renderer> renderer_,

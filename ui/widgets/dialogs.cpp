@@ -47,13 +47,17 @@ constexpr float kToastHeight = 34, kToastPad = 8;  // at scale 1
 /// What fits on the one line of a toast.
 struct ToastLine {
   std::string words;
-  float width = 0, button = 0;  ///< pixels, of the whole and of the button
+  float width = 0, button = 0, also = 0;  ///< pixels, of the whole and of the buttons
 };
 ToastLine toast_line(Ui& ui, const Toast& toast, const Rect& area) {
   ToastLine line;
-  if (!toast.button.empty()) line.button = ImGui::CalcTextSize(toast.button.c_str()).x + ui.px(28);
+  const auto width = [&](const std::string& label) {
+    return label.empty() ? 0 : ImGui::CalcTextSize(label.c_str()).x + ui.px(28);
+  };
+  line.button = width(toast.button), line.also = width(toast.also);
   const float gap = ui.px(8), around = 2 * ui.px(kToastPad) + ImGui::GetTextLineHeight() + gap +
-                                       (line.button > 0 ? line.button + gap : 0);
+                                       (line.button > 0 ? line.button + gap : 0) +
+                                       (line.also > 0 ? line.also + gap : 0);
   line.words = cut_to(toast.sentence, std::max(ui.px(40), area.width() - ui.px(20) - around));
   line.width = std::ceil(ImGui::CalcTextSize(line.words.c_str()).x + around);
   return line;
@@ -95,13 +99,18 @@ void draw_toast(Ui& ui, const ToastToDraw& one, ToastUse& use) {
   ImGui::SameLine(0, ui.px(8));
   ImGui::TextUnformatted(one.line.words.c_str());
   if (one.line.words != one.toast.sentence) tooltip(ui, one.toast.sentence);
-  if (one.line.button > 0) {
-    ImGui::SameLine(one.place.width() - ui.px(kToastPad) - one.line.button);
+  float right = one.place.width() - ui.px(kToastPad);
+  const auto offer = [&](const char* name, const std::string& label, float width, int& clicked) {
+    if (width <= 0) return;
+    ImGui::SameLine(right - width);
     ImGui::SetCursorPosY((one.place.height() - ImGui::GetFrameHeight()) / 2);
     ButtonOptions options;
-    options.width = one.line.button;
-    if (button(ui, one.name + ".offer", one.toast.button, options)) use.offered = one.number;
-  }
+    options.width = width;
+    if (button(ui, one.name + name, label, options)) clicked = one.number;
+    right -= width + ui.px(8);
+  };
+  offer(".also", one.toast.also, one.line.also, use.also);
+  offer(".offer", one.toast.button, one.line.button, use.offered);
   ui.mark(one.name, one.place);
   const bool hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
   if (hovered) use.hovered = one.number;

@@ -15,16 +15,19 @@ struct Toast {
   std::string sentence;
   NoticeKind kind = NoticeKind::Good;
   std::string button{};  ///< empty: nothing
+  std::string also{};    ///< a second button
 };
 /// Of which toast, by its number; below 0: of none.
 struct ToastUse {
   int hovered = -1;
   int clicked = -1;  ///< away
   int offered = -1;  ///< its button was clicked
+  int also = -1;     ///< its second button was clicked
 };
 /// Call once a frame, outside any window. A line each at the bottom right of `over` (empty: of the window),
 /// beside `avoid` where there is room, the last at the bottom.
-/// The last is marked notice.0, its button notice.0.offer.
+/// The last is marked notice.0, its buttons notice.0.offer and
+/// notice.0.also.
 ToastUse draw_toasts(Ui& ui, const std::vector<Toast>& toasts, const Rect& over = {}, const Rect& avoid = {});
 
 enum class Answer { None, Yes, No, Cancel };

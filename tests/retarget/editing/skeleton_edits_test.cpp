@@ -5,6 +5,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/body/builtin_person.hpp"
 #include "retarget/math/rotation.hpp"
+#include "retarget/math/time_filter.hpp"
 
 namespace understudy {
 namespace {

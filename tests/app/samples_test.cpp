@@ -1,4 +1,4 @@
-#include "retarget/body/builtin_samples.hpp"
+#include "app/run/samples.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/formats/mesh_reader.hpp"
 
-namespace understudy {
+namespace understudy::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,6 +55,18 @@ TEST(Samples, HoldScansOfThreeToSixThousandPoints) {
   EXPECT_GT(counts.size(), 40u);
 }
 
+TEST(Samples, HoldAnAnimalInThreeMegabytes) {
+  const fs::path folder = written() / "animal", bundled = fs::path(US_SOURCE_DIR) / "assets/samples/animal";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 48);
+  EXPECT_EQ(std::distance(fs::directory_iterator(bundled), {}), 48);
+  EXPECT_LT(size_of(folder), 3'000'000u);
+  const Mesh scan = read_mesh((bundled / "frame_00000.ply").string());
+  EXPECT_GT(scan.vertices.rows(), 3000);
+  EXPECT_GT(scan.vertices.col(2).maxCoeff() - scan.vertices.col(2).minCoeff(),
+            scan.vertices.col(1).maxCoeff() - scan.vertices.col(1).minCoeff())
+      << "longer than it is high";
+}
+
 TEST(Samples, HoldTwoDifferentTargetsStandingOnTheFloor) {
   const Mesh adult = read_mesh((written() / "target_adult.glb").string()),
              child = read_mesh((written() / "target_child.glb").string());
@@ -89,7 +101,7 @@ TEST(Samples, BundledOnesAreWhatTheProgramMakes) {
 
 TEST(Samples, ReadmeNamesEveryFileWithItsChecksum) {
   const std::string readme = text_of(written() / "README.md");
-  for (const char* word : {"scan/", "walk/", "target_adult.glb", "target_child.glb", "MIT"})
+  for (const char* word : {"scan/", "walk/", "animal/", "target_adult.glb", "target_child.glb", "MIT"})
     EXPECT_NE(readme.find(word), std::string::npos) << word;
 }
 
@@ -103,4 +115,4 @@ TEST(Samples, RefuseAFolderThatCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace understudy
+}  // namespace understudy::app

@@ -1,0 +1,226 @@
+// The source's own skeleton: found, looked at, edited, exported.
+#include <algorithm>
+
+#include "app/run/exports.hpp"
+#include "app/session/command_sets.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/part_file.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/character/gltf_character.hpp"
+#include "retarget/character/rig_character.hpp"
+#include "retarget/formats/file_formats.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// Where the panel is: on the screen, not in tests and scripts without a window.
+void show_panel(Studio& studio) {
+  if (studio.commands().find("panel.show") != nullptr) studio.run("panel.show", {"bones", "on"});
+}
+
+void find_bones(Call& c) {
+  const SourceOptions& source = c.document.source;
+  US_CHECK(!source.path.empty(), "no scans are open whose bones could be found");
+  US_CHECK(
+      source.complete == 0 && !source.blend && (c.session.source.clips.empty() || c.document.source.as_scan),
+      name_of(source), ": has bones already; they are found in scans");
+  OwnBones bones;
+  bones.wanted = true;
+  bones.most = c.document.bones.most;
+  if (!c.arguments.empty() && c.arguments[0] == "auto") bones.most = 0;
+  if (!c.arguments.empty() && c.arguments[0] != "auto") {
+    bones.most = c.number<int>(0, "number of bones");
+    US_CHECK(bones.most >= 1 && bones.most <= kMostBones, "a number of bones is 1 to ", kMostBones, ", not ",
+             bones.most);
+  }
+  const OwnBones& now = c.document.bones;
+  if (now.wanted && now.most == bones.most && now.edits.empty())
+    c.studio.look_for_bones_again();
+  else
+    c.document.bones = std::move(bones);
+  show_panel(c.studio);
+}
+
+const DiscoveredRig& rig_of(const Call& c) {
+  US_CHECK(c.session.bones.rig, "no bones have been found yet");
+  return *c.session.bones.rig;
+}
+
+/// By name or number.
+int bone(const Call& c, size_t i) {
+  const std::string& word = c.word(i, "bone");
+  const auto& joints = rig_of(c).found.rig.joints;
+  for (size_t j = 0; j < joints.size(); ++j)
+    if (joints[j].name == word) return static_cast<int>(j);
+  int64_t number = 0;
+  US_CHECK(parse_integer(word, number) && number >= 0 && number < ssize(joints), "there is no bone '", word,
+           "'");
+  return static_cast<int>(number);
+}
+
+const std::string& name_of_bone(const Call& c, int joint) {
+  return rig_of(c).found.rig.joints[static_cast<size_t>(joint)].name;
+}
+
+void export_bones(Call& c) {
+  const std::string path = c.path(0);
+  const std::string suffix = file_suffix(path);
+  const bool is_motion = suffix == ".bvh";
+  US_CHECK(is_motion || suffix == ".glb" || suffix == ".gltf", path,
+           ": a found rig is written as .glb, .gltf or .bvh");
+  rig_of(c);
+  check_not_read(path, files_read_by(c.document));
+  check_writable(path);
+  c.studio.jobs().start(
+      "Exporting " + file_name(path),
+      [path, is_motion, rig = c.session.bones.rig](JobControl&) {
+        is_motion ? write_rig_bvh(path, rig->found) : write_gltf_character(path, to_character(rig->found));
+      },
+      [&studio = c.studio, path] { studio.notify("Exported " + file_name(path), false, showing(path)); });
+  remember_folder(c.studio, path);
+}
+
+/// Those that are near none of a person's joints stay as they are.
+void name_bones(Call& c) {
+  rig_of(c);
+  const std::vector<NearJoint> near = c.session.bones.near;
+  const auto named = [](const NearJoint& one) { return one.names; };
+  US_CHECK(std::any_of(near.begin(), near.end(), named), "no found bone is near a joint of a person");
+  for (size_t j = 0; j < near.size(); ++j) {
+    if (!near[j].names) continue;
+    const std::string name = kJointNames[near[j].joint];
+    if (name_of_bone(c, static_cast<int>(j)) != name)
+      c.studio.edit_bones(RenameBone{static_cast<int>(j), name});
+  }
+}
+
+void add_finding(Commands& commands) {
+  commands.add_edit({"bones.find", "Find its own skeleton",
+                     "[MOST|auto]: so many bones at most; auto, as many as the motion shows"},
+                    find_bones);
+  commands.add_edit({"bones.drop", "Drop the found skeleton"}, [](Call& c) {
+    US_CHECK(c.document.bones.wanted, "there is no found skeleton");
+    c.document.bones = {};
+  });
+  commands.add({"bones.select", "Select bone", "BONE|none: by name or number"},
+               [](Call& c) { c.session.bones.selected = c.word(0, "bone") == "none" ? -1 : bone(c, 0); });
+  commands.add({"bones.export", "Export the found rig", "PATH: .glb or .gltf; its motion alone as .bvh"},
+               export_bones);
+  commands.add_edit({"bones.name_as_joints", "Name bones after a person's joints"}, name_bones);
+}
+
+void set_kind(Call& c) {
+  SetJointKind edit;
+  edit.joint = bone(c, 0);
+  edit.kind = c.choice<JointKind>(1, "kind", kJointKindNames);
+  if (c.arguments.size() > 2) edit.axis = c.vector(2, "axis");
+  c.label = name_of_bone(c, edit.joint) + ": " + kJointKindNames[static_cast<size_t>(edit.kind)];
+  c.studio.edit_bones(edit);
+}
+
+/// The middle of its vertices: where a bone is cut in two without another place.
+Vec3 middle_of(const understudy::Rig& rig, int joint) {
+  Vec3 sum = Vec3::Zero();
+  float total = 0;
+  for (Eigen::Index v = 0; v < rig.skin.size(); ++v)
+    for (int k = 0; k < kSkinBones; ++k) {
+      if (rig.skin.bones(v, k) != joint) continue;
+      sum += rig.skin.weights(v, k) * rig.surface.vertices.row(v).transpose();
+      total += rig.skin.weights(v, k);
+    }
+  return total > 0 ? Vec3(sum / total) : rig.joints[static_cast<size_t>(joint)].rest;
+}
+
+void split_bone(Call& c) {
+  SplitBone edit;
+  edit.joint = bone(c, 0);
+  edit.at = c.arguments.size() > 1 ? c.vector(1, "place") : middle_of(rig_of(c).found.rig, edit.joint);
+  c.label = "Split " + name_of_bone(c, edit.joint);
+  c.studio.edit_bones(edit);
+}
+
+void add_tree_edits(Commands& commands) {
+  commands.add_edit({"bones.merge", "Merge bone", "BONE: becomes one with what it hangs on"}, [](Call& c) {
+    const int joint = bone(c, 0);
+    c.label = "Merge " + name_of_bone(c, joint);
+    c.studio.edit_bones(MergeBone{joint});
+  });
+  commands.add_edit({"bones.split", "Split bone", "BONE [X Y Z]: at rest, metres; else in its middle"},
+                    split_bone);
+  commands.add_edit({"bones.rename", "Rename bone", "BONE NAME"}, [](Call& c) {
+    const int joint = bone(c, 0);
+    c.studio.edit_bones(RenameBone{joint, c.word(1, "name")});
+  });
+  commands.add_edit({"bones.kind", "Kind of joint", "BONE ball|hinge|slider|fixed [AXIS: X Y Z, at rest]"},
+                    set_kind);
+  commands.add_edit({"bones.root", "Make bone the root", "BONE"}, [](Call& c) {
+    const int joint = bone(c, 0);
+    c.label = "Root at " + name_of_bone(c, joint);
+    c.studio.edit_bones(RootAt{joint});
+  });
+  commands.add_edit({"bones.move", "Move joint", "BONE X Y Z: at rest, metres"}, [](Call& c) {
+    const int joint = bone(c, 0);
+    c.label = "Move " + name_of_bone(c, joint);
+    c.studio.edit_bones(MoveJoint{joint, c.vector(1, "place")});
+  });
+  commands.add_edit({"bones.paint", "Paint weights", "BONE X Y Z RADIUS STRENGTH add|subtract"}, [](Call& c) {
+    PaintBone edit;
+    edit.joint = bone(c, 0);
+    edit.at = c.vector(1, "place");
+    edit.radius_m = c.number(4, "radius");
+    edit.strength = c.number(5, "strength");
+    edit.adds = c.choice(6, "mode", {"add", "subtract"}) == 0;
+    c.label = "Paint weights of " + name_of_bone(c, edit.joint);
+    c.studio.edit_bones(edit);
+  });
+}
+
+void turn_bone(Call& c) {
+  TurnBone edit;
+  edit.joint = bone(c, 0);
+  edit.frame = frame_of_rig(rig_of(c), c.number<int>(1, "frame"));
+  US_CHECK(edit.frame >= 0, "the found rig has no frame ", c.word(1, "frame"));
+  edit.axis_angle = c.vector(2, "rotation");
+  edit.falloff = c.arguments.size() > 5 ? c.number<int>(5, "falloff") : c.session.falloff;
+  c.label = "Turn " + name_of_bone(c, edit.joint);
+  c.studio.edit_bones(edit);
+}
+
+void smooth_bones(Call& c) {
+  SmoothBones edit;
+  edit.strength = c.number(0, "strength");
+  edit.last = static_cast<int>(ssize(rig_of(c).found.motion.poses)) - 1;
+  if (c.arguments.size() > 1 && c.arguments[1] != "all") edit.joint = bone(c, 1);
+  if (c.arguments.size() > 3) {
+    edit.first = c.number<int>(2, "first frame") - rig_of(c).first_frame;
+    edit.last = c.number<int>(3, "last frame") - rig_of(c).first_frame;
+  }
+  c.studio.edit_bones(edit);
+}
+
+void add_motion_edits(Commands& commands) {
+  commands.add_edit({"bones.turn", "Turn bone", "BONE FRAME X Y Z [FALLOFF]: radians about its own axes"},
+                    turn_bone);
+  commands.add_edit({"bones.smooth", "Smooth bones", "STRENGTH [BONE|all [FIRST LAST]]"}, smooth_bones);
+  commands.add_edit({"bones.trim", "Trim the found rig", "FIRST LAST: the frames that stay"}, [](Call& c) {
+    const int before = rig_of(c).first_frame;
+    c.studio.edit_bones(
+        KeepFrames{c.number<int>(0, "first frame") - before, c.number<int>(1, "last frame") - before});
+  });
+  commands.add_edit({"bones.fit", "Fit the bones again", "to the scans"},
+                    [](Call& c) { c.studio.edit_bones(FitAgain{}); });
+}
+
+}  // namespace
+
+void add_bones_commands(Commands& commands) {
+  add_finding(commands);
+  add_tree_edits(commands);
+  add_motion_edits(commands);
+  commands.add(
+      {"view.bone_surface", "Surface by bone",
+       "off|over|beside: what was found, painted by bone, in place of the scan or beside it"},
+      [](Call& c) { c.session.view.bone_surface = c.choice<BoneSurface>(0, "place", kBoneSurfaceNames); });
+}
+
+}  // namespace understudy::app

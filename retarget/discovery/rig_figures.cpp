@@ -1,0 +1,46 @@
+#include "retarget/discovery/rig_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "retarget/math/percentile.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy {
+
+void BoneDistances::add(const SkinWeights& skin, const Eigen::VectorXf& distances) {
+  for (Eigen::Index i = 0; i < distances.size(); ++i)
+    for (int k = 0; k < kSkinBones; ++k) {
+      const auto bone = static_cast<size_t>(skin.bones(i, k));
+      off_[bone] += skin.weights(i, k) * distances[i];
+      weight_[bone] += skin.weights(i, k);
+    }
+}
+
+void measure_motion(const RiggedMotion& performed, std::vector<FoundBone>& bones) {
+  bones.resize(performed.rig.joints.size());
+  for (size_t j = 0; j < bones.size(); ++j) {
+    FoundBone& bone = bones[j];
+    bone.turned_deg = bone.slid_m = 0;
+    if (j == 0) continue;
+    for (const RigPose& pose : performed.motion.poses) {
+      bone.turned_deg =
+          std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
+      bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
+    }
+  }
+}
+
+std::vector<bool> doubted_frames(const std::vector<float>& off_m) {
+  constexpr float kMuch = 2;
+  std::vector<double> known;
+  for (const float off : off_m)
+    if (off >= 0) known.push_back(off);
+  const auto usual = known.empty() ? 0.0f : static_cast<float>(percentile(known, 50));
+  std::vector<bool> doubted;
+  doubted.reserve(off_m.size());
+  for (const float off : off_m) doubted.push_back(off < 0 || off > kMuch * usual);
+  return doubted;
+}
+
+}  // namespace understudy

@@ -1,0 +1,301 @@
+// The source's own skeleton, from the scans that are opened to the rig that is exported.
+#include <chrono>
+#include <thread>
+
+#include "retarget/base/error.hpp"
+#include "retarget/character/read_character.hpp"
+#include "retarget/character/rig_character.hpp"
+#include "retarget/formats/npz.hpp"
+#include "retarget/pipeline/human_rest.hpp"
+#include "tests/retarget/discovery/bending_arm.hpp"
+#include "tests/session/studio_fixture.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// Is sure of nobody.
+class UnsureExtractor final : public SkeletonExtractor {
+ public:
+  Extraction extract(const Mesh&) override {
+    Extraction nobody;
+    nobody.joints = human_rest();
+    nobody.confidence.setZero();
+    return nobody;
+  }
+  std::string name() const override { return "unsure"; }
+};
+
+class Bones : public StudioTest {
+ protected:
+  void SetUp() override {
+    StudioTest::SetUp();
+    NpyArray points;
+    for (int t = 0; t < understudy::kFrames; ++t) {
+      const Points frame = bent_arm(angle_at(t), static_cast<uint64_t>(t)).vertices;
+      points.shape = {understudy::kFrames, frame.rows(), 3};
+      points.values.insert(points.values.end(), frame.data(), frame.data() + frame.size());
+    }
+    write_npz(path("arm.npz"), {{"points", points}});
+  }
+
+  /// Nobody is seen in an arm.
+  StudioServices no_person() {
+    StudioServices own = services();
+    own.networks = [usual = own.networks](const Method& method, const NetworkParts& parts) {
+      Networks networks = usual(method, parts);
+      if (parts.extractor) networks.extractor = std::make_shared<UnsureExtractor>();
+      return networks;
+    };
+    return own;
+  }
+
+  /// Opened as it is: metres, y up.
+  void open_arm(Studio& studio) {
+    studio.run("open", {path("arm.npz")});
+    studio.run("source.units", {"m"});
+    studio.run("source.up", {"y"});
+    studio.wait_idle();
+  }
+  void find(Studio& studio) {
+    open_arm(studio);
+    studio.run("bones.find");
+    studio.wait_idle();
+    ASSERT_TRUE(studio.session().bones.rig) << studio.session().bones.problem;
+  }
+  static const understudy::Rig& rig(const Studio& studio) { return studio.session().bones.rig->found.rig; }
+  template <class Command>
+  static std::string refusal(const Command& command) {
+    return failure_of(command);
+  }
+};
+
+bool same_rigs(const DiscoveredRig& a, const DiscoveredRig& b) {
+  bool same = a.found.rig.skin.weights == b.found.rig.skin.weights &&
+              a.found.rig.joints.size() == b.found.rig.joints.size() &&
+              a.found.motion.poses.size() == b.found.motion.poses.size();
+  for (size_t t = 0; same && t < a.found.motion.poses.size(); ++t)
+    same = a.found.motion.poses[t].root == b.found.motion.poses[t].root &&
+           a.found.motion.poses[t].turns == b.found.motion.poses[t].turns;
+  return same;
+}
+
+TEST_F(Bones, AreOfferedWhereNoPersonIsSeen) {
+  Studio studio(no_person());
+  open_arm(studio);
+  const auto& notices = studio.session().notices;
+  const auto offer = std::find_if(notices.begin(), notices.end(), [](const Notice& notice) {
+    return notice.also.command == "bones.find" || notice.offer.command == "bones.find";
+  });
+  ASSERT_NE(offer, notices.end());
+  EXPECT_EQ(offer->offer.label, "Clean up") << "what was offered before still is";
+  EXPECT_EQ(offer->also.label, "Find its own skeleton");
+  EXPECT_TRUE(studio.session().source.no_person);
+  studio.run(std::string(offer->also.command));
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig);
+  EXPECT_EQ(rig(studio).count(), 2);
+  EXPECT_TRUE(studio.session().bones.near.empty()) << "there is no person whose joints could be near";
+}
+
+TEST_F(Bones, AreFoundWithTheirElbowAndOpenedAgainTheSame) {
+  std::shared_ptr<const DiscoveredRig> found;
+  {
+    Studio studio(services());
+    find(studio);
+    found = studio.session().bones.rig;
+    ASSERT_EQ(rig(studio).count(), 2);
+    EXPECT_EQ(rig(studio).joints[1].kind, JointKind::Hinge);
+    EXPECT_EQ(found->found.motion.poses.size(), static_cast<size_t>(understudy::kFrames));
+    studio.run("bones.rename", {"1", "forearm"});
+    studio.run("document.save_as", {path("arm.understudy")});
+  }
+  Studio studio(services());
+  studio.run("document.open", {path("arm.understudy")});
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig);
+  EXPECT_TRUE(same_rigs(*found, *studio.session().bones.rig));
+  EXPECT_EQ(rig(studio).joints[1].name, "forearm");
+}
+
+TEST_F(Bones, GoAndComeWithUndoAndRedoWithoutAnotherSearch) {
+  Studio studio(services());
+  find(studio);
+  const auto found = studio.session().bones.rig;
+  EXPECT_EQ(undo_label(studio.session()), "Find its own skeleton");
+  studio.run("edit.undo");
+  studio.tick(0);
+  EXPECT_FALSE(studio.session().bones.rig);
+  studio.run("edit.redo");
+  studio.tick(0);
+  EXPECT_EQ(studio.session().bones.rig, found);
+  EXPECT_EQ(studio.session().bones.job, 0);
+  studio.run("open", {path("scan.npz")});
+  studio.wait_idle();
+  EXPECT_FALSE(studio.session().bones.rig) << "another source";
+  EXPECT_FALSE(studio.session().document.bones.wanted);
+}
+
+TEST_F(Bones, NeverMakeTheWindowWaitAndTellTheirStages) {
+  Studio studio(services());
+  open_arm(studio);
+  studio.run("bones.find");
+  std::set<std::string> stages;
+  bool painted = false;
+  double longest = 0;
+  do {
+    const auto began = std::chrono::steady_clock::now();
+    studio.tick(0);
+    longest =
+        std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    const BonesState& bones = studio.session().bones;
+    stages.insert(bones.stage);
+    painted = painted || (bones.so_far && bones.so_far->bone_of.size() > 1000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } while (!studio.idle());
+  EXPECT_EQ(stages.count("Surface"), 1u);
+  EXPECT_EQ(stages.count("Bones"), 1u);
+  EXPECT_TRUE(painted) << "parts as they come";
+  EXPECT_LT(longest, 0.5);
+}
+
+TEST_F(Bones, KeepTheBestFoundSoFarWhenCancelledAndAreFoundToTheEndAgain) {
+  Studio studio(services());
+  open_arm(studio);
+  studio.run("bones.find");
+  while (!studio.session().bones.so_far && !studio.session().bones.rig) studio.tick(0);
+  studio.run("job.cancel", {std::to_string(studio.session().bones.job)});
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig);
+  EXPECT_FALSE(studio.session().bones.rig->complete);
+  EXPECT_TRUE(studio.session().errors.empty()) << "nothing failed";
+  studio.run("bones.find");
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig);
+  EXPECT_TRUE(studio.session().bones.rig->complete);
+}
+
+TEST_F(Bones, CancelledBeforeAnyWereFoundAreMissedWithOneSentence) {
+  Studio studio(services());
+  open_arm(studio);
+  studio.run("bones.find");
+  while (studio.session().bones.job == 0) studio.tick(0);
+  studio.run("job.cancel", {std::to_string(studio.session().bones.job)});
+  studio.wait_idle();
+  EXPECT_FALSE(studio.session().bones.rig);
+  EXPECT_EQ(studio.session().bones.problem, "Cancelled before any bones were found");
+  EXPECT_TRUE(studio.session().errors.empty());
+}
+
+TEST_F(Bones, AreMergedSplitAndRenamedWithUndo) {
+  Studio studio(services());
+  find(studio);
+  studio.run("bones.select", {"1"});
+  studio.run("bones.rename", {"1", "forearm"});
+  EXPECT_EQ(rig(studio).joints[1].name, "forearm");
+  studio.run("bones.split", {"forearm"});
+  ASSERT_EQ(rig(studio).count(), 3);
+  EXPECT_EQ(undo_label(studio.session()), "Split forearm");
+  studio.run("bones.merge", {"2"});
+  studio.run("bones.merge", {"forearm"});
+  ASSERT_EQ(rig(studio).count(), 1);
+  EXPECT_EQ(studio.session().bones.selected, 0) << "what was chosen is part of the other bone now";
+  for (int i = 0; i < 3; ++i) studio.run("edit.undo");
+  studio.tick(0);
+  ASSERT_EQ(rig(studio).count(), 2);
+  EXPECT_EQ(rig(studio).joints[1].name, "forearm");
+  EXPECT_EQ(studio.session().bones.job, 0) << "no new search";
+  EXPECT_EQ(studio.session().document.bones.edits.size(), 1u);
+}
+
+TEST_F(Bones, TakeEveryKindOfEdit) {
+  Studio studio(services());
+  find(studio);
+  studio.run("bones.kind", {"1", "ball"});
+  EXPECT_EQ(rig(studio).joints[1].kind, JointKind::Ball);
+  studio.run("bones.move", {"1", "0.5", "0.01", "0"});
+  EXPECT_NEAR(rig(studio).joints[1].rest.y(), 0.01f, 1e-6f);
+  const Mat3 before = studio.session().bones.rig->found.motion.poses[5].turns[1];
+  studio.run("bones.turn", {"1", "5", "0", "0", "0.5", "2"});
+  EXPECT_GT((studio.session().bones.rig->found.motion.poses[5].turns[1] - before).norm(), 0.3f);
+  studio.run("bones.smooth", {"0.5"});
+  studio.run("bones.paint", {"0", "0.7", "0.05", "0", "0.1", "1", "add"});
+  studio.run("bones.trim", {"2", "8"});
+  EXPECT_EQ(studio.session().bones.rig->found.motion.poses.size(), 7u);
+  EXPECT_EQ(frame_of_rig(*studio.session().bones.rig, 2), 0);
+  EXPECT_EQ(frame_of_rig(*studio.session().bones.rig, 9), -1);
+  studio.run("bones.root", {"1"});
+  EXPECT_EQ(studio.session().document.bones.edits.size(), 7u);
+  const auto edited = studio.session().bones.rig;
+  studio.run("bones.fit");
+  studio.wait_idle();
+  ASSERT_TRUE(studio.session().bones.rig) << studio.session().bones.problem;
+  EXPECT_NE(studio.session().bones.rig, edited);
+  EXPECT_TRUE(studio.session().bones.problem.empty());
+}
+
+TEST_F(Bones, RefuseWhatCannotBeDoneAndStayAsTheyWere) {
+  Studio studio(services());
+  EXPECT_NE(refusal([&] { studio.run("bones.find"); }), "");
+  open_arm(studio);
+  EXPECT_EQ(refusal([&] { studio.run("bones.merge", {"1"}); }), "no bones have been found yet");
+  EXPECT_NE(refusal([&] { studio.run("bones.find", {"301"}); }), "");
+  find(studio);
+  const auto found = studio.session().bones.rig;
+  for (const Arguments& words : std::vector<Arguments>{{"bones.merge", "0"},
+                                                       {"bones.merge", "7"},
+                                                       {"bones.rename", "1", ""},
+                                                       {"bones.kind", "1", "free"},
+                                                       {"bones.turn", "1", "99", "0", "0", "1"},
+                                                       {"bones.trim", "8", "3"},
+                                                       {"bones.export", "rig.txt"},
+                                                       {"bones.export", path("arm.npz")}}) {
+    const std::string sentence = refusal([&] { studio.run(words[0], {words.begin() + 1, words.end()}); });
+    EXPECT_NE(sentence, "") << join_line(words[0], {words.begin() + 1, words.end()});
+    EXPECT_EQ(sentence.find('\n'), std::string::npos);
+  }
+  EXPECT_EQ(studio.session().bones.rig, found);
+  EXPECT_TRUE(studio.session().document.bones.edits.empty());
+}
+
+TEST_F(Bones, OfASkeletalMotionAreNotLookedFor) {
+  Studio studio(services());
+  open_walk(studio);
+  EXPECT_NE(refusal([&] { studio.run("bones.find"); }).find("has bones already"), std::string::npos);
+}
+
+TEST_F(Bones, AreExportedAsACharacterThatOpensAgain) {
+  Studio studio(services());
+  find(studio);
+  studio.run("bones.export", {path("rig.glb")});
+  studio.wait_idle();
+  ASSERT_TRUE(fs::exists(path("rig.glb")));
+  const RiggedMotion again =
+      from_character(read_character(path("rig.glb")), 0, studio.session().bones.rig->found.motion.fps);
+  studio.run("bones.export", {path("rig.bvh")});
+  studio.wait_idle();
+  EXPECT_GT(fs::file_size(path("rig.bvh")), 500u);
+  EXPECT_EQ(again.rig.count(), 2);
+  EXPECT_EQ(again.motion.poses.size(), static_cast<size_t>(understudy::kFrames));
+}
+
+TEST_F(Bones, OfAPersonGetTheNamesOfTheJointsTheyAreNear) {
+  Studio studio(services());
+  find(studio);
+  Session& session = studio.session();
+  session.source.no_person = false;
+  studio.tick(0);
+  ASSERT_EQ(session.bones.near.size(), 2u) << "compared with the person that is seen";
+  EXPECT_GE(session.bones.near[1].joint, 0);
+  EXPECT_GT(session.bones.near[1].apart_m, 0);
+  session.bones.near[1] = {LeftElbow, 0.01f, 0.01f, true};
+  session.bones.near[0] = {Pelvis, 0.5f, 0.5f, false};
+  studio.run("bones.name_as_joints");
+  EXPECT_EQ(rig(studio).joints[1].name, "left_elbow");
+  EXPECT_EQ(rig(studio).joints[0].name, "bone 0") << "far from all: it stays as it is";
+  studio.run("edit.undo");
+  studio.tick(0);
+  EXPECT_EQ(rig(studio).joints[1].name, "bone 1");
+}
+
+}  // namespace
+}  // namespace understudy::app

@@ -1,0 +1,121 @@
+// A source's own skeleton in the views, without GL.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/ui/support/viewport_stage.hpp"
+#include "ui/viewport/pane.hpp"
+
+namespace understudy::ui {
+namespace {
+
+struct BonesScene : testing::Test {
+  BonesScene() {
+    stage.show_frame(10);
+    auto rig = std::make_shared<DiscoveredRig>();
+    understudy::Rig& found = rig->found.rig;
+    found.joints = {{"hips", -1, JointKind::Free, Vec3(0, 0.9f, 0)},
+                    {"arm", 0, JointKind::Ball, Vec3(0, 1.4f, 0)}};
+    found.surface = stage.mesh;
+    std::vector<int> bones;
+    for (Eigen::Index v = 0; v < stage.mesh.vertices.rows(); ++v)
+      bones.push_back(stage.mesh.vertices(v, 1) > 1.4f ? 1 : 0);
+    found.skin = SkinWeights::rigid(bones);
+    for (int t = 0; t < 24; ++t) {
+      RigPose pose = rest_pose(found);
+      pose.root.x() += 0.1f * static_cast<float>(t);
+      rig->found.motion.poses.push_back(pose);
+    }
+    rig->bones.resize(2), rig->off_m.assign(24, 0.f), rig->doubted.assign(24, false);
+    session.document.bones.wanted = true;
+    session.bones.rig = rig;
+  }
+  render::Scene scene() {
+    const PaneContent content = pane_of(0);
+    pictures_of(session, *stage.cache, content, pane_frame(session, content));
+    stage.cache->wait();
+    last = pictures_of(session, *stage.cache, content, pane_frame(session, content)).value();
+    const EditPreview none;
+    return build_scene({session, content, last, {}, none, ThemeKind::Dark}, memory).scene;
+  }
+  Stage stage;
+  app::Session& session = stage.session;
+  SceneMemory memory;
+  PanePictures last;
+};
+
+TEST_F(BonesScene, AreDrawnBesideTheJointsOfAPersonInTheirOwnColour) {
+  const render::Scene both = scene();
+  ASSERT_EQ(both.skeletons.size(), 2u);
+  EXPECT_EQ(both.skeletons[0].joints.rows(), kJointCount);
+  EXPECT_GT(both.skeletons[1].joints.rows(), 2) << "two joints and where the bones end";
+  EXPECT_NE(both.skeletons[0].tint, both.skeletons[1].tint);
+  EXPECT_NEAR(both.skeletons[1].joints(0, 0), 1, 1e-5f) << "in frame 10";
+  session.source.no_person = true;
+  EXPECT_EQ(scene().skeletons.size(), 1u) << "no person, no joints of one";
+  session.view.source.bones = false;
+  EXPECT_TRUE(scene().skeletons.empty());
+}
+
+TEST_F(BonesScene, TheSurfaceIsPaintedInTheScansPlaceOrBesideIt) {
+  EXPECT_EQ(scene().clouds.size(), 1u);
+  session.view.bone_surface = app::BoneSurface::Over;
+  const render::Scene over = scene();
+  EXPECT_TRUE(over.clouds.empty()) << "in place of the scan";
+  ASSERT_EQ(over.meshes.size(), 1u);
+  EXPECT_EQ(over.meshes[0].colors->rows(), stage.mesh.vertices.rows());
+  EXPECT_NEAR((*over.meshes[0].vertices)(0, 0), stage.mesh.vertices(0, 0) + 1, 1e-4f);
+  const auto again = scene();
+  EXPECT_EQ(again.meshes[0].vertices.pointer(), over.meshes[0].vertices.pointer()) << "made once a frame";
+  session.view.bone_surface = app::BoneSurface::Beside;
+  const render::Scene beside = scene();
+  EXPECT_EQ(beside.clouds.size(), 1u);
+  ASSERT_EQ(beside.meshes.size(), 1u);
+  EXPECT_GT((*beside.meshes[0].vertices)(0, 0), stage.mesh.vertices(0, 0) + 1.5f);
+}
+
+TEST_F(BonesScene, TheChosenOneIsBrightAndAloneInColour) {
+  session.view.bone_surface = app::BoneSurface::Over;
+  session.bones.selected = 1;
+  const render::Scene chosen = scene();
+  EXPECT_EQ(chosen.skeletons.size(), 3u) << "the bone once more, bright";
+  const Points& colors = *chosen.meshes[0].colors;
+  std::set<std::vector<float>> own, others;
+  for (Eigen::Index v = 0; v < colors.rows(); ++v)
+    (stage.mesh.vertices(v, 1) > 1.4f ? own : others).insert({colors(v, 0), colors(v, 1), colors(v, 2)});
+  EXPECT_EQ(own.size(), 1u);
+  EXPECT_EQ(others.size(), 1u) << "all others are grey";
+  EXPECT_NE(own, others);
+}
+
+TEST_F(BonesScene, ABoneIsMetWhereItIsSeen) {
+  PaneView view;
+  view.rect = {{0, 0}, {800, 600}};
+  view.camera.target = Vec3(1, 1, 0);
+  const auto bones = posed_bones(session, pane_of(0), 10);
+  ASSERT_TRUE(bones);
+  const auto middles = bone_middles(view, *bones);
+  ASSERT_EQ(middles.size(), 2u);
+  for (const auto& [joint, at] : middles) EXPECT_EQ(bone_at(view, *bones, at, 6), joint);
+  EXPECT_EQ(bone_at(view, *bones, {5, 5}, 6), -1);
+  EXPECT_FALSE(posed_bones(session, pane_of(0), 24)) << "the rig has no such frame";
+  EXPECT_FALSE(posed_bones(session, pane_of(1), 10)) << "bones are the source's";
+}
+
+TEST_F(BonesScene, PartsArePaintedAsTheyComeWhereTheScanStands) {
+  session.bones.rig.reset();
+  auto so_far = std::make_shared<PartsSoFar>();
+  so_far->points = stage.mesh.vertices.rowwise() + Eigen::RowVector3f(7, 0, 0);
+  for (Eigen::Index v = 0; v < so_far->points.rows(); ++v) so_far->bone_of.push_back(static_cast<int>(v % 3));
+  so_far->tree = {RigJoint{"", -1, JointKind::Free, Vec3(7, 1, 0)}};
+  session.bones.so_far = so_far;
+  const render::Scene painted = scene();
+  ASSERT_EQ(painted.clouds.size(), 1u) << "in place of the scan";
+  const Points& points = *painted.clouds[0].positions;
+  ASSERT_EQ(points.rows(), so_far->points.rows());
+  EXPECT_LT(std::abs(points.col(0).mean()), 1.5f) << "not seven metres away";
+  EXPECT_NE(Vec3(painted.clouds[0].colors->row(0)), Vec3(painted.clouds[0].colors->row(1)));
+}
+
+}  // namespace
+}  // namespace understudy::ui

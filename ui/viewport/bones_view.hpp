@@ -1,0 +1,56 @@
+// The scan's own skeleton in a view: its bones, its surface painted by them, what is found so far, and what
+// of it is under the pointer.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/scene.hpp"
+#include "ui/viewport/overlay.hpp"
+#include "ui/viewport/panes.hpp"
+#include "ui/viewport/surface_values.hpp"
+
+namespace understudy::ui {
+
+/// What is drawn of found bones, kept while its inputs stay the same.
+struct BonesMemory {
+  std::shared_ptr<const void> of;  ///< the rig, or what is found so far
+  int selected = -1, frame = -1;
+  std::shared_ptr<const app::ScanPicture> beside;  ///< the scan whose place is taken
+  Vec3 offset = Vec3::Zero();
+  RowMatrix weights;  ///< [V, J] of the rig
+  render::SharedPoints colors, vertices, normals;
+  render::SharedFaces faces;
+  float spacing = 0;
+};
+
+/// The found skeleton in a frame of the source: its joints, then where bones that carry no other end.
+struct PosedBones {
+  Points places;             ///< [J and tips, 3]
+  std::vector<int> parents;  ///< as many
+  int joints = 0;            ///< J
+};
+/// None where none is found, hidden, or the frame is not one of the rig's.
+std::optional<PosedBones> posed_bones(const app::Session& session, const PaneContent& pane, int frame);
+
+/// The 22 joints are hidden where the source is no person and has bones of its own.
+bool hides_person(const app::Session& session);
+/// Whether what was found, or is found so far, is drawn in the scan's place.
+bool bones_hide_scan(const app::Session& session, int frame);
+
+/// Adds the bones, the chosen one bright, and the painted surface to a scene. All is shifted by `aside`.
+void add_bones(const app::Session& session, const PaneContent& pane, const PanePictures& pictures,
+               const Vec3& aside, BonesMemory& memory, render::Scene& scene);
+
+/// The bone seen nearest to a pixel, within `reach` pixels; -1: none.
+int bone_at(const PaneView& view, const PosedBones& bones, const ImVec2& at, float reach);
+/// The names of the chosen and the hovered bone, or of all, in the middle of each.
+std::vector<Overlay::Label> bone_labels(const app::Session& session, const PaneView& view,
+                                        const PosedBones& bones, int hovered);
+/// "tail: hinge, turns 34°".
+std::string bone_words(const app::Session& session, int joint);
+/// Where each bone's middle is seen, by number; none of those that are not.
+std::vector<std::pair<int, ImVec2>> bone_middles(const PaneView& view, const PosedBones& bones);
+
+}  // namespace understudy::ui
