@@ -7,6 +7,7 @@
 
 #include "retarget/base/error.hpp"
 #include "retarget/base/index.hpp"
+#include "retarget/discovery/ground_contacts.hpp"
 #include "retarget/geometry/closed_surface.hpp"
 #include "retarget/math/rotation.hpp"
 
@@ -85,6 +86,19 @@ void loosen_joints(RiggedMotion& body) {
   }
 }
 
+/// What touches in the source stands in the performance, on the target's own ground.
+void stand(const RiggedMotion& source, const RiggedMotion& target, const BoneMatches& matches,
+           RiggedMotion& performed) {
+  const GroundContacts contacts = ground_contacts(source);
+  std::vector<std::vector<char>> touches;
+  for (const std::vector<char>& of_source : contacts.touches) {
+    auto& now = touches.emplace_back();
+    for (const int partner : matches.partner)
+      now.push_back(partner < 0 ? char{0} : of_source[static_cast<size_t>(partner)]);
+  }
+  stand_on(ground_contacts(target).ground, touches, performed);
+}
+
 }  // namespace
 
 RiggedMotion performed_by(const RiggedMotion& source, const RiggedMotion& target, const LaidBody& laid,
@@ -95,8 +109,8 @@ RiggedMotion performed_by(const RiggedMotion& source, const RiggedMotion& target
   performed.rig = target.rig;
   performed.motion.fps = source.motion.fps;
   for (const RigPose& pose : source.motion.poses) performed.motion.poses.push_back(performance.pose(pose));
+  if (options.contacts) stand(source, target, matches, performed);
   loosen_joints(performed);
-  (void)options;
   return performed;
 }
 
