@@ -29,7 +29,6 @@ struct DiscoverOptions {
   SourceOptions source;
   std::string out, result, report, preview;
   std::string rig, perform, matches;
-  bool follow = false;
   int parts = 0;
 };
 
@@ -48,13 +47,11 @@ void check_outputs(const DiscoverOptions& options) {
 }
 
 void check_task(const DiscoverOptions& options) {
-  US_CHECK(!options.follow || !options.rig.empty(), "--follow needs a rig that was found before: --rig");
-  US_CHECK(!options.follow || options.perform.empty(), "either --follow or --perform");
   US_CHECK(options.matches.empty() || !options.perform.empty(), "--matches is of --perform");
-  US_CHECK(options.rig.empty() || options.follow || !options.perform.empty(),
-           "a rig that was found before is for --follow and --perform");
-  US_CHECK(!options.source.path.empty() || (!options.rig.empty() && !options.follow),
+  US_CHECK(!options.source.path.empty() || (!options.rig.empty() && !options.perform.empty()),
            "name the scans of one thing that moves: --source");
+  US_CHECK(options.source.path.empty() || options.rig.empty() || options.perform.empty(),
+           "what is performed is either the motion of --rig or that of --source");
 }
 
 DiscoveryOptions discovery_options(const DiscoverOptions& options, Progress& progress) {
@@ -153,13 +150,13 @@ int find_rig(const DiscoverOptions& options) {
   return 0;
 }
 
+/// Lays a known rig on scans as they come.
 int follow_rig(const DiscoverOptions& options) {
   const RiggedMotion known = read_rig(options.rig);
   const std::shared_ptr<Source> source = open_source(as_it_is(options.source));
-  const ScanSequence scans = scan_sequence(source);
-  Progress progress("following", 100, false, "%");
-  const FollowedScans followed = follow_scans(known, scans, [&](float share) {
-    progress.step(static_cast<int64_t>(100 * share));
+  Progress progress("following", source->count().value_or(0));
+  const FollowedScans followed = follow_scans(known, *source, [&](int64_t frames) {
+    progress.step(frames);
     return !interrupted();
   });
   progress.finish();
@@ -172,7 +169,9 @@ int follow_rig(const DiscoverOptions& options) {
                 percentile(followed.ms, 95));
   }
   write_files(options, followed.rig, source->to_file(), more);
-  if (!options.preview.empty()) write_sheet(options, followed.rig, scans);
+  if (options.preview.empty()) return 0;
+  source->seek(0);
+  write_sheet(options, followed.rig, scan_sequence(source));
   return 0;
 }
 
@@ -246,8 +245,8 @@ int perform_rig(const DiscoverOptions& options) {
 int discover_rig(const DiscoverOptions& options) {
   check_task(options);
   check_outputs(options);
-  if (options.follow) return follow_rig(options);
-  return options.perform.empty() ? find_rig(options) : perform_rig(options);
+  if (!options.perform.empty()) return perform_rig(options);
+  return options.rig.empty() ? find_rig(options) : follow_rig(options);
 }
 
 }  // namespace
@@ -267,10 +266,8 @@ Action declare_discover(CLI::App& command) {
   command.add_option("--preview", options->preview, "contact sheet as PNG");
   command.add_option(
       "--rig", options->rig,
-      "a rig that was found before (.glb, .gltf), with its motion: to be followed in scans, or what "
-      "another body performs");
-  command.add_flag("--follow", options->follow,
-                   "lays --rig on the scans of --source one after the other, looking only back");
+      "a rig that was found before (.glb, .gltf): it is laid on the scans of --source as they come; "
+      "with --perform, what does its motion");
   command.add_option(
       "--perform", options->perform,
       "another body of the kind that performs the motion: scans, one scan, or a rig that was found "

@@ -86,31 +86,32 @@ RiggedMotion read_rig(const std::string& path) {
   return read;
 }
 
-FollowedScans follow_scans(const RiggedMotion& known, const ScanSequence& scans,
-                           const std::function<bool(float)>& going_on) {
+FollowedScans follow_scans(const RiggedMotion& known, Source& source,
+                           const std::function<bool(int64_t)>& going_on) {
+  constexpr Eigen::Index kFewest = 30;
   FollowedScans followed;
   DiscoveredRig& rig = followed.rig;
   rig.found.rig = known.rig;
-  rig.found.motion.fps = scans.fps;
+  rig.found.motion.fps = source.fps();
   RigFollower follower(known.rig);
   bool begun = false;
-  for (int t = 0; t < scans.count && rig.complete; ++t) {
+  while (const auto frame = source.next()) {
     RigPose pose = rig.found.motion.poses.empty() ? rest_pose(known.rig) : rig.found.motion.poses.back();
     float off = -1;
-    const Mesh scan = scans.scan(t);
-    if (finite_count(scan.vertices) >= 30) {
-      if (!begun) follower.start_from(first_pose(known, scan));
+    if (frame->usable && finite_count(frame->mesh.vertices) >= kFewest) {
+      if (!begun) follower.start_from(first_pose(known, frame->mesh));
       const auto began = std::chrono::steady_clock::now();
-      RigFollower::Followed now = follower.follow(scan);
+      RigFollower::Followed now = follower.follow(frame->mesh);
       if (begun) followed.ms.push_back(ms_since(began));
       begun = true;
       pose = std::move(now.pose), off = now.off_m;
     }
     rig.found.motion.poses.push_back(std::move(pose));
     rig.off_m.push_back(off);
-    rig.complete = going_on(static_cast<float>(t + 1) / static_cast<float>(scans.count));
+    rig.complete = going_on(ssize(rig.off_m));
+    if (!rig.complete) break;
   }
-  US_CHECK(begun, "no scan has 30 points: there is nothing to lay the rig on");
+  US_CHECK(begun, "no scan has ", kFewest, " points: there is nothing to lay the rig on");
   rig.doubted = doubted(rig.off_m);
   describe(rig);
   return followed;

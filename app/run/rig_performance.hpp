@@ -20,11 +20,12 @@ RiggedMotion read_rig(const std::string& path);
 /// A rig laid on scans one after the other, each as it comes.
 struct FollowedScans {
   DiscoveredRig rig;       ///< what was known, with a pose a scan
-  std::vector<double> ms;  ///< of each scan that could be used, the first one's search apart
+  std::vector<double> ms;  ///< of each scan that could be used, but the first, which is searched
 };
-/// Throws Error where no scan can be used; going_on: called after each with the share done, false ends it.
-FollowedScans follow_scans(const RiggedMotion& known, const ScanSequence& scans,
-                           const std::function<bool(float)>& going_on);
+/// Looks only back. going_on: called after each with the number done, false ends it. Throws Error where no
+/// scan can be used.
+FollowedScans follow_scans(const RiggedMotion& known, Source& source,
+                           const std::function<bool(int64_t)>& going_on);
 
 /// A body that shall perform.
 struct OtherBody {
