@@ -102,9 +102,10 @@ void write_sheet(const DiscoverOptions& options, const DiscoveredRig& rig, const
   for (int i = 0; i < shown; ++i)
     moments.push_back(moment_of(rig, scans, i * (scans.count - 1) / std::max(1, shown - 1), colors));
   render::SheetOptions sheet;
-  sheet.title = (options.source.path.empty() ? rig.found.rig.name : name_of(options.source)) + ": " +
-                std::to_string(rig.found.rig.count()) + " bones found";
-  sheet.source_caption = "Scan, found skeleton";
+  const std::string bones = std::to_string(rig.found.rig.count()) + " bones";
+  sheet.title = options.perform.empty() ? name_of(options.source) + ": " + bones + " found"
+                                        : file_name(options.perform) + " performs, " + bones;
+  sheet.source_caption = options.perform.empty() ? "Scan, found skeleton" : "Performance, skeleton";
   sheet.target_caption = "Rig, painted by bone";
   sheet.strays = false;
   render::write_png(options.preview, render::contact_sheet(moments, sheet));
@@ -232,11 +233,12 @@ int perform_rig(const DiscoverOptions& options) {
   more["matches"] = to_json(matches, source.rig, rig.found.rig)["bones"];
   write_files(options, rig, Eigen::Matrix4d::Identity(), more);
   if (options.preview.empty()) return 0;
-  ScanSequence shown;  // the source's surface above, who performs it below
-  shown.count = static_cast<int>(source.motion.poses.size());
-  shown.scan = [&source](int t) {
-    const BoneMotions bones = bone_motions(source.rig, source.motion.poses[static_cast<size_t>(t)]);
-    return Mesh{skinned(source.rig.surface.vertices, source.rig.skin, bones), source.rig.surface.faces};
+  ScanSequence shown;  // there is no scan of it: its own surface
+  shown.count = static_cast<int>(rig.found.motion.poses.size());
+  shown.scan = [&rig](int t) {
+    const understudy::Rig& made = rig.found.rig;
+    const BoneMotions bones = bone_motions(made, rig.found.motion.poses[static_cast<size_t>(t)]);
+    return Mesh{skinned(made.surface.vertices, made.skin, bones), made.surface.faces};
   };
   write_sheet(options, rig, shown);
   return 0;

@@ -14,6 +14,7 @@ namespace {
 constexpr float kTouching = 0.02f;  // of the body's size, above the ground
 constexpr float kStill = 0.35f;     // sizes a second
 constexpr double kLowestOf = 10;    // percentile of the frames' lowest points
+constexpr size_t kEases = 3;        // frames before and after it
 constexpr int kShortest = 3;        // frames of a contact that bones bend for
 constexpr float kMostBent = 0.06f;  // of the body's size: what is further off stays where it is
 
@@ -145,7 +146,7 @@ void Standing::correct_path() {
 
 /// Turns the bone and the one that carries it, each so that the point comes nearest to where it shall be.
 void Standing::reach(size_t t, size_t bone, int number, const Vec3& to) {
-  constexpr int kReaches = 4;
+  constexpr int kReaches = 8;
   constexpr float kMostTurn = 0.15f;  // radians a round
   for (int round = 0; round < kReaches; ++round)
     for (const int turned : {body_.rig.joints[bone].parent, static_cast<int>(bone)}) {
@@ -171,11 +172,16 @@ void Standing::hold(size_t bone, size_t first, size_t end) {
   Vec3 anchor = Vec3::Zero();
   for (size_t t = first; t < end; ++t) anchor += point(t, number) / static_cast<float>(end - first);
   anchor.y() = std::max(ground_, std::min(anchor.y(), ground_ + kTouching * soles_.size));
-  for (size_t t = first; t < end; ++t) {
-    const size_t inside = std::min(t - first, end - 1 - t);  // frames from the contact's ends
-    const float share = std::min(1.0f, static_cast<float>(inside + 1) / kShortest);
-    const Vec3 is = point(t, number);
-    if ((anchor - is).norm() < kMostBent * soles_.size) reach(t, bone, number, is + share * (anchor - is));
+  const auto pull = [&](size_t t, const Vec3& off) {
+    if (off.norm() < kMostBent * soles_.size) reach(t, bone, number, point(t, number) + off);
+  };
+  const Vec3 at_first = anchor - point(first, number), at_last = anchor - point(end - 1, number);
+  for (size_t t = first; t < end; ++t) pull(t, anchor - point(t, number));
+  for (size_t i = 1; i <= kEases; ++i) {  // it comes and goes smoothly
+    const float share = 1 - static_cast<float>(i) / (kEases + 1);
+    if (i <= first && !touches_[first - i][bone]) pull(first - i, share * at_first);
+    const size_t after = end - 1 + i;
+    if (after < touches_.size() && !touches_[after][bone]) pull(after, share * at_last);
   }
 }
 
