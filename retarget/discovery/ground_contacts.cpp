@@ -62,6 +62,7 @@ class Soles {
 
 float ground_of(const std::vector<Points>& frames) {
   std::vector<double> lowest;
+  lowest.reserve(frames.size());
   for (const Points& at : frames) lowest.push_back(static_cast<double>(at.col(1).minCoeff()));
   return lowest.empty() ? 0 : static_cast<float>(percentile(lowest, kLowestOf));
 }
