@@ -15,10 +15,10 @@ namespace {
 constexpr int kLaidPoints = 1200, kRoughPoints = 250;
 constexpr int kLaidPoses = 7, kHeadings = 12, kTried = 16;
 constexpr uint64_t kLaidSeed = 20240614;
-constexpr double kMirrorCosts = 1.2;     // a body is rather itself than its mirror image
+constexpr double kMirrorCosts = 1.2;    // a body is rather itself than its mirror image
 constexpr double kHeadingCosts = 0.01;  // of its size: where nothing tells, bodies face alike
-constexpr double kStrainCosts = 0.01;    // of its size, for a mean strain of 1
-constexpr double kFewInCommon = 0.12;    // of two bones' surfaces: less makes no partners
+constexpr double kStrainCosts = 0.01;   // of its size, for a mean strain of 1
+constexpr double kFewInCommon = 0.12;   // of two bones' surfaces: less makes no partners
 
 /// A rig's surface in some of its poses.
 class PosedShapes {
