@@ -16,7 +16,7 @@ Action declare_cases(CLI::App& command) {
       ->required()
       ->check(CLI::IsMember({"naked", "clothed", "captured", "hands", "bends", "extraction", "occluded",
                              "partial", "sensors", "scenes", "inbetween", "predict", "sparse", "creatures",
-                             "creatures-captured"}));
+                             "creatures-captured", "creatures-pairs"}));
   command.add_option("--out", options->out, "folder that the cases go into")->required();
   command.add_option("--split", options->split,
                      "split of splits.json, of creatures dev or train (default: dev)");

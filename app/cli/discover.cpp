@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <map>
+#include <utility>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/options.hpp"
@@ -9,6 +12,7 @@
 #include "app/run/exports.hpp"
 #include "app/run/interrupt.hpp"
 #include "app/run/rig_finder.hpp"
+#include "app/run/rig_performance.hpp"
 #include "render/colors.hpp"
 #include "render/image.hpp"
 #include "retarget/base/error.hpp"
@@ -17,6 +21,7 @@
 #include "retarget/character/gltf_character.hpp"
 #include "retarget/character/rig_character.hpp"
 #include "retarget/formats/file_formats.hpp"
+#include "retarget/math/percentile.hpp"
 
 namespace understudy::app {
 namespace {
@@ -24,6 +29,7 @@ namespace {
 struct DiscoverOptions {
   SourceOptions source;
   std::string out, result, report, preview;
+  std::string rig, perform, matches;
   int parts = 0;
 };
 
@@ -49,20 +55,32 @@ void check_outputs(const DiscoverOptions& options) {
   US_CHECK(options.out.empty() || writer_of(options.out) != nullptr, options.out,
            ": a found rig is written as .glb, .gltf or .bvh");
   for (const std::string& path : {options.out, options.result, options.report, options.preview}) {
-    check_not_read(path, {options.source.path});
+    check_not_read(path, {options.source.path, options.rig, options.perform, options.matches});
     check_writable(path);
   }
 }
 
-DiscoveredRig found_in(const ScanSequence& scans, const DiscoverOptions& options) {
-  Progress progress("finding its skeleton", 100, false, "%");
+void check_task(const DiscoverOptions& options) {
+  US_CHECK(options.matches.empty() || !options.perform.empty(), "--matches is of --perform");
+  US_CHECK(!options.source.path.empty() || (!options.rig.empty() && !options.perform.empty()),
+           "name the scans of one thing that moves: --source");
+  US_CHECK(options.source.path.empty() || options.rig.empty() || options.perform.empty(),
+           "what is performed is either the motion of --rig or that of --source");
+}
+
+DiscoveryOptions discovery_options(const DiscoverOptions& options, Progress& progress) {
   DiscoveryOptions how;
   how.parts = options.parts;
   how.progress = [&progress](const DiscoveryProgress& at) {
     progress.step(static_cast<int64_t>(100 * at.share));
     return !interrupted();
   };
-  DiscoveredRig rig = discover(scans, how);
+  return how;
+}
+
+DiscoveredRig found_in(const ScanSequence& scans, const DiscoverOptions& options) {
+  Progress progress("finding its skeleton", 100, false, "%");
+  DiscoveredRig rig = discover(scans, discovery_options(options, progress));
   progress.finish();
   return rig;
 }
@@ -98,8 +116,10 @@ void write_sheet(const DiscoverOptions& options, const DiscoveredRig& rig, const
   for (int i = 0; i < shown; ++i)
     moments.push_back(moment_of(rig, scans, i * (scans.count - 1) / std::max(1, shown - 1), colors));
   render::SheetOptions sheet;
-  sheet.title = name_of(options.source) + ": " + std::to_string(rig.found.rig.count()) + " bones found";
-  sheet.source_caption = "Scan, found skeleton";
+  const std::string bones = std::to_string(rig.found.rig.count()) + " bones";
+  sheet.title = options.perform.empty() ? name_of(options.source) + ": " + bones + " found"
+                                        : file_name(options.perform) + " performs, " + bones;
+  sheet.source_caption = options.perform.empty() ? "Scan, found skeleton" : "Performance, skeleton";
   sheet.target_caption = "Rig, painted by bone";
   sheet.strays = false;
   render::write_png(options.preview, render::contact_sheet(moments, sheet));
@@ -124,32 +144,134 @@ void tell(const DiscoveredRig& rig) {
   if (!rig.complete) std::printf("ended early: this is the best that was found by then\n");
 }
 
-int discover_rig(const DiscoverOptions& options) {
-  check_outputs(options);
+/// Character, archive, report; `more` stands in the report.
+void write_files(const DiscoverOptions& options, const DiscoveredRig& rig, const Eigen::Matrix4d& to_file,
+                 const Json& more) {
+  if (!options.out.empty()) writer_of(options.out)(options.out, rig.found);
+  if (!options.result.empty()) write_found_rig(options.result, rig, to_file);
+  if (options.report.empty()) return;
+  Json report = more;
+  report.update(to_json(rig));
+  write_json(options.report, report);
+}
+
+int find_rig(const DiscoverOptions& options) {
   const std::shared_ptr<Source> source = open_source(as_it_is(options.source));
   const ScanSequence scans = scan_sequence(source);
   const DiscoveredRig rig = found_in(scans, options);
   tell(rig);
-  if (!options.out.empty()) writer_of(options.out)(options.out, rig.found);
-  if (!options.result.empty()) write_found_rig(options.result, rig, source->to_file());
-  if (!options.report.empty()) {
-    Json report = {{"source", options.source.path}};
-    report.update(to_json(rig));
-    write_json(options.report, report);
-  }
+  write_files(options, rig, source->to_file(), {{"source", options.source.path}});
   if (!options.preview.empty()) write_sheet(options, rig, scans);
   return 0;
+}
+
+/// Lays a known rig on scans as they come.
+int follow_rig(const DiscoverOptions& options) {
+  const RiggedMotion known = read_rig(options.rig);
+  const std::shared_ptr<Source> source = open_source(as_it_is(options.source));
+  Progress progress("following", source->count().value_or(0));
+  const FollowedScans followed = follow_scans(known, *source, [&](int64_t frames) {
+    progress.step(frames);
+    return !interrupted();
+  });
+  progress.finish();
+  tell(followed.rig);
+  Json more = {{"source", options.source.path}, {"rig", options.rig}};
+  if (!followed.ms.empty()) {
+    more["ms"] = percentile(followed.ms, 50);
+    more["ms_p95"] = percentile(followed.ms, 95);
+    std::printf("%.1f ms a frame, 95 %% within %.1f\n", percentile(followed.ms, 50),
+                percentile(followed.ms, 95));
+  }
+  write_files(options, followed.rig, source->to_file(), more);
+  if (options.preview.empty()) return 0;
+  source->seek(0);
+  write_sheet(options, followed.rig, scan_sequence(source));
+  return 0;
+}
+
+RiggedMotion performing_source(const DiscoverOptions& options) {
+  if (!options.rig.empty()) return read_rig(options.rig);
+  return found_in(scan_sequence(open_source(as_it_is(options.source))), options).found;
+}
+
+/// The partners in the file, or those that were found, which go into the file.
+BoneMatches matches_of(const DiscoverOptions& options, const LaidBody& laid, const RiggedMotion& source,
+                       const RiggedMotion& target) {
+  if (!options.matches.empty() && std::filesystem::exists(options.matches))
+    return read_matches(options.matches, source.rig, target.rig);
+  const BoneMatches matches = match_bones(laid, source, target);
+  if (options.matches.empty()) return matches;
+  write_json(options.matches, to_json(matches, source.rig, target.rig));
+  std::printf("%s: the partners; change them there and run this again\n", options.matches.c_str());
+  return matches;
+}
+
+void tell(const BoneMatches& matches, const understudy::Rig& source, const understudy::Rig& target) {
+  for (size_t k = 0; k < matches.partner.size(); ++k) {
+    const int partner = matches.partner[k];
+    if (partner < 0)
+      std::printf("  %s goes with its neighbours\n", target.joints[k].name.c_str());
+    else
+      std::printf("  %s as %s, cost %.2f\n", target.joints[k].name.c_str(),
+                  source.joints[static_cast<size_t>(partner)].name.c_str(),
+                  static_cast<double>(matches.cost[k]));
+  }
+}
+
+/// What is not known of a performance: how far it is from scans.
+DiscoveredRig as_discovered(RiggedMotion performed) {
+  DiscoveredRig rig;
+  rig.found = std::move(performed);
+  rig.off_m.assign(rig.found.motion.poses.size(), -1);
+  rig.doubted.assign(rig.found.motion.poses.size(), false);
+  rig.bones.resize(rig.found.rig.joints.size());
+  return rig;
+}
+
+int perform_rig(const DiscoverOptions& options) {
+  const RiggedMotion source = performing_source(options);
+  Progress progress("finding the skeleton of what performs", 100, false, "%");
+  OtherBody target = other_body(options.perform, options.source, discovery_options(options, progress));
+  progress.finish();
+  US_CHECK(!target.is_scan || options.matches.empty(), options.perform,
+           ": one scan has no bones of its own to match: --matches does not apply");
+  const LaidBody laid = lay_on(source, target.body);
+  if (target.is_scan) target.body = rig_laid_on(source, target.body, laid);
+  const BoneMatches matches =
+      target.is_scan ? same_bones(source.rig.count()) : matches_of(options, laid, source, target.body);
+  tell(matches, source.rig, target.body.rig);
+  const DiscoveredRig rig = as_discovered(performed_by(source, target.body, laid, matches));
+  Json more = {{"source", options.rig.empty() ? options.source.path : options.rig},
+               {"performed_by", options.perform}};
+  more["matches"] = to_json(matches, source.rig, rig.found.rig)["bones"];
+  write_files(options, rig, Eigen::Matrix4d::Identity(), more);
+  if (options.preview.empty()) return 0;
+  ScanSequence shown;  // there is no scan of it: its own surface
+  shown.count = static_cast<int>(rig.found.motion.poses.size());
+  shown.scan = [&rig](int t) {
+    const understudy::Rig& made = rig.found.rig;
+    const BoneMotions bones = bone_motions(made, rig.found.motion.poses[static_cast<size_t>(t)]);
+    return Mesh{skinned(made.surface.vertices, made.skin, bones), made.surface.faces};
+  };
+  write_sheet(options, rig, shown);
+  return 0;
+}
+
+int discover_rig(const DiscoverOptions& options) {
+  check_task(options);
+  check_outputs(options);
+  if (!options.perform.empty()) return perform_rig(options);
+  return options.rig.empty() ? find_rig(options) : follow_rig(options);
 }
 
 }  // namespace
 
 Action declare_discover(CLI::App& command) {
   const auto options = std::make_shared<DiscoverOptions>();
-  command
-      .add_option("--source", options->source.path,
-                  "scans of one thing that moves: a folder of frames (" + format_names(kScanFrame) +
-                      "), a list or an array")
-      ->required();
+  command.add_option("--source", options->source.path,
+                     "scans of one thing that moves: a folder of frames (" + format_names(kScanFrame) +
+                         "), a list or an array");
   add_source_options(command, options->source);
   command.add_option("--out", options->out,
                      "the thing with bones, skin and animation, as .glb or .gltf; its motion alone as .bvh");
@@ -159,6 +281,16 @@ Action declare_discover(CLI::App& command) {
   command.add_option("--result", options->result, "vertices, joints, tree and weights as .npz");
   command.add_option("--report", options->report, "bones, and how well each frame fits, as JSON");
   command.add_option("--preview", options->preview, "contact sheet as PNG");
+  command.add_option(
+      "--rig", options->rig,
+      "a rig that was found before (.glb, .gltf): it is laid on the scans of --source as they come; "
+      "with --perform, what does its motion");
+  command.add_option(
+      "--perform", options->perform,
+      "another body of the kind that performs the motion: scans, one scan, or a rig that was found "
+      "before");
+  command.add_option("--matches", options->matches,
+                     "whose bone performs whose, as JSON: read where the file is there, else written");
   return [options] { return discover_rig(*options); };
 }
 

@@ -37,6 +37,9 @@ std::string one_line(const CaseResult& result) {
                           "part_ri",
                           "tree_f1",
                           "track_pct",
+                          "surface_held_out",
+                          "retarget_pct",
+                          "retarget_scan_pct",
                           "cd_1e4",
                           "gap_mpjpe_m",
                           "chamfer_m",
@@ -101,6 +104,8 @@ Action declare_eval(CLI::App& command) {
       ->check([](const std::string& name) { return failure_of([&] { motion_space_named(name); }); });
   command.add_option("--data", options->data,
                      "the folder of people and motions that --fill nearest looks into");
+  command.add_flag("--held-out", options->held_out,
+                   "finds rigs once more, in even frames alone, and poses them on the odd ones (creatures)");
   command.add_option("--worst", options->worst, "worst frames to list (default: 20)")
       ->check(CLI::Range(0, 10000));
   command.add_option("--pictures", files->pictures, "folder for pictures of the worst frames");

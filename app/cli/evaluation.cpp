@@ -349,7 +349,9 @@ void evaluate_rig_case(const EvalOptions& options, const Case& c, const RigTruth
   US_CHECK(options.baseline.empty() || options.baseline == "nodes", c.name, ": --baseline ", options.baseline,
            " is of people, and this is any body");
   const RigFinder find = options.baseline == "nodes" ? RigFinder(find_nodes) : options.find_rig;
-  const RigEvaluation evaluation = evaluate_rig(c, truth, find, options.edits);
+  const RigEvaluation evaluation = c.performed_truth.empty()
+                                       ? evaluate_rig(c, truth, find, {options.edits, options.held_out})
+                                       : evaluate_pair(c, find, options.edits);
   FrameTimes times;
   times.extract = times.total = evaluation.found_ms / static_cast<double>(evaluation.frames);
   for (int64_t t = 0; t < evaluation.frames; ++t) result.latency.add(times);

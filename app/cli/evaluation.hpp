@@ -27,8 +27,9 @@ struct EvalOptions {
   std::string body;                   ///< SMPL-format, of the baseline "fit"
   std::string fill = kDefaultMotionSpace;  ///< of cases with gaps: one of motion_spaces()
   std::string data;                        ///< a data folder for those that need clips
-  int worst = 20;                          ///< frames listed as the worst
-  ScanEdits edits;                         ///< of each scan, before anybody is looked for
+  bool held_out = false;  ///< of bodies of any kind: figures of frames that the rig was not found in, too
+  int worst = 20;         ///< frames listed as the worst
+  ScanEdits edits;        ///< of each scan, before anybody is looked for
   MethodOptions how;
 };
 

@@ -171,6 +171,8 @@ Case read_case(const std::string& folder) {
   result.times = text("times");
   result.markers = text("markers");
   result.target = text("target");
+  result.target_truth = text("target_truth");
+  result.performed_truth = text("performed_truth");
   if (json.contains("alone")) {
     US_CHECK(json["alone"].is_array(), path, ": \"alone\" is not a list of paths");
     for (const auto& one : json["alone"]) {

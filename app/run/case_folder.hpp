@@ -25,6 +25,9 @@ struct Case {
   std::vector<std::string> alone;  ///< paths: each person of a scene, scanned alone by the same sensors
   std::vector<std::string> tags;
   std::optional<GapPlan> gaps = {};  ///< frames are to be made: these alone are evaluated
+  /// Of two bodies of a kind, the second of which shall perform what the first did (`target` are its scans
+  /// then): paths of its own truth, and of what it does under the first one's true angles; empty: none.
+  std::string target_truth = {}, performed_truth = {};
 };
 
 /// Some points of a surface, as linear blend skinning moves them.

@@ -56,6 +56,46 @@ CreaturePlan creature_plan(size_t which, uint64_t seed, int frames) {
           [=] { return creature_truth(kind, seed, static_cast<int>(motion), frames); }};
 }
 
+/// A creature, and another of its kind that shall perform what it did.
+struct PairPlan {
+  size_t kind;
+  uint64_t source, target;  // seeds
+  std::string name() const {
+    return printed("%s%03d_as_%03d", kCreatureNames[kind], static_cast<int>(target),
+                   static_cast<int>(source));
+  }
+};
+
+/// Of left and right hands no two of different sides: angles of the one say nothing of the other.
+bool on_one_side(const understudy::Rig& a, const understudy::Rig& b) {
+  float same = 0;
+  for (size_t j = 0; j < a.joints.size(); ++j)
+    same += (a.joints[j].rest.x() - a.joints[0].rest.x()) * (b.joints[j].rest.x() - b.joints[0].rest.x());
+  return same >= 0;
+}
+
+PairPlan pair_plan(size_t which, uint64_t seed, const Seeds& seeds) {
+  const auto kind = static_cast<CreatureKind>(which);
+  const understudy::Rig source = make_creature(kind, seed);
+  for (uint64_t i = 1; i < seeds.count; ++i) {
+    const uint64_t other = seeds.first + (seed - seeds.first + i) % seeds.count;
+    if (on_one_side(source, make_creature(kind, other))) return {which, seed, other};
+  }
+  throw Error(printed("%s %d is alone", kCreatureNames[which], static_cast<int>(seed)));
+}
+
+/// The target under the source's true angles.
+RigTruth performed_truth(CreatureKind kind, const PairPlan& plan, const RigMotion& motion) {
+  const understudy::Rig source = make_creature(kind, plan.source), target = make_creature(kind, plan.target);
+  const float scale = box_diagonal(target.surface.vertices) / box_diagonal(source.surface.vertices);
+  RiggedMotion performed{target, motion};
+  for (RigPose& pose : performed.motion.poses) {
+    pose.root = target.joints[0].rest + scale * (pose.root - source.joints[0].rest);
+    for (float& slide : pose.slides) slide *= scale;
+  }
+  return truth_of(performed);
+}
+
 /// Bodies of the data folder, as the suite naked has them.
 class People {
  public:
@@ -122,6 +162,10 @@ float longest_side(const Points& vertices) {
   return (vertices.colwise().maxCoeff() - vertices.colwise().minCoeff()).maxCoeff();
 }
 
+bool is_captured(const SuiteOptions& options) {
+  return options.suite == "creatures-captured";
+}
+
 void write_scans(const fs::path& folder, const RigTruth& truth, const SuiteOptions& options, uint64_t seed) {
   make_scan_folder(folder);
   NumpyRandom random(seed);
@@ -132,7 +176,7 @@ void write_scans(const fs::path& folder, const RigTruth& truth, const SuiteOptio
   for (int t = 0; t < truth.frames(); ++t)
     write_scan(
         folder, static_cast<size_t>(t),
-        options.suite == "creatures"
+        !is_captured(options)
             ? even_scan(random, truth.vertices[t], truth.faces, options.points)
             : Points(simulated_capture(scale * truth.vertices[t], truth.faces, t, capture).vertices / scale));
 }
@@ -148,15 +192,58 @@ void make_case(const CreaturePlan& plan, const SuiteOptions& options) {
                                                {"tags", {options.suite, plan.kind, plan.motion}}});
 }
 
+void make_pair_case(const PairPlan& plan, const SuiteOptions& options) {
+  const fs::path folder = fs::path(options.out) / plan.name();
+  const auto kind = static_cast<CreatureKind>(plan.kind);
+  const auto motion_of = [&](uint64_t seed) {
+    return static_cast<int>(seed % creature_motions(kind).size());
+  };
+  const RigTruth source = creature_truth(kind, plan.source, motion_of(plan.source), options.frames),
+                 target = creature_truth(kind, plan.target, motion_of(plan.target), options.frames);
+  const RigMotion motion = creature_motion(kind, make_creature(kind, plan.source), motion_of(plan.source),
+                                           options.frames, kFps, plan.source);
+  write_scans(folder / "source", source, options, case_seed(plan.name(), options.seed));
+  write_scans(folder / "target", target, options, case_seed(plan.name() + " target", options.seed));
+  write_npz((folder / "truth.npz").string(), rig_truth_arrays(source));
+  write_npz((folder / "target.npz").string(), rig_truth_arrays(target));
+  write_npz((folder / "performed.npz").string(), rig_truth_arrays(performed_truth(kind, plan, motion)));
+  write_json((folder / "case.json").string(),
+             {{"fps", kFps},
+              {"source", "source"},
+              {"truth", "truth.npz"},
+              {"target", "target"},
+              {"target_truth", "target.npz"},
+              {"performed_truth", "performed.npz"},
+              {"tags",
+               {options.suite, kCreatureNames[plan.kind],
+                creature_motions(kind)[static_cast<size_t>(motion_of(plan.source))]}}});
+}
+
+int make_pairs(const SuiteOptions& options, const std::function<void(const std::string&)>& done) {
+  const Seeds seeds = seeds_of(options.split);
+  int made = 0;
+  for (uint64_t i = 0; i < seeds.count; ++i)
+    for (size_t kind = 0; kind < kCreatureNames.size(); ++kind) {
+      if (options.cases > 0 && made == options.cases) return made;
+      const PairPlan plan = pair_plan(kind, seeds.first + i, seeds);
+      check_interrupt("before case " + plan.name());
+      make_pair_case(plan, options);
+      done(plan.name());
+      ++made;
+    }
+  return made;
+}
+
 }  // namespace
 
 bool is_creature_suite(const std::string& suite) {
-  return suite == "creatures" || suite == "creatures-captured";
+  return suite == "creatures" || suite == "creatures-captured" || suite == "creatures-pairs";
 }
 
 int make_creature_suite(const SuiteOptions& options, const std::optional<DataSplit>& people,
                         const std::function<void(const std::string&)>& done) {
   US_CHECK(options.points >= 100, "a scan of ", options.points, " points shows nothing: at least 100");
+  if (options.suite == "creatures-pairs") return make_pairs(options, done);
   const Seeds seeds = seeds_of(options.split);
   std::optional<People> person;
   if (people) person.emplace(options, *people);

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "retarget/base/error.hpp"
+#include "retarget/base/log.hpp"
 #include "retarget/discovery/part_tree.hpp"
+#include "retarget/discovery/rest_surface.hpp"
 #include "retarget/discovery/rig_figures.hpp"
 #include "retarget/discovery/rig_follower.hpp"
 #include "retarget/discovery/scan_evidence.hpp"
@@ -77,6 +79,7 @@ class Discovery {
   void drop_still_bones();
   void track_from_bones();
   void follow_others(DiscoveredRig& result);
+  void close_surface(Rig& rig) const;
   DiscoveredRig finished();
   void judge_bones(DiscoveredRig& result) const;
 
@@ -255,6 +258,15 @@ void Discovery::follow_others(DiscoveredRig& result) {
   }
 }
 
+/// Clouds that enclose nothing stay a cloud.
+void Discovery::close_surface(Rig& rig) const {
+  try {
+    set_rest_surface({frames_, bones_, surface_}, rig.surface, rig);
+  } catch (const Error& error) {
+    log::warn(std::string("the found rig's surface stays a cloud: ") + error.what());
+  }
+}
+
 DiscoveredRig Discovery::finished() {
   DiscoveredRig result;
   result.rest_frame = numbers_[static_cast<size_t>(tracks_.rest_frame)];
@@ -273,6 +285,7 @@ DiscoveredRig Discovery::finished() {
     pose = pose_of(rig, bones_[t]);
     bones_[t] = bone_motions(rig, pose);
   }
+  if (rig.surface.is_cloud()) close_surface(rig);
   if (static_cast<int>(frames_.size()) < scans_.count) follow_others(result);
   judge_bones(result);
   result.doubted = doubted_frames(result.off_m);

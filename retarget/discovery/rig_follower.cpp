@@ -1,13 +1,42 @@
 #include "retarget/discovery/rig_follower.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
+
+#include "retarget/base/error.hpp"
+#include "retarget/geometry/cloud_normals.hpp"
 
 namespace understudy {
 namespace {
 
-constexpr int kFollowedPoints = 2000, kFollowedSurface = 6000;
+constexpr int kFollowedPoints = 2000;  // of the rig's surface
+constexpr int kScanPoints = 6000, kScanSpread = 2000;
 constexpr uint64_t kFollowerSeed = 20240611;
+
+/// Some points of a scan, evenly in its own order, as soon as can be; their normals point as the surface that
+/// is expected near them does.
+ThinnedFrame quickly_thinned(const Mesh& scan, const FittedSurface& surface, const BoneMotions& expected) {
+  const Points all = finite_points(scan.vertices);
+  US_CHECK(all.rows() >= 30, "a scan of ", all.rows(), " points is too few to follow a rig in");
+  const auto count = std::min<Eigen::Index>(kScanPoints, all.rows());
+  // Numbers far from each other in turn: the first ones are spread over the whole scan.
+  Eigen::Index step = static_cast<Eigen::Index>(0.618 * static_cast<double>(all.rows())) | 1;
+  while (std::gcd(step, all.rows()) != 1) ++step;
+  Points points(count, 3);
+  for (Eigen::Index i = 0, at = 0; i < count; ++i, at = (at + step) % all.rows()) points.row(i) = all.row(at);
+  Points normals = estimated_normals(points);
+  const PointTree posed(skinned(surface.points, surface.skin, expected));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int near = posed.nearest(points.row(i).transpose()).point;
+    Eigen::Index most;
+    surface.skin.weights.row(near).maxCoeff(&most);
+    const Mat3& R = expected[static_cast<size_t>(surface.skin.bones(near, most))].R;
+    if (normals.row(i).dot(surface.normals.row(near) * R.transpose()) < 0) normals.row(i) *= -1;
+  }
+  return {points, normals, static_cast<int>(std::min<Eigen::Index>(kScanSpread, count)), PointTree(points)};
+}
 
 }  // namespace
 
@@ -31,11 +60,12 @@ void RigFollower::start_from(const RigPose& pose) {
 }
 
 ThinnedFrame RigFollower::seen(const Mesh& scan) {
-  return thinned(scan, kFollowedPoints, kFollowedSurface, kFollowerSeed);
+  return thinned(scan, kScanSpread, kScanPoints, kFollowerSeed);
 }
 
 RigFollower::Followed RigFollower::follow(const Mesh& scan) {
-  Followed followed = fit(seen(scan), led_on(before_, last_, rig_.rest_joints()));
+  const BoneMotions expected = led_on(before_, last_, rig_.rest_joints());
+  Followed followed = fit(scan.is_cloud() ? quickly_thinned(scan, surface_, expected) : seen(scan), expected);
   before_ = std::exchange(last_, bone_motions(rig_, followed.pose));
   return followed;
 }

@@ -176,7 +176,12 @@ std::vector<Metric> rows_of_rigs() {
       {"cd_1e4", "Voxel Chamfer distance x 1e4", "", 2, whole, lower, kNeedsRig},
       {"m_cd", "Voxel Chamfer distance of what moves", "", 4, whole, lower, kNeedsRig},
       {"true_parts", "True parts", "", 0, whole, neither, kNeedsRig},
-      {"found_parts", "Parts found", "", 0, whole, neither, kNeedsRig}};
+      {"found_parts", "Parts found", "", 0, whole, neither, kNeedsRig},
+      {"retarget_scan_pct", "The same of a body of which there is one scan", "%", 2, whole, lower, kNeedsRig},
+      {"surface_even_pct", "Surface off the scan, even frames, found in them", "%", 2, whole, lower,
+       kNeedsRig},
+      {"surface_odd_pct", "The same in odd frames, followed", "%", 2, whole, lower, kNeedsRig},
+      {"surface_held_out", "Surface off in odd frames over even ones", "", 2, whole, lower, kNeedsRig}};
 }
 
 std::vector<Metric> rows_of_one() {

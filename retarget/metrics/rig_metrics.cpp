@@ -101,6 +101,20 @@ std::vector<std::pair<int, int>> edges_between(const std::vector<int>& parents,
   return edges;
 }
 
+/// 2,000 places, evenly on a true surface as it is in a frame.
+SurfacePlaces places_on(const RigTruth& truth, int frame) {
+  US_CHECK(frame >= 0 && frame < truth.frames(), "frame ", frame, " is none of ", truth.frames());
+  Rng rng(1);
+  const SurfaceSampler sampler(truth.vertices[frame], truth.faces);
+  SurfacePlaces places{Faces(kTrackPoints, 3), RowMatrix(kTrackPoints, 3)};
+  for (int i = 0; i < kTrackPoints; ++i) {
+    const SurfaceSampler::Sample sample = sampler.sample(rng);
+    places.corners.row(i) = truth.faces.row(sample.face);
+    places.share.row(i) = sample.barycentric.transpose();
+  }
+  return places;
+}
+
 void check_frames(const RigTruth& found, const std::vector<Mesh>& scans, const RigTruth& truth) {
   US_CHECK(found.frames() == truth.frames() && ssize(scans) == truth.frames(), "the found rig has ",
            found.frames(), " frames, the scans ", scans.size(), ", the truth ", truth.frames());
@@ -223,16 +237,7 @@ double tree_f1(const std::vector<int>& found_parents, const std::vector<int>& tr
 double track_error_pct(const RigTruth& found, int rest_frame, const RigTruth& truth) {
   US_CHECK(found.frames() == truth.frames(), "a surface found in ", found.frames(), " frames, a true one in ",
            truth.frames());
-  US_CHECK(rest_frame >= 0 && rest_frame < truth.frames(), "frame ", rest_frame, " is none of ",
-           truth.frames());
-  Rng rng(1);
-  const SurfaceSampler sampler(truth.vertices[rest_frame], truth.faces);
-  SurfacePlaces true_places{Faces(kTrackPoints, 3), RowMatrix(kTrackPoints, 3)};
-  for (int i = 0; i < kTrackPoints; ++i) {
-    const SurfaceSampler::Sample sample = sampler.sample(rng);
-    true_places.corners.row(i) = truth.faces.row(sample.face);
-    true_places.share.row(i) = sample.barycentric.transpose();
-  }
+  const SurfacePlaces true_places = places_on(truth, rest_frame);
   const SurfacePlaces places =
       nearest_places({found.vertices[rest_frame], found.faces}, true_places.on(truth.vertices[rest_frame]));
   double sum = 0;
@@ -269,6 +274,23 @@ double retarget_error_pct(const std::vector<Points>& vertices, const std::vector
   double sum = 0;
   for (size_t t = 0; t < truth.size(); ++t) sum += aligned_vertex_error(vertices[t], truth[t]);
   return 100 * sum / (static_cast<double>(truth.size()) * body_size(truth));
+}
+
+double performance_error_pct(const RiggedMotion& performed, const Points& found_there, const RigTruth& own,
+                             int frame, const std::vector<Points>& truth) {
+  US_CHECK(performed.motion.poses.size() == truth.size(), "a performance of ", performed.motion.poses.size(),
+           " frames, a true one of ", truth.size());
+  const understudy::Rig& rig = performed.rig;
+  const SurfacePlaces true_places = places_on(own, frame);
+  const SurfacePlaces places =
+      nearest_places({found_there, rig.surface.faces}, true_places.on(own.vertices[frame]));
+  std::vector<Points> is, wanted;
+  for (size_t t = 0; t < truth.size(); ++t) {
+    is.emplace_back(
+        places.on(skinned(rig.surface.vertices, rig.skin, bone_motions(rig, performed.motion.poses[t]))));
+    wanted.emplace_back(true_places.on(truth[t]));
+  }
+  return retarget_error_pct(is, wanted);
 }
 
 void SemanticConsistency::push(const Points& keypoints, const Points& joints) {

@@ -95,6 +95,24 @@ TEST(RigTruthFile, SaysWhatDoesNotFit) {
   refuses("face", [](Npz& npz) { npz["faces"].values[0] = 1e6f; });
 }
 
+TEST_F(RigCases, OfPairsTheSecondIsEvaluatedUnderTheFirstOnesAngles) {
+  options.suite = "creatures-pairs";
+  options.cases = 2;
+  options.points = 3000;
+  ASSERT_EQ(make(), 2);
+  EXPECT_EQ(names[1], "lamp101_as_100");
+  const Case pair = made(names[1]);
+  const Truth source = read_truth(pair.truth), target = read_truth(pair.target_truth);
+  ASSERT_EQ(read_truth(pair.performed_truth).frames, source.frames);
+  int calls = 0;
+  const RigEvaluation evaluation = evaluate_pair(pair, [&](const std::vector<Mesh>&, double) {
+    return true_rig(++calls == 1 ? *source.rig : *target.rig);
+  });
+  EXPECT_EQ(calls, 2);
+  EXPECT_GT(figure(evaluation.metrics, "retarget_pct"), 0);
+  EXPECT_LT(figure(evaluation.metrics, "retarget_scan_pct"), 12);
+}
+
 TEST_F(RigCases, AreASeedOfEachKindAfterTheOther) {
   options.cases = 9;
   ASSERT_EQ(make(), 9);

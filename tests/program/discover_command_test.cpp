@@ -59,7 +59,38 @@ TEST_F(DiscoverCommand, ItsMotionAloneIsBvh) {
   EXPECT_EQ(std::stoi(text.substr(frames + 7)), kScans);
 }
 
+TEST_F(DiscoverCommand, AFoundRigIsFollowedInScansAndPerformedByAnother) {
+  const std::string scans = lamp();
+  ASSERT_EQ(run_program({"discover", "--source", scans, "--out", out("rig.glb")}).code, 0);
+  const Finished followed = run_program({"discover", "--rig", out("rig.glb"), "--source", scans, "--out",
+                                         out("again.glb"), "--report", out("f.json")});
+  ASSERT_EQ(followed.code, 0) << followed.err;
+  const Json report = Json::parse(read_bytes(out("f.json")));
+  EXPECT_EQ(report["frames"], kScans);
+  EXPECT_GT(report["ms"].get<double>(), 0);
+  const Finished performed =
+      run_program({"discover", "--rig", out("rig.glb"), "--perform", out("again.glb"), "--matches",
+                   out("m.json"), "--out", out("performed.glb"), "--preview", out("p.png")});
+  ASSERT_EQ(performed.code, 0) << performed.err;
+  const RiggedMotion read = from_character(read_character(out("performed.glb")), 0, 30);
+  EXPECT_EQ(read.motion.poses.size(), static_cast<size_t>(kScans));
+  Json matches = Json::parse(read_bytes(out("m.json")));
+  for (const Json& bone : matches["bones"]) EXPECT_EQ(bone["bone"], bone["partner"]);  // the same body
+  matches["bones"][1]["partner"] = "nobody";
+  std::ofstream(out("m.json")) << matches.dump();
+  expect_clean_failure(run_program({"discover", "--rig", out("rig.glb"), "--perform", out("again.glb"),
+                                    "--matches", out("m.json"), "--out", out("no.glb")}),
+                       "has no bone \"nobody\"");
+}
+
 TEST_F(DiscoverCommand, SaysWhatItCannotDo) {
+  expect_clean_failure(run_program({"discover", "--out", out("rig.glb")}), "--source");
+  expect_clean_failure(
+      run_program({"discover", "--source", scans(), "--matches", out("m.json"), "--out", out("r.glb")}),
+      "--matches is of --perform");
+  expect_clean_failure(
+      run_program({"discover", "--rig", scratch.path("rig.obj"), "--source", scans(), "--out", out("r.glb")}),
+      ".glb or .gltf");
   expect_clean_failure(run_program({"discover", "--source", scans()}), "nothing is to be written");
   expect_clean_failure(run_program({"discover", "--source", scans(), "--out", out("rig.obj")}),
                        ".glb, .gltf or .bvh");

@@ -5,6 +5,7 @@
 #include "retarget/base/error.hpp"
 #include "retarget/discovery/rig_follower.hpp"
 #include "retarget/discovery/thinned_frames.hpp"
+#include "retarget/geometry/point_tree.hpp"
 #include "retarget/math/rotation.hpp"
 #include "tests/retarget/discovery/bending_arm.hpp"
 
@@ -34,6 +35,31 @@ TEST(Discover, GivesTheSameBytesForTheSameScans) {
     EXPECT_TRUE(a.found.motion.poses[t].root == b.found.motion.poses[t].root) << t;
     EXPECT_TRUE(a.found.motion.poses[t].turns[1] == b.found.motion.poses[t].turns[1]) << t;
   }
+}
+
+TEST(Discover, OfCloudsTheSurfaceIsClosedAndLiesOnThem) {
+  const Rig& rig = found_arm().found.rig;
+  EXPECT_TRUE(is_closed(rig.surface.faces));
+  EXPECT_GT(rig.surface.faces.rows(), 6000);
+  const Points cloud = bent_arm(angle_at(found_arm().rest_frame), 77).vertices;
+  const PointTree tree(cloud);
+  double sum = 0;
+  for (const auto& v : rig.surface.vertices.rowwise())
+    sum += std::sqrt(static_cast<double>(tree.nearest(v.transpose()).squared));
+  EXPECT_LT(sum / static_cast<double>(rig.surface.vertices.rows()), 0.012);
+}
+
+TEST(Discover, ColoursOfCloudsGoOverToTheSurface) {
+  const DiscoveredRig rig = discover(sequence(6, [](int t) {
+    Mesh scan = bent_arm(angle_at(t), static_cast<uint64_t>(t));
+    scan.colors = Points::Zero(scan.vertices.rows(), 3);
+    scan.colors.topRows(2000).col(0).setOnes();  // the upper arm is red
+    return scan;
+  }));
+  const Mesh& surface = rig.found.rig.surface;
+  ASSERT_EQ(surface.colors.rows(), surface.vertices.rows());
+  for (Eigen::Index v = 0; v < surface.vertices.rows(); ++v)
+    if (surface.vertices(v, 0) < 0.4f) EXPECT_EQ(surface.colors(v, 0), 1) << surface.vertices.row(v);
 }
 
 TEST(Discover, WhatOnlyTravelsIsOneBone) {

@@ -1,0 +1,166 @@
+#include "app/run/rig_performance.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "app/run/fields_json.hpp"
+#include "app/run/rig_finder.hpp"
+#include "retarget/base/clock.hpp"
+#include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/base/text.hpp"
+#include "retarget/character/read_character.hpp"
+#include "retarget/character/rig_character.hpp"
+#include "retarget/discovery/first_pose.hpp"
+#include "retarget/discovery/rig_follower.hpp"
+#include "retarget/math/percentile.hpp"
+#include "retarget/math/rotation.hpp"
+
+namespace understudy::app {
+namespace {
+
+/// Keys a second of the longest track.
+double key_rate(const Character& character) {
+  constexpr double kUsual = 30;
+  if (character.animations.empty()) return kUsual;
+  const std::vector<float>* longest = nullptr;
+  for (const CharacterTrack& track : character.animations[0].tracks)
+    if (!longest || track.times.size() > longest->size()) longest = &track.times;
+  if (!longest || longest->size() < 2 || longest->back() <= longest->front()) return kUsual;
+  return static_cast<double>(longest->size() - 1) / static_cast<double>(longest->back() - longest->front());
+}
+
+/// What tables tell of a rig that was followed.
+void describe(DiscoveredRig& rig) {
+  const auto& poses = rig.found.motion.poses;
+  rig.bones.resize(rig.found.rig.joints.size());
+  double off = 0;
+  int known = 0;
+  for (const float one : rig.off_m)
+    if (one >= 0) off += static_cast<double>(one), ++known;
+  for (size_t j = 0; j < rig.bones.size(); ++j) {
+    FoundBone& bone = rig.bones[j];
+    bone.off_m = static_cast<float>(off / std::max(1, known));
+    for (const RigPose& pose : poses) {
+      if (j > 0)
+        bone.turned_deg =
+            std::max(bone.turned_deg, geodesic_angle(pose.turns[j], Mat3::Identity()) * 180 / kPi);
+      bone.slid_m = std::max(bone.slid_m, std::abs(pose.slides[j]));
+    }
+  }
+}
+
+/// Frames that fit clearly worse than the others, or could not be used.
+std::vector<bool> doubted(const std::vector<float>& off_m) {
+  constexpr double kMuch = 2;
+  std::vector<double> known;
+  for (const float off : off_m)
+    if (off >= 0) known.push_back(static_cast<double>(off));
+  const double usual = percentile(known, 50);
+  std::vector<bool> result;
+  for (const float off : off_m) result.push_back(off < 0 || static_cast<double>(off) > kMuch * usual);
+  return result;
+}
+
+int bone_named(const understudy::Rig& rig, const std::string& name, const std::string& path) {
+  for (int j = 0; j < rig.count(); ++j)
+    if (rig.joints[static_cast<size_t>(j)].name == name) return j;
+  throw Error(path + ": " + rig.name + " has no bone \"" + name + "\"");
+}
+
+}  // namespace
+
+bool is_rig_file(const std::string& path) {
+  const std::string suffix = file_suffix(path);
+  return suffix == ".glb" || suffix == ".gltf";
+}
+
+RiggedMotion read_rig(const std::string& path) {
+  US_CHECK(is_rig_file(path), path, ": a rig that was found before is a .glb or .gltf file");
+  const Character character = read_character(path);
+  RiggedMotion read = from_character(character, character.animations.empty() ? -1 : 0, key_rate(character));
+  if (read.rig.name.empty()) read.rig.name = path;
+  return read;
+}
+
+FollowedScans follow_scans(const RiggedMotion& known, Source& source,
+                           const std::function<bool(int64_t)>& going_on) {
+  constexpr Eigen::Index kFewest = 30;
+  FollowedScans followed;
+  DiscoveredRig& rig = followed.rig;
+  rig.found.rig = known.rig;
+  rig.found.motion.fps = source.fps();
+  RigFollower follower(known.rig);
+  bool begun = false;
+  while (const auto frame = source.next()) {
+    RigPose pose = rig.found.motion.poses.empty() ? rest_pose(known.rig) : rig.found.motion.poses.back();
+    float off = -1;
+    if (frame->usable && finite_count(frame->mesh.vertices) >= kFewest) {
+      if (!begun) follower.start_from(first_pose(known, frame->mesh));
+      const auto began = std::chrono::steady_clock::now();
+      RigFollower::Followed now = follower.follow(frame->mesh);
+      if (begun) followed.ms.push_back(ms_since(began));
+      begun = true;
+      pose = std::move(now.pose), off = now.off_m;
+    }
+    rig.found.motion.poses.push_back(std::move(pose));
+    rig.off_m.push_back(off);
+    rig.complete = going_on(ssize(rig.off_m));
+    if (!rig.complete) break;
+  }
+  US_CHECK(begun, "no scan has ", kFewest, " points: there is nothing to lay the rig on");
+  rig.doubted = doubted(rig.off_m);
+  describe(rig);
+  return followed;
+}
+
+OtherBody other_body(const std::string& path, const SourceOptions& like, const DiscoveryOptions& how) {
+  if (is_rig_file(path)) return {read_rig(path)};
+  SourceOptions options = as_it_is(like);
+  options.path = path;
+  const ScanSequence scans = scan_sequence(open_source(options));
+  OtherBody performing;
+  performing.is_scan = scans.count == 1;
+  performing.body = performing.is_scan ? body_of_one_scan(scans.scan(0)) : discover(scans, how).found;
+  performing.body.rig.name = file_name(path);
+  return performing;
+}
+
+Json to_json(const BoneMatches& matches, const understudy::Rig& source, const understudy::Rig& target) {
+  Json bones = Json::array();
+  for (size_t k = 0; k < matches.partner.size(); ++k) {
+    const int partner = matches.partner[k];
+    Json& bone = bones.emplace_back();
+    bone["bone"] = target.joints[k].name;
+    bone["partner"] = partner < 0 ? Json() : Json(source.joints[static_cast<size_t>(partner)].name);
+    if (partner >= 0) bone["cost"] = matches.cost[k];
+  }
+  return {{"source", source.name}, {"target", target.name}, {"bones", bones}};
+}
+
+BoneMatches read_matches(const std::string& path, const understudy::Rig& source,
+                         const understudy::Rig& target) {
+  const Json json = read_json(path);
+  US_CHECK(json.is_object() && json.contains("bones") && json["bones"].is_array(), path,
+           ": has no list \"bones\"");
+  BoneMatches matches;
+  matches.partner.assign(target.joints.size(), -1);
+  matches.cost.assign(target.joints.size(), 0);
+  for (const Json& bone : json["bones"]) {
+    US_CHECK(bone.is_object() && bone.contains("bone") && bone["bone"].is_string(), path,
+             ": a row without \"bone\"");
+    if (!bone.contains("partner") || bone["partner"].is_null()) continue;
+    US_CHECK(bone["partner"].is_string(), path, ": a partner is the name of a bone, or null");
+    const auto at = static_cast<size_t>(bone_named(target, bone["bone"].get<std::string>(), path));
+    matches.partner[at] = bone_named(source, bone["partner"].get<std::string>(), path);
+    if (bone.contains("cost") && bone["cost"].is_number()) matches.cost[at] = bone["cost"].get<float>();
+  }
+  const std::string wrong = failure_of([&] { check_matches(matches, source, target); });
+  US_CHECK(wrong.empty(), path, ": ", wrong);
+  return matches;
+}
+
+}  // namespace understudy::app

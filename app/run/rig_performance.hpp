@@ -1,0 +1,46 @@
+// Rigs that were found before: read again, followed through new scans, and performing what another one did.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/run/report.hpp"
+#include "app/run/source.hpp"
+#include "retarget/discovery/discover.hpp"
+#include "retarget/discovery/rig_retarget.hpp"
+
+namespace understudy::app {
+
+/// Whether a path is that of a rigged character: .glb or .gltf.
+bool is_rig_file(const std::string& path);
+/// A rig and its motion, as often a second as its file has keys; a file without a motion is one pose. Throws
+/// Error naming the file.
+RiggedMotion read_rig(const std::string& path);
+
+/// A rig laid on scans one after the other, each as it comes.
+struct FollowedScans {
+  DiscoveredRig rig;       ///< what was known, with a pose a scan
+  std::vector<double> ms;  ///< of each scan that could be used, but the first, which is searched
+};
+/// Looks only back. going_on: called after each with the number done, false ends it. Throws Error where no
+/// scan can be used.
+FollowedScans follow_scans(const RiggedMotion& known, Source& source,
+                           const std::function<bool(int64_t)>& going_on);
+
+/// A body that shall perform.
+struct OtherBody {
+  RiggedMotion body;
+  bool is_scan = false;  ///< one scan: it has no bones yet
+};
+/// A rigged character as it is, one scan, or scans in which a rig is found. `like` says how scans are read.
+/// Throws Error naming what cannot be read.
+OtherBody other_body(const std::string& path, const SourceOptions& like, const DiscoveryOptions& how);
+
+/// {"bones": [{"bone": name, "partner": name or null, "cost": 0.1}, ...]}
+Json to_json(const BoneMatches& matches, const understudy::Rig& source, const understudy::Rig& target);
+/// Reads it again: bones of the target that it does not name have no partner. Throws Error naming the file and
+/// the bone that is not there or taken twice.
+BoneMatches read_matches(const std::string& path, const understudy::Rig& source,
+                         const understudy::Rig& target);
+
+}  // namespace understudy::app

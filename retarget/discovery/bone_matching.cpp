@@ -1,0 +1,237 @@
+#include "retarget/discovery/bone_matching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "retarget/base/error.hpp"
+#include "retarget/base/index.hpp"
+#include "retarget/math/rotation.hpp"
+#include "retarget/metrics/cheapest_pairs.hpp"
+
+namespace understudy {
+namespace {
+
+constexpr int kLaidPoints = 1200, kRoughPoints = 250;
+constexpr int kLaidPoses = 7, kHeadings = 12, kTried = 16;
+constexpr uint64_t kLaidSeed = 20240614;
+constexpr double kMirrorCosts = 1.2;    // a body is rather itself than its mirror image
+constexpr double kHeadingCosts = 0.01;  // of its size: where nothing tells, bodies face alike
+constexpr double kStrainCosts = 0.01;   // of its size, for a mean strain of 1
+constexpr double kFewInCommon = 0.12;   // of two bones' surfaces: less makes no partners
+
+/// A rig's surface in some of its poses.
+class PosedShapes {
+ public:
+  struct Pose {
+    int frame;
+    ThinnedFrame surface;  // all points are spread
+    ThinnedFrame rough;    // the first of them
+    Points joints;
+    Vec3 middle;
+    float size;  // root of the mean square distance of the points from it
+  };
+  explicit PosedShapes(const RiggedMotion& body)
+      : thin_(thinned(body.rig.surface, kLaidPoints, kLaidPoints, kLaidSeed)) {
+    US_CHECK(!body.motion.poses.empty(), body.rig.name, ": a body without a pose");
+    skin = weights_between(thin_.points, body.rig.surface.vertices, body.rig.skin, body.rig.count());
+    const int frames = static_cast<int>(ssize(body.motion.poses)), count = std::min(kLaidPoses, frames);
+    for (int i = 0; i < count; ++i) {
+      const int t = i * (frames - 1) / std::max(1, count - 1);
+      poses.push_back(posed(body.rig, t, bone_motions(body.rig, body.motion.poses[static_cast<size_t>(t)])));
+    }
+  }
+
+  SkinWeights skin;  // of the points
+  std::vector<Pose> poses;
+
+ private:
+  Pose posed(const Rig& rig, int frame, const BoneMotions& bones) const {
+    const Points points = skinned(thin_.points, skin, bones);
+    Points normals(points.rows(), 3);
+    for (Eigen::Index i = 0; i < normals.rows(); ++i) {
+      Eigen::Index most;
+      skin.weights.row(i).maxCoeff(&most);
+      normals.row(i) = thin_.normals.row(i) * bones[static_cast<size_t>(skin.bones(i, most))].R.transpose();
+    }
+    const auto few = std::min<Eigen::Index>(kRoughPoints, points.rows());
+    const Vec3 middle = points.colwise().mean().transpose();
+    return {
+        frame,
+        {points, normals, static_cast<int>(points.rows()), PointTree(points)},
+        {points.topRows(few), normals.topRows(few), static_cast<int>(few), PointTree(points.topRows(few))},
+        joint_places(rig, bones),
+        middle,
+        std::sqrt((points.rowwise() - middle.transpose()).rowwise().squaredNorm().mean())};
+  }
+
+  ThinnedFrame thin_;
+};
+
+/// A way to lay one body on the other.
+struct Look {
+  const PosedShapes::Pose *source, *target;
+  Mat3 turn;
+  double cost;  // in the target's sizes
+
+  float scale() const { return target->size / source->size; }
+  /// From the source's space to the target's.
+  Points there(const Points& points) const {
+    return (scale() * (points.rowwise() - source->middle.transpose()) * turn.transpose()).rowwise() +
+           target->middle.transpose();
+  }
+  double besides() const {
+    const Vec3 ahead = turn.col(2);
+    return kHeadingCosts * static_cast<double>(0.5f - 0.5f * ahead.z());
+  }
+  double times() const { return turn.determinant() < 0 ? kMirrorCosts : 1; }
+};
+
+/// Mean distance of both surfaces, both ways; points that face another way count as some way off.
+double rough_cost(const Look& look) {
+  const Points here = look.there(look.source->rough.points),
+               normals = look.source->rough.normals * look.turn.transpose();
+  const float size = look.target->size;
+  const ThinnedFrame& on = look.target->rough;
+  const auto off = [&](float squared, float alike) {
+    const float d = std::min(std::sqrt(squared) / size, 0.6f);
+    return static_cast<double>(d + 0.1f * (1 - alike));
+  };
+  double sum = 0;
+  for (Eigen::Index i = 0; i < here.rows(); ++i) {
+    const PointTree::Near near = on.tree.nearest(here.row(i).transpose());
+    sum += off(near.squared, normals.row(i).dot(on.normals.row(near.point)));
+  }
+  const Points back =
+      ((on.points.rowwise() - look.target->middle.transpose()) * look.turn / look.scale()).rowwise() +
+      look.source->middle.transpose();
+  for (Eigen::Index q = 0; q < back.rows(); ++q) {
+    const PointTree::Near near = look.source->rough.tree.nearest(back.row(q).transpose());
+    sum += off(near.squared * look.scale() * look.scale(), normals.row(near.point).dot(on.normals.row(q)));
+  }
+  return (sum / static_cast<double>(here.rows() + back.rows()) + look.besides()) * look.times();
+}
+
+std::vector<Look> looks_at(const PosedShapes& source, const PosedShapes& target) {
+  std::vector<Look> looks;
+  for (const PosedShapes::Pose& a : source.poses)
+    for (const PosedShapes::Pose& b : target.poses)
+      for (const float side : {1.0f, -1.0f})
+        for (int i = 0; i < kHeadings; ++i) {
+          const Mat3 mirror = Vec3(side, 1, 1).asDiagonal();
+          looks.push_back(
+              {&a, &b, rotation_about_y(2 * kPi * static_cast<float>(i) / kHeadings) * mirror, 0});
+          looks.back().cost = rough_cost(looks.back());
+        }
+  std::stable_sort(looks.begin(), looks.end(), [](const Look& x, const Look& y) { return x.cost < y.cost; });
+  return looks;
+}
+
+/// The source's points on the target's as a look has them, every `step`-th of them.
+ProportionFit fitted(const Look& look, const Rig& source, const SkinWeights& skin, bool rough) {
+  const ThinnedFrame& points = rough ? look.source->rough : look.source->surface;
+  PosedBody body;
+  body.surface = {look.there(points.points), points.normals * look.turn.transpose(), {}};
+  body.surface.skin.bones = skin.bones.topRows(points.points.rows());
+  body.surface.skin.weights = skin.weights.topRows(points.points.rows());
+  body.joints = look.there(look.source->joints);
+  for (const RigJoint& joint : source.joints) body.parents.push_back(joint.parent);
+  ProportionFitOptions options;
+  options.rounds = rough ? 8 : 30;
+  options.first_radius_m = 0.25f * look.target->size;
+  options.last_radius_m = (rough ? 0.1f : 0.04f) * look.target->size;
+  return fit_proportions(body, rough ? look.target->rough : look.target->surface, options);
+}
+
+}  // namespace
+
+void check_matches(const BoneMatches& matches, const Rig& source, const Rig& target) {
+  US_CHECK(ssize(matches.partner) == target.count() && ssize(matches.cost) == target.count(), "partners for ",
+           matches.partner.size(), " bones; ", target.name, " has ", target.count());
+  std::vector<char> taken(source.joints.size(), 0);
+  bool any = false;
+  for (const int partner : matches.partner) {
+    if (partner < 0) continue;
+    US_CHECK(partner < source.count(), "a partner is bone ", partner, "; ", source.name, " has ",
+             source.count());
+    char& is_taken = taken[static_cast<size_t>(partner)];
+    US_CHECK(!is_taken, source.joints[static_cast<size_t>(partner)].name, " is the partner of two bones");
+    is_taken = any = true;
+  }
+  US_CHECK(any, "no bone has a partner: nothing can be performed");
+}
+
+LaidBody lay_on(const RiggedMotion& source, const RiggedMotion& target) {
+  const PosedShapes a(source), b(target);
+  std::vector<Look> looks = looks_at(a, b);
+  looks.resize(std::min<size_t>(looks.size(), kTried));
+  const auto refined = [&](Look& look) {
+    const ProportionFit fit = fitted(look, source.rig, a.skin, true);
+    look.cost =
+        (fit.off_m / static_cast<double>(look.target->size) + kStrainCosts * fit.strained + look.besides()) *
+        look.times();
+  };
+  for (Look& look : looks) refined(look);
+  const Look& best = *std::min_element(looks.begin(), looks.end(),
+                                       [](const Look& x, const Look& y) { return x.cost < y.cost; });
+  const ProportionFit fit = fitted(best, source.rig, a.skin, false);
+  LaidBody laid;
+  laid.source_frame = best.source->frame;
+  laid.target_frame = best.target->frame;
+  laid.turn = best.turn;
+  laid.scale = best.scale();
+  for (const StretchedBone& bone : fit.bones) laid.corrections.push_back(bone.R.transpose());
+  laid.points = fit.points;
+  laid.joints = fit.joints;
+  laid.skin = a.skin;
+  return laid;
+}
+
+BoneMatches match_bones(const LaidBody& laid, const RiggedMotion& source, const RiggedMotion& target) {
+  const BoneMotions bones =
+      bone_motions(target.rig, target.motion.poses[static_cast<size_t>(laid.target_frame)]);
+  const ThinnedFrame thin = thinned(target.rig.surface, kLaidPoints, kLaidPoints, kLaidSeed);
+  const SkinWeights own =
+      weights_between(thin.points, target.rig.surface.vertices, target.rig.skin, target.rig.count());
+  const RowMatrix of_target = own.dense(target.rig.count()),
+                  of_source = weights_between(skinned(thin.points, own, bones), laid.points, laid.skin,
+                                              source.rig.count())
+                                  .dense(source.rig.count());
+  const RowMatrix common = of_target.transpose() * of_source;  // [J of the target, J of the source] points
+  Eigen::MatrixXd cost(common.rows(), common.cols());
+  for (Eigen::Index k = 0; k < common.rows(); ++k)
+    for (Eigen::Index j = 0; j < common.cols(); ++j)
+      cost(k, j) =
+          1 - 2 * static_cast<double>(common(k, j)) /
+                  std::max(1e-6, static_cast<double>(of_target.col(k).sum() + of_source.col(j).sum()));
+  BoneMatches matches;
+  matches.partner = cheapest_pairs(cost);
+  for (Eigen::Index k = 0; k < common.rows(); ++k) {
+    int& partner = matches.partner[static_cast<size_t>(k)];
+    if (partner >= 0 && cost(k, partner) > 1 - kFewInCommon) partner = -1;
+    matches.cost.push_back(partner < 0 ? 0 : static_cast<float>(cost(k, partner)));
+  }
+  check_matches(matches, source.rig, target.rig);
+  return matches;
+}
+
+std::vector<int> led_by(const Rig& target, const BoneMatches& matches) {
+  std::vector<int> leader(target.joints.size(), -1);
+  const auto parent_of = [&](int k) {
+    return static_cast<size_t>(target.joints[static_cast<size_t>(k)].parent);
+  };
+  for (int k = 0; k < target.count(); ++k) {
+    const auto at = static_cast<size_t>(k);
+    if (matches.partner[at] >= 0)
+      leader[at] = k;
+    else if (k > 0)
+      leader[at] = leader[parent_of(k)];
+  }
+  for (int k = target.count() - 1; k > 0; --k)  // above all that have one
+    if (leader[parent_of(k)] < 0) leader[parent_of(k)] = leader[static_cast<size_t>(k)];
+  for (int k = 1; k < target.count(); ++k)
+    if (leader[static_cast<size_t>(k)] < 0) leader[static_cast<size_t>(k)] = leader[parent_of(k)];
+  return leader;
+}
+
+}  // namespace understudy
