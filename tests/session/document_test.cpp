@@ -102,6 +102,10 @@ const Changes& document_changes() {
       {"swap.first", [](SavedDocument& s) { ++swap(s.document).first; }},
       {"swap.last", [](SavedDocument& s) { ++swap(s.document).last; }},
       {"swap.limbs", [](SavedDocument& s) { swap(s.document).limbs = SwapEdit::Limbs::Arms; }},
+      CHANGE(bones.wanted = false),
+      CHANGE(bones.most = 7),
+      CHANGE(bones.edits.pop_back()),
+      CHANGE(bones.edits[0] = FitAgain{}),
       CHANGE(takes.pop_back()),
       TAKE(name = "other"),
       TAKE(person = "7"),
@@ -197,7 +201,8 @@ const Changes& document_changes() {
 
 /// Does not compile once a member is added: then it belongs into fields() and the changes above, too.
 [[maybe_unused]] void all_members_are_known() {
-  [[maybe_unused]] const auto& [source, truth, scan, skeleton, takes] = Document();
+  [[maybe_unused]] const auto& [source, truth, scan, skeleton, bones, takes] = Document();
+  [[maybe_unused]] const auto& [wanted, most, bone_edits] = OwnBones();
   [[maybe_unused]] const auto& [path, motion, betas, fps, import, follow, as_scan, clip, source_bones, quiet,
                                 with_truth, person, times, complete, markers, made, people, recipe, edits] =
       SourceOptions();
@@ -235,12 +240,12 @@ const Changes& document_changes() {
   [[maybe_unused]] const auto& [first, last] = Trim();
   [[maybe_unused]] const auto& [layout, linked, cameras, follows, turntable, of_source, of_take, pane,
                                 weights_joint, trails, ghosts, step, by_time, scale, wipe, cube, overlay,
-                                light, background, background_color, metric, steps] = View();
+                                light, background, background_color, metric, steps, bone_surface] = View();
   [[maybe_unused]] const auto& [of_scan, of_skeletons, of_results, spread] = OverlayLook();
   [[maybe_unused]] const auto& [light_turn, light_height, brightness] = LightLook();
   [[maybe_unused]] const auto& [at, yaw_rad, pitch, distance, fov, orthographic] = CameraState();
-  [[maybe_unused]] const auto& [surface, points, bones, x_ray, names, ground, trail, ghost, wireframe,
-                                scenery, colouring] = Layers();
+  [[maybe_unused]] const auto& [surface, points, joint_layer, x_ray, names, ground, trail, ghost, wireframe,
+                                scenery, bone_layer, colouring] = Layers();
   [[maybe_unused]] const auto& [playing, loop, live, rate, now, in, out] = Playback();
 }
 
