@@ -38,8 +38,8 @@ OtherBody other_body(const std::string& path, const SourceOptions& like, const D
 
 /// {"bones": [{"bone": name, "partner": name or null, "cost": 0.1}, ...]}
 Json to_json(const BoneMatches& matches, const understudy::Rig& source, const understudy::Rig& target);
-/// Reads it again: bones of the target that it does not name have no partner. Throws Error naming the file and
-/// the bone that is not there or taken twice.
+/// Reads it again: bones of the target that it does not name have no partner. Throws Error naming the file
+/// and the bone that is not there or taken twice.
 BoneMatches read_matches(const std::string& path, const understudy::Rig& source,
                          const understudy::Rig& target);
 

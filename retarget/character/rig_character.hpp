@@ -20,8 +20,8 @@ Character to_character(const RiggedMotion& performed);
 /// Error where there is no skin, bones scale, or the animation has more than 100,000 frames.
 RiggedMotion from_character(const Character& character, int animation, double fps);
 
-/// The motion alone as BVH, of any tree, see BvhWriter: at rest all angles are zero; the root and sliders have
-/// positions. Throws Error for a bad rig, poses that do not fit, and as BvhWriter.
+/// The motion alone as BVH, of any tree, see BvhWriter: at rest all angles are zero; the root and sliders
+/// have positions. Throws Error for a bad rig, poses that do not fit, and as BvhWriter.
 void write_rig_bvh(const std::string& path, const RiggedMotion& performed);
 
 }  // namespace understudy

@@ -46,7 +46,8 @@ struct FoundBone {
 };
 
 struct DiscoveredRig {
-  RiggedMotion found;            ///< a pose for each frame; the surface is the rest frame's scan, of clouds a closed one
+  /// A pose for each frame; the surface is the rest frame's scan, of clouds a closed one.
+  RiggedMotion found;
   int rest_frame = 0;            ///< in which no bone is turned
   std::vector<int> key_frames;   ///< that the skeleton was found in; the others were followed
   std::vector<FoundBone> bones;  ///< one a joint

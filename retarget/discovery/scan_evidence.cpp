@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "retarget/base/union_find.hpp"
+#include "retarget/discovery/part_tree.hpp"
+#include "retarget/math/rotation.hpp"
 
 namespace understudy {
 namespace {
@@ -11,8 +15,8 @@ namespace {
 constexpr int kJudgedFrames = 20;
 // What may stand still: off the scans hardly more than where it was tracked to, and a share of the diagonal.
 constexpr double kStillSlack = 1.5, kStillOff = 0.001;
-constexpr double kStillShare = 0.02;   // of all points: smaller pieces are no piece
-constexpr double kStillMoved = 0.004;  // of the diagonal: what tracking moved less needs no rest
+constexpr double kStillShare = 0.02;  // of all points: smaller pieces are no piece
+constexpr float kTurnOff = 0.005f;    // of the diagonal: how far the axis of a turn may go
 
 std::vector<RigidMotion> motions_of_node(const SurfaceTracks& tracks, int node) {
   std::vector<RigidMotion> motions;
@@ -73,33 +77,58 @@ double ScanEvidence::off(int point, const std::vector<RigidMotion>& motions) con
   return share_ * sum;
 }
 
+namespace {
+
+/// Pieces of the surface that may rest, by their points.
+std::vector<std::vector<int>> resting_pieces(const SurfaceGraph& surface, const std::vector<char>& may) {
+  UnionFind sets(may.size());
+  for (size_t i = 0; i < may.size(); ++i)
+    for (const SurfaceGraph::Edge& edge : surface.edges[i])
+      if (may[i] && may[static_cast<size_t>(edge.to)]) sets.join(static_cast<int>(i), edge.to);
+  std::map<int, std::vector<int>> pieces;
+  for (size_t i = 0; i < may.size(); ++i)
+    if (may[i]) pieces[sets.root(static_cast<int>(i))].push_back(static_cast<int>(i));
+  std::vector<std::vector<int>> large;
+  for (auto& [root, points] : pieces)
+    if (static_cast<double>(points.size()) >= kStillShare * static_cast<double>(may.size()))
+      large.push_back(std::move(points));
+  return large;
+}
+
+/// Whether tracking only turned a piece about an axis that stays where it is. A straight limb that goes along
+/// itself may rest in its middle, too, but does not.
+bool turns_in_place(const SurfaceTracks& tracks, const std::vector<int>& piece, float size) {
+  const Points rest = tracks.graph.points(piece, Eigen::all);
+  const Vec3 middle = rest.colwise().mean().transpose();
+  const Eigen::VectorXf alike = Eigen::VectorXf::Ones(rest.rows());
+  std::vector<RigidMotion> motions;
+  for (size_t t = 0; t < tracks.motions.size(); ++t) {
+    const Points posed = Points(tracks.at(static_cast<int>(t))(piece, Eigen::all));
+    const Vec3 there = posed.colwise().mean().transpose();
+    RigidMotion motion;
+    motion.R = kabsch(rest.rowwise() - middle.transpose(), posed.rowwise() - there.transpose(), alike);
+    motion.t = there - motion.R * middle;
+    motions.push_back(motion);
+  }
+  const PartJoint joint = find_joint(std::vector<RigidMotion>(motions.size()), motions, middle,
+                                     static_cast<float>(kStillOff) * size, size);
+  return joint.kind == JointKind::Hinge && joint.off_m < kTurnOff * size;
+}
+
+}  // namespace
+
 void rest_what_may(const std::vector<ThinnedFrame>& frames, SurfaceTracks& tracks) {
   const DeformationGraph& graph = tracks.graph;
-  const double size = box_diagonal(graph.points);
+  const float size = box_diagonal(graph.points);
   const ScanEvidence scans(frames, graph);
   const std::vector<char> may = agreed(graph.surface, may_rest(scans, tracks, size));
-  UnionFind pieces(may.size());
-  for (size_t i = 0; i < may.size(); ++i)
-    for (const SurfaceGraph::Edge& edge : graph.surface.edges[i])
-      if (may[i] && may[static_cast<size_t>(edge.to)]) pieces.join(static_cast<int>(i), edge.to);
-  std::vector<int> sizes(may.size(), 0);
-  std::vector<double> moved(may.size(), 0);
-  for (size_t i = 0; i < may.size(); ++i) ++sizes[static_cast<size_t>(pieces.root(static_cast<int>(i)))];
-  for (size_t t = 0; t < tracks.motions.size(); ++t) {
-    const Points posed = tracks.at(static_cast<int>(t));
-    for (Eigen::Index i = 0; i < posed.rows(); ++i)
-      moved[static_cast<size_t>(pieces.root(static_cast<int>(i)))] +=
-          (posed.row(i) - graph.points.row(i)).squaredNorm();
-  }
-  for (int k = 0; k < graph.count(); ++k) {
-    const int point = graph.node_points[static_cast<size_t>(k)];
-    const auto piece = static_cast<size_t>(pieces.root(point));
-    const double far = std::sqrt(moved[piece] / (sizes[piece] * static_cast<double>(frames.size())));
-    if (!may[static_cast<size_t>(point)] || sizes[piece] < kStillShare * static_cast<double>(may.size()) ||
-        far < kStillMoved * size)
-      continue;
-    for (NodeMotions& motions : tracks.motions) motions[static_cast<size_t>(k)] = {};
-  }
+  std::vector<char> rests(may.size(), 0);
+  for (const std::vector<int>& piece : resting_pieces(graph.surface, may))
+    if (turns_in_place(tracks, piece, size))
+      for (const int point : piece) rests[static_cast<size_t>(point)] = 1;
+  for (int k = 0; k < graph.count(); ++k)
+    if (rests[static_cast<size_t>(graph.node_points[static_cast<size_t>(k)])])
+      for (NodeMotions& motions : tracks.motions) motions[static_cast<size_t>(k)] = {};
 }
 
 }  // namespace understudy

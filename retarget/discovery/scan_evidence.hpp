@@ -23,7 +23,7 @@ class ScanEvidence {
   float most_;
 };
 
-/// What may as well stand still, stands still: round pieces that tracking took along with what turns beside
+/// What may as well stand still, stands still: round pieces that tracking turned along with what turns beside
 /// them, as the foot of a lamp. Changes the motions of their nodes.
 void rest_what_may(const std::vector<ThinnedFrame>& frames, SurfaceTracks& tracks);
 

@@ -73,8 +73,8 @@ double surface_error_pct(const std::vector<Points>& vertices, const Faces& faces
 double retarget_error_pct(const std::vector<Points>& vertices, const std::vector<Points>& truth);
 
 /// The same of a rig that was found in scans and performs: 2,000 points of the true surface as it was in
-/// `frame` of its own motion, laid on the nearest places of the found surface in that pose (`found_there`, the
-/// performing rig's vertices), against where they are in `truth`, the true surface's performance.
+/// `frame` of its own motion, laid on the nearest places of the found surface in that pose (`found_there`,
+/// the performing rig's vertices), against where they are in `truth`, the true surface's performance.
 double performance_error_pct(const RiggedMotion& performed, const Points& found_there, const RigTruth& own,
                              int frame, const std::vector<Points>& truth);
 

@@ -2,10 +2,10 @@
 // Marks, P being source or take: layers.P.surface, .as_points, .skeleton, .x_ray, .joint_names, .ground,
 // .trails, .ghosts, .wireframe, .scene, .bones, .colour; layers.opacity.scan, .skeletons, .results,
 // layers.spread; layers.light.turn, .height, .brightness, layers.background, layers.background_colour;
-// layers.weights_joint, layers.trail_joint, layers.trail.JOINT, layers.ghost_count, layers.ghost_step, layers.ghosts_by_time,
-// layers.error_scale; layers.preset.NAME, layers.fit, layers.ortho, layers.linked, layers.follow,
-// layers.turntable. Sections: layers.source, layers.take, layers.overlay (in that layout), layers.colours,
-// layers.camera, layers.light_and_background.
+// layers.weights_joint, layers.trail_joint, layers.trail.JOINT, layers.ghost_count, layers.ghost_step,
+// layers.ghosts_by_time, layers.error_scale; layers.preset.NAME, layers.fit, layers.ortho, layers.linked,
+// layers.follow, layers.turntable. Sections: layers.source, layers.take, layers.overlay (in that layout),
+// layers.colours, layers.camera, layers.light_and_background.
 #include <algorithm>
 #include <cmath>
 
