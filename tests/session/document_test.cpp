@@ -296,6 +296,7 @@ TEST(Document, WhatBelongsToOneRunIsNoMatter) {
 /// The document without what needs no new frames.
 Document made_anew(Document document) {
   document.truth.clear();
+  document.bones = {};  // they are found beside the frames
   for (Take& take : document.takes)
     take.name.clear(), take.target_edits.weights.reset(), take.pose_edits = {};
   return document;

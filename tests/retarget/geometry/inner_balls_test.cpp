@@ -44,14 +44,5 @@ TEST(InnerBalls, OfADiscAreItsHalfThickness) {
   }
 }
 
-TEST(InnerBalls, NoiseMakesThemLittleSmaller) {
-  Skin ball = ellipsoid({0.3f, 0.3f, 0.3f}, 1500);
-  Rng rng(9);
-  for (auto point : ball.points.rowwise()) point *= rng.uniform(0.99f, 1.01f);
-  const Eigen::VectorXf radii = inner_radii(PointTree(ball.points), ball.normals);
-  EXPECT_GT(radii.mean(), 0.2f);
-  EXPECT_LT(radii.maxCoeff(), 0.33f);
-}
-
 }  // namespace
 }  // namespace understudy
